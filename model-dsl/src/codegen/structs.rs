@@ -1,0 +1,105 @@
+//! The typed records of a machine: constants, positions, travels and error motions.
+
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+
+use super::docs;
+use super::idents::field;
+use crate::equations::Equations;
+
+/// All records, and the machine itself.
+pub(super) fn all(equations: &Equations) -> TokenStream {
+    let constants = constants(equations);
+    let axes = axes(equations);
+    let travels = travels(equations);
+    let motions = motions(equations);
+    let about = docs::machine(equations);
+    quote! {
+        #constants
+        #axes
+        #travels
+        #motions
+        #[doc = #about]
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        pub struct Machine {
+            /// The values of the named offsets.
+            pub constants: Constants,
+        }
+    }
+}
+
+/// A record of doubles with its names and its conversions from and to an array.
+fn record(name: &str, about: &str, fields: &[(String, String)]) -> TokenStream {
+    let ident = format_ident!("{name}");
+    let count = fields.len();
+    let idents: Vec<_> = fields.iter().map(|(name, _)| field(name)).collect();
+    let docs: Vec<_> = fields.iter().map(|(_, doc)| doc).collect();
+    let names: Vec<_> = fields.iter().map(|(name, _)| name).collect();
+    quote! {
+        #[doc = #about]
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        pub struct #ident {
+            #(#[doc = #docs] pub #idents: f64,)*
+        }
+        impl #ident {
+            /// The names, in the order of the array.
+            pub const NAMES: [&'static str; #count] = [#(#names),*];
+            /// The record from an array.
+            #[must_use]
+            pub const fn from_array([#(#idents),*]: [f64; #count]) -> Self {
+                Self { #(#idents),* }
+            }
+            /// The record as an array.
+            #[must_use]
+            pub const fn to_array(self) -> [f64; #count] {
+                [#(self.#idents),*]
+            }
+        }
+    }
+}
+
+fn constants(equations: &Equations) -> TokenStream {
+    let fields: Vec<_> = equations
+        .constants
+        .iter()
+        .map(|constant| {
+            let meaning = constant.meaning.as_deref().unwrap_or("a named offset of the chain");
+            (constant.name.to_string(), format!("{}: {meaning} \\[mm\\].", constant.name))
+        })
+        .collect();
+    record("Constants", "The named offsets of the machine.", &fields)
+}
+
+fn axes(equations: &Equations) -> TokenStream {
+    let fields: Vec<_> = equations
+        .axes
+        .iter()
+        .map(|axis| {
+            let unit = if axis.rotary { "rad" } else { "mm" };
+            (axis.variable.to_string(), format!("The programmed position of axis {} \\[{unit}\\].", axis.letter))
+        })
+        .collect();
+    record("Axes", "The programmed positions of the axes.", &fields)
+}
+
+fn travels(equations: &Equations) -> TokenStream {
+    if equations.travels.is_empty() {
+        return TokenStream::new();
+    }
+    let fields: Vec<_> = equations
+        .travels
+        .iter()
+        .map(|travel| {
+            let axis = &equations.axes[travel.axis].letter;
+            let doc = format!("The travel of axis {axis} over which an alignment error acts \\[mm\\].");
+            (travel.name.to_string(), doc)
+        })
+        .collect();
+    record("Travels", "Free travels in the levers of alignment errors.", &fields)
+}
+
+fn motions(equations: &Equations) -> TokenStream {
+    let fields: Vec<_> =
+        equations.motions.iter().map(|motion| (motion.name.clone(), docs::motion(motion))).collect();
+    record("Motions", "The error motions: what each link does beside what it was told.", &fields)
+}

@@ -1,0 +1,185 @@
+//! From the chain to the equations: the first-order product of homogeneous transformations.
+//!
+//! In: a validated [`Machine`]. Out: its [`Equations`], with warnings for what the machine
+//! file names in vain. Each link is a matrix from the frame before it to its own; the product
+//! along the tool's branch, seen from the inverse of the product along the part's branch,
+//! is the tool relative to the part (equation (3-15) of the Excello report, (A.11) of NISTIR 6722).
+
+mod link_matrix;
+mod meaning;
+
+use crate::algebra::{Axis, FirstOrder, Htm, Name, Polynomial, Symbol};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::equations::{AxisInfo, ConstantInfo, Equations, Motion, Row, Term, TravelInfo};
+use crate::machine::{Branch, LinkKind, Machine};
+
+pub use link_matrix::matrix as link_matrix;
+
+/// Derives the error equations of a machine; warnings go to `diagnostics`.
+pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
+    let tip = relative_position(machine);
+    let kept = seen_motions(machine, &tip);
+    warn_unseen(machine, &kept, diagnostics);
+    let rows = rows(machine, &tip, &kept);
+    warn_undriven(machine, &rows, diagnostics);
+    Equations {
+        machine: machine.name.clone(),
+        title: machine.title.clone(),
+        source: machine.source.clone(),
+        axes: axes(machine, &tip),
+        travels: travels(machine, &kept),
+        constants: constants(machine),
+        motions: kept.iter().map(|number| motion(machine, *number)).collect(),
+        rows,
+    }
+}
+
+/// The tool tip in the part's frame, to first order in the machine's motions by their numbers.
+pub fn relative_position(machine: &Machine) -> [FirstOrder; 3] {
+    let branch = |branch| {
+        machine
+            .branch(branch)
+            .fold(Htm::identity(), |product, (number, _)| product.then(&link_matrix(machine, number)))
+    };
+    let relative = branch(Branch::Workpiece).inverse().then(&branch(Branch::Tool));
+    relative.origin().clone()
+}
+
+fn is_sensitive(machine: &Machine, direction: Axis) -> bool {
+    machine.sensitive.contains(&direction)
+}
+
+/// The motions that some sensitive direction sees, by their numbers in the machine.
+fn seen_motions(machine: &Machine, tip: &[FirstOrder; 3]) -> Vec<usize> {
+    let mut seen: Vec<usize> = Axis::ALL
+        .into_iter()
+        .zip(tip)
+        .filter(|(direction, _)| is_sensitive(machine, *direction))
+        .flat_map(|(_, entry)| entry.error_part().map(|(motion, _)| motion))
+        .collect();
+    seen.sort_unstable();
+    seen.dedup();
+    seen
+}
+
+fn rows(machine: &Machine, tip: &[FirstOrder; 3], kept: &[usize]) -> Vec<Row> {
+    let sensitive = Axis::ALL.into_iter().zip(tip).filter(|(direction, _)| is_sensitive(machine, *direction));
+    sensitive.map(|(direction, entry)| row(machine, direction, entry, kept)).collect()
+}
+
+fn row(machine: &Machine, direction: Axis, entry: &FirstOrder, kept: &[usize]) -> Row {
+    let mut terms: Vec<Term> = entry
+        .error_part()
+        .filter_map(|(number, arm)| {
+            kept.binary_search(&number).ok().map(|motion| Term { motion, arm: arm.clone() })
+        })
+        .collect();
+    terms.sort_by_key(|term| {
+        let kind = kept.get(term.motion).and_then(|number| machine.motions.get(*number)).map(|motion| motion.kind);
+        (kind.map(|kind| (kind.alignment(), kind.angular())), term.motion)
+    });
+    Row { direction, nominal: entry.nominal_part().clone(), terms }
+}
+
+fn motion(machine: &Machine, number: usize) -> Motion {
+    let motion = &machine.motions[number];
+    let link = &machine.links[motion.link];
+    Motion {
+        name: motion.name.clone(),
+        symbol: motion.symbol.clone(),
+        angular: motion.kind.angular(),
+        alignment: motion.kind.alignment(),
+        against_iso: motion.sign < 0,
+        link: link.id.clone(),
+        axis: machine.axes().iter().position(|(axis, _)| *axis == motion.link),
+        meaning: meaning::of(motion, link),
+    }
+}
+
+fn constants(machine: &Machine) -> Vec<ConstantInfo> {
+    let constant = |constant: &crate::machine::Constant| ConstantInfo {
+        name: constant.name.clone(),
+        meaning: constant.meaning.clone(),
+        default: constant.default,
+    };
+    machine.constants.iter().map(constant).collect()
+}
+
+fn travels(machine: &Machine, kept: &[usize]) -> Vec<TravelInfo> {
+    let axes = machine.axes();
+    let mut travels: Vec<TravelInfo> = Vec::new();
+    for motion in kept.iter().map(|number| &machine.motions[*number]) {
+        let axis = axes.iter().position(|(link, _)| *link == motion.link);
+        if let (Some(name), Some(axis)) = (&motion.travel, axis)
+            && !travels.iter().any(|known| known.name == *name)
+        {
+            travels.push(TravelInfo { name: name.clone(), axis });
+        }
+    }
+    travels
+}
+
+fn axes(machine: &Machine, tip: &[FirstOrder; 3]) -> Vec<AxisInfo> {
+    let mut correcting: Vec<(Axis, Branch)> = Vec::new();
+    let mut axes = Vec::new();
+    for (_, link) in machine.axes() {
+        let rotary = matches!(link.kind, LinkKind::Rotary(_));
+        let effect = effect(machine, tip, &link.variable());
+        let first = !correcting.iter().any(|(axis, _)| *axis == link.along.axis);
+        let corrects = !rotary && first && effect.iter().any(|entry| !entry.is_zero());
+        if corrects {
+            correcting.push((link.along.axis, link.branch));
+        }
+        axes.push(AxisInfo {
+            letter: link.kind.letter().map(String::from).unwrap_or_default(),
+            variable: link.variable(),
+            rotary,
+            along: link.along.axis,
+            branch: link.branch,
+            effect: corrects.then_some(effect),
+        });
+    }
+    axes
+}
+
+/// The nominal displacement of the tip for each mm of a slide, zero in insensitive directions.
+fn effect(machine: &Machine, tip: &[FirstOrder; 3], variable: &Name) -> [Polynomial; 3] {
+    let position = Symbol::Position(variable.clone());
+    Axis::ALL.map(|direction| {
+        if is_sensitive(machine, direction) {
+            tip[direction.index()].nominal_part().derivative(&position)
+        } else {
+            Polynomial::zero()
+        }
+    })
+}
+
+fn warn_unseen(machine: &Machine, kept: &[usize], diagnostics: &mut Diagnostics) {
+    for (number, motion) in machine.motions.iter().enumerate() {
+        if let Some(span) = motion.span
+            && kept.binary_search(&number).is_err()
+        {
+            diagnostics.push(
+                Diagnostic::warning("W0201", span, format!("no sensitive direction sees {}", motion.name))
+                    .label("it drops out of the equations")
+                    .help("take it out, or add a direction to `sensitive`"),
+            );
+        }
+    }
+}
+
+fn warn_undriven(machine: &Machine, rows: &[Row], diagnostics: &mut Diagnostics) {
+    for (direction, span) in &machine.sensitive_spans {
+        let driven = rows.iter().filter(|row| row.direction == *direction).any(|row| {
+            let moves = |symbol: &Symbol| matches!(symbol, Symbol::Position(_) | Symbol::Cos(_) | Symbol::Sin(_));
+            row.nominal.symbols().iter().any(moves)
+        });
+        if !driven {
+            diagnostics.push(
+                Diagnostic::warning("W0202", *span, format!("no axis drives direction {direction}"))
+                    .label("its error can be derived but not compensated")
+                    .help("take it out of `sensitive` if nobody asks for it"),
+            );
+        }
+    }
+}

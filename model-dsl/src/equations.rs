@@ -1,0 +1,153 @@
+//! The error equations: the last form before printing, checking, evaluating and generating code.
+//!
+//! Defined by its rows: for each sensitive direction d,
+//! `P_d = nominal_d + sum over j of arm_dj * e_j`,
+//! where `P` is the tool tip relative to the part in the part's frame (mm), `e_j` the error
+//! motions (mm or rad) and `arm_dj` their lever arms, exact polynomials of positions,
+//! constants and the sines and cosines of rotary axes. An error motion that a direction does
+//! not see has no term there; no arm is zero.
+
+use std::fmt;
+
+use crate::algebra::{Axis, Name, Polynomial};
+use crate::machine::Branch;
+
+/// The error equations of one machine.
+#[derive(Clone, Debug)]
+pub struct Equations {
+    /// The machine's name.
+    pub machine: String,
+    /// Its title.
+    pub title: Option<String>,
+    /// Where its model was published.
+    pub source: Option<String>,
+    /// Its programmed axes, in the order X Y Z U V W A B C.
+    pub axes: Vec<AxisInfo>,
+    /// The free travels in levers of alignment errors, in order of their axes.
+    pub travels: Vec<TravelInfo>,
+    /// The named offsets.
+    pub constants: Vec<ConstantInfo>,
+    /// The error motions that some row sees, by axis, alignment errors last.
+    pub motions: Vec<Motion>,
+    /// One row for each sensitive direction, in order.
+    pub rows: Vec<Row>,
+}
+
+/// A programmed axis.
+#[derive(Clone, Debug)]
+pub struct AxisInfo {
+    /// The axis letter, `X`.
+    pub letter: String,
+    /// The name of its programmed position, `x`: mm, or rad for a rotary axis.
+    pub variable: Name,
+    /// Whether it turns.
+    pub rotary: bool,
+    /// The direction of its motion, or the axis of its rotation.
+    pub along: Axis,
+    /// Which branch it moves.
+    pub branch: Branch,
+    /// The displacement of the tool tip relative to the part for each mm of programmed motion,
+    /// in the part's frame, zero in insensitive directions; `None` where the axis does not
+    /// correct errors: a rotary axis, or a second slide in the direction of another.
+    pub effect: Option<[Polynomial; 3]>,
+}
+
+/// A free travel in the lever of an alignment error.
+#[derive(Clone, Debug)]
+pub struct TravelInfo {
+    /// Its name, `dz`.
+    pub name: Name,
+    /// The number in [`Equations::axes`] of the axis whose position it is by default.
+    pub axis: usize,
+}
+
+/// A named offset.
+#[derive(Clone, Debug)]
+pub struct ConstantInfo {
+    /// Its name, `X1`.
+    pub name: Name,
+    /// What it means.
+    pub meaning: Option<String>,
+    /// The value that a calibration may leave out: mm.
+    pub default: Option<f64>,
+}
+
+/// An error motion of the machine.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// The name of ISO 230-1: `EXX`, `EC0Y`.
+    pub name: String,
+    /// The symbol of the machine file; the name where it gives none.
+    pub symbol: String,
+    /// Whether it is an angle (rad) or a displacement (mm).
+    pub angular: bool,
+    /// Whether it is an alignment error of an axis.
+    pub alignment: bool,
+    /// Whether the machine file counts it against the ISO sense.
+    pub against_iso: bool,
+    /// The link that it belongs to.
+    pub link: String,
+    /// The number in [`Equations::axes`] of that link, where a program moves it.
+    pub axis: Option<usize>,
+    /// What it is, in words.
+    pub meaning: String,
+}
+
+/// One direction of the equations.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// The direction, in the part's frame.
+    pub direction: Axis,
+    /// The position without error.
+    pub nominal: Polynomial,
+    /// The error, motion by motion: displacements, then angles, then alignments.
+    pub terms: Vec<Term>,
+}
+
+/// An error motion with its lever arm in one direction.
+#[derive(Clone, Debug)]
+pub struct Term {
+    /// The number of the motion in [`Equations::motions`].
+    pub motion: usize,
+    /// The lever arm: a pure number for a displacement, mm for an angle.
+    pub arm: Polynomial,
+}
+
+/// By which names error motions are printed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Names {
+    /// The names of ISO 230-1: `EBX`.
+    Iso,
+    /// The machine file's symbols: `eyx`.
+    #[default]
+    Symbols,
+}
+
+impl Motion {
+    /// The name to print.
+    pub fn printed(&self, names: Names) -> &str {
+        match names {
+            Names::Iso => &self.name,
+            Names::Symbols => &self.symbol,
+        }
+    }
+}
+
+impl Equations {
+    /// The row of a direction, where that direction is sensitive.
+    pub fn row(&self, direction: Axis) -> Option<&Row> {
+        self.rows.iter().find(|row| row.direction == direction)
+    }
+
+    /// The lever arm of a motion in a direction; zero where it has none.
+    pub fn arm(&self, direction: Axis, motion: usize) -> Polynomial {
+        let term = self.row(direction).and_then(|row| row.terms.iter().find(|term| term.motion == motion));
+        term.map(|term| term.arm.clone()).unwrap_or_default()
+    }
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.letter())
+    }
+}

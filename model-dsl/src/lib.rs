@@ -1,0 +1,97 @@
+//! Abbe's compiler: a machine file becomes its error equations, their notation and Rust code.
+//!
+//! ```text
+//! text -> yaml -> machine -> derivation -> equations -> notation: text, LaTeX, MathML, Maxima, JSON
+//!                                             |-> check: against published equations
+//!                                             |-> program -> codegen: tokens, or the interpreter
+//! text -> yaml -> calibration: the numbers of one machine, as terms of its error motions
+//! ```
+//!
+//! The whole way is [`compile`]: text in, equations and located mistakes out. What it does not
+//! do: read or write files (but for [`rust_for`], which reads the file that it is given), and
+//! know anything of recordings or of the command line.
+
+pub mod algebra;
+// pub mod calibration;
+// pub mod check;
+pub mod codegen;
+pub mod derivation;
+pub mod diagnostic;
+pub mod equations;
+pub mod expression;
+pub mod machine;
+// pub mod notation;
+pub mod program;
+pub mod quantity;
+pub mod source;
+pub mod suggest;
+pub mod yaml;
+
+use std::path::Path;
+
+use proc_macro2::TokenStream;
+
+use diagnostic::{Diagnostics, render};
+use equations::Equations;
+use machine::Machine;
+use source::{SourceFile, Span};
+
+/// A compiled machine.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    /// The validated chain.
+    pub machine: Machine,
+    /// Its error equations.
+    pub equations: Equations,
+}
+
+/// Compiles a machine file. Mistakes and warnings go to `diagnostics`; `None` after an error.
+///
+/// ```
+/// use model_dsl::{compile, diagnostic::Diagnostics, notation::infix, source::SourceFile};
+/// let file = SourceFile::new("stage.yaml", "abbe: 1\nname: stage\ntopology: FX\n");
+/// let mut diagnostics = Diagnostics::new();
+/// let stage = compile(&file, &mut diagnostics).expect("a valid machine");
+/// assert_eq!(infix(&stage.equations.rows[0].nominal), "x + Xt");
+/// ```
+pub fn compile(source: &SourceFile, diagnostics: &mut Diagnostics) -> Option<Compiled> {
+    let machine = machine::read(source, diagnostics)?;
+    Some(derived(machine, diagnostics))
+}
+
+/// Compiles a bare topology word, such as `XYFZ` or `FX`.
+pub fn compile_word(word: &str, diagnostics: &mut Diagnostics) -> Option<Compiled> {
+    let machine = machine::from_word(word, Span::new(0, word.len()), diagnostics)?;
+    Some(derived(machine, diagnostics))
+}
+
+fn derived(machine: Machine, diagnostics: &mut Diagnostics) -> Compiled {
+    let equations = derivation::derive(&machine, diagnostics);
+    Compiled { machine, equations }
+}
+
+/// The Rust code of a machine file as tokens, and its warnings; or every mistake, rendered.
+pub fn rust_tokens(source: &SourceFile) -> Result<(TokenStream, Equations, String), String> {
+    let mut diagnostics = Diagnostics::new();
+    let compiled = compile(source, &mut diagnostics);
+    let rendered = render(source, &diagnostics, false);
+    match compiled {
+        Some(compiled) => Ok((codegen::tokens(&compiled.equations), compiled.equations, rendered)),
+        None => Err(rendered),
+    }
+}
+
+/// The Rust code of a machine file, formatted: what a build script writes into `OUT_DIR`.
+///
+/// Warnings become `cargo::warning` lines. The error tells the file, or every mistake in it.
+pub fn rust_for(path: impl AsRef<Path>) -> Result<String, String> {
+    let path = path.as_ref();
+    let text = std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+    let source = SourceFile::new(path.display().to_string(), text);
+    let (tokens, _, warnings) = rust_tokens(&source)?;
+    for line in warnings.lines() {
+        println!("cargo::warning={line}");
+    }
+    let origin = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    codegen::file(&tokens, &origin).map_err(|error| format!("the generated code does not parse: {error}"))
+}

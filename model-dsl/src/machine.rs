@@ -1,0 +1,113 @@
+//! The validated machine: a topology without numbers that a measurement would change.
+//!
+//! In: a machine file as text. Out: a [`Machine`], in which every name is resolved, every
+//! link stands in its branch and every error motion on its link, or a list of located
+//! mistakes. What a machine means, its equations, is the business of [`crate::derivation`].
+
+mod chain;
+mod constants;
+mod fields;
+mod header;
+mod link;
+mod motion;
+mod topology;
+
+pub use constants::Constant;
+pub(crate) use fields::Fields;
+pub use link::{Along, Branch, Link, LinkKind, Reference};
+pub(crate) use motion::body_sign;
+pub use motion::{Motion, MotionKind, MotionName, parse_name};
+pub use topology::{TopologyWord, template};
+
+use crate::algebra::Axis;
+use crate::diagnostic::Diagnostics;
+use crate::source::{SourceFile, Span};
+use crate::yaml::Node;
+
+/// A machine's kinematic chain and the error motions of its links.
+#[derive(Clone, Debug)]
+pub struct Machine {
+    /// The machine's name, by which calibrations and recordings refer to it.
+    pub name: String,
+    /// A line for people.
+    pub title: Option<String>,
+    /// Where the model was published.
+    pub source: Option<String>,
+    /// The topology word, where the file has one.
+    pub topology: Option<String>,
+    /// The directions derived and compensated, in the part's frame.
+    pub sensitive: Vec<Axis>,
+    /// Where the file lists the sensitive directions itself, the place of each.
+    pub sensitive_spans: Vec<(Axis, Span)>,
+    /// Whether error motions are those of the tool relative to the part (`motions: relative`).
+    pub relative: bool,
+    /// The named offsets, in order of first mention or as declared.
+    pub constants: Vec<Constant>,
+    /// The links of both branches, each branch from the bed outwards, the part's branch first.
+    pub links: Vec<Link>,
+    /// The error motions: by axis, then by direction, alignment errors last.
+    pub motions: Vec<Motion>,
+}
+
+impl Machine {
+    /// The links of one branch, from the bed outwards, with their numbers in [`Machine::links`].
+    pub fn branch(&self, branch: Branch) -> impl Iterator<Item = (usize, &Link)> {
+        self.links.iter().enumerate().filter(move |(_, link)| link.branch == branch)
+    }
+
+    /// The links that a program moves, in the order X Y Z U V W A B C, with their numbers.
+    pub fn axes(&self) -> Vec<(usize, &Link)> {
+        let mut axes: Vec<_> = self.links.iter().enumerate().filter(|(_, link)| link.is_axis()).collect();
+        axes.sort_by_key(|(_, link)| link.kind.axis_rank());
+        axes
+    }
+}
+
+/// Reads a bare topology word (`XYFZ`, `FX`) as a machine of that name.
+pub fn from_word(word: &str, span: Span, diagnostics: &mut Diagnostics) -> Option<Machine> {
+    let chain = topology::expand(word, span, diagnostics)?;
+    let header = header::Header::bare(word);
+    build(header, chain, constants::Declared::None, diagnostics)
+}
+
+/// Reads a machine file. Every mistake is reported; the machine is given where there is no error.
+pub fn read(source: &SourceFile, diagnostics: &mut Diagnostics) -> Option<Machine> {
+    let root = crate::yaml::read(source, diagnostics)?;
+    read_node(&root, diagnostics)
+}
+
+fn read_node(root: &Node, diagnostics: &mut Diagnostics) -> Option<Machine> {
+    let mut fields = Fields::open(root, "a machine file", diagnostics)?;
+    let header = header::read(&mut fields, diagnostics);
+    let declared = constants::declared(fields.take("constants"), diagnostics);
+    let chain = chain::read(&mut fields, header.reference, diagnostics);
+    fields.finish(diagnostics);
+    let machine = build(header, chain?, declared, diagnostics)?;
+    (!diagnostics.has_errors()).then_some(machine)
+}
+
+fn build(
+    header: header::Header,
+    chain: chain::Chain,
+    declared: constants::Declared,
+    diagnostics: &mut Diagnostics,
+) -> Option<Machine> {
+    let motions = motion::collect(&chain, diagnostics);
+    let constants = constants::settle(declared, &chain, diagnostics);
+    motion::check_names(&motions, &constants, &chain, diagnostics);
+    if diagnostics.has_errors() {
+        return None;
+    }
+    Some(Machine {
+        name: header.name,
+        title: header.title,
+        source: header.source,
+        topology: chain.topology,
+        sensitive: header.sensitive,
+        sensitive_spans: header.sensitive_spans,
+        relative: header.relative,
+        constants,
+        links: chain.links.into_iter().map(|drafted| drafted.link).collect(),
+        motions,
+    })
+}

@@ -1,0 +1,171 @@
+//! The named offsets of a machine. In: the `constants` of the file, where it has them, and
+//! the names that the chain uses. Out: one list; an undefined or unused name is an error.
+
+use super::chain::Chain;
+use super::fields::items;
+use crate::algebra::{Name, Rational, Symbol, decimal};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::quantity::{Dimension, parse_quantity};
+use crate::source::{Span, Spanned};
+use crate::suggest::nearest;
+use crate::yaml::{Node, NodeKind};
+
+/// A named offset.
+#[derive(Clone, Debug)]
+pub struct Constant {
+    /// The name, as written.
+    pub name: Name,
+    /// What it means, where the file says so.
+    pub meaning: Option<String>,
+    /// The value that a calibration may leave out, where the file gives one: mm.
+    pub default: Option<f64>,
+    /// Where it was declared or first used.
+    pub span: Span,
+}
+
+/// What the file's `constants` say.
+pub(super) enum Declared {
+    /// The file has no such key: every name that the chain uses is a constant.
+    None,
+    /// The declared constants; the chain may use these and must use all of them.
+    Listed(Vec<Constant>),
+}
+
+/// Reads the `constants` of a machine file: a list of names, or a map from names to a meaning or a length.
+pub(super) fn declared(node: Option<&Node>, diagnostics: &mut Diagnostics) -> Declared {
+    let Some(node) = node else { return Declared::None };
+    let mut listed: Vec<Constant> = Vec::new();
+    if let NodeKind::Mapping(entries) = &node.kind {
+        listed.extend(entries.iter().filter_map(|(key, value)| entry(key, value, diagnostics)));
+    } else {
+        for item in items(node, "`constants`", diagnostics).unwrap_or_default() {
+            let Some(name) = super::fields::text(item, "a constant's name", diagnostics) else { continue };
+            let name = Spanned::new(name.to_owned(), item.span);
+            match listed.iter().find(|known| *known.name == *name.value) {
+                Some(first) => diagnostics.push(
+                    Diagnostic::error("E0130", item.span, format!("constant `{}` is declared twice", name.value))
+                        .label("again here")
+                        .also(first.span, "first here"),
+                ),
+                None => listed.extend(named(&name, diagnostics)),
+            }
+        }
+    }
+    Declared::Listed(listed)
+}
+
+fn named(name: &Spanned<String>, diagnostics: &mut Diagnostics) -> Option<Constant> {
+    if is_name(&name.value) {
+        return Some(Constant {
+            name: name.value.as_str().into(),
+            meaning: None,
+            default: None,
+            span: name.span,
+        });
+    }
+    diagnostics.push(
+        Diagnostic::error("E0131", name.span, format!("`{}` cannot name a constant", name.value))
+            .label("not a name")
+            .help("begin with a letter and go on with letters, digits and `_`"),
+    );
+    None
+}
+
+fn entry(key: &Spanned<String>, value: &Node, diagnostics: &mut Diagnostics) -> Option<Constant> {
+    let mut constant = named(key, diagnostics)?;
+    match &value.kind {
+        NodeKind::Null => {}
+        NodeKind::Scalar(scalar) if decimal(&scalar.text).is_some() => {
+            diagnostics.push(
+                Diagnostic::error("E0132", value.span, format!("`{}` has no unit", scalar.text))
+                    .label("a length needs its unit")
+                    .help(format!("write `{} mm`", scalar.text)),
+            );
+        }
+        NodeKind::Scalar(scalar) => match parse_quantity(&scalar.text) {
+            Ok(quantity) if quantity.dimension == Dimension::LENGTH => constant.default = Some(quantity.value),
+            Ok(_) => diagnostics.push(
+                Diagnostic::error("E0132", value.span, format!("`{}` is not a length", scalar.text))
+                    .label("a constant of a machine is a length"),
+            ),
+            Err(_) => constant.meaning = Some(scalar.text.clone()),
+        },
+        _ => {
+            super::fields::text(value, "a constant's meaning or length", diagnostics);
+        }
+    }
+    Some(constant)
+}
+
+/// Whether a text can name a constant, a symbol or a link.
+pub(super) fn is_name(text: &str) -> bool {
+    text.starts_with(|c: char| c.is_ascii_alphabetic())
+        && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+}
+
+/// Joins what is declared and what is used; reports what is only one of the two.
+pub(super) fn settle(declared: Declared, chain: &Chain, diagnostics: &mut Diagnostics) -> Vec<Constant> {
+    let used = used_names(chain);
+    let Declared::Listed(listed) = declared else {
+        return used
+            .into_iter()
+            .map(|(name, span)| Constant { name, meaning: None, default: None, span })
+            .collect();
+    };
+    for (name, span) in &used {
+        if !listed.iter().any(|constant| constant.name == *name) {
+            diagnostics.push(undefined(name, *span, &listed));
+        }
+    }
+    for constant in &listed {
+        if !used.iter().any(|(name, _)| *name == constant.name) {
+            diagnostics.push(
+                Diagnostic::error("E0134", constant.span, format!("constant `{}` is never used", constant.name))
+                    .label("no offset of the chain mentions it")
+                    .help("take it out, or use it in an `origin` or `offset`"),
+            );
+        }
+    }
+    listed
+}
+
+fn undefined(name: &Name, span: Span, listed: &[Constant]) -> Diagnostic {
+    let error = Diagnostic::error("E0133", span, format!("constant `{name}` is not defined"))
+        .label("`constants` does not list it");
+    match nearest(name, listed.iter().map(|constant| &*constant.name)) {
+        Some(known) => error.help(format!("did you mean `{known}`?")),
+        None => error.help(format!("add `{name}` to `constants`")),
+    }
+}
+
+fn used_names(chain: &Chain) -> Vec<(Name, Span)> {
+    let mut used: Vec<(Name, Span)> = Vec::new();
+    for drafted in &chain.links {
+        for (offset, span) in drafted.link.origin.iter().zip(&drafted.origin_spans) {
+            for symbol in offset.symbols() {
+                if let Symbol::Constant(name) = symbol
+                    && !used.iter().any(|(known, _)| *known == name)
+                {
+                    used.push((name, *span));
+                }
+            }
+        }
+    }
+    used
+}
+
+/// A length in mm as an exact fraction, from a bare number (mm) or a number with a unit of length.
+pub(super) fn exact_length(text: &str) -> Option<Rational> {
+    if let Some(number) = decimal(text.trim()) {
+        return Some(number);
+    }
+    let (number, unit) = text.trim().split_once(' ')?;
+    let per_mm = match unit.trim() {
+        "mm" => "1",
+        "m" => "1000",
+        "um" => "0.001",
+        "in" => "25.4",
+        _ => return None,
+    };
+    Some(decimal(number)? * decimal(per_mm)?)
+}

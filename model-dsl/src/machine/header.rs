@@ -1,0 +1,124 @@
+//! The head of a machine file: version, names, sensitive directions and conventions.
+
+use super::fields::{Fields, choice, items, text};
+use super::link::Reference;
+use crate::algebra::Axis;
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::source::Span;
+use crate::yaml::Node;
+
+/// What the head of a machine file says.
+pub(super) struct Header {
+    pub(super) name: String,
+    pub(super) title: Option<String>,
+    pub(super) source: Option<String>,
+    pub(super) sensitive: Vec<Axis>,
+    pub(super) sensitive_spans: Vec<(Axis, Span)>,
+    pub(super) reference: Reference,
+    pub(super) relative: bool,
+}
+
+impl Header {
+    /// The head of a machine that is given by its topology word alone.
+    pub(super) fn bare(word: &str) -> Self {
+        Self {
+            name: word.to_owned(),
+            title: None,
+            source: None,
+            sensitive: Axis::ALL.to_vec(),
+            sensitive_spans: Vec::new(),
+            reference: Reference::Carriage,
+            relative: false,
+        }
+    }
+}
+
+/// Reads the head; mistakes are reported and replaced by the defaults.
+pub(super) fn read(fields: &mut Fields<'_>, diagnostics: &mut Diagnostics) -> Header {
+    version(fields, diagnostics);
+    let mut header = Header::bare("");
+    if let Some(name) = fields.require("name", diagnostics) {
+        header.name = name_of(name, diagnostics).unwrap_or_default();
+    }
+    header.title = optional_text(fields.take("title"), "the title", diagnostics);
+    header.source = optional_text(fields.take("source"), "the source", diagnostics);
+    if let Some(node) = fields.take("sensitive") {
+        header.sensitive_spans = sensitive(node, diagnostics);
+        header.sensitive = header.sensitive_spans.iter().map(|(axis, _)| *axis).collect();
+        header.sensitive.sort_unstable();
+    }
+    if let Some(node) = fields.take("reference") {
+        header.reference = reference(node, diagnostics);
+    }
+    if let Some(node) = fields.take("motions") {
+        let word = choice(node, "a meaning of error motions", &["body", "relative"], diagnostics);
+        header.relative = word == Some("relative");
+    }
+    header
+}
+
+/// Reads the point about which rotations act.
+pub(super) fn reference(node: &Node, diagnostics: &mut Diagnostics) -> Reference {
+    match choice(node, "a reference point", &["carriage", "bed"], diagnostics) {
+        Some("bed") => Reference::Bed,
+        _ => Reference::Carriage,
+    }
+}
+
+fn version(fields: &mut Fields<'_>, diagnostics: &mut Diagnostics) {
+    let Some(node) = fields.require("abbe", diagnostics) else { return };
+    let Some(version) = text(node, "the version of the format", diagnostics) else { return };
+    if version != "1" {
+        diagnostics.push(
+            Diagnostic::error("E0105", node.span, format!("version `{version}` of the format is not known"))
+                .label("this version")
+                .help("write `abbe: 1`"),
+        );
+    }
+}
+
+fn name_of(node: &Node, diagnostics: &mut Diagnostics) -> Option<String> {
+    let name = text(node, "the machine's name", diagnostics)?;
+    let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if name.starts_with(|c: char| c.is_ascii_alphabetic()) && name.chars().all(allowed) {
+        return Some(name.to_owned());
+    }
+    diagnostics.push(
+        Diagnostic::error("E0106", node.span, format!("`{name}` is not a machine's name"))
+            .label("this becomes the name of a file and of a Rust module")
+            .help("begin with a letter and go on with letters, digits, `-` and `_`"),
+    );
+    None
+}
+
+fn optional_text(node: Option<&Node>, what: &str, diagnostics: &mut Diagnostics) -> Option<String> {
+    text(node?, what, diagnostics).map(str::to_owned)
+}
+
+fn sensitive(node: &Node, diagnostics: &mut Diagnostics) -> Vec<(Axis, Span)> {
+    let mut found: Vec<(Axis, Span)> = Vec::new();
+    for item in items(node, "`sensitive`", diagnostics).unwrap_or_default() {
+        let Some(word) = choice(item, "a direction", &["X", "Y", "Z"], diagnostics) else { continue };
+        let axis = match word {
+            "X" => Axis::X,
+            "Y" => Axis::Y,
+            _ => Axis::Z,
+        };
+        match found.iter().find(|(known, _)| *known == axis) {
+            Some((_, first)) => diagnostics.push(
+                Diagnostic::error("E0107", item.span, format!("direction {word} is listed twice"))
+                    .label("again here")
+                    .also(*first, "first here"),
+            ),
+            None => found.push((axis, item.span)),
+        }
+    }
+    if found.is_empty() && !diagnostics.has_errors() {
+        diagnostics.push(
+            Diagnostic::error("E0108", node.span, "no direction is sensitive, so there is nothing to derive")
+                .label("this list is empty")
+                .help("leave `sensitive` out for all three directions"),
+        );
+    }
+    found
+}

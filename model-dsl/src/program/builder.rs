@@ -1,0 +1,181 @@
+//! Lowering polynomials to steps. In: polynomials over inputs. Out: a program in which equal
+//! subexpressions, and opposite ones, are computed once.
+//!
+//! A sum is written by Horner's rule in the symbol that most of its monomials share, sines and
+//! cosines first: that finds the frames of a rotary axis again, so that the rotated components
+//! of one vector are computed once and used in both directions.
+
+use std::collections::BTreeMap;
+
+use num_traits::One;
+
+use super::{Input, Program, Step, Value};
+use crate::algebra::{Monomial, Polynomial, Rational, Symbol, to_f64};
+
+/// A value with the sign under which it stands for an expression.
+#[derive(Clone, Copy)]
+struct Signed {
+    value: Value,
+    negative: bool,
+}
+
+/// Builds one program out of polynomials.
+pub struct Builder<'r> {
+    resolve: &'r dyn Fn(&Symbol) -> Option<Input>,
+    program: Program,
+    /// Equal steps are one step.
+    known_steps: BTreeMap<Step, usize>,
+    /// Equal polynomials are one value; they are kept with a positive first coefficient.
+    known_sums: Vec<(Polynomial, Value)>,
+}
+
+impl<'r> Builder<'r> {
+    /// Begins a program; `resolve` says which input a symbol is.
+    pub fn new(resolve: &'r dyn Fn(&Symbol) -> Option<Input>) -> Self {
+        Self { resolve, program: Program::default(), known_steps: BTreeMap::new(), known_sums: Vec::new() }
+    }
+
+    /// Adds a result.
+    pub fn result(&mut self, polynomial: &Polynomial) {
+        let signed = self.sum(polynomial);
+        let value = self.plain(signed);
+        self.program.results.push(value);
+    }
+
+    /// The finished program.
+    pub fn finish(self) -> Program {
+        self.program
+    }
+
+    fn sum(&mut self, polynomial: &Polynomial) -> Signed {
+        if polynomial.leads_negative() {
+            let opposite = self.positive_sum(&-polynomial);
+            return Signed { value: opposite, negative: true };
+        }
+        Signed { value: self.positive_sum(polynomial), negative: false }
+    }
+
+    fn positive_sum(&mut self, polynomial: &Polynomial) -> Value {
+        if let Some((_, value)) = self.known_sums.iter().find(|(known, _)| known == polynomial) {
+            return *value;
+        }
+        let value = match shared_symbol(polynomial) {
+            Some(symbol) => self.horner(polynomial, &symbol),
+            None => self.spelled_out(polynomial),
+        };
+        self.known_sums.push((polynomial.clone(), value));
+        value
+    }
+
+    /// `symbol * quotient + rest`.
+    fn horner(&mut self, polynomial: &Polynomial, symbol: &Symbol) -> Value {
+        let rest = polynomial.part(|monomial| monomial.power_of(symbol) == 0);
+        let quotient: Polynomial = polynomial
+            .terms()
+            .filter_map(|(monomial, value)| {
+                monomial.without_one(symbol).map(|lowered| Polynomial::monomial(lowered, value.clone()))
+            })
+            .collect();
+        let factor = self.symbol(symbol);
+        let quotient = self.sum(&quotient);
+        let product = Signed { value: self.product(factor, quotient.value), negative: quotient.negative };
+        let rest = (!rest.is_zero()).then(|| self.sum(&rest));
+        let total = match rest {
+            Some(rest) => self.add(rest, product),
+            None => product,
+        };
+        self.plain(total)
+    }
+
+    fn spelled_out(&mut self, polynomial: &Polynomial) -> Value {
+        let mut total: Option<Signed> = None;
+        for (monomial, coefficient) in polynomial.terms() {
+            let term = self.term(monomial, coefficient);
+            total = Some(match total {
+                Some(sum) => self.add(sum, term),
+                None => term,
+            });
+        }
+        total.map_or(Value::Zero, |total| self.plain(total))
+    }
+
+    fn term(&mut self, monomial: &Monomial, coefficient: &Rational) -> Signed {
+        let negative = coefficient < &Rational::from_integer(0.into());
+        let size = if negative { -coefficient } else { coefficient.clone() };
+        let mut product = (!size.is_one() || monomial.is_one()).then(|| self.number(&size));
+        for (symbol, power) in monomial.factors() {
+            let factor = self.symbol(symbol);
+            for _ in 0..*power {
+                product = Some(match product {
+                    Some(product) => self.product(product, factor),
+                    None => factor,
+                });
+            }
+        }
+        Signed { value: product.unwrap_or(Value::Zero), negative }
+    }
+
+    fn number(&mut self, value: &Rational) -> Value {
+        let value = to_f64(value);
+        let numbers = &mut self.program.numbers;
+        let known = numbers.iter().position(|known| known.to_bits() == value.to_bits());
+        Value::Number(known.unwrap_or_else(|| {
+            numbers.push(value);
+            numbers.len() - 1
+        }))
+    }
+
+    fn symbol(&self, symbol: &Symbol) -> Value {
+        (self.resolve)(symbol).map_or(Value::Zero, Value::Input)
+    }
+
+    fn product(&mut self, left: Value, right: Value) -> Value {
+        let one = |value: Value| {
+            matches!(value, Value::Number(number) if self.program.numbers.get(number) == Some(&1.0))
+        };
+        if one(left) {
+            return right;
+        }
+        if one(right) {
+            return left;
+        }
+        self.step(Step::Mul(left.min(right), left.max(right)))
+    }
+
+    fn add(&mut self, left: Signed, right: Signed) -> Signed {
+        let (a, b) = (left.value, right.value);
+        match (left.negative, right.negative) {
+            (false, true) => Signed { value: self.step(Step::Sub(a, b)), negative: false },
+            (true, false) => Signed { value: self.step(Step::Sub(b, a)), negative: false },
+            (_, negative) => Signed { value: self.step(Step::Add(a, b)), negative },
+        }
+    }
+
+    fn plain(&mut self, signed: Signed) -> Value {
+        if signed.negative { self.step(Step::Neg(signed.value)) } else { signed.value }
+    }
+
+    fn step(&mut self, step: Step) -> Value {
+        let next = self.program.steps.len();
+        let number = *self.known_steps.entry(step).or_insert(next);
+        if number == next {
+            self.program.steps.push(step);
+        }
+        Value::Step(number)
+    }
+}
+
+/// The symbol to factor out: one that two monomials or more share; sines and cosines before
+/// others, then the most frequent, then the first in order.
+fn shared_symbol(polynomial: &Polynomial) -> Option<Symbol> {
+    let mut counts: BTreeMap<Symbol, usize> = BTreeMap::new();
+    for (monomial, _) in polynomial.terms() {
+        for (symbol, _) in monomial.factors() {
+            *counts.entry(symbol.clone()).or_default() += 1;
+        }
+    }
+    let shared = counts.into_iter().filter(|(_, count)| *count >= 2);
+    let turning = |symbol: &Symbol| matches!(symbol, Symbol::Cos(_) | Symbol::Sin(_));
+    let best = shared.min_by_key(|(symbol, count)| (!turning(symbol), usize::MAX - count));
+    best.map(|(symbol, _)| symbol)
+}

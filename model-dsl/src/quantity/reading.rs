@@ -1,0 +1,85 @@
+//! Quantities, numbers and units read from nodes, with findings at the exact part of the text.
+//!
+//! Findings beside those of the texts themselves: E0306 a bare number where a unit is needed, E0307 a quantity of the
+//! wrong kind (at its unit), E0308 a list, a mapping or nothing in place of a value, E0309 a unit where a bare number is
+//! needed.
+
+use super::{Dimension, Quantity, QuantityError, Unit, parse_number, parse_quantity, parse_unit};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::source::Spanned;
+use crate::yaml::Node;
+
+/// Reads a quantity of one kind; `what` names it in messages: "the step", "`Zt`".
+///
+/// The value is in internal units. Nothing is returned where a finding was made.
+pub fn read(
+    node: &Node,
+    expected: Dimension,
+    what: &str,
+    diagnostics: &mut Diagnostics,
+) -> Option<Spanned<f64>> {
+    let example = format!("{} such as `10 {}`", expected.name(), expected.usual_unit());
+    let text = scalar(node, &format!("{what} must be {example}"), diagnostics)?;
+    let quantity = located(parse_quantity(text), node, diagnostics)?;
+    if let Some(mistake) = wrong_kind(&quantity, expected, what, node) {
+        diagnostics.push(mistake);
+        return None;
+    }
+    Some(Spanned::new(quantity.value, node.span))
+}
+
+/// Reads a number that has no unit.
+pub fn read_number(node: &Node, what: &str, diagnostics: &mut Diagnostics) -> Option<Spanned<f64>> {
+    let text = scalar(node, &format!("{what} must be a bare number"), diagnostics)?;
+    let value = match parse_quantity(text) {
+        Ok(quantity) if !quantity.is_bare() => {
+            let message = format!("{what} is a bare number here, without a unit");
+            let mistake = Diagnostic::error("E0309", node.part(quantity.unit.clone()), message);
+            diagnostics.push(mistake.help(format!("write `{}`", quantity.written_number())));
+            return None;
+        }
+        _ => located(parse_number(text), node, diagnostics)?,
+    };
+    Some(Spanned::new(value, node.span))
+}
+
+/// Reads a unit of any kind; the caller compares its dimension.
+pub fn read_unit(node: &Node, what: &str, diagnostics: &mut Diagnostics) -> Option<Spanned<Unit>> {
+    let text = scalar(node, &format!("{what} must be a unit such as `um`"), diagnostics)?;
+    let unit = located(parse_unit(text), node, diagnostics)?;
+    Some(Spanned::new(unit, node.span))
+}
+
+fn scalar<'n>(node: &'n Node, expected: &str, diagnostics: &mut Diagnostics) -> Option<&'n str> {
+    let text = node.text();
+    if text.is_none() {
+        let message = format!("{expected}, found {}", node.kind_name());
+        diagnostics.push(Diagnostic::error("E0308", node.span, message).help("write one value here"));
+    }
+    text
+}
+
+fn located<T>(result: Result<T, QuantityError>, node: &Node, diagnostics: &mut Diagnostics) -> Option<T> {
+    result
+        .map_err(|error| {
+            let span = node.part(error.range.clone());
+            diagnostics.push(error.diagnostic(span));
+        })
+        .ok()
+}
+
+fn wrong_kind(quantity: &Quantity, expected: Dimension, what: &str, node: &Node) -> Option<Diagnostic> {
+    let unit = expected.usual_unit();
+    if quantity.is_bare() {
+        let message = format!("{what} needs a unit: it is {}", expected.name());
+        let help = format!("write `{} {unit}` if that is what is meant", quantity.written_number());
+        return Some(Diagnostic::error("E0306", node.part(quantity.number.clone()), message).help(help));
+    }
+    if quantity.dimension == expected {
+        return None;
+    }
+    let message =
+        format!("{what} is {}, `{}` is {}", expected.name(), quantity.written_unit(), quantity.kind_name());
+    let mistake = Diagnostic::error("E0307", node.part(quantity.unit.clone()), message);
+    Some(mistake.label(format!("expected {}", expected.name())).help(format!("use a unit such as `{unit}`")))
+}

@@ -1,0 +1,183 @@
+//! Units and their ratios: `um`, `arcsec`, `1/s`, `um/m/K`, `mm/s^2`.
+
+use super::{Dimension, UnitError};
+use crate::suggest::nearest;
+use std::f64::consts::PI;
+use std::ops::Range;
+
+/// A unit: how its numbers become internal values.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Unit {
+    /// Internal units (mm, rad, s, degC, N, ...) in one of this unit.
+    pub factor: f64,
+    /// Added to the number before it is multiplied: -32 for degF, -273.15 for K, else 0. Only for a temperature that
+    /// stands alone; in ratios and powers it is 0.
+    pub offset: f64,
+    /// The kind of quantity it measures.
+    pub dimension: Dimension,
+}
+
+impl Unit {
+    /// The internal value of a number in this unit.
+    pub fn to_internal(self, number: f64) -> f64 {
+        (number + self.offset) * self.factor
+    }
+}
+
+const MM_PER_INCH: f64 = 25.4;
+
+/// Name, factor, offset and kind of every unit, with its other spellings after it.
+const UNITS: [(&str, f64, f64, Dimension); 37] = [
+    ("mm", 1.0, 0.0, Dimension::LENGTH),
+    ("um", 1e-3, 0.0, Dimension::LENGTH),
+    ("\u{b5}m", 1e-3, 0.0, Dimension::LENGTH),
+    ("\u{3bc}m", 1e-3, 0.0, Dimension::LENGTH),
+    ("nm", 1e-6, 0.0, Dimension::LENGTH),
+    ("cm", 10.0, 0.0, Dimension::LENGTH),
+    ("m", 1000.0, 0.0, Dimension::LENGTH),
+    ("in", MM_PER_INCH, 0.0, Dimension::LENGTH),
+    ("mil", MM_PER_INCH * 1e-3, 0.0, Dimension::LENGTH),
+    ("uin", MM_PER_INCH * 1e-6, 0.0, Dimension::LENGTH),
+    ("\u{b5}in", MM_PER_INCH * 1e-6, 0.0, Dimension::LENGTH),
+    ("\u{3bc}in", MM_PER_INCH * 1e-6, 0.0, Dimension::LENGTH),
+    ("rad", 1.0, 0.0, Dimension::ANGLE),
+    ("mrad", 1e-3, 0.0, Dimension::ANGLE),
+    ("urad", 1e-6, 0.0, Dimension::ANGLE),
+    ("\u{b5}rad", 1e-6, 0.0, Dimension::ANGLE),
+    ("\u{3bc}rad", 1e-6, 0.0, Dimension::ANGLE),
+    ("deg", PI / 180.0, 0.0, Dimension::ANGLE),
+    ("\u{b0}", PI / 180.0, 0.0, Dimension::ANGLE),
+    ("arcmin", PI / 10_800.0, 0.0, Dimension::ANGLE),
+    ("arcsec", PI / 648_000.0, 0.0, Dimension::ANGLE),
+    ("s", 1.0, 0.0, Dimension::TIME),
+    ("ms", 1e-3, 0.0, Dimension::TIME),
+    ("min", 60.0, 0.0, Dimension::TIME),
+    ("Hz", 1.0, 0.0, Dimension::FREQUENCY),
+    ("degC", 1.0, 0.0, Dimension::TEMPERATURE),
+    ("\u{b0}C", 1.0, 0.0, Dimension::TEMPERATURE),
+    ("K", 1.0, -273.15, Dimension::TEMPERATURE),
+    ("degF", 5.0 / 9.0, -32.0, Dimension::TEMPERATURE),
+    ("\u{b0}F", 5.0 / 9.0, -32.0, Dimension::TEMPERATURE),
+    ("N", 1.0, 0.0, Dimension::FORCE),
+    ("V", 1.0, 0.0, Dimension::VOLTAGE),
+    ("A", 1.0, 0.0, Dimension::CURRENT),
+    ("%", 1.0, 0.0, Dimension::PERCENT),
+    ("count", 1.0, 0.0, Dimension::COUNT),
+    ("counts", 1.0, 0.0, Dimension::COUNT),
+    ("1", 1.0, 0.0, Dimension::NONE),
+];
+
+/// The units' usual names, for help lines and manuals.
+pub const UNIT_NAMES: &str = "mm, um, nm, cm, m, in, mil, uin; rad, mrad, urad, deg, arcmin, arcsec; s, ms, min; Hz; \
+                              degC, K, degF; N; V, A, %, count; and ratios such as 1/s, um/m/K or mm/min";
+
+/// Words that people write for a unit, and the unit.
+const WORDS: [(&str, &str); 22] = [
+    ("c", "degC"),
+    ("celsius", "degC"),
+    ("f", "degF"),
+    ("fahrenheit", "degF"),
+    ("kelvin", "K"),
+    ("inch", "in"),
+    ("inches", "in"),
+    ("\"", "in"),
+    ("thou", "mil"),
+    ("micron", "um"),
+    ("microns", "um"),
+    ("micrometer", "um"),
+    ("u", "um"),
+    ("sec", "s"),
+    ("seconds", "s"),
+    ("minutes", "min"),
+    ("degree", "deg"),
+    ("degrees", "deg"),
+    ("\u{2033}", "arcsec"),
+    ("as", "arcsec"),
+    ("percent", "%"),
+    ("newton", "N"),
+];
+
+/// Reads a unit: a name, or names divided by one another, each with an optional power (`mm/s^2`).
+///
+/// # Errors
+///
+/// E0304 for a name that is not a unit, with the nearest one; E0305 for a unit that is badly put together.
+pub fn parse_unit(text: &str) -> Result<Unit, UnitError> {
+    let mut parts = text.split('/').peekable();
+    let single = text.matches('/').count() == 0;
+    let mut start = 0;
+    let mut unit: Option<Unit> = None;
+    while let Some(part) = parts.next() {
+        let first = unit.is_none();
+        let last = parts.peek().is_none();
+        let name_start = start + (part.len() - part.trim_start().len());
+        let found = power_of_base(part.trim(), name_start, first && !last)?;
+        unit = Some(match unit {
+            None => found,
+            Some(above) => divide(above, found),
+        });
+        start += part.len() + 1;
+    }
+    let unit = unit.ok_or_else(|| incomplete(0..text.len()))?;
+    Ok(if single { unit } else { Unit { offset: 0.0, ..unit } })
+}
+
+fn divide(above: Unit, below: Unit) -> Unit {
+    Unit { factor: above.factor / below.factor, offset: 0.0, dimension: above.dimension.per(below.dimension) }
+}
+
+/// Reads `s`, `s^2` or `s\u{b2}`; a `1` only where something is divided by it.
+fn power_of_base(text: &str, start: usize, one_allowed: bool) -> Result<Unit, UnitError> {
+    let (name, power) = split_power(text);
+    if name.is_empty() || (name == "1" && !one_allowed) {
+        return Err(incomplete(start..start + text.len()));
+    }
+    let Some(power) = power else {
+        let message = format!("`{text}` has an exponent that is not a whole number from 1 to 4");
+        return Err(UnitError::new("E0305", start..start + text.len(), message).help("write `s^2` or `1/s`"));
+    };
+    let base = base_unit(name).ok_or_else(|| unknown(name, start..start + name.len()))?;
+    if power == 1 {
+        return Ok(base);
+    }
+    Ok(Unit {
+        factor: base.factor.powi(i32::from(power)),
+        offset: 0.0,
+        dimension: base.dimension.power(power),
+    })
+}
+
+/// A name and its power, 1 where none is written; no power where what is written is none.
+fn split_power(text: &str) -> (&str, Option<i8>) {
+    if let Some(name) = text.strip_suffix('\u{b2}') {
+        return (name, Some(2));
+    }
+    match text.split_once('^') {
+        None => (text, Some(1)),
+        Some((name, power)) => {
+            let power = power.parse().ok().filter(|power| (1..=4).contains(power));
+            (name, power)
+        }
+    }
+}
+
+fn base_unit(name: &str) -> Option<Unit> {
+    let found = UNITS.iter().find(|(known, ..)| *known == name)?;
+    let &(_, factor, offset, dimension) = found;
+    Some(Unit { factor, offset, dimension })
+}
+
+fn incomplete(range: Range<usize>) -> UnitError {
+    let error = UnitError::new("E0305", range, "a unit is missing here");
+    error.help("write a unit such as `um`, or a ratio such as `1/s` or `um/m/K`")
+}
+
+fn unknown(name: &str, range: Range<usize>) -> UnitError {
+    let error = UnitError::new("E0304", range, format!("unknown unit `{name}`"));
+    let lower = name.to_lowercase();
+    let word = WORDS.iter().find(|(word, _)| *word == lower).map(|(_, unit)| *unit);
+    match word.or_else(|| nearest(name, UNITS.iter().map(|(known, ..)| *known))) {
+        Some(unit) => error.help(format!("did you mean `{unit}`?")),
+        None => error.help(format!("units are {UNIT_NAMES}")),
+    }
+}

@@ -1,0 +1,167 @@
+//! What a compensator is told and what it answers.
+//!
+//! In and out: limits and accuracy, outcomes, refusals, mistakes in the set-up. It exists so that a controller can tell
+//! every reason for which a position was not compensated.
+
+use core::fmt;
+
+/// What a correction must not exceed.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Limits {
+    /// Greatest length of a correction over all axes, in mm; none: no limit. A NaN refuses every correction.
+    pub compensation: Option<f64>,
+}
+
+/// When the search for the compensated position ends.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Convergence {
+    /// Greatest number of steps; a search that needs more is refused.
+    pub iterations: u32,
+    /// Length over all axes below which a step ends the search, in mm.
+    pub tolerance: f64,
+}
+
+impl Default for Convergence {
+    /// 20 steps, 1e-10 mm.
+    fn default() -> Self {
+        Self { iterations: 20, tolerance: 1e-10 }
+    }
+}
+
+/// The storage that a compensator works in, borrowed from the caller; what it holds before does not matter.
+#[derive(Debug)]
+pub struct Work<'a> {
+    /// One vector for each axis.
+    pub directions: &'a mut [[f64; 3]],
+    /// One number for each error motion.
+    pub motions: &'a mut [f64],
+    /// One number for each free travel.
+    pub travel: &'a mut [f64],
+}
+
+/// What was found for one sample.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Outcome {
+    /// Error of the tool tip relative to the part at the position of the sample, without compensation: mm, part frame.
+    pub error: [f64; 3],
+    /// Error that stays at the position written, since no axis can correct it: mm, part frame. All of it when switched off.
+    pub remaining: [f64; 3],
+    /// Steps that the search took; 0 when switched off.
+    pub iterations: u32,
+}
+
+/// Why a sample was not compensated. The position written is then that of the sample.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Refusal {
+    /// A slice of the sample, or `out`, has the wrong length. Nothing is written where `out` or the position has it.
+    Length {
+        /// The name of the slice.
+        slice: &'static str,
+        /// The length it needs; the least length for temperatures.
+        expected: usize,
+        /// The length it has.
+        found: usize,
+    },
+    /// The sample, or the error that follows from it, holds NaN or an infinite number.
+    NotFinite,
+    /// The time step is below zero.
+    NegativeTimeStep {
+        /// The time step, in s.
+        time_step: f64,
+    },
+    /// The search did not settle: the error changes about as fast as the position, or faster.
+    NotConverging {
+        /// Steps taken.
+        iterations: u32,
+        /// Length of the last step over all axes, in mm.
+        distance: f64,
+    },
+    /// The correction is longer than the limit.
+    OverLimit {
+        /// Length of the correction over all axes, in mm.
+        correction: f64,
+        /// The limit, in mm.
+        limit: f64,
+    },
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Length { slice, expected, found } => {
+                write!(f, "{slice}: {expected} entries needed, {found} given")
+            }
+            Self::NotFinite => write!(f, "a number of the sample or its error is not finite"),
+            Self::NegativeTimeStep { time_step } => write!(f, "time step {time_step} s is negative"),
+            Self::NotConverging { iterations, distance } => write!(
+                f,
+                "the compensated position is not found: step {iterations} still moves by {distance} mm"
+            ),
+            Self::OverLimit { correction, limit } => {
+                write!(f, "the correction of {correction} mm is over the limit of {limit} mm")
+            }
+        }
+    }
+}
+
+impl core::error::Error for Refusal {}
+
+/// Why a compensator could not be built.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum SetupError {
+    /// A slice has the wrong length.
+    Length {
+        /// The name of the slice.
+        slice: &'static str,
+        /// The length it needs.
+        expected: usize,
+        /// The length it has.
+        found: usize,
+    },
+    /// A travel of the machine names an axis that the machine lacks.
+    TravelAxis {
+        /// Index of the travel.
+        travel: usize,
+        /// The axis it names.
+        axis: usize,
+    },
+    /// A term names an axis that the machine lacks.
+    TermAxis {
+        /// Index of the error motion.
+        motion: usize,
+        /// Index of the term in it.
+        term: usize,
+        /// The axis it names.
+        axis: usize,
+    },
+    /// A parameter of a term is not finite or out of its range.
+    Parameter {
+        /// Index of the error motion.
+        motion: usize,
+        /// Index of the term in it.
+        term: usize,
+        /// The name of the parameter.
+        parameter: &'static str,
+    },
+}
+
+impl fmt::Display for SetupError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Length { slice, expected, found } => {
+                write!(f, "{slice}: {expected} entries needed, {found} given")
+            }
+            Self::TravelAxis { travel, axis } => {
+                write!(f, "travel {travel} names axis {axis}, which the machine lacks")
+            }
+            Self::TermAxis { motion, term, axis } => {
+                write!(f, "term {term} of error motion {motion} names axis {axis}, which the machine lacks")
+            }
+            Self::Parameter { motion, term, parameter } => {
+                write!(f, "term {term} of error motion {motion}: {parameter} is out of its range")
+            }
+        }
+    }
+}
+
+impl core::error::Error for SetupError {}

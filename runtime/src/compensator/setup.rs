@@ -1,0 +1,73 @@
+//! The checks that a compensator makes once.
+//!
+//! In: the equations, the error motions and the storage of a caller. Out: the sensors needed and whether velocities are, or
+//! the first mistake. It exists so that the cycle itself has nothing left that can fail for a wrong set-up.
+
+use super::{SetupError, Work};
+use crate::{ErrorMotion, Kinematics, Term, TermState};
+
+/// What the terms need of every sample.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) struct Needs {
+    /// The least number of temperatures.
+    pub(super) sensors: usize,
+    /// Whether a term reads velocities.
+    pub(super) velocity: bool,
+}
+
+/// The number of term states that a set of error motions needs: one for each term.
+#[must_use]
+pub const fn states_needed(motions: &[ErrorMotion<'_>]) -> usize {
+    let mut rest = motions;
+    let mut count = 0_usize;
+    while let [first, others @ ..] = rest {
+        count = count.saturating_add(first.terms.len());
+        rest = others;
+    }
+    count
+}
+
+/// Checks every length, every axis and every parameter.
+pub(super) fn check<K: Kinematics + ?Sized>(
+    kinematics: &K,
+    motions: &[ErrorMotion<'_>],
+    states: &[TermState],
+    work: &Work<'_>,
+) -> Result<Needs, SetupError> {
+    let axes = kinematics.axes();
+    let travels = kinematics.travels();
+    for (slice, expected, found) in [
+        ("motions", kinematics.motions(), motions.len()),
+        ("states", states_needed(motions), states.len()),
+        ("work.directions", axes, work.directions.len()),
+        ("work.motions", kinematics.motions(), work.motions.len()),
+        ("work.travel", travels.len(), work.travel.len()),
+    ] {
+        if expected != found {
+            return Err(SetupError::Length { slice, expected, found });
+        }
+    }
+    if let Some((travel, &axis)) = travels.iter().enumerate().find(|(_, axis)| **axis >= axes) {
+        return Err(SetupError::TravelAxis { travel, axis });
+    }
+    check_terms(motions, axes)
+}
+
+/// Checks the terms of all error motions and gathers what they need.
+fn check_terms(motions: &[ErrorMotion<'_>], axes: usize) -> Result<Needs, SetupError> {
+    let mut needs = Needs::default();
+    for (motion, terms) in motions.iter().map(|motion| motion.terms).enumerate() {
+        for (term, given) in terms.iter().enumerate() {
+            if let Some(axis) = given.axis().filter(|axis| *axis >= axes) {
+                return Err(SetupError::TermAxis { motion, term, axis });
+            }
+            if let Some(parameter) = given.bad_parameter() {
+                return Err(SetupError::Parameter { motion, term, parameter });
+            }
+            let sensors = given.sensor().map_or(0, |sensor| sensor.saturating_add(1));
+            needs.sensors = needs.sensors.max(sensors);
+            needs.velocity |= matches!(given, Term::Lag { .. });
+        }
+    }
+    Ok(needs)
+}

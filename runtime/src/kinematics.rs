@@ -1,0 +1,33 @@
+//! The compiled equations of one machine, as the runtime sees them.
+//!
+//! In: axis positions, travels and the values of the error motions. Out: the error at the tool tip and the direction in
+//! which each axis can correct it. It exists so that generated code and the compiler's interpreter serve the same
+//! [`Compensator`](crate::Compensator).
+
+/// The compiled equations of one machine: what the topology says, with the machine's constants already in it.
+///
+/// Positions and travels are in mm for slides and in rad for rotary axes. Error motions are in mm for displacements and
+/// in rad for rotations. All vectors are in the frame of the part, in the order X, Y, Z.
+pub trait Kinematics {
+    /// Number of axis positions.
+    fn axes(&self) -> usize;
+
+    /// For each free travel symbol, the index of the axis whose position it is by default. A travel is the lever of an
+    /// alignment error where that lever is not the axis position itself, such as an incremental travel.
+    fn travels(&self) -> &[usize];
+
+    /// Number of error motions.
+    fn motions(&self) -> usize;
+
+    /// First-order error of the tool tip relative to the part, actual minus commanded, in mm.
+    ///
+    /// A direction that is not sensitive is 0.0. A slice of the wrong length gives NaN in all three.
+    fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3];
+
+    /// For each axis, the displacement of the tool tip relative to the part per mm of programmed motion.
+    ///
+    /// An axis that does not correct is zero: rotary axes and redundant slides; so are the components in directions
+    /// that are not sensitive. A slide whose positive motion moves the tool towards negative X of the part
+    /// has -1 there. Writes `directions[axis]`; a slice of the wrong length is filled with NaN.
+    fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]);
+}

@@ -1,0 +1,55 @@
+//! The few functions of analysis that the runtime and the generated code need.
+//!
+//! In: numbers. Out: numbers, NaN where the argument is NaN. It exists because `core` has no sine: they come from libm,
+//! or from the standard library with the feature `std`.
+
+/// Sine and cosine of an angle in rad, in this order.
+#[must_use]
+pub fn sin_cos(angle: f64) -> (f64, f64) {
+    #[cfg(feature = "std")]
+    return angle.sin_cos();
+    #[cfg(not(feature = "std"))]
+    return libm::sincos(angle);
+}
+
+/// Sine of an angle in rad.
+#[must_use]
+pub fn sin(angle: f64) -> f64 {
+    sin_cos(angle).0
+}
+
+/// Square root; NaN for a negative number.
+#[must_use]
+pub fn sqrt(value: f64) -> f64 {
+    #[cfg(feature = "std")]
+    return value.sqrt();
+    #[cfg(not(feature = "std"))]
+    return libm::sqrt(value);
+}
+
+/// The exponential less one, `exp(value) - 1`, exact to the last digits for small values.
+#[must_use]
+pub fn exp_m1(value: f64) -> f64 {
+    #[cfg(feature = "std")]
+    return value.exp_m1();
+    #[cfg(not(feature = "std"))]
+    return libm::expm1(value);
+}
+
+/// Scalar product of two vectors.
+#[must_use]
+pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// `a + factor * b`, component by component.
+#[must_use]
+pub fn add_scaled(a: [f64; 3], factor: f64, b: [f64; 3]) -> [f64; 3] {
+    [a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]]
+}
+
+/// Euclidean length of a vector.
+#[must_use]
+pub fn length(a: [f64; 3]) -> f64 {
+    sqrt(dot(a, a))
+}

@@ -1,0 +1,58 @@
+//! The state of the machine in one servo cycle.
+//!
+//! In: what the controller knows. Out: the argument of every term. It exists so that all terms read one state, the
+//! same that the inverse evaluates at other positions.
+
+use crate::Direction;
+
+/// The state of the machine in one servo cycle, borrowed from the caller.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Sample<'a> {
+    /// Position of each axis in mm or rad: the position wanted, in machine coordinates.
+    pub position: &'a [f64],
+    /// Each free travel in mm; empty: each travel is the position of its axis, that of the compensated command included.
+    pub travel: &'a [f64],
+    /// Direction of each axis's last real motion, see [`DirectionTracker`](crate::DirectionTracker).
+    pub direction: &'a [Direction],
+    /// Velocity of each axis in mm/s or rad/s; may be empty where no term is a [`Lag`](crate::Term::Lag).
+    pub velocity: &'a [f64],
+    /// Temperature of each sensor in degC; may be empty where no term reads a sensor.
+    pub temperature: &'a [f64],
+    /// Time since the sample before this one, in s; not negative.
+    pub time_step: f64,
+}
+
+impl Sample<'_> {
+    /// Position of an axis; NaN where there is none.
+    pub(crate) fn position(&self, axis: usize) -> f64 {
+        number(self.position, axis)
+    }
+
+    /// Velocity of an axis; NaN where there is none.
+    pub(crate) fn velocity(&self, axis: usize) -> f64 {
+        number(self.velocity, axis)
+    }
+
+    /// Temperature of a sensor; NaN where there is none.
+    pub(crate) fn temperature(&self, sensor: usize) -> f64 {
+        number(self.temperature, sensor)
+    }
+
+    /// Direction of an axis; none where the slice is too short.
+    pub(crate) fn direction(&self, axis: usize) -> Option<Direction> {
+        self.direction.get(axis).copied()
+    }
+
+    /// Whether every number of the sample is finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        [self.position, self.travel, self.velocity, self.temperature]
+            .iter()
+            .all(|slice| slice.iter().all(|value| value.is_finite()))
+            && self.time_step.is_finite()
+    }
+}
+
+/// The number at an index; NaN where there is none.
+fn number(slice: &[f64], index: usize) -> f64 {
+    slice.get(index).copied().unwrap_or(f64::NAN)
+}

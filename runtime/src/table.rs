@@ -1,0 +1,198 @@
+//! Measured curves: piecewise linear tables, one for both directions of motion or one for each.
+//!
+//! In: nodes and values, borrowed and checked once. Out: the value at a position, held constant outside the table. It
+//! exists because most published calibrations are tables, and the controller must read them in bounded time.
+
+use core::fmt;
+
+use crate::Direction;
+
+/// The values of a table at its nodes: one curve, or one for each direction of motion.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Values<'a> {
+    /// One curve for both directions.
+    Both(&'a [f64]),
+    /// A curve for each direction, over the same nodes.
+    Directed {
+        /// Values while the last real motion was positive.
+        forward: &'a [f64],
+        /// Values while the last real motion was negative.
+        reverse: &'a [f64],
+    },
+}
+
+impl<'a> Values<'a> {
+    /// The curve of a direction.
+    const fn curve(self, direction: Direction) -> &'a [f64] {
+        match (self, direction) {
+            (Self::Both(values), _)
+            | (Self::Directed { forward: values, .. }, Direction::Positive)
+            | (Self::Directed { reverse: values, .. }, Direction::Negative) => values,
+        }
+    }
+}
+
+impl<'a> From<&'a [f64]> for Values<'a> {
+    fn from(values: &'a [f64]) -> Self {
+        Self::Both(values)
+    }
+}
+
+/// Why a table was refused.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum TableError {
+    /// There is no value.
+    Empty,
+    /// Two slices that belong together differ in length.
+    Lengths {
+        /// The length asked for: that of the nodes, or of the forward curve.
+        expected: usize,
+        /// The length found.
+        found: usize,
+    },
+    /// The step between nodes is zero or not finite.
+    Step,
+    /// A node does not lie above the one before it.
+    NotAscending {
+        /// Index of that node.
+        index: usize,
+    },
+    /// A start, a node or a value is NaN or infinite.
+    NotFinite,
+}
+
+impl fmt::Display for TableError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => write!(f, "the table has no values"),
+            Self::Lengths { expected, found } => {
+                write!(f, "the table needs {expected} values in each curve, found {found}")
+            }
+            Self::Step => write!(f, "the step between nodes is zero or not finite"),
+            Self::NotAscending { index } => {
+                write!(f, "node {index} (counted from 0) does not lie above the one before it")
+            }
+            Self::NotFinite => write!(f, "a start, a node or a value is not a finite number"),
+        }
+    }
+}
+
+impl core::error::Error for TableError {}
+
+/// Where the nodes of a table lie.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Nodes<'a> {
+    Uniform { start: f64, step: f64 },
+    At(&'a [f64]),
+}
+
+/// A piecewise linear curve over the position of an axis, held constant outside its nodes.
+///
+/// ```
+/// use abbe_runtime::{Direction, Table, Values};
+/// let table = Table::uniform(0.0, 55.0, Values::Both(&[-0.0005, 0.005, 0.0115]))?;
+/// assert_eq!(table.value(27.5, Direction::Positive), 0.00225);
+/// assert_eq!(table.value(900.0, Direction::Positive), 0.0115);
+/// # Ok::<(), abbe_runtime::TableError>(())
+/// ```
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Table<'a> {
+    nodes: Nodes<'a>,
+    values: Values<'a>,
+}
+
+impl<'a> Table<'a> {
+    /// A table whose nodes lie at `start`, `start + step`, `start + 2 step` and so on (mm or rad); read in constant time.
+    /// The step may be negative: published tables run from 0 to -110 mm as well.
+    ///
+    /// # Errors
+    /// Refuses a table without values, curves that differ in length, a step of zero and numbers that are not finite.
+    pub fn uniform(start: f64, step: f64, values: Values<'a>) -> Result<Self, TableError> {
+        if !step.is_finite() || step == 0.0 {
+            return Err(TableError::Step);
+        }
+        if !start.is_finite() {
+            return Err(TableError::NotFinite);
+        }
+        check_values(values, None)?;
+        Ok(Self { nodes: Nodes::Uniform { start, step }, values })
+    }
+
+    /// A table whose nodes lie at the positions `at` (mm or rad), strictly ascending; read by binary search.
+    ///
+    /// # Errors
+    /// Refuses a table without values, slices that differ in length, nodes out of order and numbers that are not finite.
+    pub fn at(at: &'a [f64], values: Values<'a>) -> Result<Self, TableError> {
+        check_values(values, Some(at.len()))?;
+        if !at.iter().all(|node| node.is_finite()) {
+            return Err(TableError::NotFinite);
+        }
+        let below = at.iter().zip(at.iter().skip(1)).position(|(before, node)| node <= before);
+        match below {
+            Some(index) => Err(TableError::NotAscending { index: index.saturating_add(1) }),
+            None => Ok(Self { nodes: Nodes::At(at), values }),
+        }
+    }
+
+    /// The value at a position, on the curve of the given direction; NaN at NaN.
+    #[must_use]
+    pub fn value(&self, position: f64, direction: Direction) -> f64 {
+        if position.is_nan() {
+            return f64::NAN;
+        }
+        let values = self.values.curve(direction);
+        match self.nodes {
+            Nodes::Uniform { start, step } => read(values, (position - start) / step),
+            Nodes::At(at) => read_at(values, at, position),
+        }
+    }
+}
+
+/// Checks the curves: not empty, of the same length (`expected`, where given), finite.
+fn check_values(values: Values<'_>, expected: Option<usize>) -> Result<(), TableError> {
+    let forward = values.curve(Direction::Positive);
+    let reverse = values.curve(Direction::Negative);
+    let expected = expected.unwrap_or(forward.len());
+    for curve in [forward, reverse] {
+        if curve.len() != expected {
+            return Err(TableError::Lengths { expected, found: curve.len() });
+        }
+    }
+    if expected == 0 {
+        return Err(TableError::Empty);
+    }
+    let finite = forward.iter().chain(reverse).all(|value| value.is_finite());
+    if finite { Ok(()) } else { Err(TableError::NotFinite) }
+}
+
+/// Reads a curve at a place counted in nodes: 1.5 is half way between the second and the third. Ends are held.
+fn read(values: &[f64], place: f64) -> f64 {
+    if place <= 0.0 {
+        return values.first().copied().unwrap_or(f64::NAN);
+    }
+    // The cast cuts towards zero and saturates; a place beyond the last node finds no pair of neighbours.
+    let index = place as usize;
+    match (values.get(index), values.get(index.saturating_add(1))) {
+        (Some(&low), Some(&high)) => between(low, high, place - index as f64),
+        _ => values.last().copied().unwrap_or(f64::NAN),
+    }
+}
+
+/// Reads a curve over ascending nodes by binary search. Ends are held.
+fn read_at(values: &[f64], at: &[f64], position: f64) -> f64 {
+    let above = at.partition_point(|&node| node <= position);
+    let Some(index) = above.checked_sub(1) else {
+        return values.first().copied().unwrap_or(f64::NAN);
+    };
+    match (at.get(index), at.get(above), values.get(index), values.get(above)) {
+        (Some(&from), Some(&to), Some(&low), Some(&high)) => {
+            between(low, high, (position - from) / (to - from))
+        }
+        _ => values.last().copied().unwrap_or(f64::NAN),
+    }
+}
+
+/// Linear interpolation; exactly `low` at 0.
+fn between(low: f64, high: f64, part: f64) -> f64 {
+    low + (high - low) * part
+}

@@ -1,0 +1,77 @@
+//! What a term reads and whether its parameters can be used.
+//!
+//! In: a term. Out: its axis, its sensor, the name of a parameter that is out of range. It exists so that a compensator
+//! refuses a bad term once, when it is built, and not in every cycle.
+
+use super::{Input, Term};
+
+impl Term<'_> {
+    /// Index of the axis that the term reads.
+    pub(crate) const fn axis(&self) -> Option<usize> {
+        match *self {
+            Self::Polynomial { input: Input::Axis(axis), .. }
+            | Self::Coupling { axis, .. }
+            | Self::Table { axis, .. }
+            | Self::Backlash { axis, .. }
+            | Self::Cyclic { axis, .. }
+            | Self::Expansion { axis, .. }
+            | Self::Lag { axis, .. } => Some(axis),
+            Self::Polynomial { input: Input::Sensor(_), .. }
+            | Self::Constant { .. }
+            | Self::Growth { .. } => None,
+        }
+    }
+
+    /// Index of the sensor that the term reads.
+    pub(crate) const fn sensor(&self) -> Option<usize> {
+        match *self {
+            Self::Polynomial { input: Input::Sensor(sensor), .. }
+            | Self::Expansion { sensor, .. }
+            | Self::Growth { sensor, .. } => Some(sensor),
+            _ => None,
+        }
+    }
+
+    /// The name of the first parameter that is not finite or out of its range.
+    pub(crate) fn bad_parameter(&self) -> Option<&'static str> {
+        let checks = match *self {
+            Self::Constant { value } => [("value", value.is_finite()), FINE, FINE],
+            Self::Polynomial { coefficients, .. } | Self::Coupling { coefficients, .. } => {
+                let finite = coefficients.iter().all(|coefficient| coefficient.is_finite());
+                [("coefficients", finite), FINE, FINE]
+            }
+            Self::Table { .. } => [FINE, FINE, FINE],
+            Self::Backlash { lost_motion, wind_up, .. } => {
+                [("lost_motion", lost_motion.is_finite()), ("wind_up", not_negative(wind_up)), FINE]
+            }
+            Self::Cyclic { period, amplitude, phase, .. } => [
+                ("period", divisor(period)),
+                ("amplitude", amplitude.is_finite()),
+                ("phase", phase.is_finite()),
+            ],
+            Self::Expansion { coefficient, reference, .. } => {
+                [("coefficient", coefficient.is_finite()), ("reference", reference.is_finite()), FINE]
+            }
+            Self::Growth { coefficient, reference, time_constant, .. } => [
+                ("coefficient", coefficient.is_finite()),
+                ("reference", reference.is_finite()),
+                ("time_constant", not_negative(time_constant)),
+            ],
+            Self::Lag { gain, .. } => [("gain", divisor(gain)), FINE, FINE],
+        };
+        checks.iter().find(|(_, usable)| !usable).map(|(name, _)| *name)
+    }
+}
+
+/// A place in the list of checks where a term has no further parameter.
+const FINE: (&str, bool) = ("", true);
+
+/// Finite and not below zero.
+fn not_negative(value: f64) -> bool {
+    value.is_finite() && value >= 0.0
+}
+
+/// Finite and not zero.
+fn divisor(value: f64) -> bool {
+    value.is_finite() && value != 0.0
+}

@@ -10,6 +10,7 @@
 use std::fmt;
 
 use crate::algebra::{Axis, Name, Polynomial};
+use crate::calibration::{AxisName, MachineNames, MotionName};
 use crate::machine::Branch;
 
 /// The error equations of one machine.
@@ -143,6 +144,29 @@ impl Equations {
     pub fn arm(&self, direction: Axis, motion: usize) -> Polynomial {
         let term = self.row(direction).and_then(|row| row.terms.iter().find(|term| term.motion == motion));
         term.map(|term| term.arm.clone()).unwrap_or_default()
+    }
+
+    /// The names that a calibration of the machine may use.
+    pub fn names(&self) -> MachineNames {
+        let axis_letter = |axis: usize| self.axes.get(axis).map(|axis| axis.letter.clone());
+        MachineNames {
+            machine: self.machine.clone(),
+            constants: self.constants.iter().map(|known| (known.name.to_string(), known.default)).collect(),
+            axes: self
+                .axes
+                .iter()
+                .map(|axis| AxisName { letter: axis.letter.clone(), rotary: axis.rotary })
+                .collect(),
+            motions: self
+                .motions
+                .iter()
+                .map(|motion| MotionName {
+                    name: motion.name.clone(),
+                    angular: motion.angular,
+                    axis: motion.axis.and_then(axis_letter),
+                })
+                .collect(),
+        }
     }
 }
 

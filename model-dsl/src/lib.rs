@@ -12,7 +12,7 @@
 //! know anything of recordings or of the command line.
 
 pub mod algebra;
-// pub mod calibration;
+pub mod calibration;
 // pub mod check;
 pub mod codegen;
 pub mod derivation;
@@ -20,7 +20,7 @@ pub mod diagnostic;
 pub mod equations;
 pub mod expression;
 pub mod machine;
-// pub mod notation;
+pub mod notation;
 pub mod program;
 pub mod quantity;
 pub mod source;

@@ -60,10 +60,7 @@ impl Printer<'_> {
     fn value(&self, value: Value) -> (TokenStream, Binding) {
         match value {
             Value::Zero => (quote! { 0.0 }, Binding::Atom),
-            Value::Number(number) => {
-                let literal = Literal::f64_unsuffixed(self.program.numbers.get(number).copied().unwrap_or(f64::NAN));
-                (quote! { #literal }, Binding::Atom)
-            }
+            Value::Number(number) => number_literal(self.program.numbers.get(number).copied().unwrap_or_default()),
             Value::Input(input) => {
                 let name = input_name(self.equations, input);
                 (quote! { #name }, Binding::Atom)
@@ -104,6 +101,12 @@ impl Printer<'_> {
     }
 }
 
+/// A number; the sign of a negative one is an operator, as in any expression.
+fn number_literal(number: f64) -> (TokenStream, Binding) {
+    let size = Literal::f64_unsuffixed(number.abs());
+    if number < 0.0 { (quote! { -#size }, Binding::Sign) } else { (quote! { #size }, Binding::Atom) }
+}
+
 fn step_name(step: usize) -> Ident {
     format_ident!("s{step}")
 }
@@ -131,12 +134,12 @@ fn prelude(equations: &Equations, program: &Program) -> TokenStream {
     let record = |from: TokenStream, record: &str, wanted: &dyn Fn(&Input) -> bool| {
         let fields: Vec<_> = read.iter().filter(|input| wanted(input)).map(|input| input_name(equations, *input)).collect();
         let record = format_ident!("{record}");
-        (!fields.is_empty()).then(|| quote! { let #record { #(#fields,)* .. } = *#from; })
+        (!fields.is_empty()).then(|| quote! { let #record { #(#fields,)* .. } = #from; })
     };
-    let constants = record(quote!(&self.constants), "Constants", &|input| matches!(input, Input::Constant(_)));
-    let axes = record(quote!(axes), "Axes", &|input| matches!(input, Input::Position(_)));
-    let travels = record(quote!(travels), "Travels", &|input| matches!(input, Input::Travel(_)));
-    let motions = record(quote!(motions), "Motions", &|input| matches!(input, Input::Motion(_)));
+    let constants = record(quote!(self.constants), "Constants", &|input| matches!(input, Input::Constant(_)));
+    let axes = record(quote!(*axes), "Axes", &|input| matches!(input, Input::Position(_)));
+    let travels = record(quote!(*travels), "Travels", &|input| matches!(input, Input::Travel(_)));
+    let motions = record(quote!(*motions), "Motions", &|input| matches!(input, Input::Motion(_)));
     let turns = turns(equations, &read);
     quote! { #constants #axes #travels #motions #turns }
 }

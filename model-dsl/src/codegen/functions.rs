@@ -1,7 +1,7 @@
 //! The functions of a machine: position, error, lever arms, directions, and the interface that
 //! the runtime's compensator calls.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::body::{Body, body};
@@ -90,7 +90,7 @@ fn levers(equations: &Equations, programs: &Programs) -> TokenStream {
         programs.levers.operations()
     );
     let parameters = parameters(equations, &body);
-    let count = equations.motions.len();
+    let count = Literal::usize_unsuffixed(equations.motions.len());
     let Body { prelude, bindings, results } = body;
     let arms = results.chunks(3).map(|arm| quote! { [#(#arm),*] });
     quote! {
@@ -106,7 +106,7 @@ fn levers(equations: &Equations, programs: &Programs) -> TokenStream {
 fn directions(equations: &Equations, programs: &Programs) -> TokenStream {
     let body = body(equations, &programs.directions);
     let axes = unused("axes", body.prelude.to_string().contains("axes"));
-    let count = equations.axes.len();
+    let count = Literal::usize_unsuffixed(equations.axes.len());
     let Body { prelude, bindings, results } = body;
     let effects = results.chunks(3).map(|effect| quote! { [#(#effect),*] });
     quote! {
@@ -121,14 +121,16 @@ fn directions(equations: &Equations, programs: &Programs) -> TokenStream {
 }
 
 fn kinematics(equations: &Equations) -> TokenStream {
-    let axes = equations.axes.len();
-    let motions = equations.motions.len();
-    let travels: Vec<usize> = equations.travels.iter().map(|travel| travel.axis).collect();
-    let count = travels.len();
-    let travel_pattern = if count == 0 { quote! { [] } } else { quote! { travels } };
-    let convert = (count > 0).then(|| quote! { let Ok(travels) = travel.try_into() else { return [f64::NAN; 3] }; });
-    let argument = (count > 0).then(|| quote! { , &Travels::from_array(travels) });
-    let check = (count == 0).then(|| quote! { let #travel_pattern = *travel else { return [f64::NAN; 3] }; });
+    let axes = Literal::usize_unsuffixed(equations.axes.len());
+    let motions = Literal::usize_unsuffixed(equations.motions.len());
+    let travels: Vec<_> =
+        equations.travels.iter().map(|travel| Literal::usize_unsuffixed(travel.axis)).collect();
+    let (check, argument) = if travels.is_empty() {
+        (quote! { let [] = *travel else { return [f64::NAN; 3] }; }, TokenStream::new())
+    } else {
+        let convert = quote! { let Ok(travel) = travel.try_into() else { return [f64::NAN; 3] }; };
+        (convert, quote! { , &Travels::from_array(travel) })
+    };
     quote! {
         impl ::abbe_runtime::Kinematics for Machine {
             fn axes(&self) -> usize { #axes }
@@ -137,7 +139,6 @@ fn kinematics(equations: &Equations) -> TokenStream {
             fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
                 let Ok(position) = position.try_into() else { return [f64::NAN; 3] };
                 let Ok(motions) = motions.try_into() else { return [f64::NAN; 3] };
-                #convert
                 #check
                 Machine::error(self, &Axes::from_array(position) #argument, &Motions::from_array(motions))
             }

@@ -1,6 +1,6 @@
 //! The typed records of a machine: constants, positions, travels and error motions.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::docs;
@@ -31,7 +31,7 @@ pub(super) fn all(equations: &Equations) -> TokenStream {
 /// A record of doubles with its names and its conversions from and to an array.
 fn record(name: &str, about: &str, fields: &[(String, String)]) -> TokenStream {
     let ident = format_ident!("{name}");
-    let count = fields.len();
+    let count = Literal::usize_unsuffixed(fields.len());
     let idents: Vec<_> = fields.iter().map(|(name, _)| field(name)).collect();
     let docs: Vec<_> = fields.iter().map(|(_, doc)| doc).collect();
     let names: Vec<_> = fields.iter().map(|(name, _)| name).collect();

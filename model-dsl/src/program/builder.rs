@@ -19,20 +19,41 @@ struct Signed {
     negative: bool,
 }
 
+impl Signed {
+    fn opposite(self) -> Self {
+        Self { negative: !self.negative, ..self }
+    }
+}
+
 /// Builds one program out of polynomials.
 pub struct Builder<'r> {
     resolve: &'r dyn Fn(&Symbol) -> Option<Input>,
     program: Program,
+    /// Values that stand for symbols of the caller's making.
+    defined: BTreeMap<Symbol, Value>,
     /// Equal steps are one step.
     known_steps: BTreeMap<Step, usize>,
-    /// Equal polynomials are one value; they are kept with a positive first coefficient.
-    known_sums: Vec<(Polynomial, Value)>,
+    /// Equal polynomials, and opposite ones, are one value.
+    known_sums: Vec<(Polynomial, Signed)>,
 }
 
 impl<'r> Builder<'r> {
     /// Begins a program; `resolve` says which input a symbol is.
     pub fn new(resolve: &'r dyn Fn(&Symbol) -> Option<Input>) -> Self {
-        Self { resolve, program: Program::default(), known_steps: BTreeMap::new(), known_sums: Vec::new() }
+        Self {
+            resolve,
+            program: Program::default(),
+            defined: BTreeMap::new(),
+            known_steps: BTreeMap::new(),
+            known_sums: Vec::new(),
+        }
+    }
+
+    /// Lets a symbol stand for a polynomial in the results that follow.
+    pub fn define(&mut self, symbol: Symbol, polynomial: &Polynomial) {
+        let signed = self.sum(polynomial);
+        let value = self.plain(signed);
+        self.defined.insert(symbol, value);
     }
 
     /// Adds a result.
@@ -48,27 +69,25 @@ impl<'r> Builder<'r> {
     }
 
     fn sum(&mut self, polynomial: &Polynomial) -> Signed {
-        if polynomial.leads_negative() {
-            let opposite = self.positive_sum(&-polynomial);
-            return Signed { value: opposite, negative: true };
+        let known = |wanted: &Polynomial| {
+            self.known_sums.iter().find(|(known, _)| known == wanted).map(|(_, signed)| *signed)
+        };
+        if let Some(signed) = known(polynomial) {
+            return signed;
         }
-        Signed { value: self.positive_sum(polynomial), negative: false }
-    }
-
-    fn positive_sum(&mut self, polynomial: &Polynomial) -> Value {
-        if let Some((_, value)) = self.known_sums.iter().find(|(known, _)| known == polynomial) {
-            return *value;
+        if let Some(signed) = known(&-polynomial) {
+            return signed.opposite();
         }
-        let value = match shared_symbol(polynomial) {
+        let signed = match shared_symbol(polynomial) {
             Some(symbol) => self.horner(polynomial, &symbol),
             None => self.spelled_out(polynomial),
         };
-        self.known_sums.push((polynomial.clone(), value));
-        value
+        self.known_sums.push((polynomial.clone(), signed));
+        signed
     }
 
     /// `symbol * quotient + rest`.
-    fn horner(&mut self, polynomial: &Polynomial, symbol: &Symbol) -> Value {
+    fn horner(&mut self, polynomial: &Polynomial, symbol: &Symbol) -> Signed {
         let rest = polynomial.part(|monomial| monomial.power_of(symbol) == 0);
         let quotient: Polynomial = polynomial
             .terms()
@@ -79,15 +98,14 @@ impl<'r> Builder<'r> {
         let factor = self.symbol(symbol);
         let quotient = self.sum(&quotient);
         let product = Signed { value: self.product(factor, quotient.value), negative: quotient.negative };
-        let rest = (!rest.is_zero()).then(|| self.sum(&rest));
-        let total = match rest {
-            Some(rest) => self.add(rest, product),
-            None => product,
-        };
-        self.plain(total)
+        if rest.is_zero() {
+            return product;
+        }
+        let rest = self.sum(&rest);
+        self.add(rest, product)
     }
 
-    fn spelled_out(&mut self, polynomial: &Polynomial) -> Value {
+    fn spelled_out(&mut self, polynomial: &Polynomial) -> Signed {
         let mut total: Option<Signed> = None;
         for (monomial, coefficient) in polynomial.terms() {
             let term = self.term(monomial, coefficient);
@@ -96,7 +114,7 @@ impl<'r> Builder<'r> {
                 None => term,
             });
         }
-        total.map_or(Value::Zero, |total| self.plain(total))
+        total.unwrap_or(Signed { value: Value::Zero, negative: false })
     }
 
     fn term(&mut self, monomial: &Monomial, coefficient: &Rational) -> Signed {
@@ -116,7 +134,10 @@ impl<'r> Builder<'r> {
     }
 
     fn number(&mut self, value: &Rational) -> Value {
-        let value = to_f64(value);
+        self.float(to_f64(value))
+    }
+
+    fn float(&mut self, value: f64) -> Value {
         let numbers = &mut self.program.numbers;
         let known = numbers.iter().position(|known| known.to_bits() == value.to_bits());
         Value::Number(known.unwrap_or_else(|| {
@@ -126,7 +147,8 @@ impl<'r> Builder<'r> {
     }
 
     fn symbol(&self, symbol: &Symbol) -> Value {
-        (self.resolve)(symbol).map_or(Value::Zero, Value::Input)
+        let defined = self.defined.get(symbol).copied();
+        defined.unwrap_or_else(|| (self.resolve)(symbol).map_or(Value::Zero, Value::Input))
     }
 
     fn product(&mut self, left: Value, right: Value) -> Value {
@@ -152,7 +174,14 @@ impl<'r> Builder<'r> {
     }
 
     fn plain(&mut self, signed: Signed) -> Value {
-        if signed.negative { self.step(Step::Neg(signed.value)) } else { signed.value }
+        match signed {
+            Signed { value: Value::Number(number), negative: true } => {
+                let value = self.program.numbers.get(number).copied().unwrap_or(f64::NAN);
+                self.float(-value)
+            }
+            Signed { value, negative: true } => self.step(Step::Neg(value)),
+            Signed { value, negative: false } => value,
+        }
     }
 
     fn step(&mut self, step: Step) -> Value {

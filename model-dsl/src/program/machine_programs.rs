@@ -38,7 +38,7 @@ impl Programs {
             .flat_map(|axis| axis.effect.clone().unwrap_or_else(|| std::array::from_fn(|_| Polynomial::zero())));
         Self {
             nominal: program(&mut Axis::ALL.into_iter().map(|direction| nominal(equations, direction))),
-            error: program(&mut Axis::ALL.into_iter().map(|direction| error(equations, direction))),
+            error: error(equations, &resolve),
             levers: program(&mut arms.into_iter()),
             directions: program(&mut effects),
         }
@@ -49,14 +49,37 @@ fn nominal(equations: &Equations, direction: Axis) -> Polynomial {
     equations.row(direction).map(|row| row.nominal.clone()).unwrap_or_default()
 }
 
-/// The error of a direction as one polynomial, error motions standing as symbols.
-fn error(equations: &Equations, direction: Axis) -> Polynomial {
-    let Some(row) = equations.row(direction) else { return Polynomial::zero() };
-    let term = |term: &crate::equations::Term| {
-        let motion = Symbol::Motion(equations.motions[term.motion].name.as_str().into());
-        &term.arm * &Polynomial::symbol(motion)
-    };
-    row.terms.iter().map(term).collect()
+/// The error in the three directions. Motions that act with the same lever arms everywhere, up
+/// to a common sign, are added first and multiplied once.
+fn error(equations: &Equations, resolve: &dyn Fn(&Symbol) -> Option<Input>) -> Program {
+    let mut builder = Builder::new(resolve);
+    let mut rows: [Polynomial; 3] = std::array::from_fn(|_| Polynomial::zero());
+    for (number, (arms, motions)) in groups(equations).into_iter().enumerate() {
+        let group = Symbol::Motion(format!("#{number}").into());
+        builder.define(group.clone(), &motions);
+        for (row, arm) in rows.iter_mut().zip(&arms) {
+            *row = &*row + &(arm * &Polynomial::symbol(group.clone()));
+        }
+    }
+    rows.iter().for_each(|row| builder.result(row));
+    builder.finish()
+}
+
+/// Motions with equal or opposite lever arms in all directions: the arms, and the signed sum of the motions.
+fn groups(equations: &Equations) -> Vec<([Polynomial; 3], Polynomial)> {
+    let mut groups: Vec<([Polynomial; 3], Polynomial)> = Vec::new();
+    for (number, motion) in equations.motions.iter().enumerate() {
+        let arms = Axis::ALL.map(|direction| equations.arm(direction, number));
+        let opposite = arms.each_ref().map(|arm| -arm);
+        let symbol = Polynomial::symbol(Symbol::Motion(motion.name.as_str().into()));
+        let known = groups.iter_mut().find(|(known, _)| *known == arms || *known == opposite);
+        match known {
+            Some((known, sum)) if *known == arms => *sum = &*sum + &symbol,
+            Some((_, sum)) => *sum = &*sum - &symbol,
+            None => groups.push((arms, symbol)),
+        }
+    }
+    groups
 }
 
 fn input(equations: &Equations, symbol: &Symbol) -> Option<Input> {

@@ -24,8 +24,6 @@ impl Unit {
     }
 }
 
-const MM_PER_INCH: f64 = 25.4;
-
 /// Name, factor, offset and kind of every unit, with its other spellings after it.
 const UNITS: [(&str, f64, f64, Dimension); 37] = [
     ("mm", 1.0, 0.0, Dimension::LENGTH),
@@ -35,11 +33,11 @@ const UNITS: [(&str, f64, f64, Dimension); 37] = [
     ("nm", 1e-6, 0.0, Dimension::LENGTH),
     ("cm", 10.0, 0.0, Dimension::LENGTH),
     ("m", 1000.0, 0.0, Dimension::LENGTH),
-    ("in", MM_PER_INCH, 0.0, Dimension::LENGTH),
-    ("mil", MM_PER_INCH * 1e-3, 0.0, Dimension::LENGTH),
-    ("uin", MM_PER_INCH * 1e-6, 0.0, Dimension::LENGTH),
-    ("\u{b5}in", MM_PER_INCH * 1e-6, 0.0, Dimension::LENGTH),
-    ("\u{3bc}in", MM_PER_INCH * 1e-6, 0.0, Dimension::LENGTH),
+    ("in", 25.4, 0.0, Dimension::LENGTH),
+    ("mil", 25.4e-3, 0.0, Dimension::LENGTH),
+    ("uin", 25.4e-6, 0.0, Dimension::LENGTH),
+    ("\u{b5}in", 25.4e-6, 0.0, Dimension::LENGTH),
+    ("\u{3bc}in", 25.4e-6, 0.0, Dimension::LENGTH),
     ("rad", 1.0, 0.0, Dimension::ANGLE),
     ("mrad", 1e-3, 0.0, Dimension::ANGLE),
     ("urad", 1e-6, 0.0, Dimension::ANGLE),

@@ -1,0 +1,109 @@
+//! Calibration files: the numbers of one machine.
+//!
+//! In: the tree of a calibration file and the names of the machine it is for. Out: a [`Calibration`] in internal units
+//! (mm, rad, s, degC), or findings at the places that are wrong, all of them in one run.
+//!
+//! Reading goes in two steps, because the file itself names the machine: [`machine_of`] reads that name alone, the
+//! caller finds the machine, and [`read`] reads the rest against its names.
+//!
+//! | code | finding |
+//! | --- | --- |
+//! | E0401 | a required key is missing |
+//! | E0402 | a format version that is not read |
+//! | E0403 | an unknown key |
+//! | E0404 | a mapping, list or word is needed in place of what stands there |
+//! | E0405, E0406 | an unknown constant; a constant of the machine without a value |
+//! | E0407, E0408 | an error motion that the machine lacks; one given under two spellings |
+//! | E0409, E0410 | an unknown term; an item that is not exactly one term |
+//! | E0411, E0412 | a parameter of a term is missing; a term has no such parameter |
+//! | E0413 | a `unit` or `per` of the wrong kind |
+//! | E0414, E0415 | an unknown axis; an axis that must be named |
+//! | E0416 | keys that exclude one another |
+//! | E0417, E0418 | a table or list without entries, or curves of different lengths; `at` out of order |
+//! | E0419 | a value that must be greater than zero, or not zero |
+//! | E0420 | `coupling` to the link's own axis |
+//! | E0421 | degF as the scale of a polynomial |
+//! | E0422, E0423 | a derived sensor that is not one; one that is derived from itself |
+//! | E0424 | a compliance that is not per load |
+//! | E0425 | a term that cannot be compensated, from [`Calibration::refuse_uncompensable`] |
+//! | W0401 | a derived sensor that no term uses |
+//!
+//! Quantities have their own codes, E0301 to E0309: see [`crate::quantity`].
+
+mod curve;
+mod document;
+mod fields;
+mod names;
+mod read_term;
+mod sensors;
+mod series;
+mod term;
+
+pub use document::{machine_of, read};
+pub use names::{AxisName, MachineNames, MotionName};
+pub use sensors::{Sensor, SensorKind, SensorReadings, Sensors};
+pub use term::{CalibratedTerm, Curve, CurveNodes, CurveValues, NotCompensable, SeriesInput, TERM_NAMES};
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::source::{Span, Spanned};
+
+/// The numbers of one machine.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Calibration {
+    /// The machine as the file names it: a shipped machine's name, a path, or a topology word.
+    pub machine: Spanned<String>,
+    /// Where the numbers come from, in the file's words.
+    pub source: Option<String>,
+    /// The values of the machine's constants in mm, in the order of [`MachineNames::constants`].
+    pub constants: Vec<f64>,
+    /// What a correction may not exceed.
+    pub limits: Limits,
+    /// The temperature sensors that the terms read, and those that are derived from others.
+    pub sensors: Sensors,
+    /// The error motions that the file lists, in its order; all others are zero.
+    pub motions: Vec<CalibratedMotion>,
+}
+
+/// What a correction may not exceed.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Limits {
+    /// The largest correction in mm; a larger one is refused, not applied. No limit where there is none.
+    pub compensation: Option<Spanned<f64>>,
+}
+
+/// One error motion and the terms that add up to it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct CalibratedMotion {
+    /// Which motion: an index into [`MachineNames::motions`].
+    pub motion: usize,
+    /// Where the file names it.
+    pub span: Span,
+    /// Its terms, each at the place of its name, or of its value where that stands alone.
+    pub terms: Vec<Spanned<CalibratedTerm>>,
+}
+
+impl Calibration {
+    /// The terms of an error motion; none where the file does not list it.
+    pub fn terms(&self, motion: usize) -> &[Spanned<CalibratedTerm>] {
+        let listed = self.motions.iter().find(|listed| listed.motion == motion);
+        listed.map_or(&[], |listed| &listed.terms)
+    }
+
+    /// Reports every term that no controller can compensate in real time, at its name (E0425).
+    pub fn refuse_uncompensable(&self, names: &MachineNames, diagnostics: &mut Diagnostics) {
+        for listed in &self.motions {
+            let motion = names.motions.get(listed.motion).map_or("", |motion| &motion.name);
+            let refused = listed.terms.iter().filter(|term| !term.value.compensable());
+            for term in refused {
+                let message =
+                    format!("`{}` of {motion} cannot be compensated in real time", term.value.name());
+                let help =
+                    "leave it out of the calibration that is compensated; simulation and diagnosis read it";
+                diagnostics.push(Diagnostic::error("E0425", term.span, message).help(help));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,230 @@
+//! The calibration file as a whole: its top-level keys, constants, limits and error motions.
+
+use super::fields::{Fields, Wording, word};
+use super::names::MachineNames;
+use super::read_term::{Context, read_item, read_plain};
+use super::sensors::{Sensors, read_derived};
+use super::{CalibratedMotion, Calibration, Limits};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::quantity::{self, Dimension};
+use crate::source::{Span, Spanned};
+use crate::suggest::nearest;
+use crate::yaml::{Node, NodeKind};
+use std::collections::BTreeMap;
+
+const KEYS: [&str; 7] = ["calibration", "machine", "source", "constants", "limits", "sensors", "errors"];
+
+const WORDING: Wording<'static> =
+    Wording { what: "a calibration", noun: "key", unknown: "E0403", missing: "E0401" };
+
+/// Reads the name of the machine that a calibration is for, and nothing else.
+///
+/// Findings: E0401 there is none, E0404 it is not a name, or the file is no mapping at all. [`read`] does not repeat them.
+pub fn machine_of(root: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned<String>> {
+    if root.entries().is_none() {
+        let message = format!("a calibration is a mapping of keys, found {}", root.kind_name());
+        let mistake = Diagnostic::error("E0404", root.span, message);
+        diagnostics.push(mistake.help("begin with `calibration: 1` and `machine: ...`"));
+        return None;
+    }
+    let Some(node) = root.get("machine") else {
+        let mistake = Diagnostic::error("E0401", first_key(root), "a calibration needs the key `machine`");
+        diagnostics.push(mistake.help("add `machine: ...`, the name of a machine or the path of its file"));
+        return None;
+    };
+    word(node, "`machine`", diagnostics)
+}
+
+/// Reads a calibration against the names of its machine.
+///
+/// Every finding is reported: the codes are listed in this module's head. Nothing is returned where one is an error.
+pub fn read(root: &Node, names: &MachineNames, diagnostics: &mut Diagnostics) -> Option<Calibration> {
+    root.entries()?;
+    let mut own = Diagnostics::new();
+    let calibration = read_all(root, names, &mut own);
+    let failed = own.has_errors();
+    diagnostics.extend(own);
+    if failed { None } else { calibration }
+}
+
+fn read_all(root: &Node, names: &MachineNames, diagnostics: &mut Diagnostics) -> Option<Calibration> {
+    let fields = Fields::open(root, first_key(root), WORDING, &KEYS, diagnostics)?;
+    if let Some(version) = fields.need("calibration", WORDING, diagnostics) {
+        check_version(version, diagnostics);
+    }
+    let source = fields.get("source").and_then(|node| word(node, "`source`", diagnostics));
+    let constants = read_constants(&fields, names, diagnostics);
+    let limits =
+        present(&fields, "limits").map(|node| read_limits(node, fields.key_span("limits"), diagnostics));
+    let sensors = present(&fields, "sensors").map(|node| read_derived(node, diagnostics));
+    let mut sensors = sensors.unwrap_or_default();
+    let errors = present(&fields, "errors");
+    let motions = errors.map(|node| read_motions(node, names, &mut sensors, diagnostics));
+    sensors.warn_unused(diagnostics);
+    let machine = word(root.get("machine")?, "`machine`", &mut Diagnostics::new())?;
+    Some(Calibration {
+        machine,
+        source: source.map(|text| text.value),
+        constants,
+        limits: limits.unwrap_or_default(),
+        sensors,
+        motions: motions.unwrap_or_default(),
+    })
+}
+
+/// The value of a key, where there is the key and anything behind it.
+fn present<'n>(fields: &Fields<'n>, key: &str) -> Option<&'n Node> {
+    fields.get(key).filter(|node| node.kind != NodeKind::Null)
+}
+
+fn first_key(root: &Node) -> Span {
+    let first = root.entries().and_then(<[_]>::first);
+    first.map_or(root.span, |(key, _)| key.span)
+}
+
+fn check_version(node: &Node, diagnostics: &mut Diagnostics) {
+    if node.text() == Some("1") {
+        return;
+    }
+    let message = match node.text() {
+        Some(text) => format!("calibrations of version `{text}` are not read"),
+        None => format!("`calibration` is the version of the format, found {}", node.kind_name()),
+    };
+    diagnostics.push(Diagnostic::error("E0402", node.span, message).help("write `calibration: 1`"));
+}
+
+/// The machine's constants in its order; 0 for one that is reported.
+fn read_constants(fields: &Fields<'_>, names: &MachineNames, diagnostics: &mut Diagnostics) -> Vec<f64> {
+    let mut given = BTreeMap::new();
+    if let Some(node) = present(fields, "constants") {
+        let Some(entries) = node.entries() else {
+            let message = format!("`constants` is a mapping of names to lengths, found {}", node.kind_name());
+            diagnostics.push(Diagnostic::error("E0404", node.span, message).help("write `{Xt: 0 mm}`"));
+            return Vec::new();
+        };
+        for (name, value) in entries {
+            check_constant(name, names, diagnostics);
+            let words = format!("`{}`", name.value);
+            let value = quantity::read(value, Dimension::LENGTH, &words, diagnostics);
+            given.insert(name.value.as_str(), value.map_or(0.0, |value| value.value));
+        }
+    }
+    let missing_at = fields.key_span(if fields.get("constants").is_some() { "constants" } else { "machine" });
+    let values = names.constants.iter().map(|(name, default)| {
+        let value = given.get(name.as_str()).copied().or(*default);
+        if value.is_none() {
+            diagnostics.push(missing_constant(name, names, missing_at));
+        }
+        value.unwrap_or(0.0)
+    });
+    values.collect()
+}
+
+fn missing_constant(name: &str, names: &MachineNames, span: Span) -> Diagnostic {
+    let message = format!("{} needs a value for its constant `{name}`", names.machine);
+    Diagnostic::error("E0406", span, message).help(format!("add `{name}: ... mm` to `constants`"))
+}
+
+fn check_constant(name: &Spanned<String>, names: &MachineNames, diagnostics: &mut Diagnostics) {
+    let mut known = names.constants.iter().map(|(known, _)| known.as_str());
+    if known.clone().any(|known| known == name.value) {
+        return;
+    }
+    let message = format!("{} has no constant `{}`", names.machine, name.value);
+    let mistake = Diagnostic::error("E0405", name.span, message);
+    let near = nearest(&name.value, known.by_ref());
+    diagnostics.push(match (near, names.constants.as_slice()) {
+        (Some(near), _) => mistake.suggest(Some(near)),
+        (None, []) => mistake.help("the machine has no constants: leave it out"),
+        (None, constants) => {
+            let listed: Vec<_> = constants.iter().map(|(known, _)| known.as_str()).collect();
+            mistake.help(format!("its constants are {}", listed.join(", ")))
+        }
+    });
+}
+
+fn read_limits(node: &Node, name: Span, diagnostics: &mut Diagnostics) -> Limits {
+    let wording = Wording::keys("`limits`");
+    let compensation = Fields::open(node, name, wording, &["compensation"], diagnostics)
+        .and_then(|fields| fields.get("compensation"))
+        .and_then(|node| quantity::read(node, Dimension::LENGTH, "`compensation`", diagnostics));
+    if let Some(limit) = compensation.filter(|limit| limit.value <= 0.0) {
+        let mistake = Diagnostic::error("E0419", limit.span, "`compensation` must be greater than zero");
+        diagnostics.push(mistake.help("write the largest correction that may be applied, such as `0.2 mm`"));
+    }
+    Limits { compensation }
+}
+
+fn read_motions(
+    node: &Node,
+    names: &MachineNames,
+    sensors: &mut Sensors,
+    diagnostics: &mut Diagnostics,
+) -> Vec<CalibratedMotion> {
+    let Some(entries) = node.entries() else {
+        let message = format!("`errors` is a mapping of error motions to terms, found {}", node.kind_name());
+        diagnostics
+            .push(Diagnostic::error("E0404", node.span, message).help("write `EXX: [...]`, a line each"));
+        return Vec::new();
+    };
+    let mut places = BTreeMap::new();
+    let mut motions = Vec::new();
+    for (name, value) in entries {
+        let Some(motion) = names.motion(&name.value) else {
+            diagnostics.push(unknown_motion(name, names));
+            continue;
+        };
+        if let Some(first) = places.insert(motion, name.span) {
+            diagnostics.push(repeated_motion(motion, name, first, names));
+        }
+        let terms = read_terms(motion, value, names, sensors, diagnostics);
+        motions.push(CalibratedMotion { motion, span: name.span, terms });
+    }
+    motions
+}
+
+fn unknown_motion(name: &Spanned<String>, names: &MachineNames) -> Diagnostic {
+    let message = format!("{} has no error motion `{}`", names.machine, name.value);
+    let mistake = Diagnostic::error("E0407", name.span, message);
+    match nearest(&name.value, names.motions.iter().map(|motion| motion.name.as_str())) {
+        Some(near) => mistake.suggest(Some(near)),
+        None => {
+            let listed: Vec<_> = names.motions.iter().map(|motion| motion.name.as_str()).collect();
+            mistake.help(format!("its error motions are {}", listed.join(", ")))
+        }
+    }
+}
+
+fn repeated_motion(motion: usize, name: &Spanned<String>, first: Span, names: &MachineNames) -> Diagnostic {
+    let known = names.motions.get(motion).map_or("", |motion| motion.name.as_str());
+    let message = format!("{known} is given twice");
+    let mistake = Diagnostic::error("E0408", name.span, message).also(first, "first given here");
+    mistake.help(format!("`{}` is another spelling of {known}: put all its terms into one list", name.value))
+}
+
+fn read_terms(
+    motion: usize,
+    node: &Node,
+    names: &MachineNames,
+    sensors: &mut Sensors,
+    diagnostics: &mut Diagnostics,
+) -> Vec<Spanned<super::CalibratedTerm>> {
+    let Some(motion) = names.motions.get(motion) else {
+        return Vec::new();
+    };
+    let mut context = Context { names, motion, sensors, diagnostics };
+    match &node.kind {
+        NodeKind::Scalar(_) => read_plain(node, &mut context).into_iter().collect(),
+        NodeKind::Sequence(items) => items.iter().filter_map(|item| read_item(item, &mut context)).collect(),
+        NodeKind::Null | NodeKind::Mapping(_) => {
+            let message =
+                format!("{} is a quantity or a list of terms, found {}", motion.name, node.kind_name());
+            let help = format!(
+                "write `{}: [{{backlash: {{lost_motion: ...}}}}]`, or each term behind a `-`",
+                motion.name
+            );
+            diagnostics.push(Diagnostic::error("E0404", node.span, message).help(help));
+            Vec::new()
+        }
+    }
+}

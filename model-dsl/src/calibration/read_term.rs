@@ -1,0 +1,357 @@
+//! One term of an error motion, read from its item in the list.
+
+use super::curve::read_table;
+use super::fields::{Fields, Wording, word};
+use super::names::{MachineNames, MotionName};
+use super::sensors::Sensors;
+use super::series::{read_coupling, read_polynomial};
+use super::term::{CalibratedTerm, TERM_NAMES};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::quantity::{self, Dimension};
+use crate::source::{Span, Spanned};
+use crate::suggest::nearest;
+use crate::yaml::Node;
+
+/// What the terms of one error motion are read against.
+pub(super) struct Context<'a> {
+    pub(super) names: &'a MachineNames,
+    pub(super) motion: &'a MotionName,
+    pub(super) sensors: &'a mut Sensors,
+    pub(super) diagnostics: &'a mut Diagnostics,
+}
+
+/// Reads an item of a motion's list: a mapping of exactly one term's name to its parameters.
+pub(super) fn read_item(item: &Node, context: &mut Context<'_>) -> Option<Spanned<CalibratedTerm>> {
+    let motion = &context.motion.name;
+    let (name, parameters) = match item.entries() {
+        Some([(name, parameters)]) => (name, parameters),
+        Some([]) | None => {
+            let message = format!("an item of {motion} is one term, found {}", item.kind_name());
+            let help = "write `- backlash: {lost_motion: 10 um}`";
+            context.diagnostics.push(Diagnostic::error("E0410", item.span, message).help(help));
+            return None;
+        }
+        Some([_, (second, _), ..]) => {
+            let message = format!("an item of {motion} holds two terms");
+            let mistake = Diagnostic::error("E0410", second.span, message).label("a second term");
+            let help = "begin each term with a `-` of its own, and keep its parameters in its own `{...}`";
+            context.diagnostics.push(mistake.help(help));
+            return None;
+        }
+    };
+    let term = read_named(name, parameters, context)?;
+    Some(Spanned::new(term, name.span))
+}
+
+fn read_named(name: &Spanned<String>, node: &Node, context: &mut Context<'_>) -> Option<CalibratedTerm> {
+    let Some(known) = parameters_of(&name.value) else {
+        context.diagnostics.push(unknown_term(name));
+        return None;
+    };
+    let what = format!("`{}` of {}", name.value, context.motion.name);
+    let wording = Wording::parameters(&what);
+    let fields = Fields::open(node, name.span, wording, known, context.diagnostics)?;
+    let mut term = Parameters { fields, what: &what, context };
+    match name.value.as_str() {
+        "constant" => read_constant(&mut term),
+        "polynomial" => read_polynomial(&mut term),
+        "table" => read_table(&mut term),
+        "backlash" => read_backlash(&mut term),
+        "reversal-spike" => read_spike(&mut term),
+        "cyclic" => read_cyclic(&mut term),
+        "lag" => read_lag(&mut term),
+        "acceleration" => read_acceleration(&mut term),
+        "expansion" => read_expansion(&mut term),
+        "growth" => read_growth(&mut term),
+        "drift" => read_drift(&mut term),
+        "vibration" => read_vibration(&mut term),
+        "coupling" => read_coupling(&mut term),
+        "compliance" => read_compliance(&mut term),
+        _ => None,
+    }
+}
+
+/// The parameters that a term may have, the one that is its own first; nothing for an unknown term.
+fn parameters_of(term: &str) -> Option<&'static [&'static str]> {
+    let known: &[&str] = match term {
+        "constant" => &["value"],
+        "polynomial" => &["axis", "sensor", "per", "unit", "coefficients"],
+        "table" => &["axis", "start", "step", "at", "per", "unit", "values", "forward", "reverse"],
+        "backlash" => &["lost_motion", "wind_up", "axis"],
+        "reversal-spike" => &["height", "decay", "axis"],
+        "cyclic" => &["period", "amplitude", "phase", "axis"],
+        "lag" | "acceleration" => &["gain", "axis"],
+        "expansion" => &["sensor", "coefficient", "reference", "axis"],
+        "growth" => &["sensor", "coefficient", "reference", "time_constant"],
+        "drift" => &["amplitude", "time_constant"],
+        "vibration" => &["frequency", "amplitude", "phase"],
+        "coupling" => &["axis", "per", "unit", "coefficients"],
+        "compliance" => &["load", "coefficient"],
+        _ => return None,
+    };
+    Some(known)
+}
+
+fn unknown_term(name: &Spanned<String>) -> Diagnostic {
+    let mistake = Diagnostic::error("E0409", name.span, format!("unknown term `{}`", name.value));
+    match nearest(&name.value, TERM_NAMES) {
+        Some(near) => mistake.suggest(Some(near)),
+        None => mistake.help(format!("the terms are {}", TERM_NAMES.join(", "))),
+    }
+}
+
+/// The parameters of one term, with what is needed to read them.
+pub(super) struct Parameters<'p, 'n, 'a> {
+    pub(super) fields: Fields<'n>,
+    /// The term in words: "`backlash` of EXX".
+    pub(super) what: &'p str,
+    pub(super) context: &'p mut Context<'a>,
+}
+
+impl<'n> Parameters<'_, 'n, '_> {
+    /// The kind of quantity that the error motion is.
+    pub(super) fn motion(&self) -> Dimension {
+        self.context.motion.dimension()
+    }
+
+    pub(super) fn report(&mut self, mistake: Diagnostic) {
+        self.context.diagnostics.push(mistake);
+    }
+
+    /// A parameter that must be there.
+    pub(super) fn need(&mut self, key: &str) -> Option<&'n Node> {
+        self.fields.need(key, Wording::parameters(self.what), self.context.diagnostics)
+    }
+
+    /// A parameter in words: "`step` of `table` of EXX" in short.
+    pub(super) fn words(&self, key: &str) -> String {
+        format!("`{key}` of {}", self.context.motion.name)
+    }
+
+    /// A quantity that must be there.
+    pub(super) fn quantity(&mut self, key: &str, kind: Dimension) -> Option<f64> {
+        let node = self.need(key)?;
+        self.quantity_in(node, key, kind).map(|found| found.value)
+    }
+
+    pub(super) fn quantity_in(&mut self, node: &Node, key: &str, kind: Dimension) -> Option<Spanned<f64>> {
+        let words = self.words(key);
+        quantity::read(node, kind, &words, self.context.diagnostics)
+    }
+
+    /// A quantity that must be there and greater than zero.
+    pub(super) fn positive(&mut self, key: &str, kind: Dimension) -> Option<f64> {
+        let node = self.need(key)?;
+        self.greater(node, key, kind, |value| value > 0.0, "greater than zero")
+    }
+
+    /// A quantity that may be left out, then 0, and must not be negative.
+    pub(super) fn not_negative(&mut self, key: &str, kind: Dimension) -> Option<f64> {
+        match self.fields.get(key) {
+            None => Some(0.0),
+            Some(node) => self.greater(node, key, kind, |value| value >= 0.0, "zero or greater"),
+        }
+    }
+
+    fn greater(
+        &mut self,
+        node: &Node,
+        key: &str,
+        kind: Dimension,
+        holds: impl Fn(f64) -> bool,
+        must: &str,
+    ) -> Option<f64> {
+        let found = self.quantity_in(node, key, kind)?;
+        if holds(found.value) {
+            return Some(found.value);
+        }
+        let message = format!("{} must be {must}", self.words(key));
+        self.report(
+            Diagnostic::error("E0419", found.span, message).help("turn its sign, or leave the term out"),
+        );
+        None
+    }
+
+    /// The axis that is named, or the link's own where none is.
+    pub(super) fn axis(&mut self) -> Option<usize> {
+        if let Some(node) = self.fields.get("axis") {
+            return self.named_axis(node);
+        }
+        let own = self.context.motion.axis.as_deref();
+        let own = own.and_then(|letter| self.context.names.axis(letter));
+        if own.is_none() {
+            let message = format!("{} needs the parameter `axis`: its link is no axis", self.what);
+            let help = format!("add `axis: ...`, one of {}", self.context.names.axis_letters());
+            let name = self.fields.key_span("axis");
+            self.report(Diagnostic::error("E0415", name, message).help(help));
+        }
+        own
+    }
+
+    pub(super) fn named_axis(&mut self, node: &Node) -> Option<usize> {
+        let letter = word(node, &self.words("axis"), self.context.diagnostics)?;
+        let names = self.context.names;
+        let found = names.axis(&letter.value);
+        if found.is_none() {
+            let message = format!("{} has no axis `{}`", names.machine, letter.value);
+            let mistake = Diagnostic::error("E0414", letter.span, message);
+            let near = nearest(&letter.value, names.axes.iter().map(|axis| axis.letter.as_str()));
+            self.report(match near {
+                Some(near) => mistake.suggest(Some(near)),
+                None => mistake.help(format!("its axes are {}", names.axis_letters())),
+            });
+        }
+        found
+    }
+
+    /// The kind of position of an axis; a length where the axis itself was wrong.
+    pub(super) fn position(&self, axis: Option<usize>) -> Dimension {
+        axis.map_or(Dimension::LENGTH, |axis| self.context.names.axis_dimension(axis))
+    }
+
+    /// The sensor that must be named.
+    pub(super) fn sensor(&mut self) -> Option<usize> {
+        let node = self.need("sensor")?;
+        self.named_sensor(node)
+    }
+
+    pub(super) fn named_sensor(&mut self, node: &Node) -> Option<usize> {
+        let name = word(node, &self.words("sensor"), self.context.diagnostics)?;
+        Some(self.context.sensors.reference(&name))
+    }
+
+    /// Where a key stands, or the term's name where it is missing.
+    pub(super) fn key_span(&self, key: &str) -> Span {
+        self.fields.key_span(key)
+    }
+}
+
+type Read<'r, 'p, 'n, 'a> = &'r mut Parameters<'p, 'n, 'a>;
+
+fn read_constant(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
+    let value = term.quantity("value", term.motion())?;
+    Some(CalibratedTerm::Constant { value })
+}
+
+/// Reads a motion's value that stands alone, without a list: one constant term.
+pub(super) fn read_plain(node: &Node, context: &mut Context<'_>) -> Option<Spanned<CalibratedTerm>> {
+    let (kind, name) = (context.motion.dimension(), &context.motion.name);
+    let value = quantity::read(node, kind, name, context.diagnostics)?;
+    Some(value.map(|value| CalibratedTerm::Constant { value }))
+}
+
+fn read_backlash(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
+    let axis = term.axis();
+    let lost_motion = term.quantity("lost_motion", term.motion());
+    let wind_up = term.not_negative("wind_up", term.position(axis));
+    Some(CalibratedTerm::Backlash { axis: axis?, lost_motion: lost_motion?, wind_up: wind_up? })
+}
+
+fn read_spike(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
+    let axis = term.axis();
+    let height = term.quantity("height", term.motion());
+    let decay = term.positive("decay", Dimension::TIME);
+    Some(CalibratedTerm::ReversalSpike { axis: axis?, height: height?, decay: decay? })
+}
+
+fn read_cyclic(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
+    let axis = term.axis();
+    let period = term.positive("period", term.position(axis));
+    let amplitude = term.quantity("amplitude", term.motion());
+    let phase = term.quantity("phase", Dimension::ANGLE);
+    Some(CalibratedTerm::Cyclic { axis: axis?, period: period?, amplitude: amplitude?, phase: phase? })
+}
+
+/// The kind of K in `-v/K`: 1/s where the axis and the motion are of one kind.
+fn gain_kind(term: Read<'_, '_, '_, '_>, axis: Option<usize>) -> Dimension {
+    match axis {
+        Some(_) => term.position(axis).per(term.motion()).per(Dimension::TIME),
+        None => Dimension::FREQUENCY,
+    }
+}
+
+fn read_lag(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
+    let axis = term.axis();
+    let kind = gain_kind(term, axis);
+    let gain = term.positive("gain", kind);
+    Some(CalibratedTerm::Lag { axis: axis?, gain: gain? })
+}
+
+fn read_acceleration(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
+    let axis = term.axis();
+    let kind = gain_kind(term, axis).per(Dimension::TIME);
+    let gain = term.positive("gain", kind);
+    Some(CalibratedTerm::Acceleration { axis: axis?, gain: gain? })
+}
+
+fn read_expansion(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
+    let axis = term.axis();
+    let sensor = term.sensor();
+    let kind = match axis {
+        Some(_) => term.motion().per(term.position(axis)).per(Dimension::TEMPERATURE),
+        None => Dimension::NONE.per(Dimension::TEMPERATURE),
+    };
+    let coefficient = term.quantity("coefficient", kind);
+    let reference = term.quantity("reference", Dimension::TEMPERATURE);
+    let (axis, sensor) = (axis?, sensor?);
+    Some(CalibratedTerm::Expansion { axis, sensor, coefficient: coefficient?, reference: reference? })
+}
+
+fn read_growth(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
+    let sensor = term.sensor();
+    let coefficient = term.quantity("coefficient", term.motion().per(Dimension::TEMPERATURE));
+    let reference = term.quantity("reference", Dimension::TEMPERATURE);
+    let time_constant = match term.fields.get("time_constant") {
+        Some(_) => term.positive("time_constant", Dimension::TIME),
+        None => Some(0.0),
+    };
+    let (sensor, coefficient) = (sensor?, coefficient?);
+    Some(CalibratedTerm::Growth { sensor, coefficient, reference: reference?, time_constant: time_constant? })
+}
+
+fn read_drift(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
+    let amplitude = term.quantity("amplitude", term.motion());
+    let time_constant = term.positive("time_constant", Dimension::TIME);
+    Some(CalibratedTerm::Drift { amplitude: amplitude?, time_constant: time_constant? })
+}
+
+fn read_vibration(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
+    let frequency = term.positive("frequency", Dimension::FREQUENCY);
+    let amplitude = term.quantity("amplitude", term.motion());
+    let phase = term.quantity("phase", Dimension::ANGLE);
+    Some(CalibratedTerm::Vibration { frequency: frequency?, amplitude: amplitude?, phase: phase? })
+}
+
+/// The kinds of loads that a deflection may be per.
+const LOADS: [Dimension; 5] =
+    [Dimension::FORCE, Dimension::VOLTAGE, Dimension::CURRENT, Dimension::PERCENT, Dimension::COUNT];
+
+fn read_compliance(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
+    let load = term.need("load");
+    let load = load.and_then(|node| word(node, &term.words("load"), term.context.diagnostics));
+    let coefficient = term.need("coefficient").and_then(|node| read_per_load(term, node));
+    Some(CalibratedTerm::Compliance { load: load?.value, coefficient: coefficient? })
+}
+
+fn read_per_load(term: Read<'_, '_, '_, '_>, node: &Node) -> Option<f64> {
+    let quantity = node.text().and_then(|text| quantity::parse_quantity(text).ok());
+    let motion = term.motion();
+    if let Some(quantity) = quantity.filter(|quantity| !quantity.is_bare()) {
+        if LOADS.iter().any(|load| motion.per(*load) == quantity.dimension) {
+            return Some(quantity.value);
+        }
+        let message = format!(
+            "{} is {} per load, `{}` is {}",
+            term.words("coefficient"),
+            motion.name(),
+            quantity.written_unit(),
+            quantity.kind_name()
+        );
+        let unit = if motion == Dimension::ANGLE { "urad" } else { "um" };
+        let help =
+            format!("use a unit such as `{unit}/N`, `{unit}/V`, `{unit}/A`, `{unit}/%` or `{unit}/count`");
+        term.report(Diagnostic::error("E0424", node.part(quantity.unit.clone()), message).help(help));
+        return None;
+    }
+    term.quantity_in(node, "coefficient", motion.per(Dimension::FORCE)).map(|found| found.value)
+}

@@ -1,0 +1,73 @@
+//! The notation of equations: one tree of sums, products and letters, and writers of it.
+//!
+//! In: derived [`Equations`]. Out: plain text, LaTeX, a page with MathML, JSON or Maxima input. What stands
+//! where (order, signs, brackets, how a name is split into letter and subscript) is decided once, while the
+//! tree is built; a writer only spells it, so that no two formats can say different things.
+
+mod html;
+mod json;
+mod latex;
+mod letter;
+mod mathml;
+mod maxima;
+mod number;
+mod sheet;
+mod text;
+mod tree;
+mod wrap;
+mod writer;
+
+#[cfg(test)]
+mod tests;
+
+use crate::algebra::Polynomial;
+use crate::equations::{Equations, Names};
+
+/// In which form equations are printed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Format {
+    /// Plain text, to be held beside a printed report.
+    #[default]
+    Text,
+    /// A LaTeX document that needs amsmath, geometry and longtable.
+    Latex,
+    /// One self-contained HTML page with MathML.
+    Html,
+    /// JSON of schema `abbe-equations/1`.
+    Json,
+    /// A batch file for Maxima.
+    Maxima,
+}
+
+impl Format {
+    /// Every format with the word that chooses it on the command line.
+    pub const WORDS: [(&'static str, Self); 5] = [
+        ("text", Self::Text),
+        ("latex", Self::Latex),
+        ("html", Self::Html),
+        ("json", Self::Json),
+        ("maxima", Self::Maxima),
+    ];
+
+    /// The format that a word chooses.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::WORDS.iter().find(|(known, _)| *known == word).map(|(_, format)| *format)
+    }
+}
+
+/// Prints equations. JSON gives both names of every motion, whatever `names` says.
+pub fn print(equations: &Equations, format: Format, names: Names) -> String {
+    let sheet = || sheet::Sheet::new(equations, names);
+    match format {
+        Format::Text => text::page(&sheet()),
+        Format::Latex => latex::page(&sheet()),
+        Format::Html => html::page(&sheet()),
+        Format::Maxima => maxima::batch(&sheet()),
+        Format::Json => json::object(equations),
+    }
+}
+
+/// A polynomial as plain infix text, `-x*cos(c) + Zt`, which [`crate::expression::parse`] reads back.
+pub fn infix(polynomial: &Polynomial) -> String {
+    writer::pieces(&text::Plain, &tree::polynomial(polynomial)).concat()
+}

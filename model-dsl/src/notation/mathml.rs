@@ -1,0 +1,109 @@
+//! MathML Core. In: trees. Out: `math` elements that a browser sets without help of a script.
+//!
+//! An equation is a table of lines, since browsers do not break formulas themselves.
+
+use super::letter::{Base, Letter};
+use super::number::Number;
+use super::sheet::Statement;
+use super::text::Plain;
+use super::tree::{Expression, Function};
+use super::wrap;
+use super::writer::{Signs, Writer, pieces};
+
+/// The widest line of an equation, measured in characters of plain text.
+const EQUATION_WIDTH: usize = 84;
+/// The widest line of a lever arm in a table.
+const ARM_WIDTH: usize = 34;
+
+struct MathMl;
+
+impl Writer for MathMl {
+    fn signs(&self) -> &'static Signs {
+        &Signs {
+            plus: "<mo form=\"infix\">+</mo>",
+            minus: "<mo form=\"infix\">−</mo>",
+            leading_minus: "<mo form=\"prefix\">−</mo>",
+            times: "<mo>&#x2062;</mo><mspace width=\"0.17em\"/>",
+            open: "<mo stretchy=\"false\">(</mo>",
+            close: "<mo stretchy=\"false\">)</mo>",
+        }
+    }
+
+    fn letter(&self, letter: &Letter) -> String {
+        let base = match &letter.base {
+            Base::Letter(one) => format!("<mi>{}</mi>", escape(&one.to_string())),
+            Base::Word(word) => format!("<mi>{}</mi>", escape(word)),
+            Base::Greek(greek) => format!("<mi>{}</mi>", greek.character),
+        };
+        let difference = if letter.difference { "<mi mathvariant=\"normal\">Δ</mi>" } else { "" };
+        match &letter.subscript {
+            Some(subscript) => {
+                let subscript = format!("<mi mathvariant=\"normal\">{}</mi>", escape(subscript));
+                format!("{difference}<msub>{base}{subscript}</msub>")
+            }
+            None => format!("{difference}{base}"),
+        }
+    }
+
+    fn number(&self, number: &Number) -> String {
+        match (&number.decimal, &number.denominator) {
+            (Some(decimal), _) => format!("<mn>{decimal}</mn>"),
+            (None, Some(denominator)) => {
+                format!("<mfrac><mn>{}</mn><mn>{denominator}</mn></mfrac>", number.numerator)
+            }
+            (None, None) => format!("<mn>{}</mn>", number.numerator),
+        }
+    }
+
+    fn power(&self, base: &str, exponent: u32) -> String {
+        format!("<msup><mrow>{base}</mrow><mn>{exponent}</mn></msup>")
+    }
+
+    fn function(&self, function: Function, argument: &str) -> String {
+        let Signs { open, close, .. } = self.signs();
+        format!("<mi>{}</mi><mo>&#x2061;</mo>{open}{argument}{close}", function.word())
+    }
+}
+
+/// A letter in running text.
+pub(super) fn letter(letter: &Letter) -> String {
+    format!("<math>{}</math>", MathMl.letter(letter))
+}
+
+/// An expression in a table or in running text, on several lines where it is long.
+pub(super) fn expression(expression: &Expression) -> String {
+    let lines = lines(expression, ARM_WIDTH);
+    match lines.as_slice() {
+        [line] => format!("<math>{line}</math>"),
+        lines => {
+            let rows: String = lines.iter().map(|line| format!("<mtr><mtd>{line}</mtd></mtr>")).collect();
+            format!("<math><mtable class=\"lines\">{rows}</mtable></math>")
+        }
+    }
+}
+
+/// An equation set on its own.
+pub(super) fn equation(statement: &Statement) -> String {
+    let left = MathMl.letter(&statement.left);
+    let mut heads = std::iter::once(format!("<mtd>{left}</mtd><mtd><mo>=</mo></mtd>"));
+    let rows: String = lines(&statement.right, EQUATION_WIDTH)
+        .into_iter()
+        .map(|line| {
+            let head = heads.next().unwrap_or_else(|| "<mtd></mtd><mtd></mtd>".to_owned());
+            format!("<mtr>{head}<mtd>{line}</mtd></mtr>\n")
+        })
+        .collect();
+    format!("<math display=\"block\"><mtable class=\"equation\">\n{rows}</mtable></math>\n")
+}
+
+fn lines(expression: &Expression, width: usize) -> Vec<String> {
+    let written = pieces(&MathMl, expression);
+    let plain = pieces(&Plain, expression);
+    wrap::lines(&plain, width).into_iter().map(|line| wrap::join(&written, line)).collect()
+}
+
+/// Text in HTML.
+pub(super) fn escape(text: &str) -> String {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    text.replace('"', "&quot;")
+}

@@ -1,0 +1,244 @@
+//! What a printed page says, format aside. In: equations and the choice of names. Out: a [`Sheet`]: the
+//! statements as trees, the lists of motions and quantities, and the sentences, in printing order.
+
+use std::collections::BTreeSet;
+
+use super::letter::Letter;
+use super::tree::{self, Expression};
+use crate::algebra::{Axis, Monomial, Symbol};
+use crate::equations::{AxisInfo, Equations, Names, Row, Term};
+use crate::machine::Branch;
+
+/// An equation: a letter and what it equals.
+pub(super) struct Statement {
+    /// The left side.
+    pub(super) left: Letter,
+    /// The right side.
+    pub(super) right: Expression,
+}
+
+/// The equations of one direction, as in (3-23) and (3-25) of the Excello report.
+pub(super) struct SheetRow {
+    /// The direction, in the part's frame.
+    pub(super) direction: Axis,
+    /// Nominal position, offsets and error in one sum.
+    pub(super) position: Statement,
+    /// The error, motion by motion.
+    pub(super) error: Statement,
+    /// The nominal position: what changes as the axes move.
+    pub(super) nominal: Expression,
+    /// The offsets: constants alone.
+    pub(super) offsets: Expression,
+}
+
+/// An error motion in the list.
+pub(super) struct MotionEntry {
+    /// By the chosen name.
+    pub(super) letter: Letter,
+    /// By the name of ISO 230-1.
+    pub(super) iso: String,
+    /// In words.
+    pub(super) meaning: String,
+    /// `mm` or `rad`.
+    pub(super) unit: &'static str,
+    /// Whether it is counted against the ISO sense.
+    pub(super) against_iso: bool,
+    /// Its lever arm in each row, where it has one.
+    pub(super) arms: Vec<Option<Expression>>,
+}
+
+/// A position, travel or constant in the list.
+pub(super) struct QuantityEntry {
+    /// Its name.
+    pub(super) letter: Letter,
+    /// In words, unit included.
+    pub(super) meaning: String,
+}
+
+/// A page of equations.
+pub(super) struct Sheet {
+    /// The machine's name.
+    pub(super) machine: String,
+    /// A line for people.
+    pub(super) title: Option<String>,
+    /// Where the model was published.
+    pub(super) source: Option<String>,
+    /// What carries the tool and the part.
+    pub(super) chain: Vec<String>,
+    /// One for each sensitive direction.
+    pub(super) rows: Vec<SheetRow>,
+    /// The error motions.
+    pub(super) motions: Vec<MotionEntry>,
+    /// Positions, travels and constants.
+    pub(super) quantities: Vec<QuantityEntry>,
+    /// The conventions in force, a sentence each.
+    pub(super) conventions: Vec<String>,
+}
+
+impl Sheet {
+    /// Settles what a page says.
+    pub(super) fn new(equations: &Equations, names: Names) -> Self {
+        let taken = taken_names(equations, names);
+        Self {
+            machine: equations.machine.clone(),
+            title: equations.title.clone(),
+            source: equations.source.clone(),
+            chain: chain(equations),
+            rows: equations.rows.iter().map(|one| row(one, equations, names, &taken)).collect(),
+            motions: motions(equations, names),
+            quantities: quantities(equations),
+            conventions: conventions(equations, names),
+        }
+    }
+
+    /// The name and the title in one line.
+    pub(super) fn heading(&self) -> String {
+        match &self.title {
+            Some(title) => format!("{}: {title}", self.machine),
+            None => self.machine.clone(),
+        }
+    }
+}
+
+fn taken_names(equations: &Equations, names: Names) -> BTreeSet<String> {
+    let quantities = quantities(equations).into_iter().map(|entry| entry.letter.plain);
+    quantities.chain(equations.motions.iter().map(|motion| motion.printed(names).to_owned())).collect()
+}
+
+/// `Px`, or `Px_` where the machine has something of that name.
+fn free_name(front: &str, direction: Axis, taken: &BTreeSet<String>) -> String {
+    let mut name = format!("{front}{}", direction.letter().to_ascii_lowercase());
+    while taken.contains(&name) {
+        name.push('_');
+    }
+    name
+}
+
+fn row(row: &Row, equations: &Equations, names: Names, taken: &BTreeSet<String>) -> SheetRow {
+    let letter = |front, difference| {
+        Letter::position(free_name(front, row.direction, taken), row.direction, difference)
+    };
+    let nominal = row.nominal.part(moves);
+    let offsets = row.nominal.part(|monomial| !moves(monomial));
+    let mut parts = tree::parts(&nominal);
+    parts.extend(tree::parts(&offsets));
+    parts.push(tree::plus(letter("dP", true)));
+    let terms = row.terms.iter().filter_map(|term| {
+        let motion = equations.motions.get(term.motion)?;
+        Some(tree::term(&term.arm, Letter::motion(motion, names)))
+    });
+    SheetRow {
+        direction: row.direction,
+        position: Statement { left: letter("P", false), right: tree::sum(parts) },
+        error: Statement { left: letter("dP", true), right: tree::sum(terms.collect()) },
+        nominal: tree::polynomial(&nominal),
+        offsets: tree::polynomial(&offsets),
+    }
+}
+
+/// Whether a monomial changes as the axes move.
+fn moves(monomial: &Monomial) -> bool {
+    monomial.factors().iter().any(|(symbol, _)| !matches!(symbol, Symbol::Constant(_)))
+}
+
+fn motions(equations: &Equations, names: Names) -> Vec<MotionEntry> {
+    let arm = |row: &Row, number: usize| {
+        let found: Option<&Term> = row.terms.iter().find(|term| term.motion == number);
+        found.map(|term| tree::polynomial(&term.arm))
+    };
+    let entry = |(number, motion): (usize, &crate::equations::Motion)| MotionEntry {
+        letter: Letter::motion(motion, names),
+        iso: motion.name.clone(),
+        meaning: motion.meaning.clone(),
+        unit: if motion.angular { "rad" } else { "mm" },
+        against_iso: motion.against_iso,
+        arms: equations.rows.iter().map(|row| arm(row, number)).collect(),
+    };
+    equations.motions.iter().enumerate().map(entry).collect()
+}
+
+fn quantities(equations: &Equations) -> Vec<QuantityEntry> {
+    let entry = |name: &str, meaning: String| QuantityEntry { letter: Letter::named(name), meaning };
+    let positions = equations.axes.iter().map(|axis| {
+        let unit = if axis.rotary { "rad" } else { "mm" };
+        entry(&axis.variable, format!("position of axis {} ({unit})", axis.letter))
+    });
+    let travels = equations.travels.iter().map(|travel| {
+        let letter = equations.axes.get(travel.axis).map_or("", |axis| &axis.letter);
+        entry(&travel.name, format!("travel of {letter} from where its alignment was measured (mm)"))
+    });
+    let constants = equations.constants.iter().map(|constant| {
+        let meaning = constant.meaning.as_deref().unwrap_or("constant of the machine");
+        entry(&constant.name, format!("{meaning} (mm)"))
+    });
+    positions.chain(travels).chain(constants).collect()
+}
+
+fn chain(equations: &Equations) -> Vec<String> {
+    let carried = |branch, what: &str| {
+        let axes: Vec<String> =
+            equations.axes.iter().filter(|axis| axis.branch == branch).map(axis_in_words).collect();
+        match axes.as_slice() {
+            [] => format!("No axis moves {what}."),
+            [one] => format!("One axis moves {what}: {one}."),
+            several => format!("{} axes move {what}: {}.", count(several.len()), several.join(", ")),
+        }
+    };
+    let mut sentences = vec![carried(Branch::Workpiece, "the part"), carried(Branch::Tool, "the tool")];
+    let mut bodies: Vec<&str> = Vec::new();
+    for motion in equations.motions.iter().filter(|motion| motion.axis.is_none()) {
+        if !bodies.contains(&motion.link.as_str()) {
+            bodies.push(&motion.link);
+        }
+    }
+    if !bodies.is_empty() {
+        sentences.push(format!("Further bodies with error motions: {}.", bodies.join(", ")));
+    }
+    sentences
+}
+
+fn axis_in_words(axis: &AxisInfo) -> String {
+    let (letter, along) = (&axis.letter, axis.along);
+    if axis.rotary {
+        format!("{letter} (turns about {along})")
+    } else {
+        format!("{letter} (slides along {along})")
+    }
+}
+
+fn count(number: usize) -> String {
+    let words = ["No", "One", "Two", "Three", "Four", "Five", "Six"];
+    words.get(number).map_or_else(|| number.to_string(), |word| (*word).to_owned())
+}
+
+fn conventions(equations: &Equations, names: Names) -> Vec<String> {
+    let mut sentences: Vec<String> = [
+        "P is the position of the tool tip relative to the part at the nominal contact point, in the part's frame, in mm.",
+        "Each P is the nominal position, then the offsets, then the error dP; compensation adds -dP.",
+        "The equations are of first order: a product of two error motions is dropped; the nominal part is exact.",
+        "Displacements are in mm; rotations are in rad and right-handed.",
+        "The error motion of a slide in its own direction is actual minus commanded.",
+        "Error motions are named after ISO 230-1: E, a direction (X Y Z along, A B C about), the body; a zero \
+         before the body marks an alignment error.",
+    ]
+    .map(str::to_owned)
+    .to_vec();
+    if equations.axes.iter().any(|axis| axis.rotary) {
+        sentences.push("Rotary axes turn by large angles; their sines and cosines are exact.".to_owned());
+    }
+    let against: Vec<&str> = equations
+        .motions
+        .iter()
+        .filter(|motion| motion.against_iso)
+        .map(|motion| motion.printed(names))
+        .collect();
+    if !against.is_empty() {
+        sentences.push(format!("Counted against the sense of ISO 230-1: {}.", against.join(", ")));
+    }
+    let absent: Vec<String> =
+        Axis::ALL.into_iter().filter(|axis| equations.row(*axis).is_none()).map(|axis| axis.to_string()).collect();
+    if !absent.is_empty() {
+        sentences.push(format!("Not derived, since the machine file does not call it sensitive: {}.", absent.join(", ")));
+    }
+    sentences
+}

@@ -1,0 +1,165 @@
+//! Tests of the notation: what a reader must find on the page, and that text reads back.
+
+use proptest::prelude::*;
+
+use super::{Format, infix, print};
+use crate::algebra::{Monomial, Polynomial, Rational, Symbol};
+use crate::diagnostic::Diagnostics;
+use crate::equations::{Equations, Names};
+use crate::source::SourceFile;
+
+const MACHINES: [&str; 9] = [
+    "excello-921",
+    "nist-turning-center",
+    "postech-mill",
+    "fxyz-mill",
+    "xfyz-mill",
+    "xyfz-mill",
+    "xyzf-mill",
+    "trunnion-5axis",
+    "head-table-5axis",
+];
+
+fn equations(name: &str) -> Equations {
+    let path = format!("{}/../machines/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+    let source = SourceFile::new(name, std::fs::read_to_string(path).expect("a shipped machine"));
+    let mut diagnostics = Diagnostics::new();
+    crate::compile(&source, &mut diagnostics).expect("a valid machine").equations
+}
+
+fn named(name: &str) -> Option<Symbol> {
+    Some(match name {
+        "x" | "z" | "c" => Symbol::Position(name.into()),
+        "dz" => Symbol::Travel(name.into()),
+        "X1" | "Zt" | "a_b" => Symbol::Constant(name.into()),
+        _ => return None,
+    })
+}
+
+fn symbols() -> impl Strategy<Value = Symbol> {
+    prop_oneof![
+        prop::sample::select(vec!["x", "z", "dz", "X1", "Zt", "a_b"])
+            .prop_map(|name| named(name).expect("one of the known names")),
+        Just(Symbol::Cos("c".into())),
+        Just(Symbol::Sin("c".into())),
+    ]
+}
+
+fn polynomials() -> impl Strategy<Value = Polynomial> {
+    let monomial = prop::collection::vec((symbols(), 1..4_u32), 0..4);
+    let part = (monomial, -40..40_i64, 1..30_i64).prop_map(|(factors, numerator, denominator)| {
+        let value = Polynomial::number(Rational::new(numerator.into(), denominator.into()));
+        factors.into_iter().fold(value, |product, (symbol, power)| {
+            &product * &Polynomial::monomial(Monomial::power(symbol, power), Rational::from_integer(1.into()))
+        })
+    });
+    prop::collection::vec(part, 0..7).prop_map(|parts| parts.into_iter().collect())
+}
+
+proptest! {
+    #[test]
+    fn infix_reads_back(polynomial in polynomials()) {
+        let text = infix(&polynomial);
+        prop_assert_eq!(crate::expression::parse(&text, &mut named), Ok(polynomial), "{}", text);
+    }
+}
+
+#[test]
+fn the_lathe_reads_as_in_the_report() {
+    let text = print(&equations("excello-921"), Format::Text, Names::Symbols);
+    for line in [
+        "Px = x - X1 + X2 + Xt + dPx",
+        "dPx = dxx - dxz + Zt*eyx + (z + Z1 - Zt)*eyz - z*beta",
+        "Pz = -z - Z1 + Zt + dPz",
+        "dPz = dzx - dzz - Xt*eyx + (x - X1 + X2 + Xt)*eyz - x*alpha",
+    ] {
+        assert!(text.lines().any(|one| one == line), "{line}\nis not in\n{text}");
+    }
+    let iso = print(&equations("excello-921"), Format::Text, Names::Iso);
+    assert!(iso.contains("dPx = EXX - EXZ + Zt*EBX + (z + Z1 - Zt)*EBZ - z*EB0Z"), "{iso}");
+}
+
+#[test]
+fn text_stays_within_its_width() {
+    for name in MACHINES {
+        let text = print(&equations(name), Format::Text, Names::Symbols);
+        for line in text.lines().skip(1) {
+            assert!(line.chars().count() <= 110, "{name}: {line}");
+        }
+    }
+}
+
+#[test]
+fn json_tells_the_sense_and_both_names() {
+    let text = print(&equations("nist-turning-center"), Format::Json, Names::Symbols);
+    assert!(text.contains(r#"{"motion": "EB0X", "symbol": "ao", "arm": "dx", "sign": -1}"#), "{text}");
+    assert_eq!(text.matches("\"sign\"").count(), 1);
+    let lathe = print(&equations("excello-921"), Format::Json, Names::Symbols);
+    assert!(lathe.contains(r#""nominal": "x - X1 + X2 + Xt""#));
+    assert!(lathe.contains(r#"{"motion": "EBX", "symbol": "eyx", "arm": "Zt"}"#));
+    assert!(lathe.contains(r#"{"motion": "EBX", "symbol": "eyx", "arm": "-Xt"}"#));
+}
+
+#[test]
+fn every_format_prints_every_machine() {
+    for name in MACHINES {
+        let equations = equations(name);
+        for (word, format) in Format::WORDS {
+            let text = print(&equations, format, Names::Iso);
+            assert!(text.contains(name), "{name} as {word}");
+            assert_eq!(text, print(&equations, format, Names::Iso), "{name} as {word} is the same twice");
+        }
+    }
+}
+
+#[test]
+fn the_page_stands_alone_and_its_elements_close() {
+    for name in MACHINES {
+        let page = print(&equations(name), Format::Html, Names::Symbols);
+        for forbidden in ["<script", "http", "src=", "href=", "@import", "url("] {
+            assert!(!page.contains(forbidden), "{name} holds {forbidden}");
+        }
+        for tag in ["math", "mtable", "mtr", "mtd", "mi", "mo", "mn", "msub", "msup", "mrow", "table", "tr", "td", "p"] {
+            let opened = page.matches(&format!("<{tag}>")).count() + page.matches(&format!("<{tag} ")).count();
+            assert_eq!(opened, page.matches(&format!("</{tag}>")).count(), "{name}: {tag}");
+        }
+    }
+}
+
+#[test]
+fn latex_has_letters_with_subscripts() {
+    let page = print(&equations("excello-921"), Format::Latex, Names::Symbols);
+    let error = "\\Delta P_{\\mathrm{x}} &= \\delta_{\\mathrm{xx}} - \\delta_{\\mathrm{xz}} + \
+                 Z_{\\mathrm{t}}\\,\\varepsilon_{\\mathrm{yx}} + (z + Z_{\\mathrm{1}} - Z_{\\mathrm{t}})\\,\
+                 \\varepsilon_{\\mathrm{yz}} - z\\,\\beta";
+    assert!(page.contains(error), "{page}");
+}
+
+#[test]
+fn hostile_words_stay_words() {
+    let mut equations = equations("excello-921");
+    equations.title = Some("</title><script>x</script> 100% & \"so\" */ $x_1$ \\".to_owned());
+    equations.machine = "a\"b\\c\u{1}".to_owned();
+    assert!(!print(&equations, Format::Html, Names::Iso).contains("<script"));
+    assert!(print(&equations, Format::Json, Names::Iso).contains(r#""machine": "a\"b\\c\u0001""#));
+    assert!(print(&equations, Format::Latex, Names::Iso).contains("100\\% \\& \"so\" */ \\$x\\_1\\$ \\textbackslash{}"));
+    assert!(print(&equations, Format::Maxima, Names::Iso).contains("* / $x_1$"));
+}
+
+#[test]
+fn a_machine_with_its_own_px_keeps_it() {
+    let mut equations = equations("excello-921");
+    for motion in &mut equations.motions {
+        if motion.symbol == "dxx" {
+            motion.symbol = "dPx".to_owned();
+        }
+    }
+    let text = print(&equations, Format::Text, Names::Symbols);
+    assert!(text.contains("\ndPx_ = dPx - dxz"), "{text}");
+}
+
+#[test]
+fn words_choose_formats() {
+    assert_eq!(Format::from_word("latex"), Some(Format::Latex));
+    assert_eq!(Format::from_word("mathml"), None);
+}

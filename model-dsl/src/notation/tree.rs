@@ -1,0 +1,126 @@
+//! The notation tree and how polynomials become one: order, signs and brackets are settled here.
+//!
+//! In: polynomials, and lever arms with their error motions. Out: a tree in which a sum carries the sign of
+//! each of its parts and a bracket stands wherever a reader needs one.
+
+use num_traits::{One, Signed as _};
+
+use super::letter::Letter;
+use super::number::Number;
+use crate::algebra::{Monomial, Polynomial, Rational, Symbol};
+
+/// A sine or cosine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Function {
+    /// The cosine.
+    Cos,
+    /// The sine.
+    Sin,
+}
+
+impl Function {
+    /// `cos` or `sin`.
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Cos => "cos",
+            Self::Sin => "sin",
+        }
+    }
+}
+
+/// One part of a sum.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Signed {
+    /// Whether it is subtracted.
+    pub(super) negative: bool,
+    /// The part without its sign.
+    pub(super) value: Expression,
+}
+
+/// An expression as it is written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Expression {
+    /// Parts with their signs; never empty.
+    Sum(Vec<Signed>),
+    /// Factors; a sum among them stands in a [`Expression::Group`].
+    Product(Vec<Expression>),
+    /// A letter or function to a power of 2 or more.
+    Power(Box<Expression>, u32),
+    /// A sine or cosine of a position.
+    Function(Function, Letter),
+    /// A name.
+    Letter(Letter),
+    /// A number, not negative.
+    Number(Number),
+    /// Something in brackets.
+    Group(Box<Expression>),
+}
+
+/// A polynomial as a sum.
+pub(super) fn polynomial(polynomial: &Polynomial) -> Expression {
+    sum(parts(polynomial))
+}
+
+/// Parts as a sum; nothing is zero.
+pub(super) fn sum(parts: Vec<Signed>) -> Expression {
+    if parts.is_empty() {
+        return Expression::Number(Number::new(&Rational::default()));
+    }
+    Expression::Sum(parts)
+}
+
+/// The monomials of a polynomial with their signs, in printing order.
+pub(super) fn parts(polynomial: &Polynomial) -> Vec<Signed> {
+    polynomial
+        .terms()
+        .map(|(monomial, value)| Signed {
+            negative: value.is_negative(),
+            value: product(factors(monomial, value)),
+        })
+        .collect()
+}
+
+/// An error motion times its lever arm: `Zt*eyx`, `-(x - X1)*eyz` with the leading minus drawn out.
+pub(super) fn term(arm: &Polynomial, motion: Letter) -> Signed {
+    let negative = arm.leads_negative();
+    let arm = if negative { -arm } else { arm.clone() };
+    let mut found = match arm.terms().next() {
+        Some((monomial, value)) if arm.len() == 1 => written_factors(monomial, value),
+        _ => vec![Expression::Group(Box::new(polynomial(&arm)))],
+    };
+    found.push(Expression::Letter(motion));
+    Signed { negative, value: product(found) }
+}
+
+/// A letter with a plus sign.
+pub(super) fn plus(letter: Letter) -> Signed {
+    Signed { negative: false, value: Expression::Letter(letter) }
+}
+
+fn product(mut factors: Vec<Expression>) -> Expression {
+    match factors.pop() {
+        Some(only) if factors.is_empty() => only,
+        last => Expression::Product(factors.into_iter().chain(last).collect()),
+    }
+}
+
+/// The factors of a monomial; the number 1 stands alone or not at all.
+fn factors(monomial: &Monomial, value: &Rational) -> Vec<Expression> {
+    let factors = written_factors(monomial, value);
+    if factors.is_empty() { vec![Expression::Number(Number::new(&Rational::one()))] } else { factors }
+}
+
+fn written_factors(monomial: &Monomial, value: &Rational) -> Vec<Expression> {
+    let number = (!value.abs().is_one()).then(|| Expression::Number(Number::new(value)));
+    number.into_iter().chain(monomial.factors().iter().map(|(symbol, exponent)| power(symbol, *exponent))).collect()
+}
+
+fn power(symbol: &Symbol, exponent: u32) -> Expression {
+    let letter = Letter::named(symbol.name());
+    let base = match symbol {
+        Symbol::Cos(_) => Expression::Function(Function::Cos, letter),
+        Symbol::Sin(_) => Expression::Function(Function::Sin, letter),
+        _ => Expression::Letter(letter),
+    };
+    if exponent == 1 { base } else { Expression::Power(Box::new(base), exponent) }
+}

@@ -1,0 +1,85 @@
+//! The one walk over the tree. In: an expression and a [`Writer`]. Out: its text in pieces, cut before every
+//! sign inside a sum, where a line may be broken. All writers cut in the same places.
+
+use super::letter::Letter;
+use super::number::Number;
+use super::tree::{Expression, Function};
+
+/// The signs of a language.
+pub(super) struct Signs {
+    /// Between two parts of a sum.
+    pub(super) plus: &'static str,
+    /// Between two parts of a sum.
+    pub(super) minus: &'static str,
+    /// Before the first part of a sum.
+    pub(super) leading_minus: &'static str,
+    /// Between two factors.
+    pub(super) times: &'static str,
+    /// Opens a bracket.
+    pub(super) open: &'static str,
+    /// Closes a bracket.
+    pub(super) close: &'static str,
+}
+
+/// How a language spells the parts of the tree. A writer spells; it does not choose.
+pub(super) trait Writer {
+    /// Its signs.
+    fn signs(&self) -> &'static Signs;
+    /// A name.
+    fn letter(&self, letter: &Letter) -> String;
+    /// A number.
+    fn number(&self, number: &Number) -> String;
+    /// A power of something already written.
+    fn power(&self, base: &str, exponent: u32) -> String;
+    /// A sine or cosine of something already written.
+    fn function(&self, function: Function, argument: &str) -> String;
+}
+
+/// The text of an expression, in pieces between which a line may be broken.
+pub(super) fn pieces(writer: &impl Writer, expression: &Expression) -> Vec<String> {
+    let mut pieces = vec![String::new()];
+    write(writer, expression, &mut pieces);
+    pieces
+}
+
+fn write(writer: &impl Writer, expression: &Expression, pieces: &mut Vec<String>) {
+    let signs = writer.signs();
+    match expression {
+        Expression::Sum(parts) => {
+            for (number, part) in parts.iter().enumerate() {
+                match (number, part.negative) {
+                    (0, false) => {}
+                    (0, true) => append(pieces, signs.leading_minus),
+                    (_, negative) => pieces.push(if negative { signs.minus } else { signs.plus }.to_owned()),
+                }
+                write(writer, &part.value, pieces);
+            }
+        }
+        Expression::Product(factors) => {
+            for (number, factor) in factors.iter().enumerate() {
+                append(pieces, if number == 0 { "" } else { signs.times });
+                write(writer, factor, pieces);
+            }
+        }
+        Expression::Group(inner) => {
+            append(pieces, signs.open);
+            write(writer, inner, pieces);
+            append(pieces, signs.close);
+        }
+        Expression::Power(base, exponent) => {
+            let base = self::pieces(writer, base).concat();
+            append(pieces, &writer.power(&base, *exponent));
+        }
+        Expression::Function(function, argument) => {
+            append(pieces, &writer.function(*function, &writer.letter(argument)));
+        }
+        Expression::Letter(letter) => append(pieces, &writer.letter(letter)),
+        Expression::Number(number) => append(pieces, &writer.number(number)),
+    }
+}
+
+fn append(pieces: &mut [String], text: &str) {
+    if let Some(last) = pieces.last_mut() {
+        last.push_str(text);
+    }
+}

@@ -1,0 +1,105 @@
+//! The arguments of the command line. In: words. Out: one command with its options.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Compiles a machine tool's kinematic chain into its error equations and compensation code.
+#[derive(Parser)]
+#[command(name = "abbe", version, arg_required_else_help = true, max_term_width = 100)]
+pub(crate) struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// Derive the error equations of a machine.
+    Derive(Derive),
+    /// Compare a machine's equations with a published set, term by term.
+    Check(Check),
+    /// Print the Rust code that a machine file compiles to.
+    Expand(Expand),
+    /// Read positions (CSV) and write the predicted errors and the compensated positions.
+    Compensate(Compensate),
+    /// Write a commented machine file to start from.
+    New(New),
+}
+
+#[derive(Args)]
+pub(crate) struct Derive {
+    /// A machine file, the name of a shipped machine, or a topology word such as XYFZ.
+    pub(crate) machine: String,
+    /// How to write the equations.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
+    /// Which names to print: those of ISO 230-1, or the machine file's symbols.
+    #[arg(long, value_enum, default_value_t = Names::Symbols)]
+    pub(crate) names: Names,
+}
+
+#[derive(Args)]
+pub(crate) struct Check {
+    /// A machine file, the name of a shipped machine, or a topology word.
+    pub(crate) machine: String,
+    /// A file of equations.
+    pub(crate) equations: PathBuf,
+}
+
+#[derive(Args)]
+pub(crate) struct Expand {
+    /// A machine file, the name of a shipped machine, or a topology word.
+    pub(crate) machine: String,
+}
+
+#[derive(Args)]
+pub(crate) struct Compensate {
+    /// The calibration file of the machine.
+    pub(crate) calibration: PathBuf,
+    /// How far an axis must move back before its direction counts as turned: mm, or deg for a
+    /// rotary axis. It concerns axes without a `dir_` column.
+    #[arg(long, default_value_t = 0.0, value_parser = non_negative)]
+    pub(crate) hysteresis: f64,
+    /// Leave rows out that cannot be read or compensated, and count them on standard error.
+    #[arg(long)]
+    pub(crate) skip_bad: bool,
+    /// Leave terms out that no controller can compensate in real time, naming each on standard error.
+    #[arg(long)]
+    pub(crate) leave_out_uncompensable: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct New {
+    /// A topology word: axes that carry the part, F for the bed, axes that carry the tool.
+    pub(crate) topology: String,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Format {
+    /// Plain text beside which a printed report can be held.
+    Text,
+    /// LaTeX, to include in a document.
+    Latex,
+    /// One self-contained page with MathML.
+    Html,
+    /// The schema abbe-equations/1.
+    Json,
+    /// A batch file for Maxima.
+    Maxima,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Names {
+    /// EXX, EBZ, EC0Y.
+    Iso,
+    /// The symbols of the machine file.
+    Symbols,
+}
+
+fn non_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err("not a number that is zero or more".to_owned()),
+    }
+}

@@ -1,0 +1,83 @@
+//! A calibrated machine. In: a calibration file. Out: its machine and its numbers, ready to
+//! become terms of the runtime; or every mistake, located.
+
+use std::path::Path;
+
+use abbe_runtime::Term;
+use model_dsl::calibration::{self, Calibration};
+use model_dsl::diagnostic::{Diagnostic, Diagnostics};
+use model_dsl::equations::Equations;
+use model_dsl::source::SourceFile;
+use model_dsl::yaml;
+
+use crate::failure::Failure;
+use crate::load;
+use crate::output::{rendered, show};
+
+/// A machine with the numbers of one specimen.
+pub(crate) struct Calibrated {
+    /// The machine's equations.
+    pub(crate) equations: Equations,
+    /// Its numbers.
+    pub(crate) calibration: Calibration,
+    source: SourceFile,
+}
+
+/// Reads a calibration file and compiles the machine that it names.
+pub(crate) fn read(path: &Path) -> Result<Calibrated, Failure> {
+    let source = load::read(path)?;
+    let mut diagnostics = Diagnostics::new();
+    let wrong = |diagnostics: &Diagnostics| Failure::Wrong(rendered(&source, diagnostics));
+    let root = yaml::read(&source, &mut diagnostics).ok_or_else(|| wrong(&diagnostics))?;
+    let name = calibration::machine_of(&root, &mut diagnostics).ok_or_else(|| wrong(&diagnostics))?;
+    let machine = load::machine(&name.value, path.parent()).map_err(|failure| match failure {
+        Failure::Wrong(text) => {
+            let unusable = Diagnostic::error("E0426", name.span, format!("machine `{}` cannot be used", name.value))
+                .label("named here; the reason stands below");
+            let mut diagnostics = Diagnostics::new();
+            diagnostics.push(unusable);
+            Failure::Wrong(format!("{}\n{text}", wrong_text(&source, &diagnostics)))
+        }
+        other => other,
+    })?;
+    let equations = machine.compiled.equations;
+    let calibration = calibration::read(&root, &equations.names(), &mut diagnostics);
+    let calibration = calibration.ok_or_else(|| wrong(&diagnostics))?;
+    show(&source, &diagnostics);
+    Ok(Calibrated { equations, calibration, source })
+}
+
+fn wrong_text(source: &SourceFile, diagnostics: &Diagnostics) -> String {
+    rendered(source, diagnostics).trim_end().to_owned()
+}
+
+impl Calibrated {
+    /// Refuses the terms that cannot be compensated in real time, all of them, by name.
+    pub(crate) fn refuse_uncompensable(&self) -> Result<(), Failure> {
+        let mut diagnostics = Diagnostics::new();
+        self.calibration.refuse_uncompensable(&self.equations.names(), &mut diagnostics);
+        if diagnostics.is_empty() {
+            return Ok(());
+        }
+        let help = "help: with --leave-out-uncompensable the other terms are compensated without them";
+        Err(Failure::Wrong(format!("{}\n{help}", wrong_text(&self.source, &diagnostics))))
+    }
+
+    /// The compensable terms of every error motion, in the order of the equations; `left_out` hears of the others.
+    pub(crate) fn terms(&self, mut left_out: impl FnMut(String)) -> Vec<Vec<Term<'_>>> {
+        let motions = self.equations.motions.iter().enumerate();
+        motions
+            .map(|(number, motion)| {
+                let terms = self.calibration.terms(number).iter();
+                let terms = terms.filter_map(|term| match term.value.runtime() {
+                    Ok(term) => Some(term),
+                    Err(reason) => {
+                        left_out(format!("warning: left out of {}: {reason}", motion.name));
+                        None
+                    }
+                });
+                terms.collect()
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,7 @@
+//! The commands, one file each. In: arguments. Out: output, or why there is none.
+
+pub(crate) mod check;
+pub(crate) mod compensate;
+pub(crate) mod derive;
+pub(crate) mod expand;
+pub(crate) mod new;

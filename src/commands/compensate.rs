@@ -1,0 +1,229 @@
+//! `abbe compensate`: positions on standard input become errors and compensated positions on
+//! standard output, row by row, in constant memory.
+
+use std::io;
+
+use abbe_runtime::{Compensator, ErrorMotion, Limits, Refusal, TermState, Work, states_needed};
+use csv::StringRecord;
+use model_dsl::calibration::CalibratedTerm;
+use model_dsl::equations::Equations;
+use model_dsl::program::Interpreter;
+
+use crate::arguments::Compensate;
+use crate::calibrated::{self, Calibrated};
+use crate::failure::Failure;
+use crate::output::warn;
+use crate::positions::{Layout, State, Wanted};
+
+/// Decimal places of errors and positions: a picometre, so that rounding never shows.
+const PLACES: usize = 9;
+
+/// Runs the command.
+pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
+    let calibrated = calibrated::read(&command.calibration)?;
+    if !command.leave_out_uncompensable {
+        calibrated.refuse_uncompensable()?;
+    }
+    let terms = calibrated.terms(|left_out| warn(&left_out));
+    let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
+    let machine = Interpreter::new(&calibrated.equations, &calibrated.calibration.constants);
+    let mut states = vec![TermState::default(); states_needed(&motions)];
+    let equations = &calibrated.equations;
+    let mut directions = vec![[0.0; 3]; equations.axes.len()];
+    let (mut values, mut travel) = (vec![0.0; equations.motions.len()], vec![0.0; equations.travels.len()]);
+    let work = Work { directions: &mut directions, motions: &mut values, travel: &mut travel };
+    let mut compensator = Compensator::new(&machine, &motions, &mut states, work)
+        .map_err(|error| Failure::Wrong(format!("error: the calibration cannot be run: {error}")))?;
+    compensator.limits = Limits { compensation: calibrated.calibration.limits.compensation.map(|limit| limit.value) };
+    let mut rows = Rows::open(&calibrated, command)?;
+    let done = rows.stream(&mut compensator);
+    rows.finish(done)
+}
+
+/// The rows on their way from standard input to standard output.
+struct Rows<'c> {
+    reader: csv::Reader<io::StdinLock<'static>>,
+    writer: csv::Writer<io::StdoutLock<'static>>,
+    equations: &'c Equations,
+    state: State<'c>,
+    skip_bad: bool,
+    skipped: u64,
+    first: Option<StringRecord>,
+}
+
+impl<'c> Rows<'c> {
+    /// Reads the header and writes the header of the output.
+    fn open(calibrated: &'c Calibrated, command: &Compensate) -> Result<Self, Failure> {
+        let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(io::stdin().lock());
+        let mut header = StringRecord::new();
+        if !read(&mut reader, &mut header)? {
+            return Err(Failure::No("error: standard input is empty; it begins with a header such as `x,y,z`".to_owned()));
+        }
+        let mut second = StringRecord::new();
+        let more = read(&mut reader, &mut second)?;
+        let units = more && second.get(0).is_some_and(|cell| cell.trim() == "#unit");
+        let layout = Layout::read(&header, units.then_some(&second), &wanted(calibrated))
+            .map_err(|mistakes| Failure::Wrong(mistakes.iter().map(|mistake| format!("error: standard input: {mistake}\n")).collect()))?;
+        for name in &layout.unread {
+            warn(&format!("warning: column `{name}` is carried along, and nothing reads it"));
+        }
+        let equations = &calibrated.equations;
+        let hysteresis: Vec<f64> = equations
+            .axes
+            .iter()
+            .map(|axis| if axis.rotary { command.hysteresis.to_radians() } else { command.hysteresis })
+            .collect();
+        let mut rows = Self {
+            reader,
+            writer: csv::WriterBuilder::new().flexible(true).from_writer(io::stdout().lock()),
+            equations,
+            state: State::new(layout, &calibrated.calibration.sensors, &hysteresis),
+            skip_bad: command.skip_bad,
+            skipped: 0,
+            first: (more && !units).then_some(second),
+        };
+        rows.write_header()?;
+        Ok(rows)
+    }
+
+    fn write_header(&mut self) -> Result<(), Failure> {
+        let layout = self.state.layout();
+        let errors = self.equations.rows.iter().map(|row| format!("error_{}", row.direction.letter().to_ascii_lowercase()));
+        let positions = self.equations.axes.iter().map(|axis| format!("{}_comp", axis.variable));
+        let header: Vec<String> = layout.header.iter().cloned().chain(errors).chain(positions).collect();
+        let units = layout.units.as_ref().map(|units| {
+            let errors = self.equations.rows.iter().map(|_| "mm".to_owned());
+            let axis_units = layout.axes.iter().map(|column| units.get(column.index).cloned().unwrap_or_default());
+            let mark = std::iter::once("#unit".to_owned());
+            mark.chain(units.iter().cloned()).chain(errors).chain(axis_units).collect::<Vec<_>>()
+        });
+        self.writer.write_record(&header).map_err(closed)?;
+        units.map_or(Ok(()), |units| self.writer.write_record(&units).map_err(closed))
+    }
+
+    fn stream(&mut self, compensator: &mut Compensator<'_, Interpreter>) -> Result<(), Failure> {
+        let mut compensated = vec![0.0; self.equations.axes.len()];
+        let mut row = StringRecord::new();
+        let mut text = String::new();
+        while self.next(&mut row)? {
+            let mut outcome = self.state.take(&row);
+            if outcome.is_ok() {
+                let answer = compensator.compensate(&self.state.sample(), &mut compensated);
+                outcome = match answer {
+                    Ok(answer) => return_row(self, &row, &answer.error, &compensated, &mut text).map(|()| Ok(()))?,
+                    Err(refusal) => Err(said(&refusal)),
+                };
+            }
+            if let Err(mistake) = outcome {
+                self.bad(&row, &mistake)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn next(&mut self, row: &mut StringRecord) -> Result<bool, Failure> {
+        match self.first.take() {
+            Some(first) => {
+                *row = first;
+                Ok(true)
+            }
+            None => read(&mut self.reader, row),
+        }
+    }
+
+    fn bad(&mut self, row: &StringRecord, mistake: &str) -> Result<(), Failure> {
+        if self.skip_bad {
+            self.skipped += 1;
+            return Ok(());
+        }
+        let line = row.position().map_or(0, csv::Position::line);
+        Err(Failure::No(format!("error: standard input, line {line}: {mistake}\nhelp: --skip-bad leaves such rows out and counts them")))
+    }
+
+    /// Flushes what stands complete, also before a failure is told.
+    fn finish(mut self, done: Result<(), Failure>) -> Result<(), Failure> {
+        self.writer.flush().map_err(|error| Failure::io("cannot write to standard output", &error))?;
+        if self.skipped > 0 {
+            warn(&format!("warning: {} bad rows were left out", self.skipped));
+        }
+        done
+    }
+}
+
+/// Writes the input's cells, the errors and the compensated positions in the units of their columns.
+fn return_row(
+    rows: &mut Rows<'_>,
+    row: &StringRecord,
+    error: &[f64; 3],
+    compensated: &[f64],
+    text: &mut String,
+) -> Result<(), Failure> {
+    for cell in row {
+        rows.writer.write_field(cell).map_err(closed)?;
+    }
+    let errors = rows.equations.rows.iter().map(|row| error[row.direction.index()]);
+    let layout = rows.state.layout();
+    let positions =
+        compensated.iter().zip(&layout.axes).map(|(position, column)| position / column.factor - column.offset);
+    for value in errors.chain(positions) {
+        write_number(text, value);
+        rows.writer.write_field(text.as_str()).map_err(closed)?;
+    }
+    rows.writer.write_record(None::<&[u8]>).map_err(closed)
+}
+
+/// Fixed places; a zero has no sign.
+fn write_number(text: &mut String, value: f64) {
+    use std::fmt::Write;
+    text.clear();
+    // Writing into a string cannot fail.
+    let _ = write!(text, "{value:.PLACES$}");
+    if text.starts_with('-') && text.bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.')) {
+        text.remove(0);
+    }
+}
+
+fn said(refusal: &Refusal) -> String {
+    refusal.to_string()
+}
+
+fn closed(error: csv::Error) -> Failure {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => Failure::io("cannot write to standard output", &error),
+        other => Failure::Wrong(format!("error: cannot write to standard output: {other:?}")),
+    }
+}
+
+/// Reads the next row; `false` at the end.
+fn read(reader: &mut csv::Reader<io::StdinLock<'static>>, row: &mut StringRecord) -> Result<bool, Failure> {
+    reader.read_record(row).map_err(|error| Failure::No(format!("error: cannot read standard input: {error}")))
+}
+
+/// What the machine and its calibration need from a row.
+fn wanted(calibrated: &Calibrated) -> Wanted<'_> {
+    let sensors = calibrated.calibration.sensors.inputs().map(|(_, sensor)| sensor.name.value.as_str()).collect();
+    let terms = calibrated.calibration.motions.iter().flat_map(|motion| &motion.terms);
+    let time = terms.map(|term| &term.value).find(|term| {
+        matches!(term, CalibratedTerm::Lag { .. })
+            || matches!(term, CalibratedTerm::Growth { time_constant, .. } if *time_constant > 0.0)
+    });
+    Wanted {
+        equations: &calibrated.equations,
+        sensors,
+        time: time.map(|term| format!("the term `{}` of the calibration", term.name())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_zero_has_no_sign() {
+        let mut text = String::new();
+        write_number(&mut text, -1e-12);
+        assert_eq!(text, "0.000000000");
+        write_number(&mut text, -1.5);
+        assert_eq!(text, "-1.500000000");
+    }
+}

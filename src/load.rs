@@ -1,0 +1,74 @@
+//! Finding and compiling machines. In: a path, a shipped name or a topology word. Out: the
+//! compiled machine, its warnings shown; or every mistake, located.
+
+use std::path::{Path, PathBuf};
+
+use model_dsl::diagnostic::Diagnostics;
+use model_dsl::source::SourceFile;
+use model_dsl::suggest::nearest;
+use model_dsl::{Compiled, compile, compile_word};
+
+use crate::failure::Failure;
+use crate::output::{rendered, show};
+use crate::shipped;
+
+/// A machine and the file (or word) that it came from.
+pub(crate) struct Loaded {
+    /// The file's name for people: its path, or the shipped file's.
+    pub(crate) origin: String,
+    /// The compiled machine.
+    pub(crate) compiled: Compiled,
+}
+
+/// Reads a text file.
+pub(crate) fn read(path: &Path) -> Result<SourceFile, Failure> {
+    let cannot = |why: String| Failure::Wrong(format!("error: cannot read {}: {why}", path.display()));
+    let bytes = std::fs::read(path).map_err(|error| cannot(error.to_string()))?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        cannot(format!("it is not UTF-8 text (byte {})", error.utf8_error().valid_up_to()))
+    })?;
+    Ok(SourceFile::new(path.display().to_string(), text))
+}
+
+/// Compiles what the user named; paths are counted from `folder` where it is given.
+pub(crate) fn machine(name: &str, folder: Option<&Path>) -> Result<Loaded, Failure> {
+    let path = folder.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
+    if path.is_file() {
+        return from_source(&read(&path)?);
+    }
+    if let Some(text) = shipped::machine(name) {
+        return from_source(&SourceFile::new(format!("machines/{name}.yaml"), text));
+    }
+    if name.chars().all(|letter| letter.is_ascii_alphabetic()) && name.len() <= 8 && name.contains('F') {
+        return from_word(name);
+    }
+    Err(Failure::Wrong(unknown(name)))
+}
+
+fn from_source(source: &SourceFile) -> Result<Loaded, Failure> {
+    let mut diagnostics = Diagnostics::new();
+    match compile(source, &mut diagnostics) {
+        Some(compiled) => {
+            show(source, &diagnostics);
+            Ok(Loaded { origin: source.name().to_owned(), compiled })
+        }
+        None => Err(Failure::Wrong(rendered(source, &diagnostics))),
+    }
+}
+
+fn from_word(word: &str) -> Result<Loaded, Failure> {
+    let source = SourceFile::new("topology", word);
+    let mut diagnostics = Diagnostics::new();
+    let compiled = compile_word(word, &mut diagnostics);
+    let compiled = compiled.ok_or_else(|| Failure::Wrong(rendered(&source, &diagnostics)))?;
+    Ok(Loaded { origin: format!("the topology {word}"), compiled })
+}
+
+fn unknown(name: &str) -> String {
+    let names = shipped::MACHINES.map(|(known, _)| known);
+    let help = match nearest(name, names) {
+        Some(known) => format!("did you mean `{known}`?"),
+        None => format!("write the path of a machine file, a topology word such as XYFZ, or one of: {}", names.join(", ")),
+    };
+    format!("error: no machine `{name}`: there is no such file, shipped machine or topology\nhelp: {help}")
+}

@@ -1,0 +1,41 @@
+//! The command line `abbe`: thin doors to the compiler and the runtime.
+//!
+//! In: arguments, files and standard input. Out: machine output on standard output, everything
+//! for people on standard error, and an exit status: 0 done, 1 the check or the data says no,
+//! 2 the command or a file is wrong. No mathematics stands here.
+
+mod arguments;
+mod calibrated;
+mod commands;
+mod failure;
+mod load;
+mod output;
+mod positions;
+mod shipped;
+
+use std::process::ExitCode;
+
+use arguments::{Arguments, Command};
+use clap::Parser;
+use failure::Failure;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match run(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.report();
+            failure.status()
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    match &arguments.command {
+        Command::Derive(command) => commands::derive::run(command),
+        Command::Check(command) => commands::check::run(command),
+        Command::Expand(command) => commands::expand::run(command),
+        Command::Compensate(command) => commands::compensate::run(command),
+        Command::New(command) => commands::new::run(command),
+    }
+}

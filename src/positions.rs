@@ -1,0 +1,7 @@
+//! Positions as CSV: which column is what, and rows as samples of the machine's state.
+
+mod layout;
+mod state;
+
+pub(crate) use layout::{Column, Layout, Wanted};
+pub(crate) use state::State;

@@ -1,0 +1,178 @@
+//! Columns of a CSV file of positions. In: the header, and the row of units where there is
+//! one. Out: the place and the scale of every quantity that the machine needs.
+
+use csv::StringRecord;
+use model_dsl::equations::Equations;
+use model_dsl::quantity::{Dimension, parse_unit};
+use model_dsl::suggest::nearest;
+
+/// What the machine and its calibration need from a row.
+pub(crate) struct Wanted<'a> {
+    /// The machine's equations: its axes and travels.
+    pub(crate) equations: &'a Equations,
+    /// The names of the sensors that come from columns.
+    pub(crate) sensors: Vec<&'a str>,
+    /// Why a time is needed, where one is.
+    pub(crate) time: Option<String>,
+}
+
+/// One column that is read.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Column {
+    /// Its number in the row.
+    pub(crate) index: usize,
+    /// From the number written to mm, rad, s or degC.
+    pub(crate) factor: f64,
+    /// Added to the number before it is scaled.
+    pub(crate) offset: f64,
+}
+
+/// Where everything stands in a row.
+#[derive(Debug)]
+pub(crate) struct Layout {
+    /// The number of cells of a row.
+    pub(crate) width: usize,
+    /// The position of each axis.
+    pub(crate) axes: Vec<Column>,
+    /// The direction of each axis, where the file gives it.
+    pub(crate) directions: Vec<Option<usize>>,
+    /// Each free travel, where the file gives it.
+    pub(crate) travels: Vec<Option<Column>>,
+    /// The temperature of each sensor wanted, in degC.
+    pub(crate) sensors: Vec<Column>,
+    /// The time.
+    pub(crate) time: Option<Column>,
+    /// The header's cells.
+    pub(crate) header: Vec<String>,
+    /// The units written, one a column, where the file has a row of them.
+    pub(crate) units: Option<Vec<String>>,
+    /// Columns that nothing reads.
+    pub(crate) unread: Vec<String>,
+}
+
+struct Reader<'a> {
+    header: Vec<String>,
+    units: Option<Vec<String>>,
+    read: Vec<bool>,
+    mistakes: Vec<String>,
+    wanted: &'a Wanted<'a>,
+}
+
+impl Layout {
+    /// Reads the header and the units; every mistake is told.
+    pub(crate) fn read(
+        header: &StringRecord,
+        units: Option<&StringRecord>,
+        wanted: &Wanted<'_>,
+    ) -> Result<Self, Vec<String>> {
+        let header: Vec<String> = header.iter().map(|cell| cell.trim().trim_start_matches('\u{feff}').to_owned()).collect();
+        let units = units.map(|units| unit_row(units, header.len())).transpose().map_err(|mistake| vec![mistake])?;
+        let mut reader =
+            Reader { read: vec![false; header.len()], header, units, mistakes: Vec::new(), wanted };
+        reader.repeated();
+        let layout = reader.layout();
+        if reader.mistakes.is_empty() { Ok(layout) } else { Err(reader.mistakes) }
+    }
+}
+
+/// `#unit,mm,mm`: the mark in a cell of its own before the units of all columns.
+fn unit_row(row: &StringRecord, columns: usize) -> Result<Vec<String>, String> {
+    let units: Vec<String> = row.iter().skip(1).map(|cell| cell.trim().to_owned()).collect();
+    if units.len() == columns {
+        return Ok(units);
+    }
+    Err(format!(
+        "the row of units has {} units for {columns} columns; write `#unit` and then one unit for each column, empty where it has none",
+        units.len()
+    ))
+}
+
+impl Reader<'_> {
+    fn repeated(&mut self) {
+        for (at, name) in self.header.iter().enumerate() {
+            if !name.is_empty() && self.header.iter().take(at).any(|earlier| earlier == name) {
+                self.mistakes.push(format!("column `{name}` stands twice"));
+            }
+        }
+        if self.header.len() == 1 && self.header.first().is_some_and(|only| only.contains([';', '\t'])) {
+            self.mistakes.push("the columns are not separated by commas".to_owned());
+        }
+    }
+
+    fn layout(&mut self) -> Layout {
+        let wanted = self.wanted;
+        let equations = wanted.equations;
+        let axes = equations.axes.iter().map(|axis| {
+            let what = format!("the position of axis {}", axis.letter);
+            self.required(&axis.variable, if axis.rotary { "deg" } else { "mm" }, &what)
+        });
+        let axes = axes.collect();
+        let directions =
+            equations.axes.iter().map(|axis| self.find(&format!("dir_{}", axis.variable))).collect();
+        let travels = equations.travels.iter().map(|travel| self.optional(&travel.name, "mm")).collect();
+        let sensors = wanted.sensors.iter().map(|name| {
+            let what = format!("the temperature of sensor {name}, which the calibration uses");
+            self.required(&format!("T_{name}"), "degC", &what)
+        });
+        let sensors = sensors.collect();
+        let time = match &wanted.time {
+            Some(why) => Some(self.required("t", "s", &format!("the time, which {why} needs"))),
+            None => self.optional("t", "s"),
+        };
+        let unread = self.header.iter().zip(&self.read).filter(|(_, read)| !**read);
+        Layout {
+            width: self.header.len(),
+            axes,
+            directions,
+            travels,
+            sensors,
+            time,
+            unread: unread.map(|(name, _)| name.clone()).collect(),
+            header: self.header.clone(),
+            units: self.units.clone(),
+        }
+    }
+
+    fn find(&mut self, name: &str) -> Option<usize> {
+        let index = self.header.iter().position(|own| own == name)?;
+        if let Some(read) = self.read.get_mut(index) {
+            *read = true;
+        }
+        Some(index)
+    }
+
+    fn optional(&mut self, name: &str, default: &str) -> Option<Column> {
+        let index = self.find(name)?;
+        let written = self.units.as_ref().and_then(|units| units.get(index)).filter(|unit| !unit.is_empty());
+        let unit = written.map_or(default, String::as_str);
+        let expected = match default {
+            "deg" => Dimension::ANGLE,
+            "s" => Dimension::TIME,
+            "degC" => Dimension::TEMPERATURE,
+            _ => Dimension::LENGTH,
+        };
+        match parse_unit(unit) {
+            Ok(parsed) if parsed.dimension == expected => {
+                Some(Column { index, factor: parsed.factor, offset: parsed.offset })
+            }
+            Ok(_) => {
+                self.mistakes.push(format!("`{unit}` is not a unit for column `{name}`; write `{default}` or the like"));
+                None
+            }
+            Err(_) => {
+                self.mistakes.push(format!("`{unit}` of column `{name}` is not a unit"));
+                None
+            }
+        }
+    }
+
+    fn required(&mut self, name: &str, default: &str, what: &str) -> Column {
+        let known = self.header.iter().any(|own| own == name);
+        if !known {
+            let near = nearest(name, self.header.iter().map(String::as_str));
+            let help = near.map(|near| format!("; is it `{near}`?")).unwrap_or_default();
+            self.mistakes.push(format!("there is no column `{name}`, {what}{help}"));
+        }
+        self.optional(name, default).unwrap_or(Column { index: 0, factor: 1.0, offset: 0.0 })
+    }
+}

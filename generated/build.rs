@@ -28,5 +28,7 @@ fn module(path: &Path) -> Result<String, Box<dyn Error>> {
     let code = model_dsl::rust_for(path)?;
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let name = stem.replace('-', "_");
-    Ok(format!("/// The machine `{stem}`, compiled from `machines/{stem}.yaml`.\npub mod {name} {{\n{code}}}\n"))
+    Ok(format!(
+        "/// The machine `{stem}`, compiled from `machines/{stem}.yaml`.\npub mod {name} {{\n{code}}}\n"
+    ))
 }

@@ -32,8 +32,9 @@ pub(crate) fn read(path: &Path) -> Result<Calibrated, Failure> {
     let name = calibration::machine_of(&root, &mut diagnostics).ok_or_else(|| wrong(&diagnostics))?;
     let machine = load::machine(&name.value, path.parent()).map_err(|failure| match failure {
         Failure::Wrong(text) => {
-            let unusable = Diagnostic::error("E0426", name.span, format!("machine `{}` cannot be used", name.value))
-                .label("named here; the reason stands below");
+            let unusable =
+                Diagnostic::error("E0426", name.span, format!("machine `{}` cannot be used", name.value))
+                    .label("named here; the reason stands below");
             let mut diagnostics = Diagnostics::new();
             diagnostics.push(unusable);
             Failure::Wrong(format!("{}\n{text}", wrong_text(&source, &diagnostics)))
@@ -42,7 +43,7 @@ pub(crate) fn read(path: &Path) -> Result<Calibrated, Failure> {
     })?;
     let equations = machine.compiled.equations;
     let calibration = calibration::read(&root, &equations.names(), &mut diagnostics);
-    let calibration = calibration.ok_or_else(|| wrong(&diagnostics))?;
+    let calibration = calibration.filter(|_| !diagnostics.has_errors()).ok_or_else(|| wrong(&diagnostics))?;
     show(&source, &diagnostics);
     Ok(Calibrated { equations, calibration, source })
 }

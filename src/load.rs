@@ -68,7 +68,10 @@ fn unknown(name: &str) -> String {
     let names = shipped::MACHINES.map(|(known, _)| known);
     let help = match nearest(name, names) {
         Some(known) => format!("did you mean `{known}`?"),
-        None => format!("write the path of a machine file, a topology word such as XYFZ, or one of: {}", names.join(", ")),
+        None => format!(
+            "write the path of a machine file, a topology word such as XYFZ, or one of: {}",
+            names.join(", ")
+        ),
     };
     format!("error: no machine `{name}`: there is no such file, shipped machine or topology\nhelp: {help}")
 }

@@ -152,7 +152,9 @@ impl Link {
         }
         let shapes: &[Shape] = match self.kind {
             Kind::Slide(_) => &[Shape::Linear, Shape::Angular, Shape::Alignment],
-            Kind::Rotary(_) | Kind::Spindle => &[Shape::Linear, Shape::Angular, Shape::Offset, Shape::Alignment],
+            Kind::Rotary(_) | Kind::Spindle => {
+                &[Shape::Linear, Shape::Angular, Shape::Offset, Shape::Alignment]
+            }
             _ => &[],
         };
         let every = shapes.iter().flat_map(|shape| (0..3).map(|axis| ErrorMotion::plain(*shape, axis)));
@@ -172,8 +174,11 @@ impl Machine {
 
     /// The names of the constants that the chain mentions.
     pub(crate) fn constants(&self) -> Vec<String> {
-        let mut names: Vec<String> =
-            self.links().flat_map(|link| link.origin.iter().flatten()).filter_map(|(_, name)| name.clone()).collect();
+        let mut names: Vec<String> = self
+            .links()
+            .flat_map(|link| link.origin.iter().flatten())
+            .filter_map(|(_, name)| name.clone())
+            .collect();
         names.sort();
         names.dedup();
         names
@@ -182,16 +187,22 @@ impl Machine {
     /// Both branches with numbers in them: the part's, the tool's.
     pub(crate) fn bodies(&self, state: &State) -> [Vec<Body>; 2] {
         for name in state.errors.keys() {
-            assert!(self.links().any(|link| link.error(name).is_some()), "{name} is no error motion of this machine");
+            assert!(
+                self.links().any(|link| link.error(name).is_some()),
+                "{name} is no error motion of this machine"
+            );
         }
-        let branch = |links: &[Link], on_part| links.iter().map(|link| self.body(link, on_part, state)).collect();
+        let branch =
+            |links: &[Link], on_part| links.iter().map(|link| self.body(link, on_part, state)).collect();
         [branch(&self.workpiece, true), branch(&self.tool, false)]
     }
 
     fn body(&self, link: &Link, on_part: bool, state: &State) -> Body {
         let mut body = Body { bed: link.bed.unwrap_or(self.bed), ..Body::default() };
         body.origin = link.origin.each_ref().map(|sum| {
-            sum.iter().map(|(factor, name)| factor * name.as_ref().map_or(1.0, |name| state.constants[name])).sum()
+            sum.iter()
+                .map(|(factor, name)| factor * name.as_ref().map_or(1.0, |name| state.constants[name]))
+                .sum()
         });
         if let Some(variable) = link.variable() {
             body.direction[link.along] = if link.backwards { -1.0 } else { 1.0 };

@@ -1,1 +1,22 @@
-//! All end-to-end tests.
+//! All end-to-end tests, as one program: links once, and no file can be forgotten.
+//!
+//! In: the workspace as its users see it. Out: the laws that hold across crates.
+
+mod agreement;
+mod oracle;
+mod random;
+mod shipped;
+mod yaml;
+
+/// Every file beside this one is a module of this program.
+#[test]
+fn no_test_file_is_forgotten() {
+    let listed = include_str!("runner.rs");
+    for entry in std::fs::read_dir(shipped::root().join("tests")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        if let Some(module) = name.strip_suffix(".rs").filter(|module| *module != "runner") {
+            let line = format!("\nmod {module};\n");
+            assert!(listed.contains(&line), "tests/{name} is not in tests/runner.rs: add `mod {module};`");
+        }
+    }
+}

@@ -10,8 +10,8 @@ mod meaning;
 
 use crate::algebra::{Axis, FirstOrder, Htm, Name, Polynomial, Symbol};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::equations::{AxisInfo, ConstantInfo, Equations, Motion, Row, Term, TravelInfo};
-use crate::machine::{Branch, LinkKind, Machine};
+use crate::equations::{AxisInfo, ConstantInfo, Equations, LinkInfo, Motion, Row, Term, TravelInfo};
+use crate::machine::{Branch, Link, LinkKind, Machine};
 
 pub use link_matrix::matrix as link_matrix;
 
@@ -26,6 +26,8 @@ pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
         machine: machine.name.clone(),
         title: machine.title.clone(),
         source: machine.source.clone(),
+        links: machine.links.iter().map(link).collect(),
+        relative: machine.relative,
         axes: axes(machine, &tip),
         travels: travels(machine, &kept),
         constants: constants(machine),
@@ -75,7 +77,8 @@ fn row(machine: &Machine, direction: Axis, entry: &FirstOrder, kept: &[usize]) -
         })
         .collect();
     terms.sort_by_key(|term| {
-        let kind = kept.get(term.motion).and_then(|number| machine.motions.get(*number)).map(|motion| motion.kind);
+        let kind =
+            kept.get(term.motion).and_then(|number| machine.motions.get(*number)).map(|motion| motion.kind);
         (kind.map(|kind| (kind.alignment(), kind.angular())), term.motion)
     });
     Row { direction, nominal: entry.nominal_part().clone(), terms }
@@ -93,6 +96,17 @@ fn motion(machine: &Machine, number: usize) -> Motion {
         link: link.id.clone(),
         axis: machine.axes().iter().position(|(axis, _)| *axis == motion.link),
         meaning: meaning::of(motion, link),
+    }
+}
+
+fn link(link: &Link) -> LinkInfo {
+    LinkInfo {
+        id: link.id.clone(),
+        kind: link.kind,
+        branch: link.branch,
+        along: link.along,
+        origin: link.origin.clone(),
+        reference: link.reference,
     }
 }
 
@@ -171,7 +185,8 @@ fn warn_unseen(machine: &Machine, kept: &[usize], diagnostics: &mut Diagnostics)
 fn warn_undriven(machine: &Machine, rows: &[Row], diagnostics: &mut Diagnostics) {
     for (direction, span) in &machine.sensitive_spans {
         let driven = rows.iter().filter(|row| row.direction == *direction).any(|row| {
-            let moves = |symbol: &Symbol| matches!(symbol, Symbol::Position(_) | Symbol::Cos(_) | Symbol::Sin(_));
+            let moves =
+                |symbol: &Symbol| matches!(symbol, Symbol::Position(_) | Symbol::Cos(_) | Symbol::Sin(_));
             row.nominal.symbols().iter().any(moves)
         });
         if !driven {

@@ -229,7 +229,7 @@ fn bounded_product(
     right: &Polynomial,
     token: &Token<'_>,
 ) -> Result<Polynomial, ExpressionError> {
-    if left.len().saturating_mul(right.len()) > MOST_TERMS {
+    if left.size().saturating_mul(right.size()) > MOST_TERMS {
         return Err(token.error("the product expands to too many terms"));
     }
     Ok(left * right)

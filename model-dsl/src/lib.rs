@@ -13,7 +13,7 @@
 
 pub mod algebra;
 pub mod calibration;
-// pub mod check;
+pub mod check;
 pub mod codegen;
 pub mod derivation;
 pub mod diagnostic;
@@ -86,7 +86,8 @@ pub fn rust_tokens(source: &SourceFile) -> Result<(TokenStream, Equations, Strin
 /// Warnings become `cargo::warning` lines. The error tells the file, or every mistake in it.
 pub fn rust_for(path: impl AsRef<Path>) -> Result<String, String> {
     let path = path.as_ref();
-    let text = std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+    let text =
+        std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
     let source = SourceFile::new(path.display().to_string(), text);
     let (tokens, _, warnings) = rust_tokens(&source)?;
     for line in warnings.lines() {

@@ -67,7 +67,16 @@ pub fn print(equations: &Equations, format: Format, names: Names) -> String {
     }
 }
 
+/// The error of each direction as one line of plain text: `dPx = dxx - dxz + ...`.
+pub fn error_lines(equations: &Equations, names: Names) -> Vec<String> {
+    let sheet = sheet::Sheet::new(equations, names);
+    let line = |row: &sheet::SheetRow| {
+        format!("{} = {}", row.error.left.plain, writer::line(&text::Plain, &row.error.right))
+    };
+    sheet.rows.iter().map(line).collect()
+}
+
 /// A polynomial as plain infix text, `-x*cos(c) + Zt`, which [`crate::expression::parse`] reads back.
 pub fn infix(polynomial: &Polynomial) -> String {
-    writer::pieces(&text::Plain, &tree::polynomial(polynomial)).concat()
+    writer::line(&text::Plain, &tree::polynomial(polynomial))
 }

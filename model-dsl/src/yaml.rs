@@ -2,7 +2,7 @@
 //!
 //! In: a file's text. Out: a tree in which every key and value knows its place, with scalars as they were written
 //! (`0.10`, `+X`, `1e-3` and `yes` are words here: what they mean is the reader's to say), or findings E0001 to E0008.
-//! [`events`] is the only file that names the YAML crate. It is the event parser that serde-saphyr is built on; serde's
+//! `yaml/events.rs` is the only file that names the YAML crate. It is the event parser that serde-saphyr is built on; serde's
 //! own data model cannot tell both places of a repeated key, quoted from plain words, or more than one mistake a run.
 //!
 //! The effort is bounded whatever the file holds: [`MAX_BYTES`], [`MAX_NODES`], [`MAX_DEPTH`], no aliases.

@@ -1,4 +1,21 @@
-//! `abbe check`
+//! `abbe check`: a machine's equations against a published set, term by term.
+
+use model_dsl::check;
+use model_dsl::diagnostic::Diagnostics;
+
 use crate::arguments::Check;
 use crate::failure::Failure;
-pub(crate) fn run(command: &Check) -> Result<(), Failure> { let _ = (&command.machine, &command.equations); Ok(()) }
+use crate::{load, output};
+
+/// Runs the command; status 1 where the published equations disagree.
+pub(crate) fn run(command: &Check) -> Result<(), Failure> {
+    let loaded = load::machine(&command.machine, None)?;
+    let source = load::read(&command.equations)?;
+    let mut diagnostics = Diagnostics::new();
+    let compiled = &loaded.compiled;
+    let report = check::check(&compiled.machine, &compiled.equations, &source, &mut diagnostics);
+    let report = report.ok_or_else(|| Failure::Wrong(output::rendered(&source, &diagnostics)))?;
+    output::show(&source, &diagnostics);
+    output::print(&report.text())?;
+    if report.agrees() { Ok(()) } else { Err(Failure::No(String::new())) }
+}

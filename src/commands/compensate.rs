@@ -34,7 +34,8 @@ pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
     let work = Work { directions: &mut directions, motions: &mut values, travel: &mut travel };
     let mut compensator = Compensator::new(&machine, &motions, &mut states, work)
         .map_err(|error| Failure::Wrong(format!("error: the calibration cannot be run: {error}")))?;
-    compensator.limits = Limits { compensation: calibrated.calibration.limits.compensation.map(|limit| limit.value) };
+    compensator.limits =
+        Limits { compensation: calibrated.calibration.limits.compensation.map(|limit| limit.value) };
     let mut rows = Rows::open(&calibrated, command)?;
     let done = rows.stream(&mut compensator);
     rows.finish(done)
@@ -54,16 +55,23 @@ struct Rows<'c> {
 impl<'c> Rows<'c> {
     /// Reads the header and writes the header of the output.
     fn open(calibrated: &'c Calibrated, command: &Compensate) -> Result<Self, Failure> {
-        let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(io::stdin().lock());
+        let mut reader =
+            csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(io::stdin().lock());
         let mut header = StringRecord::new();
         if !read(&mut reader, &mut header)? {
-            return Err(Failure::No("error: standard input is empty; it begins with a header such as `x,y,z`".to_owned()));
+            return Err(Failure::No(
+                "error: standard input is empty; it begins with a header such as `x,y,z`".to_owned(),
+            ));
         }
         let mut second = StringRecord::new();
         let more = read(&mut reader, &mut second)?;
         let units = more && second.get(0).is_some_and(|cell| cell.trim() == "#unit");
-        let layout = Layout::read(&header, units.then_some(&second), &wanted(calibrated))
-            .map_err(|mistakes| Failure::Wrong(mistakes.iter().map(|mistake| format!("error: standard input: {mistake}\n")).collect()))?;
+        let layout =
+            Layout::read(&header, units.then_some(&second), &wanted(calibrated)).map_err(|mistakes| {
+                Failure::Wrong(
+                    mistakes.iter().map(|mistake| format!("error: standard input: {mistake}\n")).collect(),
+                )
+            })?;
         for name in &layout.unread {
             warn(&format!("warning: column `{name}` is carried along, and nothing reads it"));
         }
@@ -88,12 +96,17 @@ impl<'c> Rows<'c> {
 
     fn write_header(&mut self) -> Result<(), Failure> {
         let layout = self.state.layout();
-        let errors = self.equations.rows.iter().map(|row| format!("error_{}", row.direction.letter().to_ascii_lowercase()));
+        let errors = self
+            .equations
+            .rows
+            .iter()
+            .map(|row| format!("error_{}", row.direction.letter().to_ascii_lowercase()));
         let positions = self.equations.axes.iter().map(|axis| format!("{}_comp", axis.variable));
         let header: Vec<String> = layout.header.iter().cloned().chain(errors).chain(positions).collect();
         let units = layout.units.as_ref().map(|units| {
             let errors = self.equations.rows.iter().map(|_| "mm".to_owned());
-            let axis_units = layout.axes.iter().map(|column| units.get(column.index).cloned().unwrap_or_default());
+            let axis_units =
+                layout.axes.iter().map(|column| units.get(column.index).cloned().unwrap_or_default());
             let mark = std::iter::once("#unit".to_owned());
             mark.chain(units.iter().cloned()).chain(errors).chain(axis_units).collect::<Vec<_>>()
         });
@@ -110,7 +123,9 @@ impl<'c> Rows<'c> {
             if outcome.is_ok() {
                 let answer = compensator.compensate(&self.state.sample(), &mut compensated);
                 outcome = match answer {
-                    Ok(answer) => return_row(self, &row, &answer.error, &compensated, &mut text).map(|()| Ok(()))?,
+                    Ok(answer) => {
+                        return_row(self, &row, &answer.error, &compensated, &mut text).map(|()| Ok(()))?
+                    }
                     Err(refusal) => Err(said(&refusal)),
                 };
             }
@@ -137,7 +152,9 @@ impl<'c> Rows<'c> {
             return Ok(());
         }
         let line = row.position().map_or(0, csv::Position::line);
-        Err(Failure::No(format!("error: standard input, line {line}: {mistake}\nhelp: --skip-bad leaves such rows out and counts them")))
+        Err(Failure::No(format!(
+            "error: standard input, line {line}: {mistake}\nhelp: --skip-bad leaves such rows out and counts them"
+        )))
     }
 
     /// Flushes what stands complete, also before a failure is told.
@@ -163,8 +180,10 @@ fn return_row(
     }
     let errors = rows.equations.rows.iter().map(|row| error[row.direction.index()]);
     let layout = rows.state.layout();
-    let positions =
-        compensated.iter().zip(&layout.axes).map(|(position, column)| position / column.factor - column.offset);
+    let positions = compensated
+        .iter()
+        .zip(&layout.axes)
+        .map(|(position, column)| position / column.factor - column.offset);
     for value in errors.chain(positions) {
         write_number(text, value);
         rows.writer.write_field(text.as_str()).map_err(closed)?;
@@ -196,12 +215,15 @@ fn closed(error: csv::Error) -> Failure {
 
 /// Reads the next row; `false` at the end.
 fn read(reader: &mut csv::Reader<io::StdinLock<'static>>, row: &mut StringRecord) -> Result<bool, Failure> {
-    reader.read_record(row).map_err(|error| Failure::No(format!("error: cannot read standard input: {error}")))
+    reader
+        .read_record(row)
+        .map_err(|error| Failure::No(format!("error: cannot read standard input: {error}")))
 }
 
 /// What the machine and its calibration need from a row.
 fn wanted(calibrated: &Calibrated) -> Wanted<'_> {
-    let sensors = calibrated.calibration.sensors.inputs().map(|(_, sensor)| sensor.name.value.as_str()).collect();
+    let sensors =
+        calibrated.calibration.sensors.inputs().map(|(_, sensor)| sensor.name.value.as_str()).collect();
     let terms = calibrated.calibration.motions.iter().flat_map(|motion| &motion.terms);
     let time = terms.map(|term| &term.value).find(|term| {
         matches!(term, CalibratedTerm::Lag { .. })

@@ -13,7 +13,8 @@ pub(crate) fn run(command: &Expand) -> Result<(), Failure> {
     let loaded = load::machine(&command.machine, None)?;
     let tokens = codegen::tokens(&loaded.compiled.equations);
     let name = Path::new(&loaded.origin).file_name().map(|name| name.to_string_lossy().into_owned());
-    let code = codegen::file(&tokens, &name.unwrap_or(loaded.origin))
-        .map_err(|error| Failure::Wrong(format!("error: the generated code does not parse ({error}); this is a fault of Abbe")))?;
+    let code = codegen::file(&tokens, &name.unwrap_or(loaded.origin)).map_err(|error| {
+        Failure::Wrong(format!("error: the generated code does not parse ({error}); this is a fault of Abbe"))
+    })?;
     output::print(&code)
 }

@@ -65,8 +65,10 @@ impl Layout {
         units: Option<&StringRecord>,
         wanted: &Wanted<'_>,
     ) -> Result<Self, Vec<String>> {
-        let header: Vec<String> = header.iter().map(|cell| cell.trim().trim_start_matches('\u{feff}').to_owned()).collect();
-        let units = units.map(|units| unit_row(units, header.len())).transpose().map_err(|mistake| vec![mistake])?;
+        let header: Vec<String> =
+            header.iter().map(|cell| cell.trim().trim_start_matches('\u{feff}').to_owned()).collect();
+        let units =
+            units.map(|units| unit_row(units, header.len())).transpose().map_err(|mistake| vec![mistake])?;
         let mut reader =
             Reader { read: vec![false; header.len()], header, units, mistakes: Vec::new(), wanted };
         reader.repeated();
@@ -156,7 +158,9 @@ impl Reader<'_> {
                 Some(Column { index, factor: parsed.factor, offset: parsed.offset })
             }
             Ok(_) => {
-                self.mistakes.push(format!("`{unit}` is not a unit for column `{name}`; write `{default}` or the like"));
+                self.mistakes.push(format!(
+                    "`{unit}` is not a unit for column `{name}`; write `{default}` or the like"
+                ));
                 None
             }
             Err(_) => {

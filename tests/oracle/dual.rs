@@ -27,7 +27,9 @@ pub(crate) fn tip(machine: &Machine, state: &State) -> ([f64; 3], [f64; 3]) {
         .bodies(state)
         .map(|branch| branch.iter().fold(Frame::rest(), |product, body| product.then(&frame(body))));
     let gap: [Dual; 3] = std::array::from_fn(|row| tool.place[row] + -part.place[row]);
-    let seen: [Dual; 3] = std::array::from_fn(|column| (0..3).fold(Dual::default(), |sum, row| sum + part.rotation[row][column] * gap[row]));
+    let seen: [Dual; 3] = std::array::from_fn(|column| {
+        (0..3).fold(Dual::default(), |sum, row| sum + part.rotation[row][column] * gap[row])
+    });
     (seen.map(|part| part.value), seen.map(|part| part.change))
 }
 
@@ -35,7 +37,9 @@ fn frame(body: &Body) -> Frame {
     let origin = body.origin.map(plain);
     let position = Dual { value: body.position, change: body.rate };
     let way = body.direction.map(|part| plain(part) * position);
-    let place = Frame::shift(origin).then(&Frame::shift(body.offset.map(small))).then(&Frame::turns(body.tilt.map(small)));
+    let place = Frame::shift(origin)
+        .then(&Frame::shift(body.offset.map(small)))
+        .then(&Frame::turns(body.tilt.map(small)));
     let error = Frame::shift(body.linear.map(small)).then(&Frame::turns(body.angular.map(small)));
     if body.turns {
         return place.then(&error).then(&Frame::turns(way));
@@ -90,7 +94,10 @@ impl Neg for Dual {
 impl Mul for Dual {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        Self { value: self.value * other.value, change: self.value * other.change + self.change * other.value }
+        Self {
+            value: self.value * other.value,
+            change: self.value * other.change + self.change * other.value,
+        }
     }
 }
 
@@ -100,7 +107,9 @@ impl Frame {
     }
 
     fn shift(place: [Dual; 3]) -> Self {
-        let rotation = std::array::from_fn(|row| std::array::from_fn(|column| plain(f64::from(u8::from(row == column)))));
+        let rotation = std::array::from_fn(|row| {
+            std::array::from_fn(|column| plain(f64::from(u8::from(row == column))))
+        });
         Self { rotation, place }
     }
 

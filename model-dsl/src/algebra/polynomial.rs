@@ -54,7 +54,7 @@ impl Polynomial {
     }
 
     /// The number of monomials.
-    pub fn len(&self) -> usize {
+    pub fn size(&self) -> usize {
         self.0.len()
     }
 

@@ -37,11 +37,7 @@ pub fn decimal(text: &str) -> Option<Rational> {
     let value: BigInt = format!("0{whole}{fraction}").parse().ok()?;
     let scale = num_traits::pow(BigInt::from(10), power.unsigned_abs() as usize);
     let value = if negative { -value } else { value };
-    Some(if power < 0 {
-        Rational::new(value, scale)
-    } else {
-        Rational::from_integer(value * scale)
-    })
+    Some(if power < 0 { Rational::new(value, scale) } else { Rational::from_integer(value * scale) })
 }
 
 /// The nearest double.

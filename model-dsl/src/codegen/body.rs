@@ -60,7 +60,9 @@ impl Printer<'_> {
     fn value(&self, value: Value) -> (TokenStream, Binding) {
         match value {
             Value::Zero => (quote! { 0.0 }, Binding::Atom),
-            Value::Number(number) => number_literal(self.program.numbers.get(number).copied().unwrap_or_default()),
+            Value::Number(number) => {
+                number_literal(self.program.numbers.get(number).copied().unwrap_or(f64::NAN))
+            }
             Value::Input(input) => {
                 let name = input_name(self.equations, input);
                 (quote! { #name }, Binding::Atom)
@@ -97,12 +99,19 @@ impl Printer<'_> {
     /// The value, in brackets where it binds less tightly than its place asks.
     fn at_least(&self, value: Value, least: Binding) -> TokenStream {
         let (tokens, binding) = self.value(value);
-        if binding < least { quote! { (#tokens) } } else { tokens }
+        if binding < least {
+            quote! { (#tokens) }
+        } else {
+            tokens
+        }
     }
 }
 
 /// A number; the sign of a negative one is an operator, as in any expression.
 fn number_literal(number: f64) -> (TokenStream, Binding) {
+    if number.is_nan() {
+        return (quote! { f64::NAN }, Binding::Atom);
+    }
     let size = Literal::f64_unsuffixed(number.abs());
     if number < 0.0 { (quote! { -#size }, Binding::Sign) } else { (quote! { #size }, Binding::Atom) }
 }
@@ -132,7 +141,8 @@ fn prelude(equations: &Equations, program: &Program) -> TokenStream {
         }
     }
     let record = |from: TokenStream, record: &str, wanted: &dyn Fn(&Input) -> bool| {
-        let fields: Vec<_> = read.iter().filter(|input| wanted(input)).map(|input| input_name(equations, *input)).collect();
+        let fields: Vec<_> =
+            read.iter().filter(|input| wanted(input)).map(|input| input_name(equations, *input)).collect();
         let record = format_ident!("{record}");
         (!fields.is_empty()).then(|| quote! { let #record { #(#fields,)* .. } = #from; })
     };
@@ -150,7 +160,11 @@ fn turns(equations: &Equations, read: &BTreeSet<Input>) -> TokenStream {
         let (sine, cosine) = (Input::Sin(number), Input::Cos(number));
         let name = |input: Input| {
             let ident = input_name(equations, input);
-            if read.contains(&input) { quote! { #ident } } else { quote! { _ } }
+            if read.contains(&input) {
+                quote! { #ident }
+            } else {
+                quote! { _ }
+            }
         };
         if read.contains(&sine) || read.contains(&cosine) {
             let (sine, cosine, position) = (name(sine), name(cosine), field(&axis.variable));

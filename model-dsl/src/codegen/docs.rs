@@ -1,8 +1,7 @@
 //! The words of generated code: what each item means, its unit and its equation.
 
-use crate::equations::{Equations, Motion, Names, Row};
-fn infix(p: &crate::algebra::Polynomial) -> String { format!("{}", p.len()) }
-fn sum_of_motions(_: &Equations, r: &Row, _: Names) -> String { format!("{}", r.terms.len()) }
+use crate::equations::{Equations, Motion, Names};
+use crate::notation::{error_lines, infix};
 
 /// What a machine is, in a line.
 pub(super) fn machine(equations: &Equations) -> String {
@@ -23,20 +22,17 @@ pub(super) fn motion(motion: &Motion) -> String {
 
 /// The equations of the error, one line a direction.
 pub(super) fn error_equations(equations: &Equations) -> String {
-    block(equations, "dP", |row| sum_of_motions(equations, row, Names::Symbols))
+    block(&error_lines(equations, Names::Symbols))
 }
 
 /// The equations of the nominal position, one line a direction.
 pub(super) fn nominal_equations(equations: &Equations) -> String {
-    block(equations, "P", |row| infix(&row.nominal))
+    let line = |row: &crate::equations::Row| {
+        format!("P{} = {}", row.direction.letter().to_ascii_lowercase(), infix(&row.nominal))
+    };
+    block(&equations.rows.iter().map(line).collect::<Vec<_>>())
 }
 
-fn block(equations: &Equations, left: &str, right: impl Fn(&Row) -> String) -> String {
-    let mut text = String::from("```text\n");
-    for row in &equations.rows {
-        let direction = row.direction.letter().to_ascii_lowercase();
-        text.push_str(&format!("{left}{direction} = {}\n", right(row)));
-    }
-    text.push_str("```");
-    text
+fn block(lines: &[String]) -> String {
+    format!("```text\n{}\n```", lines.join("\n"))
 }

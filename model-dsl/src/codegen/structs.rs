@@ -76,7 +76,10 @@ fn axes(equations: &Equations) -> TokenStream {
         .iter()
         .map(|axis| {
             let unit = if axis.rotary { "rad" } else { "mm" };
-            (axis.variable.to_string(), format!("The programmed position of axis {} \\[{unit}\\].", axis.letter))
+            (
+                axis.variable.to_string(),
+                format!("The programmed position of axis {} \\[{unit}\\].", axis.letter),
+            )
         })
         .collect();
     record("Axes", "The programmed positions of the axes.", &fields)

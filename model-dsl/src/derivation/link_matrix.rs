@@ -22,7 +22,9 @@ pub fn matrix(machine: &Machine, number: usize) -> Htm {
             let turn = Htm::rotation(link.along.axis, &link.variable(), link.along.sign);
             origin.then(&aligned).then(&displaced).then(&turn)
         }
-        (LinkKind::Slide(_), Reference::Carriage) => origin.then(&travel(link)).then(&aligned).then(&displaced),
+        (LinkKind::Slide(_), Reference::Carriage) => {
+            origin.then(&travel(link)).then(&aligned).then(&displaced)
+        }
         (LinkKind::Slide(_), Reference::Bed) => origin.then(&displaced).then(&travel(link)).then(&aligned),
         _ => origin.then(&aligned).then(&displaced),
     }
@@ -38,11 +40,7 @@ fn travel(link: &Link) -> Htm {
 }
 
 /// The small displacement by the error motions of a body.
-fn small<'m>(
-    machine: &Machine,
-    link: &Link,
-    motions: impl Iterator<Item = (usize, &'m Motion)>,
-) -> Htm {
+fn small<'m>(machine: &Machine, link: &Link, motions: impl Iterator<Item = (usize, &'m Motion)>) -> Htm {
     let mut rotations = <[FirstOrder; 3]>::default();
     let mut translations = <[FirstOrder; 3]>::default();
     for (number, motion) in motions {
@@ -59,8 +57,9 @@ fn small<'m>(
 /// turned, `angle x (direction * travel)`, and the carriage with it only where `rotates` says so;
 /// a rotary axis or a spindle is displaced and tilted as a whole.
 fn alignment(machine: &Machine, link: &Link, motions: Vec<(usize, &Motion)>) -> Htm {
-    let (lines, bodies): (Vec<_>, Vec<_>) =
-        motions.into_iter().partition(|(_, motion)| matches!((link.kind, motion.kind), (LinkKind::Slide(_), MotionKind::Alignment(_))));
+    let (lines, bodies): (Vec<_>, Vec<_>) = motions.into_iter().partition(|(_, motion)| {
+        matches!((link.kind, motion.kind), (LinkKind::Slide(_), MotionKind::Alignment(_)))
+    });
     let turned = lines.iter().filter(|(_, motion)| motion.rotates).copied();
     let body = small(machine, link, bodies.into_iter().chain(turned));
     let mut translations = <[FirstOrder; 3]>::default();

@@ -19,7 +19,9 @@ pub(super) fn of(motion: &Motion, link: &Link) -> String {
         MotionKind::Angular(axis) => format!("tilt of {id} about {axis}"),
         MotionKind::Linear(axis) => format!("displacement of {id} in {axis}"),
         MotionKind::Offset(axis) => format!("place of the axis of {id} in {axis}"),
-        MotionKind::Alignment(axis) if slide => format!("alignment: line of motion of {id} turned about {axis}"),
+        MotionKind::Alignment(axis) if slide => {
+            format!("alignment: line of motion of {id} turned about {axis}")
+        }
         MotionKind::Alignment(axis) if rotary && axis == along => format!("zero of {id}"),
         MotionKind::Alignment(axis) => format!("tilt of the axis of {id} about {axis}"),
     }

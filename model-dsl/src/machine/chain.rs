@@ -184,7 +184,15 @@ fn link<'n>(
         );
         return None;
     }
-    let link = Link { id: id.to_owned(), kind: kind?, branch, along: along?, origin, reference, span: name_node.span };
+    let link = Link {
+        id: id.to_owned(),
+        kind: kind?,
+        branch,
+        along: along?,
+        origin,
+        reference,
+        span: name_node.span,
+    };
     Some(DraftedLink { link, origin_spans, errors })
 }
 
@@ -193,8 +201,10 @@ fn kind_of<'n>(
     node: &Node,
     diagnostics: &mut Diagnostics,
 ) -> Option<(&'static str, &'n Node)> {
-    let mut found: Vec<_> =
-        KINDS.iter().filter_map(|word| fields.take_entry(word).map(|(key, value)| (*word, key, value))).collect();
+    let mut found: Vec<_> = KINDS
+        .iter()
+        .filter_map(|word| fields.take_entry(word).map(|(key, value)| (*word, key, value)))
+        .collect();
     match found.len() {
         0 => {
             let mut error = Diagnostic::error("E0120", node.span, "this link does not say what it is")
@@ -280,9 +290,15 @@ fn along(
         Some(letter) if own_direction(letter) != along.axis => {
             let own = own_direction(letter).letter();
             diagnostics.push(
-                Diagnostic::error("E0129", node.span, format!("axis {letter} does not run along {}", along.axis.letter()))
-                    .label("not its own direction")
-                    .help(format!("by ISO 841 it runs along +{own} or -{own}; name the axis after its direction")),
+                Diagnostic::error(
+                    "E0129",
+                    node.span,
+                    format!("axis {letter} does not run along {}", along.axis.letter()),
+                )
+                .label("not its own direction")
+                .help(format!(
+                    "by ISO 841 it runs along +{own} or -{own}; name the axis after its direction"
+                )),
             );
             None
         }
@@ -323,7 +339,9 @@ fn unit_vector(node: &Node, entries: &[Node], diagnostics: &mut Diagnostics) -> 
     };
     let along: Vec<_> = Axis::ALL.into_iter().zip(&numbers).filter(|(_, value)| **value != 0.0).collect();
     match along.as_slice() {
-        [(axis, value)] if value.abs() == 1.0 => Some(Along { axis: *axis, sign: if **value > 0.0 { 1 } else { -1 } }),
+        [(axis, value)] if value.abs() == 1.0 => {
+            Some(Along { axis: *axis, sign: if **value > 0.0 { 1 } else { -1 } })
+        }
         [_] | [] => {
             diagnostics.push(
                 Diagnostic::error("E0127", node.span, "a direction has length one")
@@ -334,9 +352,13 @@ fn unit_vector(node: &Node, entries: &[Node], diagnostics: &mut Diagnostics) -> 
         }
         _ => {
             diagnostics.push(
-                Diagnostic::error("E0128", node.span, "a direction runs along one of the frame's own directions")
-                    .label("this direction is skew")
-                    .help("take the nearest of +X -X +Y -Y +Z -Z; the angle that is left is an alignment error"),
+                Diagnostic::error(
+                    "E0128",
+                    node.span,
+                    "a direction runs along one of the frame's own directions",
+                )
+                .label("this direction is skew")
+                .help("take the nearest of +X -X +Y -Y +Z -Z; the angle that is left is an alignment error"),
             );
             None
         }

@@ -43,9 +43,13 @@ pub(super) fn declared(node: Option<&Node>, diagnostics: &mut Diagnostics) -> De
             let name = Spanned::new(name.to_owned(), item.span);
             match listed.iter().find(|known| *known.name == *name.value) {
                 Some(first) => diagnostics.push(
-                    Diagnostic::error("E0130", item.span, format!("constant `{}` is declared twice", name.value))
-                        .label("again here")
-                        .also(first.span, "first here"),
+                    Diagnostic::error(
+                        "E0130",
+                        item.span,
+                        format!("constant `{}` is declared twice", name.value),
+                    )
+                    .label("again here")
+                    .also(first.span, "first here"),
                 ),
                 None => listed.extend(named(&name, diagnostics)),
             }
@@ -83,7 +87,9 @@ fn entry(key: &Spanned<String>, value: &Node, diagnostics: &mut Diagnostics) -> 
             );
         }
         NodeKind::Scalar(scalar) => match parse_quantity(&scalar.text) {
-            Ok(quantity) if quantity.dimension == Dimension::LENGTH => constant.default = Some(quantity.value),
+            Ok(quantity) if quantity.dimension == Dimension::LENGTH => {
+                constant.default = Some(quantity.value)
+            }
             Ok(_) => diagnostics.push(
                 Diagnostic::error("E0132", value.span, format!("`{}` is not a length", scalar.text))
                     .label("a constant of a machine is a length"),
@@ -120,9 +126,13 @@ pub(super) fn settle(declared: Declared, chain: &Chain, diagnostics: &mut Diagno
     for constant in &listed {
         if !used.iter().any(|(name, _)| *name == constant.name) {
             diagnostics.push(
-                Diagnostic::error("E0134", constant.span, format!("constant `{}` is never used", constant.name))
-                    .label("no offset of the chain mentions it")
-                    .help("take it out, or use it in an `origin` or `offset`"),
+                Diagnostic::error(
+                    "E0134",
+                    constant.span,
+                    format!("constant `{}` is never used", constant.name),
+                )
+                .label("no offset of the chain mentions it")
+                .help("take it out, or use it in an `origin` or `offset`"),
             );
         }
     }

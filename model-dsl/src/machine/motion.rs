@@ -262,7 +262,8 @@ fn kind_of(name: &MotionName) -> Option<MotionKind> {
 
 /// A name that is not one of this link: it names another link, or none.
 fn misnamed(name: &str, span: Span, link: &Link, chain: &Chain<'_>) -> Diagnostic {
-    let other = chain.links.iter().map(|drafted| &drafted.link).find(|other| parse_name(name, &other.id).is_some());
+    let other =
+        chain.links.iter().map(|drafted| &drafted.link).find(|other| parse_name(name, &other.id).is_some());
     if let Some(other) = other {
         return Diagnostic::error("E0140", span, format!("error motion {name} belongs to link {}", other.id))
             .label(format!("this is link {}", link.id))
@@ -383,7 +384,9 @@ pub(super) fn check_names(
 pub(crate) fn body_sign(motion: &Motion, link: &Link, relative: bool) -> i64 {
     let own = match (link.kind, motion.kind) {
         (LinkKind::Slide(_), MotionKind::Linear(axis)) => axis == link.along.axis,
-        (LinkKind::Rotary(_), MotionKind::Angular(axis) | MotionKind::Alignment(axis)) => axis == link.along.axis,
+        (LinkKind::Rotary(_), MotionKind::Angular(axis) | MotionKind::Alignment(axis)) => {
+            axis == link.along.axis
+        }
         _ => false,
     };
     if own {

@@ -77,7 +77,8 @@ pub(super) fn expand(word: &str, span: Span, diagnostics: &mut Diagnostics) -> O
     let parsed = TopologyWord::parse(word, span, diagnostics)?;
     let workpiece = parsed.workpiece.iter().rev().map(|letter| (*letter, Branch::Workpiece));
     let tool = parsed.tool.iter().map(|letter| (*letter, Branch::Tool));
-    let mut links: Vec<_> = workpiece.chain(tool).map(|(letter, branch)| axis(letter, branch, span)).collect();
+    let mut links: Vec<_> =
+        workpiece.chain(tool).map(|(letter, branch)| axis(letter, branch, span)).collect();
     links.push(tip(span));
     Some(Chain { topology: Some(word.to_owned()), links })
 }

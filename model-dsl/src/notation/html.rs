@@ -1,6 +1,6 @@
 //! The page for a browser. In: a sheet. Out: one HTML file with its style inside: no script, nothing fetched.
 
-use super::mathml::{equation, escape, expression, letter};
+use super::mathml::{arm, equation, escape, letter, part};
 use super::sheet::{MotionEntry, Sheet, SheetRow};
 
 const STYLE: &str = "\
@@ -16,11 +16,14 @@ h2 { font-size: 1.15rem; margin: 2.25rem 0 .5rem; padding-bottom: .2rem; border-
 p, li { max-width: 46rem; }
 .source { color: var(--quiet); margin-top: 0; }
 .wide { overflow-x: auto; }
-math { font-size: 1.08em; }
-math[display=block] { text-align: left; margin: .6rem 0; }
+math { font-size: 1.08em; font-family: 'STIX Two Math', 'Cambria Math', 'Latin Modern Math', math, serif; }
+math[display=block] { width: max-content; margin: .6rem 0; }
 mtable.equation mtd { padding: .18em .2em; text-align: left; }
 mtable.equation mtd:first-child { text-align: right; }
 mtable.lines mtd { padding: .05em 0; text-align: left; }
+dl { display: grid; grid-template-columns: max-content 1fr; gap: .2rem 1rem; margin: .8rem 0 0; }
+dt { color: var(--quiet); }
+dd { margin: 0; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
 th, td { text-align: left; vertical-align: top; padding: .35rem .7rem .35rem 0; border-bottom: 1px solid var(--line); }
 thead th { position: sticky; top: 0; background: var(--band); }
@@ -53,12 +56,13 @@ pub(super) fn page(sheet: &Sheet) -> String {
 
 fn direction(row: &SheetRow) -> String {
     format!(
-        "<h2>Direction {}</h2>\n<div class=\"wide\">\n{}{}</div>\n<p>Nominal position: {}. Offsets: {}. Error: {}.</p>\n",
+        "<h2>Direction {}</h2>\n<div class=\"wide\">\n{}{}<dl>\n<dt>Nominal position</dt><dd>{}</dd>\n\
+         <dt>Offsets</dt><dd>{}</dd>\n<dt>Error</dt><dd>{}</dd>\n</dl>\n</div>\n",
         row.direction,
         equation(&row.position),
         equation(&row.error),
-        expression(&row.nominal),
-        expression(&row.offsets),
+        part(&row.nominal),
+        part(&row.offsets),
         letter(&row.error.left),
     )
 }
@@ -74,11 +78,11 @@ fn motions(sheet: &Sheet) -> String {
 
 fn motion(motion: &MotionEntry) -> String {
     let against = if motion.against_iso { " (counted against the ISO sense)" } else { "" };
-    let arm = |arm: &Option<super::tree::Expression>| match arm {
-        Some(arm) => format!("<td>{}</td>", expression(arm)),
+    let cell = |found: &Option<super::tree::Expression>| match found {
+        Some(found) => format!("<td>{}</td>", arm(found)),
         None => "<td class=\"none\">none</td>".to_owned(),
     };
-    let arms: String = motion.arms.iter().map(arm).collect();
+    let arms: String = motion.arms.iter().map(cell).collect();
     format!(
         "<tr><td>{}</td><td>{}</td><td>{}{against}</td><td>{}</td>{arms}</tr>\n",
         letter(&motion.letter),
@@ -100,6 +104,7 @@ fn quantities(sheet: &Sheet) -> String {
 }
 
 fn conventions(sheet: &Sheet) -> String {
-    let items: String = sheet.conventions.iter().map(|sentence| format!("<li>{}</li>\n", escape(sentence))).collect();
+    let items: String =
+        sheet.conventions.iter().map(|sentence| format!("<li>{}</li>\n", escape(sentence))).collect();
     format!("<ul>\n{items}</ul>\n")
 }

@@ -77,9 +77,13 @@ pub(super) fn page(sheet: &Sheet) -> String {
 fn equation(statement: &Statement) -> String {
     let written = pieces(&Latex, &statement.right);
     let plain = pieces(&Plain, &statement.right);
-    let lines = wrap::lines(&plain, WIDTH).into_iter().map(|line| wrap::join(&written, line));
-    let broken: Vec<String> = lines.collect();
-    format!("{} &= {}", Latex.letter(&statement.left), broken.join(" \\\\\n&\\quad"))
+    let mut text = format!("{} &=", Latex.letter(&statement.left));
+    for (number, line) in wrap::lines(&plain, WIDTH).iter().enumerate() {
+        let indent = if line.inside { "\\qquad" } else { "\\quad" };
+        let head = if number == 0 { " ".to_owned() } else { format!(" \\\\\n&{indent}") };
+        text.push_str(&format!("{head}{}", wrap::join(&written, line)));
+    }
+    text
 }
 
 fn motions(sheet: &Sheet) -> String {

@@ -143,7 +143,9 @@ mod tests {
         let shown = |name| match split(name) {
             (Base::Letter(letter), subscript) => format!("{letter}|{}", subscript.unwrap_or_default()),
             (Base::Word(word), subscript) => format!("{word}|{}", subscript.unwrap_or_default()),
-            (Base::Greek(greek), subscript) => format!("{}|{}", greek.character, subscript.unwrap_or_default()),
+            (Base::Greek(greek), subscript) => {
+                format!("{}|{}", greek.character, subscript.unwrap_or_default())
+            }
         };
         let cases = [
             ("x", "x|"),

@@ -70,9 +70,19 @@ pub(super) fn letter(letter: &Letter) -> String {
     format!("<math>{}</math>", MathMl.letter(letter))
 }
 
-/// An expression in a table or in running text, on several lines where it is long.
-pub(super) fn expression(expression: &Expression) -> String {
-    let lines = lines(expression, ARM_WIDTH);
+/// A lever arm in a table.
+pub(super) fn arm(arm: &Expression) -> String {
+    stacked(arm, ARM_WIDTH)
+}
+
+/// A part of an equation, beside its name.
+pub(super) fn part(part: &Expression) -> String {
+    stacked(part, EQUATION_WIDTH)
+}
+
+/// An expression on several lines where it is long.
+fn stacked(expression: &Expression, width: usize) -> String {
+    let lines = lines(expression, width);
     match lines.as_slice() {
         [line] => format!("<math>{line}</math>"),
         lines => {
@@ -99,7 +109,11 @@ pub(super) fn equation(statement: &Statement) -> String {
 fn lines(expression: &Expression, width: usize) -> Vec<String> {
     let written = pieces(&MathMl, expression);
     let plain = pieces(&Plain, expression);
-    wrap::lines(&plain, width).into_iter().map(|line| wrap::join(&written, line)).collect()
+    let line = |line: &wrap::Line| {
+        let indent = if line.inside { "<mspace width=\"2em\"/>" } else { "" };
+        format!("{indent}{}", wrap::join(&written, line))
+    };
+    wrap::lines(&plain, width).iter().map(line).collect()
 }
 
 /// Text in HTML.

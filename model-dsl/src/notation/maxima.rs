@@ -6,15 +6,55 @@ use super::letter::Letter;
 use super::number::Number;
 use super::sheet::{Sheet, Statement};
 use super::tree::Function;
-use super::writer::{Signs, Writer, pieces};
 use super::wrap;
+use super::writer::{Signs, Writer, pieces};
 
 /// Words that mean something to Maxima, or whose assignment would change how it works.
 const RESERVED: [&str; 44] = [
-    "allbut", "and", "append", "arrays", "cos", "del", "demoivre", "diff", "do", "else", "elseif", "false", "for",
-    "from", "functions", "if", "in", "inf", "infinity", "ind", "integrate", "labels", "lambda", "limit", "macros",
-    "minf", "myoptions", "next", "noun", "not", "or", "props", "rules", "simp", "sin", "step", "sum", "then",
-    "thru", "true", "und", "unless", "values", "while",
+    "allbut",
+    "and",
+    "append",
+    "arrays",
+    "cos",
+    "del",
+    "demoivre",
+    "diff",
+    "do",
+    "else",
+    "elseif",
+    "false",
+    "for",
+    "from",
+    "functions",
+    "if",
+    "in",
+    "inf",
+    "infinity",
+    "ind",
+    "integrate",
+    "labels",
+    "lambda",
+    "limit",
+    "macros",
+    "minf",
+    "myoptions",
+    "next",
+    "noun",
+    "not",
+    "or",
+    "props",
+    "rules",
+    "simp",
+    "sin",
+    "step",
+    "sum",
+    "then",
+    "thru",
+    "true",
+    "und",
+    "unless",
+    "values",
+    "while",
 ];
 
 struct Maxima;
@@ -58,7 +98,10 @@ pub(super) fn batch(sheet: &Sheet) -> String {
     for motion in &sheet.motions {
         let against = if motion.against_iso { ", counted against the ISO sense" } else { "" };
         let name = Maxima.letter(&motion.letter);
-        text.push_str(&comment(&format!("{name}: {}, {} ({}{against})", motion.iso, motion.meaning, motion.unit)));
+        text.push_str(&comment(&format!(
+            "{name}: {}, {} ({}{against})",
+            motion.iso, motion.meaning, motion.unit
+        )));
     }
     for row in &sheet.rows {
         text.push('\n');
@@ -70,7 +113,9 @@ pub(super) fn batch(sheet: &Sheet) -> String {
 
 fn assignment(statement: &Statement) -> String {
     let mut pieces = pieces(&Maxima, &statement.right);
-    pieces.push("$".to_owned());
+    if let Some(last) = pieces.last_mut() {
+        last.text.push('$');
+    }
     wrap::equation(&format!("{} : ", Maxima.letter(&statement.left)), &pieces)
 }
 

@@ -23,11 +23,7 @@ impl Number {
     pub(super) fn new(value: &Rational) -> Self {
         let (numerator, denominator) = (value.numer().magnitude().to_string(), value.denom().magnitude());
         let whole = denominator.is_one();
-        Self {
-            decimal: decimal(value),
-            numerator,
-            denominator: (!whole).then(|| denominator.to_string()),
-        }
+        Self { decimal: decimal(value), numerator, denominator: (!whole).then(|| denominator.to_string()) }
     }
 }
 

@@ -6,8 +6,8 @@ use std::collections::BTreeSet;
 use super::letter::Letter;
 use super::tree::{self, Expression};
 use crate::algebra::{Axis, Monomial, Symbol};
-use crate::equations::{AxisInfo, Equations, Names, Row, Term};
-use crate::machine::Branch;
+use crate::equations::{Equations, LinkInfo, Names, Row, Term};
+use crate::machine::{Branch, LinkKind, Reference};
 
 /// An equation: a letter and what it equals.
 pub(super) struct Statement {
@@ -174,41 +174,56 @@ fn quantities(equations: &Equations) -> Vec<QuantityEntry> {
     positions.chain(travels).chain(constants).collect()
 }
 
+/// Both branches in words, from the bed outwards.
 fn chain(equations: &Equations) -> Vec<String> {
-    let carried = |branch, what: &str| {
-        let axes: Vec<String> =
-            equations.axes.iter().filter(|axis| axis.branch == branch).map(axis_in_words).collect();
-        match axes.as_slice() {
-            [] => format!("No axis moves {what}."),
-            [one] => format!("One axis moves {what}: {one}."),
-            several => format!("{} axes move {what}: {}.", count(several.len()), several.join(", ")),
-        }
+    let branch = |branch, what: &str| {
+        let links = equations.links.iter().filter(|link| link.branch == branch);
+        let bodies: Vec<String> = links.map(link_in_words).collect();
+        let bodies = if bodies.is_empty() { "at rest".to_owned() } else { bodies.join(", then ") };
+        format!("From the bed to {what}: {bodies}.")
     };
-    let mut sentences = vec![carried(Branch::Workpiece, "the part"), carried(Branch::Tool, "the tool")];
-    let mut bodies: Vec<&str> = Vec::new();
-    for motion in equations.motions.iter().filter(|motion| motion.axis.is_none()) {
-        if !bodies.contains(&motion.link.as_str()) {
-            bodies.push(&motion.link);
-        }
-    }
-    if !bodies.is_empty() {
-        sentences.push(format!("Further bodies with error motions: {}.", bodies.join(", ")));
-    }
-    sentences
+    vec![branch(Branch::Workpiece, "the part"), branch(Branch::Tool, "the tool")]
 }
 
-fn axis_in_words(axis: &AxisInfo) -> String {
-    let (letter, along) = (&axis.letter, axis.along);
-    if axis.rotary {
-        format!("{letter} (turns about {along})")
+fn link_in_words(link: &LinkInfo) -> String {
+    let sign = if link.along.sign < 0 { '-' } else { '+' };
+    let along = link.along.axis;
+    let id = &link.id;
+    let what = match link.kind {
+        LinkKind::Slide(_) => format!("{id} (slides along {sign}{along})"),
+        LinkKind::Rotary(_) => format!("{id} (turns about {sign}{along})"),
+        LinkKind::Spindle => format!("spindle {id} (about {along})"),
+        kind => format!("{} {id}", kind.word()),
+    };
+    if link.origin.iter().all(crate::algebra::Polynomial::is_zero) {
+        return what;
+    }
+    let [x, y, z] = link.origin.each_ref().map(super::infix);
+    format!("{what} at [{x}, {y}, {z}]")
+}
+
+/// In which sense a motion of the part's branch is counted, and about which points bodies turn.
+fn senses(equations: &Equations) -> Vec<String> {
+    let mut sentences = Vec::new();
+    if equations.relative {
+        sentences.push(
+            "Error motions are those of the tool relative to the part: on the part's branch every motion but the link's \
+             own is the opposite of what the body does; alignment errors turn a line and are the same from either side."
+                .to_owned(),
+        );
     } else {
-        format!("{letter} (slides along {along})")
+        sentences.push(
+            "An error motion is that of its own body, in directions of the bed, on either branch.".to_owned(),
+        );
     }
-}
-
-fn count(number: usize) -> String {
-    let words = ["No", "One", "Two", "Three", "Four", "Five", "Six"];
-    words.get(number).map_or_else(|| number.to_string(), |word| (*word).to_owned())
+    let bed = |link: &&LinkInfo| matches!(link.kind, LinkKind::Slide(_)) && link.reference == Reference::Bed;
+    let about_bed: Vec<&str> = equations.links.iter().filter(bed).map(|link| link.id.as_str()).collect();
+    sentences.push(if about_bed.is_empty() {
+        "Rotations of a slide act about the origin that travels with it.".to_owned()
+    } else {
+        format!("Rotations of {} act about the origin that stays with the bed.", about_bed.join(", "))
+    });
+    sentences
 }
 
 fn conventions(equations: &Equations, names: Names) -> Vec<String> {
@@ -223,6 +238,7 @@ fn conventions(equations: &Equations, names: Names) -> Vec<String> {
     ]
     .map(str::to_owned)
     .to_vec();
+    sentences.extend(senses(equations));
     if equations.axes.iter().any(|axis| axis.rotary) {
         sentences.push("Rotary axes turn by large angles; their sines and cosines are exact.".to_owned());
     }
@@ -235,10 +251,16 @@ fn conventions(equations: &Equations, names: Names) -> Vec<String> {
     if !against.is_empty() {
         sentences.push(format!("Counted against the sense of ISO 230-1: {}.", against.join(", ")));
     }
-    let absent: Vec<String> =
-        Axis::ALL.into_iter().filter(|axis| equations.row(*axis).is_none()).map(|axis| axis.to_string()).collect();
+    let absent: Vec<String> = Axis::ALL
+        .into_iter()
+        .filter(|axis| equations.row(*axis).is_none())
+        .map(|axis| axis.to_string())
+        .collect();
     if !absent.is_empty() {
-        sentences.push(format!("Not derived, since the machine file does not call it sensitive: {}.", absent.join(", ")));
+        sentences.push(format!(
+            "Not derived, since the machine file does not call it sensitive: {}.",
+            absent.join(", ")
+        ));
     }
     sentences
 }

@@ -119,8 +119,12 @@ fn the_page_stands_alone_and_its_elements_close() {
         for forbidden in ["<script", "http", "src=", "href=", "@import", "url("] {
             assert!(!page.contains(forbidden), "{name} holds {forbidden}");
         }
-        for tag in ["math", "mtable", "mtr", "mtd", "mi", "mo", "mn", "msub", "msup", "mrow", "table", "tr", "td", "p"] {
-            let opened = page.matches(&format!("<{tag}>")).count() + page.matches(&format!("<{tag} ")).count();
+        for tag in [
+            "math", "mtable", "mtr", "mtd", "mi", "mo", "mn", "msub", "msup", "mrow", "table", "tr", "td",
+            "p",
+        ] {
+            let opened =
+                page.matches(&format!("<{tag}>")).count() + page.matches(&format!("<{tag} ")).count();
             assert_eq!(opened, page.matches(&format!("</{tag}>")).count(), "{name}: {tag}");
         }
     }
@@ -142,7 +146,10 @@ fn hostile_words_stay_words() {
     equations.machine = "a\"b\\c\u{1}".to_owned();
     assert!(!print(&equations, Format::Html, Names::Iso).contains("<script"));
     assert!(print(&equations, Format::Json, Names::Iso).contains(r#""machine": "a\"b\\c\u0001""#));
-    assert!(print(&equations, Format::Latex, Names::Iso).contains("100\\% \\& \"so\" */ \\$x\\_1\\$ \\textbackslash{}"));
+    assert!(
+        print(&equations, Format::Latex, Names::Iso)
+            .contains("100\\% \\& \"so\" */ \\$x\\_1\\$ \\textbackslash{}")
+    );
     assert!(print(&equations, Format::Maxima, Names::Iso).contains("* / $x_1$"));
 }
 

@@ -4,8 +4,8 @@ use super::letter::Letter;
 use super::number::Number;
 use super::sheet::{Sheet, Statement};
 use super::tree::Function;
-use super::writer::{Signs, Writer, pieces};
 use super::wrap;
+use super::writer::{Signs, Writer, pieces};
 
 /// Plain infix, as [`crate::expression::parse`] reads it.
 pub(super) struct Plain;

@@ -85,7 +85,7 @@ pub(super) fn term(arm: &Polynomial, motion: Letter) -> Signed {
     let negative = arm.leads_negative();
     let arm = if negative { -arm } else { arm.clone() };
     let mut found = match arm.terms().next() {
-        Some((monomial, value)) if arm.len() == 1 => written_factors(monomial, value),
+        Some((monomial, value)) if arm.size() == 1 => written_factors(monomial, value),
         _ => vec![Expression::Group(Box::new(polynomial(&arm)))],
     };
     found.push(Expression::Letter(motion));
@@ -112,7 +112,10 @@ fn factors(monomial: &Monomial, value: &Rational) -> Vec<Expression> {
 
 fn written_factors(monomial: &Monomial, value: &Rational) -> Vec<Expression> {
     let number = (!value.abs().is_one()).then(|| Expression::Number(Number::new(value)));
-    number.into_iter().chain(monomial.factors().iter().map(|(symbol, exponent)| power(symbol, *exponent))).collect()
+    number
+        .into_iter()
+        .chain(monomial.factors().iter().map(|(symbol, exponent)| power(symbol, *exponent)))
+        .collect()
 }
 
 fn power(symbol: &Symbol, exponent: u32) -> Expression {

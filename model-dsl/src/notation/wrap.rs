@@ -2,43 +2,65 @@
 
 use std::ops::Range;
 
+use super::writer::Piece;
+
 /// The widest line of plain text, in characters.
 pub(super) const WIDTH: usize = 100;
+/// How far a line that begins inside a bracket is set in, in characters.
+const INSIDE: usize = 4;
 
-/// Which pieces stand together on a line so that no line is wider than `width`, one piece at least.
-pub(super) fn lines(pieces: &[String], width: usize) -> Vec<Range<usize>> {
-    let mut lines: Vec<Range<usize>> = Vec::new();
-    let mut used = 0;
+/// A line of an equation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Line {
+    /// Its pieces, by their numbers.
+    pub(super) pieces: Range<usize>,
+    /// Whether it begins inside a bracket, and so goes on with what the line before it began.
+    pub(super) inside: bool,
+}
+
+/// Which pieces stand together on a line no wider than `width`. A part of the outer sum is kept whole
+/// where it fits into a line; a wider one begins a line and is broken inside its brackets.
+pub(super) fn lines(pieces: &[Piece], width: usize) -> Vec<Line> {
+    let lengths: Vec<usize> = pieces.iter().map(|piece| piece.text.chars().count()).collect();
+    let mut lines: Vec<Line> = Vec::new();
+    let (mut used, mut broken) = (0, false);
     for (number, piece) in pieces.iter().enumerate() {
-        let length = piece.chars().count();
-        match lines.last_mut() {
-            Some(line) if used + length <= width => {
-                line.end = number + 1;
-                used += length;
+        let outer = piece.depth == 0;
+        let inner = pieces.iter().skip(number + 1).take_while(|next| next.depth > 0).count();
+        let whole: usize = lengths.iter().skip(number).take(if outer { inner + 1 } else { 1 }).sum();
+        let fits = used + whole <= width && !(outer && broken);
+        used = match lines.last_mut() {
+            Some(line) if fits => {
+                line.pieces.end = number + 1;
+                used
             }
             _ => {
-                lines.push(number..number + 1);
-                used = length;
+                broken = !outer || whole > width;
+                lines.push(Line { pieces: number..number + 1, inside: !outer });
+                if outer { 0 } else { INSIDE }
             }
-        }
+        };
+        used += lengths.get(number).copied().unwrap_or(0);
     }
     lines
 }
 
-/// The pieces of one line, joined.
-pub(super) fn join(pieces: &[String], line: Range<usize>) -> String {
-    pieces.get(line).map(<[String]>::concat).unwrap_or_default()
+/// The text of one line.
+pub(super) fn join(pieces: &[Piece], line: &Line) -> String {
+    let pieces = pieces.get(line.pieces.clone()).unwrap_or_default();
+    pieces.iter().map(|piece| piece.text.as_str()).collect()
 }
 
 /// A head followed by an equation's pieces, continued under the first of them.
-pub(super) fn equation(head: &str, pieces: &[String]) -> String {
+pub(super) fn equation(head: &str, pieces: &[Piece]) -> String {
     let indent = head.chars().count();
     let mut text = head.to_owned();
-    for (number, line) in lines(pieces, WIDTH.saturating_sub(indent)).into_iter().enumerate() {
+    for (number, line) in lines(pieces, WIDTH.saturating_sub(indent)).iter().enumerate() {
         let written = join(pieces, line);
         if number == 0 {
             text.push_str(&written);
         } else {
+            let indent = indent + if line.inside { INSIDE } else { 0 };
             text.push_str(&format!("\n{:indent$}{}", "", written.trim_start()));
         }
     }
@@ -71,11 +93,27 @@ pub(super) fn words(head: &str, words: &str) -> String {
 mod tests {
     use super::*;
 
+    fn pieces(texts: &[(&str, usize)]) -> Vec<Piece> {
+        texts.iter().map(|(text, depth)| Piece { text: (*text).to_owned(), depth: *depth }).collect()
+    }
+
+    fn ranges(texts: &[(&str, usize)], width: usize) -> Vec<(Range<usize>, bool)> {
+        lines(&pieces(texts), width).into_iter().map(|line| (line.pieces, line.inside)).collect()
+    }
+
     #[test]
     fn a_line_is_filled_before_it_is_broken() {
-        let pieces = ["aaaa", " + bb", " - c", " + dddddddddddd"].map(str::to_owned);
-        assert_eq!(lines(&pieces, 9), [0..2, 2..3, 3..4]);
+        let flat = [("aaaa", 0), (" + bb", 0), (" - c", 0), (" + dddddddddddd", 0)];
+        assert_eq!(ranges(&flat, 9), [(0..2, false), (2..3, false), (3..4, false)]);
         assert!(lines(&[], 9).is_empty());
+    }
+
+    #[test]
+    fn a_bracket_is_kept_whole_where_a_line_can_hold_it() {
+        let short = [("aaaaaa", 0), (" + (b", 0), (" - c)*e", 1), (" + d", 0)];
+        assert_eq!(ranges(&short, 16), [(0..1, false), (1..4, false)]);
+        let long = [("a", 0), (" + (b", 0), (" - cccc", 1), (" - ddddd)*e", 1), (" + f", 0)];
+        assert_eq!(ranges(&long, 16), [(0..1, false), (1..3, false), (3..4, true), (4..5, false)]);
     }
 
     #[test]

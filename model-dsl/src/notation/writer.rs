@@ -35,14 +35,28 @@ pub(super) trait Writer {
     fn function(&self, function: Function, argument: &str) -> String;
 }
 
+/// Text before which a line may be broken.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Piece {
+    /// The text, with the sign that it begins with.
+    pub(super) text: String,
+    /// Within how many brackets it begins.
+    pub(super) depth: usize,
+}
+
 /// The text of an expression, in pieces between which a line may be broken.
-pub(super) fn pieces(writer: &impl Writer, expression: &Expression) -> Vec<String> {
-    let mut pieces = vec![String::new()];
-    write(writer, expression, &mut pieces);
+pub(super) fn pieces(writer: &impl Writer, expression: &Expression) -> Vec<Piece> {
+    let mut pieces = vec![Piece::default()];
+    write(writer, expression, 0, &mut pieces);
     pieces
 }
 
-fn write(writer: &impl Writer, expression: &Expression, pieces: &mut Vec<String>) {
+/// The text of an expression in one line.
+pub(super) fn line(writer: &impl Writer, expression: &Expression) -> String {
+    pieces(writer, expression).into_iter().map(|piece| piece.text).collect()
+}
+
+fn write(writer: &impl Writer, expression: &Expression, depth: usize, pieces: &mut Vec<Piece>) {
     let signs = writer.signs();
     match expression {
         Expression::Sum(parts) => {
@@ -50,24 +64,27 @@ fn write(writer: &impl Writer, expression: &Expression, pieces: &mut Vec<String>
                 match (number, part.negative) {
                     (0, false) => {}
                     (0, true) => append(pieces, signs.leading_minus),
-                    (_, negative) => pieces.push(if negative { signs.minus } else { signs.plus }.to_owned()),
+                    (_, negative) => {
+                        let sign = if negative { signs.minus } else { signs.plus };
+                        pieces.push(Piece { text: sign.to_owned(), depth });
+                    }
                 }
-                write(writer, &part.value, pieces);
+                write(writer, &part.value, depth, pieces);
             }
         }
         Expression::Product(factors) => {
             for (number, factor) in factors.iter().enumerate() {
                 append(pieces, if number == 0 { "" } else { signs.times });
-                write(writer, factor, pieces);
+                write(writer, factor, depth, pieces);
             }
         }
         Expression::Group(inner) => {
             append(pieces, signs.open);
-            write(writer, inner, pieces);
+            write(writer, inner, depth + 1, pieces);
             append(pieces, signs.close);
         }
         Expression::Power(base, exponent) => {
-            let base = self::pieces(writer, base).concat();
+            let base = line(writer, base);
             append(pieces, &writer.power(&base, *exponent));
         }
         Expression::Function(function, argument) => {
@@ -78,8 +95,8 @@ fn write(writer: &impl Writer, expression: &Expression, pieces: &mut Vec<String>
     }
 }
 
-fn append(pieces: &mut [String], text: &str) {
+fn append(pieces: &mut [Piece], text: &str) {
     if let Some(last) = pieces.last_mut() {
-        last.push_str(text);
+        last.text.push_str(text);
     }
 }

@@ -146,15 +146,15 @@ impl<'r> Builder<'r> {
         }))
     }
 
-    fn symbol(&self, symbol: &Symbol) -> Value {
+    fn symbol(&mut self, symbol: &Symbol) -> Value {
         let defined = self.defined.get(symbol).copied();
-        defined.unwrap_or_else(|| (self.resolve)(symbol).map_or(Value::Zero, Value::Input))
+        let known = defined.or_else(|| (self.resolve)(symbol).map(Value::Input));
+        // A symbol that nobody gives has no value, and must not look as if it had one.
+        known.unwrap_or_else(|| self.float(f64::NAN))
     }
 
     fn product(&mut self, left: Value, right: Value) -> Value {
-        let one = |value: Value| {
-            matches!(value, Value::Number(number) if self.program.numbers.get(number) == Some(&1.0))
-        };
+        let one = |value: Value| matches!(value, Value::Number(number) if self.program.numbers.get(number) == Some(&1.0));
         if one(left) {
             return right;
         }

@@ -32,10 +32,9 @@ impl Programs {
         };
         let motions = 0..equations.motions.len();
         let arms = motions.flat_map(|motion| Axis::ALL.map(|direction| equations.arm(direction, motion)));
-        let mut effects = equations
-            .axes
-            .iter()
-            .flat_map(|axis| axis.effect.clone().unwrap_or_else(|| std::array::from_fn(|_| Polynomial::zero())));
+        let mut effects = equations.axes.iter().flat_map(|axis| {
+            axis.effect.clone().unwrap_or_else(|| std::array::from_fn(|_| Polynomial::zero()))
+        });
         Self {
             nominal: program(&mut Axis::ALL.into_iter().map(|direction| nominal(equations, direction))),
             error: error(equations, &resolve),

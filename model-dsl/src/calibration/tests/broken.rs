@@ -28,7 +28,7 @@ proptest! {
         let end = WHOLE.ceil_char_boundary((start + cut).min(WHOLE.len()));
         let text = format!("{}{insert}{}", &WHOLE[..start], &WHOLE[end..]);
         let (calibration, diagnostics, source) = read_with_diagnostics(&text);
-        prop_assert_eq!(calibration.is_none(), diagnostics.has_errors());
+        prop_assert!(calibration.is_some() || diagnostics.has_errors());
         for one in &diagnostics {
             prop_assert!(one.span.start <= one.span.end && one.span.end <= text.len());
             prop_assert!(text.is_char_boundary(one.span.start) && text.is_char_boundary(one.span.end), "{one:?}");

@@ -1,0 +1,280 @@
+//! From statements to printed equations. In: the sections of a file. Out: each equation with its target and
+//! its right side as a canonical polynomial. Every mistake is reported, each name once in an expression.
+
+use super::Target;
+use super::syntax::{self, Statement};
+use super::vocabulary::Vocabulary;
+use crate::algebra::{Axis, Polynomial, Symbol};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::equations::Equations;
+use crate::expression::parse;
+use crate::machine::Machine;
+use crate::source::{SourceFile, Span, Spanned};
+use crate::suggest::nearest;
+
+/// The most unknown names that are told of one expression.
+const MOST_UNKNOWN: usize = 20;
+
+/// An equation as printed.
+#[derive(Clone, Debug)]
+pub(super) struct Printed {
+    /// The left side.
+    pub(super) left: Spanned<String>,
+    /// What it is about.
+    pub(super) target: Target,
+    /// The right side.
+    pub(super) value: Polynomial,
+}
+
+/// The equations under one header.
+#[derive(Clone, Debug)]
+pub(super) struct Section {
+    /// The header's words.
+    pub(super) name: Option<String>,
+    /// Whether motions that occur nowhere in it were left out by its authors.
+    pub(super) selection: bool,
+    /// In the file's order.
+    pub(super) equations: Vec<Printed>,
+}
+
+/// What a header says.
+struct Kind {
+    selection: bool,
+    link: Option<usize>,
+}
+
+/// Reads all sections; `None` where there is a mistake.
+pub(super) fn sections(
+    machine: &Machine,
+    equations: &Equations,
+    file: &SourceFile,
+    diagnostics: &mut Diagnostics,
+) -> Option<Vec<Section>> {
+    let mut found = Diagnostics::new();
+    let read: Vec<Section> = syntax::read(file, &mut found)
+        .iter()
+        .filter_map(|section| read_section(section, machine, equations, &mut found))
+        .collect();
+    if !found.has_errors() && read.iter().all(|section| section.equations.is_empty()) {
+        found.push(
+            Diagnostic::error("E0507", Span::default(), "the file holds no equation")
+                .label("nothing to compare")
+                .help("write `Px = expression`, one line for each equation"),
+        );
+    }
+    let good = !found.has_errors();
+    diagnostics.extend(found);
+    good.then_some(read)
+}
+
+fn read_section(
+    section: &syntax::Section,
+    machine: &Machine,
+    equations: &Equations,
+    diagnostics: &mut Diagnostics,
+) -> Option<Section> {
+    let kind = kind(section.name.as_ref(), machine, diagnostics)?;
+    let mut vocabulary = Vocabulary::new(machine);
+    let mut printed: Vec<Printed> = Vec::new();
+    for statement in &section.statements {
+        match statement {
+            Statement::Let(letter, value) => give(&mut vocabulary, letter, value, diagnostics),
+            Statement::Equation(left, right) => {
+                let target = target(left, kind.link, equations, diagnostics);
+                let value = value(right, &vocabulary, diagnostics);
+                if let (Some(target), Some(value)) = (target, value) {
+                    add(&mut printed, Printed { left: left.clone(), target, value }, diagnostics);
+                }
+            }
+        }
+    }
+    let name = section.name.as_ref().map(|name| name.value.clone());
+    Some(Section { name, selection: kind.selection, equations: printed })
+}
+
+fn add(printed: &mut Vec<Printed>, equation: Printed, diagnostics: &mut Diagnostics) {
+    match printed.iter().find(|known| known.target == equation.target) {
+        Some(first) => diagnostics.push(
+            Diagnostic::error(
+                "E0506",
+                equation.left.span,
+                format!("`{}` is printed twice", equation.left.value),
+            )
+            .label("again here")
+            .also(first.left.span, "first here")
+            .help("take one of them out, or put it under another section"),
+        ),
+        None => printed.push(equation),
+    }
+}
+
+fn kind(name: Option<&Spanned<String>>, machine: &Machine, diagnostics: &mut Diagnostics) -> Option<Kind> {
+    let Some(name) = name else { return Some(Kind { selection: false, link: None }) };
+    let words: Vec<&str> = name.value.split(' ').collect();
+    match words.as_slice() {
+        ["carriage", id] => {
+            Some(Kind { selection: false, link: Some(link(id, name, machine, diagnostics)?) })
+        }
+        ["carriage", id, "significant"] => {
+            Some(Kind { selection: true, link: Some(link(id, name, machine, diagnostics)?) })
+        }
+        ["carriage", ..] => {
+            diagnostics.push(
+                Diagnostic::error("E0508", name.span, "this section names no carriage")
+                    .label("one link is expected after `carriage`")
+                    .help("write `[carriage X]` or `[carriage X significant]`"),
+            );
+            None
+        }
+        words => Some(Kind { selection: words == ["significant"], link: None }),
+    }
+}
+
+fn link(id: &str, name: &Spanned<String>, machine: &Machine, diagnostics: &mut Diagnostics) -> Option<usize> {
+    let found = machine.links.iter().position(|link| link.id == id);
+    if found.is_none() {
+        let ids: Vec<&str> = machine.links.iter().map(|link| link.id.as_str()).collect();
+        let error = Diagnostic::error("E0508", name.span, format!("the machine has no link `{id}`"));
+        let error = error.label("not a link of this machine");
+        diagnostics.push(match nearest(id, ids.iter().copied()) {
+            Some(near) => error.suggest(Some(near)),
+            None => error.help(format!("links of {}: {}", machine.name, ids.join(", "))),
+        });
+    }
+    found
+}
+
+fn give(
+    vocabulary: &mut Vocabulary<'_>,
+    letter: &Spanned<String>,
+    value: &Spanned<String>,
+    diagnostics: &mut Diagnostics,
+) {
+    let name = letter.value.as_str();
+    let shaped = name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+        && !["sin", "cos"].contains(&name);
+    if !shaped || vocabulary.has_letter(name) {
+        let problem = if shaped { "is given twice in this section" } else { "cannot be a letter" };
+        diagnostics.push(
+            Diagnostic::error("E0509", letter.span, format!("`{name}` {problem}"))
+                .label("not a new name")
+                .help("write `let gamma = EAX`, or `let gamma = -EAX` for the other sense"),
+        );
+    } else if let Err(unknown) = vocabulary.give(name, &value.value) {
+        diagnostics.push(
+            Diagnostic::error("E0509", value.span, format!("`{unknown}` is not known here"))
+                .label("a motion, position, constant or travel is expected")
+                .suggest(vocabulary.nearest(&unknown)),
+        );
+    }
+}
+
+fn target(
+    left: &Spanned<String>,
+    link: Option<usize>,
+    equations: &Equations,
+    diagnostics: &mut Diagnostics,
+) -> Option<Target> {
+    let found = direction(&left.value).or_else(|| entry(&left.value, link));
+    let problem = match (&found, link) {
+        (Some(Target::Entry { .. }), Some(_)) => return found,
+        (Some(Target::Position(axis) | Target::Error(axis)), None) => {
+            if equations.row(*axis).is_some() {
+                return found;
+            }
+            diagnostics.push(insensitive(*axis, left, equations));
+            return None;
+        }
+        (_, Some(_)) => {
+            ("E0510", "is no entry of a matrix", "write `T(2,3) = expression`, with numbers from 1 to 4")
+        }
+        (_, None) => (
+            "E0502",
+            "is no left side of an equation",
+            "write `Px` for position and error, `dPx` or `Ex` for the error alone; `T(i,j)` belongs under `[carriage X]`",
+        ),
+    };
+    let (code, what, help) = problem;
+    diagnostics.push(
+        Diagnostic::error(code, left.span, format!("`{}` {what}", left.value))
+            .label("not expected here")
+            .help(help),
+    );
+    None
+}
+
+fn insensitive(axis: Axis, left: &Spanned<String>, equations: &Equations) -> Diagnostic {
+    let derived: Vec<String> = equations.rows.iter().map(|row| row.direction.to_string()).collect();
+    Diagnostic::error("E0505", left.span, format!("{} derives no equation in {axis}", equations.machine))
+        .label("the machine file does not call this direction sensitive")
+        .help(format!("sensitive directions: {}", derived.join(", ")))
+}
+
+/// `Px`, `dPx` or `Ex`, the direction in either case.
+fn direction(left: &str) -> Option<Target> {
+    let axis = match left.chars().last()?.to_ascii_lowercase() {
+        'x' => Axis::X,
+        'y' => Axis::Y,
+        'z' => Axis::Z,
+        _ => return None,
+    };
+    match left.get(..left.len() - 1)? {
+        "P" => Some(Target::Position(axis)),
+        "dP" | "E" => Some(Target::Error(axis)),
+        _ => None,
+    }
+}
+
+/// `T(i,j)`; outside of a carriage's section it is recognised too, to be refused by name.
+fn entry(left: &str, link: Option<usize>) -> Option<Target> {
+    let inner = left.strip_prefix('T')?.trim_start().strip_prefix('(')?.strip_suffix(')')?;
+    let (row, column) = inner.split_once(',')?;
+    let number = |text: &str| text.trim().parse::<usize>().ok().filter(|number| (1..=4).contains(number));
+    Some(Target::Entry { link: link?, row: number(row)?, column: number(column)? })
+}
+
+/// Reads a right side. After an unknown name the rest is read again without asking for that name.
+fn value(
+    right: &Spanned<String>,
+    vocabulary: &Vocabulary<'_>,
+    diagnostics: &mut Diagnostics,
+) -> Option<Polynomial> {
+    let mut told: Vec<String> = Vec::new();
+    loop {
+        let mut unknown: Option<String> = None;
+        let parsed = parse(&right.value, &mut |name| {
+            if told.iter().any(|known| known == name) {
+                return Some(Symbol::Constant(name.into()));
+            }
+            let symbol = vocabulary.resolve(name);
+            if symbol.is_none() {
+                unknown = Some(name.to_owned());
+            }
+            symbol
+        });
+        let error = match parsed {
+            Ok(value) => return told.is_empty().then(|| vocabulary.settle(&value)),
+            Err(error) => error,
+        };
+        let span = Span::new(right.span.start + error.start, right.span.start + error.end);
+        let Some(name) = unknown else {
+            if told.is_empty() {
+                diagnostics.push(
+                    Diagnostic::error("E0503", span, error.message)
+                        .label("the expression cannot be read here"),
+                );
+            }
+            return None;
+        };
+        diagnostics.push(
+            Diagnostic::error("E0504", span, format!("`{name}` is not known here"))
+                .label("neither an error motion nor a position, constant or travel of the machine")
+                .suggest(vocabulary.nearest(&name)),
+        );
+        told.push(name);
+        if told.len() == MOST_UNKNOWN {
+            return None;
+        }
+    }
+}

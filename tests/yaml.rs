@@ -1,0 +1,134 @@
+//! Machine files written from descriptions. In: a machine of the oracle. Out: the text that a user would write for it.
+
+use std::fmt::Write;
+
+use crate::oracle::{ErrorMotion, Kind, Link, Machine, Shape};
+
+/// The whole file. Constants are declared where `declare` says so, and simply used otherwise.
+pub(crate) fn text(machine: &Machine, declare: bool) -> String {
+    let mut text = String::from("abbe: 1\nname: described\n");
+    if machine.sensitive != [true; 3] {
+        let letters: Vec<&str> = ["Z", "Y", "X"]
+            .into_iter()
+            .zip([2, 1, 0])
+            .filter(|(_, axis)| machine.sensitive[*axis])
+            .map(|(letter, _)| letter)
+            .collect();
+        writeln!(text, "sensitive: [{}]", letters.join(", ")).unwrap();
+    }
+    if machine.relative {
+        text.push_str("motions: relative\n");
+    }
+    if machine.bed {
+        text.push_str("reference: bed\n");
+    }
+    if declare && !machine.constants().is_empty() {
+        writeln!(text, "constants: [{}]", machine.constants().join(", ")).unwrap();
+    }
+    text.push_str("chain:\n");
+    for (name, links) in [("workpiece", &machine.workpiece), ("tool", &machine.tool)] {
+        if !links.is_empty() {
+            writeln!(text, "  {name}:").unwrap();
+            links.iter().for_each(|link| text.push_str(&written(link)));
+        }
+    }
+    text
+}
+
+fn written(link: &Link) -> String {
+    let (word, name) = match link.kind {
+        Kind::Slide(letter) => ("slide", letter.to_string()),
+        Kind::Rotary(letter) => ("rotary", letter.to_string()),
+        Kind::Spindle => ("spindle", link.id.clone()),
+        Kind::Fixed => ("fixed", link.id.clone()),
+        Kind::Tool => ("tool", link.id.clone()),
+        Kind::Part => ("part", link.id.clone()),
+    };
+    let mut text = format!("    - {word}: {name}\n");
+    if name != link.id {
+        writeln!(text, "      id: {}", link.id).unwrap();
+    }
+    if matches!(link.kind, Kind::Slide(_) | Kind::Rotary(_) | Kind::Spindle) {
+        let sign = if link.backwards { '-' } else { '+' };
+        writeln!(text, "      along: {sign}{}", &"XYZ"[link.along..=link.along]).unwrap();
+    }
+    if link.origin.iter().any(|sum| !sum.is_empty()) {
+        let key = if matches!(link.kind, Kind::Tool | Kind::Part) { "offset" } else { "origin" };
+        let coordinates: Vec<String> = link.origin.iter().map(|sum| coordinate(sum)).collect();
+        writeln!(text, "      {key}: [{}]", coordinates.join(", ")).unwrap();
+    }
+    if let Some(bed) = link.bed {
+        writeln!(text, "      reference: {}", if bed { "bed" } else { "carriage" }).unwrap();
+    }
+    if let Some(errors) = &link.errors {
+        text.push_str(&listed(errors, &link.id));
+    }
+    text
+}
+
+fn coordinate(sum: &[(f64, Option<String>)]) -> String {
+    let mut text = String::new();
+    for (factor, name) in sum {
+        let sign = match (*factor < 0.0, text.is_empty()) {
+            (true, true) => "-",
+            (true, false) => " - ",
+            (false, true) => "",
+            (false, false) => " + ",
+        };
+        let size = factor.abs();
+        text.push_str(sign);
+        match name {
+            Some(name) if size == 1.0 => text.push_str(name),
+            Some(name) => write!(text, "{size}*{name}").unwrap(),
+            None => write!(text, "{size}").unwrap(),
+        }
+    }
+    if text.is_empty() { "0".to_owned() } else { text }
+}
+
+/// A list where every error motion is a plain one, a mapping otherwise; alignments by all of their spellings.
+fn listed(errors: &[ErrorMotion], id: &str) -> String {
+    let plain = |error: &ErrorMotion| {
+        error.symbol.is_none() && !error.opposite && error.travel.is_none() && !error.rotates
+    };
+    let names =
+        errors.iter().enumerate().map(|(number, error)| spelled(&error.name(id), error.shape, number));
+    if errors.iter().all(plain) {
+        return format!("      errors: [{}]\n", names.collect::<Vec<_>>().join(", "));
+    }
+    let mut text = String::from("      errors:\n");
+    for (name, error) in names.zip(errors) {
+        writeln!(text, "        {name}:{}", details(error)).unwrap();
+    }
+    text
+}
+
+fn details(error: &ErrorMotion) -> String {
+    let symbol = error.symbol.as_deref().unwrap_or_default();
+    if !error.opposite && error.travel.is_none() && !error.rotates {
+        return if symbol.is_empty() { String::new() } else { format!(" {symbol}") };
+    }
+    let mut parts = Vec::new();
+    if !symbol.is_empty() {
+        parts.push(format!("symbol: {symbol}"));
+    }
+    if error.opposite {
+        parts.push("sign: -1".to_owned());
+    }
+    if let Some(travel) = &error.travel {
+        parts.push(format!("travel: {travel}"));
+    }
+    if error.rotates {
+        parts.push("rotates: true".to_owned());
+    }
+    format!(" {{{}}}", parts.join(", "))
+}
+
+/// `EC0Y`, `C0Y` and `COY` are one name.
+fn spelled(name: &str, shape: Shape, number: usize) -> String {
+    match (shape, number % 3) {
+        (Shape::Alignment, 1) => name[1..].to_owned(),
+        (Shape::Alignment, 2) => format!("{}O{}", &name[1..2], &name[3..]),
+        _ => name.to_owned(),
+    }
+}

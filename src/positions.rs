@@ -2,6 +2,9 @@
 
 mod layout;
 mod state;
+mod summary;
 
-pub(crate) use layout::{Column, Layout, Wanted};
+use layout::Column;
+pub(crate) use layout::{Layout, Wanted};
 pub(crate) use state::State;
+pub(crate) use summary::Summary;

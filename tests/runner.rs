@@ -3,9 +3,12 @@
 //! In: the workspace as its users see it. Out: the laws that hold across crates.
 
 mod agreement;
+mod bounded;
+mod machine_files;
 mod oracle;
 mod random;
 mod shipped;
+mod tidy;
 mod yaml;
 
 /// Every file beside this one is a module of this program.

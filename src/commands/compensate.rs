@@ -3,7 +3,7 @@
 
 use std::io;
 
-use abbe_runtime::{Compensator, ErrorMotion, Limits, Refusal, TermState, Work, states_needed};
+use abbe_runtime::{Compensator, ErrorMotion, Limits, Outcome, TermState, Work, states_needed};
 use csv::StringRecord;
 use model_dsl::calibration::CalibratedTerm;
 use model_dsl::equations::Equations;
@@ -13,7 +13,7 @@ use crate::arguments::Compensate;
 use crate::calibrated::{self, Calibrated};
 use crate::failure::Failure;
 use crate::output::warn;
-use crate::positions::{Layout, State, Wanted};
+use crate::positions::{Layout, State, Summary, Wanted};
 
 /// Decimal places of errors and positions: a picometre, so that rounding never shows.
 const PLACES: usize = 9;
@@ -47,9 +47,11 @@ struct Rows<'c> {
     writer: csv::Writer<io::StdoutLock<'static>>,
     equations: &'c Equations,
     state: State<'c>,
+    first: Option<StringRecord>,
+    row: u64,
     skip_bad: bool,
     skipped: u64,
-    first: Option<StringRecord>,
+    summary: Option<Summary>,
 }
 
 impl<'c> Rows<'c> {
@@ -86,9 +88,11 @@ impl<'c> Rows<'c> {
             writer: csv::WriterBuilder::new().flexible(true).from_writer(io::stdout().lock()),
             equations,
             state: State::new(layout, &calibrated.calibration.sensors, &hysteresis),
+            first: (more && !units).then_some(second),
+            row: 0,
             skip_bad: command.skip_bad,
             skipped: 0,
-            first: (more && !units).then_some(second),
+            summary: command.summary.then(Summary::default),
         };
         rows.write_header()?;
         Ok(rows)
@@ -119,24 +123,29 @@ impl<'c> Rows<'c> {
         let mut row = StringRecord::new();
         let mut text = String::new();
         while self.next(&mut row)? {
-            let mut outcome = self.state.take(&row);
-            if outcome.is_ok() {
-                let answer = compensator.compensate(&self.state.sample(), &mut compensated);
-                outcome = match answer {
-                    Ok(answer) => {
-                        return_row(self, &row, &answer.error, &compensated, &mut text).map(|()| Ok(()))?
-                    }
-                    Err(refusal) => Err(said(&refusal)),
-                };
-            }
-            if let Err(mistake) = outcome {
-                self.bad(&row, &mistake)?;
+            match self.answer(&row, compensator, &mut compensated) {
+                Ok(outcome) => {
+                    write_row(self, &row, &outcome.error, &compensated, &mut text)?;
+                    self.summary.iter_mut().for_each(|summary| summary.take(&outcome));
+                }
+                Err(mistake) => self.bad(&row, &mistake)?,
             }
         }
         Ok(())
     }
 
+    fn answer(
+        &mut self,
+        row: &StringRecord,
+        compensator: &mut Compensator<'_, Interpreter>,
+        compensated: &mut [f64],
+    ) -> Result<Outcome, String> {
+        self.state.take(row)?;
+        compensator.compensate(&self.state.sample(), compensated).map_err(|refusal| refusal.to_string())
+    }
+
     fn next(&mut self, row: &mut StringRecord) -> Result<bool, Failure> {
+        self.row += 1;
         match self.first.take() {
             Some(first) => {
                 *row = first;
@@ -151,9 +160,10 @@ impl<'c> Rows<'c> {
             self.skipped += 1;
             return Ok(());
         }
-        let line = row.position().map_or(0, csv::Position::line);
+        let cells = row.iter().take(12).collect::<Vec<_>>().join(",");
         Err(Failure::No(format!(
-            "error: standard input, line {line}: {mistake}\nhelp: --skip-bad leaves such rows out and counts them"
+            "error: standard input, row {} under the header (`{cells}`): {mistake}\nhelp: --skip-bad leaves such rows out and counts them",
+            self.row
         )))
     }
 
@@ -163,12 +173,19 @@ impl<'c> Rows<'c> {
         if self.skipped > 0 {
             warn(&format!("warning: {} bad rows were left out", self.skipped));
         }
-        done
+        if let Some(summary) = &self.summary {
+            warn(&summary.to_string());
+        }
+        done?;
+        if self.skipped > 0 && self.skipped + 1 == self.row {
+            return Err(Failure::No("error: standard input: no row could be compensated".to_owned()));
+        }
+        Ok(())
     }
 }
 
 /// Writes the input's cells, the errors and the compensated positions in the units of their columns.
-fn return_row(
+fn write_row(
     rows: &mut Rows<'_>,
     row: &StringRecord,
     error: &[f64; 3],
@@ -200,10 +217,6 @@ fn write_number(text: &mut String, value: f64) {
     if text.starts_with('-') && text.bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.')) {
         text.remove(0);
     }
-}
-
-fn said(refusal: &Refusal) -> String {
-    refusal.to_string()
 }
 
 fn closed(error: csv::Error) -> Failure {

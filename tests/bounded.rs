@@ -1,0 +1,95 @@
+//! Hostile machine files. In: texts that are huge, deep, or grow when expanded. Out: an error in bounded time, never a hang.
+
+use std::fmt::Write;
+use std::time::{Duration, Instant};
+
+use model_dsl::diagnostic::{Diagnostics, render};
+use model_dsl::source::SourceFile;
+
+/// Generous for an unoptimised build on a busy computer; what grows without bound takes hours.
+const LONG: Duration = Duration::from_secs(20);
+
+/// The codes of the errors that a text gives; it must give one, and soon, and be rendered soon and briefly.
+fn refused(text: String) -> Vec<&'static str> {
+    let begun = Instant::now();
+    let source = SourceFile::new("machine.yaml", text);
+    let mut diagnostics = Diagnostics::new();
+    let compiled = model_dsl::compile(&source, &mut diagnostics);
+    let told = render(&source, &diagnostics, false);
+    assert!(compiled.is_none() && diagnostics.has_errors());
+    assert!(begun.elapsed() < LONG, "took {:?}", begun.elapsed());
+    assert!(told.len() < 100_000, "{} bytes of findings", told.len());
+    diagnostics.iter().map(|finding| finding.code).collect()
+}
+
+#[test]
+fn ten_megabytes() {
+    let comment = "# a comment that goes on and on\n".repeat(10 * 1024 * 1024 / 32);
+    assert_eq!(refused(format!("abbe: 1\nname: stage\ntopology: FX\n{comment}")), ["E0003"]);
+}
+
+#[test]
+fn seven_megabytes_of_unknown_keys() {
+    let mut text = String::from("abbe: 1\nname: stage\ntopology: FX\n");
+    for number in 0..500_000 {
+        writeln!(text, "key{number}: 1").unwrap();
+    }
+    assert_eq!(refused(text), ["E0004"]);
+}
+
+#[test]
+fn a_hundred_thousand_unknown_keys() {
+    let mut text = String::from("abbe: 1\nname: stage\ntopology: FX\n");
+    for number in 0..90_000 {
+        writeln!(text, "k{number}: 1").unwrap();
+    }
+    refused(text);
+}
+
+#[test]
+fn ten_thousand_deep() {
+    for (open, close) in [("[", "]"), ("{a: ", "}")] {
+        let text = format!("abbe: 1\nname: {}{}\n", open.repeat(10_000), close.repeat(10_000));
+        assert_eq!(refused(text), ["E0004"]);
+    }
+    let mut blocks = String::from("abbe: 1\nname:\n");
+    for depth in 1..10_000 {
+        writeln!(blocks, "{}a:", " ".repeat(depth % 300)).unwrap();
+    }
+    refused(blocks);
+    let dashes = format!("abbe: 1\nname:\n  {}x\n", "- ".repeat(10_000));
+    assert_eq!(refused(dashes), ["E0004"]);
+}
+
+#[test]
+fn ten_thousand_open_brackets() {
+    refused("[".repeat(10_000));
+    refused("{".repeat(10_000));
+    refused("- ".repeat(10_000));
+    refused("? ".repeat(10_000));
+}
+
+#[test]
+fn alias_bomb() {
+    let mut text = String::from("abbe: 1\nname: stage\na0: &a0 [x, x, x, x, x, x, x, x, x, x]\n");
+    for level in 1..12 {
+        let before = level - 1;
+        let all = vec![format!("*a{before}"); 10].join(", ");
+        writeln!(text, "a{level}: &a{level} [{all}]").unwrap();
+    }
+    assert!(refused(text).contains(&"E0004"));
+}
+
+#[test]
+fn expression_bombs() {
+    let file = |coordinate: &str| {
+        format!(
+            "abbe: 1\nname: stage\nchain:\n  tool:\n    - {{slide: X, along: +X, origin: [\"{coordinate}\", 0, 0]}}\n    - tool: tip\n"
+        )
+    };
+    assert_eq!(refused(file(&"(".repeat(100_000))), ["E0118"]);
+    assert_eq!(refused(file(&"-".repeat(100_000))), ["E0118"]);
+    assert_eq!(refused(file("(a+b+c+d+e+f+g+h+i+j+k+l+m+n)^16")), ["E0118"]);
+    assert_eq!(refused(file("1e999999999")), ["E0118"]);
+    assert_eq!(refused(file(&"9".repeat(1_000_000))), ["E0118"]);
+}

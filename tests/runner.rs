@@ -4,6 +4,8 @@
 
 mod agreement;
 mod bounded;
+mod counts;
+mod generated;
 mod machine_files;
 mod oracle;
 mod random;

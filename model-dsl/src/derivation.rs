@@ -173,10 +173,15 @@ fn warn_unseen(machine: &Machine, kept: &[usize], diagnostics: &mut Diagnostics)
         if let Some(span) = motion.span
             && kept.binary_search(&number).is_err()
         {
+            let help = if machine.sensitive.len() == Axis::ALL.len() {
+                "take it out: it has no lever at the tool tip"
+            } else {
+                "take it out, or add a direction to `sensitive`"
+            };
             diagnostics.push(
                 Diagnostic::warning("W0201", span, format!("no sensitive direction sees {}", motion.name))
                     .label("it drops out of the equations")
-                    .help("take it out, or add a direction to `sensitive`"),
+                    .help(help),
             );
         }
     }

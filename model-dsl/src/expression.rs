@@ -11,6 +11,8 @@ use num_traits::{One, Zero};
 const MOST_TERMS: usize = 20_000;
 /// The deepest nesting of parentheses and signs.
 const MOST_NESTING: usize = 100;
+/// The longest numerator or denominator: far beyond a double, and far from running away.
+const MOST_BITS: u64 = 4096;
 /// The highest power that may be written.
 const MOST_POWER: u32 = 16;
 
@@ -192,8 +194,10 @@ impl<'a> Parser<'a, '_> {
         let open = self.next()?;
         let argument = self.next()?;
         self.close(&open)?;
-        let Some(Symbol::Position(axis)) = (self.resolve)(argument.text) else {
-            return Err(argument.error("a sine or cosine takes the position of an axis"));
+        let axis = match (self.resolve)(argument.text) {
+            Some(Symbol::Position(axis)) => axis,
+            Some(_) => return Err(argument.error("a sine or cosine takes the position of an axis")),
+            None => return Err(argument.error(format!("`{}` is not known here", argument.text))),
         };
         let symbol = if function.text == "sin" { Symbol::Sin(axis) } else { Symbol::Cos(axis) };
         Ok(Polynomial::symbol(symbol))
@@ -232,7 +236,12 @@ fn bounded_product(
     if left.size().saturating_mul(right.size()) > MOST_TERMS {
         return Err(token.error("the product expands to too many terms"));
     }
-    Ok(left * right)
+    let product = left * right;
+    let bits = |value: &crate::algebra::Rational| value.numer().bits().max(value.denom().bits());
+    if product.terms().any(|(_, value)| bits(value) > MOST_BITS) {
+        return Err(token.error("the product holds a number that is too long"));
+    }
+    Ok(product)
 }
 
 fn quotient(
@@ -299,5 +308,6 @@ mod tests {
         assert!(read(&"(".repeat(100_000)).is_err());
         assert!(read(&"-".repeat(100_000)).is_err());
         assert!(read(&format!("{}x", "(x+Z1+Zt+c+1)^16*".repeat(8))).is_err());
+        assert!(read(&format!("{}9{}", "(".repeat(50), ")^16".repeat(50))).is_err());
     }
 }

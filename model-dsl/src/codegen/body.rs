@@ -13,7 +13,9 @@ use crate::program::{Input, Program, Step, Value};
 
 /// A body: the inputs it reads, its bindings, and its results.
 pub(super) struct Body {
-    /// Destructuring of the records and the sines and cosines that the program reads.
+    /// Which records it reads.
+    pub(super) reads: Reads,
+    /// The constants and the sines and cosines that it reads.
     pub(super) prelude: TokenStream,
     /// Values that are used more than once.
     pub(super) bindings: TokenStream,
@@ -45,8 +47,11 @@ pub(super) fn body(equations: &Equations, program: &Program) -> Body {
         let (value, _) = printer.step(step);
         quote! { let #name = #value; }
     });
+    let inputs = inputs(program);
+    let reads = reads(&inputs);
     Body {
-        prelude: prelude(equations, program),
+        reads,
+        prelude: prelude(equations, &inputs, reads),
         bindings: bindings.collect(),
         results: program.results.iter().map(|result| printer.value(*result).0).collect(),
     }
@@ -63,10 +68,7 @@ impl Printer<'_> {
             Value::Number(number) => {
                 number_literal(self.program.numbers.get(number).copied().unwrap_or(f64::NAN))
             }
-            Value::Input(input) => {
-                let name = input_name(self.equations, input);
-                (quote! { #name }, Binding::Atom)
-            }
+            Value::Input(read) => (input(self.equations, read), Binding::Atom),
             Value::Step(step) if self.is_shared(step) => {
                 let name = step_name(step);
                 (quote! { #name }, Binding::Atom)
@@ -120,56 +122,78 @@ fn step_name(step: usize) -> Ident {
     format_ident!("s{step}")
 }
 
-fn input_name(equations: &Equations, input: Input) -> Ident {
+/// An input as the function sees it. Fields are read from their records, so that no name of a
+/// machine file can hide another.
+fn input(equations: &Equations, input: Input) -> TokenStream {
+    let of = |record: &str, name: &str| {
+        let (record, name) = (format_ident!("{record}"), field(name));
+        quote! { #record.#name }
+    };
+    let turned = |function: &str, axis: usize| {
+        let name = format_ident!("{function}_{}", &*equations.axes[axis].variable);
+        quote! { #name }
+    };
     match input {
-        Input::Position(axis) => field(&equations.axes[axis].variable),
-        Input::Travel(number) => field(&equations.travels[number].name),
-        Input::Constant(number) => field(&equations.constants[number].name),
-        Input::Cos(axis) => format_ident!("cos_{}", &*equations.axes[axis].variable),
-        Input::Sin(axis) => format_ident!("sin_{}", &*equations.axes[axis].variable),
-        Input::Motion(motion) => field(&equations.motions[motion].name),
+        Input::Position(axis) => of("axes", &equations.axes[axis].variable),
+        Input::Travel(number) => of("travels", &equations.travels[number].name),
+        Input::Constant(number) => of("constants", &equations.constants[number].name),
+        Input::Motion(motion) => of("motions", &equations.motions[motion].name),
+        Input::Cos(axis) => turned("cos", axis),
+        Input::Sin(axis) => turned("sin", axis),
     }
 }
 
-/// Brings the inputs that a program reads into scope, and no others.
-fn prelude(equations: &Equations, program: &Program) -> TokenStream {
-    let mut read: BTreeSet<Input> = BTreeSet::new();
+/// Which records a program reads.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Reads {
+    /// The positions of the axes.
+    pub(super) axes: bool,
+    /// The free travels.
+    pub(super) travels: bool,
+    /// The error motions.
+    pub(super) motions: bool,
+    constants: bool,
+}
+
+fn inputs(program: &Program) -> BTreeSet<Input> {
     let steps = program.steps.iter().flat_map(|step| step.reads());
-    for value in steps.chain(program.results.iter().copied()) {
-        if let Value::Input(input) = value {
-            read.insert(input);
+    let values = steps.chain(program.results.iter().copied());
+    values.filter_map(|value| if let Value::Input(input) = value { Some(input) } else { None }).collect()
+}
+
+fn reads(inputs: &BTreeSet<Input>) -> Reads {
+    let mut reads = Reads::default();
+    for input in inputs {
+        match input {
+            Input::Position(_) | Input::Cos(_) | Input::Sin(_) => reads.axes = true,
+            Input::Travel(_) => reads.travels = true,
+            Input::Constant(_) => reads.constants = true,
+            Input::Motion(_) => reads.motions = true,
         }
     }
-    let record = |from: TokenStream, record: &str, wanted: &dyn Fn(&Input) -> bool| {
-        let fields: Vec<_> =
-            read.iter().filter(|input| wanted(input)).map(|input| input_name(equations, *input)).collect();
-        let record = format_ident!("{record}");
-        (!fields.is_empty()).then(|| quote! { let #record { #(#fields,)* .. } = #from; })
-    };
-    let constants = record(quote!(self.constants), "Constants", &|input| matches!(input, Input::Constant(_)));
-    let axes = record(quote!(*axes), "Axes", &|input| matches!(input, Input::Position(_)));
-    let travels = record(quote!(*travels), "Travels", &|input| matches!(input, Input::Travel(_)));
-    let motions = record(quote!(*motions), "Motions", &|input| matches!(input, Input::Motion(_)));
-    let turns = turns(equations, &read);
-    quote! { #constants #axes #travels #motions #turns }
+    reads
 }
 
-fn turns(equations: &Equations, read: &BTreeSet<Input>) -> TokenStream {
+/// Brings the constants and the sines and cosines that a program reads into scope.
+fn prelude(equations: &Equations, inputs: &BTreeSet<Input>, reads: Reads) -> TokenStream {
     let mut tokens = TokenStream::new();
+    if reads.constants {
+        tokens.extend(quote! { let constants = &self.constants; });
+    }
     for (number, axis) in equations.axes.iter().enumerate() {
         let (sine, cosine) = (Input::Sin(number), Input::Cos(number));
-        let name = |input: Input| {
-            let ident = input_name(equations, input);
-            if read.contains(&input) {
-                quote! { #ident }
+        if !inputs.contains(&sine) && !inputs.contains(&cosine) {
+            continue;
+        }
+        let name = |wanted: Input| {
+            if inputs.contains(&wanted) {
+                input(equations, wanted)
             } else {
                 quote! { _ }
             }
         };
-        if read.contains(&sine) || read.contains(&cosine) {
-            let (sine, cosine, position) = (name(sine), name(cosine), field(&axis.variable));
-            tokens.extend(quote! { let (#sine, #cosine) = ::abbe_runtime::math::sin_cos(axes.#position); });
-        }
+        let (sine, cosine, position) = (name(sine), name(cosine), field(&axis.variable));
+        tokens.extend(quote! { let (#sine, #cosine) = ::abbe_runtime::math::sin_cos(axes.#position); });
     }
     tokens
 }

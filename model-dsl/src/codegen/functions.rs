@@ -37,9 +37,8 @@ fn unused(name: &str, used: bool) -> TokenStream {
 
 /// The parameters `axes` and `travels`, with an underscore where the body does not read them.
 fn parameters(equations: &Equations, body: &Body) -> TokenStream {
-    let text = body.prelude.to_string();
-    let axes = unused("axes", text.contains("axes"));
-    let travels = unused("travels", text.contains("Travels"));
+    let axes = unused("axes", body.reads.axes);
+    let travels = unused("travels", body.reads.travels);
     let travels = (!equations.travels.is_empty()).then(|| quote! { , #travels: &Travels });
     quote! { #axes: &Axes #travels }
 }
@@ -51,8 +50,8 @@ fn nominal(equations: &Equations, programs: &Programs) -> TokenStream {
         docs::nominal_equations(equations),
         programs.nominal.operations()
     );
-    let axes = unused("axes", body.prelude.to_string().contains("axes"));
-    let Body { prelude, bindings, results } = body;
+    let axes = unused("axes", body.reads.axes);
+    let Body { prelude, bindings, results, .. } = body;
     quote! {
         #[doc = #about]
         #[must_use]
@@ -71,8 +70,8 @@ fn error(equations: &Equations, programs: &Programs) -> TokenStream {
         programs.error.operations()
     );
     let parameters = parameters(equations, &body);
-    let motions = unused("motions", !equations.motions.is_empty());
-    let Body { prelude, bindings, results } = body;
+    let motions = unused("motions", body.reads.motions);
+    let Body { prelude, bindings, results, .. } = body;
     quote! {
         #[doc = #about]
         #[must_use]
@@ -91,7 +90,7 @@ fn levers(equations: &Equations, programs: &Programs) -> TokenStream {
     );
     let parameters = parameters(equations, &body);
     let count = Literal::usize_unsuffixed(equations.motions.len());
-    let Body { prelude, bindings, results } = body;
+    let Body { prelude, bindings, results, .. } = body;
     let arms = results.chunks(3).map(|arm| quote! { [#(#arm),*] });
     quote! {
         #[doc = #about]
@@ -105,9 +104,9 @@ fn levers(equations: &Equations, programs: &Programs) -> TokenStream {
 
 fn directions(equations: &Equations, programs: &Programs) -> TokenStream {
     let body = body(equations, &programs.directions);
-    let axes = unused("axes", body.prelude.to_string().contains("axes"));
+    let axes = unused("axes", body.reads.axes);
     let count = Literal::usize_unsuffixed(equations.axes.len());
-    let Body { prelude, bindings, results } = body;
+    let Body { prelude, bindings, results, .. } = body;
     let effects = results.chunks(3).map(|effect| quote! { [#(#effect),*] });
     quote! {
         /// The displacement of the tool tip relative to the part for each mm of an axis, in the order of

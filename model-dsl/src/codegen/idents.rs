@@ -2,11 +2,12 @@
 
 use proc_macro2::{Ident, Span};
 
-/// The field for a name: lower case, `-` as `_`, a trailing `_` where Rust has the word itself.
+/// The field for a name: lower case, `-` as `_`, and a `_` before a word of Rust itself, which no
+/// name of a machine file can begin with.
 pub(super) fn field(name: &str) -> Ident {
     let lower = name.to_ascii_lowercase().replace('-', "_");
     match syn::parse_str::<Ident>(&lower) {
         Ok(ident) => ident,
-        Err(_) => Ident::new(&format!("{lower}_"), Span::call_site()),
+        Err(_) => Ident::new(&format!("_{lower}"), Span::call_site()),
     }
 }

@@ -8,7 +8,7 @@ use super::fields::{Fields, items, text};
 use super::header::reference;
 use super::link::{Along, Branch, Link, LinkKind, Reference};
 use super::topology;
-use crate::algebra::{Axis, Polynomial, Symbol};
+use crate::algebra::{Axis, Polynomial, Symbol, to_f64};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::expression;
 use crate::source::{Span, Spanned};
@@ -397,20 +397,26 @@ fn origin(
     (origin, spans)
 }
 
+/// The largest number that an offset may hold: a thousand kilometres.
+const MOST_MM: f64 = 1e9;
+
 fn coordinate(node: &Node, diagnostics: &mut Diagnostics) -> Polynomial {
     let Some(written) = text(node, "a coordinate", diagnostics) else { return Polynomial::zero() };
-    if let Some(length) = exact_length(written) {
-        return Polynomial::number(length);
-    }
-    match expression::parse(written, &mut |name| Some(Symbol::Constant(name.into()))) {
-        Ok(value) => value,
-        Err(mistake) => {
-            diagnostics.push(
-                Diagnostic::error("E0118", node.span, format!("`{written}` is not a coordinate"))
-                    .label(mistake.message)
-                    .help("write a length (bare numbers are mm), the name of a constant, or a sum of such"),
-            );
-            Polynomial::zero()
-        }
-    }
+    let value = match exact_length(written) {
+        Some(length) => Ok(Polynomial::number(length)),
+        None => expression::parse(written, &mut |name| Some(Symbol::Constant(name.into())))
+            .map_err(|mistake| mistake.message),
+    };
+    let bounded = value.and_then(|value| {
+        let too_large = value.terms().any(|(_, number)| to_f64(number).abs() > MOST_MM);
+        if too_large { Err(format!("it holds a number beyond {MOST_MM:e} mm")) } else { Ok(value) }
+    });
+    bounded.unwrap_or_else(|mistake| {
+        diagnostics.push(
+            Diagnostic::error("E0118", node.span, format!("`{written}` is not a coordinate"))
+                .label(mistake)
+                .help("write a length (bare numbers are mm), the name of a constant, or a sum of such"),
+        );
+        Polynomial::zero()
+    })
 }

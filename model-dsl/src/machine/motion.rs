@@ -303,7 +303,8 @@ fn detail(node: &Node, motion: &mut Motion, link: &Link, diagnostics: &mut Diagn
                 motion.travel = name(node, "a travel", diagnostics);
             }
             if let Some((_, node)) = rotates {
-                motion.rotates = choice(node, "yes or no", &["true", "false"], diagnostics) == Some("true");
+                motion.rotates =
+                    choice(node, "`true` or `false`", &["true", "false"], diagnostics) == Some("true");
             }
         }
     }
@@ -339,40 +340,56 @@ fn name(node: &Node, what: &str, diagnostics: &mut Diagnostics) -> Option<Name> 
     None
 }
 
-/// One name means one thing: symbols, travels, constants and positions are all distinct.
-/// Constants, travels and positions stay distinct in lower case, since they become fields.
+/// One name means one thing: positions, constants, travels, symbols and ISO names are distinct.
+/// Constants stay distinct in lower case too, since they become fields of generated code.
 pub(super) fn check_names(
     motions: &[Motion],
     constants: &[Constant],
     chain: &Chain<'_>,
     diagnostics: &mut Diagnostics,
 ) {
-    let mut taken: Vec<(String, String, Span)> = Vec::new();
-    let mut take = |name: &str, what: &str, span: Span, diagnostics: &mut Diagnostics| {
-        let key = name.to_ascii_lowercase();
-        match taken.iter().find(|(known, _, _)| *known == key) {
-            Some((_, other, first)) if other != what || what != "a travel" => diagnostics.push(
-                Diagnostic::error("E0135", span, format!("`{name}` is already {other}"))
-                    .label(format!("and is used as {what} here"))
-                    .also(*first, "first here")
-                    .help("choose another name; upper and lower case do not tell names apart"),
-            ),
-            Some(_) => {}
-            None => taken.push((key, what.to_owned(), span)),
-        }
-    };
+    let mut names = Names::default();
     for drafted in chain.links.iter().filter(|drafted| drafted.link.is_axis()) {
-        take(&drafted.link.variable(), "the position of an axis", drafted.link.span, diagnostics);
+        names.take(&drafted.link.variable(), "the position of an axis", drafted.link.span, diagnostics);
     }
     for constant in constants {
-        take(&constant.name, "a constant", constant.span, diagnostics);
+        names.take(&constant.name, CONSTANT, constant.span, diagnostics);
     }
     for motion in motions {
-        let span = motion.span.unwrap_or_default();
+        let link = chain.links.get(motion.link).map(|drafted| drafted.link.span);
+        let span = motion.span.or(link).unwrap_or_default();
         if let Some(travel) = &motion.travel {
-            take(travel, "a travel", span, diagnostics);
+            names.take(travel, TRAVEL, span, diagnostics);
         }
-        take(&motion.symbol, "an error motion", span, diagnostics);
+        names.take(&motion.symbol, "an error motion", span, diagnostics);
+        if motion.symbol != motion.name {
+            names.take(&motion.name, "an error motion", span, diagnostics);
+        }
+    }
+}
+
+const CONSTANT: &str = "a constant";
+const TRAVEL: &str = "a travel";
+
+/// The names taken so far, what each stands for, and where.
+#[derive(Default)]
+struct Names(Vec<(String, &'static str, Span)>);
+
+impl Names {
+    fn take(&mut self, name: &str, what: &'static str, span: Span, diagnostics: &mut Diagnostics) {
+        let same = |known: &str, other: &str| {
+            known == name || (what == CONSTANT && other == CONSTANT && known.eq_ignore_ascii_case(name))
+        };
+        match self.0.iter().find(|(known, other, _)| same(known, other)) {
+            Some((_, other, _)) if what == TRAVEL && *other == TRAVEL => {}
+            Some((known, other, first)) => diagnostics.push(
+                Diagnostic::error("E0135", span, format!("`{name}` would stand for two things"))
+                    .label(format!("for {what} here"))
+                    .also(*first, format!("`{known}` stands for {other} here"))
+                    .help("choose another name; upper and lower case do not tell constants apart"),
+            ),
+            None => self.0.push((name.to_owned(), what, span)),
+        }
     }
 }
 

@@ -167,9 +167,17 @@ impl<'r> Builder<'r> {
     fn add(&mut self, left: Signed, right: Signed) -> Signed {
         let (a, b) = (left.value, right.value);
         match (left.negative, right.negative) {
-            (false, true) => Signed { value: self.step(Step::Sub(a, b)), negative: false },
-            (true, false) => Signed { value: self.step(Step::Sub(b, a)), negative: false },
+            (false, true) => self.difference(a, b),
+            (true, false) => self.difference(b, a),
             (_, negative) => Signed { value: self.step(Step::Add(a, b)), negative },
+        }
+    }
+
+    /// `a - b`, which is the opposite of `b - a` where that is known already.
+    fn difference(&mut self, a: Value, b: Value) -> Signed {
+        match self.known_steps.get(&Step::Sub(b, a)) {
+            Some(step) => Signed { value: Value::Step(*step), negative: true },
+            None => Signed { value: self.step(Step::Sub(a, b)), negative: false },
         }
     }
 

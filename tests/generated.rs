@@ -1,0 +1,320 @@
+//! Generated code against the interpreter, and the doors through which it comes.
+//!
+//! In: the crate of compiled machines, the macro, and files generated afresh. Out: equal numbers, equal tokens, equal bytes,
+//! and code that the strictest compiler accepts.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use abbe_runtime::Kinematics;
+use model_dsl::program::Interpreter;
+use model_dsl::source::SourceFile;
+use proc_macro2::TokenStream;
+
+use crate::agreement::compiled;
+use crate::oracle::draw;
+use crate::shipped::{SHIPPED, root};
+
+/// What is asked of a machine at a point, however it was compiled.
+#[derive(Debug, PartialEq)]
+struct Answers {
+    nominal: [f64; 3],
+    error: [f64; 3],
+    levers: Vec<[f64; 3]>,
+    directions: Vec<[f64; 3]>,
+}
+
+/// Numbers for every input of a machine.
+struct Point {
+    constants: Vec<f64>,
+    position: Vec<f64>,
+    travel: Vec<f64>,
+    motions: Vec<f64>,
+}
+
+/// An array of the length that the place asks for.
+fn array<const N: usize>(values: &[f64]) -> [f64; N] {
+    values.try_into().expect("as many numbers as the record has fields")
+}
+
+/// The answers of a compiled module; the second form is for machines with free travels.
+macro_rules! answers {
+    ($module:path, $point:expr) => {{
+        use $module as machine;
+        let point: &Point = $point;
+        let compiled = machine::Machine { constants: machine::Constants::from_array(array(&point.constants)) };
+        let axes = machine::Axes::from_array(array(&point.position));
+        let motions = machine::Motions::from_array(array(&point.motions));
+        let answers = Answers {
+            nominal: compiled.nominal(&axes),
+            error: compiled.error(&axes, &motions),
+            levers: compiled.levers(&axes).to_vec(),
+            directions: compiled.directions(&axes).to_vec(),
+        };
+        through_the_interface(&compiled, point, &answers);
+        answers
+    }};
+    ($module:path, travels, $point:expr) => {{
+        use $module as machine;
+        let point: &Point = $point;
+        let compiled = machine::Machine { constants: machine::Constants::from_array(array(&point.constants)) };
+        let axes = machine::Axes::from_array(array(&point.position));
+        let travels = machine::Travels::from_array(array(&point.travel));
+        let motions = machine::Motions::from_array(array(&point.motions));
+        let answers = Answers {
+            nominal: compiled.nominal(&axes),
+            error: compiled.error(&axes, &travels, &motions),
+            levers: compiled.levers(&axes, &travels).to_vec(),
+            directions: compiled.directions(&axes).to_vec(),
+        };
+        through_the_interface(&compiled, point, &answers);
+        answers
+    }};
+}
+
+/// The runtime's interface gives the same, and NaN for slices of a wrong length.
+fn through_the_interface(machine: &impl Kinematics, point: &Point, answers: &Answers) {
+    assert_eq!(machine.axes(), point.position.len());
+    assert_eq!(machine.travels().len(), point.travel.len());
+    assert_eq!(machine.motions(), point.motions.len());
+    assert_eq!(machine.error(&point.position, &point.travel, &point.motions), answers.error);
+    let mut directions = vec![[0.0; 3]; point.position.len()];
+    machine.directions(&point.position, &mut directions);
+    assert_eq!(directions, answers.directions);
+    let short = &point.position[1..];
+    assert!(machine.error(short, &point.travel, &point.motions).iter().all(|part| part.is_nan()));
+    assert!(machine.error(&point.position, &[1.0; 9], &point.motions).iter().all(|part| part.is_nan()));
+    assert!(machine.error(&point.position, &point.travel, &point.motions[1..]).iter().all(|part| part.is_nan()));
+    machine.directions(short, &mut directions);
+    assert!(directions.iter().flatten().all(|part| part.is_nan()));
+    let mut one_more = vec![[0.0; 3]; point.position.len() + 1];
+    machine.directions(&point.position, &mut one_more);
+    assert!(one_more.iter().flatten().all(|part| part.is_nan()));
+}
+
+fn generated(name: &str, point: &Point) -> Answers {
+    match name {
+        "excello-921" => answers!(abbe_generated::excello_921, point),
+        "fxyz-mill" => answers!(abbe_generated::fxyz_mill, point),
+        "head-table-5axis" => answers!(abbe_generated::head_table_5axis, point),
+        "nist-turning-center" => answers!(abbe_generated::nist_turning_center, travels, point),
+        "postech-mill" => answers!(abbe_generated::postech_mill, point),
+        "trunnion-5axis" => answers!(abbe_generated::trunnion_5axis, point),
+        "xfyz-mill" => answers!(abbe_generated::xfyz_mill, point),
+        "xyfz-mill" => answers!(abbe_generated::xyfz_mill, point),
+        "xyzf-mill" => answers!(abbe_generated::xyzf_mill, point),
+        _ => panic!("{name} is shipped and not tested here"),
+    }
+}
+
+fn point(equations: &model_dsl::equations::Equations, seed: u64) -> Point {
+    let drawn = |range: f64, name: &str| range * draw(seed, name);
+    Point {
+        constants: equations.constants.iter().map(|constant| drawn(300.0, &constant.name)).collect(),
+        position: equations.axes.iter().map(|axis| drawn(if axis.rotary { 3.0 } else { 500.0 }, &axis.variable)).collect(),
+        travel: equations.travels.iter().map(|travel| drawn(500.0, &travel.name)).collect(),
+        motions: equations.motions.iter().map(|motion| drawn(if motion.angular { 1e-4 } else { 0.05 }, &motion.name)).collect(),
+    }
+}
+
+/// Interpreter and generated code run one program, so that they differ by no more than how sine and cosine are rounded.
+#[test]
+fn generated_code_is_the_interpreter() {
+    for shipped in SHIPPED {
+        let equations = compiled(&shipped.text());
+        for seed in 0..25 {
+            let point = point(&equations, seed);
+            let interpreter = Interpreter::new(&equations, &point.constants);
+            let mut directions = vec![[0.0; 3]; equations.axes.len()];
+            interpreter.directions(&point.position, &mut directions);
+            let interpreted = Answers {
+                nominal: interpreter.nominal(&point.position),
+                error: interpreter.error(&point.position, &point.travel, &point.motions),
+                levers: interpreter.levers(&point.position, &point.travel),
+                directions,
+            };
+            assert_eq!(generated(shipped.name, &point), interpreted, "{} at point {seed}", shipped.name);
+        }
+    }
+}
+
+/// The names of the records are those of the equations, in their order.
+#[test]
+fn records_keep_the_order_of_the_equations() {
+    use abbe_generated::nist_turning_center::{Axes, Constants, Machine, Motions, Travels};
+    let equations = compiled(&SHIPPED[3].text());
+    assert_eq!(Machine::NAME, equations.machine);
+    assert_eq!(Axes::NAMES.to_vec(), equations.axes.iter().map(|axis| axis.variable.to_string()).collect::<Vec<_>>());
+    assert_eq!(Constants::NAMES.to_vec(), equations.constants.iter().map(|constant| constant.name.to_string()).collect::<Vec<_>>());
+    assert_eq!(Travels::NAMES.to_vec(), equations.travels.iter().map(|travel| travel.name.to_string()).collect::<Vec<_>>());
+    assert_eq!(Motions::NAMES.to_vec(), equations.motions.iter().map(|motion| motion.name.clone()).collect::<Vec<_>>());
+    let numbers: [f64; 8] = std::array::from_fn(|number| number as f64);
+    assert_eq!(Constants::from_array(numbers).to_array(), numbers);
+}
+
+fn tokens(path: &Path) -> TokenStream {
+    let source = SourceFile::new(path.display().to_string(), fs::read_to_string(path).unwrap());
+    let (tokens, _, warnings) = model_dsl::rust_tokens(&source).unwrap_or_else(|told| panic!("{told}"));
+    assert_eq!(warnings, "", "{}", path.display());
+    tokens
+}
+
+fn machine_file(name: &str) -> PathBuf {
+    root().join("machines").join(format!("{name}.yaml"))
+}
+
+/// One module by the macro; the generated crate holds the same machine by way of its build script.
+mod by_macro {
+    pub(crate) mod lathe {
+        abbe_macros::machine!("machines/excello-921.yaml");
+    }
+    pub(crate) mod trunnion {
+        abbe_macros::machine!("machines/trunnion-5axis.yaml");
+    }
+}
+
+#[test]
+fn the_macro_gives_the_same_numbers() {
+    for seed in 0..10 {
+        let lathe = point(&compiled(&SHIPPED[0].text()), seed);
+        assert_eq!(answers!(crate::generated::by_macro::lathe, &lathe), generated("excello-921", &lathe));
+        let trunnion = point(&compiled(&SHIPPED[5].text()), seed);
+        assert_eq!(answers!(crate::generated::by_macro::trunnion, &trunnion), generated("trunnion-5axis", &trunnion));
+    }
+}
+
+/// What a build script writes is, token by token, what the macro inserts.
+#[test]
+fn all_doors_give_the_same_tokens() {
+    for shipped in SHIPPED {
+        let path = machine_file(shipped.name);
+        let file = model_dsl::rust_for(&path).unwrap();
+        let parsed: TokenStream = file.parse().unwrap();
+        // Formatting adds and drops trailing commas and writes comments for #[doc]; parsed and printed again both are alike.
+        let again = |tokens: TokenStream| prettyplease_of(&tokens);
+        assert_eq!(again(parsed), again(tokens(&path)), "{}", shipped.name);
+    }
+}
+
+fn prettyplease_of(tokens: &TokenStream) -> String {
+    model_dsl::codegen::file(tokens, "here").unwrap()
+}
+
+/// The code in the crate of compiled machines is what the compiler gives now.
+#[test]
+fn the_crate_holds_what_the_compiler_gives() {
+    let built = abbe_generated_source();
+    for shipped in SHIPPED {
+        let code = model_dsl::rust_for(machine_file(shipped.name)).unwrap();
+        assert!(built.contains(&code), "{} in OUT_DIR/machines.rs is not what the compiler writes", shipped.name);
+    }
+}
+
+/// The text that the build script of the generated crate wrote last, found beside this program.
+fn abbe_generated_source() -> String {
+    let program = std::env::current_exe().unwrap();
+    let build = program.ancestors().nth(2).unwrap().join("build");
+    let mut found: Vec<PathBuf> = fs::read_dir(&build)
+        .unwrap()
+        .map(|entry| entry.unwrap().path().join("out/machines.rs"))
+        .filter(|path| path.to_string_lossy().contains("abbe-generated-") && path.exists())
+        .collect();
+    found.sort_by_key(|path| fs::metadata(path).unwrap().modified().unwrap());
+    fs::read_to_string(found.last().expect("the build script ran before this test")).unwrap()
+}
+
+#[test]
+fn code_is_the_same_on_every_run() {
+    for shipped in SHIPPED {
+        let path = machine_file(shipped.name);
+        assert_eq!(tokens(&path).to_string(), tokens(&path).to_string(), "{}", shipped.name);
+        assert_eq!(model_dsl::rust_for(&path).unwrap(), model_dsl::rust_for(&path).unwrap(), "{}", shipped.name);
+    }
+}
+
+/// Machines whose names and shapes are hard on generated code.
+const HARD: [(&str, &str); 8] = [
+    ("keywords", "{slide: X, along: +X, origin: [self, as, fn]}, {fixed: Self, origin: [type, match, crate]}, {tool: super, offset: [0, 0, async]}"),
+    ("locals", "{slide: X, along: +X, origin: [S1, s0, cos_c]}, {rotary: C, along: +C, origin: [sin_c, s2, s3]}, {tool: tip, offset: [axes, motions, travels]}"),
+    ("arguments", "{slide: X, along: +X, origin: [position, travel, directions]}, {slide: Z, along: +Z, origin: [filled, constants, names]}, {tool: tip, offset: [f64, machine, from_array]}"),
+    ("no-errors", "{slide: X, along: +X, errors: []}, {tool: tip}"),
+    ("no-constants", "{slide: X, along: +X}, {slide: Y, along: -Y}, {tool: tip, offset: [1.5, -2, 0.001]}"),
+    ("travels", "{slide: X, along: +X, errors: {EB0X: {symbol: ao, sign: -1, travel: dx}, EC0X: {travel: dx, rotates: true}}}, {slide: Z, along: +Z, errors: {EB0Z: {travel: dz}}}, {tool: tip, offset: [Xt, 0, Zt]}"),
+    ("rotary-alone", "{rotary: C, along: +C}, {tool: tip, offset: [R, 0, 0]}"),
+    ("everything", "{slide: X, along: +X}, {slide: Y, along: +Y}, {slide: Z, along: +Z}, {slide: U, along: -U}, {rotary: A, along: -A}, {rotary: C, along: +C}, {spindle: S, along: +Z}, {tool: tip, offset: [Xt, Yt, Zt]}"),
+];
+
+fn hard(name: &str, links: &str) -> String {
+    format!("abbe: 1\nname: {name}\ntitle: \"Brackets [a], `ticks`, */ and <b>\"\nchain: {{tool: [{links}]}}\n")
+}
+
+/// A crate of freshly generated files, compiled with warnings and missing documentation denied.
+#[test]
+fn fresh_code_passes_the_strictest_compiler() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("fresh");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(folder.join("src")).unwrap();
+    let runtime = root().join("runtime").canonicalize().unwrap();
+    let manifest = format!(
+        "[package]\nname = \"fresh\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[dependencies]\nabbe-runtime = {{ path = {runtime:?} }}\n\n[workspace]\n"
+    );
+    fs::write(folder.join("Cargo.toml"), manifest).unwrap();
+    let mut library = String::from("//! Freshly generated machines.\n#![no_std]\n#![forbid(unsafe_code)]\n#![deny(warnings, missing_docs)]\n");
+    let mut module = |name: &str, code: &str| {
+        let name = name.replace('-', "_");
+        library.push_str(&format!("\n/// A machine.\npub mod {name};\n"));
+        fs::write(folder.join("src").join(format!("{name}.rs")), code).unwrap();
+    };
+    for shipped in SHIPPED {
+        module(shipped.name, &model_dsl::rust_for(machine_file(shipped.name)).unwrap());
+    }
+    for (name, links) in HARD {
+        let source = SourceFile::new(format!("{name}.yaml"), hard(name, links));
+        let (tokens, _, _) = model_dsl::rust_tokens(&source).unwrap_or_else(|told| panic!("{told}"));
+        module(name, &model_dsl::codegen::file(&tokens, name).unwrap());
+    }
+    fs::write(folder.join("src/lib.rs"), library).unwrap();
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(cargo)
+        .args(["check", "--offline", "--quiet"])
+        .current_dir(&folder)
+        .env("CARGO_TARGET_DIR", folder.join("target"))
+        .env_remove("RUSTFLAGS")
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// The hard machines give the interpreter's numbers as well: a name that shadows another would show here.
+#[test]
+fn hard_names_do_not_shadow_each_other() {
+    use hard_machines as hard;
+    for seed in 0..10 {
+        for (number, (name, links)) in HARD.iter().enumerate().take(3) {
+            let equations = compiled(&self::hard(name, links));
+            let point = point(&equations, seed);
+            let interpreter = Interpreter::new(&equations, &point.constants);
+            let expected = (interpreter.nominal(&point.position), interpreter.error(&point.position, &[], &point.motions));
+            let found = match number {
+                0 => answers!(hard::keywords, &point),
+                1 => answers!(hard::locals, &point),
+                _ => answers!(hard::arguments, &point),
+            };
+            assert_eq!((found.nominal, found.error), expected, "{name}");
+        }
+    }
+}
+
+/// The machines of [`HARD`] as the macro compiles them, from the files beside this one.
+mod hard_machines {
+    pub(crate) mod keywords {
+        abbe_macros::machine!("tests/fixtures/keywords.yaml");
+    }
+    pub(crate) mod locals {
+        abbe_macros::machine!("tests/fixtures/locals.yaml");
+    }
+    pub(crate) mod arguments {
+        abbe_macros::machine!("tests/fixtures/arguments.yaml");
+    }
+}

@@ -124,10 +124,10 @@ fn travels(machine: &Machine, kept: &[usize]) -> Vec<TravelInfo> {
     let mut travels: Vec<TravelInfo> = Vec::new();
     for motion in kept.iter().map(|number| &machine.motions[*number]) {
         let axis = axes.iter().position(|(link, _)| *link == motion.link);
-        if let (Some(name), Some(axis)) = (&motion.travel, axis)
-            && !travels.iter().any(|known| known.name == *name)
+        if let (Some(travel), Some(axis)) = (&motion.travel, axis)
+            && !travels.iter().any(|known| known.name == travel.value)
         {
-            travels.push(TravelInfo { name: name.clone(), axis });
+            travels.push(TravelInfo { name: travel.value.clone(), axis });
         }
     }
     travels

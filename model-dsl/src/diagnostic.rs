@@ -49,7 +49,8 @@ impl Diagnostic {
         Self::new(Severity::Warning, code, span, message.into())
     }
 
-    fn new(severity: Severity, code: &'static str, span: Span, message: String) -> Self {
+    fn new(severity: Severity, code: &'static str, span: Span, mut message: String) -> Self {
+        shorten(&mut message);
         Self { code, severity, message, span, label: String::new(), secondary: Vec::new(), help: None }
     }
 
@@ -81,6 +82,15 @@ impl Diagnostic {
             Some(name) => self.help(format!("did you mean `{name}`?")),
             None => self,
         }
+    }
+}
+
+/// Messages quote the user's text, which may be of any length.
+fn shorten(message: &mut String) {
+    const MOST: usize = 240;
+    if let Some((end, _)) = message.char_indices().nth(MOST) {
+        message.truncate(end);
+        message.push('\u{2026}');
     }
 }
 

@@ -94,7 +94,10 @@ fn build(
 ) -> Option<Machine> {
     let motions = motion::collect(&chain, diagnostics);
     let constants = constants::settle(declared, &chain, diagnostics);
-    motion::check_names(&motions, &constants, &chain, diagnostics);
+    let links_are_distinct = !diagnostics.iter().any(|known| matches!(known.code, "E0123" | "E0124"));
+    if links_are_distinct {
+        motion::check_names(&motions, &constants, &chain, diagnostics);
+    }
     if diagnostics.has_errors() {
         return None;
     }

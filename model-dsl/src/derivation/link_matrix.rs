@@ -68,7 +68,7 @@ fn alignment(machine: &Machine, link: &Link, motions: Vec<(usize, &Motion)>) -> 
         let about = motion.kind.axis();
         let Some((direction, side)) = cross(about, along) else { continue };
         let travel = match &motion.travel {
-            Some(name) => Symbol::Travel(name.clone()),
+            Some(travel) => Symbol::Travel(travel.value.clone()),
             None => Symbol::Position(link.variable()),
         };
         let sign = side * link.along.sign * body_sign(motion, link, machine.relative);

@@ -94,10 +94,18 @@ fn branches<'n>(
 fn whole(span: Span, links: &[DraftedLink<'_>], diagnostics: &mut Diagnostics) {
     if links.len() > MOST_LINKS {
         let message = format!("the chain has {} links, more than {MOST_LINKS}", links.len());
-        diagnostics.push(Diagnostic::error("E0115", span, message).label("this chain"));
+        diagnostics.push(
+            Diagnostic::error("E0115", span, message)
+                .label("this chain")
+                .help("join links that do not move against each other into one offset"),
+        );
     }
     if !links.iter().any(|drafted| drafted.link.is_axis()) && !diagnostics.has_errors() {
-        diagnostics.push(Diagnostic::error("E0116", span, "no link of the chain moves").label("this chain"));
+        diagnostics.push(
+            Diagnostic::error("E0116", span, "no link of the chain moves")
+                .label("this chain")
+                .help("add a `slide` or a `rotary`"),
+        );
     }
     let tools = links.iter().filter(|drafted| drafted.link.kind == LinkKind::Tool).count();
     if tools == 0 {
@@ -142,15 +150,24 @@ fn ends(links: &[DraftedLink<'_>], diagnostics: &mut Diagnostics) {
         let last = links.iter().rposition(|drafted| drafted.link.branch == branch);
         for (at, drafted) in links.iter().enumerate().filter(|(_, drafted)| drafted.link.kind == kind) {
             if Some(at) != last {
-                let word = kind.word();
-                let place = if branch == Branch::Tool { "tool" } else { "workpiece" };
-                diagnostics.push(
-                    Diagnostic::error("E0126", drafted.link.span, format!("the {word} is not at the end"))
-                        .label(format!("the {word} must be the last link of the branch `{place}`")),
-                );
+                diagnostics.push(misplaced(&drafted.link, branch));
             }
         }
     }
+}
+
+/// A tool or part that stands on the other branch, or not at the end of its own.
+fn misplaced(link: &Link, branch: Branch) -> Diagnostic {
+    let word = link.kind.word();
+    let own = if branch == Branch::Tool { "tool" } else { "workpiece" };
+    let message = if link.branch == branch {
+        format!("the {word} is not at the end of its branch")
+    } else {
+        format!("the {word} stands on the wrong branch")
+    };
+    Diagnostic::error("E0126", link.span, message)
+        .label("not here")
+        .help(format!("move it to the end of `{own}:`"))
 }
 
 fn link<'n>(
@@ -222,7 +239,8 @@ fn kind_of<'n>(
             diagnostics.push(
                 Diagnostic::error("E0121", found[1].1.span, "a link is one thing only")
                     .label(format!("`{}` here", found[1].0))
-                    .also(found[0].1.span, format!("and `{}` here", found[0].0)),
+                    .also(found[0].1.span, format!("and `{}` here", found[0].0))
+                    .help("give each body a link of its own, behind its own `- `"),
             );
             None
         }
@@ -245,10 +263,16 @@ fn kind(word: &str, name: &str, span: Span, diagnostics: &mut Diagnostics) -> Op
         return Some(make(letter));
     }
     let list = letters.chars().map(String::from).collect::<Vec<_>>().join(", ");
+    let upper = name.to_ascii_uppercase();
+    let help = if upper.chars().count() == 1 && letters.contains(&upper) {
+        format!("did you mean `{upper}`?")
+    } else {
+        format!("write one of {list}; another name goes into `id`")
+    };
     diagnostics.push(
-        Diagnostic::error("E0122", span, format!("`{name}` is not the letter of a {word}"))
+        Diagnostic::error("E0122", span, format!("`{name}` is not the letter of a `{word}`"))
             .label("this name")
-            .help(format!("a {word} is one of {list}; another name goes into `id`")),
+            .help(help),
     );
     None
 }
@@ -281,8 +305,12 @@ fn along(
         return Some(Along { axis: Axis::Z, sign: 1 });
     };
     if matches!(kind, LinkKind::Fixed | LinkKind::Tool | LinkKind::Part) {
-        let message = format!("a {} has no direction of motion", kind.word());
-        diagnostics.push(Diagnostic::error("E0129", key.span, message).label("take this out"));
+        let message = format!("a link of kind `{}` has no direction of motion", kind.word());
+        diagnostics.push(
+            Diagnostic::error("E0129", key.span, message)
+                .label("nothing moves along it")
+                .help("take `along` out"),
+        );
         return None;
     }
     let along = direction(node, diagnostics)?;
@@ -333,7 +361,9 @@ fn unit_vector(node: &Node, entries: &[Node], diagnostics: &mut Diagnostics) -> 
     let numbers = numbers.filter(|numbers| numbers.len() == 3);
     let Some(numbers) = numbers else {
         diagnostics.push(
-            Diagnostic::error("E0127", node.span, "a direction vector has three numbers").label("this list"),
+            Diagnostic::error("E0127", node.span, "a direction vector has three numbers")
+                .label("this list")
+                .help("write `+X`, `-X`, `+Y`, `-Y`, `+Z` or `-Z`"),
         );
         return None;
     };
@@ -386,7 +416,11 @@ fn origin(
     if entries.len() != 3 {
         if matches!(node.kind, NodeKind::Sequence(_)) {
             let message = format!("a place has three coordinates, this one has {}", entries.len());
-            diagnostics.push(Diagnostic::error("E0117", node.span, message).label("X, Y and Z are needed"));
+            diagnostics.push(
+                Diagnostic::error("E0117", node.span, message)
+                    .label("X, Y and Z are needed")
+                    .help("write all three, 0 where there is no offset: `[X1, 0, Z1]`"),
+            );
         }
         return (origin, spans);
     }

@@ -49,7 +49,8 @@ pub(super) fn declared(node: Option<&Node>, diagnostics: &mut Diagnostics) -> De
                         format!("constant `{}` is declared twice", name.value),
                     )
                     .label("again here")
-                    .also(first.span, "first here"),
+                    .also(first.span, "first here")
+                    .help("declare each constant once"),
                 ),
                 None => listed.extend(named(&name, diagnostics)),
             }
@@ -92,7 +93,8 @@ fn entry(key: &Spanned<String>, value: &Node, diagnostics: &mut Diagnostics) -> 
             }
             Ok(_) => diagnostics.push(
                 Diagnostic::error("E0132", value.span, format!("`{}` is not a length", scalar.text))
-                    .label("a constant of a machine is a length"),
+                    .label("a constant of a machine is a length")
+                    .help("give it a unit of length, such as `250 mm`"),
             ),
             Err(_) => constant.meaning = Some(scalar.text.clone()),
         },
@@ -118,13 +120,19 @@ pub(super) fn settle(declared: Declared, chain: &Chain, diagnostics: &mut Diagno
             .map(|(name, span)| Constant { name, meaning: None, default: None, span })
             .collect();
     };
+    // An offset that could not be read hides the names in it; a misspelt name hides the right one.
+    let unreadable = diagnostics.iter().any(|known| matches!(known.code, "E0117" | "E0118"));
+    let mut meant: Vec<Name> = Vec::new();
     for (name, span) in &used {
         if !listed.iter().any(|constant| constant.name == *name) {
-            diagnostics.push(undefined(name, *span, &listed));
+            let near = nearest(name, listed.iter().map(|constant| &*constant.name)).map(Name::from);
+            diagnostics.push(undefined(name, *span, near.as_deref()));
+            meant.extend(near);
         }
     }
     for constant in &listed {
-        if !used.iter().any(|(name, _)| *name == constant.name) {
+        let is_used = used.iter().any(|(name, _)| *name == constant.name);
+        if !is_used && !unreadable && !meant.contains(&constant.name) {
             diagnostics.push(
                 Diagnostic::error(
                     "E0134",
@@ -139,10 +147,10 @@ pub(super) fn settle(declared: Declared, chain: &Chain, diagnostics: &mut Diagno
     listed
 }
 
-fn undefined(name: &Name, span: Span, listed: &[Constant]) -> Diagnostic {
+fn undefined(name: &Name, span: Span, near: Option<&str>) -> Diagnostic {
     let error = Diagnostic::error("E0133", span, format!("constant `{name}` is not defined"))
         .label("`constants` does not list it");
-    match nearest(name, listed.iter().map(|constant| &*constant.name)) {
+    match near {
         Some(known) => error.help(format!("did you mean `{known}`?")),
         None => error.help(format!("add `{name}` to `constants`")),
     }

@@ -20,7 +20,8 @@ impl<'n> Fields<'n> {
         let NodeKind::Mapping(entries) = &node.kind else {
             diagnostics.push(
                 Diagnostic::error("E0103", node.span, format!("{what} is a mapping of keys to values"))
-                    .label("this is not a mapping"),
+                    .label("this is not a mapping")
+                    .help("write one `key: value` a line, all indented alike"),
             );
             return None;
         };
@@ -45,7 +46,11 @@ impl<'n> Fields<'n> {
         let value = self.take(key);
         if value.is_none() {
             let message = format!("{} needs the key `{key}`", self.what);
-            diagnostics.push(Diagnostic::error("E0102", self.span, message).label("it is missing here"));
+            diagnostics.push(
+                Diagnostic::error("E0102", self.span, message)
+                    .label("it is missing here")
+                    .help(format!("add a line `{key}: ...`")),
+            );
         }
         value
     }
@@ -74,10 +79,19 @@ impl<'n> Fields<'n> {
 pub(crate) fn text<'n>(node: &'n Node, what: &str, diagnostics: &mut Diagnostics) -> Option<&'n str> {
     match &node.kind {
         NodeKind::Scalar(scalar) => Some(&scalar.text),
+        NodeKind::Null => {
+            diagnostics.push(
+                Diagnostic::error("E0103", node.span, format!("{what} is missing"))
+                    .label("nothing stands behind the key")
+                    .help("write a value, or take the key out"),
+            );
+            None
+        }
         _ => {
             diagnostics.push(
-                Diagnostic::error("E0103", node.span, format!("{what} is written as plain text"))
-                    .label("this is not plain text"),
+                Diagnostic::error("E0103", node.span, format!("{what} is one word or number"))
+                    .label("this is a list or a mapping")
+                    .help("write it in one piece, without brackets or braces"),
             );
             None
         }
@@ -91,7 +105,8 @@ pub(crate) fn items<'n>(node: &'n Node, what: &str, diagnostics: &mut Diagnostic
         _ => {
             diagnostics.push(
                 Diagnostic::error("E0103", node.span, format!("{what} is a list"))
-                    .label("this is not a list"),
+                    .label("this is not a list")
+                    .help("write `[a, b, c]`, or one item a line behind `- `"),
             );
             None
         }

@@ -108,7 +108,8 @@ fn sensitive(node: &Node, diagnostics: &mut Diagnostics) -> Vec<(Axis, Span)> {
             Some((_, first)) => diagnostics.push(
                 Diagnostic::error("E0107", item.span, format!("direction {word} is listed twice"))
                     .label("again here")
-                    .also(*first, "first here"),
+                    .also(*first, "first here")
+                    .help("name each direction once"),
             ),
             None => found.push((axis, item.span)),
         }

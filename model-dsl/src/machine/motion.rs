@@ -70,7 +70,7 @@ pub struct Motion {
     /// -1 where the file counts it against the ISO sense.
     pub sign: i64,
     /// The free travel in the lever of an alignment error, where it is not the position.
-    pub travel: Option<Name>,
+    pub travel: Option<Spanned<Name>>,
     /// Whether an alignment error turns the carriage too.
     pub rotates: bool,
     /// Where the file names it itself.
@@ -191,7 +191,8 @@ fn listed(
             Some(known) => diagnostics.push(
                 Diagnostic::error("E0141", span, format!("error motion {} is listed twice", found.name))
                     .label("again here")
-                    .also(known.span.unwrap_or(span), "first here"),
+                    .also(known.span.unwrap_or(span), "first here")
+                    .help("list each error motion once"),
             ),
             None => motions.push(found),
         }
@@ -232,14 +233,26 @@ fn named(
         _ => true,
     };
     if !allowed {
-        diagnostics.push(
-            Diagnostic::error("E0143", span, format!("a {} has no alignment error {name}", link.kind.word()))
-                .label("it has no axis that this could align")
-                .help(format!("did you mean `E{}{}`?", kind.letter(), link.id)),
-        );
+        diagnostics.push(misaligned(name, span, kind, link));
         return None;
     }
     Some(motion(number, link, kind, Some(span)))
+}
+
+/// An alignment error that its link cannot have.
+fn misaligned(name: &str, span: Span, kind: MotionKind, link: &Link) -> Diagnostic {
+    let word = link.kind.word();
+    let error = Diagnostic::error("E0143", span, format!("link {} has no alignment error {name}", link.id));
+    if matches!(link.kind, LinkKind::Slide(_)) {
+        return error
+            .label("only the axis of a `rotary` or a `spindle` has a place of its own")
+            .help("the place of a slide is its `origin`");
+    }
+    error.label(format!("a link of kind `{word}` has no axis that could be out of line")).help(format!(
+        "did you mean `E{}{}`?",
+        kind.letter(),
+        link.id
+    ))
 }
 
 fn kind_of(name: &MotionName) -> Option<MotionKind> {
@@ -300,7 +313,7 @@ fn detail(node: &Node, motion: &mut Motion, link: &Link, diagnostics: &mut Diagn
                 aligned_only(key, motion, link, diagnostics);
             }
             if let Some((_, node)) = travel {
-                motion.travel = name(node, "a travel", diagnostics);
+                motion.travel = name(node, "a travel", diagnostics).map(|name| Spanned::new(name, node.span));
             }
             if let Some((_, node)) = rotates {
                 motion.rotates =
@@ -316,7 +329,9 @@ fn aligned_only(key: &Spanned<String>, motion: &Motion, link: &Link, diagnostics
     if !slide || !motion.kind.alignment() {
         let message = format!("`{}` has no meaning for {}", key.value, motion.name);
         diagnostics.push(
-            Diagnostic::error("E0142", key.span, message).label("only an alignment error of a slide has it"),
+            Diagnostic::error("E0142", key.span, message)
+                .label("only an alignment error of a slide has it")
+                .help("take it out"),
         );
     }
 }
@@ -359,7 +374,7 @@ pub(super) fn check_names(
         let link = chain.links.get(motion.link).map(|drafted| drafted.link.span);
         let span = motion.span.or(link).unwrap_or_default();
         if let Some(travel) = &motion.travel {
-            names.take(travel, TRAVEL, span, diagnostics);
+            names.take(&travel.value, TRAVEL, travel.span, diagnostics);
         }
         names.take(&motion.symbol, "an error motion", span, diagnostics);
         if motion.symbol != motion.name {

@@ -41,6 +41,10 @@ impl TopologyWord {
 }
 
 fn mistakes(word: &str) -> Vec<(&'static str, String, String)> {
+    let upper = word.to_ascii_uppercase();
+    if upper != word && mistakes(&upper).is_empty() {
+        return vec![("E0112", "axes and the bed are upper case".to_owned(), format!("write `{upper}`"))];
+    }
     let mut found = Vec::new();
     let example = "letters run from the part to the tool, F is the bed: XYFZ".to_owned();
     match word.matches('F').count() {
@@ -51,10 +55,7 @@ fn mistakes(word: &str) -> Vec<(&'static str, String, String)> {
     let axes: Vec<char> = word.chars().filter(|letter| *letter != 'F').collect();
     let unknown: Vec<char> = axes.iter().copied().filter(|letter| !AXES.contains(*letter)).collect();
     if let Some(letter) = unknown.first() {
-        let help = match letter.to_ascii_uppercase() {
-            upper if AXES.contains(upper) || upper == 'F' => format!("axes are upper case: `{upper}`"),
-            _ => "axes are X Y Z A B C; for U V W write the chain out".to_owned(),
-        };
+        let help = "axes are X Y Z A B C, in upper case; for U V W write the chain out".to_owned();
         found.push(("E0112", format!("`{letter}` is not an axis"), help));
     }
     let repeated = axes.iter().enumerate().find(|(at, letter)| axes[..*at].contains(letter));

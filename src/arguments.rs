@@ -59,7 +59,7 @@ pub(crate) struct Compensate {
     pub(crate) calibration: PathBuf,
     /// How far an axis must move back before its direction counts as turned: mm, or deg for a
     /// rotary axis. It concerns axes without a `dir_` column.
-    #[arg(long, default_value_t = 0.0, value_parser = non_negative)]
+    #[arg(long, default_value_t = 0.001, value_parser = non_negative)]
     pub(crate) hysteresis: f64,
     /// Leave rows out that cannot be read or compensated, and count them on standard error.
     #[arg(long)]

@@ -32,7 +32,7 @@ impl<'m> Vocabulary<'m> {
             names.push((constant.name.to_string(), Symbol::Constant(constant.name.clone())));
         }
         for travel in machine.motions.iter().filter_map(|motion| motion.travel.as_ref()) {
-            names.push((travel.to_string(), Symbol::Travel(travel.clone())));
+            names.push((travel.value.to_string(), Symbol::Travel(travel.value.clone())));
         }
         let motion = |name: &str| Symbol::Motion(name.into());
         names.extend(machine.motions.iter().map(|one| (one.symbol.clone(), motion(&one.name))));

@@ -43,7 +43,8 @@ macro_rules! answers {
     ($module:path, $point:expr) => {{
         use $module as machine;
         let point: &Point = $point;
-        let compiled = machine::Machine { constants: machine::Constants::from_array(array(&point.constants)) };
+        let compiled =
+            machine::Machine { constants: machine::Constants::from_array(array(&point.constants)) };
         let axes = machine::Axes::from_array(array(&point.position));
         let motions = machine::Motions::from_array(array(&point.motions));
         let answers = Answers {
@@ -58,7 +59,8 @@ macro_rules! answers {
     ($module:path, travels, $point:expr) => {{
         use $module as machine;
         let point: &Point = $point;
-        let compiled = machine::Machine { constants: machine::Constants::from_array(array(&point.constants)) };
+        let compiled =
+            machine::Machine { constants: machine::Constants::from_array(array(&point.constants)) };
         let axes = machine::Axes::from_array(array(&point.position));
         let travels = machine::Travels::from_array(array(&point.travel));
         let motions = machine::Motions::from_array(array(&point.motions));
@@ -85,7 +87,9 @@ fn through_the_interface(machine: &impl Kinematics, point: &Point, answers: &Ans
     let short = &point.position[1..];
     assert!(machine.error(short, &point.travel, &point.motions).iter().all(|part| part.is_nan()));
     assert!(machine.error(&point.position, &[1.0; 9], &point.motions).iter().all(|part| part.is_nan()));
-    assert!(machine.error(&point.position, &point.travel, &point.motions[1..]).iter().all(|part| part.is_nan()));
+    assert!(
+        machine.error(&point.position, &point.travel, &point.motions[1..]).iter().all(|part| part.is_nan())
+    );
     machine.directions(short, &mut directions);
     assert!(directions.iter().flatten().all(|part| part.is_nan()));
     let mut one_more = vec![[0.0; 3]; point.position.len() + 1];
@@ -112,9 +116,17 @@ fn point(equations: &model_dsl::equations::Equations, seed: u64) -> Point {
     let drawn = |range: f64, name: &str| range * draw(seed, name);
     Point {
         constants: equations.constants.iter().map(|constant| drawn(300.0, &constant.name)).collect(),
-        position: equations.axes.iter().map(|axis| drawn(if axis.rotary { 3.0 } else { 500.0 }, &axis.variable)).collect(),
+        position: equations
+            .axes
+            .iter()
+            .map(|axis| drawn(if axis.rotary { 3.0 } else { 500.0 }, &axis.variable))
+            .collect(),
         travel: equations.travels.iter().map(|travel| drawn(500.0, &travel.name)).collect(),
-        motions: equations.motions.iter().map(|motion| drawn(if motion.angular { 1e-4 } else { 0.05 }, &motion.name)).collect(),
+        motions: equations
+            .motions
+            .iter()
+            .map(|motion| drawn(if motion.angular { 1e-4 } else { 0.05 }, &motion.name))
+            .collect(),
     }
 }
 
@@ -145,10 +157,22 @@ fn records_keep_the_order_of_the_equations() {
     use abbe_generated::nist_turning_center::{Axes, Constants, Machine, Motions, Travels};
     let equations = compiled(&SHIPPED[3].text());
     assert_eq!(Machine::NAME, equations.machine);
-    assert_eq!(Axes::NAMES.to_vec(), equations.axes.iter().map(|axis| axis.variable.to_string()).collect::<Vec<_>>());
-    assert_eq!(Constants::NAMES.to_vec(), equations.constants.iter().map(|constant| constant.name.to_string()).collect::<Vec<_>>());
-    assert_eq!(Travels::NAMES.to_vec(), equations.travels.iter().map(|travel| travel.name.to_string()).collect::<Vec<_>>());
-    assert_eq!(Motions::NAMES.to_vec(), equations.motions.iter().map(|motion| motion.name.clone()).collect::<Vec<_>>());
+    assert_eq!(
+        Axes::NAMES.to_vec(),
+        equations.axes.iter().map(|axis| axis.variable.to_string()).collect::<Vec<_>>()
+    );
+    assert_eq!(
+        Constants::NAMES.to_vec(),
+        equations.constants.iter().map(|constant| constant.name.to_string()).collect::<Vec<_>>()
+    );
+    assert_eq!(
+        Travels::NAMES.to_vec(),
+        equations.travels.iter().map(|travel| travel.name.to_string()).collect::<Vec<_>>()
+    );
+    assert_eq!(
+        Motions::NAMES.to_vec(),
+        equations.motions.iter().map(|motion| motion.name.clone()).collect::<Vec<_>>()
+    );
     let numbers: [f64; 8] = std::array::from_fn(|number| number as f64);
     assert_eq!(Constants::from_array(numbers).to_array(), numbers);
 }
@@ -180,7 +204,10 @@ fn the_macro_gives_the_same_numbers() {
         let lathe = point(&compiled(&SHIPPED[0].text()), seed);
         assert_eq!(answers!(crate::generated::by_macro::lathe, &lathe), generated("excello-921", &lathe));
         let trunnion = point(&compiled(&SHIPPED[5].text()), seed);
-        assert_eq!(answers!(crate::generated::by_macro::trunnion, &trunnion), generated("trunnion-5axis", &trunnion));
+        assert_eq!(
+            answers!(crate::generated::by_macro::trunnion, &trunnion),
+            generated("trunnion-5axis", &trunnion)
+        );
     }
 }
 
@@ -207,7 +234,11 @@ fn the_crate_holds_what_the_compiler_gives() {
     let built = abbe_generated_source();
     for shipped in SHIPPED {
         let code = model_dsl::rust_for(machine_file(shipped.name)).unwrap();
-        assert!(built.contains(&code), "{} in OUT_DIR/machines.rs is not what the compiler writes", shipped.name);
+        assert!(
+            built.contains(&code),
+            "{} in OUT_DIR/machines.rs is not what the compiler writes",
+            shipped.name
+        );
     }
 }
 
@@ -229,24 +260,46 @@ fn code_is_the_same_on_every_run() {
     for shipped in SHIPPED {
         let path = machine_file(shipped.name);
         assert_eq!(tokens(&path).to_string(), tokens(&path).to_string(), "{}", shipped.name);
-        assert_eq!(model_dsl::rust_for(&path).unwrap(), model_dsl::rust_for(&path).unwrap(), "{}", shipped.name);
+        assert_eq!(
+            model_dsl::rust_for(&path).unwrap(),
+            model_dsl::rust_for(&path).unwrap(),
+            "{}",
+            shipped.name
+        );
     }
 }
 
 /// Machines whose names and shapes are hard on generated code.
 const HARD: [(&str, &str); 8] = [
-    ("keywords", "{slide: X, along: +X, origin: [self, as, fn]}, {fixed: Self, origin: [type, match, crate]}, {tool: super, offset: [0, 0, async]}"),
-    ("locals", "{slide: X, along: +X, origin: [S1, s0, cos_c]}, {rotary: C, along: +C, origin: [sin_c, s2, s3]}, {tool: tip, offset: [axes, motions, travels]}"),
-    ("arguments", "{slide: X, along: +X, origin: [position, travel, directions]}, {slide: Z, along: +Z, origin: [filled, constants, names]}, {tool: tip, offset: [f64, machine, from_array]}"),
+    (
+        "keywords",
+        "{slide: X, along: +X, origin: [self, as, fn]}, {fixed: Self, origin: [type, match, crate]}, {tool: super, offset: [0, 0, async]}",
+    ),
+    (
+        "locals",
+        "{slide: X, along: +X, origin: [S1, s0, cos_c]}, {rotary: C, along: +C, origin: [sin_c, s2, s3]}, {tool: tip, offset: [axes, motions, travels]}",
+    ),
+    (
+        "arguments",
+        "{slide: X, along: +X, origin: [position, travel, directions]}, {slide: Z, along: +Z, origin: [filled, constants, names]}, {tool: tip, offset: [f64, machine, from_array]}",
+    ),
     ("no-errors", "{slide: X, along: +X, errors: []}, {tool: tip}"),
     ("no-constants", "{slide: X, along: +X}, {slide: Y, along: -Y}, {tool: tip, offset: [1.5, -2, 0.001]}"),
-    ("travels", "{slide: X, along: +X, errors: {EB0X: {symbol: ao, sign: -1, travel: dx}, EC0X: {travel: dx, rotates: true}}}, {slide: Z, along: +Z, errors: {EB0Z: {travel: dz}}}, {tool: tip, offset: [Xt, 0, Zt]}"),
+    (
+        "travels",
+        "{slide: X, along: +X, errors: {EB0X: {symbol: ao, sign: -1, travel: dx}, EC0X: {travel: dx, rotates: true}}}, {slide: Z, along: +Z, errors: {EB0Z: {travel: dz}}}, {tool: tip, offset: [Xt, 0, Zt]}",
+    ),
     ("rotary-alone", "{rotary: C, along: +C}, {tool: tip, offset: [R, 0, 0]}"),
-    ("everything", "{slide: X, along: +X}, {slide: Y, along: +Y}, {slide: Z, along: +Z}, {slide: U, along: -U}, {rotary: A, along: -A}, {rotary: C, along: +C}, {spindle: S, along: +Z}, {tool: tip, offset: [Xt, Yt, Zt]}"),
+    (
+        "everything",
+        "{slide: X, along: +X}, {slide: Y, along: +Y}, {slide: Z, along: +Z}, {slide: U, along: -U}, {rotary: A, along: -A}, {rotary: C, along: +C}, {spindle: S, along: +Z}, {tool: tip, offset: [Xt, Yt, Zt]}",
+    ),
 ];
 
 fn hard(name: &str, links: &str) -> String {
-    format!("abbe: 1\nname: {name}\ntitle: \"Brackets [a], `ticks`, */ and <b>\"\nchain: {{tool: [{links}]}}\n")
+    format!(
+        "abbe: 1\nname: {name}\ntitle: \"Brackets [a], `ticks`, */ and <b>\"\nchain: {{tool: [{links}]}}\n"
+    )
 }
 
 /// A crate of freshly generated files, compiled with warnings and missing documentation denied.
@@ -260,7 +313,9 @@ fn fresh_code_passes_the_strictest_compiler() {
         "[package]\nname = \"fresh\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[dependencies]\nabbe-runtime = {{ path = {runtime:?} }}\n\n[workspace]\n"
     );
     fs::write(folder.join("Cargo.toml"), manifest).unwrap();
-    let mut library = String::from("//! Freshly generated machines.\n#![no_std]\n#![forbid(unsafe_code)]\n#![deny(warnings, missing_docs)]\n");
+    let mut library = String::from(
+        "//! Freshly generated machines.\n#![no_std]\n#![forbid(unsafe_code)]\n#![deny(warnings, missing_docs)]\n",
+    );
     let mut module = |name: &str, code: &str| {
         let name = name.replace('-', "_");
         library.push_str(&format!("\n/// A machine.\npub mod {name};\n"));
@@ -295,7 +350,10 @@ fn hard_names_do_not_shadow_each_other() {
             let equations = compiled(&self::hard(name, links));
             let point = point(&equations, seed);
             let interpreter = Interpreter::new(&equations, &point.constants);
-            let expected = (interpreter.nominal(&point.position), interpreter.error(&point.position, &[], &point.motions));
+            let expected = (
+                interpreter.nominal(&point.position),
+                interpreter.error(&point.position, &[], &point.motions),
+            );
             let found = match number {
                 0 => answers!(hard::keywords, &point),
                 1 => answers!(hard::locals, &point),

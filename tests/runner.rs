@@ -4,9 +4,12 @@
 
 mod agreement;
 mod bounded;
+mod compensation;
 mod counts;
 mod generated;
+mod laws;
 mod machine_files;
+mod macro_errors;
 mod oracle;
 mod random;
 mod shipped;

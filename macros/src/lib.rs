@@ -42,7 +42,7 @@ fn expand(literal: &LitStr) -> Result<proc_macro2::TokenStream, syn::Error> {
         .map_err(|error| at_literal(format!("cannot read {}: {error}", path.display())))?;
     let source = model_dsl::source::SourceFile::new(literal.value(), text);
     let (tokens, _, warnings) = model_dsl::rust_tokens(&source).map_err(at_literal)?;
-    eprint!("{warnings}");
+    show(&warnings);
     let Some(tracked) = path.to_str() else {
         return Err(at_literal("the path of the machine file is not UTF-8".to_owned()));
     };
@@ -50,6 +50,12 @@ fn expand(literal: &LitStr) -> Result<proc_macro2::TokenStream, syn::Error> {
         const _: &str = include_str!(#tracked);
         #tokens
     })
+}
+
+/// Shows warnings where the compiler shows its own; a macro has no other way on stable Rust.
+#[expect(clippy::print_stderr, reason = "a macro cannot emit a warning of its own on stable Rust")]
+fn show(warnings: &str) {
+    eprint!("{warnings}");
 }
 
 /// A path is counted from the root of the crate that is being compiled.

@@ -10,8 +10,8 @@ mod meaning;
 
 use crate::algebra::{Axis, FirstOrder, Htm, Name, Polynomial, Symbol};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::equations::{AxisInfo, ConstantInfo, Equations, LinkInfo, Motion, Row, Term, TravelInfo};
-use crate::machine::{Branch, Link, LinkKind, Machine};
+use crate::equations::{AxisInfo, ConstantInfo, Equations, Motion, Row, Term, TravelInfo};
+use crate::machine::{Branch, LinkKind, Machine};
 
 pub use link_matrix::matrix as link_matrix;
 
@@ -26,7 +26,7 @@ pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
         machine: machine.name.clone(),
         title: machine.title.clone(),
         source: machine.source.clone(),
-        links: machine.links.iter().map(link).collect(),
+        links: machine.links.clone(),
         relative: machine.relative,
         axes: axes(machine, &tip),
         travels: travels(machine, &kept),
@@ -96,17 +96,6 @@ fn motion(machine: &Machine, number: usize) -> Motion {
         link: link.id.clone(),
         axis: machine.axes().iter().position(|(axis, _)| *axis == motion.link),
         meaning: meaning::of(motion, link),
-    }
-}
-
-fn link(link: &Link) -> LinkInfo {
-    LinkInfo {
-        id: link.id.clone(),
-        kind: link.kind,
-        branch: link.branch,
-        along: link.along,
-        origin: link.origin.clone(),
-        reference: link.reference,
     }
 }
 

@@ -11,7 +11,7 @@ use std::fmt;
 
 use crate::algebra::{Axis, Name, Polynomial};
 use crate::calibration::{AxisName, MachineNames, MotionName};
-use crate::machine::{Along, Branch, LinkKind, Reference};
+use crate::machine::{Branch, Link};
 
 /// The error equations of one machine.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ pub struct Equations {
     /// Where its model was published.
     pub source: Option<String>,
     /// Its links, each branch from the bed outwards, the part's branch first.
-    pub links: Vec<LinkInfo>,
+    pub links: Vec<Link>,
     /// Whether error motions are those of the tool relative to the part, not of their own bodies.
     pub relative: bool,
     /// Its programmed axes, in the order X Y Z U V W A B C.
@@ -36,23 +36,6 @@ pub struct Equations {
     pub motions: Vec<Motion>,
     /// One row for each sensitive direction, in order.
     pub rows: Vec<Row>,
-}
-
-/// A body of the chain, for people to read.
-#[derive(Clone, Debug)]
-pub struct LinkInfo {
-    /// Its name.
-    pub id: String,
-    /// What it is.
-    pub kind: LinkKind,
-    /// On which branch it stands.
-    pub branch: Branch,
-    /// The direction of positive programmed motion, or of a spindle's axis.
-    pub along: Along,
-    /// The place of its frame at zero, in the frame before it: mm.
-    pub origin: [Polynomial; 3],
-    /// About which point its rotations act.
-    pub reference: Reference,
 }
 
 /// A programmed axis.

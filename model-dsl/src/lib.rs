@@ -84,6 +84,7 @@ pub fn rust_tokens(source: &SourceFile) -> Result<(TokenStream, Equations, Strin
 /// The Rust code of a machine file, formatted: what a build script writes into `OUT_DIR`.
 ///
 /// Warnings become `cargo::warning` lines. The error tells the file, or every mistake in it.
+#[expect(clippy::print_stdout, reason = "a build script tells cargo its warnings on standard output")]
 pub fn rust_for(path: impl AsRef<Path>) -> Result<String, String> {
     let path = path.as_ref();
     let text =

@@ -170,7 +170,11 @@ fn read(values: &[f64], place: f64) -> f64 {
     if place <= 0.0 {
         return values.first().copied().unwrap_or(f64::NAN);
     }
-    // The cast cuts towards zero and saturates; a place beyond the last node finds no pair of neighbours.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the place is positive here; the cast cuts towards zero and saturates, and a place beyond the last node finds no pair of neighbours"
+    )]
     let index = place as usize;
     match (values.get(index), values.get(index.saturating_add(1))) {
         (Some(&low), Some(&high)) => between(low, high, place - index as f64),

@@ -35,7 +35,7 @@ pub fn decimal(text: &str) -> Option<Rational> {
         return None;
     }
     let value: BigInt = format!("0{whole}{fraction}").parse().ok()?;
-    let scale = num_traits::pow(BigInt::from(10), power.unsigned_abs() as usize);
+    let scale = num_traits::pow(BigInt::from(10), usize::try_from(power.unsigned_abs()).ok()?);
     let value = if negative { -value } else { value };
     Some(if power < 0 { Rational::new(value, scale) } else { Rational::from_integer(value * scale) })
 }

@@ -6,8 +6,8 @@ use std::collections::BTreeSet;
 use super::letter::Letter;
 use super::tree::{self, Expression};
 use crate::algebra::{Axis, Monomial, Symbol};
-use crate::equations::{Equations, LinkInfo, Names, Row, Term};
-use crate::machine::{Branch, LinkKind, Reference};
+use crate::equations::{Equations, Names, Row, Term};
+use crate::machine::{Branch, Link, LinkKind, Reference};
 
 /// An equation: a letter and what it equals.
 pub(super) struct Statement {
@@ -185,7 +185,7 @@ fn chain(equations: &Equations) -> Vec<String> {
     vec![branch(Branch::Workpiece, "the part"), branch(Branch::Tool, "the tool")]
 }
 
-fn link_in_words(link: &LinkInfo) -> String {
+fn link_in_words(link: &Link) -> String {
     let sign = if link.along.sign < 0 { '-' } else { '+' };
     let along = link.along.axis;
     let id = &link.id;
@@ -216,7 +216,7 @@ fn senses(equations: &Equations) -> Vec<String> {
             "An error motion is that of its own body, in directions of the bed, on either branch.".to_owned(),
         );
     }
-    let bed = |link: &&LinkInfo| matches!(link.kind, LinkKind::Slide(_)) && link.reference == Reference::Bed;
+    let bed = |link: &&Link| matches!(link.kind, LinkKind::Slide(_)) && link.reference == Reference::Bed;
     let about_bed: Vec<&str> = equations.links.iter().filter(bed).map(|link| link.id.as_str()).collect();
     sentences.push(if about_bed.is_empty() {
         "Rotations of a slide act about the origin that travels with it.".to_owned()

@@ -30,10 +30,10 @@ impl Numbers {
         let size = |angular: bool| if angular { 10e-6 } else { 0.01 };
         let drawn = |name: &str, what: &str, number: usize| draw(seed, &format!("{name} {what} {number}"));
         let polynomial = |motion: &model_dsl::equations::Motion| {
-            let number = |order: usize| {
-                size(motion.angular) * drawn(&motion.name, "polynomial", order) / 500_f64.powi(order as i32)
+            let number = |order: usize, range: f64| {
+                size(motion.angular) * drawn(&motion.name, "polynomial", order) / range
             };
-            [number(0), number(1), number(2)]
+            [number(0, 1.0), number(1, 500.0), number(2, 500.0 * 500.0)]
         };
         let curves = |motion: &model_dsl::equations::Motion| {
             [0, 5].map(|start| {

@@ -2,8 +2,16 @@
 //!
 //! In: the workspace as its users see it. Out: the laws that hold across crates.
 
+#![expect(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a panic is the report of a test, also from a function that tests share"
+)]
+
 mod agreement;
 mod bounded;
+mod cli;
 mod compensation;
 mod counts;
 mod generated;

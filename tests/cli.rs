@@ -1,0 +1,342 @@
+//! The command line as its users meet it: arguments and standard input in, standard output,
+//! standard error and the exit status out.
+
+use std::fs;
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use crate::shipped::root;
+
+/// What a run of the program left behind.
+struct Run {
+    status: i32,
+    out: String,
+    err: String,
+}
+
+fn abbe(arguments: &[&str], input: &str) -> Run {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_abbe"))
+        .args(arguments)
+        .current_dir(root())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    // A program that stops early closes its input; that is its right.
+    let _ = stdin.write_all(input.as_bytes());
+    drop(stdin);
+    let output = child.wait_with_output().unwrap();
+    Run {
+        status: output.status.code().unwrap(),
+        out: String::from_utf8(output.stdout).unwrap(),
+        err: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+/// A file of the given text in a folder of the test's own.
+fn file(test: &str, name: &str, text: &str) -> String {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(test);
+    fs::create_dir_all(&folder).unwrap();
+    let path = folder.join(name);
+    fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+/// The numbers of one column of CSV output.
+fn column(out: &str, name: &str) -> Vec<f64> {
+    let mut lines = out.lines();
+    let at = lines.next().unwrap().split(',').position(|own| own == name).unwrap();
+    lines.map(|line| line.split(',').nth(at).unwrap().parse().unwrap()).collect()
+}
+
+#[test]
+fn every_format_of_every_name_prints() {
+    for format in ["text", "latex", "html", "json", "maxima"] {
+        for names in ["iso", "symbols"] {
+            let run = abbe(&["derive", "excello-921", "--format", format, "--names", names], "");
+            assert_eq!((run.status, run.err.as_str()), (0, ""), "{format} {names}");
+            assert!(run.out.contains("excello-921"), "{format} {names}");
+        }
+    }
+}
+
+#[test]
+fn the_lathe_in_json_is_what_the_contract_says() {
+    let out = abbe(&["derive", "excello-921", "--format", "json"], "").out;
+    for piece in [
+        r#""schema": "abbe-equations/1""#,
+        r#""machine": "excello-921""#,
+        r#""nominal": "x - X1 + X2 + Xt""#,
+        r#"{"motion": "EBX", "symbol": "eyx", "arm": "Zt"}"#,
+        r#"{"motion": "EB0X", "symbol": "alpha", "arm": "-x"}"#,
+    ] {
+        assert!(out.contains(piece), "{piece} in {out}");
+    }
+}
+
+#[test]
+fn a_topology_word_is_a_machine() {
+    let run = abbe(&["derive", "FX"], "");
+    assert!(run.out.contains("dPx = EXX + Zt*EBX - Yt*ECX"), "{}", run.out);
+    let wrong = abbe(&["derive", "XXFZ"], "");
+    assert_eq!(wrong.status, 2);
+    assert!(wrong.err.contains("error[E0113]"), "{}", wrong.err);
+}
+
+#[test]
+fn what_is_no_machine_is_told_with_the_nearest_name() {
+    let run = abbe(&["derive", "xyfz-mil"], "");
+    assert_eq!((run.status, run.out.as_str()), (2, ""));
+    assert!(run.err.contains("did you mean `xyfz-mill`?"), "{}", run.err);
+}
+
+#[test]
+fn published_equations_agree_and_a_flipped_sign_is_named() {
+    for machine in ["excello-921", "nist-turning-center"] {
+        let run = abbe(&["check", machine, &format!("published/{machine}.eqs")], "");
+        assert_eq!(run.status, 0, "{}", run.out);
+    }
+    let printed = fs::read_to_string(root().join("published/excello-921.eqs")).unwrap();
+    assert!(printed.contains("- Xt*eyx"));
+    let flipped = file("flipped", "flipped.eqs", &printed.replace("- Xt*eyx", "+ Xt*eyx"));
+    let run = abbe(&["check", "excello-921", &flipped], "");
+    assert_eq!(run.status, 1);
+    assert!(
+        run.out.contains("opposite sign: eyx (EBX): derived with lever -Xt, printed with Xt"),
+        "{}",
+        run.out
+    );
+}
+
+#[test]
+fn the_misprint_of_the_carriage_matrix_is_named() {
+    let run = abbe(&["check", "postech-mill", "published/postech-carriage.eqs"], "");
+    assert_eq!(run.status, 1);
+    let named: Vec<_> = run.out.lines().filter(|line| line.contains("opposite sign: ")).collect();
+    assert_eq!(named.len(), 1, "{}", run.out);
+    assert!(named[0].contains("T(2,3)"), "{}", named[0]);
+}
+
+#[test]
+fn an_equation_file_that_cannot_be_read_is_located() {
+    let path = file("unread", "wrong.eqs", "dPx = dxx +\ndPz = dzq\n");
+    let run = abbe(&["check", "excello-921", &path], "");
+    assert_eq!((run.status, run.out.as_str()), (2, ""));
+    assert!(run.err.contains("wrong.eqs:1:") && run.err.contains("wrong.eqs:2:"), "{}", run.err);
+}
+
+#[test]
+fn a_new_machine_file_derives_what_its_word_derives() {
+    let template = abbe(&["new", "CAFXYZ"], "");
+    let path = file("new", "machine.yaml", &template.out);
+    let equations = |machine: &str| {
+        let text = abbe(&["derive", machine], "").out;
+        text.lines().skip_while(|line| !line.starts_with("Px")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert!(equations("CAFXYZ").len() > 20);
+    assert_eq!(equations(&path), equations("CAFXYZ"));
+}
+
+#[test]
+fn the_published_table_compensates_the_published_points() {
+    let points = fs::read_to_string(root().join("calibrations/postech-points.csv")).unwrap();
+    let run = abbe(&["compensate", "--summary", "calibrations/postech-mill.yaml"], &points);
+    assert_eq!(run.status, 0, "{}", run.err);
+    assert!(run.out.starts_with("x,y,z,error_x,error_y,error_z,x_comp,y_comp,z_comp\n"));
+    assert_eq!(run.out.lines().count(), 8);
+    assert!(run.err.contains("without compensation"), "{}", run.err);
+    // By hand, at the first point (20, 20, -50), in um and urad (1 arcsec = 4.848 urad), lever z + Zt = 70 mm:
+    // EXX 1.5, EXY 0, EXZ 0.673, EBX -0.318 arcsec, ECX 0.864, EBY 0.929, ECY 3.643, EBZ -1.955, EC0Y 272.
+    let x = 1.5
+        + 0.0
+        + 0.672_727
+        + 4.848_137e-3
+            * (70.0 * (-0.318_182 + 0.928_571) - 20.0 * (0.863_636 + 3.642_857) - 120.0 * 1.954_545)
+        - 0.272 * 20.0;
+    assert!((column(&run.out, "error_x")[0] * 1e3 - x).abs() < 2e-3, "{x} and {}", run.out);
+}
+
+const BACKLASH: &str = "calibration: 1\nmachine: FXYZ\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\nerrors:\n  EXX: [{backlash: {lost_motion: 10 um}}]\n";
+
+#[test]
+fn the_direction_comes_from_a_column_or_from_the_motion() {
+    let calibration = file("direction", "backlash.yaml", BACKLASH);
+    let given = abbe(&["compensate", &calibration], "x,y,z,dir_x\n1,0,0,+1\n1,0,0,-1\n");
+    assert_eq!(column(&given.out, "error_x"), [-0.005, 0.005]);
+    assert_eq!(column(&given.out, "x_comp"), [1.005, 0.995]);
+    let moved = abbe(&["compensate", &calibration], "x,y,z\n1,0,0\n2,0,0\n1.5,0,0\n1.5004,0,0\n1.6,0,0\n");
+    // A motion of 0.4 um back is dither, not a reversal.
+    assert_eq!(column(&moved.out, "error_x"), [-0.005, -0.005, 0.005, 0.005, -0.005]);
+    let exact =
+        abbe(&["compensate", "--hysteresis", "0", &calibration], "x,y,z\n2,0,0\n1.5,0,0\n1.5004,0,0\n");
+    assert_eq!(column(&exact.out, "error_x"), [-0.005, 0.005, -0.005]);
+}
+
+#[test]
+fn other_units_stand_in_a_second_row_and_come_back() {
+    let scale = BACKLASH.replace(
+        "backlash: {lost_motion: 10 um}",
+        "polynomial: {axis: X, per: mm, unit: um, coefficients: [0, 1]}",
+    );
+    let calibration = file("units", "scale.yaml", &scale);
+    let run = abbe(&["compensate", &calibration], "\u{feff}x,y,z\r\n#unit,in,mm,mm\r\n1,0,0\r\n");
+    assert_eq!(run.status, 0, "{}", run.err);
+    let lines: Vec<_> = run.out.lines().collect();
+    assert_eq!(lines[1], "#unit,in,mm,mm,mm,mm,mm,in,mm,mm");
+    // 25.4 mm at 1 um/mm is 25.4 um long; x_comp = 1 in / 1.001.
+    assert_eq!(lines[2], "1,0,0,0.025400000,0.000000000,0.000000000,0.999000999,0.000000000,0.000000000");
+}
+
+#[test]
+fn the_tool_of_a_lathe_whose_part_moves_is_sent_the_other_way() {
+    let text = "calibration: 1\nmachine: excello-921\nconstants: {X1: 0 mm, Z1: 0 mm, X2: 0 mm, Xt: 0 mm, Zt: 0 mm}\nerrors:\n  EZZ: [{constant: {value: 10 um}}]\n";
+    let calibration = file("lathe", "lathe.yaml", text);
+    let run = abbe(&["compensate", &calibration], "x,z\n0,100\n");
+    // The spindle rides 10 um too far towards +Z, so the tool stands 10 um too far towards -Z of the part;
+    // the slide is sent 10 um less far.
+    assert_eq!(column(&run.out, "error_z"), [-0.01]);
+    assert_eq!(column(&run.out, "z_comp"), [99.99]);
+}
+
+#[test]
+fn temperatures_come_from_columns_and_a_missing_one_is_named() {
+    let text = BACKLASH.replace(
+        "backlash: {lost_motion: 10 um}",
+        "expansion: {sensor: scale, coefficient: 10 um/m/K, reference: 20 degC}",
+    );
+    let calibration = file("sensor", "hot.yaml", &text);
+    let run = abbe(&["compensate", &calibration], "x,y,z,T_scale\n500,0,0,22\n");
+    assert_eq!(column(&run.out, "error_x"), [0.01]);
+    let fahrenheit =
+        abbe(&["compensate", &calibration], "x,y,z,T_scale\n#unit,mm,mm,mm,degF\n500,0,0,71.6\n");
+    assert!(fahrenheit.out.contains(",0.010000000,"), "{}", fahrenheit.out);
+    let missing = abbe(&["compensate", &calibration], "x,y,z\n500,0,0\n");
+    assert_eq!((missing.status, missing.out.as_str()), (2, ""));
+    assert!(missing.err.contains("`T_scale`"), "{}", missing.err);
+}
+
+#[test]
+fn a_lag_needs_the_time() {
+    let text = BACKLASH.replace("backlash: {lost_motion: 10 um}", "lag: {gain: 20 1/s}");
+    let calibration = file("lag", "lag.yaml", &text);
+    let untimed = abbe(&["compensate", &calibration], "x,y,z\n0,0,0\n");
+    assert!(untimed.status == 2 && untimed.err.contains("`t`"), "{}", untimed.err);
+    let run = abbe(&["compensate", &calibration], "t,x,y,z\n0,0,0,0\n0.1,1,0,0\n");
+    // 10 mm/s at 20 1/s lags 0.5 mm.
+    assert_eq!(column(&run.out, "error_x"), [0.0, -0.5]);
+}
+
+#[test]
+fn travels_are_positions_unless_given() {
+    let names = ["T39", "T35", "T12", "T30", "T27", "T19", "T0", "T31", "T10", "T21"];
+    let header: String = names.iter().map(|name| format!(",T_{name}")).collect();
+    let values = ",22".repeat(names.len());
+    let calibration = "calibrations/nist-turning-center.yaml";
+    let by_default = abbe(&["compensate", calibration], &format!("x,z{header}\n-100,50{values}\n"));
+    assert_eq!(by_default.status, 0, "{}", by_default.err);
+    let given = abbe(
+        &["compensate", calibration],
+        &format!("x,z,dx,dz{header}\n-100,50,-100,50{values}\n-100,50,0,0{values}\n"),
+    );
+    assert_eq!(given.status, 0, "{}", given.err);
+    let (default, both) = (column(&by_default.out, "error_z"), column(&given.out, "error_z"));
+    assert!((default[0] - both[0]).abs() < 1e-9);
+    // ao = -1.35437*22 + 10.312 arcsec over 100 mm.
+    let ao = (-1.354_37 * 22.0 + 10.312_f64) / 3600.0;
+    assert!((both[0] - both[1] - ao.to_radians() * -100.0).abs() < 1e-8, "{both:?}");
+}
+
+#[test]
+fn what_no_controller_can_compensate_is_refused_by_name() {
+    let text = BACKLASH.replace(
+        "{backlash: {lost_motion: 10 um}}",
+        "{backlash: {lost_motion: 10 um}}, {vibration: {frequency: 60 Hz, amplitude: 1 um, phase: 0 rad}}",
+    );
+    let calibration = file("uncompensable", "shaking.yaml", &text);
+    let refused = abbe(&["compensate", &calibration], "x,y,z\n0,0,0\n");
+    assert_eq!((refused.status, refused.out.as_str()), (2, ""));
+    assert!(refused.err.contains("error[E0425]") && refused.err.contains("`vibration`"), "{}", refused.err);
+    let run = abbe(&["compensate", "--leave-out-uncompensable", &calibration], "x,y,z\n0,0,0\n");
+    assert_eq!(column(&run.out, "error_x"), [-0.005]);
+    assert!(run.err.contains("vibration"), "{}", run.err);
+}
+
+#[test]
+fn a_correction_over_the_limit_is_refused() {
+    let calibration =
+        file("limit", "limit.yaml", &BACKLASH.replace("errors:", "limits: {compensation: 4 um}\nerrors:"));
+    let run = abbe(&["compensate", &calibration], "x,y,z\n0,0,0\n");
+    assert_eq!(run.status, 1);
+    assert_eq!(run.out.lines().count(), 1, "{}", run.out);
+    assert!(run.err.contains("limit"), "{}", run.err);
+}
+
+#[test]
+fn a_bad_row_stops_the_stream_unless_it_may_be_skipped() {
+    let calibration = file("rows", "backlash.yaml", BACKLASH);
+    let rows = "x,y,z\n1,0,0\n1,5,0,0\n1,zero,0\n3,0,0\n";
+    let stopped = abbe(&["compensate", &calibration], rows);
+    assert_eq!(stopped.status, 1);
+    assert_eq!(stopped.out.lines().count(), 2, "complete rows only: {}", stopped.out);
+    assert!(stopped.err.contains("row 2") && stopped.err.contains("decimal comma"), "{}", stopped.err);
+    let skipped = abbe(&["compensate", "--skip-bad", &calibration], rows);
+    assert_eq!((skipped.status, skipped.out.lines().count()), (0, 3));
+    assert!(skipped.err.contains("2 bad rows"), "{}", skipped.err);
+    let nothing = abbe(&["compensate", "--skip-bad", &calibration], "x,y,z\nx,y,z\n");
+    assert_eq!(nothing.status, 1);
+}
+
+#[test]
+fn mistakes_in_the_header_are_all_told() {
+    let calibration = file("header", "backlash.yaml", BACKLASH);
+    let run = abbe(&["compensate", &calibration], "x,Y,x,dir_q\n1,0,0,1\n");
+    assert_eq!((run.status, run.out.as_str()), (2, ""));
+    for piece in ["column `x` stands twice", "no column `y`", "no column `z`"] {
+        assert!(run.err.contains(piece), "{piece}: {}", run.err);
+    }
+    let units = abbe(&["compensate", &calibration], "x,y,z\n#unit,mm,deg,mm\n1,0,0\n");
+    assert!(units.status == 2 && units.err.contains("`deg`"), "{}", units.err);
+    let empty = abbe(&["compensate", &calibration], "");
+    assert_eq!(empty.status, 1);
+}
+
+#[test]
+fn mistakes_in_a_calibration_are_located() {
+    let path = file("located", "wrong.yaml", &BACKLASH.replace("10 um", "10 arcsec").replace("EXX", "EXQ"));
+    let run = abbe(&["compensate", &path], "x,y,z\n0,0,0\n");
+    assert_eq!((run.status, run.out.as_str()), (2, ""));
+    assert!(run.err.contains("wrong.yaml:5:3"), "{}", run.err);
+    let nameless = file("located", "nameless.yaml", &BACKLASH.replace("machine: FXYZ", "machine: fxyz-mil"));
+    let run = abbe(&["compensate", &nameless], "x,y,z\n0,0,0\n");
+    assert!(
+        run.status == 2 && run.err.contains("nameless.yaml:2:10") && run.err.contains("fxyz-mill"),
+        "{}",
+        run.err
+    );
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_failure() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_abbe"))
+        .args(["derive", "trunnion-5axis", "--format", "html"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success());
+    assert_eq!(String::from_utf8(output.stderr).unwrap(), "");
+}
+
+#[test]
+fn the_shipped_list_is_the_folder() {
+    let listed = fs::read_to_string(root().join("src/shipped.rs")).unwrap();
+    for entry in fs::read_dir(root().join("machines")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        assert!(listed.contains(&format!("\"../machines/{name}\"")), "machines/{name} is not shipped");
+    }
+}

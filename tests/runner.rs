@@ -20,7 +20,9 @@ mod machine_files;
 mod macro_errors;
 mod oracle;
 mod random;
+mod round_trips;
 mod shipped;
+mod snapshots;
 mod tidy;
 mod yaml;
 

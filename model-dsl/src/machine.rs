@@ -6,14 +6,19 @@
 
 mod chain;
 mod constants;
+mod draft;
 mod fields;
 mod header;
 mod link;
 mod motion;
+mod names;
+mod read_link;
+mod read_motion;
 mod topology;
+mod usual_motions;
+mod words;
 
 pub use constants::Constant;
-pub(crate) use fields::Fields;
 pub use link::{Along, Branch, Link, LinkKind, Reference};
 pub(crate) use motion::body_sign;
 pub use motion::{Motion, MotionKind, MotionName, parse_name};
@@ -77,26 +82,39 @@ pub fn read(source: &SourceFile, diagnostics: &mut Diagnostics) -> Option<Machin
 }
 
 fn read_node(root: &Node, diagnostics: &mut Diagnostics) -> Option<Machine> {
-    let mut fields = Fields::open(root, "a machine file", diagnostics)?;
-    let header = header::read(&mut fields, diagnostics);
-    let declared = constants::declared(fields.take("constants"), diagnostics);
-    let chain = chain::read(&mut fields, header.reference, diagnostics);
-    fields.finish(diagnostics);
+    let fields = fields::open(root, "a machine file", &KEYS, diagnostics)?;
+    let header = header::read(fields, diagnostics);
+    let declared = constants::declared(fields.get("constants"), diagnostics);
+    let chain = chain::read(root, fields, header.reference, diagnostics);
     let machine = build(header, chain?, declared, diagnostics)?;
     (!diagnostics.has_errors()).then_some(machine)
 }
 
+/// The keys of a machine file.
+const KEYS: [&str; 10] = [
+    "abbe",
+    "name",
+    "title",
+    "source",
+    "sensitive",
+    "reference",
+    "motions",
+    "constants",
+    "topology",
+    "chain",
+];
+
 fn build(
     header: header::Header,
-    chain: chain::Chain,
+    chain: draft::Chain<'_>,
     declared: constants::Declared,
     diagnostics: &mut Diagnostics,
 ) -> Option<Machine> {
-    let motions = motion::collect(&chain, diagnostics);
+    let motions = read_motion::collect(&chain, diagnostics);
     let constants = constants::settle(declared, &chain, diagnostics);
     let links_are_distinct = !diagnostics.iter().any(|known| matches!(known.code, "E0123" | "E0124"));
     if links_are_distinct {
-        motion::check_names(&motions, &constants, &chain, diagnostics);
+        names::check_names(&motions, &constants, &chain, diagnostics);
     }
     if diagnostics.has_errors() {
         return None;

@@ -1,6 +1,6 @@
 //! The calibration file as a whole: its top-level keys, constants, limits and error motions.
 
-use super::fields::{Fields, Wording, word};
+use super::fields::{Fields, keys, word};
 use super::names::MachineNames;
 use super::read_term::{Context, read_item, read_plain};
 use super::sensors::{Sensors, read_derived};
@@ -13,9 +13,6 @@ use crate::yaml::{Node, NodeKind};
 use std::collections::BTreeMap;
 
 const KEYS: [&str; 7] = ["calibration", "machine", "source", "constants", "limits", "sensors", "errors"];
-
-const WORDING: Wording<'static> =
-    Wording { what: "a calibration", noun: "key", unknown: "E0403", missing: "E0401" };
 
 /// Reads the name of the machine that a calibration is for, and nothing else.
 ///
@@ -48,8 +45,8 @@ pub fn read(root: &Node, names: &MachineNames, diagnostics: &mut Diagnostics) ->
 }
 
 fn read_all(root: &Node, names: &MachineNames, diagnostics: &mut Diagnostics) -> Option<Calibration> {
-    let fields = Fields::open(root, first_key(root), WORDING, &KEYS, diagnostics)?;
-    if let Some(version) = fields.need("calibration", WORDING, diagnostics) {
+    let fields = Fields::open(root, first_key(root), keys("a calibration"), &KEYS, diagnostics)?;
+    if let Some(version) = fields.need("calibration", keys("a calibration"), diagnostics) {
         check_version(version, diagnostics);
     }
     let source = fields.get("source").and_then(|node| word(node, "`source`", diagnostics));
@@ -144,7 +141,7 @@ fn check_constant(name: &Spanned<String>, names: &MachineNames, diagnostics: &mu
 }
 
 fn read_limits(node: &Node, name: Span, diagnostics: &mut Diagnostics) -> Limits {
-    let wording = Wording::keys("`limits`");
+    let wording = keys("`limits`");
     let compensation = Fields::open(node, name, wording, &["compensation"], diagnostics)
         .and_then(|fields| fields.get("compensation"))
         .and_then(|node| quantity::read(node, Dimension::LENGTH, "`compensation`", diagnostics));

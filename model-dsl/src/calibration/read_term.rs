@@ -1,7 +1,7 @@
 //! One term of an error motion, read from its item in the list.
 
 use super::curve::read_table;
-use super::fields::{Fields, Wording, word};
+use super::fields::{Fields, parameters, word};
 use super::names::{MachineNames, MotionName};
 use super::sensors::Sensors;
 use super::series::{read_coupling, read_polynomial};
@@ -49,7 +49,7 @@ fn read_named(name: &Spanned<String>, node: &Node, context: &mut Context<'_>) ->
         return None;
     };
     let what = format!("`{}` of {}", name.value, context.motion.name);
-    let wording = Wording::parameters(&what);
+    let wording = parameters(&what);
     let fields = Fields::open(node, name.span, wording, known, context.diagnostics)?;
     let mut term = Parameters { fields, what: &what, context };
     match name.value.as_str() {
@@ -120,7 +120,7 @@ impl<'n> Parameters<'_, 'n, '_> {
 
     /// A parameter that must be there.
     pub(super) fn need(&mut self, key: &str) -> Option<&'n Node> {
-        self.fields.need(key, Wording::parameters(self.what), self.context.diagnostics)
+        self.fields.need(key, parameters(self.what), self.context.diagnostics)
     }
 
     /// A parameter in words: "`step` of `table` of EXX" in short.

@@ -1,6 +1,6 @@
 //! Temperature sensors: the ones that a calibration reads, and the ones that it derives from them.
 
-use super::fields::{Fields, Wording, word};
+use super::fields::{Fields, keys, word};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::Spanned;
 use crate::yaml::Node;
@@ -176,7 +176,7 @@ pub(super) fn read_derived(node: &Node, diagnostics: &mut Diagnostics) -> Sensor
 
 fn read_one(name: &Spanned<String>, node: &Node, diagnostics: &mut Diagnostics) -> Option<Derived> {
     let what = format!("the derived sensor `{}`", name.value);
-    let wording = Wording::keys(&what);
+    let wording = keys(&what);
     let fields = Fields::open(node, name.span, wording, &["mean", "initial"], diagnostics)?;
     let (sources, mean) = match (fields.get("mean"), fields.get("initial")) {
         (Some(mean), None) => (read_mean(mean, &what, diagnostics)?, true),

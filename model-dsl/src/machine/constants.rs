@@ -1,9 +1,10 @@
 //! The named offsets of a machine. In: the `constants` of the file, where it has them, and
 //! the names that the chain uses. Out: one list; an undefined or unused name is an error.
 
-use super::chain::Chain;
+use super::draft::Chain;
 use super::fields::items;
-use crate::algebra::{Name, Rational, Symbol, decimal};
+use super::words::is_name;
+use crate::algebra::{Name, Symbol, decimal};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::quantity::{Dimension, parse_quantity};
 use crate::source::{Span, Spanned};
@@ -105,12 +106,6 @@ fn entry(key: &Spanned<String>, value: &Node, diagnostics: &mut Diagnostics) -> 
     Some(constant)
 }
 
-/// Whether a text can name a constant, a symbol or a link.
-pub(super) fn is_name(text: &str) -> bool {
-    text.starts_with(|c: char| c.is_ascii_alphabetic())
-        && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
-}
-
 /// Joins what is declared and what is used; reports what is only one of the two.
 pub(super) fn settle(declared: Declared, chain: &Chain, diagnostics: &mut Diagnostics) -> Vec<Constant> {
     let used = used_names(chain);
@@ -170,20 +165,4 @@ fn used_names(chain: &Chain) -> Vec<(Name, Span)> {
         }
     }
     used
-}
-
-/// A length in mm as an exact fraction, from a bare number (mm) or a number with a unit of length.
-pub(super) fn exact_length(text: &str) -> Option<Rational> {
-    if let Some(number) = decimal(text.trim()) {
-        return Some(number);
-    }
-    let (number, unit) = text.trim().split_once(' ')?;
-    let per_mm = match unit.trim() {
-        "mm" => "1",
-        "m" => "1000",
-        "um" => "0.001",
-        "in" => "25.4",
-        _ => return None,
-    };
-    Some(decimal(number)? * decimal(per_mm)?)
 }

@@ -1,120 +1,47 @@
-//! Reading mappings key by key. In: a YAML node. Out: its values, taken by name; what nobody
-//! took is an unknown key and is reported with the nearest known one.
+//! Mappings, words and lists of machine files, with their codes.
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::source::{Span, Spanned};
+pub(super) use crate::fields::Fields;
+use crate::fields::{self, Wording};
+use crate::source::Span;
 use crate::suggest::nearest;
-use crate::yaml::{Node, NodeKind};
+use crate::yaml::Node;
 
-/// A mapping being read: keys taken so far, and those not yet taken.
-pub(crate) struct Fields<'n> {
-    what: &'static str,
-    span: Span,
-    entries: Vec<(&'n Spanned<String>, &'n Node)>,
-    asked: Vec<&'static str>,
+/// The code for a value of the wrong form.
+const FORM: &str = "E0103";
+
+/// How a mapping speaks of its keys.
+pub(super) fn keys(what: &str) -> Wording<'_> {
+    Wording { what, noun: "key", unknown: "E0101", missing: "E0102", form: FORM }
 }
 
-impl<'n> Fields<'n> {
-    /// Opens a mapping; anything else is an error that says what was expected.
-    pub(crate) fn open(node: &'n Node, what: &'static str, diagnostics: &mut Diagnostics) -> Option<Self> {
-        let NodeKind::Mapping(entries) = &node.kind else {
-            diagnostics.push(
-                Diagnostic::error("E0103", node.span, format!("{what} is a mapping of keys to values"))
-                    .label("this is not a mapping")
-                    .help("write one `key: value` a line, all indented alike"),
-            );
-            return None;
-        };
-        let entries = entries.iter().map(|(key, value)| (key, value)).collect();
-        Some(Self { what, span: node.span, entries, asked: Vec::new() })
-    }
-
-    /// Takes the value of a key, where it stands.
-    pub(crate) fn take(&mut self, key: &'static str) -> Option<&'n Node> {
-        self.take_entry(key).map(|(_, value)| value)
-    }
-
-    /// Takes a key with its value, where it stands.
-    pub(crate) fn take_entry(&mut self, key: &'static str) -> Option<(&'n Spanned<String>, &'n Node)> {
-        self.asked.push(key);
-        let at = self.entries.iter().position(|(own, _)| own.value == key)?;
-        Some(self.entries.remove(at))
-    }
-
-    /// Takes a value that must stand; its absence is an error.
-    pub(crate) fn require(&mut self, key: &'static str, diagnostics: &mut Diagnostics) -> Option<&'n Node> {
-        let value = self.take(key);
-        if value.is_none() {
-            let message = format!("{} needs the key `{key}`", self.what);
-            diagnostics.push(
-                Diagnostic::error("E0102", self.span, message)
-                    .label("it is missing here")
-                    .help(format!("add a line `{key}: ...`")),
-            );
-        }
-        value
-    }
-
-    /// Where the mapping stands.
-    pub(crate) fn span(&self) -> Span {
-        self.span
-    }
-
-    /// Reports every key that nobody asked for.
-    pub(crate) fn finish(self, diagnostics: &mut Diagnostics) {
-        for (key, _) in &self.entries {
-            let mut error =
-                Diagnostic::error("E0101", key.span, format!("unknown key `{}` in {}", key.value, self.what))
-                    .label("this key means nothing here");
-            error = match nearest(&key.value, self.asked.iter().copied()) {
-                Some(known) => error.help(format!("did you mean `{known}`?")),
-                None => error.help(format!("known keys: {}", self.asked.join(", "))),
-            };
-            diagnostics.push(error);
-        }
-    }
+/// Opens a mapping; a key that is missing in it is reported at its first key.
+pub(super) fn open<'n>(
+    node: &'n Node,
+    what: &str,
+    known: &[&str],
+    diagnostics: &mut Diagnostics,
+) -> Option<Fields<'n>> {
+    Fields::open(node, place(node), keys(what), known, diagnostics)
 }
 
-/// The text of a scalar; anything else is an error that says what was expected.
-pub(crate) fn text<'n>(node: &'n Node, what: &str, diagnostics: &mut Diagnostics) -> Option<&'n str> {
-    match &node.kind {
-        NodeKind::Scalar(scalar) => Some(&scalar.text),
-        NodeKind::Null => {
-            diagnostics.push(
-                Diagnostic::error("E0103", node.span, format!("{what} is missing"))
-                    .label("nothing stands behind the key")
-                    .help("write a value, or take the key out"),
-            );
-            None
-        }
-        _ => {
-            diagnostics.push(
-                Diagnostic::error("E0103", node.span, format!("{what} is one word or number"))
-                    .label("this is a list or a mapping")
-                    .help("write it in one piece, without brackets or braces"),
-            );
-            None
-        }
-    }
+/// Where a mapping begins.
+pub(super) fn place(node: &Node) -> Span {
+    node.entries().and_then(|entries| entries.first()).map_or(node.span, |(key, _)| key.span)
 }
 
-/// The items of a list; anything else is an error that says what was expected.
-pub(crate) fn items<'n>(node: &'n Node, what: &str, diagnostics: &mut Diagnostics) -> Option<&'n [Node]> {
-    match &node.kind {
-        NodeKind::Sequence(items) => Some(items),
-        _ => {
-            diagnostics.push(
-                Diagnostic::error("E0103", node.span, format!("{what} is a list"))
-                    .label("this is not a list")
-                    .help("write `[a, b, c]`, or one item a line behind `- `"),
-            );
-            None
-        }
-    }
+/// The text of a value that must be a word.
+pub(super) fn text<'n>(node: &'n Node, what: &str, diagnostics: &mut Diagnostics) -> Option<&'n str> {
+    fields::word(node, what, FORM, diagnostics).map(|word| word.value)
+}
+
+/// The items of a value that must be a list.
+pub(super) fn items<'n>(node: &'n Node, what: &str, diagnostics: &mut Diagnostics) -> Option<&'n [Node]> {
+    fields::list(node, what, FORM, diagnostics)
 }
 
 /// One of a few words; anything else is an error that lists them.
-pub(crate) fn choice<'c>(
+pub(super) fn choice<'c>(
     node: &Node,
     what: &str,
     words: &[&'c str],

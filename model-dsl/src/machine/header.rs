@@ -1,6 +1,6 @@
 //! The head of a machine file: version, names, sensitive directions and conventions.
 
-use super::fields::{Fields, choice, items, text};
+use super::fields::{Fields, choice, items, keys, text};
 use super::link::Reference;
 use crate::algebra::Axis;
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -34,23 +34,23 @@ impl Header {
 }
 
 /// Reads the head; mistakes are reported and replaced by the defaults.
-pub(super) fn read(fields: &mut Fields<'_>, diagnostics: &mut Diagnostics) -> Header {
+pub(super) fn read(fields: Fields<'_>, diagnostics: &mut Diagnostics) -> Header {
     version(fields, diagnostics);
     let mut header = Header::bare("");
-    if let Some(name) = fields.require("name", diagnostics) {
+    if let Some(name) = fields.need("name", keys("a machine file"), diagnostics) {
         header.name = name_of(name, diagnostics).unwrap_or_default();
     }
-    header.title = optional_text(fields.take("title"), "the title", diagnostics);
-    header.source = optional_text(fields.take("source"), "the source", diagnostics);
-    if let Some(node) = fields.take("sensitive") {
+    header.title = optional_text(fields.get("title"), "the title", diagnostics);
+    header.source = optional_text(fields.get("source"), "the source", diagnostics);
+    if let Some(node) = fields.get("sensitive") {
         header.sensitive_spans = sensitive(node, diagnostics);
         header.sensitive = header.sensitive_spans.iter().map(|(axis, _)| *axis).collect();
         header.sensitive.sort_unstable();
     }
-    if let Some(node) = fields.take("reference") {
+    if let Some(node) = fields.get("reference") {
         header.reference = reference(node, diagnostics);
     }
-    if let Some(node) = fields.take("motions") {
+    if let Some(node) = fields.get("motions") {
         let word = choice(node, "a meaning of error motions", &["body", "relative"], diagnostics);
         header.relative = word == Some("relative");
     }
@@ -65,8 +65,8 @@ pub(super) fn reference(node: &Node, diagnostics: &mut Diagnostics) -> Reference
     }
 }
 
-fn version(fields: &mut Fields<'_>, diagnostics: &mut Diagnostics) {
-    let Some(node) = fields.require("abbe", diagnostics) else { return };
+fn version(fields: Fields<'_>, diagnostics: &mut Diagnostics) {
+    let Some(node) = fields.need("abbe", keys("a machine file"), diagnostics) else { return };
     let Some(version) = text(node, "the version of the format", diagnostics) else { return };
     if version != "1" {
         diagnostics.push(

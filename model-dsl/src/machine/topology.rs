@@ -3,7 +3,7 @@
 //! In: a word, read from the part to the tool. Out: the chain that it stands for. The word is
 //! checked, never guessed.
 
-use super::chain::{Chain, DraftedLink};
+use super::draft::{Chain, DraftedLink};
 use super::link::{Along, Branch, Link, LinkKind, Reference};
 use crate::algebra::{Axis, Polynomial, Symbol};
 use crate::diagnostic::{Diagnostic, Diagnostics};

@@ -1,0 +1,18 @@
+//! The chain while it is being read: links that are known, and their `errors` that are not yet.
+
+use super::link::Link;
+use crate::source::Span;
+use crate::yaml::Node;
+
+/// The links of a machine in order.
+pub(super) struct Chain<'n> {
+    pub(super) topology: Option<String>,
+    pub(super) links: Vec<DraftedLink<'n>>,
+}
+
+/// A link, and what is still to be read of it.
+pub(super) struct DraftedLink<'n> {
+    pub(super) link: Link,
+    pub(super) origin_spans: [Span; 3],
+    pub(super) errors: Option<&'n Node>,
+}

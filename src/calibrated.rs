@@ -60,7 +60,7 @@ impl Calibrated {
         if diagnostics.is_empty() {
             return Ok(());
         }
-        let help = "help: with --leave-out-uncompensable the other terms are compensated without them";
+        let help = "help: --leave-out-uncompensable compensates the other terms without them";
         Err(Failure::Wrong(format!("{}\n{help}", wrong_text(&self.source, &diagnostics))))
     }
 

@@ -39,7 +39,8 @@ pub(crate) fn machine(name: &str, folder: Option<&Path>) -> Result<Loaded, Failu
     if let Some(text) = shipped::machine(name) {
         return from_source(&SourceFile::new(format!("machines/{name}.yaml"), text));
     }
-    if name.chars().all(|letter| letter.is_ascii_alphabetic()) && name.len() <= 8 && name.contains('F') {
+    // A word of capital letters is a topology, right or wrong.
+    if !name.is_empty() && name.len() <= 8 && name.bytes().all(|letter| letter.is_ascii_uppercase()) {
         return from_word(name);
     }
     Err(Failure::Wrong(unknown(name)))

@@ -253,3 +253,46 @@ fn levers_scale_with_the_machine() {
         }
     }
 }
+
+/// Offsets are in mm where they have no unit; every unit of length reads, and every way to write a number.
+#[test]
+fn lengths_of_the_machine_file() {
+    let cases = [
+        ("12", 12.0),
+        ("+12.5", 12.5),
+        ("-.5", -0.5),
+        ("1e2", 100.0),
+        ("2.5e-1", 0.25),
+        ("12 mm", 12.0),
+        ("0.5 m", 500.0),
+        ("250 um", 0.25),
+        ("1500 nm", 0.0015),
+        ("-2 in", -50.8),
+        ("100 mil", 2.54),
+        ("1000 uin", 0.0254),
+        ("2*(K - 3)/4", 98.5),
+        ("-K", -200.0),
+        ("3 + K", 203.0),
+    ];
+    for (written, expected) in cases {
+        let text = stage(&format!(
+            "{{tool: [{{slide: X, along: +X, origin: [\"{written}\", 0, 0]}}, {{tool: tip}}]}}"
+        ));
+        let equations = compiled(&text);
+        let constants = vec![200.0; equations.constants.len()];
+        let nominal = Interpreter::new(&equations, &constants).nominal(&[0.0]);
+        assert!((nominal[0] - expected).abs() < 1e-12, "{written}: {nominal:?}");
+    }
+}
+
+/// A file from another system means the same: line ends of two characters, a mark before the text, none after it.
+#[test]
+fn line_ends_and_byte_order_marks() {
+    for shipped in SHIPPED {
+        let text = shipped.text();
+        let expected = format!("{:?}", compiled(&text));
+        for variant in [text.replace('\n', "\r\n"), format!("\u{feff}{text}"), text.trim_end().to_owned()] {
+            assert_eq!(format!("{:?}", compiled(&variant)), expected, "{}", shipped.name);
+        }
+    }
+}

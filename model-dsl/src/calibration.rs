@@ -98,7 +98,7 @@ impl Calibration {
                 let message =
                     format!("`{}` of {motion} cannot be compensated in real time", term.value.name());
                 let help =
-                    "leave it out of the calibration that is compensated; simulation and diagnosis read it";
+                    "no controller knows its state in time; take it out of the file that is compensated";
                 diagnostics.push(Diagnostic::error("E0425", term.span, message).help(help));
             }
         }

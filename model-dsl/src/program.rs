@@ -88,7 +88,9 @@ pub struct Operations {
 
 impl fmt::Display for Operations {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} additions, {} multiplications", self.additions, self.multiplications)
+        let plural = |count: usize| if count == 1 { "" } else { "s" };
+        let (sums, products) = (self.additions, self.multiplications);
+        write!(f, "{sums} addition{}, {products} multiplication{}", plural(sums), plural(products))
     }
 }
 

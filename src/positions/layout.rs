@@ -69,6 +69,9 @@ impl Layout {
             header.iter().map(|cell| cell.trim().trim_start_matches('\u{feff}').to_owned()).collect();
         let units =
             units.map(|units| unit_row(units, header.len())).transpose().map_err(|mistake| vec![mistake])?;
+        if header.len() == 1 && header.iter().any(|only| only.contains([';', '\t'])) {
+            return Err(vec!["the columns are not separated by commas".to_owned()]);
+        }
         let mut reader =
             Reader { read: vec![false; header.len()], header, units, mistakes: Vec::new(), wanted };
         reader.repeated();
@@ -96,9 +99,6 @@ impl Reader<'_> {
                 self.mistakes.push(format!("column `{name}` stands twice"));
             }
         }
-        if self.header.len() == 1 && self.header.first().is_some_and(|only| only.contains([';', '\t'])) {
-            self.mistakes.push("the columns are not separated by commas".to_owned());
-        }
     }
 
     fn layout(&mut self) -> Layout {
@@ -111,7 +111,7 @@ impl Reader<'_> {
         let axes = axes.collect();
         let directions =
             equations.axes.iter().map(|axis| self.find(&format!("dir_{}", axis.variable))).collect();
-        let travels = equations.travels.iter().map(|travel| self.optional(&travel.name, "mm")).collect();
+        let travels = self.travels();
         let sensors = wanted.sensors.iter().map(|name| {
             let what = format!("the temperature of sensor {name}, which the calibration uses");
             self.required(&format!("T_{name}"), "degC", &what)
@@ -133,6 +133,19 @@ impl Reader<'_> {
             header: self.header.clone(),
             units: self.units.clone(),
         }
+    }
+
+    /// The free travels: all of them in columns, or none.
+    fn travels(&mut self) -> Vec<Option<Column>> {
+        let travels = &self.wanted.equations.travels;
+        let columns: Vec<_> = travels.iter().map(|travel| self.optional(&travel.name, "mm")).collect();
+        if columns.iter().any(Option::is_some) {
+            for (travel, _) in travels.iter().zip(&columns).filter(|(_, column)| column.is_none()) {
+                let name = &travel.name;
+                self.mistakes.push(format!("there is no column `{name}`; a file gives all travels or none"));
+            }
+        }
+        columns
     }
 
     fn find(&mut self, name: &str) -> Option<usize> {

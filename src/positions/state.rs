@@ -86,6 +86,12 @@ impl<'s> State<'s> {
         for index in layout.directions.iter().flatten() {
             direction(row.get(*index).unwrap_or_default(), self.name(*index))?;
         }
+        if let (Some(column), Some((before, _))) = (layout.time, &self.previous) {
+            let back = before - self.number(row, column)?;
+            if back > 0.0 {
+                return Err(format!("the time goes back by {back} s"));
+            }
+        }
         Ok(())
     }
 
@@ -95,9 +101,9 @@ impl<'s> State<'s> {
         }
         self.travel.clear();
         if self.layout.travels.iter().any(Option::is_some) {
-            for (number, column) in self.layout.travels.iter().enumerate() {
-                let column = column.ok_or_else(|| format!("travel number {} has no column", number + 1))?;
-                let travel = self.number(row, column)?;
+            // The layout has all travels or none.
+            for column in self.layout.travels.iter().flatten() {
+                let travel = self.number(row, *column)?;
                 self.travel.push(travel);
             }
         }
@@ -120,9 +126,6 @@ impl<'s> State<'s> {
         self.velocity.fill(0.0);
         if let Some((before, from)) = &self.previous {
             self.time_step = now - before;
-            if self.time_step < 0.0 {
-                return Err(format!("the time goes back by {} s", -self.time_step));
-            }
             if self.time_step > 0.0 {
                 let moved = self.position.iter().zip(from).map(|(to, from)| to - from);
                 self.velocity.iter_mut().zip(moved).for_each(|(slot, moved)| *slot = moved / self.time_step);

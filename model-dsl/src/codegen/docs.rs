@@ -1,7 +1,16 @@
 //! The words of generated code: what each item means, its unit and its equation.
 
+use proc_macro2::TokenStream;
+use quote::quote;
+
 use crate::equations::{Equations, Motion, Names};
 use crate::notation::{error_lines, infix};
+
+/// Documentation as attributes, one a line, so that it is printed as `///` lines.
+pub(super) fn attributes(text: &str) -> TokenStream {
+    let lines = text.lines().map(|line| if line.is_empty() { String::new() } else { format!(" {line}") });
+    lines.map(|line| quote! { #[doc = #line] }).collect()
+}
 
 /// What a machine is, in a line.
 pub(super) fn machine(equations: &Equations) -> String {

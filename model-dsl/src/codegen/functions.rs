@@ -45,15 +45,15 @@ fn parameters(equations: &Equations, body: &Body) -> TokenStream {
 
 fn nominal(equations: &Equations, programs: &Programs) -> TokenStream {
     let body = body(equations, &programs.nominal);
-    let about = format!(
+    let about = docs::attributes(&format!(
         "The nominal position of the tool tip relative to the part: X, Y, Z of the part's frame \\[mm\\], 0 where not sensitive.\n\n{}\n\n{}.",
         docs::nominal_equations(equations),
         programs.nominal.operations()
-    );
+    ));
     let axes = unused("axes", body.reads.axes);
     let Body { prelude, bindings, results, .. } = body;
     quote! {
-        #[doc = #about]
+        #about
         #[must_use]
         pub fn nominal(&self, #axes: &Axes) -> [f64; 3] {
             #prelude #bindings
@@ -64,16 +64,16 @@ fn nominal(equations: &Equations, programs: &Programs) -> TokenStream {
 
 fn error(equations: &Equations, programs: &Programs) -> TokenStream {
     let body = body(equations, &programs.error);
-    let about = format!(
+    let about = docs::attributes(&format!(
         "The error of the tool tip relative to the part to first order, actual minus commanded: X, Y, Z of the part's frame \\[mm\\], 0 where not sensitive.\n\n{}\n\n{}.",
         docs::error_equations(equations),
         programs.error.operations()
-    );
+    ));
     let parameters = parameters(equations, &body);
     let motions = unused("motions", body.reads.motions);
     let Body { prelude, bindings, results, .. } = body;
     quote! {
-        #[doc = #about]
+        #about
         #[must_use]
         pub fn error(&self, #parameters, #motions: &Motions) -> [f64; 3] {
             #prelude #bindings
@@ -84,16 +84,16 @@ fn error(equations: &Equations, programs: &Programs) -> TokenStream {
 
 fn levers(equations: &Equations, programs: &Programs) -> TokenStream {
     let body = body(equations, &programs.levers);
-    let about = format!(
+    let about = docs::attributes(&format!(
         "The lever arm of every error motion, in the order of [`Motions::NAMES`]: X, Y, Z of the part's frame, a pure number for a displacement, mm for an angle.\n\n{}.",
         programs.levers.operations()
-    );
+    ));
     let parameters = parameters(equations, &body);
     let count = Literal::usize_unsuffixed(equations.motions.len());
     let Body { prelude, bindings, results, .. } = body;
     let arms = results.chunks(3).map(|arm| quote! { [#(#arm),*] });
     quote! {
-        #[doc = #about]
+        #about
         #[must_use]
         pub fn levers(&self, #parameters) -> [[f64; 3]; #count] {
             #prelude #bindings

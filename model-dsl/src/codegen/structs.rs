@@ -13,13 +13,13 @@ pub(super) fn all(equations: &Equations) -> TokenStream {
     let axes = axes(equations);
     let travels = travels(equations);
     let motions = motions(equations);
-    let about = docs::machine(equations);
+    let about = docs::attributes(&docs::machine(equations));
     quote! {
         #constants
         #axes
         #travels
         #motions
-        #[doc = #about]
+        #about
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         pub struct Machine {
             /// The values of the named offsets.
@@ -33,13 +33,14 @@ fn record(name: &str, about: &str, fields: &[(String, String)]) -> TokenStream {
     let ident = format_ident!("{name}");
     let count = Literal::usize_unsuffixed(fields.len());
     let idents: Vec<_> = fields.iter().map(|(name, _)| field(name)).collect();
-    let docs: Vec<_> = fields.iter().map(|(_, doc)| doc).collect();
+    let docs: Vec<_> = fields.iter().map(|(_, doc)| docs::attributes(doc)).collect();
+    let about = docs::attributes(about);
     let names: Vec<_> = fields.iter().map(|(name, _)| name).collect();
     quote! {
-        #[doc = #about]
+        #about
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         pub struct #ident {
-            #(#[doc = #docs] pub #idents: f64,)*
+            #(#docs pub #idents: f64,)*
         }
         impl #ident {
             /// The names, in the order of the array.

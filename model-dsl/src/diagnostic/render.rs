@@ -33,7 +33,9 @@ const LONG_MARK: usize = 400;
 pub fn render(source: &SourceFile, diagnostics: &Diagnostics, color: bool) -> String {
     let renderer = if color { Renderer::styled() } else { Renderer::plain() };
     let renderer = renderer.term_width(WIDTH);
-    let shown = diagnostics.iter().take(MAX_SHOWN);
+    let mut sorted = diagnostics.clone();
+    sorted.sort();
+    let shown = sorted.iter().take(MAX_SHOWN);
     let mut texts: Vec<String> = shown.map(|one| render_one(source, one, &renderer)).collect();
     if diagnostics.len() > MAX_SHOWN {
         let rest = diagnostics.len() - MAX_SHOWN;

@@ -90,7 +90,7 @@ fn whole(span: Span, links: &[DraftedLink<'_>], diagnostics: &mut Diagnostics) {
         );
     }
     let tools = links.iter().filter(|drafted| drafted.link.kind == LinkKind::Tool).count();
-    if tools == 0 {
+    if tools == 0 && !diagnostics.has_errors() {
         diagnostics.push(
             Diagnostic::error("E0125", span, "the chain has no tool")
                 .label("the tool branch must end in a tool")

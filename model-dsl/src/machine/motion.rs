@@ -56,6 +56,8 @@ pub struct Motion {
     pub name: String,
     /// The symbol to print; the name where the file gives none.
     pub symbol: String,
+    /// Where the file gives the symbol.
+    pub symbol_span: Option<Span>,
     /// The number of its link in [`super::Machine::links`].
     pub link: usize,
     /// What it does.
@@ -99,7 +101,9 @@ impl Motion {
     /// A motion under its own name, in the ISO sense.
     pub(super) fn plain(number: usize, link: &Link, kind: MotionKind, span: Option<Span>) -> Self {
         let name = kind.name(&link.id);
-        Self { symbol: name.clone(), name, link: number, kind, sign: 1, travel: None, rotates: false, span }
+        let symbol = name.clone();
+        let (symbol_span, travel) = (None, None);
+        Self { name, symbol, symbol_span, link: number, kind, sign: 1, travel, rotates: false, span }
     }
 }
 

@@ -280,8 +280,12 @@ fn coordinate(node: &Node, diagnostics: &mut Diagnostics) -> Polynomial {
     let Some(written) = text(node, "a coordinate", diagnostics) else { return Polynomial::zero() };
     let value = match exact_length(written) {
         Some(length) => Ok(Polynomial::number(length)),
-        None => expression::parse(written, &mut |name| Some(Symbol::Constant(name.into())))
-            .map_err(|mistake| mistake.message),
+        None => {
+            expression::parse(written, &mut |name| Some(Symbol::Constant(name.into()))).map_err(|mistake| {
+                let turns = written.contains("sin(") || written.contains("cos(");
+                if turns { "a coordinate does not depend on an axis".to_owned() } else { mistake.message }
+            })
+        }
     };
     let bounded = value.and_then(|value| {
         let too_large = value.terms().any(|(_, number)| to_f64(number).abs() > MOST_MM);

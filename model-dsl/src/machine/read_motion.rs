@@ -194,6 +194,7 @@ fn aligned_only(key: &Spanned<String>, motion: &Motion, link: &Link, diagnostics
 fn symbol(node: &Node, motion: &mut Motion, diagnostics: &mut Diagnostics) {
     if let Some(symbol) = name(node, "a symbol", diagnostics) {
         motion.symbol = symbol.to_string();
+        motion.symbol_span = Some(node.span);
     }
 }
 

@@ -69,8 +69,11 @@ fn equation(statement: &Statement) -> String {
 fn motions(sheet: &Sheet) -> String {
     let wide = widest(sheet.motions.iter().map(|motion| motion.letter.plain.as_str()));
     let wide_iso = widest(sheet.motions.iter().map(|motion| motion.iso.as_str()));
+    // Where every symbol is the ISO name, one column says it.
+    let unnamed = sheet.motions.iter().all(|motion| motion.letter.plain == motion.iso);
     let line = |motion: &super::sheet::MotionEntry| {
-        let head = format!("  {:wide$}  {:wide_iso$}  {:3}  ", motion.letter.plain, motion.iso, motion.unit);
+        let iso = if unnamed { String::new() } else { format!("{:wide_iso$}  ", motion.iso) };
+        let head = format!("  {:wide$}  {iso}{:3}  ", motion.letter.plain, motion.unit);
         let against = if motion.against_iso { "; counted against the ISO sense" } else { "" };
         wrap::words(&head, &format!("{}{against}", motion.meaning))
     };

@@ -96,10 +96,8 @@ fn not_yaml(source: &SourceFile, error: &ScanError) -> Diagnostic {
         return too_deep(span);
     }
     let diagnostic = Diagnostic::error("E0001", span, format!("this is not YAML: {}", error.kind()));
-    match help(error.kind()) {
-        Some(help) => diagnostic.help(help),
-        None => diagnostic,
-    }
+    let otherwise = "look for a bracket, a quote or an indentation that is off here or on the line above";
+    diagnostic.help(help(error.kind()).unwrap_or_else(|| otherwise.to_owned()))
 }
 
 fn help(kind: &ErrorKind) -> Option<String> {

@@ -95,10 +95,10 @@ impl fmt::Display for Refusal {
             Self::NegativeTimeStep { time_step } => write!(f, "time step {time_step} s is negative"),
             Self::NotConverging { iterations, distance } => write!(
                 f,
-                "the compensated position is not found: step {iterations} still moves by {distance} mm"
+                "the compensated position is not found: step {iterations} still moves by {distance:.6} mm"
             ),
             Self::OverLimit { correction, limit } => {
-                write!(f, "the correction of {correction} mm is over the limit of {limit} mm")
+                write!(f, "the correction of {correction:.6} mm is over the limit of {limit} mm")
             }
         }
     }

@@ -93,3 +93,26 @@ fn expression_bombs() {
     assert_eq!(refused(file("1e999999999")), ["E0118"]);
     assert_eq!(refused(file(&"9".repeat(1_000_000))), ["E0118"]);
 }
+
+/// Each coordinate alone is small enough to read; together they must not keep the compiler busy for minutes.
+#[test]
+fn coordinates_that_expand() {
+    let mut text = String::from("abbe: 1\nname: stage\nchain:\n  tool:\n    - {slide: X, along: +X}\n");
+    for (number, signs) in
+        ["++++", "+++-", "++-+", "++--", "+-++", "+-+-", "+--+", "+---"].into_iter().enumerate()
+    {
+        let signs: Vec<char> = signs.chars().collect();
+        let sum = |last: &str| format!("(a{}b{}c{}d{}{last})^12", signs[0], signs[1], signs[2], signs[3]);
+        writeln!(
+            text,
+            "    - {{fixed: N{number}, origin: [\"{}\", \"{}\", \"{}\"], errors: [EBN{number}]}}",
+            sum("e"),
+            sum("f"),
+            sum("g")
+        )
+        .unwrap();
+    }
+    text.push_str("    - {tool: tip}\n");
+    let codes = refused(text);
+    assert!(codes.iter().all(|code| *code == "E0118"), "{codes:?}");
+}

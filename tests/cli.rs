@@ -340,3 +340,13 @@ fn the_shipped_list_is_the_folder() {
         assert!(listed.contains(&format!("\"../machines/{name}\"")), "machines/{name} is not shipped");
     }
 }
+
+#[test]
+fn the_tip_of_a_single_stage_is_its_carriage() {
+    let text = "calibration: 1\nmachine: FX\nerrors:\n  EXX: 3 um\n  EBX: 10 urad\n";
+    let run = abbe(&["compensate", &file("stage", "stage.yaml", text)], "x\n100\n");
+    assert_eq!(column(&run.out, "error_x"), [0.003], "{}", run.err);
+    let lifted = text.replace("errors:", "constants: {Zt: 50 mm}\nerrors:");
+    let run = abbe(&["compensate", &file("stage", "lifted.yaml", &lifted)], "x\n100\n");
+    assert_eq!(column(&run.out, "error_x"), [0.0035], "{}", run.err);
+}

@@ -298,7 +298,7 @@ const HARD: [(&str, &str); 8] = [
 
 fn hard(name: &str, links: &str) -> String {
     format!(
-        "abbe: 1\nname: {name}\ntitle: \"Brackets [a], `ticks`, */ and <b>\"\nchain: {{tool: [{links}]}}\n"
+        "abbe: 1\nname: {name}\ntitle: \"Brackets [a], `ticks`, */ and <b>,\\nlines, \\\"quotes\\\", \\\\ and {{x}}\"\nchain: {{tool: [{links}]}}\n"
     )
 }
 

@@ -68,11 +68,16 @@ impl Machine {
     }
 }
 
-/// Reads a bare topology word (`XYFZ`, `FX`) as a machine of that name.
+/// Reads a bare topology word (`XYFZ`, `FX`) as a machine of that name. The tip of a single stage is its
+/// carriage: the offset of its tool is zero where a calibration gives no other.
 pub fn from_word(word: &str, span: Span, diagnostics: &mut Diagnostics) -> Option<Machine> {
     let chain = topology::expand(word, span, diagnostics)?;
     let header = header::Header::bare(word);
-    build(header, chain, constants::Declared::None, diagnostics)
+    let mut machine = build(header, chain, constants::Declared::None, diagnostics)?;
+    if machine.axes().len() == 1 {
+        machine.constants.iter_mut().for_each(|constant| constant.default = Some(0.0));
+    }
+    Some(machine)
 }
 
 /// Reads a machine file. Every mistake is reported; the machine is given where there is no error.

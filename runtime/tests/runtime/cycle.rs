@@ -286,8 +286,8 @@ fn a_travel_of_no_axis_is_told() {
 #[test]
 fn every_message_says_what_it_is_about() {
     let said = [
-        (Refusal::OverLimit { correction: 0.25, limit: 0.125 }.to_string(), ["0.25 mm", "0.125 mm"]),
-        (Refusal::NotConverging { iterations: 20, distance: 0.5 }.to_string(), ["step 20", "0.5 mm"]),
+        (Refusal::OverLimit { correction: 0.25, limit: 0.125 }.to_string(), ["0.250000 mm", "0.125 mm"]),
+        (Refusal::NotConverging { iterations: 20, distance: 0.5 }.to_string(), ["step 20", "0.500000 mm"]),
         (Refusal::Length { slice: "velocity", expected: 3, found: 2 }.to_string(), ["velocity", "2 given"]),
         (
             SetupError::Parameter { motion: 4, term: 7, parameter: "gain" }.to_string(),

@@ -42,7 +42,8 @@ impl<'n> Fields<'n> {
     ) -> Option<Self> {
         let Some(entries) = node.entries() else {
             let message = format!("{} is a mapping of keys, found {}", wording.what, node.kind_name());
-            let help = format!("write `{{{}: ...}}`", known.first().unwrap_or(&"key"));
+            let help =
+                format!("write `key: value` pairs, such as `{}: ...`", known.first().unwrap_or(&"key"));
             diagnostics.push(Diagnostic::error(wording.form, node.span, message).help(help));
             return None;
         };

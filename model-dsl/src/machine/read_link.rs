@@ -275,6 +275,8 @@ fn origin(node: Option<&Node>, span: Span, diagnostics: &mut Diagnostics) -> ([P
 
 /// The largest number that an offset may hold: a thousand kilometres.
 const MOST_MM: f64 = 1e9;
+/// The most terms that an offset may expand to.
+const MOST_TERMS: usize = 32;
 
 fn coordinate(node: &Node, diagnostics: &mut Diagnostics) -> Polynomial {
     let Some(written) = text(node, "a coordinate", diagnostics) else { return Polynomial::zero() };
@@ -289,7 +291,13 @@ fn coordinate(node: &Node, diagnostics: &mut Diagnostics) -> Polynomial {
     };
     let bounded = value.and_then(|value| {
         let too_large = value.terms().any(|(_, number)| to_f64(number).abs() > MOST_MM);
-        if too_large { Err(format!("it holds a number beyond {MOST_MM:e} mm")) } else { Ok(value) }
+        if too_large {
+            Err(format!("it holds a number beyond {MOST_MM:e} mm"))
+        } else if value.size() > MOST_TERMS {
+            Err(format!("it expands to {} terms, more than {MOST_TERMS}", value.size()))
+        } else {
+            Ok(value)
+        }
     });
     bounded.unwrap_or_else(|mistake| {
         diagnostics.push(

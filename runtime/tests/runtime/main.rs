@@ -2,6 +2,8 @@
 //!
 //! In: hand-written machines, random calibrations and positions. Out: agreement with closed forms that do not come from the code.
 
+#![expect(clippy::unwrap_used, reason = "in a test a panic is the report, in its helpers too")]
+
 mod common;
 mod cycle;
 mod inverse;

@@ -1,14 +1,16 @@
 //! Straight-line programs: the equations lowered until writing code is trivial.
 //!
 //! In: polynomials. Out: additions and multiplications of two values each, every value
-//! computed once. The interpreter ([`Program::run`]) and the Rust printer read the same program,
+//! computed once. The interpreter ([`Tape`]) and the Rust printer read the same program,
 //! so neither decides anything.
 
 mod builder;
 mod machine_programs;
+mod tape;
 
 pub use builder::Builder;
 pub use machine_programs::{Interpreter, Programs};
+pub use tape::Tape;
 
 use std::fmt;
 
@@ -115,26 +117,6 @@ impl Program {
 
     /// Runs the program on the inputs that `given` supplies; one number for each result.
     pub fn run(&self, given: impl Fn(Input) -> f64) -> Vec<f64> {
-        let mut done: Vec<f64> = Vec::with_capacity(self.steps.len());
-        for step in &self.steps {
-            let value = |value: Value| self.value(value, &done, &given);
-            let result = match *step {
-                Step::Add(a, b) => value(a) + value(b),
-                Step::Sub(a, b) => value(a) - value(b),
-                Step::Mul(a, b) => value(a) * value(b),
-                Step::Neg(a) => -value(a),
-            };
-            done.push(result);
-        }
-        self.results.iter().map(|result| self.value(*result, &done, &given)).collect()
-    }
-
-    fn value(&self, value: Value, done: &[f64], given: &impl Fn(Input) -> f64) -> f64 {
-        match value {
-            Value::Zero => 0.0,
-            Value::Number(number) => self.numbers.get(number).copied().unwrap_or(f64::NAN),
-            Value::Input(input) => given(input),
-            Value::Step(number) => done.get(number).copied().unwrap_or(f64::NAN),
-        }
+        Tape::new(self).run(given)
     }
 }

@@ -4,7 +4,7 @@
 use abbe_runtime::Kinematics;
 use abbe_runtime::math::sin_cos;
 
-use super::{Builder, Input, Program};
+use super::{Builder, Input, Program, Tape};
 use crate::algebra::{Axis, Polynomial, Symbol};
 use crate::equations::Equations;
 
@@ -102,7 +102,10 @@ fn input(equations: &Equations, symbol: &Symbol) -> Option<Input> {
 /// A machine that is run from its programs, without generated code: slower, and the same numbers.
 #[derive(Clone, Debug)]
 pub struct Interpreter {
-    programs: Programs,
+    nominal: Tape,
+    error: Tape,
+    levers: Tape,
+    directions: Tape,
     constants: Vec<f64>,
     travels: Vec<usize>,
     rotary: Vec<bool>,
@@ -112,8 +115,12 @@ pub struct Interpreter {
 impl Interpreter {
     /// Prepares a machine with the values of its constants (mm), in the order of its equations.
     pub fn new(equations: &Equations, constants: &[f64]) -> Self {
+        let programs = Programs::new(equations);
         Self {
-            programs: Programs::new(equations),
+            nominal: Tape::new(&programs.nominal),
+            error: Tape::new(&programs.error),
+            levers: Tape::new(&programs.levers),
+            directions: Tape::new(&programs.directions),
             constants: constants.to_vec(),
             travels: equations.travels.iter().map(|travel| travel.axis).collect(),
             rotary: equations.axes.iter().map(|axis| axis.rotary).collect(),
@@ -123,19 +130,19 @@ impl Interpreter {
 
     /// The nominal tool tip relative to the part: mm, part frame, 0 where not sensitive.
     pub fn nominal(&self, position: &[f64]) -> [f64; 3] {
-        triple(&self.run(&self.programs.nominal, position, &[], &[]))
+        triple(&self.run(&self.nominal, position, &[], &[]))
     }
 
     /// The lever arm of every error motion: X, Y, Z for each.
     pub fn levers(&self, position: &[f64], travel: &[f64]) -> Vec<[f64; 3]> {
-        self.run(&self.programs.levers, position, travel, &[]).chunks(3).map(triple).collect()
+        self.run(&self.levers, position, travel, &[]).chunks(3).map(triple).collect()
     }
 
-    fn run(&self, program: &Program, position: &[f64], travel: &[f64], motions: &[f64]) -> Vec<f64> {
+    fn run(&self, tape: &Tape, position: &[f64], travel: &[f64], motions: &[f64]) -> Vec<f64> {
         let turn = |(angle, rotary): (&f64, &bool)| if *rotary { sin_cos(*angle) } else { (0.0, 1.0) };
         let turns: Vec<(f64, f64)> = position.iter().zip(&self.rotary).map(turn).collect();
         let or_nan = |values: &[f64], number: usize| values.get(number).copied().unwrap_or(f64::NAN);
-        program.run(|input| match input {
+        tape.run(|input| match input {
             Input::Position(axis) => or_nan(position, axis),
             Input::Travel(number) => or_nan(travel, number),
             Input::Constant(number) => or_nan(&self.constants, number),
@@ -164,11 +171,11 @@ impl Kinematics for Interpreter {
         if lengths != (self.rotary.len(), self.travels.len(), self.motions) {
             return [f64::NAN; 3];
         }
-        triple(&self.run(&self.programs.error, position, travel, motions))
+        triple(&self.run(&self.error, position, travel, motions))
     }
 
     fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {
-        let all = self.run(&self.programs.directions, position, &[], &[]);
+        let all = self.run(&self.directions, position, &[], &[]);
         for (slot, values) in directions.iter_mut().zip(all.chunks(3)) {
             *slot = triple(values);
         }

@@ -5,6 +5,6 @@ mod state;
 mod summary;
 
 use layout::Column;
-pub(crate) use layout::{Layout, Wanted};
+pub(crate) use layout::{Layout, Wanted, output_columns};
 pub(crate) use state::State;
 pub(crate) use summary::Summary;

@@ -28,6 +28,7 @@ pub mod source;
 pub mod suggest;
 pub mod yaml;
 
+use std::fmt;
 use std::path::Path;
 
 use proc_macro2::TokenStream;
@@ -86,15 +87,35 @@ pub fn rust_tokens(source: &SourceFile) -> Result<(TokenStream, Equations, Strin
 ///
 /// Warnings become `cargo::warning` lines. The error tells the file, or every mistake in it.
 #[expect(clippy::print_stdout, reason = "a build script tells cargo its warnings on standard output")]
-pub fn rust_for(path: impl AsRef<Path>) -> Result<String, String> {
+pub fn rust_for(path: impl AsRef<Path>) -> Result<String, CompileError> {
     let path = path.as_ref();
-    let text =
-        std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| CompileError(format!("cannot read {}: {error}", path.display())))?;
     let source = SourceFile::new(path.display().to_string(), text);
-    let (tokens, _, warnings) = rust_tokens(&source)?;
+    let (tokens, _, warnings) = rust_tokens(&source).map_err(CompileError)?;
     for line in warnings.lines() {
         println!("cargo::warning={line}");
     }
     let origin = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    codegen::file(&tokens, &origin).map_err(|error| format!("the generated code does not parse: {error}"))
+    codegen::file(&tokens, &origin)
+        .map_err(|error| CompileError(format!("the generated code does not parse: {error}")))
 }
+
+/// Why a machine file gives no code: every mistake in it, as text to be read.
+///
+/// Its `Debug` is that text too, since a build script whose `main` returns it is shown by `Debug`.
+pub struct CompileError(String);
+
+impl fmt::Display for CompileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl fmt::Debug for CompileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.0.trim_end())
+    }
+}
+
+impl std::error::Error for CompileError {}

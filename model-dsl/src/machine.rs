@@ -25,7 +25,7 @@ pub use motion::{Motion, MotionKind, MotionName, parse_name};
 pub use topology::{TopologyWord, template};
 
 use crate::algebra::Axis;
-use crate::diagnostic::Diagnostics;
+use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::{SourceFile, Span};
 use crate::yaml::Node;
 
@@ -87,6 +87,15 @@ pub fn read(source: &SourceFile, diagnostics: &mut Diagnostics) -> Option<Machin
 }
 
 fn read_node(root: &Node, diagnostics: &mut Diagnostics) -> Option<Machine> {
+    if root.get("abbe").is_none() && root.get("calibration").is_some() {
+        let place = fields::place(root);
+        diagnostics.push(
+            Diagnostic::error("E0119", place, "this is a calibration file, not a machine file")
+                .label("a machine file begins with `abbe: 1`")
+                .help("give the machine file, or what its key `machine` names"),
+        );
+        return None;
+    }
     let fields = fields::open(root, "a machine file", &KEYS, diagnostics)?;
     let header = header::read(fields, diagnostics);
     let declared = constants::declared(fields.get("constants"), diagnostics);

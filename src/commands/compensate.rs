@@ -1,10 +1,12 @@
 //! `abbe compensate`: positions on standard input become errors and compensated positions on
 //! standard output, row by row, in constant memory.
 
-use std::io;
+use std::cell::RefCell;
+use std::io::{self, Read};
+use std::rc::Rc;
 
 use abbe_runtime::{Compensator, ErrorMotion, Limits, Outcome, TermState, Work, states_needed};
-use csv::StringRecord;
+use csv::ByteRecord;
 use model_dsl::calibration::CalibratedTerm;
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
@@ -13,7 +15,7 @@ use crate::arguments::Compensate;
 use crate::calibrated::{self, Calibrated};
 use crate::failure::Failure;
 use crate::output::warn;
-use crate::positions::{Layout, State, Summary, Wanted};
+use crate::positions::{Layout, State, Summary, Wanted, output_columns};
 
 /// Decimal places of errors and positions: a picometre, so that rounding never shows.
 const PLACES: usize = 9;
@@ -41,13 +43,33 @@ pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
     rows.finish(done)
 }
 
+/// The rows that come in.
+type Reader = csv::Reader<Input>;
+
+/// The rows that go out.
+type Writer = Rc<RefCell<csv::Writer<io::StdoutLock<'static>>>>;
+
+/// Standard input that shows what is finished before it waits for more, so that a program at
+/// the other end of the pipes gets every answer before it asks the next question.
+struct Input {
+    stdin: io::StdinLock<'static>,
+    writer: Writer,
+}
+
+impl Read for Input {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.writer.borrow_mut().flush()?;
+        self.stdin.read(buffer)
+    }
+}
+
 /// The rows on their way from standard input to standard output.
 struct Rows<'c> {
-    reader: csv::Reader<io::StdinLock<'static>>,
-    writer: csv::Writer<io::StdoutLock<'static>>,
+    reader: Reader,
+    writer: Writer,
     equations: &'c Equations,
     state: State<'c>,
-    first: Option<StringRecord>,
+    first: Option<ByteRecord>,
     row: u64,
     skip_bad: bool,
     skipped: u64,
@@ -57,23 +79,24 @@ struct Rows<'c> {
 impl<'c> Rows<'c> {
     /// Reads the header and writes the header of the output.
     fn open(calibrated: &'c Calibrated, command: &Compensate) -> Result<Self, Failure> {
-        let mut reader =
-            csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(io::stdin().lock());
-        let mut header = StringRecord::new();
+        let writer = csv::WriterBuilder::new().flexible(true).from_writer(io::stdout().lock());
+        let writer = Rc::new(RefCell::new(writer));
+        let input = Input { stdin: io::stdin().lock(), writer: Rc::clone(&writer) };
+        let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(input);
+        let mut header = ByteRecord::new();
         if !read(&mut reader, &mut header)? {
             return Err(Failure::No(
                 "error: standard input is empty; it begins with a header such as `x,y,z`".to_owned(),
             ));
         }
-        let mut second = StringRecord::new();
+        let mut second = ByteRecord::new();
         let more = read(&mut reader, &mut second)?;
-        let units = more && second.get(0).is_some_and(|cell| cell.trim() == "#unit");
-        let layout =
-            Layout::read(&header, units.then_some(&second), &wanted(calibrated)).map_err(|mistakes| {
-                Failure::Wrong(
-                    mistakes.iter().map(|mistake| format!("error: standard input: {mistake}\n")).collect(),
-                )
-            })?;
+        let units = more && second.get(0).is_some_and(|cell| cell.trim_ascii() == b"#unit");
+        let wanted = wanted(calibrated);
+        let layout = Layout::read(&header, units.then_some(&second), &wanted).map_err(|mistakes| {
+            let told = mistakes.iter().map(|mistake| format!("error: standard input: {mistake}\n"));
+            Failure::Wrong(told.collect())
+        })?;
         for name in &layout.unread {
             warn(&format!("warning: column `{name}` is carried along, and nothing reads it"));
         }
@@ -85,9 +108,9 @@ impl<'c> Rows<'c> {
             .collect();
         let mut rows = Self {
             reader,
-            writer: csv::WriterBuilder::new().flexible(true).from_writer(io::stdout().lock()),
+            writer,
             equations,
-            state: State::new(layout, &calibrated.calibration.sensors, &hysteresis),
+            state: State::new(layout, wanted.time.is_some(), &calibrated.calibration.sensors, &hysteresis),
             first: (more && !units).then_some(second),
             row: 0,
             skip_bad: command.skip_bad,
@@ -100,13 +123,8 @@ impl<'c> Rows<'c> {
 
     fn write_header(&mut self) -> Result<(), Failure> {
         let layout = self.state.layout();
-        let errors = self
-            .equations
-            .rows
-            .iter()
-            .map(|row| format!("error_{}", row.direction.letter().to_ascii_lowercase()));
-        let positions = self.equations.axes.iter().map(|axis| format!("{}_comp", axis.variable));
-        let header: Vec<String> = layout.header.iter().cloned().chain(errors).chain(positions).collect();
+        let header: Vec<String> =
+            layout.header.iter().cloned().chain(output_columns(self.equations)).collect();
         let units = layout.units.as_ref().map(|units| {
             let errors = self.equations.rows.iter().map(|_| "mm".to_owned());
             let axis_units =
@@ -114,13 +132,13 @@ impl<'c> Rows<'c> {
             let mark = std::iter::once("#unit".to_owned());
             mark.chain(units.iter().cloned()).chain(errors).chain(axis_units).collect::<Vec<_>>()
         });
-        self.writer.write_record(&header).map_err(closed)?;
-        units.map_or(Ok(()), |units| self.writer.write_record(&units).map_err(closed))
+        self.writer.borrow_mut().write_record(&header).map_err(closed)?;
+        units.map_or(Ok(()), |units| self.writer.borrow_mut().write_record(&units).map_err(closed))
     }
 
     fn stream(&mut self, compensator: &mut Compensator<'_, Interpreter>) -> Result<(), Failure> {
         let mut compensated = vec![0.0; self.equations.axes.len()];
-        let mut row = StringRecord::new();
+        let mut row = ByteRecord::new();
         let mut text = String::new();
         while self.next(&mut row)? {
             match self.answer(&row, compensator, &mut compensated) {
@@ -136,7 +154,7 @@ impl<'c> Rows<'c> {
 
     fn answer(
         &mut self,
-        row: &StringRecord,
+        row: &ByteRecord,
         compensator: &mut Compensator<'_, Interpreter>,
         compensated: &mut [f64],
     ) -> Result<Outcome, String> {
@@ -144,7 +162,7 @@ impl<'c> Rows<'c> {
         compensator.compensate(&self.state.sample(), compensated).map_err(|refusal| refusal.to_string())
     }
 
-    fn next(&mut self, row: &mut StringRecord) -> Result<bool, Failure> {
+    fn next(&mut self, row: &mut ByteRecord) -> Result<bool, Failure> {
         self.row += 1;
         match self.first.take() {
             Some(first) => {
@@ -155,12 +173,13 @@ impl<'c> Rows<'c> {
         }
     }
 
-    fn bad(&mut self, row: &StringRecord, mistake: &str) -> Result<(), Failure> {
+    fn bad(&mut self, row: &ByteRecord, mistake: &str) -> Result<(), Failure> {
         if self.skip_bad {
             self.skipped += 1;
             return Ok(());
         }
-        let cells = row.iter().take(12).collect::<Vec<_>>().join(",");
+        let cells: Vec<_> = row.iter().take(12).map(String::from_utf8_lossy).collect();
+        let cells = cells.join(",");
         Err(Failure::No(format!(
             "error: standard input, row {} under the header (`{cells}`): {mistake}\nhelp: --skip-bad leaves such rows out and counts them",
             self.row
@@ -168,10 +187,17 @@ impl<'c> Rows<'c> {
     }
 
     /// Flushes what stands complete, also before a failure is told.
-    fn finish(mut self, done: Result<(), Failure>) -> Result<(), Failure> {
-        self.writer.flush().map_err(|error| Failure::io("cannot write to standard output", &error))?;
+    fn finish(self, done: Result<(), Failure>) -> Result<(), Failure> {
+        self.writer
+            .borrow_mut()
+            .flush()
+            .map_err(|error| Failure::io("cannot write to standard output", &error))?;
         if self.skipped > 0 {
-            warn(&format!("warning: {} bad rows were left out", self.skipped));
+            warn(&format!(
+                "warning: {} bad row{} left out",
+                self.skipped,
+                if self.skipped == 1 { " was" } else { "s were" }
+            ));
         }
         if let Some(summary) = &self.summary {
             warn(&summary.to_string());
@@ -187,13 +213,14 @@ impl<'c> Rows<'c> {
 /// Writes the input's cells, the errors and the compensated positions in the units of their columns.
 fn write_row(
     rows: &mut Rows<'_>,
-    row: &StringRecord,
+    row: &ByteRecord,
     error: &[f64; 3],
     compensated: &[f64],
     text: &mut String,
 ) -> Result<(), Failure> {
+    let mut writer = rows.writer.borrow_mut();
     for cell in row {
-        rows.writer.write_field(cell).map_err(closed)?;
+        writer.write_field(cell).map_err(closed)?;
     }
     let errors = rows.equations.rows.iter().map(|row| error[row.direction.index()]);
     let layout = rows.state.layout();
@@ -203,9 +230,9 @@ fn write_row(
         .map(|(position, column)| position / column.factor - column.offset);
     for value in errors.chain(positions) {
         write_number(text, value);
-        rows.writer.write_field(text.as_str()).map_err(closed)?;
+        writer.write_field(text.as_str()).map_err(closed)?;
     }
-    rows.writer.write_record(None::<&[u8]>).map_err(closed)
+    writer.write_record(None::<&[u8]>).map_err(closed)
 }
 
 /// Fixed places; a zero has no sign.
@@ -227,10 +254,11 @@ fn closed(error: csv::Error) -> Failure {
 }
 
 /// Reads the next row; `false` at the end.
-fn read(reader: &mut csv::Reader<io::StdinLock<'static>>, row: &mut StringRecord) -> Result<bool, Failure> {
-    reader
-        .read_record(row)
-        .map_err(|error| Failure::No(format!("error: cannot read standard input: {error}")))
+fn read(reader: &mut Reader, row: &mut ByteRecord) -> Result<bool, Failure> {
+    reader.read_byte_record(row).map_err(|error| match error.into_kind() {
+        csv::ErrorKind::Io(error) => Failure::io("cannot read standard input", &error),
+        other => Failure::No(format!("error: cannot read standard input: {other:?}")),
+    })
 }
 
 /// What the machine and its calibration need from a row.

@@ -1,7 +1,7 @@
 //! Columns of a CSV file of positions. In: the header, and the row of units where there is
 //! one. Out: the place and the scale of every quantity that the machine needs.
 
-use csv::StringRecord;
+use csv::ByteRecord;
 use model_dsl::equations::Equations;
 use model_dsl::quantity::{Dimension, parse_unit};
 use model_dsl::suggest::nearest;
@@ -14,6 +14,14 @@ pub(crate) struct Wanted<'a> {
     pub(crate) sensors: Vec<&'a str>,
     /// Why a time is needed, where one is.
     pub(crate) time: Option<String>,
+}
+
+/// The columns that the output adds: the error in each sensitive direction, the compensated position of each axis.
+pub(crate) fn output_columns(equations: &Equations) -> Vec<String> {
+    let errors =
+        equations.rows.iter().map(|row| format!("error_{}", row.direction.letter().to_ascii_lowercase()));
+    let positions = equations.axes.iter().map(|axis| format!("{}_comp", axis.variable));
+    errors.chain(positions).collect()
 }
 
 /// One column that is read.
@@ -61,19 +69,26 @@ struct Reader<'a> {
 impl Layout {
     /// Reads the header and the units; every mistake is told.
     pub(crate) fn read(
-        header: &StringRecord,
-        units: Option<&StringRecord>,
+        header: &ByteRecord,
+        units: Option<&ByteRecord>,
         wanted: &Wanted<'_>,
     ) -> Result<Self, Vec<String>> {
-        let header: Vec<String> =
-            header.iter().map(|cell| cell.trim().trim_start_matches('\u{feff}').to_owned()).collect();
+        let header: Vec<String> = header
+            .iter()
+            .map(|cell| String::from_utf8_lossy(cell).trim().trim_start_matches('\u{feff}').to_owned())
+            .collect();
         let units =
             units.map(|units| unit_row(units, header.len())).transpose().map_err(|mistake| vec![mistake])?;
         if header.len() == 1 && header.iter().any(|only| only.contains([';', '\t'])) {
-            return Err(vec!["the columns are not separated by commas".to_owned()]);
+            return Err(vec!["the columns are not separated by commas; write `x,y,z`".to_owned()]);
         }
         let mut reader =
             Reader { read: vec![false; header.len()], header, units, mistakes: Vec::new(), wanted };
+        if reader.header.first().is_some_and(|first| first.parse::<f64>().is_ok()) {
+            return Err(vec![
+                "the first row is no header; write the columns' names above it, `x,y,z`".to_owned(),
+            ]);
+        }
         reader.repeated();
         let layout = reader.layout();
         if reader.mistakes.is_empty() { Ok(layout) } else { Err(reader.mistakes) }
@@ -81,8 +96,9 @@ impl Layout {
 }
 
 /// `#unit,mm,mm`: the mark in a cell of its own before the units of all columns.
-fn unit_row(row: &StringRecord, columns: usize) -> Result<Vec<String>, String> {
-    let units: Vec<String> = row.iter().skip(1).map(|cell| cell.trim().to_owned()).collect();
+fn unit_row(row: &ByteRecord, columns: usize) -> Result<Vec<String>, String> {
+    let units: Vec<String> =
+        row.iter().skip(1).map(|cell| String::from_utf8_lossy(cell).trim().to_owned()).collect();
     if units.len() == columns {
         return Ok(units);
     }
@@ -93,7 +109,13 @@ fn unit_row(row: &StringRecord, columns: usize) -> Result<Vec<String>, String> {
 }
 
 impl Reader<'_> {
+    /// A column may stand once, and not under a name that the output needs.
     fn repeated(&mut self) {
+        for name in output_columns(self.wanted.equations) {
+            if self.header.contains(&name) {
+                self.mistakes.push(format!("column `{name}` is one of the output's; rename it"));
+            }
+        }
         for (at, name) in self.header.iter().enumerate() {
             if !name.is_empty() && self.header.iter().take(at).any(|earlier| earlier == name) {
                 self.mistakes.push(format!("column `{name}` stands twice"));

@@ -2,7 +2,7 @@
 //! the runtime reads it: positions, directions, velocities, temperatures, time.
 
 use abbe_runtime::{Direction, DirectionTracker, Sample};
-use csv::StringRecord;
+use csv::ByteRecord;
 use model_dsl::calibration::{SensorReadings, Sensors};
 
 use super::{Column, Layout};
@@ -10,6 +10,8 @@ use super::{Column, Layout};
 /// The machine's state, from row to row.
 pub(crate) struct State<'s> {
     layout: Layout,
+    /// Whether a term needs to know how fast the axes move.
+    timed: bool,
     sensors: SensorReadings<'s>,
     input_columns: Vec<Option<Column>>,
     trackers: Vec<DirectionTracker>,
@@ -24,7 +26,7 @@ pub(crate) struct State<'s> {
 
 impl<'s> State<'s> {
     /// The state before the first row; `hysteresis` is in mm or rad, one for each axis.
-    pub(crate) fn new(layout: Layout, sensors: &'s Sensors, hysteresis: &[f64]) -> Self {
+    pub(crate) fn new(layout: Layout, timed: bool, sensors: &'s Sensors, hysteresis: &[f64]) -> Self {
         let axes = layout.axes.len();
         let mut input_columns = vec![None; sensors.len()];
         for ((index, _), column) in sensors.inputs().zip(&layout.sensors) {
@@ -33,6 +35,7 @@ impl<'s> State<'s> {
             }
         }
         Self {
+            timed,
             sensors: SensorReadings::new(sensors),
             input_columns,
             trackers: hysteresis.iter().map(|threshold| DirectionTracker::new(*threshold)).collect(),
@@ -53,7 +56,7 @@ impl<'s> State<'s> {
     }
 
     /// Takes a row; the error names the column and the text that is wrong in it.
-    pub(crate) fn take(&mut self, row: &StringRecord) -> Result<(), String> {
+    pub(crate) fn take(&mut self, row: &ByteRecord) -> Result<(), String> {
         if row.len() != self.layout.width {
             let hint = if row.len() > self.layout.width { "; a decimal comma would do that" } else { "" };
             return Err(format!("{} cells under {} columns{hint}", row.len(), self.layout.width));
@@ -78,24 +81,29 @@ impl<'s> State<'s> {
     }
 
     /// Reads every number of the row once, so that a bad row leaves the state as it was.
-    fn check(&self, row: &StringRecord) -> Result<(), String> {
+    fn check(&self, row: &ByteRecord) -> Result<(), String> {
         let layout = &self.layout;
         let columns = layout.axes.iter().chain(&layout.sensors).chain(&layout.time);
         let travels = layout.travels.iter().flatten();
         columns.chain(travels).try_for_each(|column| self.number(row, *column).map(drop))?;
         for index in layout.directions.iter().flatten() {
-            direction(row.get(*index).unwrap_or_default(), self.name(*index))?;
+            direction(text(row, *index), self.name(*index))?;
         }
-        if let (Some(column), Some((before, _))) = (layout.time, &self.previous) {
-            let back = before - self.number(row, column)?;
-            if back > 0.0 {
-                return Err(format!("the time goes back by {back} s"));
+        if let (Some(column), Some((before, from))) = (layout.time, &self.previous) {
+            let step = self.number(row, column)? - before;
+            if step < 0.0 {
+                return Err(format!("the time goes back by {} s", -step));
+            }
+            let mut axes = layout.axes.iter().zip(from);
+            let moves = axes.any(|(axis, from)| self.number(row, *axis).is_ok_and(|to| to != *from));
+            if step == 0.0 && moves && self.timed {
+                return Err("the axes move while the time stands still".to_owned());
             }
         }
         Ok(())
     }
 
-    fn read_positions(&mut self, row: &StringRecord) -> Result<(), String> {
+    fn read_positions(&mut self, row: &ByteRecord) -> Result<(), String> {
         for (axis, column) in self.layout.axes.iter().enumerate() {
             self.position[axis] = self.number(row, *column)?;
         }
@@ -110,17 +118,17 @@ impl<'s> State<'s> {
         Ok(())
     }
 
-    fn read_directions(&mut self, row: &StringRecord) -> Result<(), String> {
+    fn read_directions(&mut self, row: &ByteRecord) -> Result<(), String> {
         for (axis, column) in self.layout.directions.iter().enumerate() {
             self.direction[axis] = match column {
-                Some(index) => direction(row.get(*index).unwrap_or_default(), self.name(*index))?,
+                Some(index) => direction(text(row, *index), self.name(*index))?,
                 None => self.trackers[axis].update(self.position[axis]),
             };
         }
         Ok(())
     }
 
-    fn read_time(&mut self, row: &StringRecord) -> Result<(), String> {
+    fn read_time(&mut self, row: &ByteRecord) -> Result<(), String> {
         let Some(column) = self.layout.time else { return Ok(()) };
         let now = self.number(row, column)?;
         self.velocity.fill(0.0);
@@ -135,7 +143,7 @@ impl<'s> State<'s> {
         Ok(())
     }
 
-    fn read_temperatures(&mut self, row: &StringRecord) -> Result<(), String> {
+    fn read_temperatures(&mut self, row: &ByteRecord) -> Result<(), String> {
         let mut inputs = vec![f64::NAN; self.input_columns.len()];
         for (slot, column) in inputs.iter_mut().zip(&self.input_columns) {
             if let Some(column) = column {
@@ -151,13 +159,22 @@ impl<'s> State<'s> {
         self.layout.header.get(index).map_or("", String::as_str)
     }
 
-    fn number(&self, row: &StringRecord, column: Column) -> Result<f64, String> {
-        let text = row.get(column.index).unwrap_or_default().trim();
+    fn number(&self, row: &ByteRecord, column: Column) -> Result<f64, String> {
+        let text = text(row, column.index);
         match text.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok((value + column.offset) * column.factor),
-            _ => Err(format!("column `{}`: `{text}` is not a number", self.name(column.index))),
+            _ => {
+                let hint = if text.contains(',') { "; write a decimal point" } else { "" };
+                Err(format!("column `{}`: `{text}` is not a number{hint}", self.name(column.index)))
+            }
         }
     }
+}
+
+/// A cell as text; what is not UTF-8 is no number and no direction either.
+fn text(row: &ByteRecord, index: usize) -> &str {
+    let cell = row.get(index).unwrap_or_default();
+    std::str::from_utf8(cell).map_or("(not UTF-8)", str::trim)
 }
 
 fn direction(text: &str, name: &str) -> Result<Direction, String> {

@@ -44,7 +44,12 @@ impl fmt::Display for Range {
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "Distance of the tool tip from its target at {} positions, by the model:", self.rows)?;
+        let plural = if self.rows == 1 { "" } else { "s" };
+        let rows = self.rows;
+        if rows == 0 {
+            return write!(f, "No position was compensated.");
+        }
+        writeln!(f, "Distance of the tool tip from its target at {rows} position{plural}, by the model:")?;
         writeln!(f, "  without compensation {}", self.without)?;
         write!(f, "  with compensation    {}", self.with)
     }

@@ -18,6 +18,13 @@ const KEYS: [&str; 7] = ["calibration", "machine", "source", "constants", "limit
 ///
 /// Findings: E0401 there is none, E0404 it is not a name, or the file is no mapping at all. [`read`] does not repeat them.
 pub fn machine_of(root: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned<String>> {
+    if root.get("calibration").is_none() && root.get("abbe").is_some() {
+        let message = "this is a machine file, not a calibration file";
+        let mistake = Diagnostic::error("E0402", first_key(root), message);
+        diagnostics
+            .push(mistake.help("a calibration file begins with `calibration: 1` and names its machine"));
+        return None;
+    }
     if root.entries().is_none() {
         let message = format!("a calibration is a mapping of keys, found {}", root.kind_name());
         let mistake = Diagnostic::error("E0404", root.span, message);
@@ -183,12 +190,17 @@ fn read_motions(
 fn unknown_motion(name: &Spanned<String>, names: &MachineNames) -> Diagnostic {
     let message = format!("{} has no error motion `{}`", names.machine, name.value);
     let mistake = Diagnostic::error("E0407", name.span, message);
-    match nearest(&name.value, names.motions.iter().map(|motion| motion.name.as_str())) {
-        Some(near) => mistake.suggest(Some(near)),
-        None => {
-            let listed: Vec<_> = names.motions.iter().map(|motion| motion.name.as_str()).collect();
-            mistake.help(format!("its error motions are {}", listed.join(", ")))
-        }
+    // A motion of a link is no suggestion for an alignment error: both may be angles, and mean other things.
+    let aligns = |name: &str| name.contains('0');
+    let alike = names.motions.iter().map(|motion| motion.name.as_str());
+    let alike: Vec<&str> = alike.filter(|known| aligns(known) == aligns(&name.value)).collect();
+    match nearest(&name.value, alike.iter().copied()) {
+        Some(near) if !aligns(&name.value) => mistake.suggest(Some(near)),
+        _ if aligns(&name.value) => mistake.help(format!(
+            "its alignment errors are {}; another one must stand in the `errors` of the machine file, and counts from another axis",
+            if alike.is_empty() { "none".to_owned() } else { alike.join(", ") }
+        )),
+        _ => mistake.help(format!("its error motions are {}", alike.join(", "))),
     }
 }
 
@@ -196,7 +208,9 @@ fn repeated_motion(motion: usize, name: &Spanned<String>, first: Span, names: &M
     let known = names.motions.get(motion).map_or("", |motion| motion.name.as_str());
     let message = format!("{known} is given twice");
     let mistake = Diagnostic::error("E0408", name.span, message).also(first, "first given here");
-    mistake.help(format!("`{}` is another spelling of {known}: put all its terms into one list", name.value))
+    mistake.help(format!(
+        "spellings such as C0Y and EC0Y are one motion: put all terms of {known} into one list"
+    ))
 }
 
 fn read_terms(

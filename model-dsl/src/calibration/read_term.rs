@@ -167,7 +167,8 @@ impl<'n> Parameters<'_, 'n, '_> {
         }
         let message = format!("{} must be {must}", self.words(key));
         self.report(
-            Diagnostic::error("E0419", found.span, message).help("turn its sign, or leave the term out"),
+            Diagnostic::error("E0419", found.span, message)
+                .help(format!("write a value that is {must}, or leave the term out")),
         );
         None
     }

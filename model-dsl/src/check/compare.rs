@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::read::{Printed, Section};
+use super::read::{Printed, Section, WHOLE_ERROR};
 use super::{Comparison, Finding, Nominal, Report, Target, Verdict};
 use crate::algebra::{Axis, Monomial, Polynomial, Rational, Symbol};
 use crate::derivation::link_matrix;
@@ -31,8 +31,9 @@ pub(super) fn report(
         let chosen: BTreeSet<String> = printed.iter().flat_map(|side| side.arms.keys().cloned()).collect();
         let left_out = move |name: &str| section.selection && !chosen.contains(name);
         let pairs: Vec<_> = section.equations.iter().zip(printed).collect();
-        pairs.into_iter().map(move |(equation, side)| {
-            let derived = derived(machine, equations, &equation.target);
+        pairs.into_iter().map(move |(equation, mut side)| {
+            let mut derived = derived(machine, equations, &equation.target);
+            error_stands_apart(&mut derived, &mut side);
             let line = file.line_column(equation.left.span.start).0;
             let found = findings(machine, &derived, &side, &left_out);
             comparison(section, equation, line, derived.nominal, side, found)
@@ -86,6 +87,16 @@ fn split(value: &Polynomial) -> Side {
         *slot = &*slot + &Polynomial::monomial(rest, coefficient.clone());
     }
     side
+}
+
+/// `Px = ... + dPx` says nothing of the error motion by motion: only the rest is compared here.
+fn error_stands_apart(derived: &mut Side, printed: &mut Side) {
+    match printed.arms.remove(WHOLE_ERROR) {
+        Some(arm) if arm.is_one() => derived.arms.clear(),
+        // Any other multiple of the error is no position.
+        Some(arm) => printed.nominal = &printed.nominal + &arm,
+        None => {}
+    }
 }
 
 /// How many error motions a monomial multiplies.

@@ -81,7 +81,7 @@ fn read_section(
             Statement::Let(letter, value) => give(&mut vocabulary, letter, value, diagnostics),
             Statement::Equation(left, right) => {
                 let target = target(left, kind.link, equations, diagnostics);
-                let value = value(right, &vocabulary, diagnostics);
+                let value = value(right, target.as_ref(), &vocabulary, diagnostics);
                 if let (Some(target), Some(value)) = (target, value) {
                     add(&mut printed, Printed { left: left.clone(), target, value }, diagnostics);
                 }
@@ -234,9 +234,20 @@ fn entry(left: &str, link: Option<usize>) -> Option<Target> {
     Some(Target::Entry { link: link?, row: number(row)?, column: number(column)? })
 }
 
+/// The symbol that stands for the whole error of a direction, where `Px` is printed as `... + dPx`.
+pub(super) const WHOLE_ERROR: &str = "dP";
+
+/// `dPx` or `Ex` in the equation of `Px`: the error is printed in an equation of its own.
+fn whole_error(name: &str, target: Option<&Target>) -> Option<Symbol> {
+    let Some(Target::Position(axis)) = target else { return None };
+    let same = matches!(direction(name), Some(Target::Error(other)) if other == *axis);
+    same.then(|| Symbol::Motion(WHOLE_ERROR.into()))
+}
+
 /// Reads a right side. After an unknown name the rest is read again without asking for that name.
 fn value(
     right: &Spanned<String>,
+    target: Option<&Target>,
     vocabulary: &Vocabulary<'_>,
     diagnostics: &mut Diagnostics,
 ) -> Option<Polynomial> {
@@ -247,7 +258,7 @@ fn value(
             if told.iter().any(|known| known == name) {
                 return Some(Symbol::Constant(name.into()));
             }
-            let symbol = vocabulary.resolve(name);
+            let symbol = vocabulary.resolve(name).or_else(|| whole_error(name, target));
             if symbol.is_none() {
                 unknown = Some(name.to_owned());
             }

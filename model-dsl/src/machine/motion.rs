@@ -110,8 +110,8 @@ impl Motion {
 /// The sign with which a motion displaces or turns its own body in bed directions.
 ///
 /// The link's own direction is counted along `along`, so that it is actual minus commanded.
-/// With `motions: relative`, every other motion on the part's branch turns; an alignment
-/// error does not, since a line of motion is turned the same way from whichever side it is seen.
+/// With `motions: relative`, every other motion on the part's branch turns; but the alignment
+/// error of a slide does not, since a line of motion is turned the same way from whichever side it is seen.
 pub(crate) fn body_sign(motion: &Motion, link: &Link, relative: bool) -> i64 {
     let own = match (link.kind, motion.kind) {
         (LinkKind::Slide(_), MotionKind::Linear(axis)) => axis == link.along.axis,
@@ -120,9 +120,10 @@ pub(crate) fn body_sign(motion: &Motion, link: &Link, relative: bool) -> i64 {
         }
         _ => false,
     };
+    let line = matches!((link.kind, motion.kind), (LinkKind::Slide(_), MotionKind::Alignment(_)));
     if own {
         motion.sign * link.along.sign
-    } else if relative && link.branch == Branch::Workpiece && !motion.kind.alignment() {
+    } else if relative && link.branch == Branch::Workpiece && !line {
         -motion.sign
     } else {
         motion.sign

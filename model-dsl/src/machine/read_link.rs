@@ -273,6 +273,12 @@ fn origin(node: Option<&Node>, span: Span, diagnostics: &mut Diagnostics) -> ([P
     (origin, spans)
 }
 
+/// What a name in a coordinate stands for: a constant; but not what other languages write for numbers.
+fn constant(name: &str) -> Option<Symbol> {
+    let number = ["nan", "inf", "infinity"].contains(&name.to_ascii_lowercase().as_str());
+    (!number).then(|| Symbol::Constant(name.into()))
+}
+
 /// The largest number that an offset may hold: a thousand kilometres.
 const MOST_MM: f64 = 1e9;
 /// The most terms that an offset may expand to.
@@ -282,12 +288,10 @@ fn coordinate(node: &Node, diagnostics: &mut Diagnostics) -> Polynomial {
     let Some(written) = text(node, "a coordinate", diagnostics) else { return Polynomial::zero() };
     let value = match exact_length(written) {
         Some(length) => Ok(Polynomial::number(length)),
-        None => {
-            expression::parse(written, &mut |name| Some(Symbol::Constant(name.into()))).map_err(|mistake| {
-                let turns = written.contains("sin(") || written.contains("cos(");
-                if turns { "a coordinate does not depend on an axis".to_owned() } else { mistake.message }
-            })
-        }
+        None => expression::parse(written, &mut constant).map_err(|mistake| {
+            let turns = written.contains("sin(") || written.contains("cos(");
+            if turns { "a coordinate does not depend on an axis".to_owned() } else { mistake.message }
+        }),
     };
     let bounded = value.and_then(|value| {
         let too_large = value.terms().any(|(_, number)| to_f64(number).abs() > MOST_MM);

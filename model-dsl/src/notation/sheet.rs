@@ -208,12 +208,12 @@ fn senses(equations: &Equations) -> Vec<String> {
     if equations.relative {
         sentences.push(
             "Error motions are those of the tool relative to the part: on the part's branch every motion but the link's \
-             own is the opposite of what the body does; alignment errors turn a line and are the same from either side."
+             own is the opposite of what the body does; the alignment error of a slide turns a line and is the same from either side."
                 .to_owned(),
         );
     } else {
         sentences.push(
-            "An error motion is that of its own body, in directions of the bed, on either branch.".to_owned(),
+            "An error motion is that of its own body, in directions of the frame before it, on either branch.".to_owned(),
         );
     }
     let bed = |link: &&Link| matches!(link.kind, LinkKind::Slide(_)) && link.reference == Reference::Bed;

@@ -9,13 +9,13 @@ use std::process::{Command, Stdio};
 use crate::shipped::root;
 
 /// What a run of the program left behind.
-struct Run {
-    status: i32,
-    out: String,
-    err: String,
+pub(crate) struct Run {
+    pub(crate) status: i32,
+    pub(crate) out: String,
+    pub(crate) err: String,
 }
 
-fn abbe(arguments: &[&str], input: &str) -> Run {
+pub(crate) fn abbe(arguments: &[&str], input: &str) -> Run {
     let mut child = Command::new(env!("CARGO_BIN_EXE_abbe"))
         .args(arguments)
         .current_dir(root())
@@ -46,7 +46,7 @@ fn file(test: &str, name: &str, text: &str) -> String {
 }
 
 /// The numbers of one column of CSV output.
-fn column(out: &str, name: &str) -> Vec<f64> {
+pub(crate) fn column(out: &str, name: &str) -> Vec<f64> {
     let mut lines = out.lines();
     let at = lines.next().unwrap().split(',').position(|own| own == name).unwrap();
     lines.map(|line| line.split(',').nth(at).unwrap().parse().unwrap()).collect()

@@ -19,6 +19,7 @@ mod laws;
 mod machine_files;
 mod macro_errors;
 mod oracle;
+mod published_table;
 mod random;
 mod round_trips;
 mod shipped;

@@ -34,6 +34,7 @@ mod curve;
 mod document;
 mod fields;
 mod names;
+mod parameters;
 mod read_term;
 mod sensors;
 mod series;

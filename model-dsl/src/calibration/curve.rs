@@ -1,7 +1,7 @@
 //! Measured curves: the term `table`.
 
 use super::fields::filled_list;
-use super::read_term::Parameters;
+use super::parameters::Parameters;
 use super::series::{read_motion_unit, wrong_unit};
 use super::term::{CalibratedTerm, Curve, CurveNodes, CurveValues};
 use crate::diagnostic::Diagnostic;

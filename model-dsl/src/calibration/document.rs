@@ -2,7 +2,8 @@
 
 use super::fields::{Fields, keys, word};
 use super::names::MachineNames;
-use super::read_term::{Context, read_item, read_plain};
+use super::parameters::Context;
+use super::read_term::{read_item, read_plain};
 use super::sensors::{Sensors, read_derived};
 use super::{CalibratedMotion, Calibration, Limits};
 use crate::diagnostic::{Diagnostic, Diagnostics};

@@ -1,7 +1,7 @@
 //! Polynomials: of an axis, of a sensor, of another axis.
 
 use super::fields::filled_list;
-use super::read_term::Parameters;
+use super::parameters::Parameters;
 use super::term::{CalibratedTerm, SeriesInput};
 use crate::diagnostic::Diagnostic;
 use crate::quantity::{self, Dimension, Unit};

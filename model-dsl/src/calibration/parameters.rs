@@ -1,0 +1,145 @@
+//! The parameters of one term. In: its mapping. Out: quantities of the kinds that the term needs, or what is wrong.
+
+use super::fields::{Fields, parameters, word};
+use super::names::{MachineNames, MotionName};
+use super::sensors::Sensors;
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::quantity::{self, Dimension};
+use crate::source::{Span, Spanned};
+use crate::suggest::nearest;
+use crate::yaml::Node;
+
+/// What the terms of one error motion are read against.
+pub(super) struct Context<'a> {
+    pub(super) names: &'a MachineNames,
+    pub(super) motion: &'a MotionName,
+    pub(super) sensors: &'a mut Sensors,
+    pub(super) diagnostics: &'a mut Diagnostics,
+}
+
+/// The parameters of one term, with what is needed to read them.
+pub(super) struct Parameters<'p, 'n, 'a> {
+    pub(super) fields: Fields<'n>,
+    /// The term in words: "`backlash` of EXX".
+    pub(super) what: &'p str,
+    pub(super) context: &'p mut Context<'a>,
+}
+
+impl<'n> Parameters<'_, 'n, '_> {
+    /// The kind of quantity that the error motion is.
+    pub(super) fn motion(&self) -> Dimension {
+        self.context.motion.dimension()
+    }
+
+    pub(super) fn report(&mut self, mistake: Diagnostic) {
+        self.context.diagnostics.push(mistake);
+    }
+
+    /// A parameter that must be there.
+    pub(super) fn need(&mut self, key: &str) -> Option<&'n Node> {
+        self.fields.need(key, parameters(self.what), self.context.diagnostics)
+    }
+
+    /// A parameter in words: "`step` of `table` of EXX" in short.
+    pub(super) fn words(&self, key: &str) -> String {
+        format!("`{key}` of {}", self.context.motion.name)
+    }
+
+    /// A quantity that must be there.
+    pub(super) fn quantity(&mut self, key: &str, kind: Dimension) -> Option<f64> {
+        let node = self.need(key)?;
+        self.quantity_in(node, key, kind).map(|found| found.value)
+    }
+
+    pub(super) fn quantity_in(&mut self, node: &Node, key: &str, kind: Dimension) -> Option<Spanned<f64>> {
+        let words = self.words(key);
+        quantity::read(node, kind, &words, self.context.diagnostics)
+    }
+
+    /// A quantity that must be there and greater than zero.
+    pub(super) fn positive(&mut self, key: &str, kind: Dimension) -> Option<f64> {
+        let node = self.need(key)?;
+        self.greater(node, key, kind, |value| value > 0.0, "greater than zero")
+    }
+
+    /// A quantity that may be left out, then 0, and must not be negative.
+    pub(super) fn not_negative(&mut self, key: &str, kind: Dimension) -> Option<f64> {
+        match self.fields.get(key) {
+            None => Some(0.0),
+            Some(node) => self.greater(node, key, kind, |value| value >= 0.0, "zero or greater"),
+        }
+    }
+
+    fn greater(
+        &mut self,
+        node: &Node,
+        key: &str,
+        kind: Dimension,
+        holds: impl Fn(f64) -> bool,
+        must: &str,
+    ) -> Option<f64> {
+        let found = self.quantity_in(node, key, kind)?;
+        if holds(found.value) {
+            return Some(found.value);
+        }
+        let message = format!("{} must be {must}", self.words(key));
+        self.report(
+            Diagnostic::error("E0419", found.span, message)
+                .help(format!("write a value that is {must}, or leave the term out")),
+        );
+        None
+    }
+
+    /// The axis that is named, or the link's own where none is.
+    pub(super) fn axis(&mut self) -> Option<usize> {
+        if let Some(node) = self.fields.get("axis") {
+            return self.named_axis(node);
+        }
+        let own = self.context.motion.axis.as_deref();
+        let own = own.and_then(|letter| self.context.names.axis(letter));
+        if own.is_none() {
+            let message = format!("{} needs the parameter `axis`: its link is no axis", self.what);
+            let help = format!("add `axis: ...`, one of {}", self.context.names.axis_letters());
+            let name = self.fields.key_span("axis");
+            self.report(Diagnostic::error("E0415", name, message).help(help));
+        }
+        own
+    }
+
+    pub(super) fn named_axis(&mut self, node: &Node) -> Option<usize> {
+        let letter = word(node, &self.words("axis"), self.context.diagnostics)?;
+        let names = self.context.names;
+        let found = names.axis(&letter.value);
+        if found.is_none() {
+            let message = format!("{} has no axis `{}`", names.machine, letter.value);
+            let mistake = Diagnostic::error("E0414", letter.span, message);
+            let near = nearest(&letter.value, names.axes.iter().map(|axis| axis.letter.as_str()));
+            self.report(match near {
+                Some(near) => mistake.suggest(Some(near)),
+                None => mistake.help(format!("its axes are {}", names.axis_letters())),
+            });
+        }
+        found
+    }
+
+    /// The kind of position of an axis; a length where the axis itself was wrong.
+    pub(super) fn position(&self, axis: Option<usize>) -> Dimension {
+        axis.map_or(Dimension::LENGTH, |axis| self.context.names.axis_dimension(axis))
+    }
+
+    /// The sensor that must be named.
+    pub(super) fn sensor(&mut self) -> Option<usize> {
+        let node = self.need("sensor")?;
+        self.named_sensor(node)
+    }
+
+    pub(super) fn named_sensor(&mut self, node: &Node) -> Option<usize> {
+        let name = word(node, &self.words("sensor"), self.context.diagnostics)?;
+        Some(self.context.sensors.reference(&name))
+    }
+
+    /// Where a key stands, or the term's name where it is missing.
+    pub(super) fn key_span(&self, key: &str) -> Span {
+        self.fields.key_span(key)
+    }
+}

@@ -63,3 +63,38 @@ fn resolve(path: &str) -> PathBuf {
     let root = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
     root.join(Path::new(path))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use model_dsl::codegen;
+    use proc_macro2::Span;
+    use syn::LitStr;
+
+    use super::expand;
+
+    /// The macro's tokens, printed as a file, are what a build script writes, after the line that tracks the file.
+    #[test]
+    fn the_macro_and_a_build_script_give_the_same_tokens() {
+        let machines = Path::new(env!("CARGO_MANIFEST_DIR")).join("../machines");
+        let mut seen = 0;
+        for entry in std::fs::read_dir(machines).expect("the shipped machines") {
+            let path = entry.expect("an entry").path();
+            let name = path.file_name().expect("a file").to_string_lossy().into_owned();
+            let literal = LitStr::new(&format!("../machines/{name}"), Span::call_site());
+            let expanded = codegen::file(&expand(&literal).expect("a valid machine"), &name).expect("a file");
+            let built = model_dsl::rust_for(&path).expect("a valid machine");
+            let (banner, built) = built.split_once("\n\n").expect("a banner");
+            let rest = expanded.strip_prefix(banner).expect("the same banner").trim_start();
+            let (tracked, items) = rest.split_once('\n').expect("a line that tracks the file");
+            assert!(
+                tracked.starts_with("const _: &str = include_str!(") && tracked.contains(&name),
+                "{tracked}"
+            );
+            assert_eq!(items, built, "{name}");
+            seen += 1;
+        }
+        assert!(seen > 0);
+    }
+}

@@ -4,7 +4,7 @@
 use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 
 use crate::shipped::root;
 
@@ -15,15 +15,20 @@ pub(crate) struct Run {
     pub(crate) err: String,
 }
 
-pub(crate) fn abbe(arguments: &[&str], input: &str) -> Run {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_abbe"))
+/// Starts the program in the root of the repository, with all its streams in pipes.
+fn start(arguments: &[&str]) -> Child {
+    Command::new(env!("CARGO_BIN_EXE_abbe"))
         .args(arguments)
         .current_dir(root())
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
-        .unwrap();
+        .unwrap()
+}
+
+pub(crate) fn abbe(arguments: &[&str], input: &str) -> Run {
+    let mut child = start(arguments);
     let mut stdin = child.stdin.take().unwrap();
     // A program that stops early closes its input; that is its right.
     let _ = stdin.write_all(input.as_bytes());
@@ -320,12 +325,7 @@ fn mistakes_in_a_calibration_are_located() {
 
 #[test]
 fn a_reader_that_goes_away_is_no_failure() {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_abbe"))
-        .args(["derive", "trunnion-5axis", "--format", "html"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child = start(&["derive", "trunnion-5axis", "--format", "html"]);
     drop(child.stdout.take());
     let output = child.wait_with_output().unwrap();
     assert!(output.status.success());
@@ -354,12 +354,7 @@ fn the_tip_of_a_single_stage_is_its_carriage() {
 #[test]
 fn bytes_that_nobody_reads_come_through_as_they_are() {
     let calibration = file("bytes", "backlash.yaml", BACKLASH);
-    let mut child = Command::new(env!("CARGO_BIN_EXE_abbe"))
-        .args(["compensate", &calibration])
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child = start(&["compensate", &calibration]);
     child.stdin.take().unwrap().write_all(b"x,y,z,note\n1,0,0,gr\xf6\xdfe\n").unwrap();
     let output = child.wait_with_output().unwrap();
     assert!(output.status.success());
@@ -370,12 +365,7 @@ fn bytes_that_nobody_reads_come_through_as_they_are() {
 fn every_answer_comes_before_the_next_question() {
     use std::io::{BufRead, BufReader};
     let calibration = file("live", "backlash.yaml", BACKLASH);
-    let mut child = Command::new(env!("CARGO_BIN_EXE_abbe"))
-        .args(["compensate", &calibration])
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child = start(&["compensate", &calibration]);
     let mut questions = child.stdin.take().unwrap();
     let mut answers = BufReader::new(child.stdout.take().unwrap()).lines();
     questions.write_all(b"x,y,z\n1,0,0\n").unwrap();

@@ -39,22 +39,6 @@ pub enum Format {
     Maxima,
 }
 
-impl Format {
-    /// Every format with the word that chooses it on the command line.
-    pub const WORDS: [(&'static str, Self); 5] = [
-        ("text", Self::Text),
-        ("latex", Self::Latex),
-        ("html", Self::Html),
-        ("json", Self::Json),
-        ("maxima", Self::Maxima),
-    ];
-
-    /// The format that a word chooses.
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::WORDS.iter().find(|(known, _)| *known == word).map(|(_, format)| *format)
-    }
-}
-
 /// Prints equations. JSON gives both names of every motion, whatever `names` says.
 pub fn print(equations: &Equations, format: Format, names: Names) -> String {
     let sheet = || sheet::Sheet::new(equations, names);

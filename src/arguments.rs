@@ -23,6 +23,10 @@ pub(crate) enum Command {
     Expand(Expand),
     /// Read positions (CSV) and write the predicted errors and the compensated positions.
     Compensate(Compensate),
+    /// Find what the model of a machine leaves out, from recordings of the real one.
+    Diagnose(Diagnose),
+    /// Write the recording that a calibration predicts: an exact machine, its instrument and their noise.
+    Simulate(Simulate),
     /// Write a commented machine file to start from.
     New(New),
 }
@@ -54,6 +58,13 @@ pub(crate) struct Expand {
 }
 
 #[derive(Args)]
+pub(crate) struct Diagnose {
+    /// Recordings of one machine, fitted together.
+    #[arg(required = true)]
+    pub(crate) recordings: Vec<PathBuf>,
+}
+
+#[derive(Args)]
 pub(crate) struct Compensate {
     /// The calibration file of the machine.
     pub(crate) calibration: PathBuf,
@@ -70,6 +81,26 @@ pub(crate) struct Compensate {
     /// Leave terms out that no controller can compensate in real time, naming each on standard error.
     #[arg(long)]
     pub(crate) leave_out_uncompensable: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct Simulate {
+    /// The calibration file of the machine: its true errors.
+    pub(crate) calibration: PathBuf,
+    /// A path file: where the axes go, and what measures them.
+    pub(crate) path: PathBuf,
+    /// The folder for `recording.yaml` and `data.csv`; or the recording's own file, whose data get its name.
+    #[arg(long, default_value = ".")]
+    pub(crate) output: PathBuf,
+    /// The seed of the noise, in place of the path file's; the same seed gives the same bytes.
+    #[arg(long)]
+    pub(crate) seed: Option<u64>,
+    /// The calibration that the recording names as known; what it lacks is concealed.
+    #[arg(long)]
+    pub(crate) known: Option<PathBuf>,
+    /// Replace files that are there already.
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 #[derive(Args)]

@@ -7,6 +7,7 @@ use abbe_runtime::Term;
 use model_dsl::calibration::{self, Calibration};
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
+use model_dsl::machine::Machine;
 use model_dsl::source::SourceFile;
 use model_dsl::yaml;
 
@@ -16,6 +17,8 @@ use crate::output::{rendered, show};
 
 /// A machine with the numbers of one specimen.
 pub(crate) struct Calibrated {
+    /// The validated chain.
+    pub(crate) machine: Machine,
     /// The machine's equations.
     pub(crate) equations: Equations,
     /// Its numbers.
@@ -41,11 +44,11 @@ pub(crate) fn read(path: &Path) -> Result<Calibrated, Failure> {
         }
         other => other,
     })?;
-    let equations = machine.compiled.equations;
+    let (machine, equations) = (machine.compiled.machine, machine.compiled.equations);
     let calibration = calibration::read(&root, &equations.names(), &mut diagnostics);
     let calibration = calibration.filter(|_| !diagnostics.has_errors()).ok_or_else(|| wrong(&diagnostics))?;
     show(&source, &diagnostics);
-    Ok(Calibrated { equations, calibration, source })
+    Ok(Calibrated { machine, equations, calibration, source })
 }
 
 fn wrong_text(source: &SourceFile, diagnostics: &Diagnostics) -> String {

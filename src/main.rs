@@ -11,6 +11,7 @@ mod failure;
 mod load;
 mod output;
 mod positions;
+mod recorded;
 mod shipped;
 
 use std::process::ExitCode;
@@ -36,6 +37,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Check(command) => commands::check::run(command),
         Command::Expand(command) => commands::expand::run(command),
         Command::Compensate(command) => commands::compensate::run(command),
+        Command::Diagnose(command) => commands::diagnose::run(command),
+        Command::Simulate(command) => commands::simulate::run(command),
         Command::New(command) => commands::new::run(command),
     }
 }

@@ -156,6 +156,36 @@ pub(crate) fn remainder_is_of_second_order(case: &Case<'_>, seed: u64) -> Result
     Ok(())
 }
 
+/// The rotation of the tool, motion by motion, against the exact machine.
+///
+/// One error motion alone turns the tool about one direction that stays, by its own value times a factor: nothing is left
+/// over however large it is, and a thousandth of a rad is far above the rounding of 1e-16 that is divided by it.
+pub(crate) fn turns_are_those_of_the_exact_machine(case: &Case<'_>) -> Result<(), TestCaseError> {
+    const ANGLE: f64 = 1e-3;
+    let turns = case.interpreter.turns(&case.position, &case.travel);
+    prop_assert_eq!(turns.len(), case.equations.motions.len());
+    for (motion, turn) in case.equations.motions.iter().zip(turns) {
+        let errors = BTreeMap::from([(motion.name.clone(), ANGLE)]);
+        let exact = exact::turn_by_errors(case.machine, &State { errors, ..case.state.clone() });
+        same(&motion.name, turn, exact.map(|angle| angle / ANGLE), 1.0)?;
+    }
+    Ok(())
+}
+
+/// All angles together: the product of two of them is what the first order leaves.
+pub(crate) fn turns_add(case: &Case<'_>, seed: u64) -> Result<(), TestCaseError> {
+    let errors = case.errors(seed);
+    let turns = case.interpreter.turns(&case.position, &case.travel);
+    let exact = exact::turn_by_errors(case.machine, &case.with(&errors, 1.0));
+    let angles = Sizes::of(case.machine, &case.with(&errors, 1.0)).angles;
+    for axis in 0..3 {
+        let sum: f64 = turns.iter().zip(&errors).map(|(turn, error)| turn[axis] * error).sum();
+        let (defect, allowed) = ((sum - exact[axis]).abs(), angles.powi(2) + 1e-13);
+        prop_assert!(defect <= allowed, "about {axis}: {defect:e} > {allowed:e}");
+    }
+    Ok(())
+}
+
 fn same(what: &str, found: [f64; 3], expected: [f64; 3], size: f64) -> Result<(), TestCaseError> {
     for (found, expected) in found.into_iter().zip(expected) {
         let near = (found - expected).abs() <= RELATIVE * size;
@@ -170,6 +200,8 @@ fn all_laws(machine: &Machine, text: &str, seed: u64) -> Result<(), TestCaseErro
     agrees_with_dual_numbers(&case, seed)?;
     nothing_seen_is_missing(&case)?;
     directions_are_derivatives(&case)?;
+    turns_are_those_of_the_exact_machine(&case)?;
+    turns_add(&case, seed)?;
     remainder_is_of_second_order(&case, seed)
 }
 
@@ -212,6 +244,8 @@ fn every_shipped_machine() {
             let laws = agrees_with_dual_numbers(&case, seed)
                 .and_then(|()| nothing_seen_is_missing(&case))
                 .and_then(|()| directions_are_derivatives(&case))
+                .and_then(|()| turns_are_those_of_the_exact_machine(&case))
+                .and_then(|()| turns_add(&case, seed))
                 .and_then(|()| remainder_is_of_second_order(&case, seed));
             laws.unwrap_or_else(|error| panic!("{}: {error}", shipped.name));
         }

@@ -23,6 +23,7 @@ mod published_table;
 mod random;
 mod round_trips;
 mod shipped;
+mod simulate;
 mod snapshots;
 mod tidy;
 mod yaml;

@@ -4,7 +4,8 @@
 //! (mm, rad, s, degC), or findings at the places that are wrong, all of them in one run.
 //!
 //! Reading goes in two steps, because the file itself names the machine: [`machine_of`] reads that name alone, the
-//! caller finds the machine, and [`read`] reads the rest against its names.
+//! caller finds the machine, and [`read`] reads the rest against its names. [`write()`] goes the other way, for calibrations
+//! that were extended in memory ([`Calibration::with`]).
 //!
 //! | code | finding |
 //! | --- | --- |
@@ -30,6 +31,7 @@
 //!
 //! Quantities have their own codes, E0301 to E0309: see [`crate::quantity`].
 
+mod build;
 mod curve;
 mod document;
 mod fields;
@@ -38,12 +40,16 @@ mod parameters;
 mod read_term;
 mod sensors;
 mod series;
+mod spelling;
 mod term;
+mod write;
+mod write_term;
 
 pub use document::{machine_of, read};
 pub use names::{AxisName, MachineNames, MotionName};
 pub use sensors::{Sensor, SensorKind, SensorReadings, Sensors};
 pub use term::{CalibratedTerm, Curve, CurveNodes, CurveValues, NotCompensable, SeriesInput, TERM_NAMES};
+pub use write::write;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::{Span, Spanned};
@@ -73,7 +79,9 @@ pub struct Limits {
 }
 
 /// One error motion and the terms that add up to it.
-#[derive(Clone, PartialEq, Debug)]
+///
+/// Two of them are equal wherever they stand, as [`Spanned`] values are.
+#[derive(Clone, Debug)]
 pub struct CalibratedMotion {
     /// Which motion: an index into [`MachineNames::motions`].
     pub motion: usize,
@@ -81,6 +89,12 @@ pub struct CalibratedMotion {
     pub span: Span,
     /// Its terms, each at the place of its name, or of its value where that stands alone.
     pub terms: Vec<Spanned<CalibratedTerm>>,
+}
+
+impl PartialEq for CalibratedMotion {
+    fn eq(&self, other: &Self) -> bool {
+        (self.motion, &self.terms) == (other.motion, &other.terms)
+    }
 }
 
 impl Calibration {

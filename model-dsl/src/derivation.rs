@@ -4,6 +4,7 @@
 //! file names in vain. Each link is a matrix from the frame before it to its own; the product
 //! along the tool's branch, seen from the inverse of the product along the part's branch,
 //! is the tool relative to the part (equation (3-15) of the Excello report, (A.11) of NISTIR 6722).
+//! Its origin gives the rows of the tool tip, its rotation the turns that an angular instrument sees.
 
 mod link_matrix;
 mod meaning;
@@ -17,10 +18,11 @@ pub use link_matrix::matrix as link_matrix;
 
 /// Derives the error equations of a machine; warnings go to `diagnostics`.
 pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
-    let tip = relative_position(machine);
-    let kept = seen_motions(machine, &tip);
+    let relative = relative(machine);
+    let tip = relative.origin();
+    let kept = seen_motions(machine, tip);
     warn_unseen(machine, &kept, diagnostics);
-    let rows = rows(machine, &tip, &kept);
+    let rows = rows(machine, tip, &kept);
     warn_undriven(machine, &rows, diagnostics);
     Equations {
         machine: machine.name.clone(),
@@ -28,23 +30,28 @@ pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
         source: machine.source.clone(),
         links: machine.links.clone(),
         relative: machine.relative,
-        axes: axes(machine, &tip),
+        axes: axes(machine, tip),
         travels: travels(machine, &kept),
         constants: constants(machine),
         motions: kept.iter().map(|number| motion(machine, *number)).collect(),
         rows,
+        turns: relative.turn().each_ref().map(|entry| terms(machine, entry, &kept)),
     }
 }
 
 /// The tool tip in the part's frame, to first order in the machine's motions by their numbers.
 pub fn relative_position(machine: &Machine) -> [FirstOrder; 3] {
+    relative(machine).origin().clone()
+}
+
+/// The frame of the tool tip in that of the part.
+fn relative(machine: &Machine) -> Htm {
     let branch = |branch| {
         machine
             .branch(branch)
             .fold(Htm::identity(), |product, (number, _)| product.then(&link_matrix(machine, number)))
     };
-    let relative = branch(Branch::Workpiece).inverse().then(&branch(Branch::Tool));
-    relative.origin().clone()
+    branch(Branch::Workpiece).inverse().then(&branch(Branch::Tool))
 }
 
 fn is_sensitive(machine: &Machine, direction: Axis) -> bool {
@@ -70,6 +77,11 @@ fn rows(machine: &Machine, tip: &[FirstOrder; 3], kept: &[usize]) -> Vec<Row> {
 }
 
 fn row(machine: &Machine, direction: Axis, entry: &FirstOrder, kept: &[usize]) -> Row {
+    Row { direction, nominal: entry.nominal_part().clone(), terms: terms(machine, entry, kept) }
+}
+
+/// The motions that an entry holds, with their factors: displacements, then angles, then alignments.
+fn terms(machine: &Machine, entry: &FirstOrder, kept: &[usize]) -> Vec<Term> {
     let mut terms: Vec<Term> = entry
         .error_part()
         .filter_map(|(number, arm)| {
@@ -81,7 +93,7 @@ fn row(machine: &Machine, direction: Axis, entry: &FirstOrder, kept: &[usize]) -
             kept.get(term.motion).and_then(|number| machine.motions.get(*number)).map(|motion| motion.kind);
         (kind.map(|kind| (kind.alignment(), kind.angular())), term.motion)
     });
-    Row { direction, nominal: entry.nominal_part().clone(), terms }
+    terms
 }
 
 fn motion(machine: &Machine, number: usize) -> Motion {

@@ -5,7 +5,9 @@
 //! where `P` is the tool tip relative to the part in the part's frame (mm), `e_j` the error
 //! motions (mm or rad) and `arm_dj` their lever arms, exact polynomials of positions,
 //! constants and the sines and cosines of rotary axes. An error motion that a direction does
-//! not see has no term there; no arm is zero.
+//! not see has no term there; no arm is zero. The rotation of the tool relative to the part is
+//! the same kind of sum, `w_a = sum over j of turn_aj * e_j` for a = A, B, C: what an angular
+//! instrument and the encoder of a rotary stage see.
 
 use std::fmt;
 
@@ -36,6 +38,11 @@ pub struct Equations {
     pub motions: Vec<Motion>,
     /// One row for each sensitive direction, in order.
     pub rows: Vec<Row>,
+    /// The rotation of the tool relative to the part by the errors, rad, right-handed about X, Y, Z of the part's
+    /// frame, whichever directions are sensitive: for each of the three the angles that it sees, with their factors,
+    /// which are pure numbers (+1 and -1, or sines and cosines of rotary axes). Of the motions above only: one that
+    /// turns the tool and moves no point of it is in neither.
+    pub turns: [Vec<Term>; 3],
 }
 
 /// A programmed axis.
@@ -109,12 +116,12 @@ pub struct Row {
     pub terms: Vec<Term>,
 }
 
-/// An error motion with its lever arm in one direction.
+/// An error motion with its lever arm in one direction, or with its factor in a rotation.
 #[derive(Clone, Debug)]
 pub struct Term {
     /// The number of the motion in [`Equations::motions`].
     pub motion: usize,
-    /// The lever arm: a pure number for a displacement, mm for an angle.
+    /// The lever arm: a pure number for a displacement, mm for an angle; in a rotation a pure number.
     pub arm: Polynomial,
 }
 
@@ -148,6 +155,14 @@ impl Equations {
     pub fn arm(&self, direction: Axis, motion: usize) -> Polynomial {
         let term = self.row(direction).and_then(|row| row.terms.iter().find(|term| term.motion == motion));
         term.map(|term| term.arm.clone()).unwrap_or_default()
+    }
+
+    /// The rotation of the tool relative to the part about a direction of the part's frame, right-handed, for each rad
+    /// of a motion: a pure number. Zero where it does not turn the tool about that direction, as no displacement does,
+    /// and no alignment error of a slide whose carriage does not turn with its line.
+    pub fn turn(&self, direction: Axis, motion: usize) -> Polynomial {
+        let terms = &self.turns[direction.index()];
+        terms.iter().find(|term| term.motion == motion).map(|term| term.arm.clone()).unwrap_or_default()
     }
 
     /// The names that a calibration of the machine may use.

@@ -10,7 +10,7 @@ use crate::yaml::Node;
 
 /// A mapping whose keys have been compared with those that it may have.
 #[derive(Clone, Copy)]
-pub(crate) struct Fields<'n> {
+pub struct Fields<'n> {
     node: &'n Node,
     /// Where the mapping's own name stands, for keys that are missing.
     name: Span,
@@ -18,22 +18,22 @@ pub(crate) struct Fields<'n> {
 
 /// How a mapping speaks of its keys.
 #[derive(Clone, Copy)]
-pub(crate) struct Wording<'w> {
+pub struct Wording<'w> {
     /// What the mapping is: "a calibration", "`backlash` of EXX".
-    pub(crate) what: &'w str,
+    pub what: &'w str,
     /// "key" or "parameter".
-    pub(crate) noun: &'w str,
+    pub noun: &'w str,
     /// The code for a key that it may not have.
-    pub(crate) unknown: &'static str,
+    pub unknown: &'static str,
     /// The code for a key that it must have.
-    pub(crate) missing: &'static str,
+    pub missing: &'static str,
     /// The code for a value of the wrong form.
-    pub(crate) form: &'static str,
+    pub form: &'static str,
 }
 
 impl<'n> Fields<'n> {
     /// Takes a mapping and reports every key that is not among the known ones; nothing where it is no mapping.
-    pub(crate) fn open(
+    pub fn open(
         node: &'n Node,
         name: Span,
         wording: Wording<'_>,
@@ -53,29 +53,24 @@ impl<'n> Fields<'n> {
     }
 
     /// The value of a key that may be left out.
-    pub(crate) fn get(&self, key: &str) -> Option<&'n Node> {
+    pub fn get(&self, key: &str) -> Option<&'n Node> {
         self.node.get(key)
     }
 
     /// A key that may be left out, with its value.
-    pub(crate) fn entry(&self, key: &str) -> Option<(&'n Spanned<String>, &'n Node)> {
+    pub fn entry(&self, key: &str) -> Option<(&'n Spanned<String>, &'n Node)> {
         let mut entries = self.node.entries().unwrap_or(&[]).iter();
         entries.find(|(name, _)| name.value == key).map(|(name, value)| (name, value))
     }
 
     /// The place of a key, or of the mapping's name where the key is missing.
-    pub(crate) fn key_span(&self, key: &str) -> Span {
+    pub fn key_span(&self, key: &str) -> Span {
         let mut keys = self.node.entries().unwrap_or(&[]).iter().map(|(name, _)| name);
         keys.find(|name| name.value == key).map_or(self.name, |name| name.span)
     }
 
     /// The value of a key that must be there; its absence is reported at the mapping's name.
-    pub(crate) fn need(
-        &self,
-        key: &str,
-        wording: Wording<'_>,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<&'n Node> {
+    pub fn need(&self, key: &str, wording: Wording<'_>, diagnostics: &mut Diagnostics) -> Option<&'n Node> {
         let found = self.get(key);
         if found.is_none() {
             let message = format!("{} needs the {} `{key}`", wording.what, wording.noun);
@@ -97,7 +92,7 @@ fn unknown_key(key: &Spanned<String>, wording: Wording<'_>, known: &[&str]) -> D
 }
 
 /// The text of a value that must be a word; `what` names it in the message, `code` is that of a wrong form.
-pub(crate) fn word<'n>(
+pub fn word<'n>(
     node: &'n Node,
     what: &str,
     code: &'static str,
@@ -116,7 +111,7 @@ pub(crate) fn word<'n>(
 }
 
 /// The items of a value that must be a list; `what` names it in the message, `code` is that of a wrong form.
-pub(crate) fn list<'n>(
+pub fn list<'n>(
     node: &'n Node,
     what: &str,
     code: &'static str,

@@ -19,7 +19,7 @@ pub mod derivation;
 pub mod diagnostic;
 pub mod equations;
 pub mod expression;
-mod fields;
+pub mod fields;
 pub mod machine;
 pub mod notation;
 pub mod program;

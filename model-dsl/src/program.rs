@@ -5,11 +5,15 @@
 //! so neither decides anything.
 
 mod builder;
+mod column;
+mod interpreter;
 mod machine_programs;
 mod tape;
 
 pub use builder::Builder;
-pub use machine_programs::{Interpreter, Programs};
+pub use column::Column;
+pub use interpreter::Interpreter;
+pub use machine_programs::Programs;
 pub use tape::Tape;
 
 use std::fmt;

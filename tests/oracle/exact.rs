@@ -1,6 +1,6 @@
 //! Exact homogeneous transformations over numbers: finite rotations, nothing linearised.
 //!
-//! In: the bodies of both branches. Out: the tool tip in the part's frame, as it really stands.
+//! In: the bodies of both branches. Out: the tool tip in the part's frame, as it really stands, and how the tool is turned.
 
 use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector3};
 
@@ -8,10 +8,26 @@ use super::{Body, Machine, State};
 
 /// The tool tip in the part's frame, mm.
 pub(crate) fn tip(machine: &Machine, state: &State) -> [f64; 3] {
+    pose(machine, state).translation.vector.into()
+}
+
+/// By what the tool is turned away from where it stands without errors: a rotation vector in the part's frame, rad.
+pub(crate) fn turn_by_errors(machine: &Machine, state: &State) -> [f64; 3] {
+    let without = State { errors: Default::default(), ..state.clone() };
+    let turned = pose(machine, state).rotation * pose(machine, &without).rotation.inverse();
+    // The skew part is the sine of the angle along the axis: sharp for small angles, where the cosine is 1 to rounding.
+    let skew = (turned.matrix() - turned.matrix().transpose()) / 2.0;
+    let sine = Vector3::new(skew[(2, 1)], skew[(0, 2)], skew[(1, 0)]);
+    let length = sine.norm();
+    if length == 0.0 { [0.0; 3] } else { (sine * (length.asin() / length)).into() }
+}
+
+/// The tool in the part's frame.
+fn pose(machine: &Machine, state: &State) -> IsometryMatrix3<f64> {
     let [part, tool] = machine.bodies(state).map(|branch| {
         branch.iter().fold(IsometryMatrix3::identity(), |product, body| product * displacement(body))
     });
-    (part.inverse() * tool).translation.vector.into()
+    part.inverse() * tool
 }
 
 /// The displacement from the frame before a body to its own.

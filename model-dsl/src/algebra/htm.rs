@@ -139,6 +139,17 @@ impl Htm {
         &self.translation
     }
 
+    /// The small rotation of the inner frame by the errors, as a vector in the outer frame: rad about X, Y, Z,
+    /// right-handed, the skew part of `dR transpose(R)`. It has no nominal part.
+    pub fn turn(&self) -> Vector {
+        let back = self.rotation.each_ref().map(|row| row.each_ref().map(undisturbed));
+        Axis::ALL.map(|about| {
+            let (u, v) = (about.next().index(), about.next().next().index());
+            let entry = sum_of_three(|k| &self.rotation[v][k] * &back[u][k]);
+            &entry + &-&undisturbed(&entry)
+        })
+    }
+
     /// The entry of the 4x4 matrix, rows and columns from 0; `None` outside it.
     pub fn entry(&self, row: usize, column: usize) -> Option<FirstOrder> {
         match (row, column) {
@@ -149,6 +160,11 @@ impl Htm {
             _ => None,
         }
     }
+}
+
+/// The same without errors.
+fn undisturbed(entry: &FirstOrder) -> FirstOrder {
+    FirstOrder::nominal(entry.nominal_part().clone())
 }
 
 fn identity() -> Matrix {

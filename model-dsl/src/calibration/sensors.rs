@@ -69,7 +69,8 @@ impl Sensors {
         index
     }
 
-    fn intern(&mut self, name: &Spanned<String>) -> usize {
+    /// The index of a sensor; a name not met before is an input.
+    pub(super) fn intern(&mut self, name: &Spanned<String>) -> usize {
         match self.index(&name.value) {
             Some(index) => index,
             None => self.add(Sensor { name: name.clone(), kind: SensorKind::Input, used: false }),
@@ -83,7 +84,8 @@ impl Sensors {
         index
     }
 
-    fn mark_used(&mut self, index: usize) {
+    /// Marks a sensor as used, and those that it is derived from.
+    pub(super) fn mark_used(&mut self, index: usize) {
         let mut open = vec![index];
         while let Some(index) = open.pop() {
             let Some(sensor) = self.list.get_mut(index).filter(|sensor| !sensor.used) else {

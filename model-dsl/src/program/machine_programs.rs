@@ -1,10 +1,7 @@
 //! The programs of one machine. In: its equations. Out: the position, the error, the lever
-//! arms and the directions of its axes as programs, and an interpreter that runs them.
+//! arms, the turns and the directions of its axes as programs.
 
-use abbe_runtime::Kinematics;
-use abbe_runtime::math::sin_cos;
-
-use super::{Builder, Input, Program, Tape};
+use super::{Builder, Input, Program};
 use crate::algebra::{Axis, Polynomial, Symbol};
 use crate::equations::Equations;
 
@@ -17,6 +14,8 @@ pub struct Programs {
     pub error: Program,
     /// The lever arms: for each motion X, Y, Z.
     pub levers: Program,
+    /// The turns: for each motion the rotation of the tool relative to the part about X, Y, Z.
+    pub turns: Program,
     /// For each axis the displacement of the tip for each mm of programmed motion: X, Y, Z.
     pub directions: Program,
 }
@@ -31,7 +30,9 @@ impl Programs {
             builder.finish()
         };
         let motions = 0..equations.motions.len();
-        let arms = motions.flat_map(|motion| Axis::ALL.map(|direction| equations.arm(direction, motion)));
+        let arms =
+            motions.clone().flat_map(|motion| Axis::ALL.map(|direction| equations.arm(direction, motion)));
+        let turns = motions.flat_map(|motion| Axis::ALL.map(|direction| equations.turn(direction, motion)));
         let mut effects = equations.axes.iter().flat_map(|axis| {
             axis.effect.clone().unwrap_or_else(|| std::array::from_fn(|_| Polynomial::zero()))
         });
@@ -39,6 +40,7 @@ impl Programs {
             nominal: program(&mut Axis::ALL.into_iter().map(|direction| nominal(equations, direction))),
             error: error(equations, &resolve),
             levers: program(&mut arms.into_iter()),
+            turns: program(&mut turns.into_iter()),
             directions: program(&mut effects),
         }
     }
@@ -96,95 +98,5 @@ fn input(equations: &Equations, symbol: &Symbol) -> Option<Input> {
         Symbol::Motion(name) => {
             equations.motions.iter().position(|motion| *motion.name == **name).map(Input::Motion)
         }
-    }
-}
-
-/// A machine that is run from its programs, without generated code: slower, and the same numbers.
-#[derive(Clone, Debug)]
-pub struct Interpreter {
-    nominal: Tape,
-    error: Tape,
-    levers: Tape,
-    directions: Tape,
-    constants: Vec<f64>,
-    travels: Vec<usize>,
-    rotary: Vec<bool>,
-    motions: usize,
-}
-
-impl Interpreter {
-    /// Prepares a machine with the values of its constants (mm), in the order of its equations.
-    pub fn new(equations: &Equations, constants: &[f64]) -> Self {
-        let programs = Programs::new(equations);
-        Self {
-            nominal: Tape::new(&programs.nominal),
-            error: Tape::new(&programs.error),
-            levers: Tape::new(&programs.levers),
-            directions: Tape::new(&programs.directions),
-            constants: constants.to_vec(),
-            travels: equations.travels.iter().map(|travel| travel.axis).collect(),
-            rotary: equations.axes.iter().map(|axis| axis.rotary).collect(),
-            motions: equations.motions.len(),
-        }
-    }
-
-    /// The nominal tool tip relative to the part: mm, part frame, 0 where not sensitive.
-    pub fn nominal(&self, position: &[f64]) -> [f64; 3] {
-        triple(&self.run(&self.nominal, position, &[], &[]))
-    }
-
-    /// The lever arm of every error motion: X, Y, Z for each.
-    pub fn levers(&self, position: &[f64], travel: &[f64]) -> Vec<[f64; 3]> {
-        self.run(&self.levers, position, travel, &[]).chunks(3).map(triple).collect()
-    }
-
-    fn run(&self, tape: &Tape, position: &[f64], travel: &[f64], motions: &[f64]) -> Vec<f64> {
-        let turn = |(angle, rotary): (&f64, &bool)| if *rotary { sin_cos(*angle) } else { (0.0, 1.0) };
-        let turns: Vec<(f64, f64)> = position.iter().zip(&self.rotary).map(turn).collect();
-        let or_nan = |values: &[f64], number: usize| values.get(number).copied().unwrap_or(f64::NAN);
-        tape.run(|input| match input {
-            Input::Position(axis) => or_nan(position, axis),
-            Input::Travel(number) => or_nan(travel, number),
-            Input::Constant(number) => or_nan(&self.constants, number),
-            Input::Cos(axis) => turns.get(axis).map_or(f64::NAN, |(_, cosine)| *cosine),
-            Input::Sin(axis) => turns.get(axis).map_or(f64::NAN, |(sine, _)| *sine),
-            Input::Motion(motion) => or_nan(motions, motion),
-        })
-    }
-}
-
-impl Kinematics for Interpreter {
-    fn axes(&self) -> usize {
-        self.rotary.len()
-    }
-
-    fn travels(&self) -> &[usize] {
-        &self.travels
-    }
-
-    fn motions(&self) -> usize {
-        self.motions
-    }
-
-    fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
-        let lengths = (position.len(), travel.len(), motions.len());
-        if lengths != (self.rotary.len(), self.travels.len(), self.motions) {
-            return [f64::NAN; 3];
-        }
-        triple(&self.run(&self.error, position, travel, motions))
-    }
-
-    fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {
-        let all = self.run(&self.directions, position, &[], &[]);
-        for (slot, values) in directions.iter_mut().zip(all.chunks(3)) {
-            *slot = triple(values);
-        }
-    }
-}
-
-fn triple(values: &[f64]) -> [f64; 3] {
-    match values {
-        [x, y, z] => [*x, *y, *z],
-        _ => [f64::NAN; 3],
     }
 }

@@ -1,7 +1,8 @@
 //! Programs laid out for running. In: a program. Out: its operations over one array of values,
 //! each value at a place of its own, so that running it looks nothing up.
 
-use super::{Input, Program, Step, Value};
+use super::column::Room;
+use super::{Column, Input, Program, Step, Value};
 
 /// A program that is ready to run.
 #[derive(Clone, Debug, Default)]
@@ -14,6 +15,8 @@ pub struct Tape {
     operations: Vec<(Operation, usize, usize)>,
     /// The places of the results.
     results: Vec<usize>,
+    /// For each place the last operation or result that reads it, counted through both; 0 where nothing does.
+    last_reads: Vec<usize>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +51,7 @@ impl Tape {
             tape.operations.push((operation, tape.place(first), tape.place(second)));
         }
         tape.results = program.results.iter().map(|result| tape.place(*result)).collect();
+        tape.last_reads = tape.last_reads();
         tape
     }
 
@@ -69,6 +73,53 @@ impl Tape {
         self.results.iter().map(|place| at(&values, *place)).collect()
     }
 
+    /// Runs the tape on columns of equal length; one column for each result.
+    ///
+    /// Each operation runs over all rows before the next begins; one on numbers that are the same in every row runs once.
+    pub fn run_columns<'c>(&self, given: impl Fn(Input) -> Column<'c>) -> Vec<Column<'c>> {
+        let mut values: Vec<Column<'c>> = Vec::with_capacity(self.last_reads.len());
+        values.extend(self.numbers.iter().map(|number| Column::Same(*number)));
+        values.extend(self.inputs.iter().map(|input| given(*input)));
+        let mut room = Room::default();
+        let unknown = Column::Same(f64::NAN);
+        for (number, (operation, first, second)) in self.operations.iter().enumerate() {
+            let (a, b) = (values.get(*first).unwrap_or(&unknown), values.get(*second).unwrap_or(&unknown));
+            let result = match operation {
+                Operation::Add => a.combine(b, &mut room, |a, b| a + b),
+                Operation::Sub => a.combine(b, &mut room, |a, b| a - b),
+                Operation::Mul => a.combine(b, &mut room, |a, b| a * b),
+                Operation::Neg => a.map(&mut room, |a| -a),
+            };
+            values.push(result);
+            for place in [*first, *second].into_iter().filter(|place| self.is_last(number, *place)) {
+                room.reuse(taken(&mut values, place));
+            }
+        }
+        let results = self.results.iter().enumerate().map(|(number, place)| {
+            match self.is_last(self.operations.len() + number, *place) {
+                true => taken(&mut values, *place),
+                false => values.get(*place).unwrap_or(&unknown).clone(),
+            }
+        });
+        results.collect()
+    }
+
+    fn is_last(&self, reader: usize, place: usize) -> bool {
+        self.last_reads.get(place) == Some(&reader)
+    }
+
+    fn last_reads(&self) -> Vec<usize> {
+        let mut last = vec![0; self.numbers.len() + self.inputs.len() + self.operations.len()];
+        let operations = self.operations.iter().map(|(_, first, second)| [*first, *second]);
+        let readers = operations.chain(self.results.iter().map(|place| [*place; 2]));
+        for (reader, places) in readers.enumerate() {
+            for place in places {
+                last[place] = reader;
+            }
+        }
+        last
+    }
+
     fn place(&self, value: Value) -> usize {
         match value {
             Value::Zero => 0,
@@ -80,4 +131,10 @@ impl Tape {
             Value::Step(step) => self.numbers.len() + self.inputs.len() + step,
         }
     }
+}
+
+/// A value that nobody reads any more.
+fn taken<'c>(values: &mut [Column<'c>], place: usize) -> Column<'c> {
+    let unknown = Column::Same(f64::NAN);
+    values.get_mut(place).map_or(Column::Same(f64::NAN), |value| std::mem::replace(value, unknown))
 }

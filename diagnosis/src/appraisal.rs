@@ -1,0 +1,69 @@
+//! Appraisal: what a model leaves, and how likely that is as noise.
+//!
+//! In: a model. Out: the residual of every channel, outliers marked, and the noise with the greatest likelihood on the rows
+//! that are fitted. Two models are compared by their likelihoods, each with the noise that suits it best: an effect that a
+//! wandering sensor explains as well is then worth nothing.
+
+use crate::design::in_parallel;
+use crate::model::Model;
+use crate::noise::{self, Noise};
+use crate::observations::Course;
+use crate::outliers;
+use crate::study::Study;
+use crate::waves;
+
+/// What a model leaves.
+pub(crate) struct Appraisal {
+    /// For each scene and channel.
+    pub(crate) residuals: Vec<Vec<Vec<f64>>>,
+    pub(crate) outliers: Vec<Vec<Vec<bool>>>,
+    pub(crate) noises: Vec<Vec<Noise>>,
+    /// Minus twice the log-likelihood of all channels.
+    pub(crate) deviance: f64,
+}
+
+impl Appraisal {
+    /// Appraises a model.
+    pub(crate) fn new(study: &Study<'_>, model: &Model) -> Self {
+        let mut appraisal =
+            Self { residuals: Vec::new(), outliers: Vec::new(), noises: Vec::new(), deviance: 0.0 };
+        for scene in 0..study.scenes.len() {
+            let course = Course::new(study, scene, model);
+            appraisal.add(study, scene, waves::residuals(study, scene, model, &course));
+        }
+        appraisal
+    }
+
+    fn add(&mut self, study: &Study<'_>, scene: usize, residuals: Vec<Vec<f64>>) {
+        let known = &study.scenes[scene];
+        let fitted = known.fitted_rows();
+        let results = in_parallel(residuals.len(), &|channel: usize| {
+            let residual = &residuals[channel];
+            let marks = outliers::mark(residual);
+            let counts = |row: usize| fitted[row] && residual[row].is_finite() && !marks[row];
+            let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
+            let floor = known.channels[channel].rounding;
+            let estimate = noise::estimate(&known.recording.time, residual, &valid, floor);
+            (marks, estimate)
+        });
+        let mut marks = Vec::new();
+        let mut noises = Vec::new();
+        for (mark, (noise, deviance)) in results {
+            marks.push(mark);
+            noises.push(noise);
+            self.deviance += deviance;
+        }
+        self.outliers.push(marks);
+        self.noises.push(noises);
+        self.residuals.push(residuals);
+    }
+
+    /// Takes the marks of outliers over into the study.
+    pub(crate) fn mark(&self, study: &mut Study<'_>) {
+        for (scene, marks) in study.scenes.iter_mut().zip(&self.outliers) {
+            for (channel, mark) in scene.channels.iter_mut().zip(marks) {
+                channel.outliers.clone_from(mark);
+            }
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! Candidates: every term of every error motion that the recordings could show.
+//!
+//! In: the study. Out: effects, from the machine itself: each error motion, with each term whose state was recorded.
+//! Terms with a parameter that is not linear stand on a grid; periods and frequencies are searched for elsewhere.
+
+use crate::model::{Effect, Place, Side};
+use crate::noise::typical_step;
+use crate::observations::Course;
+use crate::study::{Kind, Study, programmed};
+use crate::terms::{REFERENCE_TEMPERATURE, Setting, Shape};
+
+/// The highest power of a polynomial along an axis.
+const HIGHEST_POWER: usize = 3;
+/// The highest power of a coupling.
+const HIGHEST_COUPLING: usize = 2;
+
+/// What each axis did over all recordings: mm or rad.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Travel {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    /// The typical step between rows while it moves.
+    pub(crate) step: f64,
+    pub(crate) moves: bool,
+}
+
+impl Travel {
+    /// The range of positions.
+    pub(crate) fn range(&self) -> f64 {
+        self.high - self.low
+    }
+}
+
+/// The travel of every axis.
+pub(crate) fn travels(study: &Study<'_>, courses: &[Course]) -> Vec<Travel> {
+    (0..study.equations.axes.len()).map(|axis| travel(courses, axis)).collect()
+}
+
+fn travel(courses: &[Course], axis: usize) -> Travel {
+    let axes = || courses.iter().map(|course| &course.shown.axes[axis]);
+    let positions = axes().flat_map(|axis| axis.position.iter().copied()).filter(|position| position.is_finite());
+    let (low, high) =
+        positions.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), q| (low.min(q), high.max(q)));
+    let mut steps: Vec<f64> = axes()
+        .flat_map(|axis| axis.position.windows(2).map(|pair| (pair[1] - pair[0]).abs()))
+        .filter(|step| *step > 1e-9 * (high - low))
+        .collect();
+    steps.sort_by(f64::total_cmp);
+    let step = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
+    Travel { low, high, step, moves: axes().any(|axis| axis.moves) && high > low }
+}
+
+/// Settings of the instruments that are fitted whatever else is.
+pub(crate) fn always(study: &Study<'_>) -> Vec<Effect> {
+    let mut effects = Vec::new();
+    for (number, scene) in study.scenes.iter().enumerate() {
+        for (channel, known) in scene.channels.iter().enumerate() {
+            if let Kind::Radius { center, radius } = known.kind {
+                effects.push(Effect::setting(number, Setting::Radius));
+                let reached = reached(study, number, center, radius);
+                let directions = (0..3).filter(|direction| reached[*direction]);
+                effects.extend(
+                    directions.map(|direction| Effect::setting(number, Setting::Eccentricity { direction })),
+                );
+            } else {
+                effects.push(Effect::setting(number, Setting::Offset { channel }));
+            }
+        }
+    }
+    effects
+}
+
+/// A ballbar that leans less than this share of its length into a direction does not tell the centre there.
+const LEANS: f64 = 0.02;
+
+/// The directions into which the path leaves the plane of a ballbar's centre.
+fn reached(study: &Study<'_>, scene: usize, center: [f64; 3], radius: f64) -> [bool; 3] {
+    let positions = programmed(study.scenes[scene].recording);
+    let positions: Vec<&[f64]> = positions.iter().map(Vec::as_slice).collect();
+    let nominal = study.interpreter.nominal_columns(&positions);
+    [0, 1, 2].map(|d| nominal[d].iter().any(|place| (place - center[d]).abs() > LEANS * radius))
+}
+
+/// All candidates but waves, in order of simplicity.
+pub(crate) fn candidates(study: &Study<'_>, courses: &[Course], travels: &[Travel]) -> Vec<Effect> {
+    let grids = Grids::new(study, courses, travels);
+    let outside = study.scenes.iter().flat_map(|scene| &scene.channels).any(|channel| channel.kind.outside());
+    let mut effects = settings(study);
+    for (motion, known) in study.equations.motions.iter().enumerate() {
+        for shape in shapes(study, motion, travels, &grids) {
+            let own = known.axis.is_some_and(|axis| study.own[axis] == Some(motion));
+            let drive = own && known.axis.is_some_and(|axis| study.has_drive(axis));
+            if drive || (own && shape.name() == "lag") {
+                effects.push(Effect { place: Place::Motion { motion, side: Side::Drive }, shape: shape.clone() });
+            }
+            if outside && shape.name() != "lag" {
+                effects.push(Effect { place: Place::Motion { motion, side: Side::After }, shape });
+            }
+        }
+    }
+    effects
+}
+
+fn settings(study: &Study<'_>) -> Vec<Effect> {
+    let both = |recording| [Setting::Clock, Setting::Cosine].map(|setting| Effect::setting(recording, setting));
+    (0..study.scenes.len()).flat_map(both).collect()
+}
+
+/// Values of the parameters that are not linear.
+struct Grids {
+    decays: Vec<f64>,
+    filters: Vec<f64>,
+    drifts: Vec<f64>,
+}
+
+impl Grids {
+    fn new(study: &Study<'_>, courses: &[Course], travels: &[Travel]) -> Self {
+        let step = study.scenes.iter().map(|scene| typical_step(&scene.recording.time)).fold(f64::INFINITY, f64::min);
+        let span = study.scenes.iter().filter_map(|scene| scene.recording.time.last()).copied().fold(0.0, f64::max);
+        let reversals = reversals(courses, travels);
+        let between = if reversals > 0.0 { span / reversals } else { 0.0 };
+        Self {
+            decays: if reversals > 0.0 { geometric(0.7 * step, 0.25 * between, 2.0) } else { Vec::new() },
+            filters: geometric((4.0 * step).max(span / 60.0), 0.7 * span, 2.0),
+            drifts: geometric((10.0 * step).max(span / 60.0), 3.0 * span, 2.5),
+        }
+    }
+}
+
+fn reversals(courses: &[Course], travels: &[Travel]) -> f64 {
+    let turns = |axis: usize| {
+        let directions = courses.iter().flat_map(|course| course.shown.axes[axis].direction.windows(2));
+        crate::number(directions.filter(|pair| pair[0] != pair[1]).count())
+    };
+    (0..travels.len()).map(turns).fold(0.0, f64::max)
+}
+
+/// From `low` to at most `high` by a factor.
+pub(crate) fn geometric(low: f64, high: f64, factor: f64) -> Vec<f64> {
+    if !(low > 0.0 && high >= low) {
+        return Vec::new();
+    }
+    std::iter::successors(Some(low), |value| Some(value * factor)).take_while(|value| *value <= high).collect()
+}
+
+/// The terms of one error motion, simplest first.
+fn shapes(study: &Study<'_>, motion: usize, travels: &[Travel], grids: &Grids) -> Vec<Shape> {
+    let known = &study.equations.motions[motion];
+    let mut shapes = vec![Shape::Constant];
+    let moving = known.axis.filter(|axis| travels[*axis].moves && !known.alignment);
+    if let Some(axis) = moving {
+        shapes.extend(along(study, motion, axis, &travels[axis], grids));
+    }
+    for (axis, travel) in travels.iter().enumerate() {
+        if travel.moves && known.axis != Some(axis) && !known.alignment {
+            let scale = travel.low.abs().max(travel.high.abs());
+            shapes.extend((1..=HIGHEST_COUPLING).map(|degree| Shape::Coupling { axis, degree, scale }));
+        }
+    }
+    for sensor in recorded(study) {
+        let reference = REFERENCE_TEMPERATURE;
+        shapes.push(Shape::Growth { sensor, reference, time_constant: 0.0 });
+        shapes.extend(
+            grids.filters.iter().map(|time_constant| Shape::Growth { sensor, reference, time_constant: *time_constant }),
+        );
+        if let Some(axis) = moving {
+            shapes.push(Shape::Expansion { axis, sensor, reference });
+        }
+    }
+    shapes.extend(grids.drifts.iter().map(|time_constant| Shape::Drift { time_constant: *time_constant }));
+    shapes.extend((0..study.loads.len()).map(|load| Shape::Compliance { load }));
+    shapes
+}
+
+/// Terms of the motion's own axis.
+fn along(study: &Study<'_>, motion: usize, axis: usize, travel: &Travel, grids: &Grids) -> Vec<Shape> {
+    let mut shapes = Vec::new();
+    if study.own[axis] == Some(motion) {
+        shapes.push(Shape::Lag { axis });
+    }
+    let (center, scale) = ((travel.low + travel.high) / 2.0, travel.range() / 2.0);
+    shapes.push(Shape::Backlash { axis, wind_up: 0.0 });
+    shapes.extend((1..=HIGHEST_POWER).map(|degree| Shape::Polynomial { axis, degree, center, scale }));
+    shapes.push(Shape::Acceleration { axis });
+    let wind_ups = geometric(3.0 * travel.step, 0.4 * travel.range(), 2.0);
+    shapes.extend(wind_ups.into_iter().map(|wind_up| Shape::Backlash { axis, wind_up }));
+    shapes.extend(grids.decays.iter().map(|decay| Shape::ReversalSpike { axis, decay: *decay }));
+    shapes
+}
+
+/// The sensors of which there are samples in every recording.
+fn recorded(study: &Study<'_>) -> Vec<usize> {
+    let known = |sensor: &usize| {
+        study.scenes.iter().all(|scene| scene.temperatures[*sensor].iter().any(|value| value.is_finite()))
+    };
+    (0..study.sensors.len()).filter(known).collect()
+}
+
+/// How much a term must bring beyond its parameters to stand before a simpler one: in units of minus twice the
+/// log-likelihood. It decides between names for what the data cannot tell apart.
+pub(crate) fn simplicity(study: &Study<'_>, effect: &Effect) -> f64 {
+    let shape = match &effect.shape {
+        Shape::Constant | Shape::Lag { .. } => 0.0,
+        Shape::Backlash { wind_up, .. } => if *wind_up > 0.0 { 1.5 } else { 0.0 },
+        Shape::Polynomial { .. } => 1.0,
+        Shape::Expansion { .. } | Shape::Compliance { .. } | Shape::Cyclic { .. } => 1.0,
+        Shape::Growth { .. } | Shape::Vibration { .. } => 1.5,
+        Shape::Instrument(_) => 1.2,
+        Shape::Acceleration { .. } | Shape::ReversalSpike { .. } => 2.0,
+        Shape::Coupling { .. } | Shape::Drift { .. } => 2.5,
+        Shape::SensorPolynomial { .. } => 3.0,
+        Shape::Table { .. } => 4.0,
+    };
+    shape + effect.motion().map_or(0.0, |motion| place(study, motion))
+}
+
+/// A motion in the axis's own direction or a squareness is the first to be thought of, an angle the last.
+fn place(study: &Study<'_>, motion: usize) -> f64 {
+    let known = &study.equations.motions[motion];
+    if known.alignment || study.own.contains(&Some(motion)) {
+        0.0
+    } else if known.angular {
+        0.6
+    } else {
+        0.3
+    }
+}

@@ -1,0 +1,277 @@
+//! The diagnosis: what is said of a machine and its recordings, before it is put into words or JSON.
+
+use model_dsl::calibration::CalibratedTerm;
+
+/// What was found.
+#[derive(Clone, Debug, Default)]
+pub struct Diagnosis {
+    /// The machine's name.
+    pub machine: String,
+    /// The recordings that were fitted together, in order.
+    pub recordings: Vec<Summary>,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The noise: what stands above it is systematic.
+    pub noise: NoiseSummary,
+    /// The residual of the calibration alone, its free zeros fitted.
+    pub before: Residual,
+    /// The residual with the findings.
+    pub after: Residual,
+    /// The physics that was left out, in order of share.
+    pub findings: Vec<Finding>,
+    /// Settings of the instruments that the data demand, the zeros apart.
+    pub settings: Vec<SettingFinding>,
+    /// What stands above the noise and no term explains.
+    pub unexplained: Option<Unexplained>,
+    /// How far runs under the same state differ, where they differ by more than the noise.
+    pub repeatability: Option<Repeatability>,
+    /// What cannot be decided from these recordings: whole sentences, each with its reason.
+    pub undecided: Vec<String>,
+}
+
+/// One recording in a few figures.
+#[derive(Clone, Debug, Default)]
+pub struct Summary {
+    /// The recording file.
+    pub file: String,
+    /// Its title.
+    pub title: Option<String>,
+    /// `position`, `ballbar`, ...
+    pub instrument: &'static str,
+    /// Rows of data.
+    pub rows: usize,
+    /// Samples that were used, of all channels.
+    pub samples: usize,
+    /// Samples that are missing.
+    pub missing: usize,
+    /// Samples that were left out as outliers.
+    pub outliers: usize,
+    /// Runs.
+    pub runs: usize,
+    /// What was held out, in words: "run 3", "every fourth of 12 blocks of time".
+    pub held_out: String,
+}
+
+/// The verdict of a diagnosis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Verdict {
+    /// Nothing systematic above the noise.
+    #[default]
+    Adequate,
+    /// Findings explain what is systematic.
+    LeftOutPhysics,
+    /// Something systematic is left that no term fits.
+    Unexplained,
+    /// Runs disagree by more than any model of the state could give.
+    NotRepeatable,
+}
+
+impl Verdict {
+    /// The word of the contract.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Adequate => "adequate",
+            Self::LeftOutPhysics => "left-out-physics",
+            Self::Unexplained => "unexplained",
+            Self::NotRepeatable => "not-repeatable",
+        }
+    }
+}
+
+/// The noise of the outside instrument's channels together; of the drives' where there is no instrument.
+#[derive(Clone, Debug, Default)]
+pub struct NoiseSummary {
+    /// Root mean square.
+    pub value: f64,
+    /// `mm`, `rad` or `deg`.
+    pub unit: &'static str,
+    /// Its white part.
+    pub white: f64,
+    /// Its wandering part.
+    pub wander: f64,
+    /// The correlation time of the wandering part, s.
+    pub time_constant: f64,
+}
+
+/// The size of what a model leaves.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Residual {
+    /// Root mean square over all samples.
+    pub rms: f64,
+    /// Root mean square over the samples that were held out; `None` where nothing could be.
+    pub holdout_rms: Option<f64>,
+    /// `mm`, `rad` or `deg`.
+    pub unit: &'static str,
+}
+
+/// A term of an error motion that the calibration lacks.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    /// The error motion's name: `EYY`.
+    pub motion: String,
+    /// Its number in the equations.
+    pub motion_number: usize,
+    /// What the motion is, in words.
+    pub motion_meaning: String,
+    /// The term's name.
+    pub term: &'static str,
+    /// The parameters, named as in calibration files.
+    pub parameters: Vec<Parameter>,
+    /// Its part of the explainable held-out variance.
+    pub share: f64,
+    /// Where it acts.
+    pub location: Location,
+    /// What it does to the held-out data.
+    pub evidence: Evidence,
+    /// Other names for what these recordings show.
+    pub alternatives: Vec<Alternative>,
+    /// What the term is, physically: one or two sentences.
+    pub explanation: String,
+    /// Whether a controller can compensate it in real time.
+    pub compensable: bool,
+    /// The term as the calibration takes it; its sensor is a number into [`Finding::sensor`].
+    pub calibrated: CalibratedTerm,
+    /// The name of the sensor that it reads.
+    pub sensor: Option<String>,
+}
+
+/// One parameter of a finding.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Its name in calibration files.
+    pub name: &'static str,
+    /// Its value.
+    pub value: ParameterValue,
+}
+
+/// The value of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ParameterValue {
+    /// The name of an axis, a sensor or a load.
+    Name(String),
+    /// A number that is not fitted, such as a reference temperature, with its unit.
+    Given(f64, String),
+    /// A fitted number.
+    Fitted(Estimate),
+    /// Several fitted numbers: the coefficients of a polynomial from power 0 on (of a coupling from power 1 on).
+    List(Vec<Estimate>),
+}
+
+/// A fitted number with its 95 % interval.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// The value.
+    pub value: f64,
+    /// The ends of the interval; both the value itself where the recordings say nothing about it.
+    pub ci95: (f64, f64),
+    /// The unit, `mm`, `1/s`, `rad/mm^2`; empty for a pure number.
+    pub unit: String,
+}
+
+/// Where a finding acts.
+#[derive(Clone, Debug, Default)]
+pub struct Location {
+    /// The link.
+    pub link: String,
+    /// `drive`, `transmission`, `structure` or `unknown`.
+    pub side: &'static str,
+    /// The state on which it depends: `position`, `direction`, `velocity`, `time`, `temperature`, ...
+    pub state: &'static str,
+    /// Where it shows, in words.
+    pub detail: String,
+    /// The interval to which it is confined.
+    pub interval: Option<Interval>,
+}
+
+/// A stretch of a state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interval {
+    /// What it is a stretch of.
+    pub of: IntervalOf,
+    /// Where it begins and ends.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// The unit of both.
+    pub unit: &'static str,
+}
+
+/// What an interval is a stretch of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum IntervalOf {
+    /// The position of the axis of this letter.
+    Axis(String),
+    /// Time since the recording began.
+    Time,
+    /// Frequency.
+    Frequency,
+}
+
+/// What a finding does to held-out data.
+#[derive(Clone, Debug, Default)]
+pub struct Evidence {
+    /// The held-out rms with all findings.
+    pub with: f64,
+    /// The held-out rms when the others are fitted without this one.
+    pub without: f64,
+    /// The unit of both.
+    pub unit: &'static str,
+}
+
+/// Another name for what the recordings show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Alternative {
+    /// The error motion; `instrument` for a setting of the instrument.
+    pub motion: String,
+    /// The term.
+    pub term: &'static str,
+    /// The measurement that would tell them apart.
+    pub separate_by: String,
+}
+
+/// A setting of an instrument that the data demand.
+#[derive(Clone, Debug)]
+pub struct SettingFinding {
+    /// The recording, by number.
+    pub recording: usize,
+    /// The setting's name: `eccentricity`, `radius`, `cosine`, `clock`.
+    pub term: &'static str,
+    /// Its parameters.
+    pub parameters: Vec<Parameter>,
+    /// Other names for it.
+    pub alternatives: Vec<Alternative>,
+}
+
+/// What stands above the noise and no term explains.
+#[derive(Clone, Debug, Default)]
+pub struct Unexplained {
+    /// The link whose state it follows, where one does.
+    pub link: Option<String>,
+    /// The channel or direction in which it shows: `measured.z`.
+    pub direction: String,
+    /// The state that it follows: `position`, `time`, `frequency`.
+    pub state: &'static str,
+    /// The interval to which it is confined.
+    pub interval: Option<Interval>,
+    /// Its root mean square where it shows, and its unit.
+    pub rms: f64,
+    /// `mm`, `rad` or `deg`.
+    pub unit: &'static str,
+    /// What it looks like, in words.
+    pub detail: String,
+    /// The name of an error motion of which a table could stand for it.
+    pub table_of: Option<String>,
+}
+
+/// How far runs under the same state differ.
+#[derive(Clone, Debug, Default)]
+pub struct Repeatability {
+    /// Standard deviation from run to run.
+    pub between_runs: f64,
+    /// What the noise within runs would give.
+    pub expected: f64,
+    /// `mm`, `rad` or `deg`.
+    pub unit: &'static str,
+    /// Whether time, temperature or order explains it, in words.
+    pub detail: String,
+}

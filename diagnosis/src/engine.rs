@@ -1,0 +1,161 @@
+//! The engine: from a study to the model that explains its recordings.
+//!
+//! In: a study. Out: effects with coefficients, the noise of every channel, and what was tried. It goes round: residual,
+//! noise, waves, design, choice, fit; every round starts the choice afresh with a better idea of the noise, so that nothing
+//! chosen early has to stay. At the end the judge drops what does not stand up.
+
+use crate::appraisal::Appraisal;
+use crate::candidates::{self, Travel};
+use crate::design::{Design, Regressor};
+use crate::dynamics;
+use crate::fit::{self, Fit};
+use crate::judge::{self, Tries};
+use crate::kinship::{self, Kin};
+use crate::model::{Effect, Fitted, Model};
+use crate::noise::{self, Noise};
+use crate::observations::Course;
+use crate::search::{Choice, rivals};
+use crate::study::Study;
+use crate::waves::{self, Weighted};
+
+/// The most rounds.
+const ROUNDS: usize = 6;
+/// How many waves are added to the candidates in a round.
+const WAVES: usize = 8;
+
+/// What the engine found.
+pub(crate) struct Found {
+    pub(crate) fit: Fit,
+    pub(crate) appraisal: Appraisal,
+    pub(crate) pool: Vec<Kin>,
+    pub(crate) travels: Vec<Travel>,
+    /// How many of the model's first effects are settings that are always fitted.
+    pub(crate) always: usize,
+    pub(crate) tries: Tries,
+}
+
+/// Looks for the model. `always` are the settings that are fitted whatever else is.
+pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dyn FnMut(f64)) -> Found {
+    let mut model: Model =
+        always.into_iter().map(|effect| Fitted { effect, coefficients: vec![0.0] }).collect();
+    let always = model.len();
+    let mut courses = courses(study, &model);
+    let travels = candidates::travels(study, &courses);
+    let mut noises = first_noises(study, &model, &courses);
+    let pool = candidates::candidates(study, &courses, &travels);
+    let pool = kinship::groups(study, &courses, &noises, pool);
+    let mut tries = Tries { candidates: crate::number(pool.len() + WAVES), waves: 1.0 };
+    for round in 0..ROUNDS {
+        progress(crate::number(round + 1) / crate::number(ROUNDS + 2));
+        let residuals = all_residuals(study, &model, &noises, &courses);
+        let (peaks, waves) = waves::peaks(study, &model, &courses, &residuals, &travels);
+        tries.waves = waves;
+        let regressors = regressors(study, &model, always, &pool, peaks);
+        let next = choose(study, &model, &noises, regressors, always, waves);
+        let next = fit::refine(study, next, &noises, &travels).model;
+        let next = dynamics::try_loops(study, next, always, &noises, &travels, tries);
+        let settled = same_effects(&model, &next);
+        model = next;
+        courses = self::courses(study, &model);
+        let appraisal = Appraisal::new(study, &model);
+        appraisal.mark(study);
+        let quiet = same_noises(&noises, &appraisal.noises);
+        trace(study, &model, &appraisal);
+        noises = appraisal.noises;
+        if settled && quiet && round > 0 {
+            break;
+        }
+    }
+    let fit = fit::refine(study, model, &noises, &travels);
+    let (fit, appraisal) = judge::uphold(study, fit, always, &travels, tries);
+    trace(study, &fit.model, &appraisal);
+    Found { fit, appraisal, pool, travels, always, tries }
+}
+
+fn trace(study: &Study<'_>, model: &Model, appraisal: &Appraisal) {
+    if std::env::var_os("ABBE_TRACE").is_some() {
+        eprintln!("deviance {} {:?}", appraisal.deviance, appraisal.noises);
+        for fitted in model {
+            let motion = fitted.effect.motion().map(|m| &study.equations.motions[m].name);
+            eprintln!("   {motion:?} {:?} {:?}", fitted.effect.shape, fitted.coefficients);
+        }
+    }
+}
+
+fn choose(
+    study: &Study<'_>,
+    model: &Model,
+    noises: &[Vec<Noise>],
+    regressors: Vec<Regressor>,
+    always: usize,
+    waves: f64,
+) -> Model {
+    let mut design = Design::new(study, model, noises, regressors);
+    design.rebase(model);
+    let (products, samples) = design.fitted();
+    let chosen = Choice::new(study, &design, products.clone(), samples, always, waves).best();
+    fit::linear(&design, &products, always, &chosen)
+}
+
+pub(crate) fn courses(study: &Study<'_>, model: &Model) -> Vec<Course> {
+    (0..study.scenes.len()).map(|scene| Course::new(study, scene, model)).collect()
+}
+
+fn all_residuals(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], courses: &[Course]) -> Vec<Vec<Weighted>> {
+    let each = courses.iter().enumerate();
+    each.map(|(scene, course)| waves::weighted(study, scene, model, &noises[scene], course)).collect()
+}
+
+/// White noise of the size of the differences from row to row.
+fn first_noises(study: &Study<'_>, model: &Model, courses: &[Course]) -> Vec<Vec<Noise>> {
+    let each = courses.iter().enumerate();
+    each.map(|(scene, course)| {
+        let residuals = waves::residuals(study, scene, model, course);
+        let channels = residuals.iter().zip(&study.scenes[scene].channels);
+        channels
+            .map(|(residual, channel)| {
+                let white = noise::from_differences(residual).max(channel.rounding);
+                Noise { white, wander: 0.0, time_constant: 1.0 }
+            })
+            .collect()
+    })
+    .collect()
+}
+
+/// The effects of the present model as they stand, the candidates, and waves.
+fn regressors(
+    study: &Study<'_>,
+    model: &Model,
+    always: usize,
+    pool: &[Kin],
+    mut peaks: Vec<waves::Peak>,
+) -> Vec<Regressor> {
+    let mut effects: Vec<Effect> = model.iter().map(|fitted| fitted.effect.clone()).collect();
+    let chosen = &model[always..];
+    let candidates = pool.iter().map(|kin| kin.effect.clone());
+    effects.extend(candidates.filter(|effect| !chosen.iter().any(|known| known.effect == *effect)));
+    let simplicity = |peak: &waves::Peak| candidates::simplicity(study, &peak.effect);
+    peaks.sort_by(|a, b| b.gain.total_cmp(&a.gain).then(simplicity(a).total_cmp(&simplicity(b))));
+    let mut added: Vec<Effect> = Vec::new();
+    for peak in peaks {
+        if added.len() < WAVES && !added.iter().any(|known| rivals(known, &peak.effect)) {
+            added.push(peak.effect);
+        }
+    }
+    effects.extend(added);
+    effects.into_iter().map(Regressor::of).collect()
+}
+
+fn same_effects(a: &Model, b: &Model) -> bool {
+    let kind = |a: &Fitted, b: &Fitted| a.effect == b.effect || rivals(&a.effect, &b.effect);
+    a.len() == b.len() && a.iter().all(|member| b.iter().any(|other| kind(member, other)))
+}
+
+fn same_noises(a: &[Vec<Noise>], b: &[Vec<Noise>]) -> bool {
+    let near = |a: f64, b: f64| (a - b).abs() <= 0.03 * (a.abs() + b.abs());
+    let alike = |(a, b): (&Noise, &Noise)| {
+        let slow = near(a.time_constant.ln(), b.time_constant.ln());
+        near(a.white, b.white) && near(a.wander, b.wander) && (a.wander < 0.1 * a.white || slow)
+    };
+    a.iter().flatten().zip(b.iter().flatten()).all(alike)
+}

@@ -1,0 +1,146 @@
+//! The joint fit: all effects of a model at once, those parameters included that are not linear.
+//!
+//! In: chosen effects. Out: their coefficients with the covariance that the correlated noise gives them.
+
+use nalgebra::DMatrix;
+
+use crate::candidates::Travel;
+use crate::design::{Design, Regressor};
+use crate::model::{Effect, Fitted, Model};
+use crate::noise::Noise;
+use crate::study::Study;
+use crate::sweep::Swept;
+use crate::terms::Shape;
+
+/// A fitted model and how certain it is.
+#[derive(Clone, Debug)]
+pub(crate) struct Fit {
+    pub(crate) model: Model,
+    /// For each effect: the covariance of its linear coefficients, its nonlinear parameter last where it has one.
+    pub(crate) covariances: Vec<DMatrix<f64>>,
+    /// The whitened sum of squares of the fitted blocks, and their samples.
+    pub(crate) remaining: f64,
+    pub(crate) samples: f64,
+}
+
+/// The model of chosen regressors of a rebased design, by linear least squares. The first `always` regressors are in it.
+pub(crate) fn linear(design: &Design, products: &DMatrix<f64>, always: usize, chosen: &[usize]) -> Model {
+    let numbers: Vec<usize> = (0..always).chain(chosen.iter().copied()).collect();
+    let mut swept = Swept::new(products);
+    for column in numbers.iter().flat_map(|number| design.columns(*number)) {
+        swept.take(column);
+    }
+    let fitted = |number: &usize| Fitted {
+        effect: design.regressors[*number].effect.clone(),
+        coefficients: design.columns(*number).map(|column| swept.coefficient(column)).collect(),
+    };
+    numbers.iter().map(fitted).collect()
+}
+
+/// The most steps of a fit.
+const STEPS: usize = 12;
+/// A fit is done when the sum of squares falls by less than this share.
+const DONE: f64 = 1e-7;
+
+/// Fits all parameters of a model, from where it stands, by Gauss-Newton steps that never make it worse.
+pub(crate) fn refine(study: &Study<'_>, model: Model, noises: &[Vec<Noise>], travels: &[Travel]) -> Fit {
+    let mut best = Linearised::new(study, model, noises);
+    let mut size = 1.0;
+    for _ in 0..STEPS {
+        let next = Linearised::new(study, best.stepped(size, travels), noises);
+        let fall = (best.remaining - next.remaining) / best.remaining;
+        if fall >= 0.0 {
+            best = next;
+            size = 1.0;
+        } else {
+            size *= 0.3;
+        }
+        if fall.abs() < DONE || size < 1e-3 {
+            break;
+        }
+    }
+    best.fit()
+}
+
+/// A model with its design, slopes included.
+struct Linearised {
+    model: Model,
+    design: Design,
+    /// For each effect the regressor of its slope, where it has one.
+    slopes: Vec<Option<usize>>,
+    swept: Swept,
+    remaining: f64,
+    samples: f64,
+}
+
+impl Linearised {
+    fn new(study: &Study<'_>, model: Model, noises: &[Vec<Noise>]) -> Self {
+        let mut regressors: Vec<Regressor> =
+            model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+        let mut slopes = Vec::new();
+        for fitted in &model {
+            let slope = fitted.effect.shape.nonlinear().map(|_| {
+                let slope = Some(fitted.coefficients.clone());
+                regressors.push(Regressor { effect: fitted.effect.clone(), slope });
+                regressors.len() - 1
+            });
+            slopes.push(slope);
+        }
+        let design = Design::new(study, &model, noises, regressors);
+        let (products, samples) = design.fitted();
+        let mut swept = Swept::new(&products);
+        let remaining = swept.remaining();
+        for column in 0..design.width {
+            swept.take(column);
+        }
+        Self { model, design, slopes, swept, remaining, samples }
+    }
+
+    /// The model after a step of this size (1: the whole step) towards the least squares.
+    fn stepped(&self, size: f64, travels: &[Travel]) -> Model {
+        let step = |(number, fitted): (usize, &Fitted)| {
+            let change = |column: usize| size * self.swept.coefficient(column);
+            let coefficients: Vec<f64> = fitted
+                .coefficients
+                .iter()
+                .zip(self.design.columns(number))
+                .map(|(coefficient, column)| coefficient + change(column))
+                .collect();
+            let coefficients = match fitted.effect.shape {
+                // A loop cannot run ahead of its command.
+                Shape::Lag { .. } => coefficients.iter().map(|lag| lag.max(1e-7)).collect(),
+                _ => coefficients,
+            };
+            let moved = self.slopes[number].zip(fitted.effect.shape.nonlinear()).map(|(slope, parameter)| {
+                let change = change(self.design.first[slope]);
+                let most = furthest(&fitted.effect.shape, travels);
+                let change = change.clamp(-most, most).clamp(-0.5 * parameter.value, parameter.value);
+                fitted.effect.shape.with_nonlinear(parameter.value + change)
+            });
+            let shape = moved.unwrap_or_else(|| fitted.effect.shape.clone());
+            Fitted { effect: Effect { place: fitted.effect.place, shape }, coefficients }
+        };
+        self.model.iter().enumerate().map(step).collect()
+    }
+
+    fn fit(self) -> Fit {
+        let scale = self.swept.remaining() / self.samples.max(1.0);
+        let covariance = |number: usize| {
+            let mut columns: Vec<usize> = self.design.columns(number).collect();
+            columns.extend(self.slopes[number].map(|slope| self.design.first[slope]));
+            DMatrix::from_fn(columns.len(), columns.len(), |row, column| {
+                scale * self.swept.covariance(columns[row], columns[column])
+            })
+        };
+        let covariances = (0..self.model.len()).map(covariance).collect();
+        Fit { covariances, remaining: self.remaining, samples: self.samples, model: self.model }
+    }
+}
+
+/// How far a nonlinear parameter may go in one step: a wave must not slip by a cycle.
+fn furthest(shape: &Shape, travels: &[Travel]) -> f64 {
+    match shape {
+        Shape::Cyclic { axis, period } => 0.3 * period * period / travels[*axis].range().max(*period),
+        _ => f64::INFINITY,
+    }
+}

@@ -1,0 +1,160 @@
+//! The judge: what of a chosen model may be claimed.
+//!
+//! In: a fitted model. Out: the same without every effect that does not stand up: whose likelihood the noise alone could
+//! give, that does not come back in the held-out data as it was fitted, or that rests on a few stretches only.
+
+use crate::appraisal::Appraisal;
+use crate::candidates::Travel;
+use crate::design::{Design, Products, Regressor};
+use crate::fit::{self, Fit};
+use crate::model::{Model, Fitted};
+use crate::noise::Noise;
+use crate::search::price;
+use crate::study::Study;
+use crate::sweep::Swept;
+
+/// How much was tried before this model was chosen.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tries {
+    /// Candidates that differ.
+    pub(crate) candidates: f64,
+    /// Independent waves.
+    pub(crate) waves: f64,
+}
+
+/// The share of its fitted strength with which an effect must come back in the held-out data, at least.
+const RETURNS: f64 = 0.4;
+/// The expected whitened energy in held-out data from which on they can tell.
+const TELLING: f64 = 12.0;
+/// How many standard deviations, as the scatter from block to block gives them, an effect must stand above zero.
+const STEADY: f64 = 3.5;
+/// The fewest blocks that give a scatter.
+const FEW_BLOCKS: usize = 5;
+
+/// Drops what does not stand up, one effect at a time, and fits the rest again.
+pub(crate) fn uphold(study: &mut Study<'_>, mut fit: Fit, always: usize, travels: &[Travel], tries: Tries) -> (Fit, Appraisal) {
+    loop {
+        let appraisal = Appraisal::new(study, &fit.model);
+        appraisal.mark(study);
+        let Some(weakest) = weakest(study, &fit, &appraisal, always, tries) else {
+            let fit = fit::refine(study, fit.model, &appraisal.noises, travels);
+            return (fit, appraisal);
+        };
+        let mut model = fit.model.clone();
+        model.remove(weakest);
+        fit = fit::refine(study, model, &appraisal.noises, travels);
+    }
+}
+
+/// The effect that stands up least, of those that do not.
+fn weakest(study: &Study<'_>, fit: &Fit, appraisal: &Appraisal, always: usize, tries: Tries) -> Option<usize> {
+    let design = design(study, &fit.model, &appraisal.noises);
+    let (products, samples) = design.fitted();
+    let mut swept = Swept::new(&products);
+    for column in 0..design.width {
+        swept.take(column);
+    }
+    let scale = (swept.remaining() / samples.max(1.0)).max(f64::MIN_POSITIVE);
+    let mut failing: Option<(f64, usize)> = None;
+    for number in always..fit.model.len() {
+        let columns: Vec<usize> = design.columns(number).collect();
+        let worth = swept.worth(&columns) / scale;
+        let price = price(study, &fit.model[number].effect, samples, tries.candidates, tries.waves);
+        let fails = worth < price
+            || !returns(&design, &swept, number, scale)
+            || !steady(&design, &swept, number)
+            || noise_explains(study, &design, &swept, fit, appraisal, number, price);
+        if fails && failing.is_none_or(|(least, _)| worth < least) {
+            failing = Some((worth, number));
+        }
+    }
+    failing.map(|(_, number)| number)
+}
+
+/// The products of the effects of a model, slopes left out, the whole response restored.
+pub(crate) fn design(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>]) -> Design {
+    let regressors = model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+    let mut design = Design::new(study, model, noises, regressors);
+    design.rebase(model);
+    design
+}
+
+/// Whether the noise alone, estimated anew without the effect, is nearly as likely.
+fn noise_explains(
+    study: &Study<'_>,
+    design: &Design,
+    swept: &Swept,
+    fit: &Fit,
+    appraisal: &Appraisal,
+    number: usize,
+    price: f64,
+) -> bool {
+    let without = without(design, swept, &fit.model, number);
+    Appraisal::new(study, &without).deviance - appraisal.deviance < price
+}
+
+/// The model without one effect, the linear coefficients of the others fitted again.
+pub(crate) fn without(design: &Design, swept: &Swept, model: &Model, number: usize) -> Model {
+    let mut reduced = swept.clone();
+    for column in design.columns(number) {
+        reduced.drop(column);
+    }
+    let kept = model.iter().enumerate().filter(|(other, _)| *other != number);
+    kept.map(|(other, fitted)| Fitted {
+        effect: fitted.effect.clone(),
+        coefficients: match fitted.effect.shape.nonlinear_in_coefficient() {
+            true => fitted.coefficients.clone(),
+            false => design.columns(other).map(|column| reduced.coefficient(column)).collect(),
+        },
+    })
+    .collect()
+}
+
+/// Whether the effect comes back in the held-out blocks about as strong as it was fitted; true where they cannot tell.
+fn returns(design: &Design, swept: &Swept, number: usize, scale: f64) -> bool {
+    let (energy, score) = design
+        .blocks
+        .iter()
+        .filter(|block| block.held_out)
+        .map(|block| share(design, swept, number, block))
+        .fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
+    if energy < TELLING * scale {
+        return true;
+    }
+    // The strength in the held-out data is 1 + score / energy times the fitted one.
+    1.0 + score / energy > RETURNS
+}
+
+/// Whether the effect stands above the scatter of its strength from block to block; true where there are too few.
+fn steady(design: &Design, swept: &Swept, number: usize) -> bool {
+    let shares: Vec<(f64, f64)> = design
+        .blocks
+        .iter()
+        .filter(|block| !block.held_out)
+        .map(|block| share(design, swept, number, block))
+        .filter(|(energy, _)| *energy > 0.0)
+        .collect();
+    if shares.len() < FEW_BLOCKS {
+        return true;
+    }
+    let energy: f64 = shares.iter().map(|(energy, _)| energy).sum();
+    let scatter: f64 = shares.iter().map(|(_, score)| score * score).sum();
+    energy > STEADY * scatter.sqrt()
+}
+
+/// In one block: the energy of an effect as fitted, and its product with what the whole model leaves.
+fn share(design: &Design, swept: &Swept, number: usize, block: &Products) -> (f64, f64) {
+    let coefficients: Vec<f64> = (0..design.width).map(|column| swept.coefficient(column)).collect();
+    let columns = design.columns(number);
+    let mut energy = 0.0;
+    let mut score = 0.0;
+    for row in columns.clone() {
+        energy += columns
+            .clone()
+            .map(|column| coefficients[row] * coefficients[column] * block.matrix[(row, column)])
+            .sum::<f64>();
+        let explained: f64 = (0..design.width).map(|column| coefficients[column] * block.matrix[(row, column)]).sum();
+        score += coefficients[row] * (block.matrix[(row, design.width)] - explained);
+    }
+    (energy, score)
+}

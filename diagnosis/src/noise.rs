@@ -1,0 +1,226 @@
+//! Noise: what a channel does when nothing happens.
+//!
+//! In: the residual of a channel, with times and gaps. Out: its noise as white noise and a wandering (an
+//! Ornstein-Uhlenbeck process: exponentially correlated, up to a random walk), and the filter that makes such noise white.
+//! Generalised least squares is ordinary least squares behind that filter.
+
+/// The noise of one channel: mm or rad, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Noise {
+    /// Standard deviation of the white part.
+    pub(crate) white: f64,
+    /// Standard deviation of the wandering part.
+    pub(crate) wander: f64,
+    /// Correlation time of the wandering part.
+    pub(crate) time_constant: f64,
+}
+
+/// The whitening filter of one channel as it runs through the rows: a Kalman filter of the wandering part.
+#[derive(Clone, Debug)]
+pub(crate) struct Whitening {
+    noise: Noise,
+    variance: f64,
+    last: Option<f64>,
+    /// The last step of time and its decay: most steps are equal.
+    decay: (f64, f64),
+}
+
+/// What the filter does in one row: `state = decay * state`, `out = (in - state) / deviation`, `state += gain * (in - state)`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Step {
+    decay: f64,
+    gain: f64,
+    /// 1 / standard deviation of what is new in this row; 0 where the sample is missing.
+    weight: f64,
+}
+
+impl Whitening {
+    /// The filter at the beginning of a recording.
+    pub(crate) fn new(noise: Noise) -> Self {
+        Self { noise, variance: noise.wander * noise.wander, last: None, decay: (0.0, 1.0) }
+    }
+
+    /// The filter's next steps, for rows at these times.
+    pub(crate) fn steps(&mut self, time: &[f64], valid: &[bool]) -> Vec<Step> {
+        time.iter().zip(valid).map(|(time, valid)| self.step(*time, *valid)).collect()
+    }
+
+    fn step(&mut self, time: f64, valid: bool) -> Step {
+        let stationary = self.noise.wander * self.noise.wander;
+        let decay = self.last.map_or(0.0, |last| self.decay(time - last));
+        self.last = Some(time);
+        self.variance = decay * decay * self.variance + stationary * (1.0 - decay * decay);
+        if !valid {
+            return Step { decay, gain: 0.0, weight: 0.0 };
+        }
+        let total = self.variance + self.noise.white * self.noise.white;
+        let gain = self.variance / total;
+        self.variance *= 1.0 - gain;
+        Step { decay, gain, weight: 1.0 / total.sqrt() }
+    }
+
+    fn decay(&mut self, step: f64) -> f64 {
+        if self.noise.wander == 0.0 {
+            return 0.0;
+        }
+        if (step - self.decay.0).abs() > 1e-9 * step {
+            self.decay = (step, (-step / self.noise.time_constant).exp());
+        }
+        self.decay.1
+    }
+}
+
+/// Whitens one column in place; `state` goes on from the stretch before, 0 at the beginning.
+pub(crate) fn whiten(steps: &[Step], state: &mut f64, column: &mut [f64]) {
+    let mut s = *state;
+    for (step, value) in steps.iter().zip(column) {
+        s *= step.decay;
+        if step.weight > 0.0 {
+            let new = *value - s;
+            s += step.gain * new;
+            *value = new * step.weight;
+        } else {
+            *value = 0.0;
+        }
+    }
+    *state = s;
+}
+
+/// The transpose of [`whiten`] over a whole recording, in place: white numbers become weights of the samples.
+pub(crate) fn unwhiten(steps: &[Step], column: &mut [f64]) {
+    let mut s = 0.0;
+    for (step, value) in steps.iter().zip(column).rev() {
+        let back = if step.weight > 0.0 { *value * step.weight + step.gain * s } else { 0.0 };
+        *value = back;
+        s = (s - back) * step.decay;
+    }
+}
+
+/// Minus twice the logarithm of the likelihood of a residual, its scale concentrated out, and that scale (a variance).
+fn deviance(time: &[f64], residual: &[f64], valid: &[bool], noise: Noise) -> (f64, f64) {
+    let mut filter = Whitening::new(noise);
+    let (mut state, mut squares, mut logs, mut count) = (0.0, 0.0, 0.0, 0.0);
+    for ((time, value), valid) in time.iter().zip(residual).zip(valid) {
+        let step = filter.step(*time, *valid);
+        state *= step.decay;
+        if *valid {
+            let new = value - state;
+            state += step.gain * new;
+            squares += new * new * step.weight * step.weight;
+            logs -= 2.0 * step.weight.ln();
+            count += 1.0;
+        }
+    }
+    let scale = (squares / count).max(f64::MIN_POSITIVE);
+    (count * scale.ln() + logs + count, scale)
+}
+
+/// The noise of a channel with the greatest likelihood, and minus twice the logarithm of that.
+///
+/// `floor` is the least standard deviation of the white part: that of the rounding of the data.
+pub(crate) fn estimate(time: &[f64], residual: &[f64], valid: &[bool], floor: f64) -> (Noise, f64) {
+    let step = typical_step(time);
+    let span = (time.last().unwrap_or(&1.0) - time.first().unwrap_or(&0.0)).max(step);
+    let unit = |ratio: f64, time_constant: f64| Noise { white: 1.0, wander: ratio, time_constant };
+    let cost = |point: [f64; 2]| {
+        // Between half a step and ten recordings, and a wandering from nothing to all there is.
+        let (ratio, time_constant) = (point[0].clamp(-12.0, 12.0).exp(), point[1].exp());
+        let outside = (point[1] - (0.3 * step).ln()).min(0.0).abs() + (point[1] - (10.0 * span).ln()).max(0.0)
+            + (point[0].abs() - 12.0).max(0.0);
+        deviance(time, residual, valid, unit(ratio, time_constant)).0 + 1e3 * outside
+    };
+    let white = deviance(time, residual, valid, unit(0.0, span));
+    let mut best = (white.0, None);
+    let starts = [1.5 * step, 10.0 * step, 0.03 * span, span];
+    for start in starts.into_iter().filter(|start| *start <= span) {
+        for ratio in [0.1, 1.0] {
+            let value = cost([f64::ln(ratio), start.ln()]);
+            if best.1.is_none_or(|(found, _)| value < found) {
+                best.1 = Some((value, [f64::ln(ratio), start.ln()]));
+            }
+        }
+    }
+    let (value, point) = match best.1 {
+        Some((_, start)) => minimise(cost, start),
+        None => (f64::INFINITY, [0.0, 0.0]),
+    };
+    // Two more parameters must be worth more than chance.
+    if value < white.0 - WORTH {
+        let (ratio, time_constant) = (point[0].clamp(-12.0, 12.0).exp(), point[1].exp());
+        let scale = deviance(time, residual, valid, unit(ratio, time_constant)).1.sqrt();
+        return (Noise { white: scale.max(floor), wander: ratio * scale, time_constant }, value);
+    }
+    (Noise { white: white.1.sqrt().max(floor), wander: 0.0, time_constant: span }, white.0)
+}
+
+/// How much the wandering must lower minus twice the log-likelihood: chance does it with two more parameters in one of a
+/// hundred cases.
+const WORTH: f64 = 9.2;
+
+/// The standard deviation of the fast part of a residual: from the median difference of neighbouring samples.
+pub(crate) fn from_differences(residual: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = residual
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).abs())
+        .filter(|step| step.is_finite())
+        .collect();
+    steps.sort_by(f64::total_cmp);
+    let median = steps.get(steps.len() / 2).copied().unwrap_or_default();
+    median / (0.6745 * std::f64::consts::SQRT_2)
+}
+
+/// The standard deviation of the rounding of recorded values: of the smallest difference between any two of them, over
+/// the root of twelve. Values that were not rounded give next to nothing.
+pub(crate) fn rounding(values: &[f64]) -> f64 {
+    let mut known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).take(ROUNDED_VALUES).collect();
+    known.sort_by(f64::total_cmp);
+    let scale = known.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let least = (1e-12 * scale).max(f64::MIN_POSITIVE.sqrt());
+    let steps = known.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 1e-10 * scale);
+    let smallest = steps.fold(f64::INFINITY, f64::min);
+    if smallest.is_finite() { (smallest / 12f64.sqrt()).max(least) } else { least }
+}
+
+/// How many values are looked at for their rounding.
+const ROUNDED_VALUES: usize = 4000;
+
+/// The median step of time.
+pub(crate) fn typical_step(time: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().unwrap_or(1.0).max(f64::MIN_POSITIVE)
+}
+
+/// The simplex search of Nelder and Mead in two dimensions.
+fn minimise(cost: impl Fn([f64; 2]) -> f64, start: [f64; 2]) -> (f64, [f64; 2]) {
+    let near = |point: [f64; 2]| (cost(point), point);
+    let mut simplex = [near(start), near([start[0] + 1.0, start[1]]), near([start[0], start[1] + 1.0])];
+    let along = |from: [f64; 2], to: [f64; 2], share: f64| {
+        [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])]
+    };
+    for _ in 0..80 {
+        simplex.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let [best, middle, worst] = simplex;
+        if (worst.0 - best.0).abs() < 1e-3 {
+            break;
+        }
+        let center = along(best.1, middle.1, 0.5);
+        let reflected = near(along(center, worst.1, -1.0));
+        simplex[2] = if reflected.0 < best.0 {
+            let further = near(along(center, worst.1, -2.0));
+            if further.0 < reflected.0 { further } else { reflected }
+        } else if reflected.0 < middle.0 {
+            reflected
+        } else {
+            let inside = near(along(center, worst.1, if reflected.0 < worst.0 { -0.5 } else { 0.5 }));
+            if inside.0 < worst.0.min(reflected.0) {
+                inside
+            } else {
+                simplex[1] = near(along(best.1, middle.1, 0.5));
+                near(along(best.1, worst.1, 0.5))
+            }
+        };
+    }
+    simplex.sort_by(|a, b| a.0.total_cmp(&b.0));
+    simplex[0]
+}

@@ -1,0 +1,387 @@
+//! Observations: what a model predicts for each channel, and how each channel sees each effect.
+//!
+//! In: the states in a stretch of rows and a model. Out: the residual of every channel, and for every error motion its
+//! gain there: the lever arm in the observed direction. A regressor is gain times term. The position behind a loop is
+//! taken exactly; error motions act to first order, as in the compensation.
+
+use std::ops::Range;
+
+use crate::model::{Effect, Fitted, Model, Place, Side};
+use crate::recording::Recording;
+use crate::states::{Rows, States};
+use crate::study::{Channel, Kind, Scene, Study, programmed};
+use crate::terms::{Memory, Setting, Shape};
+
+/// The states of one recording under a model: those that the instrument shows, and those of the drives.
+pub(crate) struct Course {
+    /// Behind the loops, shifted by the instrument's clock.
+    pub(crate) shown: States,
+    /// Behind the loops, on the drives' own clock; only where it differs.
+    drives: Option<States>,
+    programmed: Vec<Vec<f64>>,
+}
+
+impl Course {
+    /// The course of a recording under a model.
+    pub(crate) fn new(study: &Study<'_>, scene: usize, model: &[Fitted]) -> Self {
+        let recording = study.scenes[scene].recording;
+        let (lags, clock) = (lags(study, model), clock(scene, model));
+        let shown = states(&study.scenes[scene], &lags, clock);
+        let drives = (clock != 0.0).then(|| states(&study.scenes[scene], &lags, 0.0));
+        Self { shown, drives, programmed: programmed(recording) }
+    }
+
+    /// The states that a channel shows.
+    pub(crate) fn states(&self, kind: Kind) -> &States {
+        match (&self.drives, kind) {
+            (Some(drives), Kind::Drive(_)) => drives,
+            _ => &self.shown,
+        }
+    }
+}
+
+fn states(scene: &Scene<'_>, lags: &[f64], clock: f64) -> States {
+    let recording: &Recording = scene.recording;
+    States::new(recording, scene.temperatures.clone(), scene.loads.clone(), lags, clock)
+}
+
+/// The time constant of each axis's position loop: those of the calibration and of the model add.
+fn lags(study: &Study<'_>, model: &[Fitted]) -> Vec<f64> {
+    let mut lags = vec![0.0; study.equations.axes.len()];
+    for fitted in study.known.iter().chain(model) {
+        if let (Shape::Lag { axis }, [lag]) = (&fitted.effect.shape, fitted.coefficients.as_slice()) {
+            lags[*axis] += lag;
+        }
+    }
+    lags.iter().map(|lag| lag.max(0.0)).collect()
+}
+
+fn clock(scene: usize, model: &[Fitted]) -> f64 {
+    let clocks = model.iter().filter(|fitted| fitted.effect.setting_of(scene) == Some(Setting::Clock));
+    clocks.filter_map(|fitted| fitted.coefficients.first()).sum()
+}
+
+/// Terms whose memory runs through the rows of one recording, each term once.
+pub(crate) struct Terms<'m> {
+    fitted: Vec<(&'m Fitted, Memory)>,
+}
+
+impl<'m> Terms<'m> {
+    /// All terms of the machine, known and modelled, at the beginning of a recording.
+    pub(crate) fn new(study: &'m Study<'_>, model: &'m Model) -> Self {
+        let machine = study.known.iter().chain(model).filter(|fitted| fitted.effect.motion().is_some());
+        Self { fitted: machine.map(|fitted| (fitted, Memory::default())).collect() }
+    }
+
+    /// The value of every error motion in the next stretch of rows; on the drives' side alone where `drive` is set.
+    fn motions(&mut self, rows: &Rows<'_>, motions: usize, drive: bool) -> Vec<Option<Vec<f64>>> {
+        let mut sums: Vec<Option<Vec<f64>>> = vec![None; motions];
+        for (fitted, memory) in &mut self.fitted {
+            if let Place::Motion { motion, side } = fitted.effect.place
+                && (!drive || side == Side::Drive)
+            {
+                let sum = sums[motion].get_or_insert_with(|| vec![0.0; rows.len()]);
+                fitted.effect.shape.add(&fitted.coefficients, rows, memory, sum);
+            }
+        }
+        sums
+    }
+}
+
+/// Everything about a stretch of rows that the channels share.
+pub(crate) struct Frame<'c> {
+    rows: Range<usize>,
+    course: &'c Course,
+    /// The tip behind the loops, without error motions, and as programmed: X, Y, Z.
+    nominal: [Vec<f64>; 3],
+    reference: [Vec<f64>; 3],
+    start: [f64; 3],
+    levers: Vec<[Vec<f64>; 3]>,
+    turns: Vec<[Vec<f64>; 3]>,
+    /// Errors of the tip, with the terms of the calibration and of the model; and of the drives alone.
+    error: [Vec<f64>; 3],
+    motions: Vec<Option<Vec<f64>>>,
+    drive_motions: Vec<Option<Vec<f64>>>,
+}
+
+impl<'c> Frame<'c> {
+    /// The frame of a stretch of rows. `terms` and `drive_terms` come from the stretch before.
+    pub(crate) fn new(
+        study: &Study<'_>,
+        course: &'c Course,
+        rows: Range<usize>,
+        terms: &mut Terms<'_>,
+        drive_terms: &mut Terms<'_>,
+    ) -> Self {
+        let view = course.shown.rows(rows.clone());
+        let axes = 0..study.equations.axes.len();
+        let positions: Vec<&[f64]> = axes.clone().map(|axis| view.axis(axis).position).collect();
+        let programmed: Vec<&[f64]> =
+            course.programmed.iter().map(|position| &position[rows.clone()]).collect();
+        let travels: Vec<&[f64]> =
+            study.equations.travels.iter().map(|travel| positions[travel.axis]).collect();
+        let interpreter = &study.interpreter;
+        let levers = interpreter.lever_columns(&positions, &travels);
+        let motions = terms.motions(&view, levers.len(), false);
+        let drive_rows = course.drives.as_ref().unwrap_or(&course.shown).rows(rows.clone());
+        let drive_motions = drive_terms.motions(&drive_rows, levers.len(), true);
+        let first: Vec<f64> = course.programmed.iter().map(|position| first_known(position)).collect();
+        Self {
+            error: tip_error(&levers, &motions, rows.len()),
+            turns: interpreter.turn_columns(&positions, &travels),
+            nominal: interpreter.nominal_columns(&positions),
+            reference: interpreter.nominal_columns(&programmed),
+            start: interpreter.nominal(&first),
+            rows,
+            course,
+            levers,
+            motions,
+            drive_motions,
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The number of its first row.
+    pub(crate) fn first_row(&self) -> usize {
+        self.rows.start
+    }
+
+    /// Observed minus predicted, without the instrument's settings but for a ballbar's, which act exactly.
+    pub(crate) fn residual(&self, study: &Study<'_>, scene: usize, channel: &Channel, model: &Model) -> Vec<f64> {
+        let observed = &channel.values[self.rows.clone()];
+        let tip = |d: usize, row: usize| self.nominal[d][row] + self.error[d][row];
+        let moved = |d: usize, row: usize| tip(d, row) - self.reference[d][row];
+        let predicted: Vec<f64> = match channel.kind {
+            Kind::Tip(d) => (0..self.len()).map(|row| tip(d, row)).collect(),
+            Kind::Radius { center, radius } => {
+                let (center, radius) = ballbar(scene, model, center, radius);
+                let distance = |row: usize| length(self.spoke(center, row)) - radius;
+                (0..self.len()).map(distance).collect()
+            }
+            Kind::Along(n) => (0..self.len()).map(|row| dot(n, [0, 1, 2].map(|d| moved(d, row)))).collect(),
+            Kind::Normal => {
+                let normal = |row| self.normal(study, scene, row);
+                (0..self.len()).map(|row| dot(normal(row), [0, 1, 2].map(|d| moved(d, row)))).collect()
+            }
+            Kind::Turn(about) => self.turned(about),
+            Kind::Stage(axis) => {
+                let errors = self.turned(stage_direction(study, axis, &self.turns));
+                let position = self.course.shown.rows(self.rows.clone()).axis(axis).position;
+                position.iter().zip(errors).map(|(position, error)| position + error).collect()
+            }
+            Kind::Drive(axis) => self.drive(study, axis),
+        };
+        observed.iter().zip(predicted).map(|(observed, predicted)| observed - predicted).collect()
+    }
+
+    /// From the centre to the tip.
+    fn spoke(&self, center: [f64; 3], row: usize) -> [f64; 3] {
+        [0, 1, 2].map(|d| self.nominal[d][row] + self.error[d][row] - center[d])
+    }
+
+    fn normal(&self, study: &Study<'_>, scene: usize, row: usize) -> [f64; 3] {
+        let normals = study.scenes[scene].recording.normal.as_ref();
+        normals.map_or([f64::NAN; 3], |normals| [0, 1, 2].map(|d| normals[d][self.rows.start + row]))
+    }
+
+    fn turned(&self, about: [f64; 3]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.len()];
+        for (turns, motion) in self.turns.iter().zip(&self.motions) {
+            if let Some(motion) = motion {
+                for (row, (sum, motion)) in sum.iter_mut().zip(motion).enumerate() {
+                    *sum += dot(about, [turns[0][row], turns[1][row], turns[2][row]]) * motion;
+                }
+            }
+        }
+        sum
+    }
+
+    fn drive(&self, study: &Study<'_>, axis: usize) -> Vec<f64> {
+        let states = self.course.states(Kind::Drive(axis)).rows(self.rows.clone());
+        let position = states.axis(axis).position;
+        match study.own[axis].and_then(|own| self.drive_motions[own].as_ref()) {
+            Some(motion) => position.iter().zip(motion).map(|(position, motion)| position + motion).collect(),
+            None => position.to_vec(),
+        }
+    }
+
+    /// How a channel sees each error motion: `None` where it does not. `side` tells on which side effects come in.
+    pub(crate) fn gains(
+        &self,
+        study: &Study<'_>,
+        scene: usize,
+        channel: &Channel,
+        model: &Model,
+        side: Side,
+    ) -> Vec<Option<Vec<f64>>> {
+        let from = |value: &dyn Fn(usize, usize) -> f64| -> Vec<Option<Vec<f64>>> {
+            let column = |motion| (0..self.len()).map(|row| value(motion, row)).collect::<Vec<f64>>();
+            let seen = |column: Vec<f64>| column.iter().any(|gain| *gain != 0.0).then_some(column);
+            (0..self.levers.len()).map(|motion| seen(column(motion))).collect()
+        };
+        let lever = |motion: usize, row: usize| [0, 1, 2].map(|d| self.levers[motion][d][row]);
+        let turn = |motion: usize, row: usize| [0, 1, 2].map(|d| self.turns[motion][d][row]);
+        match channel.kind {
+            Kind::Tip(d) => from(&|motion, row| self.levers[motion][d][row]),
+            Kind::Radius { center, radius } => {
+                let directions = self.spokes(ballbar(scene, model, center, radius).0);
+                from(&|motion, row| dot(directions[row], lever(motion, row)))
+            }
+            Kind::Along(n) => from(&|motion, row| dot(n, lever(motion, row))),
+            Kind::Normal => from(&|motion, row| dot(self.normal(study, scene, row), lever(motion, row))),
+            Kind::Turn(about) => from(&|motion, row| dot(about, turn(motion, row))),
+            Kind::Stage(axis) => {
+                let about = stage_direction(study, axis, &self.turns);
+                from(&|motion, row| dot(about, turn(motion, row)))
+            }
+            Kind::Drive(axis) => {
+                let own = study.own[axis].filter(|_| side == Side::Drive);
+                from(&|motion, _| if Some(motion) == own { 1.0 } else { 0.0 })
+            }
+        }
+    }
+
+    /// Unit vectors from the centre to the tip.
+    fn spokes(&self, center: [f64; 3]) -> Vec<[f64; 3]> {
+        let unit = |row| {
+            let spoke = self.spoke(center, row);
+            let size = length(spoke);
+            spoke.map(|part| part / size)
+        };
+        (0..self.len()).map(unit).collect()
+    }
+
+    /// How a channel sees a setting of its instrument; `None` where it does not.
+    pub(crate) fn setting(
+        &self,
+        study: &Study<'_>,
+        scene: usize,
+        number: usize,
+        setting: Setting,
+        model: &Model,
+    ) -> Option<Vec<f64>> {
+        let channel = &study.scenes[scene].channels[number];
+        let radial = |value: &dyn Fn(usize) -> f64| match channel.kind {
+            Kind::Radius { .. } => Some((0..self.len()).map(value).collect()),
+            _ => None,
+        };
+        match setting {
+            Setting::Offset { channel } => (channel == number).then(|| vec![1.0; self.len()]),
+            Setting::RunOffset { channel, run } => (channel == number).then(|| {
+                let runs = &study.scenes[scene].recording.run[self.rows.clone()];
+                runs.iter().map(|known| if *known == run { 1.0 } else { 0.0 }).collect()
+            }),
+            Setting::Radius => radial(&|_| -1.0),
+            Setting::Eccentricity { direction } => {
+                let Kind::Radius { center, radius } = channel.kind else { return None };
+                let spokes = self.spokes(ballbar(scene, model, center, radius).0);
+                radial(&|row| -spokes[row][direction])
+            }
+            Setting::Cosine => {
+                let travelled = |d: usize, row: usize| self.nominal[d][row] - self.start[d];
+                let n = self.direction(channel.kind)?;
+                Some((0..self.len()).map(|row| -dot(n, [0, 1, 2].map(|d| travelled(d, row)))).collect())
+            }
+            Setting::Clock => self.clock(study, scene, channel, model),
+        }
+    }
+
+    fn direction(&self, kind: Kind) -> Option<[f64; 3]> {
+        match kind {
+            Kind::Tip(d) => Some([0, 1, 2].map(|other| if other == d { 1.0 } else { 0.0 })),
+            Kind::Along(n) => Some(n),
+            _ => None,
+        }
+    }
+
+    /// What a second of delay does to a channel: minus the velocity that it sees.
+    fn clock(&self, study: &Study<'_>, scene: usize, channel: &Channel, model: &Model) -> Option<Vec<f64>> {
+        if !channel.kind.outside() {
+            return None;
+        }
+        let gains = self.gains(study, scene, channel, model, Side::Drive);
+        let mut sum = vec![0.0; self.len()];
+        for (axis, own) in study.own.iter().enumerate() {
+            let velocity = &self.course.shown.axes[axis].velocity[self.rows.clone()];
+            if let Some(gain) = own.and_then(|own| gains[own].as_ref()) {
+                for ((sum, gain), velocity) in sum.iter_mut().zip(gain).zip(velocity) {
+                    *sum -= gain * velocity;
+                }
+            }
+        }
+        Some(sum)
+    }
+
+    /// What the instrument's settings in the model add to the reading of a channel, but for those that act exactly.
+    pub(crate) fn settings(&self, study: &Study<'_>, scene: usize, number: usize, model: &Model) -> Vec<f64> {
+        let mut sum = vec![0.0; self.len()];
+        for fitted in model {
+            let setting = fitted.effect.setting_of(scene);
+            if let (Some(setting @ (Setting::Offset { .. } | Setting::RunOffset { .. } | Setting::Cosine)), [coefficient]) =
+                (setting, fitted.coefficients.as_slice())
+                && let Some(column) = self.setting(study, scene, number, setting, model)
+            {
+                for (sum, value) in sum.iter_mut().zip(column) {
+                    *sum += coefficient * value;
+                }
+            }
+        }
+        sum
+    }
+}
+
+/// The true centre and radius of a ballbar under a model.
+fn ballbar(scene: usize, model: &Model, mut center: [f64; 3], mut radius: f64) -> ([f64; 3], f64) {
+    for fitted in model {
+        if let [coefficient] = fitted.coefficients.as_slice() {
+            match fitted.effect.setting_of(scene) {
+                Some(Setting::Eccentricity { direction }) => center[direction] += coefficient,
+                Some(Setting::Radius) => radius += coefficient,
+                _ => {}
+            }
+        }
+    }
+    (center, radius)
+}
+
+fn tip_error(levers: &[[Vec<f64>; 3]], motions: &[Option<Vec<f64>>], rows: usize) -> [Vec<f64>; 3] {
+    let mut error = [vec![0.0; rows], vec![0.0; rows], vec![0.0; rows]];
+    for (levers, motion) in levers.iter().zip(motions) {
+        let Some(motion) = motion else { continue };
+        for (error, lever) in error.iter_mut().zip(levers) {
+            for ((error, lever), motion) in error.iter_mut().zip(lever).zip(motion) {
+                *error += lever * motion;
+            }
+        }
+    }
+    error
+}
+
+/// The direction about which a rotary axis's own motion counts +1.
+fn stage_direction(study: &Study<'_>, axis: usize, turns: &[[Vec<f64>; 3]]) -> [f64; 3] {
+    let own = study.own[axis].and_then(|own| turns.get(own));
+    own.map_or([0.0; 3], |own| [0, 1, 2].map(|d| own[d].first().copied().unwrap_or_default()))
+}
+
+fn first_known(values: &[f64]) -> f64 {
+    values.iter().copied().find(|value| value.is_finite()).unwrap_or_default()
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn length(a: [f64; 3]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// The columns of one effect in a stretch of rows of one channel are its gain times its term; this is the effect's part.
+pub(crate) fn acts(effect: &Effect, scene: usize) -> bool {
+    match effect.place {
+        Place::Motion { .. } => true,
+        Place::Instrument { recording } => recording == scene,
+    }
+}

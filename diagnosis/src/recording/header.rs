@@ -1,0 +1,247 @@
+//! The recording file as a whole: its top-level keys.
+//!
+//! In: the tree of the file and the machine's equations. Out: a [`Header`], which knows what every column means and
+//! reads the data ([`Header::read_data`]); or findings E0601 to E0621.
+
+use model_dsl::diagnostic::{Diagnostic, Diagnostics};
+use model_dsl::equations::Equations;
+use model_dsl::fields::{self, Fields};
+use model_dsl::quantity;
+use model_dsl::source::Spanned;
+use model_dsl::yaml::Node;
+
+use super::Instrument;
+use super::channel::{Channel, read_channels, warn_shared_columns};
+use super::setup::{Kind, read_setup};
+use super::suited::check_suited;
+use super::words::{FORM, first_key, keys, near_or_all, word};
+
+const KEYS: [&str; 10] = [
+    "recording",
+    "title",
+    "machine",
+    "calibration",
+    "instrument",
+    "data",
+    "channels",
+    "setup",
+    "holdout",
+    "extra",
+];
+
+/// What a recording file says of its data.
+#[derive(Clone, Debug)]
+pub struct Header {
+    /// Its title.
+    pub title: Option<String>,
+    /// The machine as the file names it: a shipped machine's name, a path, or a topology word.
+    pub machine: Spanned<String>,
+    /// The calibration file that the file names, a path from its own folder.
+    pub calibration: Option<Spanned<String>>,
+    /// What measured, and how it was set up.
+    pub instrument: Instrument,
+    /// The direction of all readings of a probe, where the set-up gives it in place of channels: a unit vector.
+    pub normal: Option<[f64; 3]>,
+    /// The file of the data, a path from the recording's own folder.
+    pub data: Spanned<String>,
+    /// The columns and their meanings, in the file's order.
+    pub channels: Vec<Channel>,
+    /// The runs that are held out, in ascending order.
+    pub holdout: Option<Vec<i64>>,
+    /// Columns that are kept for people and not used.
+    pub extra: Vec<Extra>,
+    /// The letters of the machine's axes, in its order.
+    pub axes: Vec<String>,
+}
+
+/// A column that is kept for people.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Extra {
+    /// What the file calls it.
+    pub name: Spanned<String>,
+    /// The column's name in the data.
+    pub column: Spanned<String>,
+}
+
+/// Reads the name of the machine that was recorded, and nothing else.
+///
+/// Findings: E0601 there is none, E0602 this is another kind of file, E0604 it is not a name, or the file is no mapping.
+/// [`read_header`] does not repeat them.
+pub fn machine_of(root: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned<String>> {
+    if let Some(mistake) = another_kind(root) {
+        diagnostics.push(mistake);
+        return None;
+    }
+    if root.entries().is_none() {
+        let message = format!("a recording is a mapping of keys, found {}", root.kind_name());
+        let mistake = Diagnostic::error(FORM, root.span, message);
+        diagnostics.push(mistake.help("begin with `recording: 1` and `machine: ...`"));
+        return None;
+    }
+    let Some(node) = root.get("machine") else {
+        let mistake = Diagnostic::error("E0601", first_key(root), "a recording needs the key `machine`");
+        let help = "add `machine: ...`, the name of a machine, the path of its file, or a topology word";
+        diagnostics.push(mistake.help(help));
+        return None;
+    };
+    word(node, "`machine`", diagnostics)
+}
+
+/// The calibration file that a recording names; what is wrong with it is told by [`read_header`].
+pub fn calibration_of(root: &Node) -> Option<Spanned<String>> {
+    word(root.get("calibration")?, "", &mut Diagnostics::new())
+}
+
+fn another_kind(root: &Node) -> Option<Diagnostic> {
+    if root.get("recording").is_some() {
+        return None;
+    }
+    let kinds = [("abbe", "a machine file"), ("calibration", "a calibration file"), ("path", "a path file")];
+    // A recording names its calibration too, by a word; the version of a calibration file is a number.
+    let is = |key: &str| {
+        root.get(key).and_then(Node::text).is_some_and(|text| text.bytes().all(|byte| byte.is_ascii_digit()))
+    };
+    let (_, name) = kinds.iter().find(|(key, _)| is(key))?;
+    let message = format!("this is {name}, not a recording file");
+    let mistake = Diagnostic::error("E0602", first_key(root), message);
+    Some(mistake.help("a recording file begins with `recording: 1`, and names its machine and its data"))
+}
+
+/// Reads everything that the recording file says, for a machine whose equations are known.
+///
+/// Every finding is reported: the codes are listed in [`super`]. Nothing is returned where one is an error.
+pub fn read_header(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -> Option<Header> {
+    root.entries()?;
+    let mut own = Diagnostics::new();
+    let header = read_all(root, equations, &mut own);
+    let failed = own.has_errors();
+    diagnostics.extend(own);
+    if failed { None } else { header }
+}
+
+fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -> Option<Header> {
+    let wording = keys("a recording");
+    let fields = Fields::open(root, first_key(root), wording, &KEYS, diagnostics)?;
+    if let Some(version) = fields.need("recording", wording, diagnostics) {
+        check_version(version, diagnostics);
+    }
+    let title = fields.get("title").and_then(|node| word(node, "`title`", diagnostics));
+    let calibration = fields.get("calibration").and_then(|node| word(node, "`calibration`", diagnostics));
+    let data = fields.need("data", wording, diagnostics).and_then(|node| word(node, "`data`", diagnostics));
+    let instrument = fields.need("instrument", wording, diagnostics);
+    let instrument = instrument.and_then(|node| read_instrument(node, diagnostics));
+    let channels = fields.need("channels", wording, diagnostics);
+    let channels = channels.map(|node| {
+        let angular = instrument.is_some_and(|kind| kind.value == Kind::Angular);
+        read_channels(node, fields.key_span("channels"), angular, equations, diagnostics)
+    });
+    let setup = match (instrument, &channels) {
+        (Some(kind), Some(channels)) => {
+            check_suited(kind, fields.key_span("channels"), channels, diagnostics);
+            read_setup(&fields, kind, equations, channels, diagnostics)
+        }
+        _ => None,
+    };
+    let channels = channels?;
+    warn_shared_columns(&channels.known, diagnostics);
+    let holdout = fields
+        .entry("holdout")
+        .and_then(|(_, node)| read_holdout(node, &fields, &channels.names, diagnostics));
+    let extra = fields.get("extra").map(|node| read_extra(node, diagnostics));
+    let machine = word(root.get("machine")?, "`machine`", &mut Diagnostics::new())?;
+    let setup = setup?;
+    Some(Header {
+        title: title.map(|title| title.value),
+        machine,
+        calibration,
+        instrument: setup.instrument,
+        normal: setup.normal,
+        data: data?,
+        channels: channels.known,
+        holdout,
+        extra: extra.unwrap_or_default(),
+        axes: equations.axes.iter().map(|axis| axis.letter.clone()).collect(),
+    })
+}
+
+fn check_version(node: &Node, diagnostics: &mut Diagnostics) {
+    if node.text() == Some("1") {
+        return;
+    }
+    let message = match node.text() {
+        Some(text) => format!("recordings of version `{text}` are not read"),
+        None => format!("`recording` is the version of the format, found {}", node.kind_name()),
+    };
+    diagnostics.push(Diagnostic::error("E0602", node.span, message).help("write `recording: 1`"));
+}
+
+fn read_instrument(node: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned<Kind>> {
+    let written = word(node, "`instrument`", diagnostics)?;
+    let found = Kind::ALL.into_iter().find(|kind| kind.name() == written.value);
+    if found.is_none() {
+        let message = format!("`{}` is not an instrument that is known", written.value);
+        let mistake = Diagnostic::error("E0605", written.span, message);
+        let names = Kind::ALL.map(Kind::name);
+        diagnostics.push(near_or_all(mistake, &written.value, "instruments are", &names));
+    }
+    found.map(|kind| Spanned::new(kind, written.span))
+}
+
+fn read_holdout(
+    node: &Node,
+    recording: &Fields<'_>,
+    channels: &[String],
+    diagnostics: &mut Diagnostics,
+) -> Option<Vec<i64>> {
+    let wording = keys("`holdout`");
+    let name = recording.key_span("holdout");
+    let fields = Fields::open(node, name, wording, &["runs"], diagnostics)?;
+    let runs = fields.need("runs", wording, diagnostics)?;
+    let items = fields::list(runs, "`runs`", FORM, diagnostics)?;
+    if !channels.iter().any(|name| name == "run") {
+        let message = "runs are held out, and no channel tells which row belongs to which run";
+        let mistake = Diagnostic::error("E0619", fields.key_span("runs"), message);
+        let help = "add `run: {column: ...}` to `channels`, or leave `holdout` out: then whole blocks of time are held out";
+        diagnostics.push(mistake.help(help));
+    }
+    if items.is_empty() {
+        let mistake = Diagnostic::error("E0620", runs.span, "`runs` names no run");
+        diagnostics.push(mistake.help("write `runs: [3]`, or leave `holdout` out"));
+        return None;
+    }
+    let mut numbers: Vec<i64> = items.iter().filter_map(|item| read_run(item, diagnostics)).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    Some(numbers)
+}
+
+fn read_run(node: &Node, diagnostics: &mut Diagnostics) -> Option<i64> {
+    let number = node.text().and_then(|text| text.trim().parse().ok());
+    if number.is_none() {
+        let found = node.text().map_or_else(|| node.kind_name().to_owned(), |text| format!("`{text}`"));
+        let message = format!("a run is a whole number, found {found}");
+        diagnostics.push(Diagnostic::error("E0620", node.span, message).help("write `runs: [3]`"));
+    }
+    number
+}
+
+fn read_extra(node: &Node, diagnostics: &mut Diagnostics) -> Vec<Extra> {
+    let Some(entries) = node.entries() else {
+        let message = format!("`extra` is a mapping of names to columns, found {}", node.kind_name());
+        let mistake = Diagnostic::error(FORM, node.span, message);
+        diagnostics.push(mistake.help("write `counter.x: {column: c, unit: mm}`, a line each"));
+        return Vec::new();
+    };
+    let extra = entries.iter().filter_map(|(name, node)| {
+        let what = format!("`{}` of `extra`", name.value);
+        let wording = keys(&what);
+        let fields = Fields::open(node, name.span, wording, &["column", "unit"], diagnostics)?;
+        if let Some(unit) = fields.get("unit") {
+            quantity::read_unit(unit, &format!("the unit of {what}"), diagnostics);
+        }
+        let column = fields.need("column", wording, diagnostics)?;
+        let column = word(column, &format!("`column` of {what}"), diagnostics)?;
+        Some(Extra { name: name.clone(), column })
+    });
+    extra.collect()
+}

@@ -1,0 +1,34 @@
+//! The report: a diagnosis in words.
+//!
+//! In: a [`Diagnosis`]. Out: the object `abbe-diagnosis/1` for programs ([`json`]), text for a terminal ([`text()`]), and a
+//! page for a browser ([`html`]). Text and page say the same: both write the sections that `sheet` puts together. Nothing
+//! is decided here; what was found stands in the diagnosis.
+//!
+//! ```text
+//! diagnosis -> json
+//!          '-> sheet (verdict, findings, instruments, what remains, data) -> text, html
+//! ```
+
+mod data;
+mod figure;
+mod finding;
+mod html;
+mod instrument;
+mod json;
+mod parameter;
+mod physics;
+mod remains;
+mod sheet;
+mod text;
+mod verdict;
+
+pub use html::html;
+pub use json::json;
+pub use text::text;
+
+use crate::diagnosis::Diagnosis;
+
+/// The verdict in one line of plain words, without the end of the sentence.
+pub fn verdict(diagnosis: &Diagnosis) -> String {
+    verdict::sentence(diagnosis)
+}

@@ -1,0 +1,317 @@
+//! The object `abbe-diagnosis/1`. In: a diagnosis. Out: JSON with the keys of the contract, and some beside them. A number
+//! that is not finite is `null`.
+
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+use super::figure::change;
+use crate::diagnosis::{
+    Alternative, Diagnosis, Estimate, Evidence, Finding, Interval, IntervalOf, NoiseSummary, Parameter,
+    ParameterValue, Repeatability, Residual, SettingFinding, Summary, Unexplained,
+};
+
+/// A list of everything names nothing: so many other names at most.
+const ALTERNATIVES: usize = 4;
+
+/// The diagnosis as one JSON object with the schema `abbe-diagnosis/1`.
+pub fn json(diagnosis: &Diagnosis) -> String {
+    // Every value is a number, a text, a list or a map with text as keys: writing them cannot fail.
+    let mut text = serde_json::to_string_pretty(&report(diagnosis)).unwrap_or_default();
+    text.push('\n');
+    text
+}
+
+#[derive(Serialize)]
+struct ReportJson<'d> {
+    schema: &'static str,
+    machine: &'d str,
+    verdict: &'static str,
+    noise: NoiseJson,
+    before: ResidualJson,
+    after: ResidualJson,
+    findings: Vec<FindingJson<'d>>,
+    instrument: Vec<SettingJson<'d>>,
+    unexplained: Option<UnexplainedJson<'d>>,
+    repeatability: Option<RepeatabilityJson<'d>>,
+    undecided: &'d [String],
+    recordings: Vec<RecordingJson<'d>>,
+}
+
+#[derive(Serialize)]
+struct NoiseJson {
+    value: f64,
+    unit: &'static str,
+    white: f64,
+    wander: f64,
+    /// s
+    time_constant: f64,
+}
+
+#[derive(Serialize)]
+struct ResidualJson {
+    rms: f64,
+    holdout_rms: Option<f64>,
+    unit: &'static str,
+}
+
+#[derive(Serialize)]
+struct FindingJson<'d> {
+    motion: &'d str,
+    meaning: &'d str,
+    term: &'static str,
+    parameters: Parameters<'d>,
+    share: f64,
+    r#where: WhereJson<'d>,
+    evidence: String,
+    evidence_rms: EvidenceJson,
+    explanation: &'d str,
+    compensable: bool,
+    indistinguishable_from: Vec<AlternativeJson<'d>>,
+}
+
+#[derive(Serialize)]
+struct WhereJson<'d> {
+    link: Option<&'d str>,
+    side: &'static str,
+    state: &'static str,
+    detail: &'d str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    interval: Option<IntervalJson<'d>>,
+}
+
+#[derive(Clone, Copy, Serialize)]
+struct IntervalJson<'d> {
+    /// The axis's letter, `time` or `frequency`.
+    axis: &'d str,
+    from: f64,
+    to: f64,
+    unit: &'static str,
+}
+
+#[derive(Serialize)]
+struct EvidenceJson {
+    with: f64,
+    without: f64,
+    unit: &'static str,
+}
+
+#[derive(Serialize)]
+struct AlternativeJson<'d> {
+    motion: &'d str,
+    term: &'static str,
+    separate_by: &'d str,
+}
+
+#[derive(Serialize)]
+struct SettingJson<'d> {
+    term: &'static str,
+    parameters: Parameters<'d>,
+    recording: Option<&'d str>,
+    indistinguishable_from: Vec<AlternativeJson<'d>>,
+}
+
+#[derive(Serialize)]
+struct UnexplainedJson<'d> {
+    link: Option<&'d str>,
+    direction: &'d str,
+    state: &'static str,
+    interval: Option<IntervalJson<'d>>,
+    /// The same in the form of a finding's.
+    r#where: WhereJson<'d>,
+    rms: f64,
+    unit: &'static str,
+    detail: &'d str,
+    table_of: Option<&'d str>,
+}
+
+#[derive(Serialize)]
+struct RepeatabilityJson<'d> {
+    between_runs: f64,
+    expected: f64,
+    unit: &'static str,
+    detail: &'d str,
+}
+
+#[derive(Serialize)]
+struct RecordingJson<'d> {
+    file: &'d str,
+    title: Option<&'d str>,
+    instrument: &'static str,
+    rows: usize,
+    runs: usize,
+    samples: usize,
+    missing: usize,
+    outliers: usize,
+    held_out: &'d str,
+}
+
+/// The parameters of a term: an object with a key each, in their order.
+struct Parameters<'d>(&'d [Parameter]);
+
+impl Serialize for Parameters<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for parameter in self.0 {
+            map.serialize_entry(parameter.name, &Value::from(&parameter.value))?;
+        }
+        map.end()
+    }
+}
+
+/// The value of a parameter.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Value<'d> {
+    Name(&'d str),
+    Given { value: f64, unit: &'d str },
+    Fitted(EstimateJson<'d>),
+    List(Vec<EstimateJson<'d>>),
+}
+
+#[derive(Serialize)]
+struct EstimateJson<'d> {
+    value: f64,
+    ci95: [f64; 2],
+    unit: &'d str,
+}
+
+impl<'d> From<&'d ParameterValue> for Value<'d> {
+    fn from(value: &'d ParameterValue) -> Self {
+        match value {
+            ParameterValue::Name(name) => Self::Name(name),
+            ParameterValue::Given(value, unit) => Self::Given { value: *value, unit },
+            ParameterValue::Fitted(fitted) => Self::Fitted(estimate(fitted)),
+            ParameterValue::List(list) => Self::List(list.iter().map(estimate).collect()),
+        }
+    }
+}
+
+fn estimate(estimate: &Estimate) -> EstimateJson<'_> {
+    let (one, other) = estimate.ci95;
+    EstimateJson { value: estimate.value, ci95: [one.min(other), one.max(other)], unit: &estimate.unit }
+}
+
+fn report(diagnosis: &Diagnosis) -> ReportJson<'_> {
+    ReportJson {
+        schema: "abbe-diagnosis/1",
+        machine: &diagnosis.machine,
+        verdict: diagnosis.verdict.word(),
+        noise: noise(&diagnosis.noise),
+        before: residual(&diagnosis.before),
+        after: residual(&diagnosis.after),
+        findings: diagnosis.findings.iter().map(finding).collect(),
+        instrument: diagnosis.settings.iter().map(|one| setting(one, diagnosis)).collect(),
+        unexplained: diagnosis.unexplained.as_ref().map(unexplained),
+        repeatability: diagnosis.repeatability.as_ref().map(repeatability),
+        undecided: &diagnosis.undecided,
+        recordings: diagnosis.recordings.iter().map(recording).collect(),
+    }
+}
+
+fn noise(noise: &NoiseSummary) -> NoiseJson {
+    let &NoiseSummary { value, unit, white, wander, time_constant } = noise;
+    NoiseJson { value, unit, white, wander, time_constant }
+}
+
+fn residual(residual: &Residual) -> ResidualJson {
+    let &Residual { rms, holdout_rms, unit } = residual;
+    ResidualJson { rms, holdout_rms, unit }
+}
+
+fn finding(finding: &Finding) -> FindingJson<'_> {
+    let location = &finding.location;
+    let &Evidence { with, without, unit } = &finding.evidence;
+    FindingJson {
+        motion: &finding.motion,
+        meaning: &finding.motion_meaning,
+        term: finding.term,
+        parameters: Parameters(&finding.parameters),
+        share: finding.share,
+        r#where: WhereJson {
+            link: Some(&location.link),
+            side: location.side,
+            state: location.state,
+            detail: &location.detail,
+            interval: location.interval.as_ref().map(interval),
+        },
+        evidence: evidence(&finding.evidence),
+        evidence_rms: EvidenceJson { with, without, unit },
+        explanation: &finding.explanation,
+        compensable: finding.compensable,
+        indistinguishable_from: alternatives(&finding.alternatives),
+    }
+}
+
+/// What the finding does to the held-out data, as a sentence without its end.
+fn evidence(evidence: &Evidence) -> String {
+    match change(evidence.with, evidence.without, evidence.unit) {
+        Some((with, without)) => format!("removing it raises the held-out rms from {with} to {without}"),
+        None => "no data could be held out".to_owned(),
+    }
+}
+
+fn interval(interval: &Interval) -> IntervalJson<'_> {
+    let axis = match &interval.of {
+        IntervalOf::Axis(letter) => letter,
+        IntervalOf::Time => "time",
+        IntervalOf::Frequency => "frequency",
+    };
+    IntervalJson { axis, from: interval.from, to: interval.to, unit: interval.unit }
+}
+
+fn alternatives(alternatives: &[Alternative]) -> Vec<AlternativeJson<'_>> {
+    let first = alternatives.iter().take(ALTERNATIVES);
+    first
+        .map(|Alternative { motion, term, separate_by }| AlternativeJson { motion, term, separate_by })
+        .collect()
+}
+
+fn setting<'d>(setting: &'d SettingFinding, diagnosis: &'d Diagnosis) -> SettingJson<'d> {
+    SettingJson {
+        term: setting.term,
+        parameters: Parameters(&setting.parameters),
+        recording: diagnosis.recordings.get(setting.recording).map(|recording| recording.file.as_str()),
+        indistinguishable_from: alternatives(&setting.alternatives),
+    }
+}
+
+fn unexplained(unexplained: &Unexplained) -> UnexplainedJson<'_> {
+    let link = unexplained.link.as_deref();
+    let interval = unexplained.interval.as_ref().map(interval);
+    UnexplainedJson {
+        link,
+        direction: &unexplained.direction,
+        state: unexplained.state,
+        interval,
+        r#where: WhereJson {
+            link,
+            side: "unknown",
+            state: unexplained.state,
+            detail: &unexplained.detail,
+            interval,
+        },
+        rms: unexplained.rms,
+        unit: unexplained.unit,
+        detail: &unexplained.detail,
+        table_of: unexplained.table_of.as_deref(),
+    }
+}
+
+fn repeatability(repeatability: &Repeatability) -> RepeatabilityJson<'_> {
+    let Repeatability { between_runs, expected, unit, detail } = repeatability;
+    RepeatabilityJson { between_runs: *between_runs, expected: *expected, unit, detail }
+}
+
+fn recording(summary: &Summary) -> RecordingJson<'_> {
+    RecordingJson {
+        file: &summary.file,
+        title: summary.title.as_deref(),
+        instrument: summary.instrument,
+        rows: summary.rows,
+        runs: summary.runs,
+        samples: summary.samples,
+        missing: summary.missing,
+        outliers: summary.outliers,
+        held_out: &summary.held_out,
+    }
+}

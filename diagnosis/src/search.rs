@@ -1,0 +1,271 @@
+//! Selection: which of the candidates explain the residual.
+//!
+//! In: a design. Out: the set of effects with the lowest cost: n ln(sum of squares) plus, for each effect, its parameters
+//! times ln n, twice the logarithm of how many candidates of its kind were tried, and a little for complicated names. Several
+//! sets are carried along at once, effects chosen early are dropped when others make them needless, and at the end each
+//! is tried against every other, so that a first wrong guess does not stay.
+
+use nalgebra::DMatrix;
+
+use crate::candidates::simplicity;
+use crate::design::Design;
+use crate::model::Effect;
+use crate::study::Study;
+use crate::sweep::Swept;
+use crate::terms::{Setting, Shape};
+
+/// How many sets are carried along.
+const BEAM: usize = 8;
+/// How many effects each set is tried with at each step.
+const BRANCHES: usize = 6;
+/// The most effects in a set.
+const MOST: usize = 10;
+/// A set may cost so much more than the best and still be carried along: two effects may only make sense together.
+const PATIENCE: f64 = 12.0;
+
+/// What an effect must take from the cost to be chosen: each parameter what it could gain by chance in so many samples,
+/// and what the best of so many tries would gain by chance; and a little for a complicated name.
+pub(crate) fn price(study: &Study<'_>, effect: &Effect, samples: f64, tries: f64, waves: f64) -> f64 {
+    let parameters = effect.shape.columns() + usize::from(effect.shape.nonlinear().is_some());
+    let waves = match effect.shape {
+        Shape::Cyclic { .. } | Shape::Vibration { .. } => waves.max(1.0).ln(),
+        _ => 0.0,
+    };
+    crate::number(parameters) * samples.max(2.0).ln() + 2.0 * (tries.ln() + waves) + simplicity(study, effect)
+}
+
+/// What selection works on.
+pub(crate) struct Choice<'d> {
+    design: &'d Design,
+    /// Columns of settings that are always fitted.
+    always: Vec<usize>,
+    /// Regressors that may be chosen.
+    open: Vec<usize>,
+    prices: Vec<f64>,
+    samples: f64,
+    products: DMatrix<f64>,
+}
+
+/// A set of effects on the way.
+#[derive(Clone)]
+struct Set {
+    chosen: Vec<usize>,
+    swept: Swept,
+    cost: f64,
+}
+
+impl<'d> Choice<'d> {
+    /// Prepares the choice. The first `always` regressors are fitted whatever else is; `waves` tells how many independent
+    /// waves were looked at.
+    pub(crate) fn new(
+        study: &Study<'_>,
+        design: &'d Design,
+        products: DMatrix<f64>,
+        samples: f64,
+        always: usize,
+        waves: f64,
+    ) -> Self {
+        let open: Vec<usize> = (always..design.regressors.len()).collect();
+        let fixed = design.first.get(always).copied().unwrap_or(design.width);
+        let tries = crate::number(open.len().max(2));
+        let price = |effect: &Effect| price(study, effect, samples, tries, waves);
+        let prices = design.regressors.iter().map(|regressor| price(&regressor.effect)).collect();
+        Self { design, always: (0..fixed).collect(), open, prices, samples, products }
+    }
+
+    /// The best set found, by numbers of regressors.
+    pub(crate) fn best(&self) -> Vec<usize> {
+        let mut beam = vec![self.empty()];
+        let mut best = beam[0].clone();
+        for _ in 0..MOST {
+            let grown = self.grow(&beam);
+            let Some(lowest) = grown.first() else { break };
+            if lowest.cost < best.cost {
+                best = lowest.clone();
+            }
+            beam = grown.into_iter().filter(|set| set.cost < best.cost + PATIENCE).collect();
+            if beam.is_empty() {
+                break;
+            }
+        }
+        let mut chosen = self.exchanged(best).chosen;
+        chosen.sort_unstable();
+        chosen
+    }
+
+    fn empty(&self) -> Set {
+        let mut swept = Swept::new(&self.products);
+        for column in &self.always {
+            swept.take(*column);
+        }
+        let cost = self.misfit(swept.remaining());
+        Set { chosen: Vec::new(), swept, cost }
+    }
+
+    fn misfit(&self, remaining: f64) -> f64 {
+        self.samples * (remaining.max(f64::MIN_POSITIVE) / self.samples.max(1.0)).ln()
+    }
+
+    /// Sets with one more effect, cheapest first.
+    fn grow(&self, beam: &[Set]) -> Vec<Set> {
+        let mut next: Vec<(f64, usize, usize)> = Vec::new();
+        for (number, set) in beam.iter().enumerate() {
+            next.extend(self.branches(set).into_iter().map(|(cost, regressor)| (cost, number, regressor)));
+        }
+        next.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut grown: Vec<Set> = Vec::new();
+        for (_, number, regressor) in next {
+            if grown.len() == BEAM {
+                break;
+            }
+            let set = self.pruned(self.with(&beam[number], regressor));
+            let known = |other: &Set| same(&other.chosen, &set.chosen);
+            if !grown.iter().any(known) && !beam.iter().any(known) {
+                grown.push(set);
+            }
+        }
+        grown.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        grown
+    }
+
+    /// The most promising effects to add to a set, no two of them alike.
+    fn branches(&self, set: &Set) -> Vec<(f64, usize)> {
+        let mut costs: Vec<(f64, usize)> = self
+            .open
+            .iter()
+            .filter(|regressor| self.fits(set, **regressor))
+            .map(|regressor| (self.cost_with(set, *regressor), *regressor))
+            .filter(|(cost, _)| *cost < set.cost + PATIENCE)
+            .collect();
+        costs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut different: Vec<(f64, usize)> = Vec::new();
+        for (cost, regressor) in costs {
+            if different.len() == BRANCHES {
+                break;
+            }
+            if !different.iter().any(|(_, known)| self.alike(set, *known, regressor)) {
+                different.push((cost, regressor));
+            }
+        }
+        different
+    }
+
+    /// Whether two effects of one column each would do nearly the same beside a set.
+    fn alike(&self, set: &Set, a: usize, b: usize) -> bool {
+        let (a, b) = (self.design.columns(a), self.design.columns(b));
+        a.len() == 1 && b.len() == 1 && set.swept.likeness(a.start, b.start).abs() > 0.9995
+    }
+
+    /// Whether an effect may stand beside those of a set: it is not there yet in another form, and has the right sign.
+    fn fits(&self, set: &Set, regressor: usize) -> bool {
+        let effect = &self.design.regressors[regressor].effect;
+        if set.chosen.iter().any(|chosen| rivals(&self.design.regressors[*chosen].effect, effect)) {
+            return false;
+        }
+        !positive(&effect.shape) || set.swept.sign(self.design.first[regressor]) > 0.0
+    }
+
+    fn cost_with(&self, set: &Set, regressor: usize) -> f64 {
+        let columns: Vec<usize> = self.design.columns(regressor).collect();
+        let (gain, rank) = set.swept.promise(&columns);
+        let price = self.prices[regressor] - self.missing(regressor, rank);
+        self.misfit(set.swept.remaining() - gain) + self.price(set) + price
+    }
+
+    /// What the price counts for columns that others hold already.
+    fn missing(&self, regressor: usize, rank: usize) -> f64 {
+        let columns = self.design.regressors[regressor].effect.shape.columns();
+        crate::number(columns - rank.min(columns)) * self.samples.max(2.0).ln()
+    }
+
+    fn price(&self, set: &Set) -> f64 {
+        set.cost - self.misfit(set.swept.remaining())
+    }
+
+    fn with(&self, set: &Set, regressor: usize) -> Set {
+        let price = self.price(set);
+        let mut swept = set.swept.clone();
+        let rank = self.design.columns(regressor).filter(|column| swept.take(*column)).count();
+        let mut chosen = set.chosen.clone();
+        chosen.push(regressor);
+        let cost = self.misfit(swept.remaining()) + price + self.prices[regressor] - self.missing(regressor, rank);
+        Set { chosen, swept, cost }
+    }
+
+    fn without(&self, set: &Set, regressor: usize) -> Set {
+        let price = self.price(set);
+        let mut swept = set.swept.clone();
+        let mut rank = 0;
+        for column in self.design.columns(regressor) {
+            rank += usize::from(swept.has(column));
+            swept.drop(column);
+        }
+        let chosen = set.chosen.iter().copied().filter(|known| *known != regressor).collect();
+        let cost = self.misfit(swept.remaining()) + price - self.prices[regressor] + self.missing(regressor, rank);
+        Set { chosen, swept, cost }
+    }
+
+    /// Drops what has become needless, or whose sign has become impossible.
+    fn pruned(&self, mut set: Set) -> Set {
+        loop {
+            let wrong = set.chosen.iter().copied().find(|regressor| self.impossible(&set, *regressor));
+            let cheaper = wrong.map(|regressor| self.without(&set, regressor)).or_else(|| {
+                let shorter = set.chosen.iter().map(|regressor| self.without(&set, *regressor));
+                shorter.min_by(|a, b| a.cost.total_cmp(&b.cost)).filter(|shorter| shorter.cost < set.cost)
+            });
+            match cheaper {
+                Some(cheaper) => set = cheaper,
+                None => return set,
+            }
+        }
+    }
+
+    fn impossible(&self, set: &Set, regressor: usize) -> bool {
+        let effect = &self.design.regressors[regressor].effect;
+        positive(&effect.shape) && set.swept.coefficient(self.design.first[regressor]) <= 0.0
+    }
+
+    /// Tries every other effect in the place of each, until nothing becomes cheaper.
+    fn exchanged(&self, mut set: Set) -> Set {
+        for _ in 0..MOST {
+            let exchanges = set.chosen.clone().into_iter().filter_map(|regressor| {
+                let shorter = self.without(&set, regressor);
+                let other = self.branches(&shorter).into_iter().next()?;
+                Some(self.pruned(self.with(&shorter, other.1)))
+            });
+            let best = exchanges.min_by(|a, b| a.cost.total_cmp(&b.cost));
+            match best.filter(|best| best.cost < set.cost - 1e-6) {
+                Some(best) => set = best,
+                None => return set,
+            }
+        }
+        set
+    }
+}
+
+fn same(a: &[usize], b: &[usize]) -> bool {
+    a.len() == b.len() && a.iter().all(|member| b.contains(member))
+}
+
+/// Whether two effects are the same piece of physics in different forms, of which only one can be right.
+pub(crate) fn rivals(a: &Effect, b: &Effect) -> bool {
+    if a.place != b.place || a.shape.name() != b.shape.name() {
+        return false;
+    }
+    match (&a.shape, &b.shape) {
+        // Several waves may run along one axis.
+        (Shape::Cyclic { period: a, .. }, Shape::Cyclic { period: b, .. }) => (a / b - 1.0).abs() < 0.02,
+        (Shape::Vibration { frequency: a }, Shape::Vibration { frequency: b }) => (a / b - 1.0).abs() < 0.001,
+        (Shape::Coupling { axis: a, .. }, Shape::Coupling { axis: b, .. }) => a == b,
+        (Shape::Expansion { sensor: a, .. }, Shape::Expansion { sensor: b, .. })
+        | (Shape::Growth { sensor: a, .. }, Shape::Growth { sensor: b, .. }) => a == b,
+        (Shape::Compliance { load: a }, Shape::Compliance { load: b }) => a == b,
+        (Shape::Instrument(a), Shape::Instrument(b)) => a == b,
+        _ => true,
+    }
+}
+
+/// Whether a coefficient below zero would mean nothing.
+fn positive(shape: &Shape) -> bool {
+    matches!(shape, Shape::Lag { .. } | Shape::Acceleration { .. } | Shape::Instrument(Setting::Cosine))
+}

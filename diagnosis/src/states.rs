@@ -1,0 +1,249 @@
+//! States: what the machine did in each row of a recording, as far as terms depend on it.
+//!
+//! In: a recording, the time constants of the position loops that are known so far, and the offset of the instrument's
+//! clock. Out: for each axis position, velocity, acceleration, direction and time since the last reversal, behind the loop
+//! where the axis has one; and views of stretches of rows.
+
+use std::ops::Range;
+
+use crate::recording::{AxisChannels, Recording};
+
+/// The states of all rows of one recording.
+#[derive(Clone, Debug)]
+pub(crate) struct States {
+    pub(crate) time: Vec<f64>,
+    pub(crate) axes: Vec<AxisStates>,
+    /// By the sensors of the study; NaN where this recording lacks one.
+    pub(crate) temperatures: Vec<Vec<f64>>,
+    pub(crate) loads: Vec<Vec<f64>>,
+}
+
+/// The states of one axis, one entry a row: mm or rad, and s.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct AxisStates {
+    pub(crate) position: Vec<f64>,
+    pub(crate) velocity: Vec<f64>,
+    pub(crate) acceleration: Vec<f64>,
+    /// +1 or -1: that of the last real motion; +1 before the first.
+    pub(crate) direction: Vec<f64>,
+    /// Infinite before the first reversal.
+    pub(crate) since_reversal: Vec<f64>,
+    /// How the position changes with the time constant of the loop.
+    pub(crate) lag_slope: Vec<f64>,
+    /// Whether the axis moves at all.
+    pub(crate) moves: bool,
+}
+
+/// The states in a stretch of rows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rows<'s> {
+    states: &'s States,
+    first: usize,
+    end: usize,
+    pub(crate) time: &'s [f64],
+}
+
+/// The states of one axis in a stretch of rows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AxisRows<'s> {
+    pub(crate) position: &'s [f64],
+    pub(crate) acceleration: &'s [f64],
+    pub(crate) direction: &'s [f64],
+    pub(crate) since_reversal: &'s [f64],
+    pub(crate) lag_slope: &'s [f64],
+}
+
+impl<'s> Rows<'s> {
+    /// How many rows there are.
+    pub(crate) fn len(&self) -> usize {
+        self.end - self.first
+    }
+
+    /// An axis by number.
+    pub(crate) fn axis(&self, number: usize) -> AxisRows<'s> {
+        let axis = &self.states.axes[number];
+        let rows = self.first..self.end;
+        AxisRows {
+            position: &axis.position[rows.clone()],
+            acceleration: &axis.acceleration[rows.clone()],
+            direction: &axis.direction[rows.clone()],
+            since_reversal: &axis.since_reversal[rows.clone()],
+            lag_slope: &axis.lag_slope[rows],
+        }
+    }
+
+    /// A sensor by number, degC.
+    pub(crate) fn temperature(&self, number: usize) -> &'s [f64] {
+        &self.states.temperatures[number][self.first..self.end]
+    }
+
+    /// A load by number.
+    pub(crate) fn load(&self, number: usize) -> &'s [f64] {
+        &self.states.loads[number][self.first..self.end]
+    }
+}
+
+impl States {
+    /// The states of a recording whose temperatures and loads are given by the numbers of the study.
+    pub(crate) fn new(
+        recording: &Recording,
+        temperatures: Vec<Vec<f64>>,
+        loads: Vec<Vec<f64>>,
+        lags: &[f64],
+        clock: f64,
+    ) -> Self {
+        let time = recording.time.clone();
+        let axes = recording.axes.iter().zip(lags);
+        let axes = axes.map(|(axis, lag)| axis_states(&time, axis, *lag, clock)).collect();
+        Self { time, axes, temperatures, loads }
+    }
+
+    /// The states in a stretch of rows.
+    pub(crate) fn rows(&self, rows: Range<usize>) -> Rows<'_> {
+        Rows { states: self, first: rows.start, end: rows.end, time: &self.time[rows] }
+    }
+}
+
+/// The position that stands for an axis: programmed, or the drive's where nothing was programmed; 0 where neither is known.
+pub(crate) fn nominal_position(axis: &AxisChannels, rows: usize) -> Vec<f64> {
+    axis.command.as_ref().or(axis.actual.as_ref()).or(axis.measured.as_ref()).cloned().unwrap_or(vec![0.0; rows])
+}
+
+fn axis_states(time: &[f64], axis: &AxisChannels, lag: f64, clock: f64) -> AxisStates {
+    let command = shifted(time, nominal_position(axis, time.len()), clock);
+    let resolution = resolution(axis, &command);
+    if lag > 0.0 {
+        behind_loop(time, &command, lag, resolution)
+    } else {
+        as_commanded(time, command, resolution)
+    }
+}
+
+/// The position that the axis had `clock` earlier, between rows by straight lines.
+fn shifted(time: &[f64], position: Vec<f64>, clock: f64) -> Vec<f64> {
+    if clock == 0.0 {
+        return position;
+    }
+    let mut from = 0;
+    let at = |row: usize| (time[row], position[row]);
+    (0..time.len())
+        .map(|row| {
+            let wanted = time[row] - clock;
+            while from + 1 < time.len() && time[from + 1] <= wanted {
+                from += 1;
+            }
+            while from > 0 && time[from] > wanted {
+                from -= 1;
+            }
+            let (start, low) = at(from);
+            if from + 1 == time.len() || wanted <= start {
+                return low;
+            }
+            let (end, high) = at(from + 1);
+            low + (high - low) * (wanted - start) / (end - start)
+        })
+        .collect()
+}
+
+/// How far an axis must turn back before it has really turned: nothing but rounding for a programmed position; more for a
+/// measured one, whose noise would turn it in every row.
+fn resolution(axis: &AxisChannels, positions: &[f64]) -> f64 {
+    let finite = positions.iter().filter(|position| position.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), position| {
+        (low.min(*position), high.max(*position))
+    });
+    let range = (high - low).max(0.0);
+    if axis.command.is_some() { 1e-9 * range } else { 1e-3 * range }
+}
+
+fn as_commanded(time: &[f64], position: Vec<f64>, resolution: f64) -> AxisStates {
+    let velocity = derivative(time, &position);
+    let acceleration = derivative(time, &velocity);
+    let (direction, since_reversal, moves) = directions(time, &position, resolution);
+    let lag_slope = velocity.iter().map(|velocity| -velocity).collect();
+    AxisStates { position, velocity, acceleration, direction, since_reversal, lag_slope, moves }
+}
+
+/// The first-order position loop with time constant `lag`, exact for commands that are straight between rows.
+fn behind_loop(time: &[f64], command: &[f64], lag: f64, resolution: f64) -> AxisStates {
+    let position = follow(time, command, lag);
+    let step = 1e-4;
+    let further = follow(time, command, lag * (1.0 + step));
+    let lag_slope = further.iter().zip(&position).map(|(far, near)| (far - near) / (lag * step)).collect();
+    let velocity: Vec<f64> = command.iter().zip(&position).map(|(command, q)| (command - q) / lag).collect();
+    let acceleration = derivative(time, &velocity);
+    let (direction, since_reversal, moves) = directions(time, &position, resolution);
+    AxisStates { position, velocity, acceleration, direction, since_reversal, lag_slope, moves }
+}
+
+fn follow(time: &[f64], command: &[f64], lag: f64) -> Vec<f64> {
+    let mut followed = Vec::with_capacity(command.len());
+    let mut last: Option<(f64, f64, f64)> = None;
+    for (time, command) in time.iter().zip(command) {
+        let position = match last {
+            _ if command.is_nan() => f64::NAN,
+            None => *command,
+            Some((before, from, position)) => {
+                let step = time - before;
+                let slope = (command - from) / step;
+                let error = position - from + slope * lag;
+                command - slope * lag + error * (-step / lag).exp()
+            }
+        };
+        if position.is_finite() {
+            last = Some((*time, *command, position));
+        }
+        followed.push(position);
+    }
+    followed
+}
+
+/// The derivative in time by the parabola through each sample and its neighbours; NaN samples are passed over.
+fn derivative(time: &[f64], values: &[f64]) -> Vec<f64> {
+    let known: Vec<usize> = (0..values.len()).filter(|row| values[*row].is_finite()).collect();
+    let slope = |from: usize, to: usize| (values[to] - values[from]) / (time[to] - time[from]);
+    let mut result = vec![f64::NAN; values.len()];
+    for (place, row) in known.iter().enumerate() {
+        let before = place.checked_sub(1).map(|place| known[place]);
+        let after = known.get(place + 1).copied();
+        result[*row] = match (before, after) {
+            (Some(before), Some(after)) => {
+                let (left, right) = (time[*row] - time[before], time[after] - time[*row]);
+                (slope(before, *row) * right + slope(*row, after) * left) / (left + right)
+            }
+            (Some(before), None) => slope(before, *row),
+            (None, Some(after)) => slope(*row, after),
+            (None, None) => 0.0,
+        };
+    }
+    result
+}
+
+/// Direction of the last real motion, time since the last reversal, and whether there is any motion.
+fn directions(time: &[f64], position: &[f64], resolution: f64) -> (Vec<f64>, Vec<f64>, bool) {
+    let mut direction = 1.0;
+    let mut moved = false;
+    let mut reversed = f64::NEG_INFINITY;
+    let mut extreme: Option<f64> = None;
+    let mut directions = Vec::with_capacity(position.len());
+    let mut since = Vec::with_capacity(position.len());
+    for (time, position) in time.iter().zip(position) {
+        if position.is_finite() {
+            let from = *extreme.get_or_insert(*position);
+            let gone = position - from;
+            if gone.abs() > resolution && (!moved || gone * direction < 0.0) {
+                if moved {
+                    reversed = *time;
+                }
+                direction = gone.signum();
+                moved = true;
+            }
+            if gone * direction > 0.0 {
+                extreme = Some(*position);
+            }
+        }
+        directions.push(direction);
+        since.push(time - reversed);
+    }
+    (directions, since, moved)
+}

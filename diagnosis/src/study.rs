@@ -1,0 +1,353 @@
+//! The study: a machine, what is known of it, and its recordings, brought to one set of numbers.
+//!
+//! In: equations, a calibration where there is one, recordings. Out: for each recording its channels (what was observed,
+//! and in which direction), its sensors under the numbers of the study, its blocks of rows, and which of them are held out.
+
+use std::ops::Range;
+
+use model_dsl::algebra::Axis;
+use model_dsl::calibration::{Calibration, SensorReadings};
+use model_dsl::equations::Equations;
+use model_dsl::program::Interpreter;
+
+use crate::model::{Effect, Fitted, Place, Side};
+use crate::noise;
+use crate::recording::{Instrument, Recording};
+use crate::states::nominal_position;
+use crate::terms;
+
+/// A machine, what is known of it, and what was recorded.
+pub(crate) struct Study<'a> {
+    pub(crate) equations: &'a Equations,
+    pub(crate) interpreter: Interpreter,
+    pub(crate) calibration: Option<&'a Calibration>,
+    /// The names of all sensors: those of the calibration under its own numbers, then others that were recorded.
+    pub(crate) sensors: Vec<String>,
+    /// The names and units of all loads that were recorded.
+    pub(crate) loads: Vec<(String, String)>,
+    pub(crate) scenes: Vec<Scene<'a>>,
+    /// What the calibration says, as far as the recordings hold the states it reads.
+    pub(crate) known: Vec<Fitted>,
+    /// The number of the motion that is each axis's own: EXX of X.
+    pub(crate) own: Vec<Option<usize>>,
+}
+
+/// One recording in the study.
+pub(crate) struct Scene<'a> {
+    pub(crate) recording: &'a Recording,
+    pub(crate) temperatures: Vec<Vec<f64>>,
+    pub(crate) loads: Vec<Vec<f64>>,
+    pub(crate) channels: Vec<Channel>,
+    pub(crate) blocks: Vec<Block>,
+}
+
+/// One observed quantity: a number with a direction in each row.
+#[derive(Clone, Debug)]
+pub(crate) struct Channel {
+    /// The channel's name in the recording.
+    pub(crate) name: String,
+    pub(crate) kind: Kind,
+    /// mm or rad; NaN where it is missing.
+    pub(crate) values: Vec<f64>,
+    /// Samples that are left out as outliers.
+    pub(crate) outliers: Vec<bool>,
+    /// The standard deviation of the rounding of its values.
+    pub(crate) rounding: f64,
+}
+
+/// What a channel observes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Kind {
+    /// The tool tip in one direction of the part's frame.
+    Tip(usize),
+    /// The distance of the tool tip from a centre, minus a radius.
+    Radius { center: [f64; 3], radius: f64 },
+    /// The error of the tool tip along a direction.
+    Along([f64; 3]),
+    /// The error of the tool tip along the normal in each row.
+    Normal,
+    /// The rotation of the tool relative to the part about a direction.
+    Turn([f64; 3]),
+    /// The angle of a rotary axis.
+    Stage(usize),
+    /// The drive's own feedback of an axis.
+    Drive(usize),
+}
+
+impl Kind {
+    /// Whether an instrument outside the drive reads it.
+    pub(crate) fn outside(self) -> bool {
+        !matches!(self, Self::Drive(_))
+    }
+
+    /// Whether it is an angle.
+    pub(crate) fn angular(self, equations: &Equations) -> bool {
+        match self {
+            Self::Turn(_) | Self::Stage(_) => true,
+            Self::Drive(axis) => equations.axes.get(axis).is_some_and(|axis| axis.rotary),
+            _ => false,
+        }
+    }
+}
+
+/// A stretch of rows of one run that is fitted, or held out, as a whole.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Block {
+    pub(crate) rows: Range<usize>,
+    pub(crate) run: i64,
+    pub(crate) held_out: bool,
+}
+
+impl<'a> Study<'a> {
+    /// Brings recordings of one machine together.
+    pub(crate) fn new(
+        equations: &'a Equations,
+        calibration: Option<&'a Calibration>,
+        recordings: &[&'a Recording],
+    ) -> Self {
+        let constants = constants(equations, calibration);
+        let sensors = sensor_names(calibration, recordings);
+        let loads = load_names(recordings);
+        let own = own_motions(equations);
+        let scenes =
+            recordings.iter().map(|recording| Scene::new(recording, calibration, &sensors, &loads)).collect();
+        let known = known(calibration, &loads);
+        let interpreter = Interpreter::new(equations, &constants);
+        Self { equations, interpreter, calibration, sensors, loads, scenes, known, own }
+    }
+
+    /// Whether the drive's own feedback of an axis was recorded anywhere.
+    pub(crate) fn has_drive(&self, axis: usize) -> bool {
+        let mut channels = self.scenes.iter().flat_map(|scene| &scene.channels);
+        channels.any(|channel| channel.kind == Kind::Drive(axis))
+    }
+}
+
+fn constants(equations: &Equations, calibration: Option<&Calibration>) -> Vec<f64> {
+    match calibration {
+        Some(calibration) => calibration.constants.clone(),
+        // A single stage's offsets have a default; others without a calibration are taken as zero.
+        None => equations.constants.iter().map(|constant| constant.default.unwrap_or_default()).collect(),
+    }
+}
+
+fn sensor_names(calibration: Option<&Calibration>, recordings: &[&Recording]) -> Vec<String> {
+    let known = calibration.into_iter().flat_map(|calibration| calibration.sensors.iter());
+    let mut names: Vec<String> = known.map(|sensor| sensor.name.value.clone()).collect();
+    for channel in recordings.iter().flat_map(|recording| &recording.temperatures) {
+        if !names.contains(&channel.name) {
+            names.push(channel.name.clone());
+        }
+    }
+    names
+}
+
+fn load_names(recordings: &[&Recording]) -> Vec<(String, String)> {
+    let mut names: Vec<(String, String)> = Vec::new();
+    for channel in recordings.iter().flat_map(|recording| &recording.loads) {
+        if !names.iter().any(|(name, _)| *name == channel.name) {
+            names.push((channel.name.clone(), channel.unit.clone()));
+        }
+    }
+    names
+}
+
+/// The motion of each axis in its own direction: a displacement along a slide, a rotation about a rotary axis.
+fn own_motions(equations: &Equations) -> Vec<Option<usize>> {
+    let own = |(number, axis): (usize, &model_dsl::equations::AxisInfo)| {
+        let letters = if axis.rotary { ['A', 'B', 'C'] } else { ['X', 'Y', 'Z'] };
+        let letter = Axis::ALL.iter().position(|direction| *direction == axis.along).map(|at| letters[at])?;
+        equations.motions.iter().position(|motion| {
+            motion.axis == Some(number) && !motion.alignment && motion.name.chars().nth(1) == Some(letter)
+        })
+    };
+    equations.axes.iter().enumerate().map(own).collect()
+}
+
+fn known(calibration: Option<&Calibration>, loads: &[(String, String)]) -> Vec<Fitted> {
+    let load = |name: &str| loads.iter().position(|(known, _)| known == name);
+    let listed = calibration.into_iter().flat_map(|calibration| &calibration.motions);
+    listed
+        .flat_map(|motion| motion.terms.iter().map(|term| (motion.motion, &term.value)))
+        .filter_map(|(motion, term)| {
+            let (shape, coefficients) = terms::known(term, load)?;
+            let side = if shape.name() == "lag" { Side::Drive } else { Side::After };
+            Some(Fitted { effect: Effect { place: Place::Motion { motion, side }, shape }, coefficients })
+        })
+        .collect()
+}
+
+impl<'a> Scene<'a> {
+    fn new(
+        recording: &'a Recording,
+        calibration: Option<&Calibration>,
+        sensors: &[String],
+        loads: &[(String, String)],
+    ) -> Self {
+        Self {
+            recording,
+            temperatures: temperatures(recording, calibration, sensors),
+            loads: loads.iter().map(|(name, _)| column(&recording.loads, name, recording.time.len())).collect(),
+            channels: channels(recording),
+            blocks: blocks(recording),
+        }
+    }
+
+    /// How many rows there are.
+    pub(crate) fn rows(&self) -> usize {
+        self.recording.time.len()
+    }
+
+    /// For each row whether it is fitted, and not held out.
+    pub(crate) fn fitted_rows(&self) -> Vec<bool> {
+        let mut fitted = vec![true; self.rows()];
+        for block in self.blocks.iter().filter(|block| block.held_out) {
+            fitted[block.rows.clone()].fill(false);
+        }
+        fitted
+    }
+
+    /// The runs in order of their first rows.
+    pub(crate) fn run_numbers(&self) -> Vec<i64> {
+        let mut numbers: Vec<i64> = Vec::new();
+        for (_, run) in runs(&self.recording.run) {
+            if !numbers.contains(&run) {
+                numbers.push(run);
+            }
+        }
+        numbers
+    }
+}
+
+/// A channel by name with its gaps bridged; NaN everywhere where it was not recorded.
+fn column(channels: &[crate::recording::Named], name: &str, rows: usize) -> Vec<f64> {
+    let channel = channels.iter().find(|channel| channel.name == name);
+    channel.map_or_else(|| vec![f64::NAN; rows], |channel| bridged(&channel.values))
+}
+
+/// Gaps bridged by straight lines over rows, and held at the ends: temperatures and loads change slowly between samples.
+fn bridged(values: &[f64]) -> Vec<f64> {
+    let mut bridged = values.to_vec();
+    let mut last: Option<usize> = None;
+    for row in 0..bridged.len() {
+        if !values[row].is_finite() {
+            continue;
+        }
+        let from = last.map_or(0, |last| last + 1);
+        let start = last.map_or(values[row], |last| values[last]);
+        let span = crate::number(row - from + 1);
+        for (step, gap) in (from..row).enumerate() {
+            bridged[gap] = start + (values[row] - start) * crate::number(step + 1) / span;
+        }
+        last = Some(row);
+    }
+    if let Some(last) = last {
+        let held = values[last];
+        bridged[last..].fill(held);
+    }
+    bridged
+}
+
+/// The temperatures of all sensors of the study, the calibration's derived ones worked out row by row.
+fn temperatures(
+    recording: &Recording,
+    calibration: Option<&Calibration>,
+    sensors: &[String],
+) -> Vec<Vec<f64>> {
+    let rows = recording.time.len();
+    let mut columns: Vec<Vec<f64>> =
+        sensors.iter().map(|name| column(&recording.temperatures, name, rows)).collect();
+    if let Some(calibration) = calibration {
+        let inputs = columns.clone();
+        let mut readings = SensorReadings::new(&calibration.sensors);
+        for row in 0..rows {
+            let now = readings.update(|sensor| inputs[sensor][row]);
+            for (column, value) in columns.iter_mut().zip(now) {
+                column[row] = *value;
+            }
+        }
+    }
+    columns
+}
+
+fn channels(recording: &Recording) -> Vec<Channel> {
+    let rows = recording.time.len();
+    let mut channels = Vec::new();
+    let mut add = |name: String, kind: Kind, values: &[f64]| {
+        let rounding = noise::rounding(values);
+        channels.push(Channel { name, kind, values: values.to_vec(), outliers: vec![false; rows], rounding });
+    };
+    for (direction, values) in recording.measured.iter().enumerate() {
+        if let Some(values) = values {
+            let letter = ["x", "y", "z"][direction];
+            add(format!("measured.{letter}"), Kind::Tip(direction), values);
+        }
+    }
+    if let Some(values) = &recording.deviation {
+        let kind = match &recording.instrument {
+            Instrument::Position | Instrument::Probe => Kind::Normal,
+            Instrument::Ballbar { center, radius } => Kind::Radius { center: *center, radius: *radius },
+            Instrument::Linear(line) | Instrument::Straightness(line) => Kind::Along(line.direction),
+            Instrument::Angular { about, .. } => Kind::Turn(*about),
+        };
+        add("deviation".to_owned(), kind, values);
+    }
+    for (axis, known) in recording.axes.iter().enumerate() {
+        // What an axis was measured by cannot be its position as well.
+        if let Some(values) = &known.measured
+            && (known.command.is_some() || known.actual.is_some())
+        {
+            add(format!("measured, axis {axis}"), Kind::Stage(axis), values);
+        }
+        if let (Some(values), Some(_)) = (&known.actual, &known.command) {
+            add(format!("actual, axis {axis}"), Kind::Drive(axis), values);
+        }
+    }
+    channels
+}
+
+/// How many blocks the rows that are fitted are cut into, at least.
+const BLOCKS: usize = 12;
+/// The fewest rows of a block.
+const BLOCK_ROWS: usize = 8;
+/// One block in so many is held out where the recording names no runs for it.
+const HELD_OUT_EVERY: usize = 4;
+
+/// Runs cut into blocks; those of held-out runs, or else every fourth block, are held out.
+fn blocks(recording: &Recording) -> Vec<Block> {
+    let runs = runs(&recording.run);
+    let pieces = BLOCKS.div_ceil(runs.len().max(1)).max(2);
+    let mut blocks = Vec::new();
+    for (rows, run) in runs {
+        let pieces = pieces.min(rows.len() / BLOCK_ROWS).max(1);
+        let bounds = |piece: usize| rows.start + rows.len() * piece / pieces;
+        blocks.extend((0..pieces).map(|piece| Block {
+            rows: bounds(piece)..bounds(piece + 1),
+            run,
+            held_out: recording.holdout.as_ref().is_some_and(|held| held.contains(&run)),
+        }));
+    }
+    if recording.holdout.is_none() && blocks.len() >= HELD_OUT_EVERY {
+        for block in blocks.iter_mut().skip(HELD_OUT_EVERY / 2).step_by(HELD_OUT_EVERY) {
+            block.held_out = true;
+        }
+    }
+    blocks
+}
+
+/// The stretches of rows that belong to one run each.
+pub(crate) fn runs(run: &[i64]) -> Vec<(Range<usize>, i64)> {
+    let mut runs: Vec<(Range<usize>, i64)> = Vec::new();
+    for (row, run) in run.iter().enumerate() {
+        match runs.last_mut() {
+            Some((rows, last)) if last == run => rows.end = row + 1,
+            _ => runs.push((row..row + 1, *run)),
+        }
+    }
+    runs
+}
+
+/// The programmed positions of all axes of a recording.
+pub(crate) fn programmed(recording: &Recording) -> Vec<Vec<f64>> {
+    recording.axes.iter().map(|axis| nominal_position(axis, recording.time.len())).collect()
+}

@@ -1,0 +1,246 @@
+//! Terms as regressors: one piece of physics each, as columns over the rows of a recording.
+//!
+//! In: the states of the machine in a stretch of rows. Out: for each term its columns, one for each linear coefficient;
+//! what is not linear (a period, a time constant, a wind-up) is the shape's own and is searched for. The meaning of each
+//! term, its plausible range and the words that explain it stand in a file of its own.
+
+mod acceleration;
+mod backlash;
+mod coupling;
+mod cyclic;
+mod drift;
+mod expansion;
+mod growth;
+mod instrument;
+mod known;
+mod lag;
+mod load;
+mod polynomial;
+mod reversal_spike;
+mod table;
+mod vibration;
+
+pub(crate) use instrument::Setting;
+pub(crate) use known::known;
+
+use crate::states::Rows;
+
+/// The temperature at which scales are true where nothing else is said: ISO 1, degC.
+pub(crate) const REFERENCE_TEMPERATURE: f64 = 20.0;
+
+/// What a term is, apart from its linear coefficients. Positions are in mm or rad, times in s.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) enum Shape {
+    /// 1.
+    Constant,
+    /// Powers 0 to `degree` of x = (q - center) / scale.
+    Polynomial { axis: usize, degree: usize, center: f64, scale: f64 },
+    /// Powers 0 to `degree` of x = (T - center) / scale of a sensor.
+    SensorPolynomial { sensor: usize, degree: usize, center: f64, scale: f64 },
+    /// A hat function for each node; for each direction of motion where it is directed.
+    Table { axis: usize, nodes: Vec<f64>, directed: bool },
+    /// -d/2, or the play operator -u/2.
+    Backlash { axis: usize, wind_up: f64 },
+    /// -d exp(-(t - t_reversal) / decay).
+    ReversalSpike { axis: usize, decay: f64 },
+    /// sin(2 pi q / period) and cos(2 pi q / period).
+    Cyclic { axis: usize, period: f64 },
+    /// The change of the position behind the position loop with its time constant 1/K, which is the coefficient.
+    Lag { axis: usize },
+    /// -a.
+    Acceleration { axis: usize },
+    /// (T - reference) q.
+    Expansion { axis: usize, sensor: usize, reference: f64 },
+    /// T* - reference, T* behind a first-order filter.
+    Growth { sensor: usize, reference: f64, time_constant: f64 },
+    /// 1 - exp(-t / time_constant).
+    Drift { time_constant: f64 },
+    /// sin(2 pi f t) and cos(2 pi f t).
+    Vibration { frequency: f64 },
+    /// Powers 1 to `degree` of q_other / scale.
+    Coupling { axis: usize, degree: usize, scale: f64 },
+    /// The load.
+    Compliance { load: usize },
+    /// A setting of the instrument.
+    Instrument(Setting),
+}
+
+/// What a shape remembers from one stretch of rows to the next.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Memory {
+    value: Option<f64>,
+    last: f64,
+    last_input: f64,
+}
+
+/// The one parameter of a shape that is not linear.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Nonlinear {
+    /// Its name in calibration files; that of the lag's is the time constant 1/K.
+    pub(crate) name: &'static str,
+    /// Its value.
+    pub(crate) value: f64,
+}
+
+impl Shape {
+    /// The term's name in calibration files.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::Constant => "constant",
+            Self::Polynomial { .. } | Self::SensorPolynomial { .. } => "polynomial",
+            Self::Table { .. } => "table",
+            Self::Backlash { .. } => "backlash",
+            Self::ReversalSpike { .. } => "reversal-spike",
+            Self::Cyclic { .. } => "cyclic",
+            Self::Lag { .. } => "lag",
+            Self::Acceleration { .. } => "acceleration",
+            Self::Expansion { .. } => "expansion",
+            Self::Growth { .. } => "growth",
+            Self::Drift { .. } => "drift",
+            Self::Vibration { .. } => "vibration",
+            Self::Coupling { .. } => "coupling",
+            Self::Compliance { .. } => "compliance",
+            Self::Instrument(setting) => setting.name(),
+        }
+    }
+
+    /// How many linear coefficients it has.
+    pub(crate) fn columns(&self) -> usize {
+        match self {
+            Self::Polynomial { degree, .. } | Self::SensorPolynomial { degree, .. } => degree + 1,
+            Self::Coupling { degree, .. } => *degree,
+            Self::Table { nodes, directed, .. } => nodes.len() * if *directed { 2 } else { 1 },
+            Self::Cyclic { .. } | Self::Vibration { .. } => 2,
+            _ => 1,
+        }
+    }
+
+    /// The parameter that is not linear, where it has one.
+    pub(crate) fn nonlinear(&self) -> Option<Nonlinear> {
+        let (name, value) = match *self {
+            Self::Backlash { wind_up, .. } if wind_up > 0.0 => ("wind_up", wind_up),
+            Self::ReversalSpike { decay, .. } => ("decay", decay),
+            Self::Cyclic { period, .. } => ("period", period),
+            Self::Growth { time_constant, .. } if time_constant > 0.0 => ("time_constant", time_constant),
+            Self::Drift { time_constant } => ("time_constant", time_constant),
+            Self::Vibration { frequency } => ("frequency", frequency),
+            _ => return None,
+        };
+        Some(Nonlinear { name, value })
+    }
+
+    /// The shape with another value of its nonlinear parameter.
+    pub(crate) fn with_nonlinear(&self, value: f64) -> Self {
+        let mut shape = self.clone();
+        match &mut shape {
+            Self::Backlash { wind_up: parameter, .. }
+            | Self::ReversalSpike { decay: parameter, .. }
+            | Self::Cyclic { period: parameter, .. }
+            | Self::Growth { time_constant: parameter, .. }
+            | Self::Drift { time_constant: parameter }
+            | Self::Vibration { frequency: parameter } => *parameter = value,
+            _ => {}
+        }
+        shape
+    }
+
+    /// Whether its coefficient acts on the states, so that a linear fit of it holds only nearby.
+    pub(crate) fn nonlinear_in_coefficient(&self) -> bool {
+        matches!(self, Self::Lag { .. } | Self::Instrument(Setting::Clock))
+    }
+
+    /// The axis whose state it reads, where there is one.
+    pub(crate) fn axis(&self) -> Option<usize> {
+        match *self {
+            Self::Polynomial { axis, .. }
+            | Self::Table { axis, .. }
+            | Self::Backlash { axis, .. }
+            | Self::ReversalSpike { axis, .. }
+            | Self::Cyclic { axis, .. }
+            | Self::Lag { axis }
+            | Self::Acceleration { axis }
+            | Self::Expansion { axis, .. }
+            | Self::Coupling { axis, .. } => Some(axis),
+            _ => None,
+        }
+    }
+
+    /// Fills one column for each linear coefficient with the rows of a stretch. Stretches come in order; `memory` is that
+    /// of the stretch before, or the default at the beginning of a recording.
+    pub(crate) fn fill(&self, rows: &Rows<'_>, memory: &mut Memory, out: &mut [Vec<f64>]) {
+        match self {
+            Self::Constant => each(out, |column| column.resize(rows.len(), 1.0)),
+            Self::Polynomial { axis, degree: _, center, scale } => {
+                polynomial::fill(rows.axis(*axis).position, *center, *scale, 0, out);
+            }
+            Self::SensorPolynomial { sensor, degree: _, center, scale } => {
+                polynomial::fill(rows.temperature(*sensor), *center, *scale, 0, out);
+            }
+            Self::Coupling { axis, degree: _, scale } => coupling::fill(rows, *axis, *scale, out),
+            Self::Table { axis, nodes, directed } => table::fill(rows, *axis, nodes, *directed, out),
+            Self::Backlash { axis, wind_up } => one(out, |out| backlash::fill(rows, *axis, *wind_up, memory, out)),
+            Self::ReversalSpike { axis, decay } => one(out, |out| reversal_spike::fill(rows, *axis, *decay, out)),
+            Self::Cyclic { axis, period } => cyclic::fill(rows, *axis, *period, out),
+            Self::Lag { axis } => one(out, |out| lag::fill(rows, *axis, out)),
+            Self::Acceleration { axis } => one(out, |out| acceleration::fill(rows, *axis, out)),
+            Self::Expansion { axis, sensor, reference } => {
+                one(out, |out| expansion::fill(rows, *axis, *sensor, *reference, out));
+            }
+            Self::Growth { sensor, reference, time_constant } => {
+                one(out, |out| growth::fill(rows, *sensor, *reference, *time_constant, memory, out));
+            }
+            Self::Drift { time_constant } => one(out, |out| drift::fill(rows, *time_constant, out)),
+            Self::Vibration { frequency } => vibration::fill(rows, *frequency, out),
+            Self::Compliance { load } => one(out, |out| load::fill(rows, *load, out)),
+            // What the instrument's settings do depends on the instrument and is filled where it is known.
+            Self::Instrument(_) => each(out, |column| column.resize(rows.len(), 0.0)),
+        }
+    }
+
+    /// Adds the value of the term with these coefficients to `sum`.
+    pub(crate) fn add(&self, coefficients: &[f64], rows: &Rows<'_>, memory: &mut Memory, sum: &mut [f64]) {
+        match self {
+            Self::Table { axis, nodes, directed } => {
+                table::add(rows, *axis, nodes, *directed, coefficients, sum);
+            }
+            // The position behind the loop is in the states already.
+            Self::Lag { .. } => {}
+            _ => {
+                let mut columns = vec![Vec::with_capacity(rows.len()); self.columns()];
+                self.fill(rows, memory, &mut columns);
+                for (column, coefficient) in columns.iter().zip(coefficients) {
+                    for (sum, value) in sum.iter_mut().zip(column) {
+                        *sum += coefficient * value;
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn each(out: &mut [Vec<f64>], fill: impl Fn(&mut Vec<f64>)) {
+    for column in out {
+        column.clear();
+        fill(column);
+    }
+}
+
+fn one(out: &mut [Vec<f64>], fill: impl FnOnce(&mut Vec<f64>)) {
+    if let Some(column) = out.first_mut() {
+        column.clear();
+        fill(column);
+    }
+}
+
+/// The two columns sin and cos of 2 pi times a phase in turns.
+fn wave(turns: impl Iterator<Item = f64>, out: &mut [Vec<f64>]) {
+    if let [sines, cosines] = out {
+        sines.clear();
+        cosines.clear();
+        for turn in turns {
+            let (sine, cosine) = (std::f64::consts::TAU * turn).sin_cos();
+            sines.push(sine);
+            cosines.push(cosine);
+        }
+    }
+}

@@ -1,0 +1,8 @@
+//! `coupling`: the rigid body that is not: sag and cross-talk. In: the position of another axis. Out: its powers from 1 on.
+
+use super::polynomial;
+use crate::states::Rows;
+
+pub(super) fn fill(rows: &Rows<'_>, axis: usize, scale: f64, out: &mut [Vec<f64>]) {
+    polynomial::fill(rows.axis(axis).position, 0.0, scale, 1, out);
+}

@@ -1,0 +1,187 @@
+//! Tables of data that are not read: where, why, and what to write instead.
+
+use diagnosis::recording::Place;
+
+use crate::common::{header, packed, recording};
+
+const TEXT: &str = "recording: 1
+machine: FX
+instrument: position
+data: data.csv
+channels:
+  time: {column: t_s, unit: s}
+  run: {column: run}
+  command.x: {column: x_cmd, unit: mm}
+  measured.x: {column: x_meas, unit: mm}
+";
+
+const HEADER: &str = "t_s,run,x_cmd,x_meas\n";
+
+/// Expects an error: the beginning of what is shown, and parts of the whole.
+fn refused(data: &str, begins: &str, parts: &[&str]) {
+    let error = recording(TEXT, data).unwrap_err();
+    let shown = error.to_string();
+    assert!(shown.starts_with(&format!("error: {begins}")), "{shown}\nis not\n{begins}");
+    for part in parts {
+        assert!(shown.contains(part), "{shown}\nlacks {part:?}");
+    }
+}
+
+/// The same under the right header.
+fn row(rows: &str, begins: &str, parts: &[&str]) {
+    refused(&format!("{HEADER}{rows}"), begins, parts);
+}
+
+#[test]
+fn headers() {
+    refused("", "data.csv: the file is empty", &["row of column names"]);
+    refused("\n\n# only this\n", "data.csv: the file is empty", &[]);
+    refused(
+        "t_s,run,x_comd,x_meas\n0,1,2,3\n",
+        "data.csv:1:1: there is no column `x_cmd` (channel `command.x`)",
+        &["did you mean `x_comd`?", "the columns are t_s, run, x_comd, x_meas"],
+    );
+    refused(
+        "t,n,a,b\n",
+        "data.csv:1:1: there are no columns `t_s` (channel `time`), `run`",
+        &["the columns are t, n, a, b"],
+    );
+    refused(
+        "# made by hand\nt_s,run,x_cmd,x_meas,x_cmd\n",
+        "data.csv:2:1: column `x_cmd` stands twice",
+        &["its own name"],
+    );
+    refused("0,1,2,3\n", "data.csv:1:1: the first row is a row of numbers", &["`t_s,run,x_cmd,x_meas`"]);
+    refused(
+        "# t_s,run,x_cmd,x_meas\n0,1,2,3\n",
+        "data.csv:2:1: the first row is a row of numbers",
+        &["take away the `#`"],
+    );
+    refused("\u{0}t_s,run\n", "data.csv:1:1: the file is not plain text", &["UTF-8"]);
+    refused(
+        "t_s;run,x_cmd\n",
+        "data.csv:1:1: commas and semicolons stand between the names",
+        &["with commas"],
+    );
+}
+
+#[test]
+fn units_that_disagree() {
+    row(
+        "#unit,s,,mm,um\n0,1,2,3\n",
+        "data.csv:2:13: column `x_meas` is in `um` here and in `mm`",
+        &["both say the same"],
+    );
+    row(
+        "#unit,s,,mm\n0,1,2,3\n",
+        "data.csv:2:1: the row of units has 3 units for 4 columns",
+        &["one unit for each"],
+    );
+}
+
+#[test]
+fn cells() {
+    row(
+        "0,1,2,3\n1,1,abc,3\n",
+        "data.csv:3:5: column `x_cmd` (channel `command.x`): `abc` is not a number",
+        &["cell empty"],
+    );
+    row("# one\r\n\r\n0,1,2,3\r\n1,1, 2, x\r\n", "data.csv:5:9: column `x_meas`", &["`x` is not a number"]);
+    row("0,1,2,inf\n", "data.csv:2:7: column `x_meas`", &["`inf` is not a finite number"]);
+    row("0,1,2,1e999\n", "data.csv:2:7: column `x_meas`", &["`1e999` is not a finite number"]);
+    row("0,1,2,\u{2212}3\n", "data.csv:2:7: column `x_meas`", &["minus sign as `-`"]);
+    row("0,1,\"2,5\",3\n", "data.csv:2:5: column `x_cmd`", &["`2,5` has a decimal comma", "`2.5`"]);
+    refused(
+        "t_s;run;x_cmd;x_meas\n0;1;2;3,25\n",
+        "data.csv:2:7: column `x_meas`",
+        &["`3,25` has a decimal comma", "`3.25`"],
+    );
+    // Characters are counted, not bytes.
+    refused(
+        "t_s,run,x_cmd,x_meas,\u{b5}\n0,1,2,3,4\n1,1,2,3,\n2,1,\u{b5}\u{b5},z,\n",
+        "data.csv:4:5",
+        &["`\u{b5}\u{b5}`"],
+    );
+    refused("\u{b5},t_s,run,x_cmd,x_meas\n\u{b5}\u{b5},0,1,2,z\n", "data.csv:2:10", &["`z` is not a number"]);
+}
+
+#[test]
+fn rows() {
+    row("", "data.csv: there is no row under the header", &[]);
+    row(
+        "0,1,2,3\n1,1,2\n",
+        "data.csv:3:6: the row has 3 cells, the header 4: `1,1,2`",
+        &["empty where nothing"],
+    );
+    row("0,1,2,3,4\n", "data.csv:2:9: the row has 5 cells, the header 4", &["one cell for each column"]);
+    row("0,1,1,2,5,3,5\n", "data.csv:2:9: the row has 7 cells", &["decimal commas"]);
+    row(
+        "0,1,2,\n1,1,2,nan\n",
+        "data.csv: column `x_meas` (channel `measured.x`) is empty",
+        &["leave the channel out"],
+    );
+}
+
+#[test]
+fn times() {
+    row(
+        "0,1,2,3\n,1,2,3\n",
+        "data.csv:3:1: column `t_s` (channel `time`): the row has no time",
+        &["every row"],
+    );
+    row("0,1,2,3\n0,1,2,3\n", "data.csv:3:1: column `t_s`", &["`0` comes after `0`", "more decimal places"]);
+    row(
+        "0,1,2,3\n5,1,2,3\n4,1,2,3\n",
+        "data.csv:4:1: column `t_s`",
+        &["`4` comes after `5`", "channel `run`"],
+    );
+    row("0,1,2,3\n1,2,2,3\n0.5,1,2,3\n", "data.csv:4:1", &["run 1 has rows further up"]);
+    row("0,1,2,3\n1,2,2,3\n0.5,2,2,3\n", "data.csv:4:1", &["`0.5` comes after `1`"]);
+    row("-1e308,1,2,3\n1e308,1,2,3\n", "data.csv:3:1", &[]);
+}
+
+#[test]
+fn runs() {
+    row(
+        "0,1.5,2,3\n",
+        "data.csv:2:3: column `run` (channel `run`): `1.5` is not a whole number",
+        &["1, 2, 3"],
+    );
+    row("0,one,2,3\n", "data.csv:2:3: column `run`", &["`one` is not a whole number"]);
+    row("0,,2,3\n", "data.csv:2:3: column `run`", &["does not tell its run"]);
+    let held = format!("{TEXT}holdout: {{runs: [3]}}\n");
+    let error = recording(&held, &format!("{HEADER}0,1,2,3\n1,2,2,3\n")).unwrap_err();
+    assert_eq!(error.place, None);
+    assert!(error.message.contains("run 3") && error.help.unwrap().contains("1, 2"));
+    let error = recording(&held, &format!("{HEADER}0,3,2,3\n")).unwrap_err();
+    assert!(error.message.contains("all runs are held out"));
+}
+
+#[test]
+fn places_are_data_too() {
+    let error = recording(TEXT, &format!("{HEADER}0,1,2,x\n")).unwrap_err();
+    assert_eq!(error.place, Some(Place::Character { line: 2, column: 7 }));
+    assert_eq!(error.file, "data.csv");
+}
+
+#[test]
+fn broken_files() {
+    let whole = packed(format!("{HEADER}{}", "0,1,2,3\n").as_bytes());
+    let cut = &whole[..whole.len() - 6];
+    let error = header(TEXT).read_csv("data.csv.gz", cut).unwrap_err();
+    assert!(error.to_string().contains("cannot be read"), "{error}");
+    let error = header(TEXT).read_csv("data", &b"PAR1\x15\x04"[..]).unwrap_err();
+    assert!(error.to_string().contains("`.parquet`"), "{error}");
+    // A line without an end costs a bounded amount of memory.
+    let error = header(TEXT).read_csv("zeros", std::io::repeat(b'0')).unwrap_err();
+    assert!(error.to_string().starts_with("error: zeros:1:1: the line is longer than 1 MiB"), "{error}");
+}
+
+#[cfg(not(feature = "parquet"))]
+#[test]
+fn parquet_needs_its_feature() {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("absent.parquet");
+    std::fs::write(&path, b"PAR1").unwrap();
+    let error = header(TEXT).read_data(&path).unwrap_err();
+    assert!(error.help.unwrap().contains("the feature `parquet`"));
+}

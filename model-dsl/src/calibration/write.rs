@@ -1,0 +1,77 @@
+//! A calibration as its file. In: a calibration and the names of its machine. Out: text that reads back to it.
+
+use super::names::MachineNames;
+use super::sensors::{SensorKind, Sensors};
+use super::spelling::{braces, brackets, quantity, sentence, term, word};
+use super::term::CalibratedTerm;
+use super::write_term::{Context, UNKNOWN, parameters};
+use super::{CalibratedMotion, Calibration};
+
+/// Writes a calibration: a term a line, in mm, rad, s and degC, so that no number is converted and [`super::read`] gives
+/// back every bit of it.
+///
+/// What is read back is equal, but that its sensors are numbered as the text comes to them. A calibration that was read
+/// from a file has them so already. The coefficient of a `compliance` is written per N: which kind of load it is per, a
+/// term does not keep, and none is converted. Comments of the file that a calibration came from are not in it.
+///
+/// What no file can say does not come back, and most of it is refused: a number that is not finite or that
+/// [`CalibratedTerm`] does not admit, a motion, an axis or a sensor by a number that nothing has, one motion listed twice.
+/// White space at the ends of a name is lost.
+pub fn write(calibration: &Calibration, names: &MachineNames) -> String {
+    let mut text = format!("calibration: 1\nmachine: {}\n", sentence(&calibration.machine.value));
+    if let Some(source) = &calibration.source {
+        text += &format!("source: {}\n", sentence(source));
+    }
+    text += &constants(calibration, names);
+    if let Some(limit) = &calibration.limits.compensation {
+        text += &format!("limits: {{compensation: {}}}\n", quantity(limit.value, "mm"));
+    }
+    text += &derived(&calibration.sensors);
+    if !calibration.motions.is_empty() {
+        text += "errors:\n";
+    }
+    text.extend(calibration.motions.iter().map(|listed| motion(listed, calibration, names)));
+    text
+}
+
+fn constants(calibration: &Calibration, names: &MachineNames) -> String {
+    let given = names.constants.iter().zip(&calibration.constants);
+    let given: Vec<_> = given.map(|((name, _), value)| (word(name), quantity(*value, "mm"))).collect();
+    if given.is_empty() { String::new() } else { format!("constants: {}\n", braces(given)) }
+}
+
+/// The derived sensors, each after those that it is derived from.
+fn derived(sensors: &Sensors) -> String {
+    let name = |number: usize| word(sensors.iter().nth(number).map_or(UNKNOWN, |sensor| &sensor.name.value));
+    let lines: String = sensors
+        .iter()
+        .filter_map(|sensor| {
+            let from = match &sensor.kind {
+                SensorKind::Input => return None,
+                SensorKind::Mean(sources) => {
+                    let sources: Vec<String> = sources.iter().map(|source| name(*source)).collect();
+                    ("mean".to_owned(), brackets(&sources))
+                }
+                SensorKind::Initial(source) => ("initial".to_owned(), name(*source)),
+            };
+            Some(format!("  {}: {}\n", word(&sensor.name.value), braces([from])))
+        })
+        .collect();
+    if lines.is_empty() { lines } else { format!("sensors:\n{lines}") }
+}
+
+fn motion(listed: &CalibratedMotion, calibration: &Calibration, names: &MachineNames) -> String {
+    let known = names.motions.get(listed.motion);
+    let context = Context { names, sensors: &calibration.sensors, motion: known };
+    let name = word(known.map_or(UNKNOWN, |motion| &motion.name));
+    match listed.terms.as_slice() {
+        [] => format!("  {name}: []\n"),
+        [alone] if let CalibratedTerm::Constant { value } = alone.value => {
+            format!("  {name}: {}\n", quantity(value, context.motion_unit()))
+        }
+        terms => {
+            let lines = terms.iter().map(|one| term(one.value.name(), &parameters(&one.value, &context)));
+            format!("  {name}:\n{}", lines.collect::<String>())
+        }
+    }
+}

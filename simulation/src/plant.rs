@@ -1,0 +1,499 @@
+//! The plant: a machine with all its errors, in numbers.
+//!
+//! In: a validated machine, the numbers of a calibration, and what the machine is told: positions, temperatures, loads
+//! over time. Out, at every sample: where the tool tip really stands in the part's frame and how it is turned there.
+//! Rotations are finite, nothing is linearised, and nothing of the compiler's equations is used, so that what is derived
+//! from those can be held against this.
+
+mod body;
+mod curve;
+mod history;
+mod piece;
+mod servo;
+
+pub use history::History;
+pub use servo::Servo;
+
+use std::fmt;
+use std::sync::Arc;
+
+use model_dsl::calibration::{
+    AxisName, Calibration, MachineNames, MotionName, SensorKind, SensorReadings, Sensors,
+};
+use model_dsl::machine::{Branch, LinkKind, Machine, MotionKind};
+use nalgebra::{Rotation3, Vector3};
+
+use crate::commands::Commands;
+use body::Body;
+use piece::{Memory, Piece};
+
+/// How far an axis must move back before that is a real motion, mm or rad: far below what any drive resolves.
+pub const DEADBAND: f64 = 1e-9;
+
+/// Where the tool stands relative to the part, and how it is turned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// The tool tip in the part's frame, mm.
+    pub tip: Vector3<f64>,
+    /// The rotation of the tool relative to the part, in the part's frame.
+    pub turn: Rotation3<f64>,
+}
+
+/// A physical effect that no term describes: the value that it adds to an error motion, mm or rad.
+pub type Effect = Arc<dyn Fn(&State<'_>) -> f64 + Send + Sync>;
+
+/// A machine with numbers, ready to run.
+#[derive(Clone)]
+pub struct Plant {
+    names: MachineNames,
+    rotary: Vec<bool>,
+    workpiece: Vec<Body>,
+    tool: Vec<Body>,
+    terms: Vec<PlantTerm>,
+    effects: Vec<(usize, Effect)>,
+    sensors: Sensors,
+    loads: Vec<String>,
+    servos: Vec<Option<Servo>>,
+    deadband: f64,
+}
+
+/// One term of one error motion.
+#[derive(Clone, Debug)]
+struct PlantTerm {
+    motion: usize,
+    /// Its place among the terms of the motion in the calibration.
+    place: usize,
+    name: &'static str,
+    piece: Piece,
+    /// The axis whose drive sees it.
+    drive: Option<usize>,
+}
+
+/// Why a machine and its numbers make no plant, or a plant cannot run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PlantError {
+    /// The names are those of another machine: this link, constant or motion is not among them.
+    OtherMachine(String),
+    /// The nodes and values of a table do not fit together.
+    Table,
+    /// A term reads the temperature of this sensor, and nothing gives it.
+    NoTemperature(String),
+    /// A term reads this load, and nothing gives it.
+    NoLoad(String),
+    /// A column is not as long as the time.
+    Length(String),
+    /// A drive sees only terms of its axis's own motion that the calibration has.
+    NoDriveTerm(String),
+}
+
+impl fmt::Display for PlantError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OtherMachine(what) => write!(formatter, "the calibration is of another machine: {what}"),
+            Self::Table => formatter.write_str("a table's positions and values do not fit together"),
+            Self::NoTemperature(name) => {
+                write!(formatter, "the calibration needs the temperature of `{name}`")
+            }
+            Self::NoLoad(name) => write!(formatter, "the calibration needs the load `{name}`"),
+            Self::Length(what) => write!(formatter, "{what} is not as long as the time"),
+            Self::NoDriveTerm(what) => write!(formatter, "no drive sees {what}"),
+        }
+    }
+}
+
+impl std::error::Error for PlantError {}
+
+/// The state of the machine at one sample: mm, rad, s, degC, units of the loads.
+///
+/// Axes, sensors and loads go by number; what is not there is NaN.
+#[derive(Clone, Copy, Debug)]
+pub struct State<'s> {
+    /// The number of the sample.
+    pub row: usize,
+    /// Time since the recording began.
+    pub time: f64,
+    histories: &'s [History],
+    temperatures: &'s [f64],
+    loads: &'s [f64],
+}
+
+impl State<'_> {
+    fn at(&self, axis: usize, column: impl Fn(&History) -> &Vec<f64>) -> f64 {
+        let history = self.histories.get(axis);
+        history.and_then(|history| column(history).get(self.row)).copied().unwrap_or(f64::NAN)
+    }
+
+    /// The position of an axis behind its position loop.
+    pub fn position(&self, axis: usize) -> f64 {
+        self.at(axis, |history| &history.position)
+    }
+
+    /// The velocity of an axis.
+    pub fn velocity(&self, axis: usize) -> f64 {
+        self.at(axis, |history| &history.velocity)
+    }
+
+    /// The acceleration of an axis.
+    pub fn acceleration(&self, axis: usize) -> f64 {
+        self.at(axis, |history| &history.acceleration)
+    }
+
+    /// The direction of an axis's last real motion: +1 or -1.
+    pub fn direction(&self, axis: usize) -> f64 {
+        self.at(axis, |history| &history.direction)
+    }
+
+    /// The time at which an axis reversed last; NaN before the first reversal.
+    pub fn reversal(&self, axis: usize) -> f64 {
+        self.at(axis, |history| &history.reversal)
+    }
+
+    /// The temperature of a sensor, numbered as in the calibration.
+    pub fn temperature(&self, sensor: usize) -> f64 {
+        self.temperatures.get(sensor).copied().unwrap_or(f64::NAN)
+    }
+
+    /// A load, numbered as in [`Plant::loads`].
+    pub fn load(&self, load: usize) -> f64 {
+        self.loads.get(load).copied().unwrap_or(f64::NAN)
+    }
+}
+
+/// What the plant does at one sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'m> {
+    /// The state that the terms read.
+    pub state: State<'m>,
+    /// The error motions, numbered as the names of the machine: mm or rad.
+    pub motions: &'m [f64],
+    /// The position of each axis as its drive sees it: behind the position loop, with the terms on the drive's side.
+    pub drive: &'m [f64],
+    /// Where the tool really stands.
+    pub pose: Pose,
+}
+
+/// The names of a machine that its calibration may use, from the machine itself: also the error motions that no
+/// direction of the equations sees.
+pub fn names_of(machine: &Machine) -> MachineNames {
+    let letter = |kind: LinkKind| kind.letter().map(String::from);
+    let axes = machine.axes();
+    let constants = machine.constants.iter();
+    let motions = machine.motions.iter().map(|motion| MotionName {
+        name: motion.name.clone(),
+        angular: motion.kind.angular(),
+        axis: machine.links.get(motion.link).and_then(|link| letter(link.kind)),
+    });
+    MachineNames {
+        machine: machine.name.clone(),
+        constants: constants.map(|constant| (constant.name.to_string(), constant.default)).collect(),
+        axes: axes
+            .iter()
+            .map(|(_, link)| AxisName {
+                letter: letter(link.kind).unwrap_or_default(),
+                rotary: matches!(link.kind, LinkKind::Rotary(_)),
+            })
+            .collect(),
+        motions: motions.collect(),
+    }
+}
+
+impl Plant {
+    /// Puts a machine and its numbers together. `names` are those that the calibration was read against: from the
+    /// machine's equations, or from [`names_of`].
+    ///
+    /// # Errors
+    ///
+    /// [`PlantError::OtherMachine`] where names or calibration do not belong to the machine, [`PlantError::Table`].
+    pub fn new(
+        machine: &Machine,
+        names: &MachineNames,
+        calibration: &Calibration,
+    ) -> Result<Self, PlantError> {
+        let constants = &calibration.constants;
+        let branch = |branch| body::branch(machine, branch, names, constants);
+        let mut plant = Self {
+            names: names.clone(),
+            rotary: names.axes.iter().map(|axis| axis.rotary).collect(),
+            workpiece: branch(Branch::Workpiece)?,
+            tool: branch(Branch::Tool)?,
+            terms: Vec::new(),
+            effects: Vec::new(),
+            sensors: calibration.sensors.clone(),
+            loads: Vec::new(),
+            servos: vec![None; names.axes.len()],
+            deadband: DEADBAND,
+        };
+        plant.take_terms(machine, calibration)?;
+        Ok(plant)
+    }
+
+    /// A machine without errors; only its constants have values, in the order of the names, mm.
+    ///
+    /// # Errors
+    ///
+    /// [`PlantError::OtherMachine`] where names or constants do not belong to the machine.
+    pub fn perfect(machine: &Machine, names: &MachineNames, constants: &[f64]) -> Result<Self, PlantError> {
+        let calibration = Calibration {
+            machine: model_dsl::source::Spanned::new(
+                machine.name.clone(),
+                model_dsl::source::Span::default(),
+            ),
+            source: None,
+            constants: constants.to_vec(),
+            limits: model_dsl::calibration::Limits::default(),
+            sensors: Sensors::default(),
+            motions: Vec::new(),
+        };
+        Self::new(machine, names, &calibration)
+    }
+
+    fn take_terms(&mut self, machine: &Machine, calibration: &Calibration) -> Result<(), PlantError> {
+        let mut slowness = vec![0.0; self.names.axes.len()];
+        for listed in &calibration.motions {
+            let motion = listed.motion;
+            let Some(name) = self.names.motions.get(motion) else {
+                return Err(PlantError::OtherMachine(format!("error motion number {motion}")));
+            };
+            let own = own_axis(machine, &self.names, &name.name);
+            for (place, term) in listed.terms.iter().enumerate() {
+                let mut piece = Piece::of(&term.value, &mut self.loads)?;
+                if let Piece::Lag { axis, gain } = piece
+                    && own == Some(axis)
+                    && let Some(slowness) = slowness.get_mut(axis)
+                {
+                    *slowness += 1.0 / gain;
+                    piece = Piece::Loop;
+                }
+                self.terms.push(PlantTerm { motion, place, name: term.value.name(), piece, drive: None });
+            }
+        }
+        for (servo, slowness) in self.servos.iter_mut().zip(slowness) {
+            *servo = (slowness != 0.0).then(|| Servo::First { gain: 1.0 / slowness });
+        }
+        Ok(())
+    }
+
+    /// The names that error motions, axes and constants go by.
+    pub fn names(&self) -> &MachineNames {
+        &self.names
+    }
+
+    /// The loads that the terms read, by number.
+    pub fn loads(&self) -> &[String] {
+        &self.loads
+    }
+
+    /// The sensors that the terms need a temperature of.
+    pub fn temperatures(&self) -> impl Iterator<Item = &str> {
+        self.sensors.inputs().map(|(_, sensor)| sensor.name.value.as_str())
+    }
+
+    /// The position loop of an axis, where it has one.
+    pub fn servo(&self, axis: usize) -> Option<Servo> {
+        self.servos.get(axis).copied().flatten()
+    }
+
+    /// Gives an axis another position loop than the one that its `lag` terms make.
+    #[must_use]
+    pub fn with_servo(mut self, axis: usize, servo: Option<Servo>) -> Self {
+        if let Some(slot) = self.servos.get_mut(axis) {
+            *slot = servo;
+        }
+        self
+    }
+
+    /// Sets how far an axis must move back before its direction turns, mm or rad; [`DEADBAND`] by default.
+    #[must_use]
+    pub fn with_deadband(mut self, deadband: f64) -> Self {
+        self.deadband = deadband;
+        self
+    }
+
+    /// Adds an effect that no term describes to an error motion, by the number of its name.
+    #[must_use]
+    pub fn with_effect(mut self, motion: usize, effect: Effect) -> Self {
+        self.effects.push((motion, effect));
+        self
+    }
+
+    /// Puts a term on the drive's side, so that the drive's own feedback shows it: by the name of the motion, which must
+    /// be the axis's own (EXX of X), and the name of the term, which may stand there several times.
+    ///
+    /// # Errors
+    ///
+    /// [`PlantError::NoDriveTerm`] where the calibration has no such term, or the motion is not an axis's own.
+    pub fn see_at_drive(&mut self, machine: &Machine, motion: &str, term: &str) -> Result<(), PlantError> {
+        let missing = || PlantError::NoDriveTerm(format!("`{term}` of {motion}"));
+        let number = self.names.motion(motion).ok_or_else(missing)?;
+        let name = self.names.motions.get(number).map_or("", |motion| motion.name.as_str());
+        let axis = own_axis(machine, &self.names, name).ok_or_else(missing)?;
+        let mut found = false;
+        for own in self.terms.iter_mut().filter(|own| own.motion == number && own.name == term) {
+            own.drive = Some(axis);
+            found = true;
+        }
+        if found { Ok(()) } else { Err(missing()) }
+    }
+
+    /// Puts one term on the drive's side, by the number of its motion and its place among the motion's terms.
+    ///
+    /// # Errors
+    ///
+    /// [`PlantError::NoDriveTerm`] where there is no such term, or the motion is not an axis's own.
+    pub fn see_term_at_drive(
+        &mut self,
+        machine: &Machine,
+        motion: usize,
+        place: usize,
+    ) -> Result<(), PlantError> {
+        let missing = || PlantError::NoDriveTerm(format!("term {place} of error motion {motion}"));
+        let name = self.names.motions.get(motion).map_or("", |motion| motion.name.as_str());
+        let axis = own_axis(machine, &self.names, name).ok_or_else(missing)?;
+        let mut own = self.terms.iter_mut();
+        let term = own.find(|own| own.motion == motion && own.place == place).ok_or_else(missing)?;
+        term.drive = Some(axis);
+        Ok(())
+    }
+
+    /// Where the tool stands at positions of the axes (mm, rad) with error motions numbered as the names (mm, rad); what
+    /// is missing at the end of either list is zero.
+    pub fn pose(&self, positions: &[f64], motions: &[f64]) -> Pose {
+        let part = body::end(&self.workpiece, positions, motions);
+        let tool = body::end(&self.tool, positions, motions);
+        let back = part.rotation.inverse();
+        Pose { tip: back * (tool.origin - part.origin), turn: back * tool.rotation }
+    }
+
+    /// Where the tool stands without errors.
+    pub fn nominal(&self, positions: &[f64]) -> Pose {
+        self.pose(positions, &[])
+    }
+
+    /// The direction, in the part's frame, about which the tool turns relative to the part when a rotary axis is
+    /// programmed to move forward; nothing for a slide. The errors are left out.
+    pub fn turning_direction(&self, axis: usize, positions: &[f64]) -> Option<Vector3<f64>> {
+        if !*self.rotary.get(axis)? {
+            return None;
+        }
+        let back = body::end(&self.workpiece, positions, &[]).rotation.inverse();
+        let carried = body::direction_of(&self.tool, axis, positions).map(|direction| back * direction);
+        // Where the axis turns the part, the tool turns the other way.
+        carried.or_else(|| {
+            body::direction_of(&self.workpiece, axis, positions).map(|direction| -(back * direction))
+        })
+    }
+
+    /// Runs through the commands and tells what the machine does at every sample.
+    ///
+    /// # Errors
+    ///
+    /// [`PlantError::NoTemperature`] and [`PlantError::NoLoad`] where a term reads what the commands lack,
+    /// [`PlantError::Length`] where columns differ in length.
+    pub fn run(&self, commands: &Commands, mut each: impl FnMut(&Moment<'_>)) -> Result<(), PlantError> {
+        commands.check(self.names.axes.len())?;
+        let histories = self.histories(commands);
+        let inputs = self.inputs(commands)?;
+        let loads = self.load_columns(commands)?;
+        let mut readings = SensorReadings::new(&self.sensors);
+        let mut memories = vec![Memory::default(); self.terms.len()];
+        let mut positions = vec![0.0; self.names.axes.len()];
+        let mut motions = vec![0.0; self.names.motions.len()];
+        let mut drive = positions.clone();
+        let mut row_loads = vec![0.0; loads.len()];
+        for (row, &time) in commands.time.iter().enumerate() {
+            let at = |column: &[f64]| column.get(row).copied().unwrap_or(f64::NAN);
+            let temperatures =
+                readings.update(|sensor| inputs.get(sensor).copied().flatten().map_or(f64::NAN, at));
+            row_loads.iter_mut().zip(&loads).for_each(|(slot, column)| *slot = at(column));
+            positions.iter_mut().zip(&histories).for_each(|(slot, history)| *slot = at(&history.position));
+            let state = State { row, time, histories: &histories, temperatures, loads: &row_loads };
+            drive.copy_from_slice(&positions);
+            self.evaluate(&state, &mut memories, &mut motions, &mut drive);
+            let pose = self.pose(&positions, &motions);
+            each(&Moment { state, motions: &motions, drive: &drive, pose });
+        }
+        Ok(())
+    }
+
+    fn evaluate(&self, state: &State<'_>, memories: &mut [Memory], motions: &mut [f64], drive: &mut [f64]) {
+        motions.fill(0.0);
+        for (term, memory) in self.terms.iter().zip(memories) {
+            let value = term.piece.value(state, memory);
+            if let Some(motion) = motions.get_mut(term.motion) {
+                *motion += value;
+            }
+            if let Some(position) = term.drive.and_then(|axis| drive.get_mut(axis)) {
+                *position += value;
+            }
+        }
+        for (motion, effect) in &self.effects {
+            if let Some(motion) = motions.get_mut(*motion) {
+                *motion += effect(state);
+            }
+        }
+    }
+
+    fn histories(&self, commands: &Commands) -> Vec<History> {
+        let axes = commands.positions.iter().zip(&self.servos);
+        let histories = axes.map(|(command, servo)| {
+            let position = match servo {
+                Some(servo) => servo.follow(&commands.time, command),
+                None => command.clone(),
+            };
+            History::of(&commands.time, &commands.run, position, self.deadband)
+        });
+        histories.collect()
+    }
+
+    /// The column of each sensor that is an input and used, by its number.
+    fn inputs<'c>(&self, commands: &'c Commands) -> Result<Vec<Option<&'c [f64]>>, PlantError> {
+        let sensors = self.sensors.iter().map(|sensor| {
+            if sensor.kind != SensorKind::Input {
+                return Ok(None);
+            }
+            let name = &sensor.name.value;
+            match commands.temperatures.iter().find(|column| column.name == *name) {
+                Some(column) => Ok(Some(column.values.as_slice())),
+                None if sensor.used => Err(PlantError::NoTemperature(name.clone())),
+                None => Ok(None),
+            }
+        });
+        sensors.collect()
+    }
+
+    fn load_columns<'c>(&self, commands: &'c Commands) -> Result<Vec<&'c [f64]>, PlantError> {
+        let loads = self.loads.iter().map(|name| {
+            let found = commands.loads.iter().find(|column| column.name == *name);
+            found.map(|column| column.values.as_slice()).ok_or_else(|| PlantError::NoLoad(name.clone()))
+        });
+        loads.collect()
+    }
+}
+
+impl fmt::Debug for Plant {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let effects: Vec<usize> = self.effects.iter().map(|(motion, _)| *motion).collect();
+        formatter
+            .debug_struct("Plant")
+            .field("machine", &self.names.machine)
+            .field("terms", &self.terms)
+            .field("effects", &effects)
+            .field("servos", &self.servos)
+            .finish_non_exhaustive()
+    }
+}
+
+/// The axis whose own motion, actual minus commanded, an error motion is: EXX of X, ECC of C.
+fn own_axis(machine: &Machine, names: &MachineNames, motion: &str) -> Option<usize> {
+    let motion = machine.motions.iter().find(|known| known.name == motion)?;
+    let link = machine.links.get(motion.link)?;
+    let own = match (link.kind, motion.kind) {
+        (LinkKind::Slide(_), MotionKind::Linear(axis)) | (LinkKind::Rotary(_), MotionKind::Angular(axis)) => {
+            axis == link.along.axis
+        }
+        _ => false,
+    };
+    // Counted the other way, a lag would run ahead: then it is a term like any other.
+    let letter = link.kind.letter().filter(|_| own && motion.sign > 0)?;
+    names.axis(letter.encode_utf8(&mut [0; 4]))
+}

@@ -1,0 +1,154 @@
+//! The history of one axis: what the terms of error motions read of it.
+//!
+//! In: times, runs and positions behind the position loop. Out, one entry a sample: velocity and acceleration by
+//! differences within the run, the direction of the last real motion and the time of the last reversal.
+
+/// One axis over a whole recording; mm or rad, and s.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct History {
+    /// The position behind the position loop.
+    pub position: Vec<f64>,
+    /// The velocity: central differences, one-sided at the ends of a run.
+    pub velocity: Vec<f64>,
+    /// The acceleration: second differences; at the ends of a run that of the neighbour.
+    pub acceleration: Vec<f64>,
+    /// +1 or -1: the direction of the last real motion, +1 before the first.
+    pub direction: Vec<f64>,
+    /// The time of the sample at which the direction turned last, s; NaN before the first reversal.
+    pub reversal: Vec<f64>,
+}
+
+impl History {
+    /// Follows an axis; a motion back by no more than `deadband` is no real motion.
+    pub fn of(time: &[f64], run: &[i64], position: Vec<f64>, deadband: f64) -> Self {
+        let mut history = Self { position, ..Self::default() };
+        for (start, end) in stretches(run, history.position.len()) {
+            let time = time.get(start..end).unwrap_or_default();
+            let position = history.position.get(start..end).unwrap_or_default();
+            history.velocity.extend(velocities(time, position));
+            history.acceleration.extend(accelerations(time, position));
+        }
+        let mut tracker = Tracker::default();
+        for (&time, &position) in time.iter().zip(&history.position) {
+            tracker.take(time, position, deadband);
+            history.direction.push(tracker.direction);
+            history.reversal.push(tracker.reversal);
+        }
+        history
+    }
+}
+
+/// The stretches of equal run number, as ranges of rows.
+fn stretches(run: &[i64], rows: usize) -> Vec<(usize, usize)> {
+    let mut found = Vec::new();
+    let mut start = 0;
+    for row in 1..=rows {
+        if row == rows || run.get(row) != run.get(row - 1) {
+            found.push((start, row));
+            start = row;
+        }
+    }
+    found.retain(|(start, end)| start < end);
+    found
+}
+
+fn slope(time: &[f64], position: &[f64], from: usize, to: usize) -> f64 {
+    let at = |column: &[f64], row: usize| column.get(row).copied().unwrap_or(f64::NAN);
+    let step = at(time, to) - at(time, from);
+    if step > 0.0 { (at(position, to) - at(position, from)) / step } else { 0.0 }
+}
+
+fn velocities(time: &[f64], position: &[f64]) -> Vec<f64> {
+    let last = position.len().saturating_sub(1);
+    (0..position.len()).map(|row| slope(time, position, row.saturating_sub(1), (row + 1).min(last))).collect()
+}
+
+fn accelerations(time: &[f64], position: &[f64]) -> Vec<f64> {
+    let rows = position.len();
+    if rows < 3 {
+        return vec![0.0; rows];
+    }
+    let at = |row: usize| {
+        let row = row.clamp(1, rows - 2);
+        let (before, after) = (slope(time, position, row - 1, row), slope(time, position, row, row + 1));
+        let span = time.get(row + 1).zip(time.get(row - 1)).map_or(0.0, |(end, start)| end - start);
+        if span > 0.0 { 2.0 * (after - before) / span } else { 0.0 }
+    };
+    (0..rows).map(at).collect()
+}
+
+/// Where an axis came from and which way it goes.
+#[derive(Debug)]
+struct Tracker {
+    /// The furthest position in the present direction.
+    furthest: Option<f64>,
+    moved: bool,
+    direction: f64,
+    reversal: f64,
+}
+
+impl Default for Tracker {
+    fn default() -> Self {
+        Self { furthest: None, moved: false, direction: 1.0, reversal: f64::NAN }
+    }
+}
+
+impl Tracker {
+    fn take(&mut self, time: f64, position: f64, deadband: f64) {
+        if !position.is_finite() {
+            return;
+        }
+        let Some(furthest) = self.furthest else {
+            self.furthest = Some(position);
+            return;
+        };
+        let gone = position - furthest;
+        if !self.moved {
+            if gone.abs() > deadband {
+                self.moved = true;
+                self.direction = gone.signum();
+                self.furthest = Some(position);
+            }
+        } else if gone * self.direction >= 0.0 {
+            self.furthest = Some(position);
+        } else if gone.abs() > deadband {
+            self.direction = -self.direction;
+            self.reversal = time;
+            self.furthest = Some(position);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_turn_at_real_motions_only() {
+        let time = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+        let positions = vec![5.0, 5.0, 4.0, 4.0 + 1e-7, 3.0, 3.5, 3.5];
+        let history = History::of(&time, &[1; 7], positions, 1e-6);
+        assert_eq!(history.direction, [1.0, 1.0, -1.0, -1.0, -1.0, 1.0, 1.0]);
+        assert!(history.reversal[4].is_nan(), "the first motion is no reversal");
+        assert_eq!(history.reversal[5..], [5.0, 5.0]);
+    }
+
+    #[test]
+    fn differences_stay_within_a_run() {
+        let time = [0.0, 1.0, 3.0, 10.0, 11.0, 12.0];
+        let parabola = |t: f64| 2.0 * t * t;
+        let positions: Vec<f64> = time.iter().map(|t| parabola(*t)).collect();
+        let history = History::of(&time, &[1, 1, 1, 2, 2, 2], positions, 0.0);
+        assert_eq!(history.acceleration, [4.0; 6]);
+        assert_eq!(history.velocity[0], 2.0);
+        assert_eq!(history.velocity[4], 44.0);
+    }
+
+    #[test]
+    fn short_and_empty_runs_have_no_acceleration() {
+        assert_eq!(History::of(&[], &[], Vec::new(), 0.0), History::default());
+        let history = History::of(&[0.0, 1.0, 2.0], &[1, 2, 2], vec![0.0, 1.0, 3.0], 0.0);
+        assert_eq!(history.acceleration, [0.0; 3]);
+        assert_eq!(history.velocity, [0.0, 2.0, 2.0]);
+    }
+}

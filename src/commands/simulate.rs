@@ -1,0 +1,154 @@
+//! `abbe simulate`: the recording that a calibration predicts, as two files.
+
+use std::path::{Path, PathBuf};
+
+use model_dsl::calibration::MachineNames;
+use model_dsl::diagnostic::Diagnostics;
+use model_dsl::source::SourceFile;
+use model_dsl::yaml;
+use simulation::file::{self, PathFile};
+use simulation::write::{self, Head};
+use simulation::{Plant, Simulated};
+
+use crate::arguments::Simulate;
+use crate::calibrated::{self, Calibrated};
+use crate::failure::Failure;
+use crate::load;
+use crate::output::{rendered, show, warn};
+
+/// Runs the command.
+pub(crate) fn run(command: &Simulate) -> Result<(), Failure> {
+    let calibrated = calibrated::read(&command.calibration)?;
+    let names = calibrated.equations.names();
+    let known = command.known.as_deref().map(|known| known_calibration(known, &names)).transpose()?;
+    let output = Output::of(&command.output);
+    output.check(command.force)?;
+    let simulated = predicted(command, &calibrated, &names)?;
+    let folder = output.folder()?;
+    let machine = machine_name(&calibrated.calibration.machine.value, &command.calibration, &folder);
+    let calibration = known.map(|known| relative(&folder, &known));
+    let head = Head { machine, calibration, data: output.data.clone(), axes: names.axes };
+    write::files(&simulated, &head, &output.recording)
+        .map_err(|error| Failure::io(&format!("cannot write {}", output.recording.display()), &error))?;
+    let rows = simulated.time.len();
+    warn(&format!("{rows} rows: {} and {}", output.recording.display(), output.data_path().display()));
+    Ok(())
+}
+
+/// What the calibration predicts along the path.
+fn predicted(
+    command: &Simulate,
+    calibrated: &Calibrated,
+    names: &MachineNames,
+) -> Result<Simulated, Failure> {
+    let source = load::read(&command.path)?;
+    let wrong = |error: &dyn std::fmt::Display| Failure::Wrong(format!("error: {error}"));
+    let mut plant =
+        Plant::new(&calibrated.machine, names, &calibrated.calibration).map_err(|error| wrong(&error))?;
+    let PathFile { mut scenario, .. } = read_path(&source, calibrated, names, &mut plant)?;
+    if let Some(seed) = command.seed {
+        scenario.measurement.seed = seed;
+    }
+    simulation::simulate(&plant, &scenario).map_err(|error| wrong(&error))
+}
+
+fn read_path(
+    source: &SourceFile,
+    calibrated: &Calibrated,
+    names: &MachineNames,
+    plant: &mut Plant,
+) -> Result<PathFile, Failure> {
+    let mut diagnostics = Diagnostics::new();
+    let root = yaml::read(source, &mut diagnostics);
+    let file = root.and_then(|root| file::read(&root, &calibrated.machine, names, &mut diagnostics));
+    if let Some(file) = &file {
+        file.fit(&calibrated.machine, plant, &mut diagnostics);
+    }
+    match file.filter(|_| !diagnostics.has_errors()) {
+        Some(file) => {
+            show(source, &diagnostics);
+            Ok(file)
+        }
+        None => Err(Failure::Wrong(rendered(source, &diagnostics))),
+    }
+}
+
+/// The calibration that the recording names: one of the same machine.
+fn known_calibration(path: &Path, names: &MachineNames) -> Result<PathBuf, Failure> {
+    let known = calibrated::read(path)?;
+    if known.equations.names() != *names {
+        return Err(Failure::Wrong(format!(
+            "error: {} is a calibration of {}, not of {}\nhelp: --known takes another calibration of the same machine",
+            path.display(),
+            known.equations.machine,
+            names.machine
+        )));
+    }
+    Ok(path.to_owned())
+}
+
+/// Where the two files go.
+struct Output {
+    recording: PathBuf,
+    /// The name of the data file, beside the recording.
+    data: String,
+}
+
+impl Output {
+    fn of(path: &Path) -> Self {
+        let is_file = path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml");
+        match path.file_stem().filter(|_| is_file) {
+            Some(stem) => {
+                Self { recording: path.to_owned(), data: format!("{}.csv", stem.to_string_lossy()) }
+            }
+            None => Self { recording: path.join("recording.yaml"), data: "data.csv".to_owned() },
+        }
+    }
+
+    fn data_path(&self) -> PathBuf {
+        self.recording.with_file_name(&self.data)
+    }
+
+    fn check(&self, force: bool) -> Result<(), Failure> {
+        let there = [self.recording.clone(), self.data_path()].into_iter().find(|path| path.exists());
+        match there.filter(|_| !force) {
+            Some(path) => Err(Failure::Wrong(format!(
+                "error: {} is there already\nhelp: --output takes another place, --force replaces it",
+                path.display()
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// The folder, made where it is missing.
+    fn folder(&self) -> Result<PathBuf, Failure> {
+        let folder = match self.recording.parent() {
+            Some(parent) if parent != Path::new("") => parent.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        std::fs::create_dir_all(&folder)
+            .map_err(|error| Failure::io(&format!("cannot make {}", folder.display()), &error))?;
+        Ok(folder)
+    }
+}
+
+/// The machine as the recording names it: a file's path from the recording's folder, or the name as it is.
+fn machine_name(name: &str, calibration: &Path, folder: &Path) -> String {
+    let file = calibration.parent().map_or_else(|| PathBuf::from(name), |parent| parent.join(name));
+    if file.is_file() { relative(folder, &file) } else { name.to_owned() }
+}
+
+/// The path of a file as seen from a folder; the whole path where they have nothing in common.
+fn relative(folder: &Path, file: &Path) -> String {
+    let (Ok(from), Ok(to)) = (folder.canonicalize(), file.canonicalize()) else {
+        return file.display().to_string();
+    };
+    let common = from.components().zip(to.components()).take_while(|(left, right)| left == right).count();
+    let up = from.components().skip(common).map(|_| "..".to_owned());
+    let down = to.components().skip(common).map(|part| part.as_os_str().to_string_lossy().into_owned());
+    match common {
+        // Not even the drive is the same.
+        0 => to.display().to_string(),
+        _ => up.chain(down).collect::<Vec<_>>().join("/"),
+    }
+}

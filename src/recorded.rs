@@ -1,0 +1,272 @@
+//! Recordings with their machines. In: recording files. Out: the data in columns, the machine, its equations and the
+//! calibration that the recording names; or every mistake, located.
+
+use std::path::{Path, PathBuf};
+
+use diagnosis::recording::{self, Header, Recording};
+use model_dsl::diagnostic::{Diagnostic, Diagnostics};
+use model_dsl::equations::Equations;
+use model_dsl::machine::Machine;
+use model_dsl::source::{SourceFile, Span, Spanned};
+use model_dsl::yaml;
+
+use crate::calibrated::{self, Calibrated};
+use crate::failure::Failure;
+use crate::load;
+use crate::output::{rendered, show, warn};
+
+/// A recording and all that it names.
+pub(crate) struct Recorded {
+    /// The recording file.
+    pub(crate) source: SourceFile,
+    /// The machine that was recorded.
+    pub(crate) machine: Machine,
+    /// Its equations.
+    pub(crate) equations: Equations,
+    /// What is already known of it, where the recording names a calibration.
+    pub(crate) calibration: Option<Calibrated>,
+    /// The data.
+    pub(crate) recording: Recording,
+    /// The calibration's file, where there is one.
+    calibration_path: Option<PathBuf>,
+    /// Where the file names its machine and its calibration.
+    named: Named,
+}
+
+struct Named {
+    machine: Span,
+    calibration: Option<Span>,
+}
+
+/// Reads a recording file, its data, and the machine and the calibration that it names. All paths in the file are
+/// counted from its own folder.
+pub(crate) fn read(path: &Path) -> Result<Recorded, Failure> {
+    let source = load::read(path)?;
+    let folder = path.parent();
+    let mut diagnostics = Diagnostics::new();
+    let root = yaml::read(&source, &mut diagnostics).ok_or_else(|| wrong(&source, &diagnostics))?;
+    let name = recording::machine_of(&root, &mut diagnostics).ok_or_else(|| wrong(&source, &diagnostics))?;
+    let loaded = load::machine(&name.value, folder)
+        .map_err(|failure| unusable(&source, "E0622", "machine", &name, failure))?;
+    let (machine, equations) = (loaded.compiled.machine, loaded.compiled.equations);
+    let header = recording::read_header(&root, &equations, &mut diagnostics);
+    let header = header.filter(|_| !diagnostics.has_errors()).ok_or_else(|| wrong(&source, &diagnostics))?;
+    show(&source, &diagnostics);
+    let calibration_path = header.calibration.as_ref().map(|name| in_folder(folder, &name.value));
+    let calibration = read_calibration(&source, &header, calibration_path.as_deref(), &equations)?;
+    let recording = read_data(&header, folder, &source)?;
+    let named = Named { machine: name.span, calibration: header.calibration.map(|name| name.span) };
+    Ok(Recorded { source, machine, equations, calibration, recording, calibration_path, named })
+}
+
+/// Reads several recordings of one machine with one calibration.
+pub(crate) fn read_all(paths: &[PathBuf]) -> Result<Vec<Recorded>, Failure> {
+    let mut all: Vec<Recorded> = Vec::new();
+    for path in paths {
+        let recorded = read(path)?;
+        if let Some(first) = all.first() {
+            first.check_same(&recorded)?;
+        }
+        all.push(recorded);
+    }
+    Ok(all)
+}
+
+fn read_calibration(
+    source: &SourceFile,
+    header: &Header,
+    path: Option<&Path>,
+    equations: &Equations,
+) -> Result<Option<Calibrated>, Failure> {
+    let (Some(name), Some(path)) = (&header.calibration, path) else { return Ok(None) };
+    let calibrated =
+        calibrated::read(path).map_err(|failure| unusable(source, "E0623", "calibration", name, failure))?;
+    let of = &calibrated.equations;
+    if of.names() == equations.names() {
+        return Ok(Some(calibrated));
+    }
+    let message = if of.machine == equations.machine {
+        format!("the calibration is for another machine that is named {} too", of.machine)
+    } else {
+        format!("the calibration is for {}, the recording of {}", of.machine, equations.machine)
+    };
+    let mistake =
+        Diagnostic::error("E0624", name.span, message).also(header.machine.span, "the machine recorded");
+    Err(one(source, mistake.help("name the machine file that the calibration names, or another calibration")))
+}
+
+fn read_data(header: &Header, folder: Option<&Path>, source: &SourceFile) -> Result<Recording, Failure> {
+    let path = in_folder(folder, &header.data.value);
+    let mut recording = header.read_data(&path).map_err(|error| Failure::No(error.to_string()))?;
+    for note in &recording.notes {
+        warn(&format!("note: {note}"));
+    }
+    source.name().clone_into(&mut recording.file);
+    Ok(recording)
+}
+
+fn in_folder(folder: Option<&Path>, name: &str) -> PathBuf {
+    folder.map_or_else(|| PathBuf::from(name), |folder| folder.join(name))
+}
+
+fn wrong(source: &SourceFile, diagnostics: &Diagnostics) -> Failure {
+    Failure::Wrong(rendered(source, diagnostics))
+}
+
+fn one(source: &SourceFile, diagnostic: Diagnostic) -> Failure {
+    let mut diagnostics = Diagnostics::new();
+    diagnostics.push(diagnostic);
+    wrong(source, &diagnostics)
+}
+
+/// What a recording names cannot be used, for a reason that was found in another file.
+fn unusable(
+    source: &SourceFile,
+    code: &'static str,
+    what: &str,
+    name: &Spanned<String>,
+    failure: Failure,
+) -> Failure {
+    let Failure::Wrong(reason) = failure else { return failure };
+    let mistake = Diagnostic::error(code, name.span, format!("{what} `{}` cannot be used", name.value));
+    let mut diagnostics = Diagnostics::new();
+    diagnostics.push(mistake.label("named here; the reason stands below"));
+    Failure::Wrong(format!("{}\n{reason}", rendered(source, &diagnostics).trim_end()))
+}
+
+impl Recorded {
+    /// Reports a recording that is of another machine, or counts on another calibration (E0625).
+    fn check_same(&self, other: &Self) -> Result<(), Failure> {
+        let first = self.source.name();
+        if self.equations.names() != other.equations.names() {
+            let message = format!(
+                "{} is a recording of {}, {first} one of {}",
+                other.source.name(),
+                other.equations.machine,
+                self.equations.machine
+            );
+            let mistake = Diagnostic::error("E0625", other.named.machine, message);
+            return Err(one(
+                &other.source,
+                mistake.help("give recordings of one machine, or one call for each machine"),
+            ));
+        }
+        let calibration =
+            |recorded: &Self| recorded.calibration.as_ref().map(|known| known.calibration.clone());
+        if calibration(self) == calibration(other) {
+            return Ok(());
+        }
+        let named = |recorded: &Self| match &recorded.calibration_path {
+            Some(path) => format!("counts on {}", path.display()),
+            None => "names no calibration".to_owned(),
+        };
+        let message = format!("{} {}, {first} {}", other.source.name(), named(other), named(self));
+        let place = other.named.calibration.unwrap_or(other.named.machine);
+        let mistake = Diagnostic::error("E0625", place, message);
+        Err(one(&other.source, mistake.help("let all recordings name the same calibration")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CHANNELS: &str = "data: d.csv\ninstrument: position\nchannels: {time: {column: t, unit: s}, measured.x: {column: x, unit: mm}}\n";
+
+    /// A folder with the files that all tests need, and some of their own.
+    fn folder(test: &str, files: &[(&str, &str)]) -> Folder {
+        let folder = std::env::temp_dir().join(format!("abbe-recorded-{}-{test}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let common = [
+            ("d.csv", "t,x\n5,1\n6,2\n"),
+            ("stage.yaml", "abbe: 1\nname: stage\ntopology: FX\n"),
+            ("other.yaml", "abbe: 1\nname: stage\ntopology: FY\n"),
+            (
+                "known.yaml",
+                "calibration: 1\nmachine: stage.yaml\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\n",
+            ),
+        ];
+        for (name, text) in common.iter().chain(files) {
+            std::fs::write(folder.join(name), text).unwrap();
+        }
+        Folder(folder)
+    }
+
+    /// A folder that goes with its test.
+    struct Folder(PathBuf);
+
+    impl Folder {
+        fn join(&self, name: &str) -> PathBuf {
+            self.0.join(name)
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = std::fs::remove_dir_all(&self.0);
+        }
+    }
+
+    fn recording(head: &str) -> String {
+        format!("recording: 1\n{head}\n{CHANNELS}")
+    }
+
+    fn wrong<T>(result: Result<T, Failure>) -> String {
+        match result {
+            Err(Failure::Wrong(text) | Failure::No(text)) => text,
+            _ => panic!("it was read"),
+        }
+    }
+
+    #[test]
+    fn everything_is_found_from_the_recording_s_folder() {
+        let text = recording("machine: stage.yaml\ncalibration: known.yaml");
+        let folder = folder("found", &[("r.yaml", &text)]);
+        let recorded = read(&folder.join("r.yaml")).ok().unwrap();
+        assert_eq!(recorded.machine.name, "stage");
+        assert_eq!(recorded.equations.machine, "stage");
+        assert!(recorded.calibration.is_some());
+        assert_eq!(recorded.recording.time, [0.0, 1.0]);
+        assert_eq!(recorded.recording.file, folder.join("r.yaml").display().to_string());
+        let both = read_all(&[folder.join("r.yaml"), folder.join("r.yaml")]).ok().unwrap();
+        assert_eq!(both.len(), 2);
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_marked_where_it_is_named() {
+        let files = [
+            ("machine.yaml", recording("machine: stge.yaml"), "E0622", "no machine `stge.yaml`"),
+            ("missing.yaml", recording("machine: FX\ncalibration: none.yaml"), "E0623", "cannot read"),
+            (
+                "another.yaml",
+                recording("machine: FX\ncalibration: known.yaml"),
+                "E0624",
+                "for stage, the recording of FX",
+            ),
+            (
+                "alike.yaml",
+                recording("machine: other.yaml\ncalibration: known.yaml"),
+                "E0624",
+                "that is named stage too",
+            ),
+            ("data.yaml", recording("machine: FX").replace("d.csv", "e.csv"), "e.csv: it cannot be read", ""),
+        ];
+        for (name, text, code, part) in files {
+            let folder = folder("marked", &[(name, &text)]);
+            let said = wrong(read(&folder.join(name)));
+            assert!(said.contains(code) && said.contains(part), "{said}");
+        }
+    }
+
+    #[test]
+    fn recordings_given_together_are_of_one_machine() {
+        let (one, two) = (recording("machine: stage.yaml"), recording("machine: FX"));
+        let three = recording("machine: stage.yaml\ncalibration: known.yaml");
+        let files = [("one.yaml", one.as_str()), ("two.yaml", two.as_str()), ("three.yaml", three.as_str())];
+        let folder = folder("together", &files);
+        for other in ["two.yaml", "three.yaml"] {
+            let said = wrong(read_all(&[folder.join("one.yaml"), folder.join(other)]));
+            assert!(said.contains("E0625") && said.contains("one.yaml") && said.contains(other), "{said}");
+        }
+    }
+}

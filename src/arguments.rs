@@ -60,8 +60,20 @@ pub(crate) struct Expand {
 #[derive(Args)]
 pub(crate) struct Diagnose {
     /// Recordings of one machine, fitted together.
-    #[arg(required = true)]
+    #[arg(required = true, value_name = "RECORDING")]
     pub(crate) recordings: Vec<PathBuf>,
+    /// How to write the diagnosis.
+    #[arg(long, value_enum, default_value_t = ReportFormat::Text)]
+    pub(crate) format: ReportFormat,
+    /// Write the known calibration with the findings added; a file that is there is replaced as a whole.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) write_calibration: Option<PathBuf>,
+    /// A recording of the same machine that is not fitted: the findings are tested on it.
+    #[arg(long, value_name = "RECORDING")]
+    pub(crate) holdout: Option<PathBuf>,
+    /// Show no progress.
+    #[arg(long)]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Args)]
@@ -121,6 +133,16 @@ pub(crate) enum Format {
     Json,
     /// A batch file for Maxima.
     Maxima,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum ReportFormat {
+    /// For a person at a terminal.
+    Text,
+    /// The schema abbe-diagnosis/1.
+    Json,
+    /// One self-contained page.
+    Html,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -11,11 +11,14 @@ use crate::dynamics;
 use crate::fit::{self, Fit};
 use crate::judge::{self, Tries};
 use crate::kinship::{self, Kin};
-use crate::model::{Effect, Fitted, Model};
+use crate::local::Feature;
+use crate::model::{Effect, Fitted, Model, Place, Side};
 use crate::noise::{self, Noise};
 use crate::observations::Course;
 use crate::search::{Choice, rivals};
 use crate::study::Study;
+use crate::sweep::Swept;
+use crate::terms::Shape;
 use crate::waves::{self, Weighted};
 
 /// The most rounds.
@@ -70,6 +73,62 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     let (fit, appraisal) = judge::uphold(study, fit, always, &travels, tries);
     trace(study, &fit.model, &appraisal);
     Found { fit, appraisal, pool, travels, always, tries }
+}
+
+/// How many nodes a table gets, at most.
+const NODES: usize = 24;
+
+/// The model with a table for a feature that covers much of an axis, where the judge upholds it.
+pub(crate) fn with_table(study: &mut Study<'_>, found: &Found, feature: &Feature) -> Option<Found> {
+    let effect = table(study, found, feature)?;
+    let mut model = found.fit.model.clone();
+    // The table takes over what smooth terms of the same motion said.
+    let covered = |fitted: &Fitted| {
+        fitted.effect.motion() == effect.motion() && matches!(fitted.effect.shape, Shape::Polynomial { .. })
+    };
+    model.retain(|fitted| !covered(fitted));
+    let coefficients = vec![0.0; effect.shape.columns()];
+    model.push(Fitted { effect: effect.clone(), coefficients });
+    let fit = fit::refine(study, model, &found.appraisal.noises, &found.travels);
+    let (fit, appraisal) = judge::uphold(study, fit, found.always, &found.travels, found.tries);
+    let upheld = fit.model.iter().any(|fitted| fitted.effect == effect);
+    let (pool, travels) = (found.pool.clone(), found.travels.clone());
+    upheld.then_some(Found { fit, appraisal, pool, travels, always: found.always, tries: found.tries })
+}
+
+/// The motion of which a table would explain most of a feature.
+pub(crate) fn table_motion(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<usize> {
+    table(study, found, feature).and_then(|effect| effect.motion())
+}
+
+/// The table of that motion of the feature's axis that lowers the weighted sum of squares most; simpler names first.
+fn table(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Effect> {
+    let travel = found.travels[feature.axis];
+    let nodes = NODES.min(feature.profile.len() / 2).max(2);
+    let at = |node: usize| travel.low + travel.range() * crate::number(node) / crate::number(nodes - 1);
+    let shape =
+        Shape::Table { axis: feature.axis, nodes: (0..nodes).map(at).collect(), directed: feature.direction != 0.0 };
+    let motions = study.equations.motions.iter().enumerate();
+    let tables: Vec<Effect> = motions
+        .filter(|(_, known)| known.axis == Some(feature.axis) && !known.alignment)
+        .map(|(motion, _)| Effect { place: Place::Motion { motion, side: Side::After }, shape: shape.clone() })
+        .collect();
+    let model = &found.fit.model;
+    let noises: Vec<Vec<Noise>> =
+        found.appraisal.noises.iter().map(|channels| channels.iter().map(Noise::as_white).collect()).collect();
+    let mut regressors: Vec<Regressor> = model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+    regressors.extend(tables.iter().cloned().map(Regressor::of));
+    let design = Design::new(study, model, &noises, regressors);
+    let (products, _) = design.fitted();
+    let mut swept = Swept::new(&products);
+    for column in (0..model.len()).flat_map(|number| design.columns(number)) {
+        swept.take(column);
+    }
+    let gain = |number: usize| {
+        let columns: Vec<usize> = design.columns(model.len() + number).collect();
+        swept.promise(&columns).0 - candidates::simplicity(study, &tables[number])
+    };
+    (0..tables.len()).max_by(|a, b| gain(*a).total_cmp(&gain(*b))).map(|best| tables[best].clone())
 }
 
 fn trace(study: &Study<'_>, model: &Model, appraisal: &Appraisal) {

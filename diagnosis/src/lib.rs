@@ -1,10 +1,12 @@
 //! Diagnosis: what a calibration left out, found from recordings of the real machine.
 //!
-//! In: the equations of a machine, what its calibration knows, and recordings. Out: a [`report`](crate) of what the model
-//! lacks: located, named, fitted, tested on held-out data, and written as terms that the compiler takes.
+//! In: the equations of a machine, what its calibration knows, and recordings. Out: a [`Diagnosis`] of what the model lacks:
+//! located, named, fitted, tested on held-out data, and written as terms that the compiler takes.
 
+mod alternatives;
 mod appraisal;
 mod candidates;
+mod conclude;
 mod design;
 pub mod diagnosis;
 mod dynamics;
@@ -12,38 +14,57 @@ mod engine;
 mod fit;
 mod judge;
 mod kinship;
+mod local;
 mod model;
 mod noise;
 mod observations;
 mod outliers;
+mod parameters;
 pub mod recording;
+mod repeats;
+pub mod report;
 mod search;
 mod states;
 mod study;
 mod sweep;
 mod terms;
 mod waves;
+mod words;
+mod zeros;
 
 use model_dsl::calibration::Calibration;
 use model_dsl::equations::Equations;
 
+use diagnosis::Diagnosis;
 use recording::Recording;
 
-/// For now: prints what the engine finds.
-pub fn probe(equations: &Equations, calibration: Option<&Calibration>, recordings: &[&Recording]) -> String {
-    let mut study = study::Study::new(equations, calibration, recordings);
-    let found = { let always = candidates::always(&study); engine::find(&mut study, always, &mut |_| {}) };
-    let mut text = String::new();
-    for (fitted, covariance) in found.fit.model.iter().zip(&found.fit.covariances) {
-        let motion = fitted.effect.motion().map(|motion| equations.motions[motion].name.as_str()).unwrap_or("-");
-        text += &format!("{motion} {:?} {:?} {:?} ±{:?}\n", fitted.effect.side(), fitted.effect.shape, fitted.coefficients,
-            (0..covariance.nrows()).map(|k| 2.0 * covariance[(k, k)].sqrt()).collect::<Vec<_>>());
-    }
-    for noise in found.appraisal.noises.iter().flatten() {
-        text += &format!("{noise:?}\n");
-    }
-    text += &format!("rss/n {} pool {} always {} waves {}\n", found.fit.remaining / found.fit.samples, found.pool.len(), found.always, found.tries.waves);
-    text
+/// What a diagnosis starts from.
+#[derive(Clone, Debug)]
+pub struct Inputs<'a> {
+    /// The error equations of the machine.
+    pub equations: &'a Equations,
+    /// What is known of it already; without it, every error motion is zero.
+    pub calibration: Option<&'a Calibration>,
+    /// Recordings of this machine. They are fitted together: terms of the machine are shared, settings of instruments are not.
+    pub recordings: Vec<&'a Recording>,
+    /// A recording that is held out as a whole, beside what the others hold out.
+    pub holdout: Option<&'a Recording>,
+}
+
+/// How far a diagnosis has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// What is being done.
+    pub step: &'static str,
+    /// The share that is done, 0 to 1.
+    pub done: f64,
+}
+
+/// Finds what the model leaves out.
+///
+/// It never fails: what cannot be decided from the recordings is said in [`Diagnosis::undecided`].
+pub fn diagnose(inputs: &Inputs<'_>, progress: &mut dyn FnMut(Progress)) -> Diagnosis {
+    conclude::diagnose(inputs, progress)
 }
 
 /// A count as a number.

@@ -15,6 +15,13 @@ pub(crate) struct Noise {
     pub(crate) time_constant: f64,
 }
 
+impl Noise {
+    /// White noise of the same size.
+    pub(crate) fn as_white(&self) -> Self {
+        Self { white: self.white.hypot(self.wander), wander: 0.0, ..*self }
+    }
+}
+
 /// The whitening filter of one channel as it runs through the rows: a Kalman filter of the wandering part.
 #[derive(Clone, Debug)]
 pub(crate) struct Whitening {

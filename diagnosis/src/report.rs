@@ -26,9 +26,17 @@ pub use html::html;
 pub use json::json;
 pub use text::text;
 
-use crate::diagnosis::Diagnosis;
+use crate::diagnosis::{Alternative, Diagnosis};
+
+/// A list of everything names nothing: so many other names at most.
+const ALTERNATIVES: usize = 4;
 
 /// The verdict in one line of plain words, without the end of the sentence.
 pub fn verdict(diagnosis: &Diagnosis) -> String {
     verdict::sentence(diagnosis)
+}
+
+/// The other names that are told.
+fn told(alternatives: &[Alternative]) -> impl Iterator<Item = &Alternative> {
+    alternatives.iter().take(ALTERNATIVES)
 }

@@ -22,11 +22,16 @@ mod vibration;
 
 pub(crate) use instrument::Setting;
 pub(crate) use known::known;
+pub(crate) use polynomial::in_position as polynomial_in_position;
 
 use crate::states::Rows;
 
 /// The temperature at which scales are true where nothing else is said: ISO 1, degC.
 pub(crate) const REFERENCE_TEMPERATURE: f64 = 20.0;
+
+/// What a constant is, physically.
+const CONSTANT_MEANING: &str = "An alignment: an axis that is not square to the others, or a body that stands at an angle. \
+    It does not change while the machine runs.";
 
 /// What a term is, apart from its linear coefficients. Positions are in mm or rad, times in s.
 #[derive(Clone, PartialEq, Debug)]
@@ -101,6 +106,27 @@ impl Shape {
             Self::Coupling { .. } => "coupling",
             Self::Compliance { .. } => "compliance",
             Self::Instrument(setting) => setting.name(),
+        }
+    }
+
+    /// What it is, physically.
+    pub(crate) fn meaning(&self) -> &'static str {
+        match self {
+            Self::Constant => CONSTANT_MEANING,
+            Self::Polynomial { .. } => polynomial::MEANING,
+            Self::SensorPolynomial { .. } | Self::Growth { .. } => growth::MEANING,
+            Self::Table { .. } => table::MEANING,
+            Self::Backlash { .. } => backlash::MEANING,
+            Self::ReversalSpike { .. } => reversal_spike::MEANING,
+            Self::Cyclic { .. } => cyclic::MEANING,
+            Self::Lag { .. } => lag::MEANING,
+            Self::Acceleration { .. } => acceleration::MEANING,
+            Self::Expansion { .. } => expansion::MEANING,
+            Self::Drift { .. } => drift::MEANING,
+            Self::Vibration { .. } => vibration::MEANING,
+            Self::Coupling { .. } => coupling::MEANING,
+            Self::Compliance { .. } => load::MEANING,
+            Self::Instrument(_) => "",
         }
     }
 

@@ -91,7 +91,7 @@ pub fn read(
 
 fn read_all(root: &Node, context: &mut Context<'_>) -> Option<PathFile> {
     let start = root.entries().and_then(<[_]>::first).map_or(root.span, |(key, _)| key.span);
-    for (key, kind) in [("abbe", "machine"), ("calibration", "calibration")] {
+    for (key, kind) in [("abbe", "machine"), ("calibration", "calibration"), ("recording", "recording")] {
         if root.get("path").is_none() && root.get(key).is_some() {
             let message = format!("this is a {kind} file, not a path file");
             context

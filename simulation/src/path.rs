@@ -92,6 +92,21 @@ impl Path {
         (0..axes).map(|axis| of_axis(axis).unwrap_or(0.0)).collect()
     }
 
+    /// No fewer instants than these come of it: told before anything is laid out, so that no number makes it endless.
+    fn least_instants(&self) -> f64 {
+        let of_run = match &self.shape {
+            Shape::Line { stations: Some(stations), .. } => {
+                f64::from(stations.count) * f64::from(stations.readings.max(1))
+            }
+            Shape::Grid { lines, .. } => f64::from(*lines),
+            Shape::Circle { counterclockwise, .. } => counterclockwise.len() as f64,
+            Shape::Points(points) => points.len() as f64,
+            _ => 1.0,
+        };
+        // A run is laid out leg by leg: some hundred bytes each.
+        of_run.max(64.0) * f64::from(self.runs)
+    }
+
     fn check(&self, axes: usize) -> Result<(), PathError> {
         let positive = |value: f64, what| {
             if value > 0.0 && value.is_finite() { Ok(()) } else { Err(PathError::NotPositive(what)) }
@@ -102,6 +117,9 @@ impl Path {
         positive(f64::from(self.runs), "the number of runs")?;
         if self.runs > 1 {
             positive(self.pause, "the pause")?;
+        }
+        if self.least_instants() > MOST_INSTANTS as f64 {
+            return Err(PathError::TooLong);
         }
         match self.shape.axes().into_iter().find(|axis| *axis >= axes) {
             Some(axis) => Err(PathError::NoAxis(axis)),

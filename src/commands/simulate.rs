@@ -133,7 +133,7 @@ impl Output {
 }
 
 /// The machine as the recording names it: a file's path from the recording's folder, or the name as it is.
-fn machine_name(name: &str, calibration: &Path, folder: &Path) -> String {
+pub(super) fn machine_name(name: &str, calibration: &Path, folder: &Path) -> String {
     let file = calibration.parent().map_or_else(|| PathBuf::from(name), |parent| parent.join(name));
     if file.is_file() { relative(folder, &file) } else { name.to_owned() }
 }

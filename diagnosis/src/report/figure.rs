@@ -63,8 +63,19 @@ impl Scale {
             factor *= 1e3f64.powi(lengths);
             text = format!("{text}/{}", part.replacen("mm", "m", 1));
         }
-        if text == "um/m/K" || text == "ppm" { return Self::new(factor, text) }
         Self::new(factor, text)
+    }
+
+    /// The ends of many fitted numbers, and the widest of their intervals.
+    pub(super) fn between(&self, low: f64, high: f64, half_width: f64) -> String {
+        let [low, high, half] = [low, high, half_width].map(|number| number * self.factor);
+        match places_of(half) {
+            Some(places) => {
+                let ends = format!("{} to {}", fixed(low, places), self.with_unit(&fixed(high, places)));
+                format!("{ends}, each within {}", self.with_unit(&fixed(half, places)))
+            }
+            None => format!("{} to {}", significant(low, 3), self.with_unit(&significant(high, 3))),
+        }
     }
 
     fn with_unit(&self, number: &str) -> String {
@@ -92,7 +103,10 @@ pub(super) fn change(one: f64, other: f64, unit: &str) -> Option<(String, String
 /// A number that is given and not fitted.
 pub(super) fn given(value: f64, unit: &str, kind: Kind) -> String {
     let scale = Scale::of(unit, kind, value.abs());
-    scale.with_unit(&significant(value * scale.factor, 4))
+    let number = significant(value * scale.factor, 5);
+    let shortest =
+        if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { &number };
+    scale.with_unit(shortest)
 }
 
 /// Both ends of a stretch with their unit, to a thousandth of its length.
@@ -117,7 +131,8 @@ pub(super) fn percent(part: f64) -> String {
 pub(super) fn estimate(estimate: &Estimate, kind: Kind) -> String {
     let (low, high) = (estimate.ci95.0.min(estimate.ci95.1), estimate.ci95.0.max(estimate.ci95.1));
     let value = estimate.value;
-    let largest = [value, low, high].into_iter().filter(|end| end.is_finite()).map(f64::abs).fold(0.0, f64::max);
+    let largest =
+        [value, low, high].into_iter().filter(|end| end.is_finite()).map(f64::abs).fold(0.0, f64::max);
     let scale = Scale::of(&estimate.unit, kind, largest);
     let [value, low, high] = [value, low, high].map(|number| number * scale.factor);
     let half = (high - low) / 2.0;
@@ -125,7 +140,10 @@ pub(super) fn estimate(estimate: &Estimate, kind: Kind) -> String {
         return "not known".to_owned();
     }
     match places_of(half) {
-        None => format!("{} (the recordings say nothing of its interval)", scale.with_unit(&significant(value, 4))),
+        None => format!(
+            "{} (the recordings say nothing of its interval)",
+            scale.with_unit(&significant(value, 4))
+        ),
         Some(places) if ((high + low) / 2.0 - value).abs() > 0.1 * half => {
             let [value, low, high] = [value, low, high].map(|number| fixed(number, places));
             scale.with_unit(&format!("{value} ({low} to {high})"))

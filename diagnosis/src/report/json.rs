@@ -5,13 +5,11 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use super::figure::change;
+use super::told;
 use crate::diagnosis::{
     Alternative, Diagnosis, Estimate, Evidence, Finding, Interval, IntervalOf, NoiseSummary, Parameter,
     ParameterValue, Repeatability, Residual, SettingFinding, Summary, Unexplained,
 };
-
-/// A list of everything names nothing: so many other names at most.
-const ALTERNATIVES: usize = 4;
 
 /// The diagnosis as one JSON object with the schema `abbe-diagnosis/1`.
 pub fn json(diagnosis: &Diagnosis) -> String {
@@ -260,8 +258,7 @@ fn interval(interval: &Interval) -> IntervalJson<'_> {
 }
 
 fn alternatives(alternatives: &[Alternative]) -> Vec<AlternativeJson<'_>> {
-    let first = alternatives.iter().take(ALTERNATIVES);
-    first
+    told(alternatives)
         .map(|Alternative { motion, term, separate_by }| AlternativeJson { motion, term, separate_by })
         .collect()
 }

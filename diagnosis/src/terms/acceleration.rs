@@ -2,6 +2,10 @@
 
 use crate::states::Rows;
 
+/// What it is, physically, and how large it may well be.
+pub(super) const MEANING: &str = "What acceleration bends: feed-forward that is missing in the drive, or a column and a table that \
+    yield to inertia. Plausible: gains of some hundreds to tens of thousands 1/s^2.";
+
 pub(super) fn fill(rows: &Rows<'_>, axis: usize, out: &mut Vec<f64>) {
     out.extend(rows.axis(axis).acceleration.iter().map(|acceleration| -acceleration));
 }

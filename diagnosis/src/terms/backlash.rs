@@ -4,6 +4,11 @@
 use super::Memory;
 use crate::states::Rows;
 
+/// What it is, physically, and how large it may well be.
+pub(super) const MEANING: &str = "Play between the drive and what it moves, or friction that gives way only after the axis has \
+    turned: after each reversal the axis stays behind by the lost motion. Plausible: up to some tens \
+    of micrometres on a slide.";
+
 pub(super) fn fill(rows: &Rows<'_>, axis: usize, wind_up: f64, memory: &mut Memory, out: &mut Vec<f64>) {
     let axis = rows.axis(axis);
     if wind_up <= 0.0 {

@@ -4,6 +4,11 @@
 use super::wave;
 use crate::states::Rows;
 
+/// What it is, physically, and how large it may well be.
+pub(super) const MEANING: &str = "An error that repeats with travel: the lead of a ball screw once a turn, a gear's teeth, the \
+    interpolation of an encoder, whose period then is its line spacing. Plausible: a few micrometres \
+    at the pitch of the screw, or a fraction of one at the encoder's period.";
+
 pub(super) fn fill(rows: &Rows<'_>, axis: usize, period: f64, out: &mut [Vec<f64>]) {
     wave(rows.axis(axis).position.iter().map(|position| position / period), out);
 }

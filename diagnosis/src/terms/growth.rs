@@ -4,6 +4,11 @@
 use super::Memory;
 use crate::states::Rows;
 
+/// What it is, physically, and how large it may well be.
+pub(super) const MEANING: &str = "The spindle or the structure grows or leans as it warms up; behind a time constant where its \
+    body warms later than the sensor. Plausible: up to some tens of micrometres, or of microradians, \
+    for each kelvin.";
+
 pub(super) fn fill(
     rows: &Rows<'_>,
     sensor: usize,

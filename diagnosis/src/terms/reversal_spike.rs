@@ -3,6 +3,11 @@
 
 use crate::states::Rows;
 
+/// What it is, physically, and how large it may well be.
+pub(super) const MEANING: &str = "Static friction at standstill: for a moment after each reversal the axis sticks before the loop \
+    pulls it free. It shows as a spike at the quadrants of a circle and grows with feed. Plausible: \
+    a few micrometres, gone within a tenth of a second.";
+
 pub(super) fn fill(rows: &Rows<'_>, axis: usize, decay: f64, out: &mut Vec<f64>) {
     let axis = rows.axis(axis);
     let spike = |(since, direction): (&f64, &f64)| -direction * (-since / decay).exp();

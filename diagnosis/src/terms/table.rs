@@ -3,6 +3,10 @@
 
 use crate::states::Rows;
 
+/// What it is, physically, and how large it may well be.
+pub(super) const MEANING: &str = "A curve along the axis that no smooth polynomial follows: a measured error of screw or guide, or \
+    a damaged place.";
+
 pub(super) fn fill(rows: &Rows<'_>, axis: usize, nodes: &[f64], directed: bool, out: &mut [Vec<f64>]) {
     for column in out.iter_mut() {
         column.clear();

@@ -46,6 +46,9 @@ pub(super) fn noise(node: &Node, name: Span, kind: Dimension, context: &mut Cont
     })
 }
 
+/// So many lost stretches or more are refused.
+const MOST_BLOCKS: u32 = 10_000;
+
 /// Reads what is missing: a mapping, or a share alone.
 pub(super) fn missing(node: &Node, name: Span, context: &mut Context<'_>) -> Option<Missing> {
     if node.text().is_some() {
@@ -57,6 +60,11 @@ pub(super) fn missing(node: &Node, name: Span, context: &mut Context<'_>) -> Opt
         None => Some(0.0),
     };
     let blocks = section.whole_or("blocks", 0, 0, context);
+    if let (Some(MOST_BLOCKS..), Some(node)) = (blocks, section.get("blocks")) {
+        let message = format!("`blocks` of `missing` is less than {MOST_BLOCKS}");
+        context
+            .report(Diagnostic::error("E0708", node.span, message).help("lose fewer and longer stretches"));
+    }
     let length = match blocks {
         Some(1..) => section.positive("length", Dimension::TIME, context),
         _ => Some(0.0),

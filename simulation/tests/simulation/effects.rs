@@ -135,9 +135,9 @@ fn spikes_decay_from_the_reversal_on() {
     let deviation = deviation(&recorded);
     let turned = recorded.time.iter().position(|time| *time > 10.0 + 1e-9).unwrap();
     assert!(deviation[..turned].iter().all(|value| value.abs() < 1e-12));
-    for row in turned..deviation.len() {
-        let since = recorded.time[row] - recorded.time[turned];
-        assert!((deviation[row] - 0.005 * (-since / 0.2).exp()).abs() < 1e-12);
+    for (deviation, time) in deviation.iter().zip(&recorded.time).skip(turned) {
+        let since = time - recorded.time[turned];
+        assert!((deviation - 0.005 * (-since / 0.2).exp()).abs() < 1e-12);
     }
 }
 

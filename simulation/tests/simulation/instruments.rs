@@ -66,13 +66,12 @@ fn a_probe_reads_along_its_normals() {
     // EXX and EYY are counted along the programmed motion: the part goes the other way, so the tip gains.
     assert!(face.readings[0].values.iter().all(|value| (value - (0.6 * 0.003 + 0.8 * 0.004)).abs() < 1e-12));
     let ring = probe(Normal::Radial(None));
-    let normals = ring.normals.as_ref().unwrap();
-    for row in 0..ring.time.len() {
+    let [across, along, up] = ring.normals.as_ref().unwrap();
+    for (row, reading) in ring.readings[0].values.iter().enumerate() {
         let (x, y) = (ring.commands[0][row] - 100.0, ring.commands[1][row] - 50.0);
-        assert!((normals[0][row] - x / 30.0).abs() < 1e-12 && (normals[1][row] - y / 30.0).abs() < 1e-12);
-        assert_eq!(normals[2][row], 0.0);
-        let reading = (0.003 * x + 0.004 * y) / 30.0;
-        assert!((ring.readings[0].values[row] - reading).abs() < 1e-12);
+        assert!((across[row] - x / 30.0).abs() < 1e-12 && (along[row] - y / 30.0).abs() < 1e-12);
+        assert_eq!(up[row], 0.0);
+        assert!((reading - (0.003 * x + 0.004 * y) / 30.0).abs() < 1e-12);
     }
 }
 

@@ -12,7 +12,10 @@ use crate::common::Built;
 
 const ERRORS: &str = "{EXX: [{backlash: {lost_motion: 5 um}}, {growth: {sensor: motor, coefficient: 1 um/K, reference: 20 degC}}]}";
 
-fn read(word: &str, text: &str) -> (Option<PathFile>, Vec<(&'static str, String, Option<String>)>) {
+/// A finding: its code, the text that is wrong, what to write instead.
+type Finding = (&'static str, String, Option<String>);
+
+fn read(word: &str, text: &str) -> (Option<PathFile>, Vec<Finding>) {
     let built = Built::of(word, if word == "XYFZ" { ERRORS } else { "{}" });
     let source = SourceFile::new("path.yaml", text);
     let mut findings = Diagnostics::new();
@@ -118,6 +121,7 @@ fn mistakes_are_told_where_they_are() {
     let cases = [
         (format!("path: 1\n{shape}{position}rate: 5 Hz\n"), "E0701", "path", "add `feed: ...`"),
         (both("").replace("path: 1", "path: 2"), "E0702", "2", "write `path: 1`"),
+        ("recording: 1\n".to_owned(), "E0702", "recording", "a path file begins with `path: 1`"),
         ("calibration: 1\n".to_owned(), "E0702", "calibration", "a path file begins with `path: 1`"),
         (both("sede: 3\n"), "E0703", "sede", "did you mean `seed`?"),
         (both("noise: {whyte: 1 um}\n"), "E0703", "whyte", "did you mean `white`?"),
@@ -207,6 +211,33 @@ fn all_mistakes_are_told_in_one_run() {
     let text = "path: 3\nat: {Q: 1 mm}\nfeed: 1 s\nrate: -1 Hz\ncircle: {radius: 0 mm}\ninstrument: {ballbar: {radius: 1 s}}\nclock: 1 mm\n";
     let codes: Vec<&str> = read("XYFZ", text).1.iter().map(|(code, ..)| *code).collect();
     assert_eq!(codes, ["E0702", "E0705", "E0307", "E0708", "E0701", "E0708", "E0307", "E0307"]);
+}
+
+#[test]
+fn numbers_without_measure_are_refused_at_once() {
+    let line =
+        |rest: &str| format!("{HEAD}instrument: position\nline: {{axis: X, from: 0 mm, to: 9 mm{rest}}}\n");
+    for (text, code) in [
+        (line(", stations: {count: 4000000000, dwell: 1 s}"), "E0717"),
+        (line(", stations: {count: 9, dwell: 1 s, readings: 4000000000}"), "E0717"),
+        (line("") + "runs: 4000000000\n", "E0717"),
+        (line("").replace("50 Hz", "1e300 Hz"), "E0717"),
+        (line("").replace("9 mm", "1e300 mm"), "E0717"),
+        (line("") + "missing: {blocks: 4000000000, length: 1 s}\n", "E0708"),
+        (
+            format!(
+                "{HEAD}instrument: position\ngrid: {{plane: XY, from: [0 mm, 0 mm], to: [1 mm, 1 mm], lines: 4000000000}}\n"
+            ),
+            "E0717",
+        ),
+        (
+            format!("{HEAD}instrument: position\nspiral: {{plane: XY, outer: 1e200 mm, turns: 1e300}}\n"),
+            "E0717",
+        ),
+    ] {
+        let codes: Vec<&str> = read("XYFZ", &text).1.iter().map(|(code, ..)| *code).collect();
+        assert_eq!(codes, [code], "{text}");
+    }
 }
 
 #[test]

@@ -1,0 +1,197 @@
+//! Alternatives: what else would explain the same.
+//!
+//! In: a fitted model and all candidates. Out: for each effect the names that could stand in its place without the data
+//! becoming clearly less likely, all other effects fitted again: the null space of the joint design, and its surroundings as
+//! far as the noise hides the difference. A clock is also held against loops on all axes at once.
+
+use crate::candidates::simplicity;
+use crate::design::{Design, Regressor};
+use crate::engine::Found;
+use crate::kinship::Kin;
+use crate::model::{Effect, Model, Place};
+use crate::noise::Noise;
+use crate::search::rivals;
+use crate::study::Study;
+use crate::sweep::Swept;
+use crate::terms::{Setting, Shape};
+
+/// By how much minus twice the log-likelihood may rise for another name still to be possible: odds of one to twenty.
+const HIDDEN: f64 = 6.0;
+
+/// For each effect of the model beyond the first `always`: other effects that could stand in its place, simplest first.
+pub(crate) fn find(study: &Study<'_>, found: &Found) -> Vec<Vec<Effect>> {
+    let model = &found.fit.model;
+    let noises = &found.appraisal.noises;
+    let others = others(study, found);
+    let design = joint(study, model, noises, &others);
+    let (products, samples) = design.fitted();
+    let mut swept = Swept::new(&products);
+    for number in 0..model.len() {
+        design.columns(number).for_each(|column| drop(swept.take(column)));
+    }
+    let scale = (swept.remaining() / samples.max(1.0)).max(f64::MIN_POSITIVE);
+    let columns = |number: usize| design.columns(number).collect::<Vec<usize>>();
+    (found.always..model.len())
+        .map(|number| {
+            let worth = swept.worth(&columns(number)) / scale;
+            let mut without = swept.clone();
+            columns(number).into_iter().for_each(|column| without.drop(column));
+            let stands_in = |other: usize| {
+                let (gain, _) = without.promise(&columns(model.len() + other));
+                worth - gain / scale < HIDDEN
+            };
+            let mut names = same_place(&model[number].effect, &others);
+            names.extend((0..others.len()).filter(|other| stands_in(*other)).flat_map(|other| all(&others[other])));
+            let kept = &model[found.always..];
+            names.retain(|name| {
+                !rivals(name, &model[number].effect) && !kept.iter().any(|fitted| rivals(&fitted.effect, name))
+            });
+            names.sort_by(|a, b| simplicity(study, a).total_cmp(&simplicity(study, b)));
+            names
+        })
+        .collect()
+}
+
+fn all(kin: &Kin) -> Vec<Effect> {
+    std::iter::once(kin.effect.clone()).chain(kin.equals.iter().cloned()).collect()
+}
+
+/// The effects that the recordings show exactly alike, from the group that the effect came from.
+fn same_place(effect: &Effect, others: &[Kin]) -> Vec<Effect> {
+    others.iter().map(all).filter(|group| group.contains(effect)).flatten().collect()
+}
+
+/// All candidates, and the effects of the model at all other motions where they could be.
+fn others(study: &Study<'_>, found: &Found) -> Vec<Kin> {
+    let moved = found.fit.model[found.always..].iter().flat_map(|fitted| elsewhere(study, &fitted.effect));
+    let moved = moved.map(|effect| Kin { effect, equals: Vec::new() });
+    found.pool.iter().cloned().chain(moved).collect()
+}
+
+/// A wave or a filtered temperature, which the candidates do not hold in this form, at the other motions that could have it.
+fn elsewhere(study: &Study<'_>, effect: &Effect) -> Vec<Effect> {
+    let (Some(motion), Some(side), Some(_)) = (effect.motion(), effect.side(), effect.shape.nonlinear()) else {
+        return Vec::new();
+    };
+    let motions = study.equations.motions.iter().enumerate().filter(|(number, _)| *number != motion);
+    let possible = motions.filter(|(_, known)| match effect.shape.axis() {
+        Some(axis) => known.axis == Some(axis) && !known.alignment,
+        None => true,
+    });
+    possible
+        .map(|(motion, _)| Effect { place: Place::Motion { motion, side }, shape: effect.shape.clone() })
+        .collect()
+}
+
+/// The design of the model and of everything that could stand in for it, the present model's response restored.
+fn joint(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], others: &[Kin]) -> Design {
+    let mut regressors: Vec<Regressor> = model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+    regressors.extend(others.iter().map(|kin| Regressor::of(kin.effect.clone())));
+    let mut design = Design::new(study, model, noises, regressors);
+    design.rebase(model);
+    design
+}
+
+/// The measurement that would tell two names apart.
+pub(crate) fn separate_by(study: &Study<'_>, this: &Effect, other: &Effect) -> String {
+    let letter = |axis: usize| study.equations.axes[axis].letter.clone();
+    match (&this.shape, &other.shape) {
+        (Shape::Instrument(Setting::Clock), _) | (_, Shape::Instrument(Setting::Clock)) => {
+            "record the drive's feedback on the instrument's clock, or start and stop abruptly: a loop needs time to follow, a \
+             clock does not"
+                .to_owned()
+        }
+        (Shape::Instrument(Setting::Cosine), _) | (_, Shape::Instrument(Setting::Cosine)) => {
+            "align the beam anew and repeat: a cosine error changes, a scale does not".to_owned()
+        }
+        (Shape::Instrument(_), _) | (_, Shape::Instrument(_)) => {
+            "set the instrument up anew, elsewhere, and repeat: what stays is the machine's".to_owned()
+        }
+        (Shape::Lag { axis: a }, Shape::Lag { axis: b }) if a != b => {
+            format!("a straight line along {} alone", letter(*a))
+        }
+        _ => by_lever(study, this, other).unwrap_or_else(|| by_state(study, this, other)),
+    }
+}
+
+/// Different lever arms are told apart where the lever changes.
+fn by_lever(study: &Study<'_>, this: &Effect, other: &Effect) -> Option<String> {
+    let (a, b) = (this.motion()?, other.motion()?);
+    if a == b {
+        return None;
+    }
+    let [first, second] = [a, b].map(|motion| {
+        let arms = model_dsl::algebra::Axis::ALL.map(|direction| study.equations.arm(direction, motion));
+        let seen: Vec<&str> =
+            ["X", "Y", "Z"].into_iter().zip(&arms).filter(|(_, arm)| !arm.is_zero()).map(|(name, _)| name).collect();
+        (arms.clone(), seen)
+    });
+    if first.0 == second.0 {
+        let states = states_of(study, this, other);
+        return Some(format!("nothing at the tool tip alone: their lever arms are the same; vary {states} separately"));
+    }
+    let names = [&first, &second].map(|(arms, _)| positions(arms));
+    let differing: Vec<String> = names[0]
+        .iter()
+        .chain(&names[1])
+        .filter(|name| !(names[0].contains(name) && names[1].contains(name)))
+        .map(|name| name.to_uppercase())
+        .collect();
+    if let Some(axis) = differing.first() {
+        return Some(format!("the same path at another {axis}: the lever arms change differently"));
+    }
+    if first.1 != second.1 {
+        let only: Vec<&str> = first.1.iter().chain(&second.1).copied().filter(|d| !(first.1.contains(d) && second.1.contains(d))).collect();
+        if let Some(direction) = only.first() {
+            return Some(format!("measure direction {direction} too, which only one of them moves"));
+        }
+    }
+    Some("the same path with a tool of another length, or at another place of the table".to_owned())
+}
+
+/// The axis positions in lever arms.
+fn positions(arms: &[model_dsl::algebra::Polynomial; 3]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for symbol in arms.iter().flat_map(|arm| arm.symbols()) {
+        if let model_dsl::algebra::Symbol::Position(name) = symbol
+            && !names.iter().any(|known| **known == *name.to_string())
+        {
+            names.push(name.to_string());
+        }
+    }
+    names
+}
+
+fn by_state(study: &Study<'_>, this: &Effect, other: &Effect) -> String {
+    format!("a recording in which {} do not change together", states_of(study, this, other))
+}
+
+fn states_of(study: &Study<'_>, this: &Effect, other: &Effect) -> String {
+    let [a, b] = [this, other].map(|effect| state(study, effect));
+    if a == b { format!("{a} of the two links") } else { format!("{a} and {b}") }
+}
+
+/// The state that an effect depends on, in words.
+pub(crate) fn state(study: &Study<'_>, effect: &Effect) -> String {
+    let of = |axis: usize| study.equations.axes[axis].letter.to_lowercase();
+    match &effect.shape {
+        Shape::Constant => match effect.motion().and_then(|motion| study.equations.motions[motion].axis) {
+            Some(axis) => format!("the travel of {}", of(axis)),
+            None => "the set-up".to_owned(),
+        },
+        Shape::Polynomial { axis, .. } | Shape::Table { axis, .. } | Shape::Cyclic { axis, .. } => {
+            format!("the position of {}", of(*axis))
+        }
+        Shape::Coupling { axis, .. } => format!("the position of {}", of(*axis)),
+        Shape::Backlash { axis, .. } => format!("the direction of {}", of(*axis)),
+        Shape::ReversalSpike { axis, .. } => format!("the time since {} turned", of(*axis)),
+        Shape::Lag { axis } => format!("the velocity of {}", of(*axis)),
+        Shape::Acceleration { axis } => format!("the acceleration of {}", of(*axis)),
+        Shape::Expansion { sensor, .. } | Shape::Growth { sensor, .. } | Shape::SensorPolynomial { sensor, .. } => {
+            format!("temperature {}", study.sensors[*sensor])
+        }
+        Shape::Drift { .. } | Shape::Vibration { .. } => "time".to_owned(),
+        Shape::Compliance { load } => format!("load {}", study.loads[*load].0),
+        Shape::Instrument(setting) => format!("the instrument's {}", setting.name()),
+    }
+}

@@ -1,0 +1,310 @@
+//! Parameters: fitted effects in the words and units of calibration files.
+//!
+//! In: an effect with its coefficients and their covariance. Out: named parameters with 95 % intervals, and the term as the
+//! compiler takes it. Amplitude and phase of a wave, the coefficients of a polynomial of the position and the gain of a loop
+//! are functions of what was fitted; their variances follow to first order.
+
+use model_dsl::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, SeriesInput};
+use nalgebra::{DMatrix, DVector};
+
+use crate::diagnosis::{Estimate, Parameter, ParameterValue};
+use crate::model::Fitted;
+use crate::recording::AngleUnit;
+use crate::study::Study;
+use crate::terms::{Shape, polynomial_in_position};
+
+/// The half width of a 95 % interval in standard deviations.
+pub(crate) const WIDTH_95: f64 = 1.959_964;
+
+/// A fitted effect and the covariance of its coefficients, its nonlinear parameter last.
+pub(crate) struct Described<'f> {
+    study: &'f Study<'f>,
+    fitted: &'f Fitted,
+    covariance: &'f DMatrix<f64>,
+    /// Recorded units for one internal unit of the motion, and their name.
+    motion_unit: (f64, &'static str),
+}
+
+/// The unit in which an axis is spoken of: for one mm, or one rad of a rotary axis.
+pub(crate) fn axis_unit(study: &Study<'_>, axis: usize) -> (f64, &'static str) {
+    if !study.equations.axes[axis].rotary {
+        (1.0, "mm")
+    } else {
+        angle_unit(study)
+    }
+}
+
+/// The unit in which the recordings speak of angles of rotary axes.
+fn angle_unit(study: &Study<'_>) -> (f64, &'static str) {
+    let degrees = study.scenes.iter().any(|scene| scene.recording.angle_unit == AngleUnit::Degree);
+    if degrees { (180.0 / std::f64::consts::PI, "deg") } else { (1.0, "rad") }
+}
+
+/// The unit of an error motion: mm; rad; that of the recordings for the turning of a rotary axis.
+pub(crate) fn motion_unit(study: &Study<'_>, motion: usize) -> (f64, &'static str) {
+    let known = &study.equations.motions[motion];
+    match known.axis {
+        Some(axis) if known.angular && study.own[axis] == Some(motion) => axis_unit(study, axis),
+        _ if known.angular => (1.0, "rad"),
+        _ => (1.0, "mm"),
+    }
+}
+
+impl<'f> Described<'f> {
+    /// An effect of the machine or of an instrument.
+    pub(crate) fn new(study: &'f Study<'f>, fitted: &'f Fitted, covariance: &'f DMatrix<f64>) -> Self {
+        let motion_unit = fitted.effect.motion().map_or((1.0, "mm"), |motion| motion_unit(study, motion));
+        Self { study, fitted, covariance, motion_unit }
+    }
+
+    fn coefficient(&self, number: usize) -> f64 {
+        self.fitted.coefficients.get(number).copied().unwrap_or_default()
+    }
+
+    /// A function of the coefficients and the nonlinear parameter with this gradient.
+    fn derived(&self, value: f64, gradient: &[f64], unit: (f64, String)) -> Estimate {
+        let size = self.covariance.nrows();
+        let gradient = DVector::from_fn(size, |row, _| gradient.get(row).copied().unwrap_or_default());
+        let variance = gradient.dot(&(self.covariance * &gradient)).max(0.0);
+        let (factor, unit) = unit;
+        let (value, half) = (value * factor, WIDTH_95 * variance.sqrt() * factor.abs());
+        Estimate { value, ci95: (value - half, value + half), unit }
+    }
+
+    fn linear(&self, number: usize, factor: f64, unit: String) -> Estimate {
+        let mut gradient = vec![0.0; number + 1];
+        gradient[number] = 1.0;
+        self.derived(self.coefficient(number), &gradient, (factor, unit))
+    }
+
+    /// The nonlinear parameter, whose variance stands last.
+    fn nonlinear(&self, factor: f64, unit: &str) -> Estimate {
+        let value = self.fitted.effect.shape.nonlinear().map_or(0.0, |parameter| parameter.value);
+        let mut gradient = vec![0.0; self.covariance.nrows()];
+        if let Some(last) = gradient.last_mut() {
+            *last = 1.0;
+        }
+        self.derived(value, &gradient, (factor, unit.to_owned()))
+    }
+
+    fn per(&self, under: &str, power: usize) -> String {
+        per(self.motion_unit.1, under, power)
+    }
+
+    /// The parameters, in the order of calibration files.
+    pub(crate) fn parameters(&self) -> Vec<Parameter> {
+        let (factor, unit) = self.motion_unit;
+        let study = self.study;
+        let plain = |name, number| Parameter::fitted(name, self.linear(number, factor, unit.to_owned()));
+        match &self.fitted.effect.shape {
+            Shape::Constant => vec![plain("value", 0)],
+            Shape::Polynomial { axis, .. } => {
+                vec![axis_name(study, *axis), Parameter::list("coefficients", self.powers(axis_unit(study, *axis)))]
+            }
+            Shape::SensorPolynomial { sensor, .. } => {
+                vec![sensor_name(study, *sensor), Parameter::list("coefficients", self.powers((1.0, "K")))]
+            }
+            Shape::Coupling { axis, .. } => {
+                let list = self.powers(axis_unit(study, *axis)).into_iter().skip(1).collect();
+                vec![axis_name(study, *axis), Parameter::list("coefficients", list)]
+            }
+            Shape::Table { axis, .. } => {
+                let values = (0..self.fitted.coefficients.len());
+                let list = values.map(|number| self.linear(number, factor, unit.to_owned())).collect();
+                vec![axis_name(study, *axis), Parameter::list("values", list)]
+            }
+            Shape::Backlash { axis, wind_up } => {
+                let (axis_factor, axis_unit) = axis_unit(study, *axis);
+                let mut parameters = vec![plain("lost_motion", 0)];
+                if *wind_up > 0.0 {
+                    parameters.push(Parameter::fitted("wind_up", self.nonlinear(axis_factor, axis_unit)));
+                }
+                parameters
+            }
+            Shape::ReversalSpike { .. } => {
+                vec![plain("height", 0), Parameter::fitted("decay", self.nonlinear(1.0, "s"))]
+            }
+            Shape::Cyclic { axis, .. } => {
+                let (axis_factor, axis_unit) = axis_unit(study, *axis);
+                let period = Parameter::fitted("period", self.nonlinear(axis_factor, axis_unit));
+                [vec![period], self.wave()].concat()
+            }
+            Shape::Vibration { .. } => {
+                let frequency = Parameter::fitted("frequency", self.nonlinear(1.0, "Hz"));
+                [vec![frequency], self.wave()].concat()
+            }
+            Shape::Lag { .. } => vec![Parameter::fitted("gain", self.reciprocal("1/s"))],
+            Shape::Acceleration { .. } => vec![Parameter::fitted("gain", self.reciprocal("1/s^2"))],
+            Shape::Expansion { axis, sensor, reference } => {
+                let (axis_factor, axis_unit) = axis_unit(study, *axis);
+                let unit = if axis_unit == unit { "1/K".to_owned() } else { format!("{}/K", self.per(axis_unit, 1)) };
+                let coefficient = self.linear(0, factor / axis_factor, unit);
+                vec![
+                    sensor_name(study, *sensor),
+                    Parameter::fitted("coefficient", coefficient),
+                    Parameter::given("reference", *reference, "degC"),
+                ]
+            }
+            Shape::Growth { sensor, reference, time_constant } => {
+                let mut parameters = vec![
+                    sensor_name(study, *sensor),
+                    Parameter::fitted("coefficient", self.linear(0, factor, self.per("K", 1))),
+                    Parameter::given("reference", *reference, "degC"),
+                ];
+                if *time_constant > 0.0 {
+                    parameters.push(Parameter::fitted("time_constant", self.nonlinear(1.0, "s")));
+                }
+                parameters
+            }
+            Shape::Drift { .. } => {
+                vec![plain("amplitude", 0), Parameter::fitted("time_constant", self.nonlinear(1.0, "s"))]
+            }
+            Shape::Compliance { load } => {
+                let (name, load_unit) = &study.loads[*load];
+                vec![
+                    Parameter { name: "load", value: ParameterValue::Name(name.clone()) },
+                    Parameter::fitted("coefficient", self.linear(0, factor, self.per(load_unit, 1))),
+                ]
+            }
+            Shape::Instrument(_) => vec![plain("offset", 0)],
+        }
+    }
+
+    /// Coefficients of powers of the position or temperature itself, from power 0 on.
+    fn powers(&self, (factor, under): (f64, &str)) -> Vec<Estimate> {
+        let rows = polynomial_in_position(&self.fitted.effect.shape);
+        let power = |(power, row): (usize, &Vec<f64>)| {
+            let value = row.iter().zip(&self.fitted.coefficients).map(|(a, b)| a * b).sum();
+            let scale = self.motion_unit.0 / factor.powi(i32::try_from(power).unwrap_or_default());
+            self.derived(value, row, (scale, self.per(under, power)))
+        };
+        rows.iter().enumerate().map(power).collect()
+    }
+
+    /// Amplitude and phase of a sin x + b cos x.
+    fn wave(&self) -> Vec<Parameter> {
+        let (a, b) = (self.coefficient(0), self.coefficient(1));
+        let (amplitude, phase) = (a.hypot(b), b.atan2(a));
+        let square = (amplitude * amplitude).max(f64::MIN_POSITIVE);
+        let (factor, unit) = self.motion_unit;
+        vec![
+            Parameter::fitted(
+                "amplitude",
+                self.derived(amplitude, &[a / amplitude, b / amplitude], (factor, unit.to_owned())),
+            ),
+            Parameter::fitted("phase", self.derived(phase, &[-b / square, a / square], (1.0, "rad".to_owned()))),
+        ]
+    }
+
+    /// 1 / coefficient; its interval is that of the coefficient turned over, since the gain itself is not near normal.
+    fn reciprocal(&self, unit: &str) -> Estimate {
+        let value = self.coefficient(0);
+        let half = WIDTH_95 * self.covariance[(0, 0)].max(0.0).sqrt();
+        let ends = (1.0 / (value + half), 1.0 / (value - half).max(1e-9));
+        Estimate { value: 1.0 / value, ci95: ends, unit: unit.to_owned() }
+    }
+
+    /// The term as calibration files have it, in mm, rad, s and degC; a sensor under its number in the study.
+    pub(crate) fn calibrated(&self) -> CalibratedTerm {
+        let first = self.coefficient(0);
+        let in_position = || {
+            let rows = polynomial_in_position(&self.fitted.effect.shape);
+            let value = |row: &Vec<f64>| row.iter().zip(&self.fitted.coefficients).map(|(a, b)| a * b).sum();
+            rows.iter().map(value).collect::<Vec<f64>>()
+        };
+        let (amplitude, phase) = (first.hypot(self.coefficient(1)), self.coefficient(1).atan2(first));
+        match &self.fitted.effect.shape {
+            Shape::Constant | Shape::Instrument(_) => CalibratedTerm::Constant { value: first },
+            Shape::Polynomial { axis, .. } => {
+                CalibratedTerm::Polynomial { input: SeriesInput::Axis(*axis), coefficients: in_position() }
+            }
+            Shape::SensorPolynomial { sensor, .. } => {
+                CalibratedTerm::Polynomial { input: SeriesInput::Sensor(*sensor), coefficients: in_position() }
+            }
+            Shape::Coupling { axis, .. } => {
+                let coefficients = in_position().into_iter().skip(1).collect();
+                CalibratedTerm::Coupling { axis: *axis, coefficients }
+            }
+            Shape::Table { axis, nodes, directed } => CalibratedTerm::Table {
+                axis: *axis,
+                curve: Curve { nodes: CurveNodes::At(nodes.clone()), values: self.curve(nodes.len(), *directed) },
+            },
+            Shape::Backlash { axis, wind_up } => {
+                CalibratedTerm::Backlash { axis: *axis, lost_motion: first, wind_up: *wind_up }
+            }
+            Shape::ReversalSpike { axis, decay } => {
+                CalibratedTerm::ReversalSpike { axis: *axis, height: first, decay: *decay }
+            }
+            Shape::Cyclic { axis, period } => {
+                CalibratedTerm::Cyclic { axis: *axis, period: *period, amplitude, phase }
+            }
+            Shape::Lag { axis } => CalibratedTerm::Lag { axis: *axis, gain: 1.0 / first },
+            Shape::Acceleration { axis } => CalibratedTerm::Acceleration { axis: *axis, gain: 1.0 / first },
+            Shape::Expansion { axis, sensor, reference } => CalibratedTerm::Expansion {
+                axis: *axis,
+                sensor: *sensor,
+                coefficient: first,
+                reference: *reference,
+            },
+            Shape::Growth { sensor, reference, time_constant } => CalibratedTerm::Growth {
+                sensor: *sensor,
+                coefficient: first,
+                reference: *reference,
+                time_constant: *time_constant,
+            },
+            Shape::Drift { time_constant } => {
+                CalibratedTerm::Drift { amplitude: first, time_constant: *time_constant }
+            }
+            Shape::Vibration { frequency } => {
+                CalibratedTerm::Vibration { frequency: *frequency, amplitude, phase }
+            }
+            Shape::Compliance { load } => {
+                CalibratedTerm::Compliance { load: self.study.loads[*load].0.clone(), coefficient: first }
+            }
+        }
+    }
+
+    fn curve(&self, nodes: usize, directed: bool) -> CurveValues {
+        let values = &self.fitted.coefficients;
+        if directed {
+            let (forward, reverse) = values.split_at(nodes.min(values.len()));
+            CurveValues::Directed { forward: forward.to_vec(), reverse: reverse.to_vec() }
+        } else {
+            CurveValues::Both(values.clone())
+        }
+    }
+}
+
+/// `mm/K`, `rad/mm^2`, `1/mm` for mm/mm^2; empty for mm/mm.
+fn per(over: &str, under: &str, power: usize) -> String {
+    let (over, power) = if over == under && power > 0 { ("1", power - 1) } else { (over, power) };
+    match power {
+        0 if over == "1" => String::new(),
+        0 => over.to_owned(),
+        1 => format!("{over}/{under}"),
+        _ => format!("{over}/{under}^{power}"),
+    }
+}
+
+fn axis_name(study: &Study<'_>, axis: usize) -> Parameter {
+    Parameter { name: "axis", value: ParameterValue::Name(study.equations.axes[axis].letter.clone()) }
+}
+
+fn sensor_name(study: &Study<'_>, sensor: usize) -> Parameter {
+    Parameter { name: "sensor", value: ParameterValue::Name(study.sensors[sensor].clone()) }
+}
+
+impl Parameter {
+    /// A fitted number.
+    pub(crate) fn fitted(name: &'static str, estimate: Estimate) -> Self {
+        Self { name, value: ParameterValue::Fitted(estimate) }
+    }
+
+    fn list(name: &'static str, estimates: Vec<Estimate>) -> Self {
+        Self { name, value: ParameterValue::List(estimates) }
+    }
+
+    fn given(name: &'static str, value: f64, unit: &str) -> Self {
+        Self { name, value: ParameterValue::Given(value, unit.to_owned()) }
+    }
+}

@@ -1,0 +1,164 @@
+//! Repeatability: do runs under the same state agree, as far as the noise within them lets one expect?
+//!
+//! In: the model found. Out: how far the zeros of the runs scatter, where free zeros make the data far more likely than any
+//! noise that runs on from one run to the next; a wandering sensor does not jump between runs.
+
+use crate::appraisal::Appraisal;
+use crate::design::{Design, Regressor};
+use crate::diagnosis::Repeatability;
+use crate::fit;
+use crate::model::{Effect, Model};
+use crate::study::{Scene, Study};
+use crate::terms::Setting;
+
+/// How many times the noise the zeros of runs must scatter to be called so.
+const WIDE: f64 = 1.0;
+/// How often noise and zeros are estimated in turn.
+const TURNS: usize = 3;
+
+/// How far the zeros of the runs of one recording scatter.
+pub(crate) struct Scatter {
+    pub(crate) scene: usize,
+    /// For each outside channel, for each run: its zero against the first run's.
+    pub(crate) zeros: Vec<Vec<f64>>,
+    pub(crate) runs: Vec<i64>,
+    pub(crate) between: f64,
+    pub(crate) within: f64,
+}
+
+/// A zero of every channel for every run but the first that is fitted.
+pub(crate) fn run_zeros(scene: usize, known: &Scene<'_>, runs: &[i64]) -> Vec<Effect> {
+    let channels = (0..known.channels.len()).filter(|channel| known.channels[*channel].kind.outside());
+    channels
+        .flat_map(|channel| runs.iter().skip(1).map(move |run| (channel, *run)))
+        .map(|(channel, run)| Effect::setting(scene, Setting::RunOffset { channel, run }))
+        .collect()
+}
+
+/// Looks for recordings whose runs do not repeat under a model.
+pub(crate) fn scatter(study: &mut Study<'_>, model: &Model) -> Vec<Scatter> {
+    let held: Vec<Vec<bool>> =
+        study.scenes.iter().map(|scene| scene.blocks.iter().map(|block| block.held_out).collect()).collect();
+    // Every run tells of repeatability, also one that is held out for the fit.
+    for block in study.scenes.iter_mut().flat_map(|scene| &mut scene.blocks) {
+        block.held_out = false;
+    }
+    let found = (0..study.scenes.len()).filter_map(|scene| of_scene(study, scene, model)).collect();
+    for (scene, held) in study.scenes.iter_mut().zip(held) {
+        for (block, held) in scene.blocks.iter_mut().zip(held) {
+            block.held_out = held;
+        }
+    }
+    found
+}
+
+fn of_scene(study: &Study<'_>, scene: usize, model: &Model) -> Option<Scatter> {
+    let runs = study.scenes[scene].run_numbers();
+    if runs.len() < 2 {
+        return None;
+    }
+    let zeros = run_zeros(scene, &study.scenes[scene], &runs);
+    let before = Appraisal::new(study, model);
+    let mut noises = before.noises.clone();
+    let mut free = model.clone();
+    let mut after = None;
+    for _ in 0..TURNS {
+        let mut effects: Vec<Effect> = model.iter().map(|fitted| fitted.effect.clone()).collect();
+        effects.extend(zeros.iter().cloned());
+        let mut design = Design::new(study, &free, &noises, effects.into_iter().map(Regressor::of).collect());
+        design.rebase(&free);
+        let (products, _) = design.fitted();
+        free = keep_loops(model, fit::linear(&design, &products, design.regressors.len(), &[]));
+        let appraisal = Appraisal::new(study, &free);
+        noises.clone_from(&appraisal.noises);
+        after = Some(appraisal);
+    }
+    let after = after?;
+    let samples: usize = study.scenes[scene].channels.iter().map(|channel| channel.values.len()).sum();
+    let price = crate::number(zeros.len()) * crate::number(samples).ln() + 20.0;
+    let scatter = measure(study, scene, &free, &after, runs);
+    let significant = before.deviance - after.deviance > price;
+    (significant && scatter.between > WIDE * scatter.within).then_some(scatter)
+}
+
+/// A linear fit of loops and clocks holds only nearby: they stay as they were.
+fn keep_loops(model: &Model, mut free: Model) -> Model {
+    for (fitted, known) in free.iter_mut().zip(model) {
+        if known.effect.shape.nonlinear_in_coefficient() {
+            fitted.coefficients.clone_from(&known.coefficients);
+        }
+    }
+    free
+}
+
+fn measure(study: &Study<'_>, scene: usize, free: &Model, after: &Appraisal, runs: Vec<i64>) -> Scatter {
+    let channels = (0..study.scenes[scene].channels.len())
+        .filter(|channel| study.scenes[scene].channels[*channel].kind.outside());
+    let zero = |channel: usize, run: i64| -> f64 {
+        let wanted = Some(Setting::RunOffset { channel, run });
+        free.iter().filter(|fitted| fitted.effect.setting_of(scene) == wanted).flat_map(|fitted| &fitted.coefficients).sum()
+    };
+    let mut zeros = Vec::new();
+    let (mut between, mut within) = (0.0_f64, 0.0_f64);
+    for channel in channels {
+        let of_runs: Vec<f64> = runs.iter().map(|run| zero(channel, *run)).collect();
+        let noise = after.noises[scene][channel];
+        let spread = deviation(&of_runs);
+        let size = noise.white.hypot(noise.wander);
+        if spread * within.max(f64::MIN_POSITIVE) >= between * size {
+            (between, within) = (spread, size);
+        }
+        zeros.push(of_runs);
+    }
+    Scatter { scene, zeros, runs, between, within }
+}
+
+/// The standard deviation of a few numbers.
+fn deviation(values: &[f64]) -> f64 {
+    let count = crate::number(values.len());
+    let mean = values.iter().sum::<f64>() / count;
+    (values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / (count - 1.0).max(1.0)).sqrt()
+}
+
+/// What is said of runs that do not repeat: how far, and whether order, time or a temperature explains it.
+pub(crate) fn describe(study: &Study<'_>, scatter: &Scatter, unit: (f64, &'static str)) -> Repeatability {
+    let scene = &study.scenes[scatter.scene];
+    let mean = |values: &[f64], run: i64| {
+        let of_run = values.iter().zip(&scene.recording.run).filter(|(value, known)| **known == run && value.is_finite());
+        let (sum, count) = of_run.fold((0.0, 0.0), |(sum, count), (value, _)| (sum + value, count + 1.0));
+        sum / f64::max(count, 1.0)
+    };
+    let by_run = |values: &[f64]| scatter.runs.iter().map(|run| mean(values, *run)).collect::<Vec<f64>>();
+    let mut states = vec![("time".to_owned(), by_run(&scene.recording.time))];
+    for (name, values) in study.sensors.iter().zip(&scene.temperatures) {
+        states.push((format!("temperature {name}"), by_run(values)));
+    }
+    let strongest = states
+        .into_iter()
+        .flat_map(|(name, state)| scatter.zeros.iter().map(move |zeros| (name.clone(), correlation(zeros, &state))))
+        .filter(|(_, correlation)| correlation.is_finite())
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    let detail = match strongest {
+        Some((name, r)) if r.abs() > FOLLOWS && scatter.runs.len() > 3 => {
+            format!("the zeros of the runs follow {name} (correlation {r:.2})")
+        }
+        Some((name, r)) => format!(
+            "neither the order of the runs nor a temperature explains it (closest: {name}, correlation {r:.2})"
+        ),
+        None => "nothing that was recorded explains it".to_owned(),
+    };
+    Repeatability { between_runs: scatter.between * unit.0, expected: scatter.within * unit.0, unit: unit.1, detail }
+}
+
+/// The correlation from which on zeros are said to follow a state.
+const FOLLOWS: f64 = 0.95;
+
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let count = crate::number(a.len());
+    let (mean_a, mean_b) = (a.iter().sum::<f64>() / count, b.iter().sum::<f64>() / count);
+    let sums = a.iter().zip(b).fold((0.0, 0.0, 0.0), |(aa, ab, bb), (a, b)| {
+        let (a, b) = (a - mean_a, b - mean_b);
+        (aa + a * a, ab + a * b, bb + b * b)
+    });
+    sums.1 / (sums.0 * sums.2).sqrt()
+}

@@ -1,0 +1,41 @@
+//! Settings of the instruments in words. In: those that the data demand. Out: an item each.
+
+use super::finding::alternatives;
+use super::parameter;
+use super::physics::title;
+use super::sheet::Item;
+use crate::diagnosis::{Diagnosis, SettingFinding};
+
+/// All settings, in order.
+pub(super) fn items(diagnosis: &Diagnosis) -> Vec<Item> {
+    diagnosis.settings.iter().map(|setting| item(setting, diagnosis)).collect()
+}
+
+fn item(setting: &SettingFinding, diagnosis: &Diagnosis) -> Item {
+    let recording = diagnosis.recordings.get(setting.recording);
+    let heading = match recording.filter(|_| diagnosis.recordings.len() > 1) {
+        Some(recording) => format!("{} in {}", title(setting.term), recording.file),
+        None => title(setting.term),
+    };
+    Item::new(
+        heading,
+        [
+            ("what", vec![meaning(setting.term).to_owned()]),
+            ("how much", parameter::lines(&setting.parameters, 0)),
+            ("or else", alternatives(&setting.alternatives)),
+            ("compensation", vec!["None: it belongs to the recording, not to the machine.".to_owned()]),
+        ],
+    )
+}
+
+fn meaning(term: &str) -> &'static str {
+    match term {
+        "eccentricity" => {
+            "The instrument's centre is not where the set-up says: true centre minus declared centre."
+        }
+        "radius" => "The instrument is longer or shorter than the set-up says.",
+        "cosine" => "The beam stands at an angle to the motion, and reads every length too short.",
+        "clock" => "The instrument's clock is off: it shows at a time what was so before, by the offset.",
+        _ => "",
+    }
+}

@@ -1,0 +1,103 @@
+//! The words of the machine: sides, states, terms, and what compensation can do. In: names of the contract. Out: what a
+//! person at the machine says.
+
+use crate::diagnosis::{Finding, Interval, IntervalOf};
+
+use super::figure::stretch;
+
+/// Where along the way from the drive to the tool something comes in.
+pub(super) fn side(side: &str) -> &str {
+    match side {
+        "drive" => "in the drive",
+        "transmission" => "behind the drive's feedback: screw, play, guide",
+        "structure" => "in the structure",
+        "unknown" => "one sensor cannot tell on which side of the drive's feedback",
+        other => other,
+    }
+}
+
+/// On what it depends.
+pub(super) fn state(state: &str) -> String {
+    match state {
+        "direction" => "depends on the direction of motion".to_owned(),
+        "reversal" => "begins at each reversal".to_owned(),
+        "other-axis" => "depends on where another axis stands".to_owned(),
+        "" => String::new(),
+        "constant" | "none" => "the same everywhere".to_owned(),
+        other => format!("depends on {other}"),
+    }
+}
+
+/// The stretch to which something is confined.
+pub(super) fn interval(interval: &Interval) -> String {
+    let what = match &interval.of {
+        IntervalOf::Axis(letter) => letter.to_lowercase(),
+        IntervalOf::Time => "time".to_owned(),
+        IntervalOf::Frequency => "frequency".to_owned(),
+    };
+    format!("{what} from {}", stretch(interval.from, interval.to, interval.unit))
+}
+
+/// The power of the first coefficient.
+pub(super) fn first_power(term: &str) -> usize {
+    usize::from(term == "coupling")
+}
+
+/// A term's name as it begins a line.
+pub(super) fn title(term: &str) -> String {
+    let mut letters = term.replace('-', " ").chars().collect::<Vec<_>>();
+    if let Some(first) = letters.first_mut() {
+        first.make_ascii_uppercase();
+    }
+    letters.into_iter().collect()
+}
+
+/// What the drive's own feedback says of an error that turns with the direction; nothing where that does not arise.
+pub(super) fn friction(finding: &Finding) -> Option<&'static str> {
+    let turns =
+        matches!(finding.term, "backlash" | "reversal-spike") || finding.location.state == "direction";
+    (turns && finding.location.side == "drive").then_some(
+        "The drive's own feedback shows it, so this is friction in the following error, not play: there is nothing to \
+         tighten behind the motor.",
+    )
+}
+
+/// What compensation takes away.
+pub(super) fn removed(finding: &Finding) -> &'static str {
+    if !finding.compensable {
+        return "A controller cannot compensate it in real time: it does not know in time what this depends on.";
+    }
+    if friction(finding).is_some() {
+        return "A correction at each reversal removes it; friction compensation in the drive is the better place.";
+    }
+    match finding.term {
+        "constant" | "polynomial" | "table" | "coupling" => {
+            "A controller can compensate it in real time, wherever it was measured."
+        }
+        "backlash" => "A controller can compensate it in real time: a step at each reversal.",
+        "cyclic" => "A controller can compensate it in real time, as long as the reference position stays.",
+        "lag" => {
+            "A controller can compensate it in real time; matched gains in the drives are the better place."
+        }
+        "expansion" | "growth" => "A controller that reads the sensor can compensate it in real time.",
+        _ => "A controller can compensate it in real time.",
+    }
+}
+
+/// What compensation leaves, or what helps in its place.
+pub(super) fn left(finding: &Finding) -> &'static str {
+    match finding.term {
+        "backlash" => "What stays is the moment in which the axis crosses over.",
+        "lag" => "What stays is what is faster than the position loop.",
+        "expansion" | "growth" => "What stays is the heat that the sensor does not see.",
+        "cyclic" => "What stays is what changes with wear and with heat along the screw.",
+        "table" => "What stays is what lies between the nodes and outside the stretch.",
+        "constant" | "polynomial" | "coupling" => "What stays is what changes after the measurement.",
+        "reversal-spike" => "Friction compensation in the drive is what helps.",
+        "acceleration" => "Acceleration feed-forward in the drive, or gentler motion, is what helps.",
+        "drift" => "Warming up, or a sensor at the source of the heat, is what helps.",
+        "vibration" => "Balancing, damping or isolating its source is what helps.",
+        "compliance" => "A stiffer set-up, or less force, is what helps.",
+        _ => "",
+    }
+}

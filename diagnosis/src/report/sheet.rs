@@ -1,0 +1,75 @@
+//! What the report says, before it is text or a page. In: a diagnosis. Out: its sections in order, each with items of
+//! labelled facts or with plain sentences.
+
+use super::{data, finding, instrument, remains, verdict};
+use crate::diagnosis::Diagnosis;
+
+/// The whole report.
+pub(super) struct Sheet {
+    /// The machine.
+    pub(super) title: String,
+    /// The verdict, a sentence without its end.
+    pub(super) verdict: String,
+    pub(super) sections: Vec<Section>,
+}
+
+/// A part of it under one heading.
+pub(super) struct Section {
+    pub(super) heading: &'static str,
+    pub(super) body: Body,
+}
+
+pub(super) enum Body {
+    /// Things with facts about each.
+    Items(Vec<Item>),
+    /// Sentences, in order.
+    List(Vec<String>),
+}
+
+/// One thing and what is to be said of it.
+pub(super) struct Item {
+    pub(super) title: String,
+    pub(super) facts: Vec<Fact>,
+}
+
+/// A labelled fact of one or more lines.
+pub(super) struct Fact {
+    pub(super) label: &'static str,
+    pub(super) lines: Vec<String>,
+}
+
+impl Item {
+    /// An item; facts without a line are left out.
+    pub(super) fn new(title: String, facts: impl IntoIterator<Item = (&'static str, Vec<String>)>) -> Self {
+        let facts = facts.into_iter().filter_map(|(label, lines)| {
+            let lines: Vec<String> = lines.into_iter().filter(|line| !line.is_empty()).collect();
+            (!lines.is_empty()).then_some(Fact { label, lines })
+        });
+        Self { title, facts: facts.collect() }
+    }
+}
+
+/// The report of a diagnosis. Sections that have nothing to say are left out.
+pub(super) fn sheet(diagnosis: &Diagnosis) -> Sheet {
+    let items = |heading, items: Vec<Item>| {
+        (!items.is_empty()).then_some(Section { heading, body: Body::Items(items) })
+    };
+    let list = |heading, lines: Vec<String>| {
+        (!lines.is_empty()).then_some(Section { heading, body: Body::List(lines) })
+    };
+    let sections = [
+        items("What was left out", finding::items(diagnosis)),
+        items("The instruments' own settings", instrument::items(diagnosis)),
+        items("What no term explains", remains::unexplained(diagnosis)),
+        items("Repeatability", remains::repeatability(diagnosis)),
+        list("What to measure next", remains::next_measurements(diagnosis)),
+        list("What these recordings cannot decide", diagnosis.undecided.clone()),
+        items("Figures", data::figures(diagnosis)),
+        items("Recordings", data::recordings(diagnosis)),
+    ];
+    Sheet {
+        title: format!("Diagnosis of {}", diagnosis.machine),
+        verdict: verdict::sentence(diagnosis),
+        sections: sections.into_iter().flatten().collect(),
+    }
+}

@@ -1,0 +1,114 @@
+//! The verdict in one line. In: a diagnosis. Out: a sentence of plain words without its end.
+
+use super::figure::{change, percent, size};
+use super::remains::brief;
+use crate::diagnosis::{Diagnosis, Verdict};
+
+pub(super) fn sentence(diagnosis: &Diagnosis) -> String {
+    match diagnosis.verdict {
+        Verdict::Adequate => adequate(diagnosis),
+        Verdict::LeftOutPhysics => format!("left-out physics: {}", found(diagnosis)),
+        Verdict::Unexplained => format!("unexplained: {}", unexplained(diagnosis)),
+        Verdict::NotRepeatable => format!("not repeatable: {}", not_repeatable(diagnosis)),
+    }
+}
+
+fn adequate(diagnosis: &Diagnosis) -> String {
+    let settings = match settings(diagnosis) {
+        Some(settings) => format!(", with the instruments' own settings ({settings})"),
+        None => String::new(),
+    };
+    format!(
+        "adequate: nothing systematic stands above the noise{settings}; {}, {}",
+        remaining(diagnosis),
+        noise(diagnosis)
+    )
+}
+
+fn found(diagnosis: &Diagnosis) -> String {
+    let what = match (effects(diagnosis), settings(diagnosis)) {
+        (Some(effects), _) => effects,
+        (None, Some(settings)) => format!("of the instruments and not of the machine ({settings})"),
+        (None, None) => "none that has a name".to_owned(),
+    };
+    format!("{what}; {}, {}", fall(diagnosis), noise(diagnosis))
+}
+
+fn unexplained(diagnosis: &Diagnosis) -> String {
+    let place = diagnosis.unexplained.as_ref().map(brief);
+    let place = place.map_or_else(String::new, |place| format!(" {place}"));
+    match effects(diagnosis) {
+        Some(effects) => format!(
+            "{effects}, and no term fits what stays{place}; {}, {}",
+            fall(diagnosis),
+            noise(diagnosis)
+        ),
+        None => format!(
+            "something systematic that no term fits{place}; {}, {}",
+            remaining(diagnosis),
+            noise(diagnosis)
+        ),
+    }
+}
+
+fn not_repeatable(diagnosis: &Diagnosis) -> String {
+    let differ = match &diagnosis.repeatability {
+        Some(found) => {
+            let [between, expected] =
+                [found.between_runs, found.expected].map(|value| size(value, found.unit));
+            format!("runs under the same state differ by {between} where the noise gives {expected}")
+        }
+        None => "runs under the same state differ by more than the noise".to_owned(),
+    };
+    match effects(diagnosis) {
+        Some(effects) => format!("{differ}; {effects}"),
+        None => format!("{differ}; no model of the state can follow that"),
+    }
+}
+
+/// How many findings there are, and how much they explain together; nothing without findings.
+fn effects(diagnosis: &Diagnosis) -> Option<String> {
+    let together = percent(diagnosis.findings.iter().map(|finding| finding.share).sum());
+    match diagnosis.findings.len() {
+        0 => None,
+        1 => Some(format!("1 effect explains {together} of what the model missed")),
+        count => Some(format!("{count} effects explain {together} of what the model missed")),
+    }
+}
+
+/// The names of the settings, each once.
+fn settings(diagnosis: &Diagnosis) -> Option<String> {
+    let mut names: Vec<&str> = Vec::new();
+    for setting in &diagnosis.settings {
+        if !names.contains(&setting.term) {
+            names.push(setting.term);
+        }
+    }
+    (!names.is_empty()).then(|| names.join(", "))
+}
+
+/// What the residual was and is: of the held-out data where there are any.
+fn fall(diagnosis: &Diagnosis) -> String {
+    let (before, after) = (&diagnosis.before, &diagnosis.after);
+    let held_out = before.holdout_rms.zip(after.holdout_rms);
+    let (name, (before_rms, after_rms)) = match held_out {
+        Some(held_out) => ("held-out rms", held_out),
+        None => ("rms (nothing could be held out)", (before.rms, after.rms)),
+    };
+    match change(before_rms, after_rms, after.unit) {
+        Some((before, after)) => format!("{name} falls from {before} to {after}"),
+        None => format!("{name} is not known"),
+    }
+}
+
+fn remaining(diagnosis: &Diagnosis) -> String {
+    let after = &diagnosis.after;
+    match after.holdout_rms {
+        Some(rms) => format!("held-out rms {}", size(rms, after.unit)),
+        None => format!("rms {}", size(after.rms, after.unit)),
+    }
+}
+
+fn noise(diagnosis: &Diagnosis) -> String {
+    format!("noise {}", size(diagnosis.noise.value, diagnosis.noise.unit))
+}

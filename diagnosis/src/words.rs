@@ -1,0 +1,102 @@
+//! Words: where a finding acts and how it shows.
+//!
+//! In: an effect. Out: link, side, state and a sentence.
+
+use crate::alternatives::state;
+use crate::diagnosis::{Interval, IntervalOf, Location};
+use crate::model::{Effect, Side};
+use crate::parameters::axis_unit;
+use crate::study::Study;
+use crate::terms::Shape;
+
+/// Where an effect acts. `others` are the names that could stand for it: a side is only told where all agree.
+pub(crate) fn location(study: &Study<'_>, effect: &Effect, others: &[Effect]) -> Location {
+    let Some(motion) = effect.motion() else { return Location::default() };
+    let own = side(study, effect);
+    let agreed = others.iter().filter(|other| other.motion().is_some()).all(|other| side(study, other) == own);
+    Location {
+        link: study.equations.motions[motion].link.clone(),
+        side: if agreed { own } else { "unknown" },
+        state: state_word(&effect.shape),
+        detail: detail(study, effect),
+        interval: interval(study, effect),
+    }
+}
+
+/// On which side of the drive's feedback an effect comes in, and what follows from the motion alone.
+fn side(study: &Study<'_>, effect: &Effect) -> &'static str {
+    let Some(motion) = effect.motion() else { return "unknown" };
+    let own_axis = study.own.iter().position(|own| *own == Some(motion));
+    match (own_axis, effect.side()) {
+        // What moves a link aside or turns it cannot come from its drive.
+        (None, _) => "structure",
+        (Some(_), _) if matches!(effect.shape, Shape::Lag { .. }) => "drive",
+        (Some(axis), _) if !study.has_drive(axis) => "unknown",
+        (Some(_), Some(Side::Drive)) => "drive",
+        (Some(_), _) => "transmission",
+    }
+}
+
+fn state_word(shape: &Shape) -> &'static str {
+    match shape {
+        Shape::Constant | Shape::Polynomial { .. } | Shape::Table { .. } | Shape::Cyclic { .. } => "position",
+        Shape::Backlash { .. } => "direction",
+        Shape::ReversalSpike { .. } => "reversal",
+        Shape::Lag { .. } => "velocity",
+        Shape::Acceleration { .. } => "acceleration",
+        Shape::Expansion { .. } | Shape::Growth { .. } | Shape::SensorPolynomial { .. } => "temperature",
+        Shape::Drift { .. } => "time",
+        Shape::Vibration { .. } => "frequency",
+        Shape::Coupling { .. } => "other-axis",
+        Shape::Compliance { .. } => "load",
+        Shape::Instrument(_) => "instrument",
+    }
+}
+
+fn detail(study: &Study<'_>, effect: &Effect) -> String {
+    let name = |axis: usize| study.equations.axes[axis].letter.to_lowercase();
+    match &effect.shape {
+        Shape::Constant => format!("follows {}", state(study, effect)),
+        Shape::Polynomial { axis, .. } => format!("changes smoothly along {}", name(*axis)),
+        Shape::Table { axis, .. } => format!("follows a curve along {}", name(*axis)),
+        Shape::Cyclic { axis, period } => {
+            let (factor, unit) = axis_unit(study, *axis);
+            format!("repeats every {:.4} {unit} of {}", period * factor, name(*axis))
+        }
+        Shape::Backlash { axis, wind_up } if *wind_up > 0.0 => {
+            let (factor, unit) = axis_unit(study, *axis);
+            format!("builds up over {:.3} {unit} after every reversal of {}", wind_up * factor, name(*axis))
+        }
+        Shape::Backlash { axis, .. } => format!("jumps at every reversal of {}", name(*axis)),
+        Shape::ReversalSpike { axis, decay } => {
+            format!("a spike at every reversal of {}, gone within {:.3} s", name(*axis), 3.0 * decay)
+        }
+        Shape::Lag { axis } => format!("follows the velocity of {}, behind its position loop", name(*axis)),
+        Shape::Acceleration { axis } => format!("follows the acceleration of {}", name(*axis)),
+        Shape::Expansion { axis, sensor, .. } => {
+            format!("grows with {} and with the temperature of {}", name(*axis), study.sensors[*sensor])
+        }
+        Shape::Growth { sensor, time_constant, .. } if *time_constant > 0.0 => {
+            format!("follows the temperature of {}, {time_constant:.0} s behind it", study.sensors[*sensor])
+        }
+        Shape::Growth { sensor, .. } | Shape::SensorPolynomial { sensor, .. } => {
+            format!("follows the temperature of {}", study.sensors[*sensor])
+        }
+        Shape::Drift { time_constant } => format!("settles with time, within {:.0} s", 3.0 * time_constant),
+        Shape::Vibration { frequency } => format!("oscillates at {frequency:.3} Hz"),
+        Shape::Coupling { axis, .. } => format!("changes with where {} stands", name(*axis)),
+        Shape::Compliance { load } => format!("follows the load {}", study.loads[*load].0),
+        Shape::Instrument(setting) => setting.name().to_owned(),
+    }
+}
+
+fn interval(study: &Study<'_>, effect: &Effect) -> Option<Interval> {
+    match &effect.shape {
+        Shape::Table { axis, nodes, .. } => {
+            let (factor, unit) = axis_unit(study, *axis);
+            let of = IntervalOf::Axis(study.equations.axes[*axis].letter.clone());
+            Some(Interval { of, from: nodes.first()? * factor, to: nodes.last()? * factor, unit })
+        }
+        _ => None,
+    }
+}

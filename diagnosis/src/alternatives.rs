@@ -26,8 +26,8 @@ pub(crate) fn find(study: &Study<'_>, found: &Found) -> Vec<Vec<Effect>> {
     let design = joint(study, model, noises, &others);
     let (products, samples) = design.fitted();
     let mut swept = Swept::new(&products);
-    for number in 0..model.len() {
-        design.columns(number).for_each(|column| drop(swept.take(column)));
+    for column in (0..model.len()).flat_map(|number| design.columns(number)) {
+        swept.take(column);
     }
     let scale = (swept.remaining() / samples.max(1.0)).max(f64::MIN_POSITIVE);
     let columns = |number: usize| design.columns(number).collect::<Vec<usize>>();
@@ -76,7 +76,8 @@ fn elsewhere(study: &Study<'_>, effect: &Effect) -> Vec<Effect> {
     let motions = study.equations.motions.iter().enumerate().filter(|(number, _)| *number != motion);
     let possible = motions.filter(|(_, known)| match effect.shape.axis() {
         Some(axis) => known.axis == Some(axis) && !known.alignment,
-        None => true,
+        // A squareness may change with temperature and time, but does not oscillate.
+        None => !known.alignment || !matches!(effect.shape, Shape::Vibration { .. }),
     });
     possible
         .map(|(motion, _)| Effect { place: Place::Motion { motion, side }, shape: effect.shape.clone() })

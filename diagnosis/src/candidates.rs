@@ -168,7 +168,9 @@ fn shapes(study: &Study<'_>, motion: usize, travels: &[Travel], grids: &Grids) -
         }
     }
     shapes.extend(grids.drifts.iter().map(|time_constant| Shape::Drift { time_constant: *time_constant }));
-    shapes.extend((0..study.loads.len()).map(|load| Shape::Compliance { load }));
+    if !known.alignment {
+        shapes.extend((0..study.loads.len()).map(|load| Shape::Compliance { load }));
+    }
     shapes
 }
 
@@ -211,17 +213,17 @@ pub(crate) fn simplicity(study: &Study<'_>, effect: &Effect) -> f64 {
         Shape::SensorPolynomial { .. } => 3.0,
         Shape::Table { .. } => 4.0,
     };
-    shape + effect.motion().map_or(0.0, |motion| place(study, motion))
+    shape + effect.motion().map_or(0.0, |motion| place(study, motion, &effect.shape))
 }
 
-/// A motion in the axis's own direction or a squareness is the first to be thought of, an angle the last.
-fn place(study: &Study<'_>, motion: usize) -> f64 {
+/// A motion in the axis's own direction or a constant squareness is the first to be thought of, an angle the last.
+fn place(study: &Study<'_>, motion: usize, shape: &Shape) -> f64 {
     let known = &study.equations.motions[motion];
-    if known.alignment || study.own.contains(&Some(motion)) {
-        0.0
-    } else if known.angular {
-        0.6
-    } else {
-        0.3
+    match shape {
+        Shape::Constant if known.alignment => 0.0,
+        _ if known.alignment => 0.8,
+        _ if study.own.contains(&Some(motion)) => 0.0,
+        _ if known.angular => 0.6,
+        _ => 0.3,
     }
 }

@@ -236,6 +236,27 @@ impl Units {
         Residual { rms: rms(all), holdout_rms: (held.1 > 0.0).then(|| rms(held)), unit: self.unit.1 }
     }
 
+    /// The residuals of all counted channels on the held-out rows (on all rows where none are), the mean of each channel
+    /// taken out.
+    fn held_out(&self, study: &Study<'_>, model: &Model) -> Vec<f64> {
+        let any = study.scenes.iter().any(|scene| scene.blocks.iter().any(|block| block.held_out));
+        let mut values = Vec::new();
+        for (scene, residuals) in zeros::residuals(study, model).into_iter().enumerate() {
+            let fitted = study.scenes[scene].fitted_rows();
+            for (channel, residual) in study.scenes[scene].channels.iter().zip(residuals) {
+                if self.counts(study, channel.kind) {
+                    let chosen = (0..residual.len()).filter(|row| {
+                        residual[*row].is_finite() && !channel.outliers[*row] && !(any && fitted[*row])
+                    });
+                    let mut of_channel: Vec<f64> = chosen.map(|row| residual[row]).collect();
+                    zeros::center(&mut of_channel);
+                    values.extend(of_channel);
+                }
+            }
+        }
+        values
+    }
+
     fn noise(&self, study: &Study<'_>, appraisal: &Appraisal) -> NoiseSummary {
         let channels = study.scenes.iter().zip(&appraisal.noises).flat_map(|(scene, noises)| scene.channels.iter().zip(noises));
         let counted: Vec<_> = channels.filter(|(channel, _)| self.counts(study, channel.kind)).map(|(_, noise)| *noise).collect();
@@ -260,7 +281,7 @@ fn report(study: &Study<'_>, found: &Found, units: &Units, diagnosis: &mut Diagn
         swept.take(column);
     }
     let with = held_rms(&diagnosis.after);
-    let explainable = (held_rms(&diagnosis.before).powi(2) - with * with).max(f64::MIN_POSITIVE);
+    let shares = shares(study, found, units);
     for (number, fitted) in found.fit.model.iter().enumerate() {
         let described = Described::new(study, fitted, &found.fit.covariances[number]);
         let names = number.checked_sub(found.always).map_or(&[] as &[Effect], |place| &names[place]);
@@ -282,7 +303,7 @@ fn report(study: &Study<'_>, found: &Found, units: &Units, diagnosis: &mut Diagn
             motion_meaning: known.meaning.clone(),
             term: fitted.effect.shape.name(),
             parameters: described.parameters(),
-            share: ((without * without - with * with) / explainable).clamp(0.0, 1.0),
+            share: shares[number],
             location: words::location(study, &fitted.effect, names),
             evidence: Evidence { with, without, unit: units.unit.1 },
             alternatives,
@@ -294,6 +315,26 @@ fn report(study: &Study<'_>, found: &Found, units: &Units, diagnosis: &mut Diagn
     }
     diagnosis.findings.sort_by(|a, b| b.share.total_cmp(&a.share));
     diagnosis.settings = joined(std::mem::take(&mut diagnosis.settings));
+}
+
+/// The part of each effect in what all effects of the machine do together to the data that were held out (to all data, where
+/// none were): its product with the sum over the square of the sum, zeros of channels left free.
+fn shares(study: &Study<'_>, found: &Found, units: &Units) -> Vec<f64> {
+    let model = &found.fit.model;
+    let whole = units.held_out(study, model);
+    let difference = |number: usize| -> Vec<f64> {
+        if model[number].effect.motion().is_none() {
+            return Vec::new();
+        }
+        let mut without = model.clone();
+        without.remove(number);
+        units.held_out(study, &without).iter().zip(&whole).map(|(without, whole)| without - whole).collect()
+    };
+    let signals: Vec<Vec<f64>> = (0..model.len()).map(difference).collect();
+    let sum: Vec<f64> = (0..whole.len()).map(|at| signals.iter().filter_map(|signal| signal.get(at)).sum()).collect();
+    let product = |signal: &[f64]| signal.iter().zip(&sum).map(|(a, b)| a * b).sum::<f64>();
+    let square = product(&sum).max(f64::MIN_POSITIVE);
+    signals.iter().map(|signal| (product(signal) / square).clamp(0.0, 1.0)).collect()
 }
 
 fn held_rms(residual: &Residual) -> f64 {

@@ -48,7 +48,6 @@ pub(crate) struct Design {
 #[derive(Clone, Debug)]
 pub(crate) struct Products {
     pub(crate) scene: usize,
-    pub(crate) block: usize,
     pub(crate) held_out: bool,
     /// Columns times columns, the residual last.
     pub(crate) matrix: DMatrix<f64>,
@@ -150,7 +149,6 @@ fn scene_products(
         .map(|(number, block)| {
             let mut products = Products {
                 scene,
-                block: number,
                 held_out: block.held_out,
                 matrix: DMatrix::zeros(width + 1, width + 1),
                 samples: 0.0,
@@ -223,7 +221,7 @@ impl<'r> ChannelRun<'r> {
     /// The products of every block.
     fn all(&mut self, course: &Course) -> Vec<(DMatrix<f64>, f64)> {
         let study = self.study;
-        let (mut terms, mut drive_terms) = (Terms::new(study, self.model), Terms::new(study, self.model));
+        let (mut terms, mut drive_terms) = (Terms::new(self.model), Terms::new(self.model));
         let mut results = Vec::new();
         for block in &study.scenes[self.scene].blocks {
             let mut products = DMatrix::zeros(self.width + 1, self.width + 1);
@@ -246,7 +244,7 @@ impl<'r> ChannelRun<'r> {
     pub(crate) fn random_sums(&mut self, course: &Course, count: usize) -> DMatrix<f64> {
         let study = self.study;
         let weight = 1.0 / self.noise.white;
-        let (mut terms, mut drive_terms) = (Terms::new(study, self.model), Terms::new(study, self.model));
+        let (mut terms, mut drive_terms) = (Terms::new(self.model), Terms::new(self.model));
         let mut sums = DMatrix::zeros(count + 2, self.width);
         let (mut plain, mut weights) = (vec![0.0; self.width], vec![0.0; count]);
         let mut samples = 0.0;
@@ -258,21 +256,21 @@ impl<'r> ChannelRun<'r> {
             let frame = Frame::new(study, course, from..end, &mut terms, &mut drive_terms);
             let view = course.states(self.channel().kind).rows(from..end);
             let columns = self.raw_columns(&frame, &view);
-            for row in 0..end - from {
-                let observed = columns[(row, self.width)].is_finite();
-                let drawn: Vec<f64> = (0..count).map(|_| random.next()).collect();
-                if !observed || (0..self.width).any(|column| !columns[(row, column)].is_finite()) {
-                    continue;
-                }
-                samples += 1.0;
-                weights.iter_mut().zip(&drawn).for_each(|(sum, drawn)| *sum += drawn);
-                for column in 0..self.width {
-                    let value = columns[(row, column)] * weight;
-                    plain[column] += value;
-                    sums[(count + 1, column)] += value * value;
-                    for (number, drawn) in drawn.iter().enumerate() {
-                        sums[(number, column)] += drawn * value;
-                    }
+            let valid = |row: usize| (0..=self.width).all(|column| columns[(row, column)].is_finite());
+            let drawn = DMatrix::from_fn(end - from, count, |_, _| random.next());
+            let kept: Vec<usize> = (0..end - from).filter(|row| valid(*row)).collect();
+            let (columns, drawn) = (columns.select_rows(&kept) * weight, drawn.select_rows(&kept));
+            let columns = columns.columns(0, self.width);
+            samples += crate::number(kept.len());
+            let products = drawn.transpose() * columns;
+            for (number, sum) in weights.iter_mut().enumerate() {
+                *sum += drawn.column(number).sum();
+            }
+            for column in 0..self.width {
+                plain[column] += columns.column(column).sum();
+                sums[(count + 1, column)] += columns.column(column).norm_squared();
+                for number in 0..count {
+                    sums[(number, column)] += products[(number, column)];
                 }
             }
             from = end;

@@ -25,6 +25,8 @@ pub(crate) fn try_loops(
 ) -> Model {
     let lacking: Vec<usize> = (0..travels.len())
         .filter(|axis| travels[*axis].moves && study.own[*axis].is_some())
+        // The drive's own feedback shows its loop to the linear choice.
+        .filter(|axis| !study.has_drive(*axis))
         .filter(|axis| !model.iter().any(|fitted| fitted.effect.shape == Shape::Lag { axis: *axis }))
         .collect();
     let suspicious = model[always..].iter().any(|fitted| mistakable(&fitted.effect));

@@ -55,9 +55,12 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
         tries.waves = waves;
         let regressors = regressors(study, &model, always, &pool, peaks);
         let next = choose(study, &model, &noises, regressors, always, waves);
-        let next = fit::refine(study, next, &noises, &travels).model;
-        let next = dynamics::try_loops(study, next, always, &noises, &travels, tries);
-        let settled = same_effects(&model, &next);
+        let mut next = fit::refine(study, next, &noises, &travels).model;
+        let mut settled = same_effects(&model, &next);
+        if settled || round + 1 == ROUNDS {
+            next = dynamics::try_loops(study, next, always, &noises, &travels, tries);
+            settled = same_effects(&model, &next);
+        }
         model = next;
         courses = self::courses(study, &model);
         let appraisal = Appraisal::new(study, &model);

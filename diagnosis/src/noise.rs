@@ -107,6 +107,7 @@ pub(crate) fn unwhiten(steps: &[Step], column: &mut [f64]) {
 fn deviance(time: &[f64], residual: &[f64], valid: &[bool], noise: Noise) -> (f64, f64) {
     let mut filter = Whitening::new(noise);
     let (mut state, mut squares, mut logs, mut count) = (0.0, 0.0, 0.0, 0.0);
+    let mut product = 1.0;
     for ((time, value), valid) in time.iter().zip(residual).zip(valid) {
         let step = filter.step(*time, *valid);
         state *= step.decay;
@@ -114,10 +115,16 @@ fn deviance(time: &[f64], residual: &[f64], valid: &[bool], noise: Noise) -> (f6
             let new = value - state;
             state += step.gain * new;
             squares += new * new * step.weight * step.weight;
-            logs -= 2.0 * step.weight.ln();
+            // One logarithm for many factors, as long as their product is far from both ends of the numbers.
+            product *= step.weight;
+            if !(1e-100..1e100).contains(&product) {
+                logs -= 2.0 * product.ln();
+                product = 1.0;
+            }
             count += 1.0;
         }
     }
+    logs -= 2.0 * product.ln();
     let scale = (squares / count).max(f64::MIN_POSITIVE);
     (count * scale.ln() + logs + count, scale)
 }

@@ -6,6 +6,8 @@
 
 use std::ops::Range;
 
+use model_dsl::program::Column;
+
 use crate::model::{Effect, Fitted, Model, Place, Side};
 use crate::recording::Recording;
 use crate::states::{Rows, States};
@@ -19,6 +21,8 @@ pub(crate) struct Course {
     /// Behind the loops, on the drives' own clock; only where it differs.
     drives: Option<States>,
     programmed: Vec<Vec<f64>>,
+    /// What the calibration says of every error motion in every row; `None` where it says nothing.
+    known: Vec<Option<Vec<f64>>>,
 }
 
 impl Course {
@@ -28,7 +32,8 @@ impl Course {
         let (lags, clock) = (lags(study, model), clock(scene, model));
         let shown = states(&study.scenes[scene], &lags, clock);
         let drives = (clock != 0.0).then(|| states(&study.scenes[scene], &lags, 0.0));
-        Self { shown, drives, programmed: programmed(recording) }
+        let known = known_motions(study, &shown);
+        Self { shown, drives, programmed: programmed(recording), known }
     }
 
     /// The states that a channel shows.
@@ -38,6 +43,21 @@ impl Course {
             _ => &self.shown,
         }
     }
+}
+
+/// The error motions as the calibration has them. Its loops are in the states already.
+fn known_motions(study: &Study<'_>, states: &States) -> Vec<Option<Vec<f64>>> {
+    let rows = states.rows(0..states.time.len());
+    let mut sums: Vec<Option<Vec<f64>>> = vec![None; study.equations.motions.len()];
+    for fitted in &study.known {
+        if let Place::Motion { motion, .. } = fitted.effect.place
+            && !matches!(fitted.effect.shape, Shape::Lag { .. })
+        {
+            let sum = sums[motion].get_or_insert_with(|| vec![0.0; rows.len()]);
+            fitted.effect.shape.add(&fitted.coefficients, &rows, &mut Memory::default(), sum);
+        }
+    }
+    sums
 }
 
 fn states(scene: &Scene<'_>, lags: &[f64], clock: f64) -> States {
@@ -67,15 +87,16 @@ pub(crate) struct Terms<'m> {
 }
 
 impl<'m> Terms<'m> {
-    /// All terms of the machine, known and modelled, at the beginning of a recording.
-    pub(crate) fn new(study: &'m Study<'_>, model: &'m Model) -> Self {
-        let machine = study.known.iter().chain(model).filter(|fitted| fitted.effect.motion().is_some());
+    /// All terms of the machine in a model, at the beginning of a recording.
+    pub(crate) fn new(model: &'m Model) -> Self {
+        let machine = model.iter().filter(|fitted| fitted.effect.motion().is_some());
         Self { fitted: machine.map(|fitted| (fitted, Memory::default())).collect() }
     }
 
-    /// The value of every error motion in the next stretch of rows; on the drives' side alone where `drive` is set.
-    fn motions(&mut self, rows: &Rows<'_>, motions: usize, drive: bool) -> Vec<Option<Vec<f64>>> {
-        let mut sums: Vec<Option<Vec<f64>>> = vec![None; motions];
+    /// Adds the value of every error motion in the next stretch of rows to what is known of it; on the drives' side alone
+    /// where `drive` is set.
+    fn motions(&mut self, rows: &Rows<'_>, known: Vec<Option<Vec<f64>>>, drive: bool) -> Vec<Option<Vec<f64>>> {
+        let mut sums = known;
         for (fitted, memory) in &mut self.fitted {
             if let Place::Motion { motion, side } = fitted.effect.place
                 && (!drive || side == Side::Drive)
@@ -96,8 +117,8 @@ pub(crate) struct Frame<'c> {
     nominal: [Vec<f64>; 3],
     reference: [Vec<f64>; 3],
     start: [f64; 3],
-    levers: Vec<[Vec<f64>; 3]>,
-    turns: Vec<[Vec<f64>; 3]>,
+    levers: Vec<[Column<'c>; 3]>,
+    turns: Vec<[Column<'c>; 3]>,
     /// Errors of the tip, with the terms of the calibration and of the model; and of the drives alone.
     error: [Vec<f64>; 3],
     motions: Vec<Option<Vec<f64>>>,
@@ -115,20 +136,21 @@ impl<'c> Frame<'c> {
     ) -> Self {
         let view = course.shown.rows(rows.clone());
         let axes = 0..study.equations.axes.len();
-        let positions: Vec<&[f64]> = axes.clone().map(|axis| view.axis(axis).position).collect();
-        let programmed: Vec<&[f64]> =
+        let positions: Vec<&'c [f64]> = axes.map(|axis| view.axis(axis).position).collect();
+        let programmed: Vec<&'c [f64]> =
             course.programmed.iter().map(|position| &position[rows.clone()]).collect();
-        let travels: Vec<&[f64]> =
+        let travels: Vec<&'c [f64]> =
             study.equations.travels.iter().map(|travel| positions[travel.axis]).collect();
         let interpreter = &study.interpreter;
-        let levers = interpreter.lever_columns(&positions, &travels);
-        let motions = terms.motions(&view, levers.len(), false);
+        let levers = interpreter.lever_values(&positions, &travels);
+        let known = course.known.iter().map(|known| known.as_ref().map(|known| known[rows.clone()].to_vec()));
+        let motions = terms.motions(&view, known.collect(), false);
         let drive_rows = course.drives.as_ref().unwrap_or(&course.shown).rows(rows.clone());
-        let drive_motions = drive_terms.motions(&drive_rows, levers.len(), true);
+        let drive_motions = drive_terms.motions(&drive_rows, vec![None; levers.len()], true);
         let first: Vec<f64> = course.programmed.iter().map(|position| first_known(position)).collect();
         Self {
             error: tip_error(&levers, &motions, rows.len()),
-            turns: interpreter.turn_columns(&positions, &travels),
+            turns: interpreter.turn_values(&positions, &travels),
             nominal: interpreter.nominal_columns(&positions),
             reference: interpreter.nominal_columns(&programmed),
             start: interpreter.nominal(&first),
@@ -192,7 +214,7 @@ impl<'c> Frame<'c> {
         for (turns, motion) in self.turns.iter().zip(&self.motions) {
             if let Some(motion) = motion {
                 for (row, (sum, motion)) in sum.iter_mut().zip(motion).enumerate() {
-                    *sum += dot(about, [turns[0][row], turns[1][row], turns[2][row]]) * motion;
+                    *sum += dot(about, [0, 1, 2].map(|d| turns[d].at(row))) * motion;
                 }
             }
         }
@@ -217,29 +239,31 @@ impl<'c> Frame<'c> {
         model: &Model,
         side: Side,
     ) -> Vec<Option<Vec<f64>>> {
-        let from = |value: &dyn Fn(usize, usize) -> f64| -> Vec<Option<Vec<f64>>> {
-            let column = |motion| (0..self.len()).map(|row| value(motion, row)).collect::<Vec<f64>>();
-            let seen = |column: Vec<f64>| column.iter().any(|gain| *gain != 0.0).then_some(column);
-            (0..self.levers.len()).map(|motion| seen(column(motion))).collect()
+        let rows = self.len();
+        let projected = |parts: &[Column<'_>; 3], direction: &dyn Fn(usize) -> [f64; 3]| {
+            let unseen = parts.iter().all(|part| *part == Column::Same(0.0));
+            let value = |row: usize| dot(direction(row), [0, 1, 2].map(|d| parts[d].at(row)));
+            (!unseen).then(|| (0..rows).map(value).collect::<Vec<f64>>()).and_then(seen)
         };
-        let lever = |motion: usize, row: usize| [0, 1, 2].map(|d| self.levers[motion][d][row]);
-        let turn = |motion: usize, row: usize| [0, 1, 2].map(|d| self.turns[motion][d][row]);
+        let along = |of: &[[Column<'_>; 3]], direction: &dyn Fn(usize) -> [f64; 3]| -> Vec<Option<Vec<f64>>> {
+            of.iter().map(|parts| projected(parts, direction)).collect()
+        };
         match channel.kind {
-            Kind::Tip(d) => from(&|motion, row| self.levers[motion][d][row]),
+            Kind::Tip(d) => self.levers.iter().map(|parts| part(&parts[d], rows)).collect(),
             Kind::Radius { center, radius } => {
                 let directions = self.spokes(ballbar(scene, model, center, radius).0);
-                from(&|motion, row| dot(directions[row], lever(motion, row)))
+                along(&self.levers, &|row| directions[row])
             }
-            Kind::Along(n) => from(&|motion, row| dot(n, lever(motion, row))),
-            Kind::Normal => from(&|motion, row| dot(self.normal(study, scene, row), lever(motion, row))),
-            Kind::Turn(about) => from(&|motion, row| dot(about, turn(motion, row))),
+            Kind::Along(n) => along(&self.levers, &|_| n),
+            Kind::Normal => along(&self.levers, &|row| self.normal(study, scene, row)),
+            Kind::Turn(about) => along(&self.turns, &|_| about),
             Kind::Stage(axis) => {
                 let about = stage_direction(study, axis, &self.turns);
-                from(&|motion, row| dot(about, turn(motion, row)))
+                along(&self.turns, &|_| about)
             }
             Kind::Drive(axis) => {
                 let own = study.own[axis].filter(|_| side == Side::Drive);
-                from(&|motion, _| if Some(motion) == own { 1.0 } else { 0.0 })
+                (0..self.levers.len()).map(|motion| (Some(motion) == own).then(|| vec![1.0; rows])).collect()
             }
         }
     }
@@ -347,13 +371,31 @@ fn ballbar(scene: usize, model: &Model, mut center: [f64; 3], mut radius: f64) -
     (center, radius)
 }
 
-fn tip_error(levers: &[[Vec<f64>; 3]], motions: &[Option<Vec<f64>>], rows: usize) -> [Vec<f64>; 3] {
+/// One part of a lever arm in every row; `None` where it is zero everywhere.
+fn part(part: &Column<'_>, rows: usize) -> Option<Vec<f64>> {
+    match part {
+        Column::Same(value) => (*value != 0.0).then(|| vec![*value; rows]),
+        Column::Rows(values) => seen(values.to_vec()),
+    }
+}
+
+fn seen(gain: Vec<f64>) -> Option<Vec<f64>> {
+    gain.iter().any(|gain| *gain != 0.0).then_some(gain)
+}
+
+fn tip_error(levers: &[[Column<'_>; 3]], motions: &[Option<Vec<f64>>], rows: usize) -> [Vec<f64>; 3] {
     let mut error = [vec![0.0; rows], vec![0.0; rows], vec![0.0; rows]];
     for (levers, motion) in levers.iter().zip(motions) {
         let Some(motion) = motion else { continue };
         for (error, lever) in error.iter_mut().zip(levers) {
-            for ((error, lever), motion) in error.iter_mut().zip(lever).zip(motion) {
-                *error += lever * motion;
+            match lever {
+                Column::Same(0.0) => {}
+                Column::Same(lever) => error.iter_mut().zip(motion).for_each(|(error, motion)| *error += lever * motion),
+                Column::Rows(lever) => {
+                    for ((error, lever), motion) in error.iter_mut().zip(lever.iter()).zip(motion) {
+                        *error += lever * motion;
+                    }
+                }
             }
         }
     }
@@ -361,9 +403,9 @@ fn tip_error(levers: &[[Vec<f64>; 3]], motions: &[Option<Vec<f64>>], rows: usize
 }
 
 /// The direction about which a rotary axis's own motion counts +1.
-fn stage_direction(study: &Study<'_>, axis: usize, turns: &[[Vec<f64>; 3]]) -> [f64; 3] {
+fn stage_direction(study: &Study<'_>, axis: usize, turns: &[[Column<'_>; 3]]) -> [f64; 3] {
     let own = study.own[axis].and_then(|own| turns.get(own));
-    own.map_or([0.0; 3], |own| [0, 1, 2].map(|d| own[d].first().copied().unwrap_or_default()))
+    own.map_or([0.0; 3], |own| [0, 1, 2].map(|d| own[d].at(0)))
 }
 
 fn first_known(values: &[f64]) -> f64 {

@@ -109,7 +109,7 @@ impl<'f> Described<'f> {
                 vec![axis_name(study, *axis), Parameter::list("coefficients", list)]
             }
             Shape::Table { axis, .. } => {
-                let values = (0..self.fitted.coefficients.len());
+                let values = 0..self.fitted.coefficients.len();
                 let list = values.map(|number| self.linear(number, factor, unit.to_owned())).collect();
                 vec![axis_name(study, *axis), Parameter::list("values", list)]
             }
@@ -170,9 +170,20 @@ impl<'f> Described<'f> {
         }
     }
 
+    /// The rows that turn coefficients into those of powers of the position or temperature itself, from power 0 on. Where
+    /// the recordings' free zeros hold the power 0, it is nothing that could be told.
+    fn power_rows(&self) -> Vec<Vec<f64>> {
+        let mut rows = polynomial_in_position(&self.fitted.effect.shape);
+        let untold = self.coefficient(0) == 0.0 && self.covariance[(0, 0)] == 0.0;
+        if let (true, Some(row)) = (untold, rows.first_mut()) {
+            row.fill(0.0);
+        }
+        rows
+    }
+
     /// Coefficients of powers of the position or temperature itself, from power 0 on.
     fn powers(&self, (factor, under): (f64, &str)) -> Vec<Estimate> {
-        let rows = polynomial_in_position(&self.fitted.effect.shape);
+        let rows = self.power_rows();
         let power = |(power, row): (usize, &Vec<f64>)| {
             let value = row.iter().zip(&self.fitted.coefficients).map(|(a, b)| a * b).sum();
             let scale = self.motion_unit.0 / factor.powi(i32::try_from(power).unwrap_or_default());
@@ -208,7 +219,7 @@ impl<'f> Described<'f> {
     pub(crate) fn calibrated(&self) -> CalibratedTerm {
         let first = self.coefficient(0);
         let in_position = || {
-            let rows = polynomial_in_position(&self.fitted.effect.shape);
+            let rows = self.power_rows();
             let value = |row: &Vec<f64>| row.iter().zip(&self.fitted.coefficients).map(|(a, b)| a * b).sum();
             rows.iter().map(value).collect::<Vec<f64>>()
         };

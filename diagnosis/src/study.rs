@@ -20,7 +20,6 @@ use crate::terms;
 pub(crate) struct Study<'a> {
     pub(crate) equations: &'a Equations,
     pub(crate) interpreter: Interpreter,
-    pub(crate) calibration: Option<&'a Calibration>,
     /// The names of all sensors: those of the calibration under its own numbers, then others that were recorded.
     pub(crate) sensors: Vec<String>,
     /// The names and units of all loads that were recorded.
@@ -113,7 +112,7 @@ impl<'a> Study<'a> {
             recordings.iter().map(|recording| Scene::new(recording, calibration, &sensors, &loads)).collect();
         let known = known(calibration, &loads);
         let interpreter = Interpreter::new(equations, &constants);
-        Self { equations, interpreter, calibration, sensors, loads, scenes, known, own }
+        Self { equations, interpreter, sensors, loads, scenes, known, own }
     }
 
     /// Whether the drive's own feedback of an axis was recorded anywhere.

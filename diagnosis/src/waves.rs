@@ -26,7 +26,6 @@ pub(crate) struct Peak {
 
 /// The residual of one channel: raw, weighted by the inverse of the noise, and which samples count.
 pub(crate) struct Weighted {
-    pub(crate) raw: Vec<f64>,
     pub(crate) white: Vec<f64>,
     weighted: Vec<f64>,
     pub(crate) valid: Vec<bool>,
@@ -53,11 +52,11 @@ pub(crate) fn weighted(study: &Study<'_>, scene: usize, model: &Model, noises: &
             let valid: Vec<bool> =
                 raw.iter().zip(&channel.outliers).map(|(value, outlier)| value.is_finite() && !outlier).collect();
             let steps = Whitening::new(*noise).steps(&study.scenes[scene].recording.time, &valid);
-            let mut white = raw.clone();
+            let mut white = raw;
             whiten(&steps, &mut 0.0, &mut white);
             let mut weighted = white.clone();
             unwhiten(&steps, &mut weighted);
-            Weighted { raw, white, weighted, valid }
+            Weighted { white, weighted, valid }
         })
         .collect()
 }
@@ -84,7 +83,7 @@ pub(crate) fn each_frame(
     course: &Course,
     mut each: impl FnMut(&Frame<'_>),
 ) {
-    let (mut terms, mut drive_terms) = (Terms::new(study, model), Terms::new(study, model));
+    let (mut terms, mut drive_terms) = (Terms::new(model), Terms::new(model));
     let rows = study.scenes[scene].rows();
     let mut from = 0;
     while from < rows {

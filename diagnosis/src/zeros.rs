@@ -55,7 +55,8 @@ pub(crate) fn residuals(study: &Study<'_>, model: &Model) -> Vec<Vec<Vec<f64>>> 
     .collect()
 }
 
-fn center(values: &mut [f64]) {
+/// Takes the mean out.
+pub(crate) fn center(values: &mut [f64]) {
     let known = values.iter().filter(|value| value.is_finite());
     let (sum, count) = known.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
     values.iter_mut().for_each(|value| *value -= sum / f64::max(count, 1.0));

@@ -1,6 +1,6 @@
 //! What the diagnosis stands on. In: a diagnosis. Out: the noise, the residuals and the recordings, in words.
 
-use super::figure::{Kind, given, size};
+use super::figure::size;
 use super::sheet::Item;
 use crate::diagnosis::{Diagnosis, NoiseSummary, Residual, Summary};
 
@@ -20,7 +20,7 @@ fn noise(noise: &NoiseSummary) -> String {
     let all = size(noise.value, noise.unit);
     if noise.wander > 0.0 && noise.wander.is_finite() {
         let [white, wander] = [noise.white, noise.wander].map(|part| size(part, noise.unit));
-        let time = given(noise.time_constant, "s", Kind::Error);
+        let time = size(noise.time_constant, "s");
         return format!("{all}: white {white}, wandering {wander} with a correlation time of {time}");
     }
     format!("{all}, white")

@@ -117,11 +117,11 @@ pub(super) fn stretch(from: f64, to: f64, unit: &str) -> String {
     format!("{} to {}", fixed(from, places), scale.with_unit(&fixed(to, places)))
 }
 
-/// A part of the whole in per cent; nothing is rounded up to all of it.
+/// A part of the whole in per cent; nothing is called all of it.
 pub(super) fn percent(part: f64) -> String {
     match part.clamp(0.0, 1.0) {
         part if part.is_nan() => "an unknown part".to_owned(),
-        part if part > 0.995 && part < 1.0 => "more than 99 %".to_owned(),
+        part if part > 0.995 => "more than 99 %".to_owned(),
         part if part > 0.0 && part < 0.005 => "less than 1 %".to_owned(),
         part => format!("{:.0} %", 100.0 * part),
     }

@@ -37,8 +37,9 @@ fn item(finding: &Finding) -> Item {
 fn place(location: &Location) -> String {
     let link = if location.link.is_empty() { String::new() } else { format!("link {}", location.link) };
     let interval = location.interval.as_ref().map(interval).unwrap_or_default();
-    let parts =
-        [link, side(location.side).to_owned(), state(location.state), interval, location.detail.clone()];
+    // The detail says it better, where there is one.
+    let how = if location.detail.is_empty() { state(location.state) } else { location.detail.clone() };
+    let parts = [link, side(location.side).to_owned(), how, interval];
     remains::joined(&parts)
 }
 
@@ -55,18 +56,21 @@ fn evidence(evidence: &Evidence) -> String {
     }
 }
 
-/// Other names, and the measurement that separates each.
+/// Other names, those that one measurement separates together, and that measurement.
 pub(super) fn alternatives(alternatives: &[Alternative]) -> Vec<String> {
-    told(alternatives)
-        .map(|other| {
-            let name = name(other);
-            if other.separate_by.is_empty() {
-                name
-            } else {
-                format!("{name}; to separate: {}", other.separate_by)
-            }
-        })
-        .collect()
+    let mut groups: Vec<(Vec<String>, &str)> = Vec::new();
+    for other in told(alternatives) {
+        let by = other.separate_by.as_str();
+        match groups.iter_mut().find(|(_, known)| *known == by) {
+            Some((names, _)) => names.push(name(other)),
+            None => groups.push((vec![name(other)], by)),
+        }
+    }
+    let lines = groups.into_iter().map(|(names, by)| {
+        let separated = if by.is_empty() { String::new() } else { format!("; to separate: {by}") };
+        names.join(", ") + &separated
+    });
+    lines.collect()
 }
 
 fn name(other: &Alternative) -> String {

@@ -35,9 +35,10 @@ fn place(unexplained: &Unexplained) -> String {
 
 /// The place in a few words, for the verdict.
 pub(super) fn brief(unexplained: &Unexplained) -> String {
+    let rms = size(unexplained.rms, unexplained.unit);
     match &unexplained.interval {
-        Some(stretch) => format!("in {}, {}", unexplained.direction, interval(stretch)),
-        None => format!("in {}", unexplained.direction),
+        Some(stretch) => format!("in {}, {} ({rms} rms there)", unexplained.direction, interval(stretch)),
+        None => format!("in {} ({rms} rms)", unexplained.direction),
     }
 }
 

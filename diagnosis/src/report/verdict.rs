@@ -68,12 +68,25 @@ fn not_repeatable(diagnosis: &Diagnosis) -> String {
 
 /// How many findings there are, and how much they explain together; nothing without findings.
 fn effects(diagnosis: &Diagnosis) -> Option<String> {
-    let together = percent(diagnosis.findings.iter().map(|finding| finding.share).sum());
+    let together = percent(together(diagnosis));
     match diagnosis.findings.len() {
         0 => None,
         1 => Some(format!("1 effect explains {together} of what the model missed")),
         count => Some(format!("{count} effects explain {together} of what the model missed")),
     }
+}
+
+/// By how much the variance above the noise has come down, of the held-out data where there are any. The shares of the
+/// findings do not add up to it: where one is left out, others may stand in for a part of it.
+fn together(diagnosis: &Diagnosis) -> f64 {
+    let (before, after) = (&diagnosis.before, &diagnosis.after);
+    let (before, after) = before.holdout_rms.zip(after.holdout_rms).unwrap_or((before.rms, after.rms));
+    let above = |rms: f64| {
+        let variance = rms * rms - diagnosis.noise.value.powi(2);
+        // A maximum would hide that the rms is not known.
+        if variance < 0.0 { 0.0 } else { variance }
+    };
+    1.0 - above(after) / above(before)
 }
 
 /// The names of the settings, each once.

@@ -156,3 +156,32 @@ fn an_interval_is_low_then_high_and_what_is_no_number_is_null() {
     assert!(found["findings"][0]["evidence"].as_str().is_some());
     assert_eq!((&found["noise"]["value"], &found["after"]["holdout_rms"]), (&Value::Null, &Value::Null));
 }
+
+/// The keys of an object and of all objects in it; of a list, those of its first entry.
+fn keys(value: &Value, at: &str, found: &mut Vec<String>) {
+    match value {
+        Value::Object(entries) => {
+            for (key, value) in entries {
+                found.push(format!("{at}.{key}"));
+                keys(value, &format!("{at}.{key}"), found);
+            }
+        }
+        Value::Array(items) => items.iter().take(1).for_each(|first| keys(first, at, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn the_manual_shows_every_key() {
+    let manual = include_str!("../../../docs/reference/diagnosis.md");
+    let example = manual.split("```json").nth(1).unwrap().split("```").next().unwrap();
+    let mut diagnosis = cases::two_findings();
+    diagnosis.findings[0].alternatives = cases::clock_only().settings[0].alternatives.clone();
+    diagnosis.settings[0].parameters.truncate(1);
+    let (mut shown, mut written) = (Vec::new(), Vec::new());
+    keys(&serde_json::from_str(example).unwrap(), "", &mut shown);
+    keys(&parsed(&diagnosis), "", &mut written);
+    shown.sort();
+    written.sort();
+    assert_eq!(shown, written);
+}

@@ -36,12 +36,35 @@ fn the_verdict_stands_in_one_line_of_plain_words() {
     let said = |diagnosis: Diagnosis| report::verdict(&diagnosis);
     assert_eq!(
         said(cases::two_findings()),
-        "left-out physics: 2 effects explain 96 % of what the model missed; held-out rms falls from 12.5 um to \
+        "left-out physics: 2 effects explain more than 99 % of what the model missed; held-out rms falls from 12.5 um to \
          0.60 um, noise 0.50 um"
     );
     assert!(said(cases::clock_only()).contains("of the instruments and not of the machine (clock)"));
     assert!(said(cases::unexplained()).contains("in measured.z, x from 174.7 to 201.0 mm"));
     assert!(said(cases::not_repeatable()).contains("differ by 7.1 um where the noise gives 0.10 um"));
+}
+
+#[test]
+fn the_findings_explain_what_the_residual_came_down_by_whatever_their_shares() {
+    let mut diagnosis = cases::two_findings();
+    diagnosis.findings[1].share = 0.01;
+    // Of 1.25^2 - 0.5^2 above the noise 0.75^2 - 0.5^2 stay: 24 %.
+    (diagnosis.before, diagnosis.after) =
+        (cases::residual(0.0012, 0.001_25), cases::residual(0.0007, 0.000_75));
+    assert!(report::verdict(&diagnosis).contains("2 effects explain 76 % of"));
+    // Down to the noise, and still not all.
+    diagnosis.after.holdout_rms = Some(0.000_5);
+    assert!(report::verdict(&diagnosis).contains("2 effects explain more than 99 % of"));
+}
+
+#[test]
+fn one_measurement_that_separates_several_names_stands_once() {
+    let mut diagnosis = cases::two_findings();
+    for other in &mut diagnosis.findings[1].alternatives {
+        other.separate_by = "record at two heights".to_owned();
+    }
+    let names = "expansion of EXX, expansion of EZZ, expansion of EXZ, expansion of EYX; to separate: record at two heights";
+    assert!(flat(&diagnosis).contains(names));
 }
 
 #[test]

@@ -159,6 +159,10 @@ fn shapes(study: &Study<'_>, motion: usize, travels: &[Travel], grids: &Grids) -
     }
     for sensor in recorded(study) {
         let reference = REFERENCE_TEMPERATURE;
+        if !known.alignment {
+            let (center, scale) = warmth(study, sensor);
+            shapes.push(Shape::SensorPolynomial { sensor, degree: 2, center, scale });
+        }
         shapes.push(Shape::Growth { sensor, reference, time_constant: 0.0 });
         shapes.extend(
             grids.filters.iter().map(|time_constant| Shape::Growth { sensor, reference, time_constant: *time_constant }),
@@ -188,6 +192,13 @@ fn along(study: &Study<'_>, motion: usize, axis: usize, travel: &Travel, grids: 
     shapes.extend(wind_ups.into_iter().map(|wind_up| Shape::Backlash { axis, wind_up }));
     shapes.extend(grids.decays.iter().map(|decay| Shape::ReversalSpike { axis, decay: *decay }));
     shapes
+}
+
+/// The middle and the half range of what a sensor read over all recordings, degC.
+fn warmth(study: &Study<'_>, sensor: usize) -> (f64, f64) {
+    let known = study.scenes.iter().flat_map(|scene| &scene.temperatures[sensor]).filter(|value| value.is_finite());
+    let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| (low.min(*t), high.max(*t)));
+    ((low + high) / 2.0, ((high - low) / 2.0).max(1e-3))
 }
 
 /// The sensors of which there are samples in every recording.

@@ -67,7 +67,8 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, progress: &mut dyn FnMut(Progress)) 
     progress(Progress { step: "comparing with other names", done: 0.95 });
     zeros::free_held_out(&study, &mut found.fit.model);
     diagnosis.after = units.residual(&study, &found.fit.model);
-    diagnosis.noise = units.noise(&study, &found.appraisal);
+    let quiet = feature.as_ref().and_then(|feature| engine::beside(&study, &found, feature));
+    diagnosis.noise = units.noise(&study, quiet.as_ref().unwrap_or(&found.appraisal));
     report(&study, &found, &units, &mut diagnosis);
     diagnosis.unexplained = feature.map(|feature| unexplained(&study, &found, &feature, &units));
     diagnosis.repeatability = scattered.first().map(|scatter| repeats::describe(&study, scatter, units.unit));

@@ -99,6 +99,16 @@ pub(crate) fn with_table(study: &mut Study<'_>, found: &Found, feature: &Feature
     upheld.then_some(Found { fit, appraisal, pool, travels, always: found.always, tries: found.tries })
 }
 
+/// What is left beside a feature: the appraisal of the model with a table in its place.
+pub(crate) fn beside(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Appraisal> {
+    let effect = table(study, found, feature)?;
+    let mut model = found.fit.model.clone();
+    model.push(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
+    let noises: Vec<Vec<Noise>> =
+        found.appraisal.noises.iter().map(|channels| channels.iter().map(Noise::as_white).collect()).collect();
+    Some(Appraisal::new(study, &fit::refine(study, model, &noises, &found.travels).model))
+}
+
 /// The motion of which a table would explain most of a feature.
 pub(crate) fn table_motion(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<usize> {
     table(study, found, feature).and_then(|effect| effect.motion())

@@ -7,11 +7,14 @@ use crate::appraisal::Appraisal;
 use crate::candidates::Travel;
 use crate::design::{Design, Products, Regressor};
 use crate::fit::{self, Fit};
-use crate::model::{Model, Fitted};
+use crate::model::{Fitted, Model};
+use crate::observations::Course;
 use crate::noise::Noise;
 use crate::search::price;
 use crate::study::Study;
 use crate::sweep::Swept;
+use crate::waves;
+use crate::zeros;
 
 /// How much was tried before this model was chosen.
 #[derive(Clone, Copy, Debug)]
@@ -63,13 +66,47 @@ fn weakest(study: &Study<'_>, fit: &Fit, appraisal: &Appraisal, always: usize, t
         let fails = worth < price
             || !returns(&design, &swept, number, scale)
             || !steady(&design, &swept, number)
-            || noise_explains(study, &design, &swept, fit, appraisal, number, price);
+            || noise_explains(study, &design, &swept, fit, appraisal, number, price)
+            || !pays(study, fit, appraisal, number);
         if fails && failing.is_none_or(|(least, _)| worth < least) {
             failing = Some((worth, number));
         }
     }
     failing.map(|(_, number)| number)
 }
+
+/// Whether the held-out samples, taken as they are, come nearer to the model through the effect, and whether it is large
+/// enough anywhere to matter beside the noise of a sample.
+fn pays(study: &Study<'_>, fit: &Fit, appraisal: &Appraisal, number: usize) -> bool {
+    let mut without = fit.model.clone();
+    without.remove(number);
+    let (mut gained, mut expected, mut peak) = (0.0, 0.0, 0.0_f64);
+    for (scene, known) in study.scenes.iter().enumerate() {
+        let course = Course::new(study, scene, &without);
+        let fitted = known.fitted_rows();
+        for (channel, bare) in waves::residuals(study, scene, &without, &course).into_iter().enumerate() {
+            let noise = appraisal.noises[scene][channel];
+            let size = noise.white.hypot(noise.wander);
+            let left = &appraisal.residuals[scene][channel];
+            let usable = |row: usize| bare[row].is_finite() && !appraisal.outliers[scene][channel][row];
+            let rows: Vec<usize> = (0..bare.len()).filter(|row| usable(*row)).collect();
+            let mut effect: Vec<f64> = rows.iter().map(|row| (bare[*row] - left[*row]) / size).collect();
+            zeros::center(&mut effect);
+            peak = effect.iter().fold(peak, |peak, value| peak.max(value.abs()));
+            let held: Vec<usize> = (0..rows.len()).filter(|at| !fitted[rows[*at]]).collect();
+            let mut signal: Vec<f64> = held.iter().map(|at| effect[*at]).collect();
+            zeros::center(&mut signal);
+            for (at, signal) in held.iter().zip(signal) {
+                gained += signal * (2.0 * left[rows[*at]] / size + signal);
+                expected += signal * signal;
+            }
+        }
+    }
+    peak > MATERIAL && (expected < TELLING || gained > 0.0)
+}
+
+/// An effect must reach this share of the noise of a sample somewhere.
+const MATERIAL: f64 = 0.12;
 
 /// The products of the effects of a model, slopes left out, the whole response restored.
 pub(crate) fn design(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>]) -> Design {

@@ -99,7 +99,7 @@ pub(crate) struct Compensate {
 pub(crate) struct Simulate {
     /// The calibration file of the machine: its true errors.
     pub(crate) calibration: PathBuf,
-    /// A path file: where the axes go, and what measures them.
+    /// A path file: where the axes go, and what measures them. Or a recording, which is then replayed.
     pub(crate) path: PathBuf,
     /// The folder for `recording.yaml` and `data.csv`; or the recording's own file, whose data get its name.
     #[arg(long, default_value = ".")]

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use diagnosis::recording::{self, Header, Recording};
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
-use model_dsl::machine::Machine;
 use model_dsl::source::{SourceFile, Span, Spanned};
 use model_dsl::yaml;
 
@@ -19,9 +18,7 @@ use crate::output::{rendered, show, warn};
 pub(crate) struct Recorded {
     /// The recording file.
     pub(crate) source: SourceFile,
-    /// The machine that was recorded.
-    pub(crate) machine: Machine,
-    /// Its equations.
+    /// The equations of the machine that was recorded.
     pub(crate) equations: Equations,
     /// What is already known of it, where the recording names a calibration.
     pub(crate) calibration: Option<Calibrated>,
@@ -48,7 +45,7 @@ pub(crate) fn read(path: &Path) -> Result<Recorded, Failure> {
     let name = recording::machine_of(&root, &mut diagnostics).ok_or_else(|| wrong(&source, &diagnostics))?;
     let loaded = load::machine(&name.value, folder)
         .map_err(|failure| unusable(&source, "E0622", "machine", &name, failure))?;
-    let (machine, equations) = (loaded.compiled.machine, loaded.compiled.equations);
+    let equations = loaded.compiled.equations;
     let header = recording::read_header(&root, &equations, &mut diagnostics);
     let header = header.filter(|_| !diagnostics.has_errors()).ok_or_else(|| wrong(&source, &diagnostics))?;
     show(&source, &diagnostics);
@@ -56,7 +53,7 @@ pub(crate) fn read(path: &Path) -> Result<Recorded, Failure> {
     let calibration = read_calibration(&source, &header, calibration_path.as_deref(), &equations)?;
     let recording = read_data(&header, folder, &source)?;
     let named = Named { machine: name.span, calibration: header.calibration.map(|name| name.span) };
-    Ok(Recorded { source, machine, equations, calibration, recording, calibration_path, named })
+    Ok(Recorded { source, equations, calibration, recording, calibration_path, named })
 }
 
 /// Reads several recordings of one machine with one calibration.
@@ -223,7 +220,6 @@ mod tests {
         let text = recording("machine: stage.yaml\ncalibration: known.yaml");
         let folder = folder("found", &[("r.yaml", &text)]);
         let recorded = read(&folder.join("r.yaml")).ok().unwrap();
-        assert_eq!(recorded.machine.name, "stage");
         assert_eq!(recorded.equations.machine, "stage");
         assert!(recorded.calibration.is_some());
         assert_eq!(recorded.recording.time, [0.0, 1.0]);

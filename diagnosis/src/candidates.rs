@@ -6,7 +6,7 @@
 use crate::model::{Effect, Place, Side};
 use crate::noise::typical_step;
 use crate::observations::Course;
-use crate::study::{Kind, Study, programmed};
+use crate::study::{Kind, Study};
 use crate::terms::{REFERENCE_TEMPERATURE, Setting, Shape};
 
 /// The highest power of a polynomial along an axis.
@@ -55,10 +55,9 @@ pub(crate) fn always(study: &Study<'_>) -> Vec<Effect> {
     let mut effects = Vec::new();
     for (number, scene) in study.scenes.iter().enumerate() {
         for (channel, known) in scene.channels.iter().enumerate() {
-            if let Kind::Radius { center, radius } = known.kind {
+            if matches!(known.kind, Kind::Radius { .. }) {
                 effects.push(Effect::setting(number, Setting::Radius));
-                let reached = reached(study, number, center, radius);
-                let directions = (0..3).filter(|direction| reached[*direction]);
+                let directions = (0..3).filter(|direction| scene.leans[*direction]);
                 effects.extend(
                     directions.map(|direction| Effect::setting(number, Setting::Eccentricity { direction })),
                 );
@@ -68,17 +67,6 @@ pub(crate) fn always(study: &Study<'_>) -> Vec<Effect> {
         }
     }
     effects
-}
-
-/// A ballbar that leans less than this share of its length into a direction does not tell the centre there.
-const LEANS: f64 = 0.02;
-
-/// The directions into which the path leaves the plane of a ballbar's centre.
-fn reached(study: &Study<'_>, scene: usize, center: [f64; 3], radius: f64) -> [bool; 3] {
-    let positions = programmed(study.scenes[scene].recording);
-    let positions: Vec<&[f64]> = positions.iter().map(Vec::as_slice).collect();
-    let nominal = study.interpreter.nominal_columns(&positions);
-    [0, 1, 2].map(|d| nominal[d].iter().any(|place| (place - center[d]).abs() > LEANS * radius))
 }
 
 /// All candidates but waves, in order of simplicity.

@@ -47,12 +47,15 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     let mut noises = first_noises(study, &model, &courses);
     let pool = candidates::candidates(study, &courses, &travels);
     let pool = kinship::groups(study, &courses, &noises, pool);
+    let places = waves::places(study, &courses, &noises, &travels);
     let mut tries = Tries { candidates: crate::number(pool.len() + WAVES), waves: 1.0 };
     for round in 0..ROUNDS {
         progress(crate::number(round + 1) / crate::number(ROUNDS + 2));
         let residuals = all_residuals(study, &model, &noises, &courses);
-        let (peaks, waves) = waves::peaks(study, &model, &courses, &residuals, &travels);
+        let (peaks, waves) = waves::peaks(study, &model, &courses, &residuals, &travels, &places);
         tries.waves = waves;
+        // One course of states at a time is enough for the memory.
+        drop((std::mem::take(&mut courses), residuals));
         let regressors = regressors(study, &model, always, &pool, peaks);
         let next = choose(study, &model, &noises, regressors, always, waves);
         let mut next = fit::refine(study, next, &noises, &travels).model;

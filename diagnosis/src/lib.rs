@@ -28,6 +28,8 @@ mod states;
 mod study;
 mod sweep;
 mod terms;
+#[cfg(test)]
+mod testing;
 mod waves;
 mod words;
 mod zeros;

@@ -183,20 +183,24 @@ pub(crate) fn from_differences(residual: &[f64]) -> f64 {
     median / (0.6745 * std::f64::consts::SQRT_2)
 }
 
-/// The standard deviation of the rounding of recorded values: of the smallest difference between any two of them, over
-/// the root of twelve. Values that were not rounded give next to nothing.
+/// The standard deviation of the rounding of recorded values: of the coarsest decimal step of which all are multiples, in
+/// mm, deg or in, over the root of twelve. Values that were not rounded give next to nothing.
 pub(crate) fn rounding(values: &[f64]) -> f64 {
-    let mut known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).take(ROUNDED_VALUES).collect();
-    known.sort_by(f64::total_cmp);
+    let known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).take(LOOKED_AT).collect();
     let scale = known.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let least = (1e-12 * scale).max(f64::MIN_POSITIVE.sqrt());
-    let steps = known.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 1e-10 * scale);
-    let smallest = steps.fold(f64::INFINITY, f64::min);
-    if smallest.is_finite() { (smallest / 12f64.sqrt()).max(least) } else { least }
+    let units = [1.0, std::f64::consts::PI / 180.0, 25.4];
+    let decades = (0..10).map(|decade| 0.1_f64.powi(decade));
+    let mut steps = decades.flat_map(|decade| [decade, 0.5 * decade, 0.2 * decade]);
+    let multiple = |step: f64| {
+        scale > 0.5 * step && known.iter().all(|value| (value / step - (value / step).round()).abs() < 1e-3)
+    };
+    let found = steps.find_map(|step| units.iter().map(|unit| step * unit).find(|step| multiple(*step)));
+    found.map_or(least, |step| (step / 12f64.sqrt()).max(least))
 }
 
 /// How many values are looked at for their rounding.
-const ROUNDED_VALUES: usize = 4000;
+const LOOKED_AT: usize = 1000;
 
 /// The median step of time.
 pub(crate) fn typical_step(time: &[f64]) -> f64 {
@@ -238,3 +242,6 @@ fn minimise(cost: impl Fn([f64; 2]) -> f64, start: [f64; 2]) -> (f64, [f64; 2]) 
     simplex.sort_by(|a, b| a.0.total_cmp(&b.0));
     simplex[0]
 }
+
+#[cfg(test)]
+mod tests;

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use model_dsl::program::Column;
 
+use crate::design::STRETCH;
 use crate::model::{Effect, Fitted, Model, Place, Side};
 use crate::recording::Recording;
 use crate::states::{Rows, States};
@@ -21,8 +22,15 @@ pub(crate) struct Course {
     /// Behind the loops, on the drives' own clock; only where it differs.
     drives: Option<States>,
     programmed: Vec<Vec<f64>>,
-    /// What the calibration says of every error motion in every row; `None` where it says nothing.
-    known: Vec<Option<Vec<f64>>>,
+    /// What the calibration says of the tip and of its rotation in every row.
+    known: KnownError,
+}
+
+/// The error of the tip, and the rotation of the tool relative to the part, X, Y, Z each; the rotation only where a channel
+/// shows it.
+struct KnownError {
+    tip: [Vec<f64>; 3],
+    turn: Option<[Vec<f64>; 3]>,
 }
 
 impl Course {
@@ -32,7 +40,7 @@ impl Course {
         let (lags, clock) = (lags(study, model), clock(scene, model));
         let shown = states(&study.scenes[scene], &lags, clock);
         let drives = (clock != 0.0).then(|| states(&study.scenes[scene], &lags, 0.0));
-        let known = known_motions(study, &shown);
+        let known = KnownError::new(study, scene, &shown);
         Self { shown, drives, programmed: programmed(recording), known }
     }
 
@@ -45,19 +53,42 @@ impl Course {
     }
 }
 
-/// The error motions as the calibration has them. Its loops are in the states already.
-fn known_motions(study: &Study<'_>, states: &States) -> Vec<Option<Vec<f64>>> {
-    let rows = states.rows(0..states.time.len());
-    let mut sums: Vec<Option<Vec<f64>>> = vec![None; study.equations.motions.len()];
-    for fitted in &study.known {
-        if let Place::Motion { motion, .. } = fitted.effect.place
-            && !matches!(fitted.effect.shape, Shape::Lag { .. })
-        {
-            let sum = sums[motion].get_or_insert_with(|| vec![0.0; rows.len()]);
-            fitted.effect.shape.add(&fitted.coefficients, &rows, &mut Memory::default(), sum);
+impl KnownError {
+    /// Adds up the calibration's terms. Its loops are in the states already.
+    fn new(study: &Study<'_>, scene: usize, states: &States) -> Self {
+        let channels = &study.scenes[scene].channels;
+        let turning = channels.iter().any(|channel| matches!(channel.kind, Kind::Turn(_) | Kind::Stage(_)));
+        let mut known = Self { tip: Default::default(), turn: turning.then(Default::default) };
+        let mut terms = Terms::of(study.known.iter());
+        let rows = states.time.len();
+        let mut from = 0;
+        while from < rows {
+            let end = (from + STRETCH).min(rows);
+            let view = states.rows(from..end);
+            let motions = terms.motions(&view, study.equations.motions.len(), false);
+            let (positions, travels) = inputs(study, &view);
+            append(&mut known.tip, &study.interpreter.lever_values(&positions, &travels), &motions, end - from);
+            if let Some(turn) = &mut known.turn {
+                append(turn, &study.interpreter.turn_values(&positions, &travels), &motions, end - from);
+            }
+            from = end;
         }
+        known
     }
-    sums
+}
+
+/// Appends the sum of arms times motions in a stretch of rows.
+fn append(sums: &mut [Vec<f64>; 3], arms: &[[Column<'_>; 3]], motions: &[Option<Vec<f64>>], rows: usize) {
+    for (sum, part) in sums.iter_mut().zip(weighted_sum(arms, motions, rows)) {
+        sum.extend(part);
+    }
+}
+
+/// The positions of all axes in a stretch of rows, and the free travels, which are positions by default.
+fn inputs<'s>(study: &Study<'_>, view: &Rows<'s>) -> (Vec<&'s [f64]>, Vec<&'s [f64]>) {
+    let positions: Vec<&[f64]> = (0..study.equations.axes.len()).map(|axis| view.axis(axis).position).collect();
+    let travels = study.equations.travels.iter().map(|travel| positions[travel.axis]).collect();
+    (positions, travels)
 }
 
 fn states(scene: &Scene<'_>, lags: &[f64], clock: f64) -> States {
@@ -89,14 +120,17 @@ pub(crate) struct Terms<'m> {
 impl<'m> Terms<'m> {
     /// All terms of the machine in a model, at the beginning of a recording.
     pub(crate) fn new(model: &'m Model) -> Self {
-        let machine = model.iter().filter(|fitted| fitted.effect.motion().is_some());
+        Self::of(model.iter())
+    }
+
+    fn of(fitted: impl Iterator<Item = &'m Fitted>) -> Self {
+        let machine = fitted.filter(|fitted| fitted.effect.motion().is_some());
         Self { fitted: machine.map(|fitted| (fitted, Memory::default())).collect() }
     }
 
-    /// Adds the value of every error motion in the next stretch of rows to what is known of it; on the drives' side alone
-    /// where `drive` is set.
-    fn motions(&mut self, rows: &Rows<'_>, known: Vec<Option<Vec<f64>>>, drive: bool) -> Vec<Option<Vec<f64>>> {
-        let mut sums = known;
+    /// The value of every error motion in the next stretch of rows; on the drives' side alone where `drive` is set.
+    fn motions(&mut self, rows: &Rows<'_>, motions: usize, drive: bool) -> Vec<Option<Vec<f64>>> {
+        let mut sums: Vec<Option<Vec<f64>>> = vec![None; motions];
         for (fitted, memory) in &mut self.fitted {
             if let Place::Motion { motion, side } = fitted.effect.place
                 && (!drive || side == Side::Drive)
@@ -135,21 +169,17 @@ impl<'c> Frame<'c> {
         drive_terms: &mut Terms<'_>,
     ) -> Self {
         let view = course.shown.rows(rows.clone());
-        let axes = 0..study.equations.axes.len();
-        let positions: Vec<&'c [f64]> = axes.map(|axis| view.axis(axis).position).collect();
+        let (positions, travels) = inputs(study, &view);
         let programmed: Vec<&'c [f64]> =
             course.programmed.iter().map(|position| &position[rows.clone()]).collect();
-        let travels: Vec<&'c [f64]> =
-            study.equations.travels.iter().map(|travel| positions[travel.axis]).collect();
         let interpreter = &study.interpreter;
         let levers = interpreter.lever_values(&positions, &travels);
-        let known = course.known.iter().map(|known| known.as_ref().map(|known| known[rows.clone()].to_vec()));
-        let motions = terms.motions(&view, known.collect(), false);
+        let motions = terms.motions(&view, levers.len(), false);
         let drive_rows = course.drives.as_ref().unwrap_or(&course.shown).rows(rows.clone());
-        let drive_motions = drive_terms.motions(&drive_rows, vec![None; levers.len()], true);
+        let drive_motions = drive_terms.motions(&drive_rows, levers.len(), true);
         let first: Vec<f64> = course.programmed.iter().map(|position| first_known(position)).collect();
         Self {
-            error: tip_error(&levers, &motions, rows.len()),
+            error: plus(weighted_sum(&levers, &motions, rows.len()), &course.known.tip, &rows),
             turns: interpreter.turn_values(&positions, &travels),
             nominal: interpreter.nominal_columns(&positions),
             reference: interpreter.nominal_columns(&programmed),
@@ -209,16 +239,13 @@ impl<'c> Frame<'c> {
         normals.map_or([f64::NAN; 3], |normals| [0, 1, 2].map(|d| normals[d][self.rows.start + row]))
     }
 
+    /// The rotation of the tool relative to the part about a direction.
     fn turned(&self, about: [f64; 3]) -> Vec<f64> {
-        let mut sum = vec![0.0; self.len()];
-        for (turns, motion) in self.turns.iter().zip(&self.motions) {
-            if let Some(motion) = motion {
-                for (row, (sum, motion)) in sum.iter_mut().zip(motion).enumerate() {
-                    *sum += dot(about, [0, 1, 2].map(|d| turns[d].at(row))) * motion;
-                }
-            }
+        let mut turn = weighted_sum(&self.turns, &self.motions, self.len());
+        if let Some(known) = &self.course.known.turn {
+            turn = plus(turn, known, &self.rows);
         }
-        sum
+        (0..self.len()).map(|row| dot(about, [0, 1, 2].map(|d| turn[d][row]))).collect()
     }
 
     fn drive(&self, study: &Study<'_>, axis: usize) -> Vec<f64> {
@@ -251,8 +278,9 @@ impl<'c> Frame<'c> {
         match channel.kind {
             Kind::Tip(d) => self.levers.iter().map(|parts| part(&parts[d], rows)).collect(),
             Kind::Radius { center, radius } => {
+                let leans = study.scenes[scene].leans;
                 let directions = self.spokes(ballbar(scene, model, center, radius).0);
-                along(&self.levers, &|row| directions[row])
+                along(&self.levers, &|row| [0, 1, 2].map(|d| if leans[d] { directions[row][d] } else { 0.0 }))
             }
             Kind::Along(n) => along(&self.levers, &|_| n),
             Kind::Normal => along(&self.levers, &|row| self.normal(study, scene, row)),
@@ -383,7 +411,15 @@ fn seen(gain: Vec<f64>) -> Option<Vec<f64>> {
     gain.iter().any(|gain| *gain != 0.0).then_some(gain)
 }
 
-fn tip_error(levers: &[[Column<'_>; 3]], motions: &[Option<Vec<f64>>], rows: usize) -> [Vec<f64>; 3] {
+fn plus(mut sums: [Vec<f64>; 3], known: &[Vec<f64>; 3], rows: &Range<usize>) -> [Vec<f64>; 3] {
+    for (sum, known) in sums.iter_mut().zip(known) {
+        sum.iter_mut().zip(&known[rows.clone()]).for_each(|(sum, known)| *sum += known);
+    }
+    sums
+}
+
+/// The sum of arms times motions, in three directions.
+fn weighted_sum(levers: &[[Column<'_>; 3]], motions: &[Option<Vec<f64>>], rows: usize) -> [Vec<f64>; 3] {
     let mut error = [vec![0.0; rows], vec![0.0; rows], vec![0.0; rows]];
     for (levers, motion) in levers.iter().zip(motions) {
         let Some(motion) = motion else { continue };

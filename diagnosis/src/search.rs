@@ -31,7 +31,13 @@ pub(crate) fn price(study: &Study<'_>, effect: &Effect, samples: f64, tries: f64
         Shape::Cyclic { .. } | Shape::Vibration { .. } => waves.max(1.0).ln(),
         _ => 0.0,
     };
-    crate::number(parameters) * samples.max(2.0).ln() + 2.0 * (tries.ln() + waves) + simplicity(study, effect)
+    crate::number(parameters) * parameter_price(samples) + 2.0 * (tries.ln() + waves) + simplicity(study, effect)
+}
+
+/// What one more parameter must take from the cost. Correlated samples tell less than their number, which the held-out
+/// test and the judge see to; so this is less than the logarithm of Schwarz's criterion.
+fn parameter_price(samples: f64) -> f64 {
+    0.6 * samples.max(2.0).ln()
 }
 
 /// What selection works on.
@@ -175,7 +181,7 @@ impl<'d> Choice<'d> {
     /// What the price counts for columns that others hold already.
     fn missing(&self, regressor: usize, rank: usize) -> f64 {
         let columns = self.design.regressors[regressor].effect.shape.columns();
-        crate::number(columns - rank.min(columns)) * self.samples.max(2.0).ln()
+        crate::number(columns - rank.min(columns)) * parameter_price(self.samples)
     }
 
     fn price(&self, set: &Set) -> f64 {

@@ -247,3 +247,6 @@ fn directions(time: &[f64], position: &[f64], resolution: f64) -> (Vec<f64>, Vec
     }
     (directions, since, moved)
 }
+
+#[cfg(test)]
+mod tests;

@@ -38,6 +38,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) loads: Vec<Vec<f64>>,
     pub(crate) channels: Vec<Channel>,
     pub(crate) blocks: Vec<Block>,
+    /// The directions in which the path leaves the plane of a ballbar's centre; the others a ballbar does not show.
+    pub(crate) leans: [bool; 3],
 }
 
 /// One observed quantity: a number with a direction in each row.
@@ -108,10 +110,12 @@ impl<'a> Study<'a> {
         let sensors = sensor_names(calibration, recordings);
         let loads = load_names(recordings);
         let own = own_motions(equations);
-        let scenes =
-            recordings.iter().map(|recording| Scene::new(recording, calibration, &sensors, &loads)).collect();
         let known = known(calibration, &loads);
         let interpreter = Interpreter::new(equations, &constants);
+        let scenes = recordings
+            .iter()
+            .map(|recording| Scene::new(recording, calibration, &sensors, &loads, &interpreter))
+            .collect();
         Self { equations, interpreter, sensors, loads, scenes, known, own }
     }
 
@@ -182,8 +186,10 @@ impl<'a> Scene<'a> {
         calibration: Option<&Calibration>,
         sensors: &[String],
         loads: &[(String, String)],
+        interpreter: &Interpreter,
     ) -> Self {
         Self {
+            leans: leans(recording, interpreter),
             recording,
             temperatures: temperatures(recording, calibration, sensors),
             loads: loads.iter().map(|(name, _)| column(&recording.loads, name, recording.time.len())).collect(),
@@ -216,6 +222,17 @@ impl<'a> Scene<'a> {
         }
         numbers
     }
+}
+
+/// A ballbar that leans less than this share of its length into a direction shows nothing of it.
+const LEANS: f64 = 0.02;
+
+fn leans(recording: &Recording, interpreter: &Interpreter) -> [bool; 3] {
+    let Instrument::Ballbar { center, radius } = recording.instrument else { return [true; 3] };
+    let positions = programmed(recording);
+    let positions: Vec<&[f64]> = positions.iter().map(Vec::as_slice).collect();
+    let nominal = interpreter.nominal_columns(&positions);
+    [0, 1, 2].map(|d| nominal[d].iter().any(|place| (place - center[d]).abs() > LEANS * radius))
 }
 
 /// A channel by name with its gaps bridged; NaN everywhere where it was not recorded.

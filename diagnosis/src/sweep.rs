@@ -165,3 +165,6 @@ impl Swept {
         if sizes > 0.0 { self.matrix[(a, b)] / sizes.sqrt() } else { 0.0 }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -10,6 +10,7 @@ use rustfft::num_complex::Complex;
 
 use crate::candidates::Travel;
 use crate::design::STRETCH;
+use crate::kinship;
 use crate::model::{Effect, Model, Place, Side};
 use crate::noise::{Noise, Whitening, typical_step, unwhiten, whiten};
 use crate::observations::{Course, Frame, Terms};
@@ -24,17 +25,63 @@ pub(crate) struct Peak {
     pub(crate) gain: f64,
 }
 
-/// The residual of one channel: raw, weighted by the inverse of the noise, and which samples count.
+/// The residual of one channel, weighted by the inverse of the noise, which samples count, and their mean weight.
 pub(crate) struct Weighted {
-    pub(crate) white: Vec<f64>,
     weighted: Vec<f64>,
-    pub(crate) valid: Vec<bool>,
+    valid: Vec<bool>,
+    weight: f64,
+}
+
+/// A place where waves are looked for; places at which the recordings show waves alike are looked at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct WavePlace {
+    motion: usize,
+    side: Side,
+    /// Whether along the motion's axis, in time, or both.
+    cyclic: bool,
+    vibration: bool,
+}
+
+/// The places where waves can be looked for.
+pub(crate) fn places(
+    study: &Study<'_>,
+    courses: &[Course],
+    noises: &[Vec<Noise>],
+    travels: &[Travel],
+) -> Vec<WavePlace> {
+    let span = courses.iter().filter_map(|course| course.shown.time.last()).copied().fold(0.0, f64::max);
+    let mut samples = Vec::new();
+    for (motion, known) in study.equations.motions.iter().enumerate().filter(|(_, known)| !known.alignment) {
+        let driven = known.axis.is_some_and(|axis| study.own[axis] == Some(motion) && study.has_drive(axis));
+        let sides = [(Side::After, true), (Side::Drive, driven)];
+        for side in sides.into_iter().filter(|(_, possible)| *possible).map(|(side, _)| side) {
+            let place = Place::Motion { motion, side };
+            if let Some(axis) = known.axis.filter(|axis| travels[*axis].moves) {
+                // Any period and any frequency tell which places are alike.
+                let period = travels[axis].range() / 3.7;
+                samples.push(Effect { place, shape: Shape::Cyclic { axis, period } });
+            }
+            samples.push(Effect { place, shape: Shape::Vibration { frequency: 7.3 / span } });
+        }
+    }
+    let mut places: Vec<WavePlace> = Vec::new();
+    for kin in kinship::groups(study, courses, noises, samples) {
+        let (Some(motion), Some(side)) = (kin.effect.motion(), kin.effect.side()) else { continue };
+        let cyclic = matches!(kin.effect.shape, Shape::Cyclic { .. });
+        match places.iter_mut().find(|known| (known.motion, known.side) == (motion, side)) {
+            Some(known) => {
+                known.cyclic |= cyclic;
+                known.vibration |= !cyclic;
+            }
+            None => places.push(WavePlace { motion, side, cyclic, vibration: !cyclic }),
+        }
+    }
+    places
 }
 
 /// What a channel sees of each motion, summed up for waves: gain times weighted residual.
 struct Source {
-    motion: usize,
-    side: Side,
+    place: WavePlace,
     /// For each scene a column.
     products: Vec<Vec<f64>>,
     /// The mean of the squared gain times the squared weight of the noise, over all samples.
@@ -56,7 +103,8 @@ pub(crate) fn weighted(study: &Study<'_>, scene: usize, model: &Model, noises: &
             whiten(&steps, &mut 0.0, &mut white);
             let mut weighted = white.clone();
             unwhiten(&steps, &mut weighted);
-            Weighted { white, weighted, valid }
+            let weight = mean_weight(&white, &weighted, &valid);
+            Weighted { weighted, valid, weight }
         })
         .collect()
 }
@@ -100,13 +148,14 @@ pub(crate) fn peaks(
     courses: &[Course],
     residuals: &[Vec<Weighted>],
     travels: &[Travel],
+    places: &[WavePlace],
 ) -> (Vec<Peak>, f64) {
-    let sources = sources(study, model, courses, residuals);
+    let sources = sources(study, model, courses, residuals, places);
     let mut peaks = Vec::new();
     let mut tried = 0.0;
     for source in &sources {
-        let own_axis = study.equations.motions[source.motion].axis;
-        if let Some(axis) = own_axis.filter(|axis| travels[*axis].moves) {
+        let own_axis = study.equations.motions[source.place.motion].axis;
+        if let Some(axis) = own_axis.filter(|_| source.place.cyclic) {
             let positions: Vec<&[f64]> =
                 courses.iter().map(|course| course.shown.axes[axis].position.as_slice()).collect();
             let travel = &travels[axis];
@@ -123,7 +172,7 @@ pub(crate) fn peaks(
         let times: Vec<&[f64]> = courses.iter().map(|course| course.shown.time.as_slice()).collect();
         let span = times.iter().filter_map(|time| time.last()).copied().fold(0.0, f64::max);
         let step = times.iter().map(|time| typical_step(time)).fold(f64::INFINITY, f64::min);
-        if span > 10.0 * step {
+        if source.place.vibration && span > 10.0 * step {
             tried += span / (2.0 * step);
             let found = spectrum(&source.products, &times, 0.0, span, 2.0 * step);
             peaks.extend(best(&found, 5.0 / span, 3).into_iter().map(|(frequency, power)| Peak {
@@ -136,32 +185,31 @@ pub(crate) fn peaks(
 }
 
 fn effect(source: &Source, shape: Shape) -> Effect {
-    Effect { place: Place::Motion { motion: source.motion, side: source.side }, shape }
+    Effect { place: Place::Motion { motion: source.place.motion, side: source.place.side }, shape }
 }
 
-/// Gain times weighted residual of every motion that is seen; motions that are seen alike stand for one another.
-fn sources(study: &Study<'_>, model: &Model, courses: &[Course], residuals: &[Vec<Weighted>]) -> Vec<Source> {
-    let motions = study.equations.motions.len();
-    let mut sources: Vec<Source> = Vec::new();
-    for side in [Side::After, Side::Drive] {
-        let mut sums = vec![(0.0, Vec::new()); motions];
-        for (scene, course) in courses.iter().enumerate() {
-            for (_, products) in &mut sums {
-                products.push(Vec::with_capacity(study.scenes[scene].rows()));
-            }
-            each_frame(study, scene, model, course, |frame| {
-                add_sources(study, scene, model, frame, side, &residuals[scene], &mut sums);
-            });
+/// Gain times weighted residual at every place.
+fn sources(
+    study: &Study<'_>,
+    model: &Model,
+    courses: &[Course],
+    residuals: &[Vec<Weighted>],
+    places: &[WavePlace],
+) -> Vec<Source> {
+    let mut sources: Vec<Source> =
+        places.iter().map(|place| Source { place: *place, products: Vec::new(), strength: 0.0 }).collect();
+    for (scene, course) in courses.iter().enumerate() {
+        for source in &mut sources {
+            source.products.push(Vec::with_capacity(study.scenes[scene].rows()));
         }
-        for (motion, (strength, products)) in sums.into_iter().enumerate() {
-            let driven = study.equations.motions[motion]
-                .axis
-                .is_some_and(|axis| study.own[axis] == Some(motion) && study.has_drive(axis));
-            if strength > 0.0 && (side == Side::After || driven) {
-                sources.push(Source { motion, side, products, strength: 0.5 * strength });
+        each_frame(study, scene, model, course, |frame| {
+            for side in [Side::After, Side::Drive] {
+                add_sources(study, scene, model, frame, side, &residuals[scene], &mut sources);
             }
-        }
+        });
     }
+    sources.retain(|source| source.strength > 0.0);
+    sources.iter_mut().for_each(|source| source.strength *= 0.5);
     sources
 }
 
@@ -172,48 +220,47 @@ fn add_sources(
     frame: &Frame<'_>,
     side: Side,
     residuals: &[Weighted],
-    sums: &mut [(f64, Vec<Vec<f64>>)],
+    sources: &mut [Source],
 ) {
+    let mut here: Vec<&mut Source> = sources.iter_mut().filter(|source| source.place.side == side).collect();
+    if here.is_empty() {
+        return;
+    }
     let rows = frame.first_row()..frame.first_row() + frame.len();
-    let mut added: Vec<Option<Vec<f64>>> = vec![None; sums.len()];
+    for source in &mut here {
+        if let Some(column) = source.products.last_mut() {
+            column.resize(rows.end, 0.0);
+        }
+    }
     for (channel, residual) in study.scenes[scene].channels.iter().zip(residuals) {
-        let weight = residual.weight();
+        let weight = residual.weight;
         let gains = frame.gains(study, scene, channel, model, side);
-        for ((gain, added), (strength, _)) in gains.iter().zip(&mut added).zip(sums.iter_mut()) {
-            let Some(gain) = gain else { continue };
-            let target = added.get_or_insert_with(|| vec![0.0; rows.len()]);
-            for (((target, gain), value), valid) in
-                target.iter_mut().zip(gain).zip(&residual.weighted[rows.clone()]).zip(&residual.valid[rows.clone()])
-            {
-                if *valid && gain.is_finite() {
-                    *target += gain * value;
-                    *strength += gain * gain * weight;
+        for source in &mut here {
+            let (Some(gain), Some(target)) = (&gains[source.place.motion], source.products.last_mut()) else { continue };
+            for (row, gain) in rows.clone().zip(gain) {
+                if residual.valid[row] && gain.is_finite() {
+                    target[row] += gain * residual.weighted[row];
+                    source.strength += gain * gain * weight;
                 }
             }
         }
     }
-    for (added, (_, products)) in added.into_iter().zip(sums) {
-        if let Some(column) = products.last_mut() {
-            column.extend(added.unwrap_or_else(|| vec![0.0; rows.len()]));
-        }
-    }
 }
 
-impl Weighted {
-    /// The mean weight of a sample: that of the fast part of the noise.
-    fn weight(&self) -> f64 {
-        let counted = self.white.iter().zip(&self.weighted).zip(&self.valid).filter(|(_, valid)| **valid);
-        let (white, weighted) = counted.fold((0.0, 0.0), |(white, weighted), ((a, b), _)| (white + a * a, weighted + b * b));
-        if white > 0.0 { weighted / white } else { 0.0 }
-    }
+/// The mean weight of a sample: that of the fast part of the noise.
+fn mean_weight(white: &[f64], weighted: &[f64], valid: &[bool]) -> f64 {
+    let counted = white.iter().zip(weighted).zip(valid).filter(|(_, valid)| **valid);
+    let (white, weighted) =
+        counted.fold((0.0, 0.0), |(white, weighted), ((a, b), _)| (white + a * a, weighted + b * b));
+    if white > 0.0 { weighted / white } else { 0.0 }
 }
 
 /// Squared magnitude of the Fourier sum of weights at places between `low` and `low + range`, from frequency 0 by equal
 /// steps up to that of the shortest period: pairs of frequency and power.
 fn spectrum(weights: &[Vec<f64>], places: &[&[f64]], low: f64, range: f64, shortest: f64) -> Vec<(f64, f64)> {
-    // Six bins for the shortest period, and the range padded to twice its length.
-    let wanted = (2.0 * range / shortest * 6.0).min(4e6);
-    let size = (8..22).map(|power| 1 << power).find(|size| crate::number(*size) >= wanted).unwrap_or(1 << 22);
+    // Three bins for the shortest period, and the range padded to twice its length.
+    let wanted = 2.0 * range / shortest * 3.0;
+    let size = (8..23).map(|power| 1 << power).find(|size| crate::number(*size) >= wanted).unwrap_or(1 << 23);
     let bin = 2.0 * range / crate::number(size);
     let mut bins = vec![Complex::new(0.0, 0.0); size];
     for (weights, places) in weights.iter().zip(places) {

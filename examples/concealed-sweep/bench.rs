@@ -89,8 +89,9 @@ impl Bench {
         self.compiled.equations.motions.iter().enumerate()
     }
 
-    /// What is known of the machine. `sensor` is one that the known expansion may read.
-    pub(crate) fn known(&self, draw: &mut Draw, sensor: Option<&str>) -> Calibration {
+    /// What is known of the machine. `sensor` is one that the known expansion may read; between stops that alone are
+    /// recorded no lag can be reckoned, so that none is known then.
+    pub(crate) fn known(&self, draw: &mut Draw, sensor: Option<&str>, stops: bool) -> Calibration {
         let mut known = Calibration::new(self.name, self.constants.clone());
         let whole = draw.chance(0.8);
         let mut terms = Vec::new();
@@ -108,7 +109,7 @@ impl Bench {
                 terms.push((own, CalibratedTerm::Backlash { axis, lost_motion, wind_up: 0.0 }));
             }
         }
-        if draw.chance(0.2) {
+        if draw.chance(0.2) && !stops {
             let gain = draw.ratio(20.0, 90.0);
             for axis in self.slides() {
                 let gain = gain * draw.between(0.97, 1.03);
@@ -206,7 +207,9 @@ fn offset(machine: &str, constant: &str, draw: &mut Draw) -> f64 {
         ("excello-921", "X2") => 150.0,
         ("excello-921", "Xt") => 80.0,
         ("excello-921", "Zt") => -120.0,
-        ("trunnion-5axis", "Za" | "Zc") | ("head-table-5axis", "Zc" | "Zb") => draw.between(-80.0, -20.0).round(),
+        ("trunnion-5axis", "Za" | "Zc") | ("head-table-5axis", "Zc" | "Zb") => {
+            draw.between(-80.0, -20.0).round()
+        }
         (_, "Zt" | "L") => draw.between(80.0, 200.0).round(),
         _ => 0.0,
     }

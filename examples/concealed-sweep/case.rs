@@ -64,7 +64,8 @@ pub(crate) struct Take {
 pub(crate) type Signal = Vec<f64>;
 
 /// The sizes, each with how often it comes; the last is whatever the effect's own parameters give.
-pub(crate) const SIZES: [(f64, f64); 6] = [(0.25, 0.8), (0.5, 1.2), (1.0, 2.0), (2.0, 2.5), (5.0, 2.0), (10.0, 1.5)];
+pub(crate) const SIZES: [(f64, f64); 6] =
+    [(0.25, 0.8), (0.5, 1.2), (1.0, 2.0), (2.0, 2.5), (5.0, 2.0), (10.0, 1.5)];
 /// The size of effects that are taken as they come.
 pub(crate) const LARGE: f64 = 100.0;
 
@@ -104,8 +105,10 @@ impl Case {
             _ if only.is_none() && number % 25 == 15 => Expected::Loose,
             _ => Expected::LeftOut,
         };
-        let names: Vec<String> = scenes[0].scenario.temperatures.iter().map(|sensor| sensor.name.clone()).collect();
-        let known = bench.known(draw, names.first().map(String::as_str));
+        let names: Vec<String> =
+            scenes[0].scenario.temperatures.iter().map(|sensor| sensor.name.clone()).collect();
+        let stops = scenes.iter().any(Scene::stops);
+        let known = bench.known(draw, names.first().map(String::as_str), stops);
         let mut base = known.clone();
         names.iter().for_each(|name| {
             base.sensor(name);
@@ -156,12 +159,16 @@ impl Case {
         let names = self.scenes[0].scenario.temperatures.iter().map(|sensor| sensor.name.clone()).collect();
         for _ in 0..12 {
             let sensors = Sensors { calibration: &self.base, names: Vec::clone(&names) };
-            let Some(mut planted) = effect::draw(&self.bench, &self.scenes, &sensors, term, draw) else { continue };
+            let Some(mut planted) = effect::draw(&self.bench, &self.scenes, &sensors, term, draw) else {
+                continue;
+            };
             let as_it_comes = term == "lag" && draw.chance(0.3);
             let Some(signal) = self.sized(&mut planted, (!as_it_comes).then_some(size)) else { continue };
             let doubled = self.planted.iter().any(|known| {
                 known.name(&self.bench.names) == planted.name(&self.bench.names)
-                    || self.signal(std::slice::from_ref(known)).is_none_or(|known| alike(&known, &signal) > 0.98)
+                    || self
+                        .signal(std::slice::from_ref(known))
+                        .is_none_or(|known| alike(&known, &signal) > 0.98)
             });
             if !doubled && planted.plausible(&self.bench) {
                 self.planted.push(planted);
@@ -174,23 +181,24 @@ impl Case {
 
     /// Gives an effect its size, and tells what it shows; nothing where the recordings hardly show it.
     fn sized(&self, planted: &mut Planted, size: Option<f64>) -> Option<Signal> {
-        for _ in 0..3 {
+        for _ in 0..4 {
             let raw = self.change(std::slice::from_ref(planted))?;
             let signal = self.projected(raw.clone());
             if rms(&signal) < 0.05 * rms(&raw) || rms(&raw) == 0.0 || !rms(&raw).is_finite() {
                 return None;
             }
-            let Some(size) = size else { return Some(signal) };
+            let Some(size) = size else { return (peak(&signal) > 3.0).then_some(signal) };
             let factor = size / peak(&signal);
             if !(1e-9..1e9).contains(&factor) {
                 return None;
             }
-            if (factor - 1.0).abs() < 0.01 {
+            if (factor - 1.0).abs() < 0.03 {
                 return Some(signal);
             }
             planted.scale(factor);
         }
-        self.signal(std::slice::from_ref(planted))
+        // It does not grow with its parameter: only a second order of it shows.
+        None
     }
 
     /// Displaces the part from run to run.
@@ -222,7 +230,8 @@ impl Case {
             let drives = simulated.actual.iter().flatten();
             let drive = scenario.measurement.drive_noise;
             let sigmas = simulated.readings.iter().map(|reading| noise_of(&reading.values, &reading.clean));
-            let sigmas = sigmas.chain(drives.map(|_| drive.white.hypot(drive.resolution / 12_f64.sqrt()))).collect();
+            let sigmas =
+                sigmas.chain(drives.map(|_| drive.white.hypot(drive.resolution / 12_f64.sqrt()))).collect();
             takes.push(Take { simulated, kept, sigmas, free });
         }
         self.takes = takes;
@@ -320,6 +329,27 @@ impl Case {
         self.change(planted).map(|change| self.projected(change))
     }
 
+    /// How far a signal stands above the noise in all: the root of its energy behind the filter that makes the noise white.
+    pub(crate) fn energy(&self, signal: &[f64]) -> f64 {
+        let mut energy = 0.0;
+        let mut rest = signal;
+        for (scene, take) in self.scenes.iter().zip(&self.takes) {
+            let channels = take.simulated.readings.len();
+            for (channel, sigma) in take.sigmas.iter().enumerate() {
+                let Some((own, others)) = rest.split_at_checked(take.kept.len()) else { return 0.0 };
+                rest = others;
+                energy += match channel < channels {
+                    true => {
+                        let values = &take.simulated.readings[channel].values;
+                        whitened(&take.simulated.time, own, values, *sigma, &scene.scenario.measurement.noise)
+                    }
+                    false => dot(own, own),
+                };
+            }
+        }
+        energy.sqrt()
+    }
+
     /// The number under which the effects of this case know a sensor.
     pub(crate) fn sensor(&self, name: &str) -> Option<usize> {
         self.base.sensors.index(name)
@@ -352,7 +382,8 @@ impl Case {
             let mut findings = Diagnostics::new();
             let root = yaml::read(&SourceFile::new("recording.yaml", head.clone()), &mut findings).unwrap();
             let header = read_header(&root, &self.bench.compiled.equations, &mut findings);
-            let header = header.unwrap_or_else(|| panic!("{:?}\n{head}", findings.iter().collect::<Vec<_>>()));
+            let header =
+                header.unwrap_or_else(|| panic!("{:?}\n{head}", findings.iter().collect::<Vec<_>>()));
             header.read_csv("data.csv", data.as_slice()).unwrap_or_else(|error| panic!("{error}\n{head}"))
         };
         (0..self.takes.len()).map(read).collect()
@@ -371,7 +402,8 @@ impl Case {
                     .map(|(noise, run)| (noise, simulated.holdout.contains(run)))
                     .filter(|(noise, _)| noise.abs() < 15.0 * sigma)
                     .collect();
-                let fitted: Vec<f64> = noise.iter().filter(|(_, out)| !out).map(|(noise, _)| *noise).collect();
+                let fitted: Vec<f64> =
+                    noise.iter().filter(|(_, out)| !out).map(|(noise, _)| *noise).collect();
                 let mean = fitted.iter().sum::<f64>() / fitted.len().max(1) as f64;
                 let named = !simulated.holdout.is_empty();
                 for (noise, _) in noise.iter().filter(|(_, out)| *out || !named) {
@@ -436,14 +468,50 @@ fn free(plant: &Plant, simulated: &Simulated) -> Vec<Vec<f64>> {
 
 /// The standard deviation of the noise, gaps and far outliers left out.
 fn noise_of(values: &[f64], clean: &[f64]) -> f64 {
-    let noise: Vec<f64> = values.iter().zip(clean).map(|(value, clean)| value - clean).filter(|noise| noise.is_finite()).collect();
+    let noise: Vec<f64> = values
+        .iter()
+        .zip(clean)
+        .map(|(value, clean)| value - clean)
+        .filter(|noise| noise.is_finite())
+        .collect();
     let mut sizes: Vec<f64> = noise.iter().map(|noise| noise.abs()).collect();
     sizes.sort_by(f64::total_cmp);
     let bound = 15.0 * sizes.get(sizes.len() / 2).copied().unwrap_or(1.0);
     let near: Vec<f64> = noise.into_iter().filter(|noise| noise.abs() <= bound).collect();
     let mean = near.iter().sum::<f64>() / near.len().max(1) as f64;
-    let square = near.iter().map(|noise| (noise - mean) * (noise - mean)).sum::<f64>() / near.len().max(1) as f64;
+    let square =
+        near.iter().map(|noise| (noise - mean) * (noise - mean)).sum::<f64>() / near.len().max(1) as f64;
     square.sqrt().max(1e-12)
+}
+
+/// The energy of a signal, in standard deviations of the noise, behind the Kalman filter of that noise. Missing values count
+/// for nothing.
+fn whitened(time: &[f64], signal: &[f64], values: &[f64], sigma: f64, noise: &Noise) -> f64 {
+    let white = (noise.white * noise.white + noise.resolution * noise.resolution / 12.0) / (sigma * sigma);
+    let (mut state, mut variance, mut energy) = (0.0, 0.0, 0.0);
+    let mut before: Option<f64> = None;
+    for ((time, signal), value) in time.iter().zip(signal).zip(values) {
+        let step = before.map_or(f64::INFINITY, |before| time - before);
+        if let Some(correlated) = &noise.correlated {
+            let kept = (-step / correlated.time_constant).exp();
+            let stationary = (correlated.sigma / sigma).powi(2);
+            (state, variance) = (kept * state, kept * kept * variance + (1.0 - kept * kept) * stationary);
+        }
+        if let Some(walk) = &noise.walk {
+            // The zero of a channel is free: where the walk begins is not known.
+            let grown = (walk.sigma / sigma).powi(2) * step.min(1e4 * walk.after) / walk.after;
+            variance += grown;
+        }
+        before = Some(*time);
+        if value.is_nan() {
+            continue;
+        }
+        let new = signal - state;
+        energy += new * new / (variance + white);
+        state += variance / (variance + white) * new;
+        variance *= white / (variance + white);
+    }
+    energy
 }
 
 pub(crate) fn dot(left: &[f64], right: &[f64]) -> f64 {

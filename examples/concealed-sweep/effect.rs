@@ -3,7 +3,9 @@
 
 use std::f64::consts::TAU;
 
-use model_dsl::calibration::{CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, MachineNames, SeriesInput};
+use model_dsl::calibration::{
+    CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, MachineNames, SeriesInput,
+};
 
 use crate::bench::Bench;
 use crate::draw::Draw;
@@ -46,7 +48,7 @@ pub(crate) const TERMS: [(&str, f64); 17] = [
 /// Whether a recording can show a term at all.
 pub(crate) fn shows(bench: &Bench, scene: &Scene, term: &str) -> bool {
     let path = &scene.scenario.path;
-    let stops = path_stops(scene);
+    let stops = scene.stops();
     let feed = path.feed;
     match term {
         "constant" => scene.moving.len() > 1 || bench.slides().len() > 1 && !scene.angular(),
@@ -54,7 +56,7 @@ pub(crate) fn shows(bench: &Bench, scene: &Scene, term: &str) -> bool {
         "wind-up" => !stops && feed / scene.rate < 0.8,
         "cyclic" => stops || scene.rate > 0.4,
         "lag" => !stops && scene.kind != Kind::Slow,
-        "clock" => !stops && !scene.angular() && scene.kind != Kind::Slow,
+        "clock" => !stops && !scene.angular() && !matches!(scene.kind, Kind::Slow | Kind::Ballbar),
         "acceleration" => {
             matches!(scene.kind, Kind::Circle | Kind::Ballbar | Kind::Spiral)
                 || !stops && path.acceleration.is_some_and(|rise| feed / rise * scene.rate > 6.0)
@@ -70,10 +72,6 @@ pub(crate) fn shows(bench: &Bench, scene: &Scene, term: &str) -> bool {
     }
 }
 
-fn path_stops(scene: &Scene) -> bool {
-    matches!(scene.scenario.path.shape, simulation::path::Shape::Line { stations: Some(_), .. })
-}
-
 /// The number under which the first sensor of the recordings stands, and their names.
 pub(crate) struct Sensors<'s> {
     pub(crate) calibration: &'s Calibration,
@@ -81,7 +79,13 @@ pub(crate) struct Sensors<'s> {
 }
 
 /// An effect of a kind, of any size; its right size is found by simulating.
-pub(crate) fn draw(bench: &Bench, scenes: &[Scene], sensors: &Sensors<'_>, term: &str, draw: &mut Draw) -> Option<Planted> {
+pub(crate) fn draw(
+    bench: &Bench,
+    scenes: &[Scene],
+    sensors: &Sensors<'_>,
+    term: &str,
+    draw: &mut Draw,
+) -> Option<Planted> {
     let number = draw.index(scenes.len());
     let scene = &scenes[number];
     let path = &scene.scenario.path;
@@ -94,30 +98,55 @@ pub(crate) fn draw(bench: &Bench, scenes: &[Scene], sensors: &Sensors<'_>, term:
     let [low, high] = bench.travels[axis];
     let rotary = bench.names.axes[axis].rotary;
     let own = bench.own(axis)?;
-    let of_axis: Vec<usize> = bench.motions().filter(|(_, motion)| motion.axis == Some(axis) && !motion.alignment).map(|(number, _)| number).collect();
+    let of_axis: Vec<usize> = bench
+        .motions()
+        .filter(|(_, motion)| motion.axis == Some(axis) && !motion.alignment)
+        .map(|(number, _)| number)
+        .collect();
     let any = draw.pick(&of_axis);
     let mostly_own = if draw.chance(0.75) { own } else { any };
     let sensor = |draw: &mut Draw| -> Option<usize> {
-        let name = &sensors.names[draw.index(sensors.names.len().max(1)).min(sensors.names.len().checked_sub(1)?)];
+        let name =
+            &sensors.names[draw.index(sensors.names.len().max(1)).min(sensors.names.len().checked_sub(1)?)];
         sensors.calibration.sensors.index(name)
     };
     let slow = scene.duration;
     let (motion, term) = match term {
         "constant" => {
-            let alignments: Vec<usize> = bench.motions().filter(|(_, motion)| motion.alignment).map(|(number, _)| number).collect();
+            let alignments: Vec<usize> =
+                bench.motions().filter(|(_, motion)| motion.alignment).map(|(number, _)| number).collect();
             if alignments.is_empty() {
                 return None;
             }
             (draw.pick(&alignments), CalibratedTerm::Constant { value: draw.either(1e-5) })
         }
-        "polynomial" => (any, CalibratedTerm::Polynomial { input: SeriesInput::Axis(axis), coefficients: powers(low, high, draw) }),
+        "polynomial" => (
+            any,
+            CalibratedTerm::Polynomial {
+                input: SeriesInput::Axis(axis),
+                coefficients: powers(low, high, draw),
+            },
+        ),
         "table" => {
             let nodes = 7 + draw.index(6);
             let step = (high - low) / (nodes - 1) as f64;
             let values = CurveValues::Both(draw.curve(nodes, 1e-3));
-            (any, CalibratedTerm::Table { axis, curve: Curve { nodes: CurveNodes::Uniform { start: low, step }, values } })
+            (
+                any,
+                CalibratedTerm::Table {
+                    axis,
+                    curve: Curve { nodes: CurveNodes::Uniform { start: low, step }, values },
+                },
+            )
         }
-        "backlash" => (mostly_own, CalibratedTerm::Backlash { axis, lost_motion: draw.chance(0.9).then_some(1e-3).unwrap_or(-1e-3), wind_up: 0.0 }),
+        "backlash" => (
+            mostly_own,
+            CalibratedTerm::Backlash {
+                axis,
+                lost_motion: draw.chance(0.9).then_some(1e-3).unwrap_or(-1e-3),
+                wind_up: 0.0,
+            },
+        ),
         "wind-up" => {
             let wind_up = if rotary { draw.ratio(1e-3, 0.03) } else { draw.ratio(0.02, 2.0) };
             if path.feed / scene.rate > wind_up {
@@ -133,8 +162,12 @@ pub(crate) fn draw(bench: &Bench, scenes: &[Scene], sensors: &Sensors<'_>, term:
             (own, CalibratedTerm::ReversalSpike { axis, height: draw.either(1e-3), decay })
         }
         "cyclic" => {
-            let period = if rotary { draw.ratio(0.01, 0.6) } else { draw.pick(&[1.0, 2.0, 4.0, 5.0, 8.0, 10.0, 16.0, 20.0]) * draw.pick(&[1.0, 1.0, 0.93, 1.07]) };
-            let step = match path_stops(scene) {
+            let period = if rotary {
+                draw.ratio(0.01, 0.6)
+            } else {
+                draw.pick(&[1.0, 2.0, 4.0, 5.0, 8.0, 10.0, 16.0, 20.0]) * draw.pick(&[1.0, 1.0, 0.93, 1.07])
+            };
+            let step = match scene.stops() {
                 true => (high - low) / 20.0,
                 false => path.feed / scene.rate,
             };
@@ -142,7 +175,10 @@ pub(crate) fn draw(bench: &Bench, scenes: &[Scene], sensors: &Sensors<'_>, term:
                 return None;
             }
             let phase = draw.between(-0.5 * TAU, 0.5 * TAU);
-            (if draw.chance(0.8) { own } else { any }, CalibratedTerm::Cyclic { axis, period, amplitude: 1e-3, phase })
+            (
+                if draw.chance(0.8) { own } else { any },
+                CalibratedTerm::Cyclic { axis, period, amplitude: 1e-3, phase },
+            )
         }
         "lag" => (own, CalibratedTerm::Lag { axis, gain: draw.ratio(20.0, 150.0) }),
         "acceleration" => (own, CalibratedTerm::Acceleration { axis, gain: draw.ratio(300.0, 5000.0) }),
@@ -154,20 +190,41 @@ pub(crate) fn draw(bench: &Bench, scenes: &[Scene], sensors: &Sensors<'_>, term:
             let time_constant = if draw.chance(0.4) { draw.ratio(100.0, 2000.0) } else { 0.0 };
             let sensor = sensor(draw)?;
             let angular = draw.chance(0.25);
-            (motion(bench, angular, draw)?, CalibratedTerm::Growth { sensor, coefficient: draw.either(1e-3), reference: 20.0, time_constant })
+            (
+                motion(bench, angular, draw)?,
+                CalibratedTerm::Growth {
+                    sensor,
+                    coefficient: draw.either(1e-3),
+                    reference: 20.0,
+                    time_constant,
+                },
+            )
         }
         "drift" => {
             let angular = draw.chance(0.25);
-            (motion(bench, angular, draw)?, CalibratedTerm::Drift { amplitude: draw.either(1e-3), time_constant: slow * draw.between(0.1, 0.8) })
+            (
+                motion(bench, angular, draw)?,
+                CalibratedTerm::Drift {
+                    amplitude: draw.either(1e-3),
+                    time_constant: slow * draw.between(0.1, 0.8),
+                },
+            )
         }
         "vibration" => {
             let highest = 0.4 * scene.rate;
             let frequency = draw.ratio((10.0 / slow).max(0.04 * scene.rate).min(highest), highest);
             let angular = draw.chance(0.15);
-            (motion(bench, angular, draw)?, CalibratedTerm::Vibration { frequency, amplitude: 1e-3, phase: draw.between(-3.1, 3.1) })
+            (
+                motion(bench, angular, draw)?,
+                CalibratedTerm::Vibration { frequency, amplitude: 1e-3, phase: draw.between(-3.1, 3.1) },
+            )
         }
         "coupling" => {
-            let others: Vec<usize> = bench.motions().filter(|(_, motion)| !motion.alignment && motion.axis.is_some_and(|of| of != axis)).map(|(number, _)| number).collect();
+            let others: Vec<usize> = bench
+                .motions()
+                .filter(|(_, motion)| !motion.alignment && motion.axis.is_some_and(|of| of != axis))
+                .map(|(number, _)| number)
+                .collect();
             if others.is_empty() {
                 return None;
             }
@@ -180,7 +237,10 @@ pub(crate) fn draw(bench: &Bench, scenes: &[Scene], sensors: &Sensors<'_>, term:
         "compliance" => {
             let load = scene.scenario.loads.first()?.name.clone();
             let angular = draw.chance(0.25);
-            (motion(bench, angular, draw)?, CalibratedTerm::Compliance { load, coefficient: draw.either(1e-5) })
+            (
+                motion(bench, angular, draw)?,
+                CalibratedTerm::Compliance { load, coefficient: draw.either(1e-5) },
+            )
         }
         "dent" => {
             let at = low + (high - low) * draw.between(0.2, 0.8);
@@ -195,9 +255,12 @@ pub(crate) fn draw(bench: &Bench, scenes: &[Scene], sensors: &Sensors<'_>, term:
     Some(Planted::Term { motion, term, drive })
 }
 
-
 fn motion(bench: &Bench, angular: bool, draw: &mut Draw) -> Option<usize> {
-    let fitting: Vec<usize> = bench.motions().filter(|(_, motion)| motion.angular == angular && !motion.alignment).map(|(number, _)| number).collect();
+    let fitting: Vec<usize> = bench
+        .motions()
+        .filter(|(_, motion)| motion.angular == angular && !motion.alignment)
+        .map(|(number, _)| number)
+        .collect();
     (!fitting.is_empty()).then(|| draw.pick(&fitting))
 }
 
@@ -216,12 +279,20 @@ fn powers(low: f64, high: f64, draw: &mut Draw) -> Vec<f64> {
             next[place + 1] += value / half;
             next[place] -= value * middle / half;
         }
-        let own = if power == 0 { 0.0 } else { draw.between(-1.0, 1.0) + if power == order { draw.either(0.7) } else { 0.0 } };
+        let own = if power == 0 {
+            0.0
+        } else {
+            draw.between(-1.0, 1.0) + if power == order { draw.either(0.7) } else { 0.0 }
+        };
         next[0] += own;
         found = next;
     }
     found.truncate(order + 1);
     found
+}
+
+fn series(coefficients: &[f64], at: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * at + coefficient)
 }
 
 impl Planted {
@@ -237,16 +308,31 @@ impl Planted {
 
     /// Whether such a machine could stand in a shop.
     pub(crate) fn plausible(&self, bench: &Bench) -> bool {
-        let size = |motion: &usize, value: f64| value.abs() <= if bench.names.motions[*motion].angular { 1.5e-3 } else { 0.4 };
+        let size = |motion: &usize, value: f64| {
+            value.abs() <= if bench.names.motions[*motion].angular { 1.5e-3 } else { 0.4 }
+        };
         match self {
             Self::Clock { offset, .. } => offset.abs() < 0.3,
             Self::Cosine { angle, .. } => angle.abs() < 0.03,
             Self::Dent { motion, height, .. } => size(motion, *height),
             Self::Term { motion, term, .. } => match term {
                 CalibratedTerm::Constant { value } => size(motion, *value),
+                CalibratedTerm::Polynomial { input: SeriesInput::Axis(axis), coefficients } => {
+                    let ends =
+                        bench.travels[*axis].map(|end| series(coefficients, end) - series(coefficients, 0.0));
+                    ends.iter().all(|end| size(motion, *end))
+                }
+                CalibratedTerm::Coupling { axis, coefficients } => {
+                    bench.travels[*axis].iter().all(|end| size(motion, end * series(coefficients, *end)))
+                }
+                CalibratedTerm::Table { curve: Curve { values: CurveValues::Both(values), .. }, .. } => {
+                    values.iter().all(|value| size(motion, *value))
+                }
                 CalibratedTerm::Backlash { lost_motion, .. } => size(motion, *lost_motion),
                 CalibratedTerm::ReversalSpike { height, .. } => size(motion, *height),
-                CalibratedTerm::Cyclic { amplitude, .. } | CalibratedTerm::Vibration { amplitude, .. } | CalibratedTerm::Drift { amplitude, .. } => size(motion, *amplitude),
+                CalibratedTerm::Cyclic { amplitude, .. }
+                | CalibratedTerm::Vibration { amplitude, .. }
+                | CalibratedTerm::Drift { amplitude, .. } => size(motion, *amplitude),
                 CalibratedTerm::Lag { gain, .. } => *gain > 8.0,
                 CalibratedTerm::Expansion { coefficient, .. } => coefficient.abs() < 1e-3,
                 CalibratedTerm::Growth { coefficient, .. } => size(motion, 10.0 * coefficient),
@@ -286,12 +372,18 @@ fn scale(term: &mut CalibratedTerm, factor: f64) {
         }
         CalibratedTerm::Table { curve, .. } => match &mut curve.values {
             CurveValues::Both(values) => values.iter_mut().for_each(|entry| *entry *= factor),
-            CurveValues::Directed { forward, reverse } => forward.iter_mut().chain(reverse).for_each(|entry| *entry *= factor),
+            CurveValues::Directed { forward, reverse } => {
+                forward.iter_mut().chain(reverse).for_each(|entry| *entry *= factor)
+            }
         },
         CalibratedTerm::Backlash { lost_motion, .. } => *lost_motion *= factor,
         CalibratedTerm::ReversalSpike { height, .. } => *height *= factor,
-        CalibratedTerm::Cyclic { amplitude, .. } | CalibratedTerm::Vibration { amplitude, .. } | CalibratedTerm::Drift { amplitude, .. } => *amplitude *= factor,
+        CalibratedTerm::Cyclic { amplitude, .. }
+        | CalibratedTerm::Vibration { amplitude, .. }
+        | CalibratedTerm::Drift { amplitude, .. } => *amplitude *= factor,
         CalibratedTerm::Lag { gain, .. } | CalibratedTerm::Acceleration { gain, .. } => *gain /= factor,
-        CalibratedTerm::Expansion { coefficient, .. } | CalibratedTerm::Growth { coefficient, .. } | CalibratedTerm::Compliance { coefficient, .. } => *coefficient *= factor,
+        CalibratedTerm::Expansion { coefficient, .. }
+        | CalibratedTerm::Growth { coefficient, .. }
+        | CalibratedTerm::Compliance { coefficient, .. } => *coefficient *= factor,
     }
 }

@@ -110,10 +110,16 @@ fn options() -> Result<Options, String> {
             "--quiet-count" => options.quiet = value.parse().map_err(bad)?,
             "--seed" => options.seed = value.parse().map_err(bad)?,
             "--case" => options.case = Some(value.parse().map_err(bad)?),
-            "--minutes" => options.minutes = value.parse().map_err(|error| format!("{key} {value}: {error}"))?,
+            "--minutes" => {
+                options.minutes = value.parse().map_err(|error| format!("{key} {value}: {error}"))?
+            }
             "--only" if effect::TERMS.iter().any(|(term, _)| *term == value) => options.only = Some(value),
             "--dump" => options.dump = Some(PathBuf::from(value)),
-            _ => return Err(format!("{key} {value} is not understood; see the head of the example's main.rs")),
+            _ => {
+                return Err(format!(
+                    "{key} {value} is not understood; see the head of the example's main.rs"
+                ));
+            }
         }
     }
     Ok(options)
@@ -121,7 +127,8 @@ fn options() -> Result<Options, String> {
 
 /// Cases with effects and without, mixed, so that a sweep that is stopped has some of both.
 fn interleaved(count: usize, quiet: usize) -> Vec<usize> {
-    let mut numbers: Vec<(f64, usize)> = (0..count).map(|number| (number as f64 / count as f64, number)).collect();
+    let mut numbers: Vec<(f64, usize)> =
+        (0..count).map(|number| (number as f64 / count as f64, number)).collect();
     numbers.extend((0..quiet).map(|number| (number as f64 / quiet as f64, QUIET + number)));
     numbers.sort_by(|left, right| left.0.total_cmp(&right.0));
     numbers.into_iter().map(|(_, number)| number).collect()
@@ -171,7 +178,9 @@ fn alone(options: &Options, number: usize) {
     }
     let (diagnosis, score) = judge(&case);
     println!("{}", verdict_line(&case, &diagnosis, &score));
-    score.held.iter().for_each(|held| println!("  {} ({:.1} sigma){}", held.told, held.away, if held.inside { "" } else { " MISSES" }));
+    score.held.iter().for_each(|held| {
+        println!("  {} ({:.1} sigma){}", held.told, held.away, if held.inside { "" } else { " MISSES" })
+    });
     println!("\n{}", diagnosis::report::text(&diagnosis));
 }
 
@@ -193,7 +202,13 @@ fn headline(case: &Case) -> String {
             more += " short-run";
         }
         let rows = take.simulated.time.len();
-        format!("{:?}/{} {rows} rows, {} runs, {:.3} Hz{more}", scene.kind, measurement.instrument.name(), scene.scenario.path.runs, scene.rate)
+        format!(
+            "{:?}/{} {rows} rows, {} runs, {:.3} Hz{more}",
+            scene.kind,
+            measurement.instrument.name(),
+            scene.scenario.path.runs,
+            scene.rate
+        )
     });
     let scenes: Vec<String> = scenes.collect();
     format!("{} {} noise; {}", case.bench.name, case.noises.name(), scenes.join(" + "))
@@ -208,9 +223,13 @@ fn verdict_line(case: &Case, diagnosis: &diagnosis::diagnosis::Diagnosis, score:
         case.planted.iter().zip(&score.effects).zip(score.energies.iter().zip(&case.sizes))
     {
         let (motion, term) = planted.name(&case.bench.names);
-        text += &format!("[{motion} {term}{} size {size} energy {energy:.0}: {how:?}] ", if planted.kind() == "wind-up" { " wind-up" } else { "" });
+        text += &format!(
+            "[{motion} {term}{} size {size} energy {energy:.0}: {how:?}] ",
+            if planted.kind() == "wind-up" { " wind-up" } else { "" }
+        );
     }
-    let found: Vec<String> = diagnosis.findings.iter().map(|finding| format!("{} {}", finding.motion, finding.term)).collect();
+    let found: Vec<String> =
+        diagnosis.findings.iter().map(|finding| format!("{} {}", finding.motion, finding.term)).collect();
     let settings: Vec<&str> = diagnosis.settings.iter().map(|setting| setting.term).collect();
     text += &format!("found [{}] [{}]", found.join(", "), settings.join(", "));
     if !score.wrong.is_empty() {
@@ -237,6 +256,8 @@ fn dump(case: &Case, folder: &Path) {
         fs::write(folder.join(format!("recording-{}.csv", take + 1)), data).unwrap();
     }
     fs::write(folder.join("calibration.yaml"), write(&case.known, &case.bench.names)).unwrap();
-    let truth = case.planted.iter().map(|planted| format!("{:?} {planted:?}\n", planted.name(&case.bench.names)));
-    fs::write(folder.join("truth.txt"), format!("{:?}\n{}", case.expected, truth.collect::<String>())).unwrap();
+    let truth =
+        case.planted.iter().map(|planted| format!("{:?} {planted:?}\n", planted.name(&case.bench.names)));
+    fs::write(folder.join("truth.txt"), format!("{:?}\n{}", case.expected, truth.collect::<String>()))
+        .unwrap();
 }

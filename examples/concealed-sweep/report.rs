@@ -72,10 +72,15 @@ fn share(part: usize, whole: usize) -> String {
 /// All tables.
 pub(crate) fn markdown(lines: &[Line]) -> String {
     let mut text = String::new();
-    let effective: Vec<&Line> = lines.iter().filter(|line| line.case.expected != Expected::Adequate).collect();
-    let planted: Vec<&Line> = effective.iter().copied().filter(|line| line.case.expected == Expected::LeftOut).collect();
+    let effective: Vec<&Line> =
+        lines.iter().filter(|line| line.case.expected != Expected::Adequate).collect();
+    let planted: Vec<&Line> =
+        effective.iter().copied().filter(|line| line.case.expected == Expected::LeftOut).collect();
     let quiet: Vec<&Line> = lines.iter().filter(|line| line.case.expected == Expected::Adequate).collect();
-    let _ = write!(text, "## By size\n\nPeak of the effect over the noise; precision and verdicts by the largest effect of a case.\n\n| size {HEAD}");
+    let _ = write!(
+        text,
+        "## By size\n\nPeak of the effect over the noise; precision and verdicts by the largest effect of a case.\n\n| size {HEAD}"
+    );
     for size in SIZES.iter().map(|(size, _)| *size).chain([LARGE]) {
         let mut count = Count::default();
         for line in &planted {
@@ -114,10 +119,18 @@ fn rows(lines: &[&Line], name: &str, each: impl Fn(&Line, &mut dyn FnMut(String,
             counts.entry(key).or_default().take_effects([(how, energy)].into_iter());
         });
     }
-    let mut text = format!("\n## By {name}\n\n| {name} | effects | recall | by name | recall, energy > 10 |\n| --- | --- | --- | --- | --- |\n");
+    let mut text = format!(
+        "\n## By {name}\n\n| {name} | effects | recall | by name | recall, energy > 10 |\n| --- | --- | --- | --- | --- |\n"
+    );
     for (key, count) in counts {
         let strong = format!("{} of {}", share(count.strong_found, count.strong), count.strong);
-        let _ = writeln!(text, "| {key} | {} | {} | {} | {strong} |", count.effects, share(count.found, count.effects), share(count.named, count.effects));
+        let _ = writeln!(
+            text,
+            "| {key} | {} | {} | {} | {strong} |",
+            count.effects,
+            share(count.found, count.effects),
+            share(count.named, count.effects)
+        );
     }
     text
 }
@@ -142,7 +155,8 @@ fn silence(quiet: &[&Line]) -> String {
         let wrong: usize = own.iter().map(|line| line.score.wrong.len()).sum();
         let right = own.iter().filter(|line| line.score.verdict_right).count();
         let per = 100.0 * wrong as f64 / own.len().max(1) as f64;
-        let _ = writeln!(text, "| {} | {} | {} | {per:.1} |", noise.name(), own.len(), share(right, own.len()));
+        let _ =
+            writeln!(text, "| {} | {} | {} | {per:.1} |", noise.name(), own.len(), share(right, own.len()));
     }
     text
 }
@@ -164,7 +178,13 @@ fn coverage(lines: &[Line]) -> String {
     );
     for ((term, parameter), (count, inside, mut away)) in held {
         away.sort_by(f64::total_cmp);
-        let _ = writeln!(text, "| {term} {parameter} | {count} | {} | {:.2}, {:.1} |", share(inside, count), away[count / 2], away[count - 1]);
+        let _ = writeln!(
+            text,
+            "| {term} {parameter} | {count} | {} | {:.2}, {:.1} |",
+            share(inside, count),
+            away[count / 2],
+            away[count - 1]
+        );
     }
     text
 }
@@ -181,10 +201,20 @@ fn figures(lines: &[Line]) -> String {
         lines.iter().map(|line| of(&line.score)).fold((0, 0), |sum, own| (sum.0 + own.0, sum.1 + own.1))
     };
     let sides = count(&|score| (score.sides.iter().filter(|right| **right).count(), score.sides.len()));
-    let located = count(&|score| (usize::from(score.located == Some(true)), usize::from(score.located.is_some())));
+    let located =
+        count(&|score| (usize::from(score.located == Some(true)), usize::from(score.located.is_some())));
     let misnamed = count(&|score| (score.misnamed, 0)).0;
     format!(
         "\n## Figures\n\n- held-out rms over that of the noise: median {:.3}, ninth decile {:.3}, largest {:.2}\n- seconds a case: median {:.2}, ninth decile {:.2}, longest {:.1}\n- sides right where the drive was recorded: {} of {}\n- dents located: {} of {}\n- wrong sensors: {misnamed}\n",
-        holdout.0, holdout.1, holdout.2, seconds.0, seconds.1, seconds.2, sides.0, sides.1, located.0, located.1
+        holdout.0,
+        holdout.1,
+        holdout.2,
+        seconds.0,
+        seconds.1,
+        seconds.2,
+        sides.0,
+        sides.1,
+        located.0,
+        located.1
     )
 }

@@ -120,7 +120,8 @@ impl Scene {
     /// A recording of a kind.
     pub(crate) fn draw(bench: &Bench, kind: Kind, noises: Noises, draw: &mut Draw) -> Self {
         let course = course(bench, kind, draw);
-        let acceleration = (draw.chance(0.35) && !kind.stops()).then(|| course.feed * draw.between(2.0, 10.0));
+        let acceleration =
+            (draw.chance(0.35) && !kind.stops()).then(|| course.feed * draw.between(2.0, 10.0));
         let mut path = Path {
             at: course.at,
             shape: course.shape,
@@ -172,6 +173,11 @@ impl Scene {
         }
     }
 
+    /// Whether it is read at stops only.
+    pub(crate) fn stops(&self) -> bool {
+        matches!(self.scenario.path.shape, Shape::Line { stations: Some(_), .. })
+    }
+
     fn take_noise(&mut self, noises: Noises, draw: &mut Draw) {
         let stage = self.kind == Kind::Rotary && self.angular();
         let (low, high, step) = match self.angular() {
@@ -182,12 +188,18 @@ impl Scene {
         let quantised = noises == Noises::Quantised;
         let white = if quantised { step * draw.between(0.3, 2.0) } else { draw.ratio(low, high) };
         let measurement = &mut self.scenario.measurement;
-        let correlated =
-            (noises == Noises::Correlated).then(|| Correlated { sigma: white, time_constant: draw.ratio(0.2, 5.0) });
+        let correlated = (noises == Noises::Correlated)
+            .then(|| Correlated { sigma: white, time_constant: draw.ratio(0.2, 5.0) });
         let walk = (noises == Noises::Walk)
             .then(|| Walk { sigma: white * draw.between(1.0, 3.0), after: self.duration });
         let outliers = draw.chance(0.1).then_some(Outliers { rate: 0.002, size: 50.0 * white });
-        measurement.noise = Noise { white, correlated, walk, outliers, resolution: if quantised || draw.chance(0.5) { step } else { 0.1 * step } };
+        measurement.noise = Noise {
+            white,
+            correlated,
+            walk,
+            outliers,
+            resolution: if quantised || draw.chance(0.5) { step } else { 0.1 * step },
+        };
         if draw.chance(0.15) {
             let length = self.duration * draw.between(0.005, 0.03);
             measurement.missing = Missing { rate: draw.between(0.0, 0.02), blocks: draw.count(0, 3), length };
@@ -207,7 +219,8 @@ impl Scene {
             measurement.drives.retain(|axis| !bench.names.axes[*axis].rotary);
         }
         let size = if slide { 1e-4 } else { 2e-6 };
-        measurement.drive_noise = Noise { resolution: 0.5 * size, ..Noise::white(size * draw.between(0.5, 2.0)) };
+        measurement.drive_noise =
+            Noise { resolution: 0.5 * size, ..Noise::white(size * draw.between(0.5, 2.0)) };
     }
 }
 
@@ -222,7 +235,9 @@ fn course(bench: &Bench, kind: Kind, draw: &mut Draw) -> Course {
     let slides = bench.slides();
     let at: Vec<Vec<f64>> = bench.home.iter().map(|place| vec![*place]).collect();
     match kind {
-        Kind::Circle | Kind::Ballbar | Kind::Diamond | Kind::Spiral | Kind::Grid => plane(bench, kind, at, draw),
+        Kind::Circle | Kind::Ballbar | Kind::Diamond | Kind::Spiral | Kind::Grid => {
+            plane(bench, kind, at, draw)
+        }
         Kind::Probe if slides.len() > 1 && draw.chance(0.5) => plane(bench, Kind::Circle, at, draw),
         Kind::Rotary => turn(bench, at, draw),
         Kind::Diagonal => {
@@ -261,14 +276,18 @@ fn plane(bench: &Bench, kind: Kind, mut at: Vec<Vec<f64>>, draw: &mut Draw) -> C
     plane.into_iter().zip(middle).for_each(|(axis, place)| at[axis] = vec![place]);
     let runs = draw.count(2, 5);
     if let Some(other) = others.filter(|_| kind != Kind::Ballbar && draw.chance(0.3)) {
-        at[other] = (0..runs).map(|_| draw.between(inside(bench, other)[0], inside(bench, other)[1]).round()).collect();
+        at[other] = (0..runs)
+            .map(|_| draw.between(inside(bench, other)[0], inside(bench, other)[1]).round())
+            .collect();
     }
     let [first, second] = plane;
     let ranges = [inside(bench, first), inside(bench, second)];
     let overshoot = draw.pick(&[0.0, 0.2, 0.5]);
     let shape = match kind {
         Kind::Diamond => Shape::Diamond { plane, radius },
-        Kind::Spiral => Shape::Spiral { plane, inner: 0.15 * radius, outer: radius, turns: draw.between(3.0, 6.0) },
+        Kind::Spiral => {
+            Shape::Spiral { plane, inner: 0.15 * radius, outer: radius, turns: draw.between(3.0, 6.0) }
+        }
         Kind::Grid => Shape::Grid {
             plane,
             from: [ranges[0][0], ranges[1][0]],
@@ -308,16 +327,22 @@ fn line(bench: &Bench, kind: Kind, mut at: Vec<Vec<f64>>, draw: &mut Draw) -> Co
         for other in slides.iter().copied().filter(|other| *other != axis) {
             let [from, to] = inside(bench, other);
             at[other] = match draw.chance(0.7) {
-                true => (0..runs).map(|run| (from + (to - from) * f64::from(run) / f64::from(runs - 1).max(1.0)).round()).collect(),
+                true => (0..runs)
+                    .map(|run| (from + (to - from) * f64::from(run) / f64::from(runs - 1).max(1.0)).round())
+                    .collect(),
                 false => continue,
             };
         }
     }
-    let stations =
-        kind.stops().then(|| Stations { count: draw.count(11, 31), dwell: draw.between(2.0, 5.0), readings: draw.count(1, 2) });
+    let stations = kind.stops().then(|| Stations {
+        count: draw.count(11, 31),
+        dwell: draw.between(2.0, 5.0),
+        readings: draw.count(1, 2),
+    });
     let overrun = if kind.stops() { 1.0 } else { 0.0 };
     let runs = if kind.stops() { draw.count(3, 5) } else { runs };
-    let shape = Shape::Line { strokes: vec![Stroke { axis, from: low, to: high }], back: true, overrun, stations };
+    let shape =
+        Shape::Line { strokes: vec![Stroke { axis, from: low, to: high }], back: true, overrun, stations };
     Course { shape, moving: vec![axis], at, feed, runs }
 }
 
@@ -327,7 +352,8 @@ fn turn(bench: &Bench, at: Vec<Vec<f64>>, draw: &mut Draw) -> Course {
     let [low, high] = bench.travels[axis];
     let stations = draw.chance(0.2).then(|| Stations { count: draw.count(13, 37), dwell: 3.0, readings: 1 });
     let overrun = if stations.is_some() { 0.02 } else { 0.0 };
-    let shape = Shape::Line { strokes: vec![Stroke { axis, from: low, to: high }], back: true, overrun, stations };
+    let shape =
+        Shape::Line { strokes: vec![Stroke { axis, from: low, to: high }], back: true, overrun, stations };
     Course { shape, moving: vec![axis], at, feed: draw.ratio(0.01, 0.3), runs: draw.count(2, 4) }
 }
 
@@ -349,18 +375,29 @@ fn instrument(bench: &Bench, kind: Kind, moving: &[usize], draw: &mut Draw) -> I
         unit[direction] = 1.0;
         unit
     };
-    let across: Vec<usize> = (0..3).filter(|direction| sensitive[*direction] && way[*direction] == 0.0).collect();
+    let across: Vec<usize> =
+        (0..3).filter(|direction| sensitive[*direction] && way[*direction] == 0.0).collect();
     let rotary = bench.names.axes[axis].rotary;
     match kind {
         Kind::Ballbar => {
             let mut eccentricity = [0.0; 3];
             for axis in moving {
                 let size = draw.between(-0.014, 0.014);
-                along(bench, *axis).iter().zip(&mut eccentricity).for_each(|(way, entry)| *entry += way * size);
+                along(bench, *axis)
+                    .iter()
+                    .zip(&mut eccentricity)
+                    .for_each(|(way, entry)| *entry += way * size);
             }
-            Instrument::Ballbar { center: None, radius: None, eccentricity, offset: draw.between(-0.02, 0.02) }
+            Instrument::Ballbar {
+                center: None,
+                radius: None,
+                eccentricity,
+                offset: draw.between(-0.02, 0.02),
+            }
         }
-        Kind::Stations if draw.chance(0.7) && !rotary => Instrument::Linear { axis, direction: way, cosine: 0.0 },
+        Kind::Stations if draw.chance(0.7) && !rotary => {
+            Instrument::Linear { axis, direction: way, cosine: 0.0 }
+        }
         Kind::Straightness if !across.is_empty() => {
             Instrument::Straightness { axis, direction: unit(draw.pick(&across)) }
         }
@@ -377,7 +414,9 @@ fn instrument(bench: &Bench, kind: Kind, moving: &[usize], draw: &mut Draw) -> I
             let mut directions = sensitive;
             if moving.len() == 2 && draw.chance(0.5) || draw.chance(0.2) && !rotary {
                 let ways: Vec<[f64; 3]> = moving.iter().map(|axis| along(bench, *axis)).collect();
-                (0..3).for_each(|direction| directions[direction] &= ways.iter().any(|way| way[direction] != 0.0));
+                (0..3).for_each(|direction| {
+                    directions[direction] &= ways.iter().any(|way| way[direction] != 0.0)
+                });
             }
             Instrument::Position { directions, angles: Vec::new() }
         }
@@ -392,12 +431,17 @@ fn temperatures(duration: f64, draw: &mut Draw) -> Vec<Temperature> {
     for (number, name) in names.into_iter().take(count).enumerate() {
         let rise = [draw.between(4.0, 9.0), draw.between(8.0, 18.0), draw.between(1.0, 4.0)][number];
         let start = draw.between(19.5, 20.5);
-        let swing = Swing { amplitude: draw.between(0.0, 0.4), period: draw.between(900.0, 4000.0), phase: draw.between(0.0, TAU) };
+        let swing = Swing {
+            amplitude: draw.between(0.0, 0.4),
+            period: draw.between(900.0, 4000.0),
+            phase: draw.between(0.0, TAU),
+        };
         sensors.push(Temperature {
             name: name.to_owned(),
             start,
             steps: vec![(0.0, start + rise)],
-            time_constant: duration * [draw.between(0.3, 0.8), draw.between(0.15, 0.5), draw.between(0.4, 1.0)][number],
+            time_constant: duration
+                * [draw.between(0.3, 0.8), draw.between(0.15, 0.5), draw.between(0.4, 1.0)][number],
             swing: Some(swing),
             noise: Noise { resolution: 0.001, ..Noise::white(draw.between(0.005, 0.03)) },
         });
@@ -407,8 +451,14 @@ fn temperatures(duration: f64, draw: &mut Draw) -> Vec<Temperature> {
 
 fn load(duration: f64, draw: &mut Draw) -> Load {
     let period = duration / draw.between(5.0, 30.0);
-    let pulses = Pulses { height: draw.between(100.0, 600.0), period, width: period * draw.between(0.2, 0.7), start: 0.3 * period };
-    let swing = Swing { amplitude: draw.between(0.0, 60.0), period: duration / draw.between(3.0, 50.0), phase: 0.0 };
+    let pulses = Pulses {
+        height: draw.between(100.0, 600.0),
+        period,
+        width: period * draw.between(0.2, 0.7),
+        start: 0.3 * period,
+    };
+    let swing =
+        Swing { amplitude: draw.between(0.0, 60.0), period: duration / draw.between(3.0, 50.0), phase: 0.0 };
     Load {
         name: "tool".to_owned(),
         unit: "N".to_owned(),

@@ -7,7 +7,7 @@ use diagnosis::diagnosis::{Diagnosis, Estimate, Finding, Interval, IntervalOf, P
 use model_dsl::calibration::{CalibratedTerm, SeriesInput};
 use model_dsl::quantity::parse_unit;
 
-use crate::case::{Case, Expected, Signal, dot, rms};
+use crate::case::{Case, Expected, Signal, rms};
 use crate::effect::Planted;
 
 /// How far one signal may be from another, in parts of its size, to be the same thing.
@@ -73,7 +73,8 @@ impl Score {
         let single = |planted: &Planted| case.signal(std::slice::from_ref(planted)).unwrap_or_default();
         let signals: Vec<Signal> = case.planted.iter().map(single).collect();
         let claims = claims(case, diagnosis);
-        let truths: Vec<(String, &'static str)> = case.planted.iter().map(|planted| planted.name(names)).collect();
+        let truths: Vec<(String, &'static str)> =
+            case.planted.iter().map(|planted| planted.name(names)).collect();
         let mut effects: Vec<How> = truths
             .iter()
             .map(|truth| match () {
@@ -98,11 +99,16 @@ impl Score {
         if case.expected == Expected::Dent {
             dent(case, diagnosis, &mut effects, &mut right);
         }
-        let wrong = claims.iter().zip(&right).filter(|(_, right)| !**right).map(|(claim, _)| weighed(claim)).collect();
+        let wrong = claims
+            .iter()
+            .zip(&right)
+            .filter(|(_, right)| !**right)
+            .map(|(claim, _)| weighed(case, claim))
+            .collect();
         let mut score = Self {
             verdict: diagnosis.verdict.word(),
             verdict_right: verdict_right(case, diagnosis),
-            energies: signals.iter().map(|signal| dot(signal, signal).sqrt()).collect(),
+            energies: signals.iter().map(|signal| case.energy(signal)).collect(),
             effects,
             findings: claims.len(),
             wrong,
@@ -134,7 +140,9 @@ impl Score {
         let Planted::Term { term, .. } = planted else { return };
         let sensor = |number: usize| case.sensor(finding.sensor.as_deref().unwrap_or("")) == Some(number);
         let named = match term {
-            CalibratedTerm::Expansion { sensor: own, .. } | CalibratedTerm::Growth { sensor: own, .. } => sensor(*own),
+            CalibratedTerm::Expansion { sensor: own, .. } | CalibratedTerm::Growth { sensor: own, .. } => {
+                sensor(*own)
+            }
             _ => true,
         };
         if !named {
@@ -148,15 +156,26 @@ impl Score {
         for parameter in &finding.parameters {
             let fitted = match &parameter.value {
                 ParameterValue::Fitted(estimate) => vec![(parameter.name, 0, estimate)],
-                ParameterValue::List(list) => list.iter().enumerate().map(|(number, estimate)| (parameter.name, number, estimate)).collect(),
+                ParameterValue::List(list) => list
+                    .iter()
+                    .enumerate()
+                    .map(|(number, estimate)| (parameter.name, number, estimate))
+                    .collect(),
                 _ => continue,
             };
             for (name, number, estimate) in fitted {
                 // The constant part of a curve cannot be told from a zero.
-                if name == "values" || name == "coefficients" && number == 0 && matches!(term, CalibratedTerm::Polynomial { .. }) {
+                if name == "values"
+                    || name == "coefficients"
+                        && number == 0
+                        && matches!(term, CalibratedTerm::Polynomial { .. })
+                {
                     continue;
                 }
-                let truth = truths.iter().find(|(known, of, _)| *known == name && *of == number).map(|(.., truth)| *truth);
+                let truth = truths
+                    .iter()
+                    .find(|(known, of, _)| *known == name && *of == number)
+                    .map(|(.., truth)| *truth);
                 let absent = if name == "coefficients" { Some(0.0) } else { None };
                 if let Some(truth) = truth.or(absent) {
                     self.held.push(held(finding.term, name, truth, estimate));
@@ -203,7 +222,14 @@ fn claim(case: &Case, finding: &Finding) -> Claim {
     }
     // The loop of an axis is the drive's in any case.
     let drive = finding.location.side == "drive" && !matches!(term, CalibratedTerm::Lag { .. });
-    let drive = drive && case.bench.names.axes.iter().enumerate().any(|(axis, _)| case.bench.own(axis) == Some(finding.motion_number));
+    let drive = drive
+        && case
+            .bench
+            .names
+            .axes
+            .iter()
+            .enumerate()
+            .any(|(axis, _)| case.bench.own(axis) == Some(finding.motion_number));
     let planted = Planted::Term { motion: finding.motion_number, term, drive };
     Claim {
         name: (finding.motion.clone(), finding.term),
@@ -213,9 +239,12 @@ fn claim(case: &Case, finding: &Finding) -> Claim {
     }
 }
 
-fn weighed(claim: &Claim) -> String {
-    let peak = claim.signal.as_ref().map_or(f64::NAN, |signal| signal.iter().fold(0.0, |most: f64, value| most.max(value.abs())));
-    let energy = claim.signal.as_ref().map_or(f64::NAN, |signal| dot(signal, signal).sqrt());
+fn weighed(case: &Case, claim: &Claim) -> String {
+    let peak = claim
+        .signal
+        .as_ref()
+        .map_or(f64::NAN, |signal| signal.iter().fold(0.0, |most: f64, value| most.max(value.abs())));
+    let energy = claim.signal.as_ref().map_or(f64::NAN, |signal| case.energy(signal));
     format!("{} {} (peak {peak:.2}, energy {energy:.1})", claim.name.0, claim.name.1)
 }
 
@@ -241,12 +270,25 @@ fn together(case: &Case, claims: &[Claim], signals: &[Signal], effects: &mut [Ho
     };
     let (Some(truth), Some(all)) = (case.signal(&case.planted), sum(None)) else { return };
     let left = distance(&truth, &all);
-    for (signal, how) in signals.iter().zip(effects) {
+    for (signal, how) in signals.iter().zip(effects.iter_mut()) {
         if *how == How::Missed && left < SAME * rms(signal) {
             *how = How::Together;
         }
     }
-    let smallest = signals.iter().map(|signal| rms(signal)).fold(f64::INFINITY, f64::min);
+    // What was claimed against what was found: a missed effect does not make the others false.
+    let found = effects.iter().map(|how| *how != How::Missed);
+    let found: Vec<bool> = found.collect();
+    let met: Vec<Planted> = case
+        .planted
+        .iter()
+        .zip(&found)
+        .filter(|(_, found)| **found)
+        .map(|(planted, _)| planted.clone())
+        .collect();
+    let sizes = signals.iter().zip(&found).filter(|(_, found)| **found).map(|(signal, _)| rms(signal));
+    let smallest = sizes.fold(f64::INFINITY, f64::min);
+    let Some(truth) = case.signal(&met).filter(|_| !met.is_empty()) else { return };
+    let left = distance(&truth, &all);
     if left >= SAME * smallest {
         return;
     }
@@ -274,7 +316,9 @@ fn verdict_right(case: &Case, diagnosis: &Diagnosis) -> bool {
         | (Expected::LeftOut, Verdict::LeftOutPhysics)
         | (Expected::Loose, Verdict::NotRepeatable)
         | (Expected::Dent, Verdict::Unexplained) => true,
-        (Expected::Dent, Verdict::LeftOutPhysics) => diagnosis.findings.iter().any(|finding| finding.term == "table"),
+        (Expected::Dent, Verdict::LeftOutPhysics) => {
+            diagnosis.findings.iter().any(|finding| finding.term == "table")
+        }
         _ => false,
     }
 }
@@ -284,7 +328,13 @@ fn located(case: &Case, diagnosis: &Diagnosis) -> bool {
     let Some(&Planted::Dent { axis, at, width, .. }) = case.planted.first() else { return false };
     let letter = &case.bench.names.axes[axis].letter;
     let told = diagnosis.unexplained.iter().filter_map(|left| left.interval.as_ref());
-    let told = told.chain(diagnosis.findings.iter().filter(|found| found.term == "table").filter_map(|found| found.location.interval.as_ref()));
+    let told = told.chain(
+        diagnosis
+            .findings
+            .iter()
+            .filter(|found| found.term == "table")
+            .filter_map(|found| found.location.interval.as_ref()),
+    );
     let fits = |interval: &Interval| {
         let (from, to) = (internal(interval.from, interval.unit), internal(interval.to, interval.unit));
         let overlap = from <= at + width && to >= at - width;
@@ -306,22 +356,38 @@ fn side(case: &Case, planted: &Planted, finding: &Finding) -> Option<bool> {
 
 /// The numbers of a term, by the name and the place of its parameter.
 fn truths(term: &CalibratedTerm) -> Vec<(&'static str, usize, f64)> {
-    let list = |values: &[f64]| values.iter().enumerate().map(|(number, value)| ("coefficients", number, *value)).collect();
+    let list = |values: &[f64]| {
+        values.iter().enumerate().map(|(number, value)| ("coefficients", number, *value)).collect()
+    };
     match term {
         CalibratedTerm::Constant { value } => vec![("value", 0, *value)],
-        CalibratedTerm::Polynomial { coefficients, .. } | CalibratedTerm::Coupling { coefficients, .. } => list(coefficients),
-        CalibratedTerm::Backlash { lost_motion, wind_up, .. } => vec![("lost_motion", 0, *lost_motion), ("wind_up", 0, *wind_up)],
-        CalibratedTerm::ReversalSpike { height, decay, .. } => vec![("height", 0, *height), ("decay", 0, *decay)],
+        CalibratedTerm::Polynomial { coefficients, .. } | CalibratedTerm::Coupling { coefficients, .. } => {
+            list(coefficients)
+        }
+        CalibratedTerm::Backlash { lost_motion, wind_up, .. } => {
+            vec![("lost_motion", 0, *lost_motion), ("wind_up", 0, *wind_up)]
+        }
+        CalibratedTerm::ReversalSpike { height, decay, .. } => {
+            vec![("height", 0, *height), ("decay", 0, *decay)]
+        }
         &CalibratedTerm::Cyclic { period, amplitude, phase, .. } => {
             vec![("period", 0, period), ("amplitude", 0, amplitude), ("phase", 0, phase)]
         }
         &CalibratedTerm::Vibration { frequency, amplitude, phase } => {
             vec![("frequency", 0, frequency), ("amplitude", 0, amplitude), ("phase", 0, phase)]
         }
-        CalibratedTerm::Lag { gain, .. } | CalibratedTerm::Acceleration { gain, .. } => vec![("gain", 0, *gain)],
-        CalibratedTerm::Expansion { coefficient, .. } | CalibratedTerm::Compliance { coefficient, .. } => vec![("coefficient", 0, *coefficient)],
-        CalibratedTerm::Growth { coefficient, time_constant, .. } => vec![("coefficient", 0, *coefficient), ("time_constant", 0, *time_constant)],
-        CalibratedTerm::Drift { amplitude, time_constant } => vec![("amplitude", 0, *amplitude), ("time_constant", 0, *time_constant)],
+        CalibratedTerm::Lag { gain, .. } | CalibratedTerm::Acceleration { gain, .. } => {
+            vec![("gain", 0, *gain)]
+        }
+        CalibratedTerm::Expansion { coefficient, .. } | CalibratedTerm::Compliance { coefficient, .. } => {
+            vec![("coefficient", 0, *coefficient)]
+        }
+        CalibratedTerm::Growth { coefficient, time_constant, .. } => {
+            vec![("coefficient", 0, *coefficient), ("time_constant", 0, *time_constant)]
+        }
+        CalibratedTerm::Drift { amplitude, time_constant } => {
+            vec![("amplitude", 0, *amplitude), ("time_constant", 0, *time_constant)]
+        }
         CalibratedTerm::Table { .. } => Vec::new(),
     }
 }

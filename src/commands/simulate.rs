@@ -1,4 +1,6 @@
-//! `abbe simulate`: the recording that a calibration predicts, as two files.
+//! `abbe simulate`: the recording that a calibration predicts, along a path or in place of another recording, as two files.
+
+mod replay;
 
 use std::path::{Path, PathBuf};
 
@@ -15,6 +17,7 @@ use crate::calibrated::{self, Calibrated};
 use crate::failure::Failure;
 use crate::load;
 use crate::output::{rendered, show, warn};
+use crate::recorded;
 
 /// Runs the command.
 pub(crate) fn run(command: &Simulate) -> Result<(), Failure> {
@@ -23,7 +26,11 @@ pub(crate) fn run(command: &Simulate) -> Result<(), Failure> {
     let known = command.known.as_deref().map(|known| known_calibration(known, &names)).transpose()?;
     let output = Output::of(&command.output);
     output.check(command.force)?;
-    let simulated = predicted(command, &calibrated, &names)?;
+    let source = load::read(&command.path)?;
+    let simulated = match is_recording(&source) {
+        true => replayed(command, &calibrated, &names)?,
+        false => driven(command, &source, &calibrated, &names)?,
+    };
     let folder = output.folder()?;
     let machine = machine_name(&calibrated.calibration.machine.value, &command.calibration, &folder);
     let calibration = known.map(|known| relative(&folder, &known));
@@ -36,20 +43,51 @@ pub(crate) fn run(command: &Simulate) -> Result<(), Failure> {
 }
 
 /// What the calibration predicts along the path.
-fn predicted(
+fn driven(
     command: &Simulate,
+    source: &SourceFile,
     calibrated: &Calibrated,
     names: &MachineNames,
 ) -> Result<Simulated, Failure> {
-    let source = load::read(&command.path)?;
-    let wrong = |error: &dyn std::fmt::Display| Failure::Wrong(format!("error: {error}"));
-    let mut plant =
-        Plant::new(&calibrated.machine, names, &calibrated.calibration).map_err(|error| wrong(&error))?;
-    let PathFile { mut scenario, .. } = read_path(&source, calibrated, names, &mut plant)?;
+    let mut plant = plant(calibrated, names)?;
+    let PathFile { mut scenario, .. } = read_path(source, calibrated, names, &mut plant)?;
     if let Some(seed) = command.seed {
         scenario.measurement.seed = seed;
     }
     simulation::simulate(&plant, &scenario).map_err(|error| wrong(&error))
+}
+
+/// What the calibration predicts in place of the recording.
+fn replayed(command: &Simulate, calibrated: &Calibrated, names: &MachineNames) -> Result<Simulated, Failure> {
+    if command.seed.is_some() {
+        let help = "help: leave --seed out: what a calibration predicts for a recording has no noise";
+        return Err(Failure::Wrong(format!("error: {} is a recording\n{help}", command.path.display())));
+    }
+    let recorded = recorded::read(&command.path)?;
+    if recorded.equations.names() != *names {
+        return Err(Failure::Wrong(format!(
+            "error: {} is a recording of {}, {} a calibration of {}\nhelp: give both for the same machine",
+            command.path.display(),
+            recorded.equations.machine,
+            command.calibration.display(),
+            names.machine
+        )));
+    }
+    replay::replayed(plant(calibrated, names)?, &recorded.recording).map_err(|reason| wrong(&reason))
+}
+
+fn plant(calibrated: &Calibrated, names: &MachineNames) -> Result<Plant, Failure> {
+    Plant::new(&calibrated.machine, names, &calibrated.calibration).map_err(|error| wrong(&error))
+}
+
+fn wrong(error: &dyn std::fmt::Display) -> Failure {
+    Failure::Wrong(format!("error: {error}"))
+}
+
+/// Whether a file is a recording rather than a path; what else it may be is told by who reads paths.
+fn is_recording(source: &SourceFile) -> bool {
+    let root = yaml::read(source, &mut Diagnostics::new());
+    root.is_some_and(|root| root.get("recording").is_some())
 }
 
 fn read_path(

@@ -1,0 +1,252 @@
+//! Noise against the textbook: a dense covariance matrix and its Cholesky factor, and noise of known kind.
+
+use nalgebra::{DMatrix, DVector};
+use simulation::noise::{Correlated, Noise as Drawn, Source, Walk};
+
+use super::*;
+use crate::testing::{normals, uneven};
+
+/// The covariance of the samples that are there.
+fn covariance(noise: Noise, time: &[f64], valid: &[bool]) -> DMatrix<f64> {
+    let known: Vec<f64> = time.iter().zip(valid).filter(|(_, valid)| **valid).map(|(time, _)| *time).collect();
+    DMatrix::from_fn(known.len(), known.len(), |row, column| {
+        let apart = (known[row] - known[column]).abs();
+        let white = if row == column { noise.white * noise.white } else { 0.0 };
+        white + noise.wander * noise.wander * (-apart / noise.time_constant).exp()
+    })
+}
+
+/// Uneven times with single gaps and a long one, and noise of three kinds.
+fn cases() -> Vec<(Noise, Vec<f64>, Vec<bool>)> {
+    let noises = [
+        Noise { white: 0.7, wander: 0.0, time_constant: 3.0 },
+        Noise { white: 0.3, wander: 1.4, time_constant: 2.5 },
+        Noise { white: 1.0, wander: 40.0, time_constant: 900.0 },
+    ];
+    let case = |(seed, noise): (u64, Noise)| {
+        let time = uneven(seed, 90, 0.5);
+        let valid = (0..90).map(|row| row % 7 != 3 && !(40..55).contains(&row) && row != 0).collect();
+        (noise, time, valid)
+    };
+    (1..).zip(noises).map(case).collect()
+}
+
+fn kept(values: &[f64], valid: &[bool]) -> DVector<f64> {
+    DVector::from_iterator(
+        valid.iter().filter(|valid| **valid).count(),
+        values.iter().zip(valid).filter(|(_, valid)| **valid).map(|(value, _)| *value),
+    )
+}
+
+fn whitened(noise: Noise, time: &[f64], valid: &[bool], values: &[f64]) -> Vec<f64> {
+    let steps = Whitening::new(noise).steps(time, valid);
+    let mut column = values.to_vec();
+    whiten(&steps, &mut 0.0, &mut column);
+    column
+}
+
+#[test]
+fn whitening_is_the_inverse_cholesky_factor() {
+    for (noise, time, valid) in cases() {
+        let values = normals(11, time.len());
+        let factor = covariance(noise, &time, &valid).cholesky().unwrap();
+        let expected = factor.l().solve_lower_triangular(&kept(&values, &valid)).unwrap();
+        let found = whitened(noise, &time, &valid, &values);
+        assert!((kept(&found, &valid) - expected).amax() < 1e-9, "{noise:?}");
+        assert!(found.iter().zip(&valid).all(|(value, valid)| *valid || *value == 0.0));
+    }
+}
+
+#[test]
+fn missing_samples_do_not_count_whatever_stands_there() {
+    let (noise, time, valid) = cases().remove(1);
+    let values = normals(11, time.len());
+    let spoiled: Vec<f64> = values.iter().zip(&valid).map(|(v, valid)| if *valid { *v } else { f64::NAN }).collect();
+    assert_eq!(whitened(noise, &time, &valid, &values), whitened(noise, &time, &valid, &spoiled));
+}
+
+#[test]
+fn whitening_goes_on_from_stretch_to_stretch() {
+    for (noise, time, valid) in cases() {
+        let values = normals(12, time.len());
+        let whole = whitened(noise, &time, &valid, &values);
+        let mut filter = Whitening::new(noise);
+        let mut state = 0.0;
+        let mut pieces = Vec::new();
+        for rows in [0..13, 13..14, 14..61, 61..90] {
+            let steps = filter.steps(&time[rows.clone()], &valid[rows.clone()]);
+            let mut column = values[rows].to_vec();
+            whiten(&steps, &mut state, &mut column);
+            pieces.extend(column);
+        }
+        assert_eq!(pieces, whole);
+    }
+}
+
+#[test]
+fn unwhitening_is_the_transpose_and_gives_the_weights_of_least_squares() {
+    for (noise, time, valid) in cases() {
+        let steps = Whitening::new(noise).steps(&time, &valid);
+        let (a, b) = (normals(13, time.len()), normals(14, time.len()));
+        let mut back = b.clone();
+        unwhiten(&steps, &mut back);
+        let forth = whitened(noise, &time, &valid, &a);
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let (left, right) = (product(&forth, &b), product(&a, &back));
+        assert!((left - right).abs() < 1e-9 * left.abs().max(1.0), "{left} {right}");
+        // There and back is the inverse of the covariance.
+        let mut weights = forth;
+        unwhiten(&steps, &mut weights);
+        let inverse = covariance(noise, &time, &valid).cholesky().unwrap().solve(&kept(&a, &valid));
+        assert!((kept(&weights, &valid) - &inverse).amax() < 1e-8 * inverse.amax());
+    }
+}
+
+#[test]
+fn the_deviance_is_that_of_a_normal_distribution_with_this_covariance() {
+    for (noise, time, valid) in cases() {
+        let values: Vec<f64> = normals(15, time.len()).iter().map(|value| 3.0 * value).collect();
+        let factor = covariance(noise, &time, &valid).cholesky().unwrap();
+        let y = kept(&values, &valid);
+        let count = crate::number(y.len());
+        let scale = y.dot(&factor.solve(&y)) / count;
+        // -2 ln of the likelihood under scale times the covariance, but for n ln(2 pi).
+        let logs: f64 = factor.l().diagonal().iter().map(|entry| 2.0 * entry.ln()).sum();
+        let (deviance, found) = deviance(&time, &values, &valid, noise);
+        assert!((found / scale - 1.0).abs() < 1e-10);
+        assert!((deviance - (count * scale.ln() + logs + count)).abs() < 1e-7, "{noise:?}");
+    }
+}
+
+#[test]
+fn the_deviance_holds_where_a_product_of_weights_would_leave_the_numbers() {
+    // 4000 weights of 1e9: their product is far beyond 1e308.
+    let rows = 4000;
+    let time: Vec<f64> = (0..rows).map(crate::number).collect();
+    let noise = Noise { white: 1e-9, wander: 0.0, time_constant: 1.0 };
+    let values: Vec<f64> = normals(16, rows).iter().map(|value| 1e-9 * value).collect();
+    let squares: f64 = values.iter().map(|value| value * value / 1e-18).sum();
+    let count = crate::number(rows);
+    let expected = count * (squares / count).ln() + count * (1e-18_f64).ln() + count;
+    let (deviance, _) = deviance(&time, &values, &vec![true; rows], noise);
+    assert!((deviance - expected).abs() < 1e-6 * expected.abs(), "{deviance} {expected}");
+}
+
+fn drawn(noise: Drawn, time: &[f64], seed: u64) -> Vec<f64> {
+    let mut values = vec![0.0; time.len()];
+    noise.apply(time, &mut values, &mut Source::new(seed, "noise"));
+    values
+}
+
+fn all(time: &[f64]) -> Vec<bool> {
+    vec![true; time.len()]
+}
+
+#[test]
+fn white_noise_is_told_as_white() {
+    let time = uneven(1, 2000, 0.1);
+    let mut wandering = 0;
+    for seed in 0..12 {
+        let (noise, _) = estimate(&time, &drawn(Drawn::white(0.8), &time, seed), &all(&time), 0.0);
+        // The standard deviation of the estimate is 0.8 / sqrt(4000) = 0.013.
+        assert!((noise.white.hypot(noise.wander) - 0.8).abs() < 0.06, "{noise:?}");
+        wandering += usize::from(noise.wander > 0.0);
+    }
+    assert!(wandering <= 2, "white noise was called wandering {wandering} times of 12");
+}
+
+#[test]
+fn a_wandering_sensor_is_told_with_its_time_constant() {
+    let time = uneven(2, 3000, 0.1);
+    let correlated = Correlated { sigma: 1.5, time_constant: 2.0 };
+    let kind = Drawn { white: 1.0, correlated: Some(correlated), ..Drawn::default() };
+    let truth = Noise { white: 1.0, wander: 1.5, time_constant: 2.0 };
+    let (mut logs, seeds) = ([0.0; 3], 6);
+    for seed in 0..seeds {
+        let values = drawn(kind, &time, seed);
+        let (noise, least) = estimate(&time, &values, &all(&time), 0.0);
+        assert!(least <= deviance(&time, &values, &all(&time), truth).0 + 1e-2, "the truth is likelier: {noise:?}");
+        for (log, ratio) in
+            logs.iter_mut().zip([noise.white, noise.wander / 1.5, noise.time_constant / 2.0])
+        {
+            assert!((0.5..2.0).contains(&ratio), "{noise:?}");
+            *log += ratio.ln() / crate::number(6);
+        }
+    }
+    // 75 times the time constant in each: some 15 % each, 6 % in the mean.
+    assert!(logs[0].abs() < 0.03 && logs[1].abs() < 0.15 && logs[2].abs() < 0.3, "{logs:?}");
+}
+
+#[test]
+fn a_random_walk_is_told_by_its_rate() {
+    let time: Vec<f64> = (0..2000).map(|row| 0.1 * f64::from(row)).collect();
+    let kind = Drawn { white: 0.5, walk: Some(Walk { sigma: 6.0, after: 200.0 }), ..Drawn::default() };
+    for seed in 0..4 {
+        let (noise, _) = estimate(&time, &drawn(kind, &time, seed), &all(&time), 0.0);
+        // Both spread by so much variance a second while they are young.
+        let rate = 2.0 * noise.wander * noise.wander / noise.time_constant;
+        assert!((0.4..2.5).contains(&(rate / (36.0 / 200.0))), "{noise:?}");
+        assert!((noise.white / 0.5 - 1.0).abs() < 0.12, "{noise:?}");
+        assert!(noise.time_constant > 10.0, "{noise:?}");
+    }
+}
+
+#[test]
+fn estimates_see_through_gaps() {
+    let time = uneven(3, 3000, 0.1);
+    let correlated = Correlated { sigma: 2.0, time_constant: 1.0 };
+    let kind = Drawn { white: 1.0, correlated: Some(correlated), ..Drawn::default() };
+    let mut values = drawn(kind, &time, 5);
+    let valid: Vec<bool> = (0..3000).map(|row| row % 3 != 0 && !(900..1400).contains(&row)).collect();
+    values.iter_mut().zip(&valid).filter(|(_, valid)| !**valid).for_each(|(value, _)| *value = f64::NAN);
+    let (noise, deviance) = estimate(&time, &values, &valid, 0.0);
+    assert!(deviance.is_finite());
+    assert!((noise.white - 1.0).abs() < 0.2 && (noise.wander - 2.0).abs() < 0.6, "{noise:?}");
+    assert!((0.5..2.0).contains(&noise.time_constant), "{noise:?}");
+}
+
+#[test]
+fn noise_is_never_below_the_rounding() {
+    let time: Vec<f64> = (0..100).map(f64::from).collect();
+    let (noise, _) = estimate(&time, &vec![0.0; 100], &all(&time), 2.9e-5);
+    assert_eq!(noise.white, 2.9e-5);
+    // Nothing but missing samples, or no samples at all: still numbers.
+    let (noise, _) = estimate(&time, &vec![f64::NAN; 100], &vec![false; 100], 2.9e-5);
+    assert!(noise.white.is_finite() && noise.white > 0.0, "{noise:?}");
+    let (noise, _) = estimate(&[], &[], &[], 2.9e-5);
+    assert!(noise.white.is_finite() && noise.white > 0.0, "{noise:?}");
+}
+
+#[test]
+fn differences_tell_the_fast_part_whatever_drifts_below() {
+    let mut values: Vec<f64> = normals(21, 5000).iter().zip(0_u32..).map(|(value, row)| 0.4 * value + 0.02 * f64::from(row)).collect();
+    values[77] = f64::NAN;
+    values[200] = 1e6;
+    assert!((from_differences(&values) / 0.4 - 1.0).abs() < 0.06, "{}", from_differences(&values));
+    assert_eq!(from_differences(&[]), 0.0);
+}
+
+#[test]
+fn rounding_is_told_from_the_values_themselves() {
+    let values: Vec<f64> = normals(22, 3000);
+    for step in [1e-4, 5e-3, 0.25] {
+        let rounded: Vec<f64> = values.iter().map(|value| 300.0 + (value / step).round() * step).collect();
+        // The error of rounding is even over the step.
+        assert!((rounding(&rounded) / (step / 12f64.sqrt()) - 1.0).abs() < 1e-6, "{step}");
+    }
+    assert!(rounding(&values) < 1e-4);
+    assert!(rounding(&[1.0, f64::NAN, 1.0]) > 0.0);
+}
+
+#[test]
+fn the_typical_step_is_the_median() {
+    assert_eq!(typical_step(&[0.0, 1.0, 2.0, 3.0, 60.0]), 1.0);
+    assert!(typical_step(&[]) > 0.0);
+}
+
+#[test]
+fn white_noise_of_the_same_size_has_the_same_variance() {
+    let noise = Noise { white: 3.0, wander: 4.0, time_constant: 7.0 };
+    assert_eq!(noise.as_white(), Noise { white: 5.0, wander: 0.0, time_constant: 7.0 });
+
+}

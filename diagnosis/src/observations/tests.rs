@@ -1,0 +1,187 @@
+//! What a full calibration leaves of an exact recording: nothing to first order, whatever reads it.
+
+use simulation::{Instrument as Reads, Normal};
+
+use super::*;
+use crate::terms::Setting;
+use crate::testing::{Bench, ballbar, circle, distance, line, path, peak, position, scenario, warming};
+use crate::waves;
+use simulation::path::Shape as PathShape;
+
+/// Errors of every kind, `size` times those of a bad machine.
+fn errors(size: f64) -> String {
+    let n = |value: f64| value * size;
+    format!(
+        "{{EXX: [{{polynomial: {{axis: X, per: mm, unit: um, coefficients: [{}, {}]}}}}, {{lag: {{gain: 40 1/s}}}}, {{backlash: {{lost_motion: {} um, wind_up: 3 mm}}}}], \
+          EYY: [{{cyclic: {{period: 10 mm, amplitude: {} um, phase: 1 rad}}}}, {{lag: {{gain: 33 1/s}}}}], \
+          EZZ: [{{growth: {{sensor: spindle, coefficient: {} um/K, reference: 20 degC, time_constant: 20 s}}}}], \
+          EAX: {} urad, EBX: [{{polynomial: {{axis: X, per: mm, unit: urad, coefficients: [{}, {}]}}}}], ECX: {} urad, \
+          EAY: {} urad, ECY: [{{coupling: {{axis: X, per: mm, unit: urad, coefficients: [{}]}}}}], EBZ: {} urad, EYX: {} um, \
+          EC0Y: {} urad, EB0Z: {} urad, EA0Z: {} urad}}",
+        n(5.0), n(0.2), n(12.0), n(7.0), n(1.5), n(80.0), n(30.0), n(0.8), n(-60.0), n(45.0), n(0.5), n(90.0), n(8.0),
+        n(150.0), n(-120.0), n(70.0)
+    )
+}
+
+/// What is left of a recording under the calibration that made it and settings of the instrument; offsets left free.
+fn worst(bench: &Bench, errors: &str, instrument: Reads, shape: PathShape, settings: &[(Setting, f64)]) -> f64 {
+    let calibration = bench.calibration(errors);
+    let mut scenario = scenario(path(shape, 30.0, 20.0), instrument);
+    scenario.path.at = vec![vec![200.0], vec![90.0], vec![-60.0]];
+    scenario.temperatures = vec![warming("spindle", 8.0, 15.0)];
+    let recording = bench.record(&calibration, &scenario);
+    let study = Study::new(bench.equations(), Some(&calibration), &[&recording]);
+    let fitted = |(setting, value): &(Setting, f64)| Fitted {
+        effect: Effect::setting(0, *setting),
+        coefficients: vec![*value],
+    };
+    let model: Model = settings.iter().map(fitted).collect();
+    let course = Course::new(&study, 0, &model);
+    let mut residuals = waves::residuals(&study, 0, &model, &course);
+    assert!(!residuals.is_empty());
+    residuals.iter_mut().for_each(|residual| crate::zeros::center(residual));
+    residuals.iter().map(|residual| peak(residual)).fold(0.0, f64::max)
+}
+
+/// Half the errors must leave a quarter.
+fn is_of_second_order(what: &str, left: impl Fn(f64) -> f64, most: f64) {
+    let (whole, half) = (left(1.0), left(0.5));
+    assert!(whole < most, "{what}: {whole}");
+    assert!(half < 0.27 * whole + 1e-10, "{what}: {whole}, and with half the errors {half}");
+}
+
+#[test]
+fn every_instrument_is_predicted_to_first_order() {
+    let bench = Bench::of("XYFZ");
+    let cases: [(&str, Reads, PathShape); 5] = [
+        ("position", position("xyz"), circle(70.0)),
+        ("ballbar", ballbar([0.0; 3]), circle(70.0)),
+        ("straightness", Reads::Straightness { axis: 0, direction: [0.0, 0.0, 1.0] }, line(0, 20.0, 300.0)),
+        ("linear", Reads::Linear { axis: 0, direction: [1.0, 0.0, 0.0], cosine: 0.0 }, line(0, 20.0, 300.0)),
+        ("probe", Reads::Probe { normal: Normal::Radial(Some([200.0, 90.0, f64::NAN])) }, circle(70.0)),
+    ];
+    for (what, instrument, shape) in cases {
+        let left = |size: f64| worst(&bench, &errors(size), instrument.clone(), shape.clone(), &[]);
+        is_of_second_order(what, left, 5e-4);
+    }
+    let about = Reads::Angular { axis: Some(0), about: [0.0, 0.6, 0.8] };
+    is_of_second_order("angular", |size| worst(&bench, &errors(size), about.clone(), line(0, 20.0, 300.0), &[]), 1e-6);
+}
+
+#[test]
+fn known_centres_radii_and_clocks_leave_nothing_more() {
+    let bench = Bench::of("XYFZ");
+    let off = [0.03, -0.02, 0.0];
+    let settings = [
+        (Setting::Eccentricity { direction: 0 }, off[0]),
+        (Setting::Eccentricity { direction: 1 }, off[1]),
+    ];
+    let left = worst(&bench, "{}", ballbar(off), circle(70.0), &settings);
+    assert!(left < 1e-10, "a centre is taken exactly, {left}");
+    let left = |size: f64| worst(&bench, &errors(size), ballbar(off.map(|part| part * size)), circle(70.0), &settings.map(|(setting, value)| (setting, value * size)));
+    is_of_second_order("eccentric ballbar", left, 5e-4);
+    // The bar is longer than it says: its readings are too small by the offset that it adds.
+    let longer = Reads::Ballbar { center: None, radius: None, eccentricity: [0.0; 3], offset: -0.005 };
+    assert!(worst(&bench, "{}", longer, circle(70.0), &[(Setting::Radius, 0.005)]) < 1e-10);
+    let (angle, travel) = (2e-3_f64, 280.0);
+    let beam = Reads::Linear { axis: 0, direction: [1.0, 0.0, 0.0], cosine: angle };
+    let missed = worst(&bench, "{}", beam.clone(), line(0, 20.0, 300.0), &[]);
+    assert!(missed > 0.3 * travel * angle * angle / 2.0, "{missed}");
+    let left = worst(&bench, "{}", beam, line(0, 20.0, 300.0), &[(Setting::Cosine, angle * angle / 2.0)]);
+    assert!(left < travel * angle.powi(4) / 20.0, "{left}");
+}
+
+#[test]
+fn a_late_clock_shows_the_state_so_much_earlier() {
+    let bench = Bench::of("XYFZ");
+    let calibration = bench.calibration("{EXX: [{lag: {gain: 30 1/s}}]}");
+    for clock in [0.03, -0.02] {
+        let mut scenario = scenario(path(circle(70.0), 30.0, 20.0), position("xy"));
+        scenario.measurement.clock = clock;
+        scenario.measurement.drives = vec![0, 1];
+        let recording = bench.record(&calibration, &scenario);
+        let study = Study::new(bench.equations(), Some(&calibration), &[&recording]);
+        let model = vec![Fitted { effect: Effect::setting(0, Setting::Clock), coefficients: vec![clock] }];
+        let course = Course::new(&study, 0, &model);
+        let residuals = waves::residuals(&study, 0, &model, &course);
+        // Between rows a circle is straight here: its sagitta is (30 mm/s * 0.05 s)^2 / (8 * 70 mm) = 4 um. At the ends there
+        // is nothing to look at.
+        for (channel, residual) in study.scenes[0].channels.iter().zip(&residuals) {
+            let inner = &residual[3..residual.len() - 3];
+            assert!(peak(inner) < 0.005, "{} at {clock}: {}", channel.name, peak(inner));
+        }
+        let without = waves::residuals(&study, 0, &Vec::new(), &Course::new(&study, 0, &[]));
+        assert!(peak(&without[0]) > 0.5 * 30.0 * clock.abs());
+        // The drives have a clock of their own.
+        assert!(study.scenes[0].channels[2].kind == Kind::Drive(0) && peak(&residuals[2]) < 1e-9);
+    }
+}
+
+#[test]
+fn a_rotary_stage_is_read_in_the_sense_of_its_command() {
+    for machine in ["FC", "CF"] {
+        let bench = Bench::of(machine);
+        let calibration = bench.calibration(
+            "{ECC: [{cyclic: {period: 30 deg, amplitude: 40 urad, phase: 0.4 rad}}, {backlash: {lost_motion: 60 urad}}], EAC: 30 urad}",
+        );
+        let instrument = Reads::Position { directions: [false; 3], angles: vec![0] };
+        let recording = bench.record(&calibration, &scenario(path(line(0, 0.0, 2.0), 0.2, 20.0), instrument));
+        let study = Study::new(bench.equations(), Some(&calibration), &[&recording]);
+        assert_eq!(study.scenes[0].channels[0].kind, Kind::Stage(0));
+        let left = waves::residuals(&study, 0, &Vec::new(), &Course::new(&study, 0, &[]));
+        assert!(peak(&left[0]) < 1e-8, "{machine}: {}", peak(&left[0]));
+        let bare = Study::new(bench.equations(), None, &[&recording]);
+        let left = waves::residuals(&bare, 0, &Vec::new(), &Course::new(&bare, 0, &[]));
+        assert!(peak(&left[0]) > 60e-6);
+    }
+}
+
+#[test]
+fn drives_see_what_came_in_on_their_side_only() {
+    let bench = Bench::of("FX");
+    let calibration = bench.calibration("{EXX: [{lag: {gain: 30 1/s}}, {backlash: {lost_motion: 10 um}}]}");
+    let friction = bench.calibration("{EXX: [{lag: {gain: 30 1/s}}]}");
+    let mut scenario = scenario(path(line(0, 0.0, 100.0), 20.0, 20.0), position("x"));
+    scenario.measurement.drives = vec![0];
+    let at_drive = {
+        let mut plant = bench.plant(&calibration);
+        plant.see_at_drive(&bench.compiled.machine, "EXX", "backlash").unwrap();
+        bench.recorded(&plant, &scenario)
+    };
+    let after = bench.record(&calibration, &scenario);
+    let shape = Shape::Backlash { axis: 0, wind_up: 0.0 };
+    for (recording, side, other) in [(&at_drive, Side::Drive, Side::After), (&after, Side::After, Side::Drive)] {
+        let study = Study::new(bench.equations(), Some(&friction), &[recording]);
+        let left = |side: Side| {
+            let effect = Effect { place: Place::Motion { motion: 0, side }, shape: shape.clone() };
+            let model = vec![Fitted { effect, coefficients: vec![0.01] }];
+            let residuals = waves::residuals(&study, 0, &model, &Course::new(&study, 0, &model));
+            residuals.iter().map(|residual| peak(residual)).fold(0.0, f64::max)
+        };
+        assert!(left(side) < 1e-9, "{side:?}");
+        assert!(left(other) > 0.004, "{side:?}");
+    }
+}
+
+#[test]
+fn stretches_make_no_difference() {
+    let bench = Bench::of("XYFZ");
+    let calibration = bench.calibration(&errors(1.0));
+    let mut scenario = scenario(path(circle(70.0), 30.0, 70.0), position("xyz"));
+    scenario.temperatures = vec![warming("spindle", 8.0, 15.0)];
+    let recording = bench.record(&calibration, &scenario);
+    assert!(recording.time.len() > 2 * STRETCH);
+    let study = Study::new(bench.equations(), Some(&calibration), &[&recording]);
+    let wound = Effect {
+        place: Place::Motion { motion: bench.motion("EYX"), side: Side::After },
+        shape: Shape::Backlash { axis: 0, wind_up: 40.0 },
+    };
+    let model = vec![Fitted { effect: wound, coefficients: vec![0.01] }];
+    let course = Course::new(&study, 0, &model);
+    let pieces = waves::residuals(&study, 0, &model, &course);
+    let (mut terms, mut drive_terms) = (Terms::new(&model), Terms::new(&model));
+    let whole = Frame::new(&study, &course, 0..recording.time.len(), &mut terms, &mut drive_terms);
+    for (number, channel) in study.scenes[0].channels.iter().enumerate() {
+        assert!(distance(&whole.residual(&study, 0, channel, &model), &pieces[number]) < 1e-12);
+    }
+}

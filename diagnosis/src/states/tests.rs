@@ -1,0 +1,191 @@
+//! States against closed solutions, fine integration, and the histories of the exact machine.
+
+use super::*;
+use crate::testing::{Bench, commands, distance, path, peak, programmed, scenario, uneven};
+use simulation::path::Shape;
+
+fn states(time: &[f64], command: &[f64], lag: f64, clock: f64) -> States {
+    let recording = programmed(time, &[command.to_vec()]);
+    States::new(&recording, Vec::new(), Vec::new(), &[lag], clock)
+}
+
+fn axis(time: &[f64], command: &[f64], lag: f64) -> AxisStates {
+    states(time, command, lag, 0.0).axes.remove(0)
+}
+
+#[test]
+fn behind_a_loop_a_ramp_is_the_closed_solution() {
+    let (speed, lag) = (12.0, 0.4);
+    let time = uneven(1, 80, 0.1);
+    let command: Vec<f64> = time.iter().map(|t| speed * t).collect();
+    let states = axis(&time, &command, lag);
+    let solution: Vec<f64> = time.iter().map(|t| speed * (t - lag * (1.0 - (-t / lag).exp()))).collect();
+    assert!(distance(&states.position, &solution) < 1e-11);
+    let slope = |t: &f64| speed * ((-t / lag).exp() * (1.0 + t / lag) - 1.0);
+    let slopes: Vec<f64> = time.iter().map(slope).collect();
+    assert!(distance(&states.lag_slope, &slopes) < 1e-3 * speed);
+    let velocities: Vec<f64> = time.iter().map(|t| speed * (1.0 - (-t / lag).exp())).collect();
+    assert!(distance(&states.velocity, &velocities) < 1e-9);
+}
+
+#[test]
+fn behind_a_loop_a_circle_is_what_fine_integration_gives() {
+    let (radius, turn, lag, step) = (80.0, 1.1, 0.05, 0.02);
+    let time: Vec<f64> = (0..600).map(|row| step * f64::from(row)).collect();
+    let command: Vec<f64> = time.iter().map(|t| radius * (turn * t).sin()).collect();
+    let found = axis(&time, &command, lag).position;
+    // Runge and Kutta through the straight pieces between the rows.
+    let mut q = command[0];
+    let mut integrated = vec![q];
+    let parts = 200;
+    for pair in command.windows(2) {
+        let h = step / f64::from(parts);
+        let slope = (pair[1] - pair[0]) / step;
+        for part in 0..parts {
+            let at = |inner: f64, q: f64| (pair[0] + slope * (f64::from(part) * h + inner) - q) / lag;
+            let a = at(0.0, q);
+            let b = at(h / 2.0, q + h / 2.0 * a);
+            let c = at(h / 2.0, q + h / 2.0 * b);
+            let d = at(h, q + h * c);
+            q += h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+        }
+        integrated.push(q);
+    }
+    assert!(distance(&found, &integrated) < 1e-9);
+    // In the end it is the circle itself, smaller by the cosine of the phase that it lags by.
+    let (w, phase) = (turn * lag, (turn * lag).atan());
+    let steady = |t: &f64| radius * phase.cos() * (turn * t - phase).sin();
+    let late: Vec<f64> = time[300..].iter().map(steady).collect();
+    assert!(distance(&found[300..], &late) < 2e-4 * radius, "{w}");
+}
+
+#[test]
+fn missing_commands_are_missing_states_and_bridged_by_straight_lines() {
+    let time: Vec<f64> = (0..60).map(|row| 0.1 * f64::from(row)).collect();
+    let command: Vec<f64> = time.iter().map(|t| 5.0 * t).collect();
+    let whole = axis(&time, &command, 0.3);
+    let mut gappy = command.clone();
+    gappy[20..31].fill(f64::NAN);
+    let states = axis(&time, &gappy, 0.3);
+    assert!(states.position[20..31].iter().all(|q| q.is_nan()));
+    // On a ramp the bridge is the ramp.
+    assert!(distance(&states.position[31..], &whole.position[31..]) < 1e-11);
+    assert!(states.direction.iter().all(|d| *d == 1.0));
+    let still = axis(&time, &vec![f64::NAN; 60], 0.3);
+    assert!(!still.moves && still.position.iter().all(|q| q.is_nan()));
+}
+
+#[test]
+fn the_clock_shows_what_was_so_much_earlier() {
+    let time = uneven(4, 120, 0.1);
+    let command: Vec<f64> = time.iter().map(|t| 7.0 * (0.9 * t).sin() + 3.0).collect();
+    for clock in [0.03, 0.25, -0.04, -0.31] {
+        let shown = &states(&time, &command, 0.0, clock).axes[0];
+        for (row, t) in time.iter().enumerate() {
+            let at = (t - clock).clamp(time[0], time[119]);
+            let next = time.iter().position(|known| *known > at).unwrap_or(119).max(1);
+            let share = (at - time[next - 1]) / (time[next] - time[next - 1]);
+            let expected = command[next - 1] * (1.0 - share) + command[next] * share;
+            assert!((shown.position[row] - expected).abs() < 1e-12, "{clock} {row}");
+        }
+    }
+}
+
+#[test]
+fn directions_are_of_the_last_real_motion() {
+    let nan = f64::NAN;
+    let position = [5.0, 5.0, 4.0, 4.0, 4.0, 3.0, nan, nan, 2.0, 2.0, 2.5, 3.0, 3.0, 2.9, 2.0];
+    let time: Vec<f64> = (0..15).map(f64::from).collect();
+    let found = axis(&time, &position, 0.0);
+    let d = [1.0, 1.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, -1.0, -1.0];
+    assert_eq!(found.direction, d);
+    // The first motion is no reversal.
+    assert!(found.since_reversal[..10].iter().all(|since| since.is_infinite() && *since > 0.0));
+    assert_eq!(found.since_reversal[10..], [0.0, 1.0, 2.0, 0.0, 1.0]);
+    assert!(found.moves);
+}
+
+#[test]
+fn the_rounding_of_a_programmed_position_is_no_motion() {
+    let time: Vec<f64> = (0..40).map(f64::from).collect();
+    // To 100 mm, then a rest that trembles in the last digit.
+    let rest = |row: u32| 100.0 + if row % 2 == 0 { 1e-12 } else { 0.0 };
+    let command: Vec<f64> = (0..40).map(|row| if row < 20 { 5.0 * f64::from(row) } else { rest(row) }).collect();
+    let found = axis(&time, &command, 0.0);
+    assert!(found.direction.iter().all(|d| *d == 1.0));
+    let still = axis(&time, &vec![37.5; 40], 0.0);
+    assert!(!still.moves && still.since_reversal.iter().all(|since| since.is_infinite()));
+}
+
+#[test]
+fn derivatives_of_parabolas_are_exact_at_uneven_times() {
+    let time = uneven(6, 50, 0.3);
+    let values: Vec<f64> = time.iter().map(|t| 2.0 - 3.0 * t + 1.7 * t * t).collect();
+    let expected: Vec<f64> = time.iter().map(|t| -3.0 + 3.4 * t).collect();
+    let found = derivative(&time, &values);
+    assert!(distance(&found[1..49], &expected[1..49]) < 1e-9 * peak(&expected));
+    let mut gappy = values.clone();
+    gappy[17] = f64::NAN;
+    gappy[30..34].fill(f64::NAN);
+    let found = derivative(&time, &gappy);
+    for row in (1..49).filter(|row| !gappy[*row].is_nan()) {
+        assert!((found[row] - expected[row]).abs() < 1e-9 * peak(&expected), "{row}");
+    }
+    assert!(found[17].is_nan() && derivative(&[0.0], &[3.0]) == [0.0] && derivative(&[], &[]).is_empty());
+}
+
+#[test]
+fn states_are_those_of_the_exact_machine() {
+    let bench = Bench::of("XYFZ");
+    let truth = bench.calibration("{EXX: [{lag: {gain: 30 1/s}}], EYY: [{lag: {gain: 45 1/s}}]}");
+    let mut spiral = path(Shape::Spiral { plane: [0, 1], inner: 10.0, outer: 60.0, turns: 2.0 }, 40.0, 50.0);
+    spiral.acceleration = Some(200.0);
+    let plant = bench.plant(&truth);
+    let recording = bench.recorded(&plant, &scenario(spiral, simulation::Instrument::position()));
+    let states = States::new(&recording, Vec::new(), Vec::new(), &[1.0 / 30.0, 1.0 / 45.0, 0.0], 0.0);
+    let mut worst = [0.0_f64; 3];
+    let mut turned = 0;
+    let mut each = |moment: &simulation::Moment<'_>| {
+        let row = moment.state.row;
+        for (number, axis) in states.axes.iter().enumerate() {
+            worst[0] = worst[0].max((axis.position[row] - moment.state.position(number)).abs());
+            assert_eq!(axis.direction[row], moment.state.direction(number), "axis {number} row {row}");
+            let since = moment.state.time - moment.state.reversal(number);
+            if since.is_nan() {
+                assert!(axis.since_reversal[row].is_infinite());
+            } else {
+                worst[1] = worst[1].max((axis.since_reversal[row] - since).abs());
+                turned += 1;
+            }
+            worst[2] = worst[2].max((axis.velocity[row] - moment.state.velocity(number)).abs());
+        }
+    };
+    plant.run(&commands(&recording), &mut each).unwrap();
+    assert!(worst[0] < 1e-9 && worst[1] < 1e-9, "{worst:?}");
+    // One takes the loop's own velocity, the other differences of positions 0.02 s apart.
+    assert!(worst[2] < 3.0, "{worst:?}");
+    assert!(turned > 100);
+    assert!(!states.axes[2].moves);
+}
+
+#[test]
+fn views_are_the_rows_themselves() {
+    let time: Vec<f64> = (0..20).map(f64::from).collect();
+    let command: Vec<f64> = time.iter().map(|t| t * t).collect();
+    let recording = programmed(&time, std::slice::from_ref(&command));
+    let warm: Vec<f64> = time.iter().map(|t| 20.0 + t).collect();
+    let load: Vec<f64> = time.iter().map(|t| 3.0 * t).collect();
+    let states = States::new(&recording, vec![warm.clone()], vec![load.clone()], &[0.0], 0.0);
+    let rows = states.rows(5..9);
+    assert_eq!(rows.len(), 4);
+    assert_eq!((rows.time, rows.axis(0).position), (&time[5..9], &command[5..9]));
+    assert_eq!((rows.temperature(0), rows.load(0)), (&warm[5..9], &load[5..9]));
+}
+
+#[test]
+fn the_drive_stands_in_where_nothing_was_programmed() {
+    let channels = |command: Option<Vec<f64>>, actual: Option<Vec<f64>>| AxisChannels { command, actual, measured: None };
+    assert_eq!(nominal_position(&channels(Some(vec![1.0]), Some(vec![2.0])), 1), [1.0]);
+    assert_eq!(nominal_position(&channels(None, Some(vec![2.0])), 1), [2.0]);
+    assert_eq!(nominal_position(&channels(None, None), 3), [0.0; 3]);
+}

@@ -1,0 +1,271 @@
+//! Terms against the runtime where it has them, and against their formulas where it has not.
+
+use std::f64::consts::TAU;
+
+use abbe_runtime::{Direction, Sample, TermState};
+use model_dsl::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, SeriesInput};
+
+use super::*;
+use crate::states::States;
+use crate::testing::{distance, normals, peak, programmed, uneven};
+
+const ROWS: usize = 240;
+
+/// Two axes that turn several times at uneven times, a sensor and a load.
+fn states() -> States {
+    let time = uneven(41, ROWS, 0.05);
+    let x = time.iter().map(|t| 60.0 * (0.8 * t).sin() + 25.0).collect();
+    let y = time.iter().map(|t| 30.0 * (1.7 * t + 1.0).cos() - 4.0).collect();
+    let recording = programmed(&time, &[x, y]);
+    let warm = time.iter().map(|t| 21.0 + 3.0 * (1.0 - (-t / 4.0).exp())).collect();
+    let load = time.iter().map(|t| 100.0 * (3.0 * t).sin()).collect();
+    States::new(&recording, vec![warm], vec![load], &[0.0, 0.0], 0.0)
+}
+
+fn value(term: &CalibratedTerm, states: &States) -> Vec<f64> {
+    let (shape, coefficients) = known(term, |name| (name == "force").then_some(0)).unwrap();
+    assert_eq!(shape.name(), term.name());
+    assert_eq!(shape.columns(), coefficients.len());
+    let rows = states.rows(0..states.time.len());
+    let mut sum = vec![0.0; rows.len()];
+    shape.add(&coefficients, &rows, &mut Memory::default(), &mut sum);
+    // Columns times coefficients say the same; but a loop is in the states, and its column is how they change.
+    if !matches!(shape, Shape::Lag { .. }) {
+        let mut columns = vec![vec![f64::NAN; 3]; shape.columns()];
+        shape.fill(&rows, &mut Memory::default(), &mut columns);
+        let by_columns = (0..rows.len()).map(|row| columns.iter().zip(&coefficients).map(|(c, k)| c[row] * k).sum());
+        let by_columns: Vec<f64> = by_columns.collect();
+        assert!(distance(&by_columns, &sum) <= 1e-12 * peak(&sum).max(1e-3), "{term:?}");
+    }
+    sum
+}
+
+fn by_runtime(term: &CalibratedTerm, states: &States) -> Vec<f64> {
+    let term = term.runtime().unwrap();
+    let mut memory = TermState::default();
+    let mut before = states.time[0];
+    let row = |row: usize| {
+        let position: Vec<f64> = states.axes.iter().map(|axis| axis.position[row]).collect();
+        let velocity: Vec<f64> = states.axes.iter().map(|axis| axis.velocity[row]).collect();
+        let way = |axis: &crate::states::AxisStates| match axis.direction[row] {
+            d if d > 0.0 => Direction::Positive,
+            _ => Direction::Negative,
+        };
+        let direction: Vec<Direction> = states.axes.iter().map(way).collect();
+        let temperature: Vec<f64> = states.temperatures.iter().map(|sensor| sensor[row]).collect();
+        let sample = Sample {
+            position: &position,
+            travel: &[],
+            direction: &direction,
+            velocity: &velocity,
+            temperature: &temperature,
+            time_step: states.time[row] - before,
+        };
+        before = states.time[row];
+        term.advance(&sample, &mut memory);
+        term.value(&sample, &memory)
+    };
+    (0..states.time.len()).map(row).collect()
+}
+
+fn table(nodes: CurveNodes, values: CurveValues) -> CalibratedTerm {
+    CalibratedTerm::Table { axis: 0, curve: Curve { nodes, values } }
+}
+
+#[test]
+fn terms_are_those_of_the_runtime() {
+    let at = || CurveNodes::At(vec![-20.0, -3.0, 30.0, 41.0]);
+    let directed = || CurveValues::Directed { forward: vec![0.1, 0.3, -0.2, 0.05], reverse: vec![0.0, -0.1, 0.2, 0.6] };
+    let terms = [
+        CalibratedTerm::Constant { value: 0.3 },
+        CalibratedTerm::Polynomial { input: SeriesInput::Axis(1), coefficients: vec![0.2, -0.01, 3e-4, 1e-6] },
+        CalibratedTerm::Polynomial { input: SeriesInput::Sensor(0), coefficients: vec![-3.0, 0.2, 0.004] },
+        table(at(), CurveValues::Both(vec![0.1, 0.3, -0.2, 0.05])),
+        table(at(), directed()),
+        table(CurveNodes::Uniform { start: -10.0, step: 15.0 }, directed()),
+        table(CurveNodes::Uniform { start: 50.0, step: -25.0 }, directed()),
+        table(CurveNodes::Uniform { start: 50.0, step: -25.0 }, CurveValues::Both(vec![0.4, 0.1, -0.7])),
+        table(CurveNodes::At(vec![7.0]), CurveValues::Both(vec![0.4])),
+        CalibratedTerm::Backlash { axis: 0, lost_motion: 0.02, wind_up: 0.0 },
+        CalibratedTerm::Backlash { axis: 1, lost_motion: 0.02, wind_up: 9.0 },
+        CalibratedTerm::Backlash { axis: 1, lost_motion: -0.02, wind_up: 500.0 },
+        CalibratedTerm::Cyclic { axis: 0, period: 8.0, amplitude: 0.004, phase: 2.0 },
+        CalibratedTerm::Expansion { axis: 1, sensor: 0, coefficient: 1.1e-5, reference: 20.0 },
+        CalibratedTerm::Growth { sensor: 0, coefficient: 0.01, reference: 20.0, time_constant: 0.0 },
+        CalibratedTerm::Coupling { axis: 1, coefficients: vec![2e-4, -3e-6] },
+    ];
+    let states = states();
+    for term in &terms {
+        let expected = by_runtime(term, &states);
+        assert!(peak(&expected) > 0.0);
+        assert!(distance(&value(term, &states), &expected) <= 1e-12 * peak(&expected).max(1e-3), "{term:?}");
+    }
+}
+
+#[test]
+fn a_filtered_temperature_is_that_of_the_runtime_in_fine_steps() {
+    let term = CalibratedTerm::Growth { sensor: 0, coefficient: 0.01, reference: 20.0, time_constant: 2.0 };
+    let apart = |step: f64| {
+        let time: Vec<f64> = (0..).map(|row| step * f64::from(row)).take_while(|t| *t < 12.0).collect();
+        let recording = programmed(&time, &[time.clone()]);
+        let warm = time.iter().map(|t| 21.0 + t.sin()).collect();
+        let states = States::new(&recording, vec![warm], Vec::new(), &[0.0], 0.0);
+        distance(&value(&term, &states), &by_runtime(&term, &states))
+    };
+    // The runtime holds the temperature through a step: the difference is of the order of the step.
+    let (coarse, fine) = (apart(0.02), apart(0.005));
+    assert!(coarse < 0.01 * 0.02 && (3.5..4.5).contains(&(coarse / fine)), "{coarse} {fine}");
+}
+
+#[test]
+fn a_filtered_temperature_that_rises_evenly_is_the_closed_solution() {
+    let (rate, lag) = (0.3, 2.5);
+    let time = uneven(43, 150, 0.1);
+    let recording = programmed(&time, &[time.clone()]);
+    let mut warm: Vec<f64> = time.iter().map(|t| 22.0 + rate * t).collect();
+    let behind = |t: &f64| 22.0 + rate * (t - lag * (1.0 - (-t / lag).exp())) - 20.0;
+    let expected: Vec<f64> = time.iter().map(behind).collect();
+    let term = CalibratedTerm::Growth { sensor: 0, coefficient: 1.0, reference: 20.0, time_constant: lag };
+    let found = value(&term, &States::new(&recording, vec![warm.clone()], Vec::new(), &[0.0], 0.0));
+    assert!(distance(&found, &expected) < 1e-10);
+    // A gap is bridged: the filter runs on through it.
+    warm[40..70].fill(f64::NAN);
+    let found = value(&term, &States::new(&recording, vec![warm], Vec::new(), &[0.0], 0.0));
+    assert!(found[40..70].iter().all(|value| value.is_nan()));
+    assert!(distance(&found[70..], &expected[70..]) < 1e-10);
+}
+
+#[test]
+fn terms_that_no_controller_has_are_their_formulas() {
+    let states = states();
+    let axis = &states.axes[0];
+    let check = |term: CalibratedTerm, formula: &dyn Fn(usize, f64) -> f64| {
+        let expected: Vec<f64> = states.time.iter().enumerate().map(|(row, t)| formula(row, *t)).collect();
+        assert!(peak(&expected) > 0.0);
+        assert!(distance(&value(&term, &states), &expected) <= 1e-12 * peak(&expected), "{term:?}");
+    };
+    check(CalibratedTerm::Drift { amplitude: 0.2, time_constant: 3.0 }, &|_, t| 0.2 * (1.0 - (-t / 3.0).exp()));
+    check(CalibratedTerm::Vibration { frequency: 1.3, amplitude: 0.2, phase: -1.1 }, &|_, t| {
+        0.2 * (TAU * 1.3 * t - 1.1).sin()
+    });
+    check(CalibratedTerm::Compliance { load: "force".to_owned(), coefficient: -2e-4 }, &|row, _| {
+        -2e-4 * states.loads[0][row]
+    });
+    check(CalibratedTerm::Acceleration { axis: 0, gain: 400.0 }, &|row, _| -axis.acceleration[row] / 400.0);
+    // From the positions alone: where x turned last.
+    let turned = |row: usize| {
+        let turns = |row: usize| (axis.position[row] - axis.position[row - 1]) * (axis.position[row - 1] - axis.position[row - 2]) < 0.0;
+        (2..=row).rev().find(|row| turns(*row))
+    };
+    check(CalibratedTerm::ReversalSpike { axis: 0, height: 0.01, decay: 0.4 }, &|row, t| {
+        turned(row).map_or(0.0, |at| {
+            -0.01 * (axis.position[at] - axis.position[at - 1]).signum() * (-(t - states.time[at]) / 0.4).exp()
+        })
+    });
+    let missing = CalibratedTerm::Compliance { load: "current".to_owned(), coefficient: 1.0 };
+    assert!(known(&missing, |name| (name == "force").then_some(0)).is_none());
+}
+
+#[test]
+fn a_lag_is_a_time_constant_and_acts_through_the_states() {
+    let states = states();
+    let term = CalibratedTerm::Lag { axis: 0, gain: 40.0 };
+    assert!(value(&term, &states).iter().all(|value| *value == 0.0));
+    let (shape, coefficients) = known(&term, |_| None).unwrap();
+    assert_eq!(coefficients, [1.0 / 40.0]);
+    let mut columns = [Vec::new()];
+    let rows = states.rows(0..ROWS);
+    shape.fill(&rows, &mut Memory::default(), &mut columns);
+    let column: Vec<f64> = columns[0].iter().map(|slope| slope / 40.0).collect();
+    // With no loop yet, the first of it is the runtime's -v/K.
+    assert!(distance(&column, &by_runtime(&term, &states)) < 1e-12);
+}
+
+#[test]
+fn memory_goes_on_from_stretch_to_stretch() {
+    let states = states();
+    let shapes = [
+        Shape::Backlash { axis: 1, wind_up: 12.0 },
+        Shape::Growth { sensor: 0, reference: 20.0, time_constant: 1.5 },
+        Shape::ReversalSpike { axis: 0, decay: 0.2 },
+        Shape::Table { axis: 0, nodes: vec![-10.0, 20.0, 60.0], directed: true },
+    ];
+    for shape in shapes {
+        let fill = |pieces: &[std::ops::Range<usize>]| {
+            let mut memory = Memory::default();
+            let mut whole = vec![Vec::new(); shape.columns()];
+            for rows in pieces {
+                let mut columns = vec![Vec::new(); shape.columns()];
+                shape.fill(&states.rows(rows.clone()), &mut memory, &mut columns);
+                whole.iter_mut().zip(columns).for_each(|(whole, piece)| whole.extend(piece));
+            }
+            whole
+        };
+        assert_eq!(fill(&[0..17, 17..18, 18..130, 130..ROWS]), fill(std::slice::from_ref(&(0..ROWS))), "{shape:?}");
+    }
+}
+
+#[test]
+fn a_missing_position_is_a_missing_term() {
+    let time: Vec<f64> = (0..6).map(f64::from).collect();
+    let recording = programmed(&time, &[vec![0.0, 1.0, f64::NAN, 3.0, 2.0, 1.0]]);
+    let states = States::new(&recording, Vec::new(), Vec::new(), &[0.0], 0.0);
+    let terms = [
+        CalibratedTerm::Polynomial { input: SeriesInput::Axis(0), coefficients: vec![1.0, 2.0] },
+        table(CurveNodes::At(vec![0.0, 3.0]), CurveValues::Both(vec![0.0, 1.0])),
+        CalibratedTerm::Cyclic { axis: 0, period: 8.0, amplitude: 1.0, phase: 0.3 },
+    ];
+    for term in &terms {
+        let missing: Vec<bool> = value(term, &states).iter().map(|value| value.is_nan()).collect();
+        assert_eq!(missing, [false, false, true, false, false, false], "{term:?}");
+    }
+}
+
+#[test]
+fn polynomials_of_the_scaled_position_become_those_of_the_position() {
+    let shapes = [
+        Shape::Polynomial { axis: 0, degree: 3, center: 140.0, scale: 90.0 },
+        Shape::SensorPolynomial { sensor: 0, degree: 2, center: 23.0, scale: 1.7 },
+        Shape::Coupling { axis: 0, degree: 2, scale: 250.0 },
+        Shape::Coupling { axis: 0, degree: 1, scale: -3.0 },
+        Shape::Polynomial { axis: 0, degree: 0, center: 1.0, scale: 2.0 },
+    ];
+    for shape in shapes {
+        let coefficients = normals(45, shape.columns());
+        let (first, center, scale) = match shape {
+            Shape::Polynomial { center, scale, .. } | Shape::SensorPolynomial { center, scale, .. } => (0, center, scale),
+            Shape::Coupling { scale, .. } => (1, 0.0, scale),
+            _ => unreachable!(),
+        };
+        let matrix = polynomial_in_position(&shape);
+        let powers: Vec<f64> =
+            matrix.iter().map(|row| row.iter().zip(&coefficients).map(|(a, b)| a * b).sum()).collect();
+        for q in [-30.0, 0.0, 17.0, 140.0, 400.0] {
+            let x: f64 = (q - center) / scale;
+            let scaled = (first..).zip(&coefficients).map(|(power, c)| c * x.powi(power)).sum::<f64>();
+            let plain = (0..).zip(&powers).map(|(power, c)| c * f64::powi(q, power)).sum::<f64>();
+            assert!((scaled - plain).abs() < 1e-9 * scaled.abs().max(1.0), "{shape:?} at {q}");
+        }
+    }
+    assert!(polynomial_in_position(&Shape::Constant).is_empty());
+}
+
+#[test]
+fn the_nonlinear_parameter_is_read_and_set() {
+    let shapes = [
+        Shape::Backlash { axis: 0, wind_up: 2.0 },
+        Shape::ReversalSpike { axis: 0, decay: 2.0 },
+        Shape::Cyclic { axis: 0, period: 2.0 },
+        Shape::Growth { sensor: 0, reference: 20.0, time_constant: 2.0 },
+        Shape::Drift { time_constant: 2.0 },
+        Shape::Vibration { frequency: 2.0 },
+    ];
+    for shape in shapes {
+        assert_eq!(shape.nonlinear().unwrap().value, 2.0);
+        let other = shape.with_nonlinear(3.5);
+        assert_eq!(other.nonlinear().unwrap().value, 3.5);
+        assert_eq!(other.with_nonlinear(2.0), shape);
+    }
+    let plain = [Shape::Constant, Shape::Lag { axis: 0 }, Shape::Backlash { axis: 0, wind_up: 0.0 }];
+    assert!(plain.iter().all(|shape| shape.nonlinear().is_none() && shape.with_nonlinear(3.0) == *shape));
+}

@@ -1,0 +1,434 @@
+//! `abbe diagnose` as its users meet it: the shipped recording, what is written back, and how it ends; and `abbe simulate`
+//! in place of a recording.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use model_dsl::diagnostic::Diagnostics;
+use model_dsl::source::SourceFile;
+use model_dsl::yaml::{self, Node};
+use nalgebra::{DMatrix, DVector};
+use serde_json::Value;
+
+use crate::cli::{Run, abbe, column};
+use crate::shipped::root;
+
+/// The recording that the repository ships.
+const SHIPPED: &str = "recordings/postech-ballbar";
+
+/// The calibration that it names.
+const KNOWN: &str = "calibrations/postech-mill.yaml";
+
+/// A folder of a test's own, empty.
+fn folder(test: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("diagnose").join(test);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn write(folder: &Path, name: &str, text: &str) -> String {
+    let path = folder.join(name);
+    fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+fn text(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+fn done(run: Run) -> Run {
+    assert_eq!(run.status, 0, "{}", run.err);
+    run
+}
+
+fn json(run: &Run) -> Value {
+    serde_json::from_str(&run.out).unwrap_or_else(|error| panic!("{error}: {}", run.out))
+}
+
+/// Simulates into a folder and gives the two files.
+fn simulated(arguments: &[&str], output: &Path) -> (String, String) {
+    done(abbe(&[&["simulate"], arguments, &["--output", output.to_str().unwrap()]].concat(), ""));
+    (text(&output.join("recording.yaml")), text(&output.join("data.csv")))
+}
+
+mod shipped_recording {
+    use super::*;
+
+    fn file(name: &str) -> String {
+        format!("{SHIPPED}/{name}")
+    }
+
+    #[test]
+    fn it_is_made_again_byte_for_byte() {
+        let (recording, data) = simulated(
+            &[&file("true.yaml"), &file("path.yaml"), "--known", KNOWN],
+            &folder("made-again").join("out"),
+        );
+        assert_eq!(data, text(&root().join(file("data.csv"))));
+        // Only the way to the calibration depends on where the recording lies.
+        let but_calibration = |text: &str| -> Vec<String> {
+            text.lines().filter(|line| !line.starts_with("calibration:")).map(str::to_owned).collect()
+        };
+        let kept = text(&root().join(file("recording.yaml")));
+        assert_eq!(but_calibration(&recording), but_calibration(&kept));
+        assert!(kept.contains(&format!("calibration: ../../{KNOWN}\n")), "{kept}");
+    }
+
+    /// The machine that was recorded is the published one with what is marked as concealed, and nothing else.
+    #[test]
+    fn it_conceals_what_is_marked_and_nothing_else() {
+        let published = text(&root().join(KNOWN));
+        let published = &published[published.find("calibration: 1").unwrap()..];
+        let full = text(&root().join(file("true.yaml")));
+        let full = &full[full.find("calibration: 1").unwrap()..];
+        let own = |text: &str| -> Vec<String> {
+            let lines =
+                text.lines().filter(|line| !line.starts_with("source:") && !line.ends_with("# concealed"));
+            lines.map(str::to_owned).collect()
+        };
+        assert_eq!(own(full), own(published));
+        assert_eq!(full.matches("# concealed").count(), 2);
+    }
+
+    #[test]
+    fn its_effects_are_found_and_written_back() {
+        let folder = folder("written-back");
+        let improved = folder.join("improved.yaml");
+        let improved = improved.to_str().unwrap();
+        let recording = file("recording.yaml");
+        let arguments =
+            ["diagnose", &recording, "--format", "json", "--quiet", "--write-calibration", improved];
+        let run = done(abbe(&arguments, ""));
+        let diagnosis = json(&run);
+        assert_eq!(diagnosis["schema"], "abbe-diagnosis/1");
+        let truth = truth();
+        assert_eq!(diagnosis["verdict"], truth.get("verdict").and_then(Node::text).unwrap());
+        for key in ["findings", "instrument"] {
+            same_effects(&diagnosis[key], truth.get(key).unwrap());
+        }
+        // The improved calibration reproduces what is said to be left, and a controller can use it.
+        let (_, predicted) = simulated(&[improved, &recording], &folder.join("predicted"));
+        let measured = text(&root().join(file("data.csv")));
+        let left = left_of_a_circle(&measured, &predicted, [275.0, 140.0]);
+        let after = diagnosis["after"]["rms"].as_f64().unwrap();
+        assert!((left / after - 1.0).abs() < 0.02, "{left} is left, {after} is said to be");
+        let (_, predicted) = simulated(&[KNOWN, &recording], &folder.join("known"));
+        let left = left_of_a_circle(&measured, &predicted, [275.0, 140.0]);
+        let before = diagnosis["before"]["rms"].as_f64().unwrap();
+        assert!((left / before - 1.0).abs() < 0.02, "{left} was left, {before} is said to have been");
+        let points = text(&root().join("calibrations/postech-points.csv"));
+        let compensated = done(abbe(&["compensate", improved], &points));
+        let published = done(abbe(&["compensate", KNOWN], &points));
+        // X runs forward: it stands behind by another half of the lost motion that was found.
+        let found = diagnosis["findings"][0]["parameters"]["lost_motion"]["value"].as_f64().unwrap();
+        let [new, old] = [compensated, published].map(|run| column(&run.out, "error_x"));
+        for (new, old) in new.iter().zip(&old) {
+            assert!((old - new - found / 2.0).abs() < 2e-5, "{new} {old} {found}");
+        }
+    }
+
+    fn truth() -> Node {
+        let source = SourceFile::new("truth.yaml", text(&root().join(file("truth.yaml"))));
+        yaml::read(&source, &mut Diagnostics::new()).unwrap()
+    }
+
+    /// The same effects, in any order, and every true number inside the interval of the one that was found.
+    fn same_effects(found: &Value, truth: &Node) {
+        let found = found.as_array().unwrap();
+        let truth = truth.items().unwrap();
+        assert_eq!(found.len(), truth.len(), "{found:?}");
+        for effect in truth {
+            let word = |key: &str| effect.get(key).and_then(Node::text);
+            let same = |own: &&Value| {
+                own["term"].as_str() == word("term") && own["motion"].as_str() == word("motion")
+            };
+            let own = found.iter().find(same).unwrap_or_else(|| panic!("{:?} is not found", word("term")));
+            for (name, value) in effect.get("parameters").unwrap().entries().unwrap() {
+                let own = &own["parameters"][name.value.as_str()];
+                let low = own["ci95"][0].as_f64().unwrap();
+                let high = own["ci95"][1].as_f64().unwrap();
+                let value = internal(value.text().unwrap());
+                assert!(low <= value && value <= high, "{}: {value} is not in {low} to {high}", name.value);
+            }
+        }
+    }
+
+    /// A quantity of the truth in mm or rad.
+    fn internal(text: &str) -> f64 {
+        let (number, unit) = text.split_once(' ').unwrap();
+        let factor = match unit {
+            "mm" => 1.0,
+            "um" => 1e-3,
+            "deg" => 1_f64.to_radians(),
+            _ => panic!("the unit {unit}"),
+        };
+        number.parse::<f64>().unwrap() * factor
+    }
+
+    /// What a prediction leaves of a ballbar's readings, root mean square, a centre and a radius fitted.
+    fn left_of_a_circle(measured: &str, predicted: &str, center: [f64; 2]) -> f64 {
+        let left = DVector::from_vec(column(measured, "dev")) - DVector::from_vec(column(predicted, "dev"));
+        let [x, y] = [("x_cmd", center[0]), ("y_cmd", center[1])]
+            .map(|(name, center)| column(measured, name).iter().map(|at| at - center).collect::<Vec<_>>());
+        let design = DMatrix::from_fn(left.len(), 3, |row, column| match column {
+            0 => 1.0,
+            1 => x[row],
+            _ => y[row],
+        });
+        let fitted = design.clone().svd(true, true).solve(&left, 1e-12).unwrap();
+        ((left - design * fitted).norm_squared() / x.len() as f64).sqrt()
+    }
+}
+
+/// A stage with a backlash that nobody knows, and a recording of it: small, so that a diagnosis takes a moment.
+mod stage {
+    use super::*;
+
+    pub(super) const FULL: &str =
+        "calibration: 1\nmachine: FX\nerrors: {EXX: [{backlash: {lost_motion: 8 um}}]}\n";
+    pub(super) const KNOWN: &str = "calibration: 1\nmachine: FX\nerrors: {}\n";
+    const PATH: &str = "path: 1\nline: {axis: X, from: 0 mm, to: 50 mm}\nfeed: 10 mm/s\nrate: 10 Hz\nruns: 3\ninstrument: {position: [x]}\nnoise: {white: 0.2 um}\nseed: 3\n";
+
+    /// The folder with the recording, its data and the known calibration.
+    pub(super) fn recorded(test: &str) -> PathBuf {
+        let folder = folder(test);
+        let [full, known, path] = [("full.yaml", FULL), ("known.yaml", KNOWN), ("path.yaml", PATH)]
+            .map(|(name, text)| write(&folder, name, text));
+        simulated(&[&full, &path, "--known", &known], &folder);
+        folder
+    }
+}
+
+fn names_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+fn joined(folder: &Path, name: &str) -> String {
+    folder.join(name).to_str().unwrap().to_owned()
+}
+
+#[test]
+fn every_format_says_the_same_each_time() {
+    let folder = stage::recorded("formats");
+    let recording = joined(&folder, "recording.yaml");
+    let said = |format: &str| {
+        let run = done(abbe(&["diagnose", &recording, "--format", format], ""));
+        assert_eq!(run.err, "", "nobody watches: no progress");
+        let again = done(abbe(&["diagnose", &recording, "--format", format, "--quiet"], ""));
+        assert_eq!((&again.out, again.err.as_str()), (&run.out, ""));
+        run.out
+    };
+    let value: Value = serde_json::from_str(&said("json")).unwrap();
+    assert_eq!(value["verdict"], "left-out-physics");
+    assert_eq!(value["findings"][0]["motion"], "EXX");
+    assert_eq!(value["findings"][0]["term"], "backlash");
+    let plain = said("text");
+    assert!(plain.starts_with("Diagnosis of FX") && plain.contains("Backlash in EXX"), "{plain}");
+    let html = said("html");
+    assert!(html.starts_with("<!DOCTYPE html>") && html.trim_end().ends_with("</html>"), "{html}");
+    assert!(!html.contains("http://") && !html.contains("src="), "the page fetches nothing");
+    assert_eq!(done(abbe(&["diagnose", &recording], "")).out, plain, "text is the default");
+}
+
+#[test]
+fn what_a_diagnosis_is_read_from_is_never_written_over() {
+    let folder = stage::recorded("refused");
+    let recording = joined(&folder, "recording.yaml");
+    let before = names_in(&folder);
+    for name in ["recording.yaml", "data.csv", "known.yaml"] {
+        let target = folder.join(name);
+        let kept = text(&target);
+        let run = abbe(&["diagnose", &recording, "--write-calibration", target.to_str().unwrap()], "");
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{name}");
+        assert!(run.err.contains("one of the files that the diagnosis is read from"), "{}", run.err);
+        assert_eq!(text(&target), kept, "{name}");
+    }
+    for target in [joined(&folder, "no/such/folder.yaml"), folder.to_str().unwrap().to_owned()] {
+        let run = abbe(&["diagnose", &recording, "--write-calibration", &target], "");
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{target}");
+    }
+    assert_eq!(names_in(&folder), before);
+}
+
+#[test]
+fn a_calibration_is_written_whole_and_replaces_what_was_there() {
+    let folder = stage::recorded("replaced");
+    let recording = joined(&folder, "recording.yaml");
+    let target = joined(&folder, "improved.yaml");
+    fs::write(&target, "something else\n").unwrap();
+    let mut before = names_in(&folder);
+    done(abbe(&["diagnose", &recording, "--write-calibration", &target], ""));
+    let improved = text(Path::new(&target));
+    assert!(improved.contains("backlash") && !improved.contains("something else"), "{improved}");
+    assert_eq!(names_in(&folder), before, "nothing is left beside it");
+    // With what it found as known, nothing is left out; what was known is written again, with a warning.
+    let next = text(Path::new(&recording)).replace("known.yaml", "improved.yaml");
+    let next = write(&folder, "next.yaml", &next);
+    let again = joined(&folder, "again.yaml");
+    let run = done(abbe(&["diagnose", &next, "--format", "json", "--write-calibration", &again], ""));
+    assert_eq!(json(&run)["verdict"], "adequate");
+    assert!(run.err.contains("again.yaml"), "{}", run.err);
+    before.extend(["again.yaml".to_owned(), "next.yaml".to_owned()]);
+    before.sort();
+    assert_eq!(names_in(&folder), before);
+    let errors = |text: &str| text[text.find("errors:").unwrap()..].to_owned();
+    assert_eq!(errors(&text(Path::new(&again))), errors(&improved));
+}
+
+#[test]
+fn data_that_cannot_be_read_end_with_status_one_and_a_wrong_file_with_two() {
+    let folder = stage::recorded("statuses");
+    let recording = text(&folder.join("recording.yaml"));
+    let data = text(&folder.join("data.csv"));
+    let header = data.lines().next().unwrap();
+    write(&folder, "broken.csv", &data.replacen("\n0.2,1,", "\n0.2,1,abc", 1));
+    write(&folder, "empty.csv", "");
+    write(&folder, "gaps.csv", &format!("{header}\n0,1,0,\n1,1,5,\n2,1,10,\n"));
+    let target = joined(&folder, "improved.yaml");
+    let with = |name: &str, old: &str, new: &str| {
+        assert!(recording.contains(old), "{old}");
+        write(&folder, name, &recording.replace(old, new))
+    };
+    let cases = [
+        (with("a.yaml", "data.csv", "broken.csv"), 1, "broken.csv:4:7"),
+        (with("b.yaml", "data.csv", "nowhere.csv"), 1, "nowhere.csv"),
+        (with("c.yaml", "data.csv", "empty.csv"), 1, "empty.csv"),
+        (with("d.yaml", "data.csv", "gaps.csv"), 1, "is empty"),
+        (with("e.yaml", "machine: FX", "machine: nowhere.yaml"), 2, "E0622"),
+        (with("f.yaml", "known.yaml", "nowhere.yaml"), 2, "E0623"),
+        (with("g.yaml", "measured.x", "measured.q"), 2, "E0606"),
+        (joined(&folder, "known.yaml"), 2, "E0602"),
+        (joined(&folder, "nowhere.yaml"), 2, "nowhere.yaml"),
+    ];
+    for (file, status, words) in &cases {
+        let run = abbe(&["diagnose", file, "--write-calibration", &target, "--format", "json"], "");
+        assert_eq!((run.status, run.out.as_str()), (*status, ""), "{file}: {}", run.err);
+        assert!(run.err.contains(words), "{file}: {}", run.err);
+        assert!(!Path::new(&target).exists(), "{file}");
+    }
+    for arguments in [vec!["diagnose"], vec!["diagnose", "x.yaml", "--format", "yaml"]] {
+        assert_eq!(abbe(&arguments, "").status, 2);
+    }
+    // One good recording does not make up for a bad one.
+    let good = joined(&folder, "recording.yaml");
+    assert_eq!(abbe(&["diagnose", &good, &cases[0].0], "").status, 1);
+    assert_eq!(abbe(&["diagnose", &good, "--holdout", &cases[4].0], "").status, 2);
+}
+
+#[test]
+fn recordings_of_two_machines_are_refused() {
+    let folder = stage::recorded("two-machines");
+    let other = text(&folder.join("recording.yaml")).replace("calibration: known.yaml\n", "");
+    let other = write(&folder, "other.yaml", &other.replace("machine: FX", "machine: XF"));
+    let run = abbe(&["diagnose", &joined(&folder, "recording.yaml"), &other], "");
+    assert_eq!((run.status, run.out.as_str()), (2, ""));
+    assert!(run.err.contains("E0625"), "{}", run.err);
+}
+
+/// `abbe simulate CALIBRATION RECORDING`.
+mod replay {
+    use super::*;
+
+    const MACHINE: &str = "calibration: 1\nmachine: FY\nerrors: {}\n";
+    const MILL: &str = "calibration: 1\nmachine: xyfz-mill\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}\nerrors:\n  EXX: [{backlash: {lost_motion: 8 um}}, {expansion: {sensor: scale, coefficient: 12 um/m/K, reference: 20 degC}}]\n  EYY: [{lag: {gain: 30 1/s}}, {cyclic: {period: 10 mm, amplitude: 2 um, phase: 20 deg}}]\n  EBX: [{polynomial: {per: mm, unit: arcsec, coefficients: [0, 0.05]}}]\n  EZZ: [{compliance: {load: cutting, coefficient: 0.02 um/N}}]\n  EC0Y: 40 urad\n";
+    const SURROUNDINGS: &str = "temperatures: {scale: {start: 20 degC, steps: [{at: 0 s, to: 30 degC}], time_constant: 20 s}}\nloads: {cutting: {unit: N, base: 20 N, pulses: {height: 200 N, period: 3 s, width: 1 s, start: 0 s}}}\n";
+
+    /// A path whose readings have no noise is its own replay: the same commands, the same machine, the same instrument.
+    #[test]
+    fn a_recording_without_noise_is_its_own_replay() {
+        let at = "path: 1\ntitle: all\nat: {X: 200 mm, Y: 140 mm, Z: -50 mm}\n";
+        let circle = "circle: {plane: XY, radius: 60 mm, directions: [ccw, cw]}\n";
+        let line = "line: {axis: X, from: 0 mm, to: 90 mm}\n";
+        let sides = "line: {from: {X: 0 mm, Y: 0 mm}, to: {X: 90 mm, Y: 60 mm}}\n";
+        for (number, (shape, instrument)) in [
+            (circle, "position"),
+            (circle, "{position: [x, y]}"),
+            (circle, "{ballbar: {}}"),
+            (line, "{linear: {axis: X}}"),
+            (line, "{straightness: {axis: X, direction: Y}}"),
+            (line, "{angular: {axis: X, direction: B}}"),
+            (sides, "{probe: {normal: [0.6, 0, 0.8]}}"),
+            (line, "position\ndrive: {axes: [X, Y]}"),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let folder = folder(&format!("own-{number}"));
+            let calibration = write(&folder, "mill.yaml", MILL);
+            let path = format!(
+                "{at}{shape}feed: 2000 mm/min\nrate: 20 Hz\nruns: 2\nholdout: {{runs: [2]}}\ninstrument: {instrument}\n{SURROUNDINGS}"
+            );
+            let path = write(&folder, "path.yaml", &path);
+            let (head, first) = simulated(&[&calibration, &path], &folder.join("first"));
+            let recording = joined(&folder, "first/recording.yaml");
+            let (head_again, again) = simulated(&[&calibration, &recording], &folder.join("again"));
+            assert_eq!(head, head_again, "{instrument}");
+            assert_eq!(first.lines().next(), again.lines().next(), "{instrument}");
+            assert_eq!(first.lines().count(), again.lines().count(), "{instrument}");
+            for (row, (first, again)) in first.lines().zip(again.lines()).enumerate().skip(1) {
+                for (first, again) in first.split(',').zip(again.split(',')) {
+                    let [first, again] = [first, again].map(|cell| cell.parse::<f64>().unwrap());
+                    // Commands in the table are rounded to a picometre; rates of change feel it a little more.
+                    assert!((first - again).abs() < 2e-8, "{instrument}, row {row}: {first} {again}");
+                }
+            }
+        }
+    }
+
+    /// What is known leaves the concealed effect, half the lost motion to either side; the truth leaves the noise alone.
+    #[test]
+    fn what_a_calibration_leaves_is_the_difference() {
+        let folder = stage::recorded("difference");
+        let recording = joined(&folder, "recording.yaml");
+        let measured = column(&text(&folder.join("data.csv")), "x_meas");
+        let left = |calibration: &str| {
+            let (_, data) = simulated(
+                &[&joined(&folder, calibration), &recording],
+                &folder.join(calibration.replace(".yaml", "")),
+            );
+            let left = measured.iter().zip(column(&data, "x_meas")).map(|(own, model)| (own - model).powi(2));
+            (left.sum::<f64>() / measured.len() as f64).sqrt()
+        };
+        assert!((left("known.yaml") / 0.004 - 1.0).abs() < 0.02);
+        assert!((left("full.yaml") / 0.0002 - 1.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn what_cannot_be_replayed_ends_with_status_two() {
+        let folder = stage::recorded("refusals");
+        let recording = joined(&folder, "recording.yaml");
+        let full = joined(&folder, "full.yaml");
+        let other = write(&folder, "other.yaml", MACHINE);
+        let warm = "calibration: 1\nmachine: FX\nerrors: {EXX: [{growth: {sensor: T1, coefficient: 1 um/K, reference: 20 degC}}]}\n";
+        let warm = write(&folder, "warm.yaml", warm);
+        write(&folder, "ring.csv", "t,x,y,d,n,m\n0,1,2,0,1,0\n1,2,3,0,0,1\n");
+        let ring = "recording: 1\nmachine: FXY\ninstrument: probe\ndata: ring.csv\nchannels:\n  time: {column: t, unit: s}\n  command.x: {column: x, unit: mm}\n  command.y: {column: y, unit: mm}\n  deviation: {column: d, unit: mm}\n  normal.x: {column: n}\n  normal.y: {column: m}\n  normal.z: {column: n}\n";
+        let ring = write(&folder, "ring.yaml", ring);
+        let table = write(
+            &folder,
+            "table.yaml",
+            "calibration: 1\nmachine: FXY\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\nerrors: {}\n",
+        );
+        let output = joined(&folder, "out");
+        for (arguments, words) in [
+            (vec![full.as_str(), &recording, "--seed", "3"], "leave --seed out"),
+            (vec![&other, &recording], "is a recording of FX"),
+            (vec![&warm, &recording], "`T1`"),
+            (vec![&table, &ring], "normal changes"),
+        ] {
+            let run = abbe(&[&["simulate"], &arguments[..], &["--output", &output]].concat(), "");
+            assert_eq!((run.status, run.out.as_str()), (2, ""), "{arguments:?}: {}", run.err);
+            assert!(run.err.contains(words), "{arguments:?}: {}", run.err);
+            assert!(!Path::new(&output).exists(), "{arguments:?}");
+        }
+        // A recording is never replaced by its own prediction, unless that is asked for.
+        let run = abbe(&["simulate", &full, &recording, "--output", folder.to_str().unwrap()], "");
+        assert_eq!(run.status, 2);
+        assert!(run.err.contains("is there already"), "{}", run.err);
+    }
+}

@@ -209,11 +209,18 @@ pub(crate) fn simplicity(study: &Study<'_>, effect: &Effect) -> f64 {
         Shape::Instrument(_) => 1.2,
         Shape::Acceleration { .. } | Shape::ReversalSpike { .. } => 2.0,
         Shape::Coupling { .. } | Shape::Drift { .. } => 2.5,
-        Shape::SensorPolynomial { .. } => 3.0,
+        Shape::SensorPolynomial { .. } => 10.0,
         Shape::Table { .. } => 4.0,
     };
+    let rests = matches!(effect.shape, Shape::Lag { .. } | Shape::Acceleration { .. } | Shape::Instrument(Setting::Clock));
+    let sparse = rests && study.scenes.iter().all(|scene| scene.sparse());
+    let shape = if sparse { shape + UNSEEN_MOTION } else { shape };
     shape + effect.motion().map_or(0.0, |motion| place(study, motion, &effect.shape))
 }
+
+/// What a term that needs the motion between rows must bring beyond others where rows are far apart: the axes may well be at
+/// rest in every row.
+const UNSEEN_MOTION: f64 = 8.0;
 
 /// A motion in the axis's own direction or a constant squareness is the first to be thought of, an angle the last.
 fn place(study: &Study<'_>, motion: usize, shape: &Shape) -> f64 {

@@ -151,6 +151,13 @@ fn undecided(study: &Study<'_>) -> Vec<String> {
             if still.len() == 1 { "it" } else { "they" }
         ));
     }
+    let corners: usize = study.scenes.iter().map(|scene| scene.corners.iter().filter(|corner| **corner).count()).sum();
+    if corners > 0 {
+        sentences.push(format!(
+            "What happens at corners of the path cannot be decided in {corners} rows, which are left out, because the path \
+             turned between two rows."
+        ));
+    }
     if study.scenes.iter().all(|scene| scene.run_numbers().len() < 2) {
         sentences.push(
             "Whether runs repeat cannot be decided from this recording, because there is one run.".to_owned(),

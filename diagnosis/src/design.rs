@@ -436,3 +436,6 @@ impl Random {
         f64::from(half) / f64::from(u32::MAX) * 2.0 - 1.0
     }
 }
+
+#[cfg(test)]
+mod tests;

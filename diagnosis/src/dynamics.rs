@@ -6,11 +6,11 @@
 //! could be mistaken for.
 
 use crate::candidates::{Travel, geometric};
+use crate::curves::cost;
 use crate::fit::{self, Fit};
 use crate::judge::Tries;
 use crate::model::{Effect, Fitted, Model, Place, Side};
 use crate::noise::{Noise, typical_step};
-use crate::search::price;
 use crate::study::Study;
 use crate::terms::{Setting, Shape};
 
@@ -93,11 +93,4 @@ fn without_idle(study: &Study<'_>, fit: Fit, always: usize, noises: &[Vec<Noise>
     let model: Model =
         fit.model.iter().enumerate().filter(|(number, fitted)| !idle(*number, fitted)).map(|(_, f)| f.clone()).collect();
     if model.len() < before { fit::refine(study, model, noises, travels) } else { fit }
-}
-
-fn cost(study: &Study<'_>, fit: &Fit, always: usize, tries: Tries) -> f64 {
-    let prices = fit.model[always..]
-        .iter()
-        .map(|fitted| price(study, &fitted.effect, fit.samples, tries.candidates, tries.waves));
-    fit.samples * (fit.remaining / fit.samples).ln() + prices.sum::<f64>()
 }

@@ -6,6 +6,7 @@
 
 use crate::appraisal::Appraisal;
 use crate::candidates::{self, Travel};
+use crate::curves;
 use crate::design::{Design, Regressor};
 use crate::dynamics;
 use crate::fit::{self, Fit};
@@ -54,9 +55,11 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
         let residuals = all_residuals(study, &model, &noises, &courses);
         let (peaks, waves) = waves::peaks(study, &model, &courses, &residuals, &travels, &places);
         tries.waves = waves;
+        let others = other_peaks(study, &model, &noises, &travels);
         // One course of states at a time is enough for the memory.
         drop((std::mem::take(&mut courses), residuals));
-        let regressors = regressors(study, &model, always, &pool, peaks);
+        let mut regressors = regressors(study, &model, always, &pool, peaks);
+        regressors.extend(others.into_iter().map(Regressor::of));
         let next = choose(study, &model, &noises, regressors, always, waves);
         let mut next = fit::refine(study, next, &noises, &travels).model;
         let mut settled = same_effects(&model, &next);
@@ -76,6 +79,7 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
         }
     }
     let fit = fit::refine(study, model, &noises, &travels);
+    let fit = curves::try_tables(study, fit, always, &noises, &travels, tries);
     let (fit, appraisal) = judge::uphold(study, fit, always, &travels, tries);
     trace(study, &fit.model, &appraisal);
     Found { fit, appraisal, pool, travels, always, tries }
@@ -155,6 +159,24 @@ fn trace(study: &Study<'_>, model: &Model, appraisal: &Appraisal) {
             eprintln!("   {motion:?} {:?} {:?}", fitted.effect.shape, fitted.coefficients);
         }
     }
+}
+
+/// For each wave of the model: the highest peak in its neighbourhood when it is taken out. Runs with long pauses between them
+/// give every wave neighbours of nearly its height, and a first fit may stand on one of them.
+fn other_peaks(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], travels: &[Travel]) -> Vec<Effect> {
+    let mut effects = Vec::new();
+    for (number, fitted) in model.iter().enumerate().filter(|(_, fitted)| fitted.effect.shape.is_wave()) {
+        let mut without = model.clone();
+        without.remove(number);
+        let courses = courses(study, &without);
+        let residuals = all_residuals(study, &without, noises, &courses);
+        let place = waves::WavePlace::of(&fitted.effect);
+        let (mut peaks, _) = waves::peaks(study, &without, &courses, &residuals, travels, place.as_slice());
+        peaks.retain(|peak| rivals(&peak.effect, &fitted.effect) && peak.effect != fitted.effect);
+        peaks.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        effects.extend(peaks.into_iter().take(1).map(|peak| peak.effect));
+    }
+    effects
 }
 
 fn choose(

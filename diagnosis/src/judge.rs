@@ -10,7 +10,7 @@ use crate::fit::{self, Fit};
 use crate::model::{Fitted, Model};
 use crate::observations::Course;
 use crate::noise::Noise;
-use crate::search::price;
+use crate::search::{price, untold_price};
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::waves;
@@ -62,7 +62,9 @@ fn weakest(study: &Study<'_>, fit: &Fit, appraisal: &Appraisal, always: usize, t
     for number in always..fit.model.len() {
         let columns: Vec<usize> = design.columns(number).collect();
         let worth = swept.worth(&columns) / scale;
-        let price = price(study, &fit.model[number].effect, samples, tries.candidates, tries.waves);
+        let told = columns.iter().filter(|column| swept.has(**column)).count();
+        let price = price(study, &fit.model[number].effect, samples, tries.candidates, tries.waves)
+            - untold_price(columns.len() - told, samples);
         let fails = worth < price
             || !returns(&design, &swept, number, scale)
             || !steady(&design, &swept, number)

@@ -100,3 +100,6 @@ fn normalised(sums: &[f64]) -> Option<[f64; SUMS]> {
     let sign = mark.iter().find(|value| value.abs() > 0.1 * length).map_or(1.0, |value| value.signum());
     Some(mark.map(|value| value * sign / length))
 }
+
+#[cfg(test)]
+mod tests;

@@ -7,6 +7,7 @@ mod alternatives;
 mod appraisal;
 mod candidates;
 mod conclude;
+mod curves;
 mod design;
 pub mod diagnosis;
 mod dynamics;

@@ -37,7 +37,9 @@ impl Course {
     /// The course of a recording under a model.
     pub(crate) fn new(study: &Study<'_>, scene: usize, model: &[Fitted]) -> Self {
         let recording = study.scenes[scene].recording;
-        let (lags, clock) = (lags(study, model), clock(scene, model));
+        let at_rest = study.scenes[scene].at_rest;
+        let lags = if at_rest { vec![0.0; study.equations.axes.len()] } else { lags(study, model) };
+        let clock = clock(scene, model);
         let shown = states(&study.scenes[scene], &lags, clock);
         let drives = (clock != 0.0).then(|| states(&study.scenes[scene], &lags, 0.0));
         let known = KnownError::new(study, scene, &shown);
@@ -226,7 +228,9 @@ impl<'c> Frame<'c> {
             }
             Kind::Drive(axis) => self.drive(study, axis),
         };
-        observed.iter().zip(predicted).map(|(observed, predicted)| observed - predicted).collect()
+        let corners = &study.scenes[scene].corners[self.rows.clone()];
+        let left = observed.iter().zip(predicted).map(|(observed, predicted)| observed - predicted);
+        left.zip(corners).map(|(left, corner)| if *corner { f64::NAN } else { left }).collect()
     }
 
     /// From the centre to the tip.
@@ -357,10 +361,10 @@ impl<'c> Frame<'c> {
         let gains = self.gains(study, scene, channel, model, Side::Drive);
         let mut sum = vec![0.0; self.len()];
         for (axis, own) in study.own.iter().enumerate() {
-            let velocity = &self.course.shown.axes[axis].velocity[self.rows.clone()];
+            let slope = &self.course.shown.axes[axis].clock_slope[self.rows.clone()];
             if let Some(gain) = own.and_then(|own| gains[own].as_ref()) {
-                for ((sum, gain), velocity) in sum.iter_mut().zip(gain).zip(velocity) {
-                    *sum -= gain * velocity;
+                for ((sum, gain), slope) in sum.iter_mut().zip(gain).zip(slope) {
+                    *sum += gain * slope;
                 }
             }
         }
@@ -456,6 +460,20 @@ fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// The sum of distances of each channel from its median under the calibration alone.
+pub(crate) fn misfit(study: &Study<'_>, scene: usize) -> f64 {
+    let model = Model::new();
+    let course = Course::new(study, scene, &model);
+    let residuals = crate::waves::residuals(study, scene, &model, &course);
+    let spread = |residual: &Vec<f64>| {
+        let mut known: Vec<f64> = residual.iter().copied().filter(|value| value.is_finite()).collect();
+        known.sort_by(f64::total_cmp);
+        let middle = known.get(known.len() / 2).copied().unwrap_or_default();
+        known.iter().map(|value| (value - middle).abs()).sum::<f64>()
+    };
+    residuals.iter().map(spread).sum()
+}
+
 /// The columns of one effect in a stretch of rows of one channel are its gain times its term; this is the effect's part.
 pub(crate) fn acts(effect: &Effect, scene: usize) -> bool {
     match effect.place {
@@ -463,3 +481,6 @@ pub(crate) fn acts(effect: &Effect, scene: usize) -> bool {
         Place::Instrument { recording } => recording == scene,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -319,3 +319,6 @@ impl Parameter {
         Self { name, value: ParameterValue::Given(value, unit.to_owned()) }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -34,11 +34,19 @@ pub(crate) fn price(study: &Study<'_>, effect: &Effect, samples: f64, tries: f64
     crate::number(parameters) * parameter_price(samples) + 2.0 * (tries.ln() + waves) + simplicity(study, effect)
 }
 
+/// What a price counts for columns that others hold already.
+pub(crate) fn untold_price(columns: usize, samples: f64) -> f64 {
+    crate::number(columns) * parameter_price(samples)
+}
+
 /// What one more parameter must take from the cost. Correlated samples tell less than their number, which the held-out
 /// test and the judge see to; so this is less than the logarithm of Schwarz's criterion.
 fn parameter_price(samples: f64) -> f64 {
     0.6 * samples.max(2.0).ln()
 }
+
+/// The share of an effect that the others of a set must leave: two effects that nearly cancel are no explanation.
+const APART: f64 = 1e-3;
 
 /// What selection works on.
 pub(crate) struct Choice<'d> {
@@ -168,7 +176,9 @@ impl<'d> Choice<'d> {
         if set.chosen.iter().any(|chosen| rivals(&self.design.regressors[*chosen].effect, effect)) {
             return false;
         }
-        !positive(&effect.shape) || set.swept.sign(self.design.first[regressor]) > 0.0
+        let mut columns = self.design.columns(regressor);
+        let apart = columns.any(|column| set.swept.independence(column) > APART);
+        apart && (!positive(&effect.shape) || set.swept.sign(self.design.first[regressor]) > 0.0)
     }
 
     fn cost_with(&self, set: &Set, regressor: usize) -> f64 {
@@ -181,7 +191,7 @@ impl<'d> Choice<'d> {
     /// What the price counts for columns that others hold already.
     fn missing(&self, regressor: usize, rank: usize) -> f64 {
         let columns = self.design.regressors[regressor].effect.shape.columns();
-        crate::number(columns - rank.min(columns)) * parameter_price(self.samples)
+        untold_price(columns - rank.min(columns), self.samples)
     }
 
     fn price(&self, set: &Set) -> f64 {

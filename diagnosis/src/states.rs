@@ -6,6 +6,7 @@
 
 use std::ops::Range;
 
+use crate::noise::typical_step;
 use crate::recording::{AxisChannels, Recording};
 
 /// The states of all rows of one recording.
@@ -22,7 +23,6 @@ pub(crate) struct States {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct AxisStates {
     pub(crate) position: Vec<f64>,
-    pub(crate) velocity: Vec<f64>,
     pub(crate) acceleration: Vec<f64>,
     /// +1 or -1: that of the last real motion; +1 before the first.
     pub(crate) direction: Vec<f64>,
@@ -30,6 +30,8 @@ pub(crate) struct AxisStates {
     pub(crate) since_reversal: Vec<f64>,
     /// How the position changes with the time constant of the loop.
     pub(crate) lag_slope: Vec<f64>,
+    /// How the position changes with the offset of the instrument's clock.
+    pub(crate) clock_slope: Vec<f64>,
     /// Whether the axis moves at all.
     pub(crate) moves: bool,
 }
@@ -94,7 +96,7 @@ impl States {
     ) -> Self {
         let time = recording.time.clone();
         let axes = recording.axes.iter().zip(lags);
-        let axes = axes.map(|(axis, lag)| axis_states(&time, axis, *lag, clock)).collect();
+        let axes = axes.map(|(axis, lag)| axis_states(&time, &recording.run, axis, *lag, clock)).collect();
         Self { time, axes, temperatures, loads }
     }
 
@@ -109,20 +111,25 @@ pub(crate) fn nominal_position(axis: &AxisChannels, rows: usize) -> Vec<f64> {
     axis.command.as_ref().or(axis.actual.as_ref()).or(axis.measured.as_ref()).cloned().unwrap_or(vec![0.0; rows])
 }
 
-fn axis_states(time: &[f64], axis: &AxisChannels, lag: f64, clock: f64) -> AxisStates {
-    let command = shifted(time, nominal_position(axis, time.len()), clock);
+fn axis_states(time: &[f64], run: &[i64], axis: &AxisChannels, lag: f64, clock: f64) -> AxisStates {
+    let programmed = nominal_position(axis, time.len());
+    let command = shifted(time, &programmed, clock);
     let resolution = resolution(axis, &command);
     if lag > 0.0 {
-        behind_loop(time, &command, lag, resolution)
+        behind_loop(time, run, &command, lag, resolution)
     } else {
-        as_commanded(time, command, resolution)
+        // A little later: what is seen then is the way just before, not the mean of the ways before and after.
+        let step = 1e-3 * typical_step(time);
+        let later = shifted(time, &programmed, clock + step);
+        let clock_slope = later.iter().zip(&command).map(|(later, now)| (later - now) / step).collect();
+        as_commanded(time, run, command, clock_slope, resolution)
     }
 }
 
 /// The position that the axis had `clock` earlier, between rows by straight lines.
-fn shifted(time: &[f64], position: Vec<f64>, clock: f64) -> Vec<f64> {
+fn shifted(time: &[f64], position: &[f64], clock: f64) -> Vec<f64> {
     if clock == 0.0 {
-        return position;
+        return position.to_vec();
     }
     let mut from = 0;
     let at = |row: usize| (time[row], position[row]);
@@ -156,24 +163,25 @@ fn resolution(axis: &AxisChannels, positions: &[f64]) -> f64 {
     if axis.command.is_some() { 1e-9 * range } else { 1e-3 * range }
 }
 
-fn as_commanded(time: &[f64], position: Vec<f64>, resolution: f64) -> AxisStates {
-    let velocity = derivative(time, &position);
-    let acceleration = derivative(time, &velocity);
+/// Without a loop. A quick loop stays behind by its time constant times the speed on the way to a row, as a late clock does.
+fn as_commanded(time: &[f64], run: &[i64], position: Vec<f64>, clock_slope: Vec<f64>, resolution: f64) -> AxisStates {
+    let acceleration = derivative(time, run, &derivative(time, run, &position));
     let (direction, since_reversal, moves) = directions(time, &position, resolution);
-    let lag_slope = velocity.iter().map(|velocity| -velocity).collect();
-    AxisStates { position, velocity, acceleration, direction, since_reversal, lag_slope, moves }
+    let lag_slope = clock_slope.clone();
+    AxisStates { position, acceleration, direction, since_reversal, lag_slope, clock_slope, moves }
 }
 
 /// The first-order position loop with time constant `lag`, exact for commands that are straight between rows.
-fn behind_loop(time: &[f64], command: &[f64], lag: f64, resolution: f64) -> AxisStates {
+fn behind_loop(time: &[f64], run: &[i64], command: &[f64], lag: f64, resolution: f64) -> AxisStates {
     let position = follow(time, command, lag);
     let step = 1e-4;
     let further = follow(time, command, lag * (1.0 + step));
     let lag_slope = further.iter().zip(&position).map(|(far, near)| (far - near) / (lag * step)).collect();
     let velocity: Vec<f64> = command.iter().zip(&position).map(|(command, q)| (command - q) / lag).collect();
-    let acceleration = derivative(time, &velocity);
+    let acceleration = derivative(time, run, &velocity);
+    let clock_slope = velocity.iter().map(|velocity| -velocity).collect();
     let (direction, since_reversal, moves) = directions(time, &position, resolution);
-    AxisStates { position, velocity, acceleration, direction, since_reversal, lag_slope, moves }
+    AxisStates { position, acceleration, direction, since_reversal, lag_slope, clock_slope, moves }
 }
 
 fn follow(time: &[f64], command: &[f64], lag: f64) -> Vec<f64> {
@@ -198,14 +206,15 @@ fn follow(time: &[f64], command: &[f64], lag: f64) -> Vec<f64> {
     followed
 }
 
-/// The derivative in time by the parabola through each sample and its neighbours; NaN samples are passed over.
-fn derivative(time: &[f64], values: &[f64]) -> Vec<f64> {
+/// The derivative in time by the parabola through each sample and its neighbours in the same run; NaN samples are passed over.
+fn derivative(time: &[f64], run: &[i64], values: &[f64]) -> Vec<f64> {
     let known: Vec<usize> = (0..values.len()).filter(|row| values[*row].is_finite()).collect();
     let slope = |from: usize, to: usize| (values[to] - values[from]) / (time[to] - time[from]);
     let mut result = vec![f64::NAN; values.len()];
     for (place, row) in known.iter().enumerate() {
-        let before = place.checked_sub(1).map(|place| known[place]);
-        let after = known.get(place + 1).copied();
+        let same_run = |other: &usize| run[*other] == run[*row];
+        let before = place.checked_sub(1).map(|place| known[place]).filter(same_run);
+        let after = known.get(place + 1).copied().filter(same_run);
         result[*row] = match (before, after) {
             (Some(before), Some(after)) => {
                 let (left, right) = (time[*row] - time[before], time[after] - time[*row]);
@@ -250,3 +259,26 @@ fn directions(time: &[f64], position: &[f64], resolution: f64) -> (Vec<f64>, Vec
 
 #[cfg(test)]
 mod tests;
+
+/// Rows behind a corner of the path that lies between two rows: where the axis was on the way is not recorded, so that no
+/// loop and no clock can be judged by them.
+pub(crate) fn behind_corners(time: &[f64], run: &[i64], position: &[f64]) -> Vec<bool> {
+    let slope = |row: usize| (position[row] - position[row - 1]) / (time[row] - time[row - 1]);
+    let fastest = (1..time.len())
+        .filter(|row| run[*row] == run[row - 1])
+        .map(|row| slope(row).abs())
+        .filter(|slope| slope.is_finite())
+        .fold(0.0, f64::max);
+    (0..time.len())
+        .map(|row| {
+            let inside = row >= 2 && row + 1 < time.len() && run[row - 2] == run[row + 1];
+            let (before, here, after) = if inside { (slope(row - 1), slope(row), slope(row + 1)) } else { return false };
+            let mixed = (here - before).abs().min((after - here).abs()) > MIXED * fastest;
+            mixed && (after - before).abs() > CORNER * fastest
+        })
+        .collect()
+}
+
+/// The change of speed, as a share of the highest, that is a corner, and the least of it that falls before and behind the row.
+const CORNER: f64 = 0.3;
+const MIXED: f64 = 0.02;

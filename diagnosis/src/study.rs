@@ -12,8 +12,9 @@ use model_dsl::program::Interpreter;
 
 use crate::model::{Effect, Fitted, Place, Side};
 use crate::noise;
+use crate::observations;
 use crate::recording::{Instrument, Recording};
-use crate::states::nominal_position;
+use crate::states::{behind_corners, nominal_position};
 use crate::terms;
 
 /// A machine, what is known of it, and what was recorded.
@@ -38,6 +39,11 @@ pub(crate) struct Scene<'a> {
     pub(crate) loads: Vec<Vec<f64>>,
     pub(crate) channels: Vec<Channel>,
     pub(crate) blocks: Vec<Block>,
+    /// Rows that are left out because an axis turned a corner just before, between two rows.
+    pub(crate) corners: Vec<bool>,
+    /// Whether the axes are at rest in every row, as far as position loops go: rows far apart, which a calibration with
+    /// loops explains better so.
+    pub(crate) at_rest: bool,
     /// The directions in which the path leaves the plane of a ballbar's centre; the others a ballbar does not show.
     pub(crate) leans: [bool; 3],
 }
@@ -116,7 +122,25 @@ impl<'a> Study<'a> {
             .iter()
             .map(|recording| Scene::new(recording, calibration, &sensors, &loads, &interpreter))
             .collect();
-        Self { equations, interpreter, sensors, loads, scenes, known, own }
+        let mut study = Self { equations, interpreter, sensors, loads, scenes, known, own };
+        study.tell_rest();
+        study
+    }
+
+    /// Decides for each recording with rows far apart whether its axes move or rest while they are read: a laser at
+    /// stations reads axes at rest, a slow log moving ones, and the programmed positions alone do not tell.
+    fn tell_rest(&mut self) {
+        if !self.known.iter().any(|fitted| fitted.effect.shape.name() == "lag") {
+            return;
+        }
+        for scene in 0..self.scenes.len() {
+            if self.scenes[scene].sparse() {
+                let moving = observations::misfit(self, scene);
+                self.scenes[scene].at_rest = true;
+                let resting = observations::misfit(self, scene);
+                self.scenes[scene].at_rest = resting < moving;
+            }
+        }
     }
 
     /// Whether the drive's own feedback of an axis was recorded anywhere.
@@ -189,6 +213,8 @@ impl<'a> Scene<'a> {
         interpreter: &Interpreter,
     ) -> Self {
         Self {
+            at_rest: false,
+            corners: corners(recording),
             leans: leans(recording, interpreter),
             recording,
             temperatures: temperatures(recording, calibration, sensors),
@@ -201,6 +227,11 @@ impl<'a> Scene<'a> {
     /// How many rows there are.
     pub(crate) fn rows(&self) -> usize {
         self.recording.time.len()
+    }
+
+    /// Whether rows are so far apart that what a position loop does is over before the next.
+    pub(crate) fn sparse(&self) -> bool {
+        noise::typical_step(&self.recording.time) > SPARSE
     }
 
     /// For each row whether it is fitted, and not held out.
@@ -223,6 +254,21 @@ impl<'a> Scene<'a> {
         numbers
     }
 }
+
+fn corners(recording: &Recording) -> Vec<bool> {
+    let mut corners = vec![false; recording.time.len()];
+    for position in programmed(recording) {
+        for (corner, here) in corners.iter_mut().zip(behind_corners(&recording.time, &recording.run, &position)) {
+            *corner |= here;
+        }
+    }
+    // A path of corners only is one that was recorded so; nothing would be left.
+    let share = corners.iter().filter(|corner| **corner).count() * MANY;
+    if share > corners.len() { vec![false; corners.len()] } else { corners }
+}
+
+/// One row in so many may lie behind a corner.
+const MANY: usize = 20;
 
 /// A ballbar that leans less than this share of its length into a direction shows nothing of it.
 const LEANS: f64 = 0.02;
@@ -321,6 +367,9 @@ fn channels(recording: &Recording) -> Vec<Channel> {
     }
     channels
 }
+
+/// The step between rows, s, from which on a recording is sparse: the slowest loops settle within it.
+const SPARSE: f64 = 0.2;
 
 /// How many blocks the rows that are fitted are cut into, at least.
 const BLOCKS: usize = 12;

@@ -170,6 +170,11 @@ impl Shape {
         shape
     }
 
+    /// Whether it is a wave along an axis or in time.
+    pub(crate) fn is_wave(&self) -> bool {
+        matches!(self, Self::Cyclic { .. } | Self::Vibration { .. })
+    }
+
     /// Whether its coefficient acts on the states, so that a linear fit of it holds only nearby.
     pub(crate) fn nonlinear_in_coefficient(&self) -> bool {
         matches!(self, Self::Lag { .. } | Self::Instrument(Setting::Clock))
@@ -270,3 +275,6 @@ fn wave(turns: impl Iterator<Item = f64>, out: &mut [Vec<f64>]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -42,6 +42,15 @@ pub(crate) struct WavePlace {
     vibration: bool,
 }
 
+impl WavePlace {
+    /// The place of a wave of the machine.
+    pub(crate) fn of(effect: &Effect) -> Option<Self> {
+        let (motion, side) = (effect.motion()?, effect.side()?);
+        let cyclic = matches!(effect.shape, Shape::Cyclic { .. });
+        Some(Self { motion, side, cyclic, vibration: !cyclic })
+    }
+}
+
 /// The places where waves can be looked for.
 pub(crate) fn places(
     study: &Study<'_>,

@@ -228,14 +228,16 @@ fn differences_tell_the_fast_part_whatever_drifts_below() {
 
 #[test]
 fn rounding_is_told_from_the_values_themselves() {
-    let values: Vec<f64> = normals(22, 3000);
-    for step in [1e-4, 5e-3, 0.25] {
-        let rounded: Vec<f64> = values.iter().map(|value| 300.0 + (value / step).round() * step).collect();
+    let values: Vec<f64> = normals(22, 3000).iter().map(|value| 300.0 + value).collect();
+    // 0.1 um, 5 um, 0.02 mm, a tenth of a thousandth of an inch, a thousandth of a degree.
+    for step in [1e-4, 5e-3, 0.02, 25.4e-4, 1e-3_f64.to_radians()] {
+        let mut rounded: Vec<f64> = values.iter().map(|value| (value / step).round() * step).collect();
+        rounded[3] = f64::NAN;
         // The error of rounding is even over the step.
         assert!((rounding(&rounded) / (step / 12f64.sqrt()) - 1.0).abs() < 1e-6, "{step}");
     }
-    assert!(rounding(&values) < 1e-4);
-    assert!(rounding(&[1.0, f64::NAN, 1.0]) > 0.0);
+    assert!(rounding(&values) < 1e-6, "what was not rounded has next to none");
+    assert!([&[][..], &[0.0], &[f64::NAN]].iter().all(|values| rounding(values) > 0.0 && rounding(values) < 1e-6));
 }
 
 #[test]

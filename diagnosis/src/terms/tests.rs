@@ -266,6 +266,8 @@ fn the_nonlinear_parameter_is_read_and_set() {
         assert_eq!(other.nonlinear().unwrap().value, 3.5);
         assert_eq!(other.with_nonlinear(2.0), shape);
     }
-    let plain = [Shape::Constant, Shape::Lag { axis: 0 }, Shape::Backlash { axis: 0, wind_up: 0.0 }];
+    let play = Shape::Backlash { axis: 0, wind_up: 0.0 };
+    assert!(play.nonlinear().is_none(), "play that is taken up at once has no wind-up to fit");
+    let plain = [Shape::Constant, Shape::Lag { axis: 0 }];
     assert!(plain.iter().all(|shape| shape.nonlinear().is_none() && shape.with_nonlinear(3.0) == *shape));
 }

@@ -7,6 +7,7 @@
     reason = "a panic is the report of a test, also from a function that tests share"
 )]
 
+mod common;
 mod each_term;
 #[path = "../../src/testing.rs"]
 mod testing;

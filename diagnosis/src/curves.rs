@@ -1,0 +1,78 @@
+//! Curves: a table in the place of several smooth terms that only imitate it together.
+//!
+//! In: a fitted model. Out: the same, or one in which a `table` of an error motion stands for the polynomial and the long
+//! waves of that motion, where it says the same with less.
+
+use crate::candidates::Travel;
+use crate::fit::{self, Fit};
+use crate::judge::Tries;
+use crate::model::{Effect, Fitted, Model, Place};
+use crate::noise::Noise;
+use crate::search::price;
+use crate::study::Study;
+use crate::terms::Shape;
+
+/// How many nodes are tried.
+const NODES: [usize; 3] = [8, 12, 20];
+/// A wave of more than this share of the travel may be part of a curve.
+const LONG: f64 = 0.12;
+
+/// Tries tables for every motion of which two or more smooth terms are in the model, or a polynomial of the highest power.
+pub(crate) fn try_tables(
+    study: &Study<'_>,
+    mut fit: Fit,
+    always: usize,
+    noises: &[Vec<Noise>],
+    travels: &[Travel],
+    tries: Tries,
+) -> Fit {
+    let mut places: Vec<(Place, usize)> = Vec::new();
+    for fitted in &fit.model[always..] {
+        if let Some(axis) = smooth(&fitted.effect, travels)
+            && !places.contains(&(fitted.effect.place, axis))
+        {
+            places.push((fitted.effect.place, axis));
+        }
+    }
+    for (place, axis) in places {
+        let imitates = |fitted: &Fitted| fitted.effect.place == place && smooth(&fitted.effect, travels) == Some(axis);
+        let parts: Vec<&Fitted> = fit.model.iter().filter(|fitted| imitates(fitted)).collect();
+        let winding = |fitted: &&Fitted| matches!(fitted.effect.shape, Shape::Polynomial { degree, .. } if degree > 2);
+        if parts.len() < 2 && !parts.iter().any(winding) {
+            continue;
+        }
+        let kept: Model = fit.model.iter().filter(|fitted| !imitates(fitted)).cloned().collect();
+        for nodes in NODES {
+            let mut trial = kept.clone();
+            let effect = Effect { place, shape: table(axis, &travels[axis], nodes) };
+            trial.push(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
+            let trial = fit::refine(study, trial, noises, travels);
+            if cost(study, &trial, always, tries) < cost(study, &fit, always, tries) {
+                fit = trial;
+            }
+        }
+    }
+    fit
+}
+
+/// The axis along which an effect is a smooth curve.
+fn smooth(effect: &Effect, travels: &[Travel]) -> Option<usize> {
+    match effect.shape {
+        Shape::Polynomial { axis, .. } | Shape::Table { axis, .. } => Some(axis),
+        Shape::Cyclic { axis, period } if period > LONG * travels[axis].range() => Some(axis),
+        _ => None,
+    }
+}
+
+/// A table with nodes at equal steps over the travel.
+pub(crate) fn table(axis: usize, travel: &Travel, nodes: usize) -> Shape {
+    let at = |node: usize| travel.low + travel.range() * crate::number(node) / crate::number(nodes - 1);
+    Shape::Table { axis, nodes: (0..nodes).map(at).collect(), directed: false }
+}
+
+/// What a fit costs: its misfit and the price of its effects.
+pub(crate) fn cost(study: &Study<'_>, fit: &Fit, always: usize, tries: Tries) -> f64 {
+    let prices =
+        fit.model[always..].iter().map(|fitted| price(study, &fitted.effect, fit.samples, tries.candidates, tries.waves));
+    fit.samples * (fit.remaining / fit.samples).ln() + prices.sum::<f64>()
+}

@@ -41,15 +41,41 @@ pub(crate) fn find(study: &Study<'_>, found: &Found) -> Vec<Vec<Effect>> {
                 worth - gain / scale < HIDDEN
             };
             let mut names = same_place(&model[number].effect, &others);
-            names.extend((0..others.len()).filter(|other| stands_in(*other)).flat_map(|other| all(&others[other])));
+            names.extend(all_loops(study, &design, &without, model, number, worth - HIDDEN, scale));
+            names.extend(
+                (0..others.len()).filter(|other| stands_in(*other)).flat_map(|other| all(&others[other])),
+            );
             let kept = &model[found.always..];
             names.retain(|name| {
-                !rivals(name, &model[number].effect) && !kept.iter().any(|fitted| rivals(&fitted.effect, name))
+                !rivals(name, &model[number].effect)
+                    && !kept.iter().any(|fitted| rivals(&fitted.effect, name))
             });
             names.sort_by(|a, b| simplicity(study, a).total_cmp(&simplicity(study, b)));
             names
         })
         .collect()
+}
+
+/// Loops on all axes, where together they could stand in for a clock that brings `worth`.
+fn all_loops(
+    study: &Study<'_>,
+    design: &Design,
+    without: &Swept,
+    model: &Model,
+    number: usize,
+    worth: f64,
+    scale: f64,
+) -> Vec<Effect> {
+    if model[number].effect.shape != Shape::Instrument(Setting::Clock) {
+        return Vec::new();
+    }
+    let is_loop = |other: &usize| matches!(design.regressors[*other].effect.shape, Shape::Lag { .. });
+    let loops: Vec<usize> = (model.len()..design.regressors.len()).filter(is_loop).collect();
+    let columns: Vec<usize> = loops.iter().flat_map(|other| design.columns(*other)).collect();
+    let (gain, _) = without.promise(&columns);
+    let stand_in = loops.len() > 1 && gain / scale > worth && study.own.iter().flatten().count() > 1;
+    let effects = loops.into_iter().map(|other| design.regressors[other].effect.clone());
+    if stand_in { effects.collect() } else { Vec::new() }
 }
 
 fn all(kin: &Kin) -> Vec<Effect> {
@@ -70,7 +96,8 @@ fn others(study: &Study<'_>, found: &Found) -> Vec<Kin> {
 
 /// A wave or a filtered temperature, which the candidates do not hold in this form, at the other motions that could have it.
 fn elsewhere(study: &Study<'_>, effect: &Effect) -> Vec<Effect> {
-    let (Some(motion), Some(side), Some(_)) = (effect.motion(), effect.side(), effect.shape.nonlinear()) else {
+    let (Some(motion), Some(side), Some(_)) = (effect.motion(), effect.side(), effect.shape.nonlinear())
+    else {
         return Vec::new();
     };
     let motions = study.equations.motions.iter().enumerate().filter(|(number, _)| *number != motion);
@@ -86,7 +113,8 @@ fn elsewhere(study: &Study<'_>, effect: &Effect) -> Vec<Effect> {
 
 /// The design of the model and of everything that could stand in for it, the present model's response restored.
 fn joint(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], others: &[Kin]) -> Design {
-    let mut regressors: Vec<Regressor> = model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+    let mut regressors: Vec<Regressor> =
+        model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
     regressors.extend(others.iter().map(|kin| Regressor::of(kin.effect.clone())));
     let mut design = Design::new(study, model, noises, regressors);
     design.rebase(model);
@@ -123,13 +151,19 @@ fn by_lever(study: &Study<'_>, this: &Effect, other: &Effect) -> Option<String> 
     }
     let [first, second] = [a, b].map(|motion| {
         let arms = model_dsl::algebra::Axis::ALL.map(|direction| study.equations.arm(direction, motion));
-        let seen: Vec<&str> =
-            ["X", "Y", "Z"].into_iter().zip(&arms).filter(|(_, arm)| !arm.is_zero()).map(|(name, _)| name).collect();
+        let seen: Vec<&str> = ["X", "Y", "Z"]
+            .into_iter()
+            .zip(&arms)
+            .filter(|(_, arm)| !arm.is_zero())
+            .map(|(name, _)| name)
+            .collect();
         (arms.clone(), seen)
     });
     if first.0 == second.0 {
         let states = states_of(study, this, other);
-        return Some(format!("nothing at the tool tip alone: their lever arms are the same; vary {states} separately"));
+        return Some(format!(
+            "nothing at the tool tip alone: their lever arms are the same; vary {states} separately"
+        ));
     }
     let names = [&first, &second].map(|(arms, _)| positions(arms));
     let differing: Vec<String> = names[0]
@@ -142,7 +176,13 @@ fn by_lever(study: &Study<'_>, this: &Effect, other: &Effect) -> Option<String> 
         return Some(format!("the same path at another {axis}: the lever arms change differently"));
     }
     if first.1 != second.1 {
-        let only: Vec<&str> = first.1.iter().chain(&second.1).copied().filter(|d| !(first.1.contains(d) && second.1.contains(d))).collect();
+        let only: Vec<&str> = first
+            .1
+            .iter()
+            .chain(&second.1)
+            .copied()
+            .filter(|d| !(first.1.contains(d) && second.1.contains(d)))
+            .collect();
         if let Some(direction) = only.first() {
             return Some(format!("measure direction {direction} too, which only one of them moves"));
         }
@@ -188,7 +228,9 @@ pub(crate) fn state(study: &Study<'_>, effect: &Effect) -> String {
         Shape::ReversalSpike { axis, .. } => format!("the time since {} turned", of(*axis)),
         Shape::Lag { axis } => format!("the velocity of {}", of(*axis)),
         Shape::Acceleration { axis } => format!("the acceleration of {}", of(*axis)),
-        Shape::Expansion { sensor, .. } | Shape::Growth { sensor, .. } | Shape::SensorPolynomial { sensor, .. } => {
+        Shape::Expansion { sensor, .. }
+        | Shape::Growth { sensor, .. }
+        | Shape::SensorPolynomial { sensor, .. } => {
             format!("temperature {}", study.sensors[*sensor])
         }
         Shape::Drift { .. } | Shape::Vibration { .. } => "time".to_owned(),

@@ -38,7 +38,8 @@ pub(crate) fn travels(study: &Study<'_>, courses: &[Course]) -> Vec<Travel> {
 
 fn travel(courses: &[Course], axis: usize) -> Travel {
     let axes = || courses.iter().map(|course| &course.shown.axes[axis]);
-    let positions = axes().flat_map(|axis| axis.position.iter().copied()).filter(|position| position.is_finite());
+    let positions =
+        axes().flat_map(|axis| axis.position.iter().copied()).filter(|position| position.is_finite());
     let (low, high) =
         positions.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), q| (low.min(q), high.max(q)));
     let mut steps: Vec<f64> = axes()
@@ -79,7 +80,10 @@ pub(crate) fn candidates(study: &Study<'_>, courses: &[Course], travels: &[Trave
             let own = known.axis.is_some_and(|axis| study.own[axis] == Some(motion));
             let drive = own && known.axis.is_some_and(|axis| study.has_drive(axis));
             if drive || (own && shape.name() == "lag") {
-                effects.push(Effect { place: Place::Motion { motion, side: Side::Drive }, shape: shape.clone() });
+                effects.push(Effect {
+                    place: Place::Motion { motion, side: Side::Drive },
+                    shape: shape.clone(),
+                });
             }
             if outside && shape.name() != "lag" {
                 effects.push(Effect { place: Place::Motion { motion, side: Side::After }, shape });
@@ -90,7 +94,8 @@ pub(crate) fn candidates(study: &Study<'_>, courses: &[Course], travels: &[Trave
 }
 
 fn settings(study: &Study<'_>) -> Vec<Effect> {
-    let both = |recording| [Setting::Clock, Setting::Cosine].map(|setting| Effect::setting(recording, setting));
+    let both =
+        |recording| [Setting::Clock, Setting::Cosine].map(|setting| Effect::setting(recording, setting));
     (0..study.scenes.len()).flat_map(both).collect()
 }
 
@@ -103,8 +108,13 @@ struct Grids {
 
 impl Grids {
     fn new(study: &Study<'_>, courses: &[Course], travels: &[Travel]) -> Self {
-        let step = study.scenes.iter().map(|scene| typical_step(&scene.recording.time)).fold(f64::INFINITY, f64::min);
-        let span = study.scenes.iter().filter_map(|scene| scene.recording.time.last()).copied().fold(0.0, f64::max);
+        let step = study
+            .scenes
+            .iter()
+            .map(|scene| typical_step(&scene.recording.time))
+            .fold(f64::INFINITY, f64::min);
+        let span =
+            study.scenes.iter().filter_map(|scene| scene.recording.time.last()).copied().fold(0.0, f64::max);
         let reversals = reversals(courses, travels);
         let between = if reversals > 0.0 { span / reversals } else { 0.0 };
         Self {
@@ -128,7 +138,9 @@ pub(crate) fn geometric(low: f64, high: f64, factor: f64) -> Vec<f64> {
     if !(low > 0.0 && high >= low) {
         return Vec::new();
     }
-    std::iter::successors(Some(low), |value| Some(value * factor)).take_while(|value| *value <= high).collect()
+    std::iter::successors(Some(low), |value| Some(value * factor))
+        .take_while(|value| *value <= high)
+        .collect()
 }
 
 /// The terms of one error motion, simplest first.
@@ -152,9 +164,11 @@ fn shapes(study: &Study<'_>, motion: usize, travels: &[Travel], grids: &Grids) -
             shapes.push(Shape::SensorPolynomial { sensor, degree: 2, center, scale });
         }
         shapes.push(Shape::Growth { sensor, reference, time_constant: 0.0 });
-        shapes.extend(
-            grids.filters.iter().map(|time_constant| Shape::Growth { sensor, reference, time_constant: *time_constant }),
-        );
+        shapes.extend(grids.filters.iter().map(|time_constant| Shape::Growth {
+            sensor,
+            reference,
+            time_constant: *time_constant,
+        }));
         if let Some(axis) = moving {
             shapes.push(Shape::Expansion { axis, sensor, reference });
         }
@@ -184,8 +198,10 @@ fn along(study: &Study<'_>, motion: usize, axis: usize, travel: &Travel, grids: 
 
 /// The middle and the half range of what a sensor read over all recordings, degC.
 fn warmth(study: &Study<'_>, sensor: usize) -> (f64, f64) {
-    let known = study.scenes.iter().flat_map(|scene| &scene.temperatures[sensor]).filter(|value| value.is_finite());
-    let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| (low.min(*t), high.max(*t)));
+    let known =
+        study.scenes.iter().flat_map(|scene| &scene.temperatures[sensor]).filter(|value| value.is_finite());
+    let (low, high) =
+        known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| (low.min(*t), high.max(*t)));
     ((low + high) / 2.0, ((high - low) / 2.0).max(1e-3))
 }
 
@@ -202,17 +218,28 @@ fn recorded(study: &Study<'_>) -> Vec<usize> {
 pub(crate) fn simplicity(study: &Study<'_>, effect: &Effect) -> f64 {
     let shape = match &effect.shape {
         Shape::Constant | Shape::Lag { .. } => 0.0,
-        Shape::Backlash { wind_up, .. } => if *wind_up > 0.0 { 1.5 } else { 0.0 },
+        Shape::Backlash { wind_up, .. } => {
+            if *wind_up > 0.0 {
+                1.5
+            } else {
+                0.0
+            }
+        }
         Shape::Polynomial { .. } => 1.0,
         Shape::Expansion { .. } | Shape::Compliance { .. } | Shape::Cyclic { .. } => 1.0,
         Shape::Growth { .. } | Shape::Vibration { .. } => 1.5,
         Shape::Instrument(_) => 1.2,
         Shape::Acceleration { .. } | Shape::ReversalSpike { .. } => 2.0,
-        Shape::Coupling { .. } | Shape::Drift { .. } => 2.5,
+        Shape::Coupling { .. } => 2.5,
+        // The path of a wandering sensor looks like a settling more often than like anything else.
+        Shape::Drift { .. } => 15.0,
         Shape::SensorPolynomial { .. } => 10.0,
         Shape::Table { .. } => 4.0,
     };
-    let rests = matches!(effect.shape, Shape::Lag { .. } | Shape::Acceleration { .. } | Shape::Instrument(Setting::Clock));
+    let rests = matches!(
+        effect.shape,
+        Shape::Lag { .. } | Shape::Acceleration { .. } | Shape::Instrument(Setting::Clock)
+    );
     let sparse = rests && study.scenes.iter().all(|scene| scene.sparse());
     let shape = if sparse { shape + UNSEEN_MOTION } else { shape };
     shape + effect.motion().map_or(0.0, |motion| place(study, motion, &effect.shape))

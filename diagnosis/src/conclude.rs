@@ -5,6 +5,7 @@
 use crate::alternatives;
 use crate::appraisal::Appraisal;
 use crate::candidates;
+use crate::curves::BROAD;
 use crate::diagnosis::{
     Alternative, Diagnosis, Evidence, Finding, Interval, IntervalOf, NoiseSummary, Parameter, Residual,
     SettingFinding, Summary, Unexplained, Verdict,
@@ -96,8 +97,11 @@ fn bare_model(study: &mut Study<'_>) -> Model {
     let model: Model = effects.into_iter().map(|effect| Fitted { effect, coefficients: vec![0.0] }).collect();
     let appraisal = Appraisal::new(study, &model);
     appraisal.mark(study);
-    let noises: Vec<Vec<_>> =
-        appraisal.noises.iter().map(|channels| channels.iter().map(|noise| noise.as_white()).collect()).collect();
+    let noises: Vec<Vec<_>> = appraisal
+        .noises
+        .iter()
+        .map(|channels| channels.iter().map(|noise| noise.as_white()).collect())
+        .collect();
     let mut model = fit::refine(study, model, &noises, &[]).model;
     zeros::free_held_out(study, &mut model);
     model
@@ -119,8 +123,6 @@ fn explain_locally(study: &mut Study<'_>, found: &mut Found) -> Option<Feature> 
     None
 }
 
-/// A feature that covers this share of the travel is a curve; what is smaller is a place.
-const BROAD: f64 = 0.3;
 /// The most tables that are added.
 const TABLES: usize = 3;
 
@@ -151,7 +153,8 @@ fn undecided(study: &Study<'_>) -> Vec<String> {
             if still.len() == 1 { "it" } else { "they" }
         ));
     }
-    let corners: usize = study.scenes.iter().map(|scene| scene.corners.iter().filter(|corner| **corner).count()).sum();
+    let corners: usize =
+        study.scenes.iter().map(|scene| scene.corners.iter().filter(|corner| **corner).count()).sum();
     if corners > 0 {
         sentences.push(format!(
             "What happens at corners of the path cannot be decided in {corners} rows, which are left out, because the path \
@@ -182,7 +185,9 @@ fn too_little(study: &Study<'_>) -> Option<String> {
     let because = if fitted + held_out == 0 {
         "it holds nothing that was observed".to_owned()
     } else if fitted < FEWEST {
-        format!("{fitted} samples to fit are too few to tell an effect from noise (at least {FEWEST} are needed)")
+        format!(
+            "{fitted} samples to fit are too few to tell an effect from noise (at least {FEWEST} are needed)"
+        )
     } else if held_out == 0 {
         "nothing is left to hold out, and what is not tested on other data is not claimed".to_owned()
     } else {
@@ -266,8 +271,15 @@ impl Units {
     }
 
     fn noise(&self, study: &Study<'_>, appraisal: &Appraisal) -> NoiseSummary {
-        let channels = study.scenes.iter().zip(&appraisal.noises).flat_map(|(scene, noises)| scene.channels.iter().zip(noises));
-        let counted: Vec<_> = channels.filter(|(channel, _)| self.counts(study, channel.kind)).map(|(_, noise)| *noise).collect();
+        let channels = study
+            .scenes
+            .iter()
+            .zip(&appraisal.noises)
+            .flat_map(|(scene, noises)| scene.channels.iter().zip(noises));
+        let counted: Vec<_> = channels
+            .filter(|(channel, _)| self.counts(study, channel.kind))
+            .map(|(_, noise)| *noise)
+            .collect();
         let count = crate::number(counted.len()).max(1.0);
         let mean = |part: &dyn Fn(&crate::noise::Noise) -> f64| {
             (counted.iter().map(|noise| part(noise) * part(noise)).sum::<f64>() / count).sqrt() * self.unit.0
@@ -312,7 +324,7 @@ fn report(study: &Study<'_>, found: &Found, units: &Units, diagnosis: &mut Diagn
             term: fitted.effect.shape.name(),
             parameters: described.parameters(),
             share: shares[number],
-            location: words::location(study, &fitted.effect, names),
+            location: words::location(study, fitted, names),
             evidence: Evidence { with, without, unit: units.unit.1 },
             alternatives,
             explanation: fitted.effect.shape.meaning().to_owned(),
@@ -339,7 +351,8 @@ fn shares(study: &Study<'_>, found: &Found, units: &Units) -> Vec<f64> {
         units.held_out(study, &without).iter().zip(&whole).map(|(without, whole)| without - whole).collect()
     };
     let signals: Vec<Vec<f64>> = (0..model.len()).map(difference).collect();
-    let sum: Vec<f64> = (0..whole.len()).map(|at| signals.iter().filter_map(|signal| signal.get(at)).sum()).collect();
+    let sum: Vec<f64> =
+        (0..whole.len()).map(|at| signals.iter().filter_map(|signal| signal.get(at)).sum()).collect();
     let product = |signal: &[f64]| signal.iter().zip(&sum).map(|(a, b)| a * b).sum::<f64>();
     let square = product(&sum).max(f64::MIN_POSITIVE);
     signals.iter().map(|signal| (product(signal) / square).clamp(0.0, 1.0)).collect()
@@ -353,9 +366,11 @@ fn held_rms(residual: &Residual) -> f64 {
 fn told(study: &Study<'_>, effect: &Effect, names: &[Effect]) -> Vec<Alternative> {
     let mut told: Vec<Alternative> = Vec::new();
     for name in names {
-        let motion = name.motion().map_or("instrument", |motion| study.equations.motions[motion].name.as_str());
+        let motion =
+            name.motion().map_or("instrument", |motion| study.equations.motions[motion].name.as_str());
         let term = name.shape.name();
-        let own = effect.motion().map_or("instrument", |motion| study.equations.motions[motion].name.as_str());
+        let own =
+            effect.motion().map_or("instrument", |motion| study.equations.motions[motion].name.as_str());
         let known = told.iter().any(|known| known.motion == motion && known.term == term);
         if told.len() < NAMES && !known && (own, effect.shape.name()) != (motion, term) {
             let separate_by = alternatives::separate_by(study, effect, name);
@@ -405,7 +420,10 @@ const DEMANDED: f64 = 4.0;
 fn joined(settings: Vec<SettingFinding>) -> Vec<SettingFinding> {
     let mut joined: Vec<SettingFinding> = Vec::new();
     for setting in settings {
-        match joined.iter_mut().find(|known| known.term == setting.term && known.recording == setting.recording) {
+        match joined
+            .iter_mut()
+            .find(|known| known.term == setting.term && known.recording == setting.recording)
+        {
             Some(known) => known.parameters.extend(setting.parameters),
             None => joined.push(setting),
         }
@@ -423,7 +441,8 @@ fn unexplained(study: &Study<'_>, found: &Found, feature: &Feature, units: &Unit
         d if d < 0.0 => "while it moves backward",
         _ => "in both directions of motion",
     };
-    let table_of = engine::table_motion(study, found, feature).map(|motion| study.equations.motions[motion].name.clone());
+    let table_of = engine::table_motion(study, found, feature)
+        .map(|motion| study.equations.motions[motion].name.clone());
     Unexplained {
         link: Some(axis.letter.clone()),
         direction: channel.name.clone(),

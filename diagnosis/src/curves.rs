@@ -35,9 +35,11 @@ pub(crate) fn try_tables(
         }
     }
     for (place, axis) in places {
-        let imitates = |fitted: &Fitted| fitted.effect.place == place && smooth(&fitted.effect, travels) == Some(axis);
+        let imitates =
+            |fitted: &Fitted| fitted.effect.place == place && smooth(&fitted.effect, travels) == Some(axis);
         let parts: Vec<&Fitted> = fit.model.iter().filter(|fitted| imitates(fitted)).collect();
-        let winding = |fitted: &&Fitted| matches!(fitted.effect.shape, Shape::Polynomial { degree, .. } if degree > 2);
+        let winding =
+            |fitted: &&Fitted| matches!(fitted.effect.shape, Shape::Polynomial { degree, .. } if degree > 2);
         if parts.len() < 2 && !parts.iter().any(winding) {
             continue;
         }
@@ -47,12 +49,49 @@ pub(crate) fn try_tables(
             let effect = Effect { place, shape: table(axis, &travels[axis], nodes) };
             trial.push(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
             let trial = fit::refine(study, trial, noises, travels);
+            // A curve that is flat but for one place is a place; that is looked for elsewhere, without imitations.
+            let local = trial
+                .model
+                .last()
+                .and_then(active)
+                .is_some_and(|(from, to)| to - from < BROAD * travels[axis].range());
+            if local {
+                fit = fit::refine(study, kept, noises, travels);
+                break;
+            }
             if cost(study, &trial, always, tries) < cost(study, &fit, always, tries) {
                 fit = trial;
             }
         }
     }
     fit
+}
+
+/// The share of the travel from which on a feature is a curve, and below which it is a place.
+pub(crate) const BROAD: f64 = 0.3;
+
+/// The share of a table's height from which on it is active.
+const ACTIVE: f64 = 0.2;
+
+/// Where a table differs from its median: from the last quiet node before to the first one behind.
+pub(crate) fn active(fitted: &Fitted) -> Option<(f64, f64)> {
+    let Shape::Table { nodes, .. } = &fitted.effect.shape else { return None };
+    let mut sorted = fitted.coefficients.clone();
+    sorted.sort_by(f64::total_cmp);
+    let median = *sorted.get(sorted.len() / 2)?;
+    let height = fitted.coefficients.iter().map(|value| (value - median).abs()).fold(0.0, f64::max);
+    let moved = |value: &f64| (value - median).abs() > ACTIVE * height;
+    let places = fitted
+        .coefficients
+        .iter()
+        .enumerate()
+        .filter(|(_, value)| moved(value))
+        .map(|(at, _)| at % nodes.len());
+    let (first, last) =
+        places.fold((nodes.len(), 0), |(first, last), place| (first.min(place), last.max(place)));
+    let from = nodes.get(first.saturating_sub(1))?;
+    let to = nodes.get((last + 1).min(nodes.len() - 1))?;
+    Some((*from, *to))
 }
 
 /// The axis along which an effect is a smooth curve.
@@ -72,7 +111,8 @@ pub(crate) fn table(axis: usize, travel: &Travel, nodes: usize) -> Shape {
 
 /// What a fit costs: its misfit and the price of its effects.
 pub(crate) fn cost(study: &Study<'_>, fit: &Fit, always: usize, tries: Tries) -> f64 {
-    let prices =
-        fit.model[always..].iter().map(|fitted| price(study, &fitted.effect, fit.samples, tries.candidates, tries.waves));
+    let prices = fit.model[always..]
+        .iter()
+        .map(|fitted| price(study, &fitted.effect, fit.samples, tries.candidates, tries.waves));
     fit.samples * (fit.remaining / fit.samples).ln() + prices.sum::<f64>()
 }

@@ -5,6 +5,8 @@
 //! ask is in these matrices; the columns themselves are made in stretches and never kept, so that memory does not grow
 //! with candidates.
 
+use std::panic::resume_unwind;
+
 use nalgebra::DMatrix;
 
 use crate::model::{Effect, Model, Place, Side};
@@ -60,7 +62,12 @@ pub(crate) const STRETCH: usize = 1024;
 
 impl Design {
     /// Runs through all recordings once.
-    pub(crate) fn new(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], regressors: Vec<Regressor>) -> Self {
+    pub(crate) fn new(
+        study: &Study<'_>,
+        model: &Model,
+        noises: &[Vec<Noise>],
+        regressors: Vec<Regressor>,
+    ) -> Self {
         let mut first = Vec::with_capacity(regressors.len());
         let mut width = 0;
         for regressor in &regressors {
@@ -68,8 +75,8 @@ impl Design {
             width += regressor.columns();
         }
         let mut blocks = Vec::new();
-        for scene in 0..study.scenes.len() {
-            blocks.extend(scene_products(study, scene, model, &noises[scene], &regressors, width));
+        for (scene, noises) in noises.iter().enumerate() {
+            blocks.extend(scene_products(study, scene, model, noises, &regressors, width));
         }
         Self { regressors, first, width, blocks }
     }
@@ -79,7 +86,10 @@ impl Design {
     pub(crate) fn rebase(&mut self, model: &Model) {
         let mut shares = vec![0.0; self.width];
         for fitted in model {
-            let number = self.regressors.iter().position(|known| known.slope.is_none() && known.effect == fitted.effect);
+            let number = self
+                .regressors
+                .iter()
+                .position(|known| known.slope.is_none() && known.effect == fitted.effect);
             if let Some(number) = number {
                 for (column, coefficient) in self.columns(number).zip(&fitted.coefficients) {
                     shares[column] = *coefficient;
@@ -176,7 +186,9 @@ pub(crate) fn in_parallel<T: Send>(count: usize, job: &(impl Fn(usize) -> T + Sy
                 })
             })
             .collect();
-        handles.into_iter().flat_map(|handle| handle.join().unwrap_or_default()).collect()
+        let joined =
+            handles.into_iter().map(|handle| handle.join().unwrap_or_else(|panic| resume_unwind(panic)));
+        joined.flatten().collect()
     });
     results.sort_by_key(|(number, _)| *number);
     results.into_iter().map(|(_, result)| result).collect()
@@ -279,7 +291,8 @@ impl<'r> ChannelRun<'r> {
             for (number, weight) in weights.iter().enumerate() {
                 sums[(number, column)] -= weight * plain[column] / f64::max(samples, 1.0);
             }
-            sums[(count, column)] = sums[(count + 1, column)] - plain[column] * plain[column] / f64::max(samples, 1.0);
+            sums[(count, column)] =
+                sums[(count + 1, column)] - plain[column] * plain[column] / f64::max(samples, 1.0);
         }
         sums
     }
@@ -329,8 +342,11 @@ impl<'r> ChannelRun<'r> {
                         }
                     }
                 }
-                (Place::Instrument { .. }, Shape::Instrument(setting)) if acts(&regressor.effect, self.scene) => {
-                    if let Some(values) = frame.setting(study, self.scene, self.number, *setting, self.model) {
+                (Place::Instrument { .. }, Shape::Instrument(setting))
+                    if acts(&regressor.effect, self.scene) =>
+                {
+                    if let Some(values) = frame.setting(study, self.scene, self.number, *setting, self.model)
+                    {
                         columns.column_mut(next).copy_from_slice(&values);
                     }
                 }
@@ -340,7 +356,9 @@ impl<'r> ChannelRun<'r> {
         }
         let residual = frame.residual(study, self.scene, channel, self.model);
         let settings = frame.settings(study, self.scene, self.number, self.model);
-        for ((target, residual), setting) in columns.column_mut(self.width).iter_mut().zip(residual).zip(settings) {
+        for ((target, residual), setting) in
+            columns.column_mut(self.width).iter_mut().zip(residual).zip(settings)
+        {
             *target = residual - setting;
         }
         columns

@@ -43,7 +43,8 @@ pub(crate) fn try_loops(
         .filter(|(number, fitted)| *number < always || !mistakable(&fitted.effect))
         .map(|(_, fitted)| fitted.clone())
         .collect();
-    let step = study.scenes.iter().map(|scene| typical_step(&scene.recording.time)).fold(f64::INFINITY, f64::min);
+    let step =
+        study.scenes.iter().map(|scene| typical_step(&scene.recording.time)).fold(f64::INFINITY, f64::min);
     for time_constant in geometric(0.5 * step, (40.0 * step).min(0.3), 2.0) {
         let trial = with_loops(study, &kept, &now.model, time_constant, travels);
         let fit = fit::refine(study, trial, noises, travels);
@@ -69,13 +70,22 @@ fn mistakable(effect: &Effect) -> bool {
 }
 
 /// A model with loops on all moving axes; the differences of lags that are known already stay.
-fn with_loops(study: &Study<'_>, kept: &Model, known: &Model, time_constant: f64, travels: &[Travel]) -> Model {
+fn with_loops(
+    study: &Study<'_>,
+    kept: &Model,
+    known: &Model,
+    time_constant: f64,
+    travels: &[Travel],
+) -> Model {
     let mut model = kept.clone();
     for (axis, own) in study.own.iter().enumerate() {
         let Some(motion) = own.filter(|_| travels[axis].moves) else { continue };
         let shape = Shape::Lag { axis };
-        let lag: f64 =
-            known.iter().filter(|fitted| fitted.effect.shape == shape).flat_map(|fitted| &fitted.coefficients).sum();
+        let lag: f64 = known
+            .iter()
+            .filter(|fitted| fitted.effect.shape == shape)
+            .flat_map(|fitted| &fitted.coefficients)
+            .sum();
         let effect = Effect { place: Place::Motion { motion, side: Side::Drive }, shape };
         model.push(Fitted { effect, coefficients: vec![lag + time_constant] });
     }
@@ -83,14 +93,25 @@ fn with_loops(study: &Study<'_>, kept: &Model, known: &Model, time_constant: f64
 }
 
 /// Drops loops that came out as good as immediate.
-fn without_idle(study: &Study<'_>, fit: Fit, always: usize, noises: &[Vec<Noise>], travels: &[Travel]) -> Fit {
+fn without_idle(
+    study: &Study<'_>,
+    fit: Fit,
+    always: usize,
+    noises: &[Vec<Noise>],
+    travels: &[Travel],
+) -> Fit {
     let idle = |number: usize, fitted: &Fitted| {
         number >= always
             && matches!(fitted.effect.shape, Shape::Lag { .. })
             && fitted.coefficients.iter().all(|lag| *lag < 1e-6)
     };
     let before = fit.model.len();
-    let model: Model =
-        fit.model.iter().enumerate().filter(|(number, fitted)| !idle(*number, fitted)).map(|(_, f)| f.clone()).collect();
+    let model: Model = fit
+        .model
+        .iter()
+        .enumerate()
+        .filter(|(number, fitted)| !idle(*number, fitted))
+        .map(|(_, f)| f.clone())
+        .collect();
     if model.len() < before { fit::refine(study, model, noises, travels) } else { fit }
 }

@@ -72,7 +72,6 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
         let appraisal = Appraisal::new(study, &model);
         appraisal.mark(study);
         let quiet = same_noises(&noises, &appraisal.noises);
-        trace(study, &model, &appraisal);
         noises = appraisal.noises;
         if settled && quiet && round > 0 {
             break;
@@ -81,7 +80,6 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     let fit = fit::refine(study, model, &noises, &travels);
     let fit = curves::try_tables(study, fit, always, &noises, &travels, tries);
     let (fit, appraisal) = judge::uphold(study, fit, always, &travels, tries);
-    trace(study, &fit.model, &appraisal);
     Found { fit, appraisal, pool, travels, always, tries }
 }
 
@@ -111,8 +109,12 @@ pub(crate) fn beside(study: &Study<'_>, found: &Found, feature: &Feature) -> Opt
     let effect = table(study, found, feature)?;
     let mut model = found.fit.model.clone();
     model.push(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
-    let noises: Vec<Vec<Noise>> =
-        found.appraisal.noises.iter().map(|channels| channels.iter().map(Noise::as_white).collect()).collect();
+    let noises: Vec<Vec<Noise>> = found
+        .appraisal
+        .noises
+        .iter()
+        .map(|channels| channels.iter().map(Noise::as_white).collect())
+        .collect();
     Some(Appraisal::new(study, &fit::refine(study, model, &noises, &found.travels).model))
 }
 
@@ -126,17 +128,28 @@ fn table(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Effect> 
     let travel = found.travels[feature.axis];
     let nodes = NODES.min(feature.profile.len() / 2).max(2);
     let at = |node: usize| travel.low + travel.range() * crate::number(node) / crate::number(nodes - 1);
-    let shape =
-        Shape::Table { axis: feature.axis, nodes: (0..nodes).map(at).collect(), directed: feature.direction != 0.0 };
+    let shape = Shape::Table {
+        axis: feature.axis,
+        nodes: (0..nodes).map(at).collect(),
+        directed: feature.direction != 0.0,
+    };
     let motions = study.equations.motions.iter().enumerate();
     let tables: Vec<Effect> = motions
         .filter(|(_, known)| known.axis == Some(feature.axis) && !known.alignment)
-        .map(|(motion, _)| Effect { place: Place::Motion { motion, side: Side::After }, shape: shape.clone() })
+        .map(|(motion, _)| Effect {
+            place: Place::Motion { motion, side: Side::After },
+            shape: shape.clone(),
+        })
         .collect();
     let model = &found.fit.model;
-    let noises: Vec<Vec<Noise>> =
-        found.appraisal.noises.iter().map(|channels| channels.iter().map(Noise::as_white).collect()).collect();
-    let mut regressors: Vec<Regressor> = model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+    let noises: Vec<Vec<Noise>> = found
+        .appraisal
+        .noises
+        .iter()
+        .map(|channels| channels.iter().map(Noise::as_white).collect())
+        .collect();
+    let mut regressors: Vec<Regressor> =
+        model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
     regressors.extend(tables.iter().cloned().map(Regressor::of));
     let design = Design::new(study, model, &noises, regressors);
     let (products, _) = design.fitted();
@@ -149,16 +162,6 @@ fn table(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Effect> 
         swept.promise(&columns).0 - candidates::simplicity(study, &tables[number])
     };
     (0..tables.len()).max_by(|a, b| gain(*a).total_cmp(&gain(*b))).map(|best| tables[best].clone())
-}
-
-fn trace(study: &Study<'_>, model: &Model, appraisal: &Appraisal) {
-    if std::env::var_os("ABBE_TRACE").is_some() {
-        eprintln!("deviance {} {:?}", appraisal.deviance, appraisal.noises);
-        for fitted in model {
-            let motion = fitted.effect.motion().map(|m| &study.equations.motions[m].name);
-            eprintln!("   {motion:?} {:?} {:?}", fitted.effect.shape, fitted.coefficients);
-        }
-    }
 }
 
 /// For each wave of the model: the highest peak in its neighbourhood when it is taken out. Runs with long pauses between them
@@ -198,7 +201,12 @@ pub(crate) fn courses(study: &Study<'_>, model: &Model) -> Vec<Course> {
     (0..study.scenes.len()).map(|scene| Course::new(study, scene, model)).collect()
 }
 
-fn all_residuals(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], courses: &[Course]) -> Vec<Vec<Weighted>> {
+fn all_residuals(
+    study: &Study<'_>,
+    model: &Model,
+    noises: &[Vec<Noise>],
+    courses: &[Course],
+) -> Vec<Vec<Weighted>> {
     let each = courses.iter().enumerate();
     each.map(|(scene, course)| waves::weighted(study, scene, model, &noises[scene], course)).collect()
 }

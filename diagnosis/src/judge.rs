@@ -8,8 +8,8 @@ use crate::candidates::Travel;
 use crate::design::{Design, Products, Regressor};
 use crate::fit::{self, Fit};
 use crate::model::{Fitted, Model};
-use crate::observations::Course;
 use crate::noise::Noise;
+use crate::observations::Course;
 use crate::search::{price, untold_price};
 use crate::study::Study;
 use crate::sweep::Swept;
@@ -35,7 +35,13 @@ const STEADY: f64 = 3.5;
 const FEW_BLOCKS: usize = 5;
 
 /// Drops what does not stand up, one effect at a time, and fits the rest again.
-pub(crate) fn uphold(study: &mut Study<'_>, mut fit: Fit, always: usize, travels: &[Travel], tries: Tries) -> (Fit, Appraisal) {
+pub(crate) fn uphold(
+    study: &mut Study<'_>,
+    mut fit: Fit,
+    always: usize,
+    travels: &[Travel],
+    tries: Tries,
+) -> (Fit, Appraisal) {
     loop {
         let appraisal = Appraisal::new(study, &fit.model);
         appraisal.mark(study);
@@ -50,7 +56,13 @@ pub(crate) fn uphold(study: &mut Study<'_>, mut fit: Fit, always: usize, travels
 }
 
 /// The effect that stands up least, of those that do not.
-fn weakest(study: &Study<'_>, fit: &Fit, appraisal: &Appraisal, always: usize, tries: Tries) -> Option<usize> {
+fn weakest(
+    study: &Study<'_>,
+    fit: &Fit,
+    appraisal: &Appraisal,
+    always: usize,
+    tries: Tries,
+) -> Option<usize> {
     let design = design(study, &fit.model, &appraisal.noises);
     let (products, samples) = design.fitted();
     let mut swept = Swept::new(&products);
@@ -192,7 +204,8 @@ fn share(design: &Design, swept: &Swept, number: usize, block: &Products) -> (f6
             .clone()
             .map(|column| coefficients[row] * coefficients[column] * block.matrix[(row, column)])
             .sum::<f64>();
-        let explained: f64 = (0..design.width).map(|column| coefficients[column] * block.matrix[(row, column)]).sum();
+        let explained: f64 =
+            (0..design.width).map(|column| coefficients[column] * block.matrix[(row, column)]).sum();
         score += coefficients[row] * (block.matrix[(row, design.width)] - explained);
     }
     (energy, score)

@@ -28,7 +28,12 @@ const ALIKE: f64 = 1e-6;
 const VISIBLE: f64 = 1e-10;
 
 /// Groups effects by what the recordings show of them; effects that they do not show are left out.
-pub(crate) fn groups(study: &Study<'_>, courses: &[Course], noises: &[Vec<Noise>], effects: Vec<Effect>) -> Vec<Kin> {
+pub(crate) fn groups(
+    study: &Study<'_>,
+    courses: &[Course],
+    noises: &[Vec<Noise>],
+    effects: Vec<Effect>,
+) -> Vec<Kin> {
     let sums = column_sums(study, courses, noises, &effects);
     let mut order: Vec<usize> = (0..effects.len()).collect();
     order.sort_by(|a, b| simplicity(study, &effects[*a]).total_cmp(&simplicity(study, &effects[*b])));
@@ -91,7 +96,8 @@ fn column_sums(
 /// The first of these sums are random ones; then come the squares about the mean, and all squares.
 fn normalised(sums: &[f64]) -> Option<[f64; SUMS]> {
     let (random, squares) = sums.split_at(SUMS);
-    if !(squares[0] > VISIBLE * squares[1]) {
+    let seen = squares[0] > VISIBLE * squares[1];
+    if !seen {
         return None;
     }
     let mut mark = [0.0; SUMS];

@@ -32,6 +32,7 @@ mod terms;
 #[cfg(test)]
 mod testing;
 mod waves;
+mod way;
 mod words;
 mod zeros;
 
@@ -77,7 +78,11 @@ fn number(count: usize) -> f64 {
 }
 
 /// The whole part of a number that is not negative, as an index.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked to be small and not negative")]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "checked to be small and not negative"
+)]
 fn index(value: f64) -> Option<usize> {
-    (value >= 0.0 && value < 1e12).then_some(value as usize)
+    (0.0..1e12).contains(&value).then_some(value as usize)
 }

@@ -50,7 +50,12 @@ const PLACES: usize = 8;
 const MOST_PLACES: usize = 64;
 
 /// The strongest local feature, if there is any.
-pub(crate) fn strongest(study: &Study<'_>, appraisal: &Appraisal, courses: &[Course], travels: &[Travel]) -> Option<Feature> {
+pub(crate) fn strongest(
+    study: &Study<'_>,
+    appraisal: &Appraisal,
+    courses: &[Course],
+    travels: &[Travel],
+) -> Option<Feature> {
     let mut best: Option<Feature> = None;
     for (scene, known) in study.scenes.iter().enumerate() {
         for (channel, observed) in known.channels.iter().enumerate() {
@@ -58,14 +63,19 @@ pub(crate) fn strongest(study: &Study<'_>, appraisal: &Appraisal, courses: &[Cou
                 let position = &courses[scene].states(observed.kind).axes[axis].position;
                 let moves = &courses[scene].states(observed.kind).axes[axis].direction;
                 let residual = &appraisal.residuals[scene][channel];
-                let valid = |row: usize| residual[row].is_finite() && !appraisal.outliers[scene][channel][row];
+                let valid =
+                    |row: usize| residual[row].is_finite() && !appraisal.outliers[scene][channel][row];
                 let passes = passes(position, moves, &known.recording.run);
                 for direction in [0.0, 1.0, -1.0] {
-                    let chosen: Vec<&Range<usize>> =
-                        passes.iter().filter(|(_, d)| direction == 0.0 || *d == direction).map(|(rows, _)| rows).collect();
+                    let chosen: Vec<&Range<usize>> = passes
+                        .iter()
+                        .filter(|(_, d)| direction == 0.0 || *d == direction)
+                        .map(|(rows, _)| rows)
+                        .collect();
                     let noise = appraisal.noises[scene][channel];
                     let profile = Profile::new(residual, position, &chosen, &valid, travel);
-                    let feature = profile.and_then(|profile| profile.feature(noise.white.hypot(noise.wander)));
+                    let feature =
+                        profile.and_then(|profile| profile.feature(noise.white.hypot(noise.wander)));
                     if let Some(found) = feature
                         && best.as_ref().is_none_or(|best| found.strength > 1.2 * best.strength)
                     {
@@ -83,7 +93,9 @@ fn passes(position: &[f64], direction: &[f64], run: &[i64]) -> Vec<(Range<usize>
     let mut passes: Vec<(Range<usize>, f64)> = Vec::new();
     for row in 0..position.len() {
         match passes.last_mut() {
-            Some((rows, known)) if *known == direction[row] && run[rows.start] == run[row] => rows.end = row + 1,
+            Some((rows, known)) if *known == direction[row] && run[rows.start] == run[row] => {
+                rows.end = row + 1
+            }
             _ => passes.push((row..row + 1, direction[row])),
         }
     }
@@ -107,16 +119,20 @@ impl Profile {
         valid: &impl Fn(usize) -> bool,
         travel: &Travel,
     ) -> Option<Self> {
-        let full: Vec<&&Range<usize>> =
-            passes.iter().filter(|rows| covered(&position[(**rows).clone()]) > 0.5 * travel.range()).collect();
+        let full: Vec<&&Range<usize>> = passes
+            .iter()
+            .filter(|rows| covered(&position[(**rows).clone()]) > 0.5 * travel.range())
+            .collect();
         let samples: usize = full.iter().map(|rows| rows.len()).sum();
         let places = (samples / full.len().max(1) / 2).min(MOST_PLACES);
         if full.len() < PASSES || places < PLACES {
             return None;
         }
         let width = travel.range() / crate::number(places);
-        let curves: Vec<Vec<Option<f64>>> =
-            full.iter().map(|rows| curve(residual, position, rows, valid, travel.low, width, places)).collect();
+        let curves: Vec<Vec<Option<f64>>> = full
+            .iter()
+            .map(|rows| curve(residual, position, rows, valid, travel.low, width, places))
+            .collect();
         let (mut means, mut squares, mut counts) = (vec![0.0; places], 0.0, vec![0.0; places]);
         let mut freedom = 0.0;
         for place in 0..places {
@@ -129,7 +145,9 @@ impl Profile {
             }
         }
         let scatter = (squares / f64::max(freedom, 1.0)).sqrt();
-        let error = |count: &f64| if *count >= crate::number(PASSES) { scatter / count.sqrt() } else { f64::INFINITY };
+        let error = |count: &f64| {
+            if *count >= crate::number(PASSES) { scatter / count.sqrt() } else { f64::INFINITY }
+        };
         Some(Self { low: travel.low, width, means, errors: counts.iter().map(error).collect() })
     }
 
@@ -165,7 +183,8 @@ impl Profile {
 
 fn covered(position: &[f64]) -> f64 {
     let known = position.iter().filter(|position| position.is_finite());
-    let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), q| (low.min(*q), high.max(*q)));
+    let (low, high) =
+        known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), q| (low.min(*q), high.max(*q)));
     (high - low).max(0.0)
 }
 
@@ -187,7 +206,8 @@ fn curve(
             sum.1 += 1.0;
         }
     }
-    let means: Vec<Option<f64>> = sums.iter().map(|(sum, count)| (*count > 0.0).then(|| sum / count)).collect();
+    let means: Vec<Option<f64>> =
+        sums.iter().map(|(sum, count)| (*count > 0.0).then(|| sum / count)).collect();
     let mut known: Vec<f64> = means.iter().flatten().copied().collect();
     known.sort_by(f64::total_cmp);
     let zero = known.get(known.len() / 2).copied().unwrap_or_default();

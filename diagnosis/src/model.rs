@@ -46,7 +46,9 @@ impl Effect {
     /// The setting, where it is one of the instrument of this recording.
     pub(crate) fn setting_of(&self, recording: usize) -> Option<Setting> {
         match (&self.shape, self.place) {
-            (Shape::Instrument(setting), Place::Instrument { recording: of }) if of == recording => Some(*setting),
+            (Shape::Instrument(setting), Place::Instrument { recording: of }) if of == recording => {
+                Some(*setting)
+            }
             _ => None,
         }
     }

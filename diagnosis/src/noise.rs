@@ -139,7 +139,8 @@ pub(crate) fn estimate(time: &[f64], residual: &[f64], valid: &[bool], floor: f6
     let cost = |point: [f64; 2]| {
         // Between half a step and ten recordings, and a wandering from nothing to all there is.
         let (ratio, time_constant) = (point[0].clamp(-12.0, 12.0).exp(), point[1].exp());
-        let outside = (point[1] - (0.3 * step).ln()).min(0.0).abs() + (point[1] - (10.0 * span).ln()).max(0.0)
+        let outside = (point[1] - (0.3 * step).ln()).min(0.0).abs()
+            + (point[1] - (10.0 * span).ln()).max(0.0)
             + (point[0].abs() - 12.0).max(0.0);
         deviance(time, residual, valid, unit(ratio, time_constant)).0 + 1e3 * outside
     };
@@ -173,11 +174,8 @@ const WORTH: f64 = 9.2;
 
 /// The standard deviation of the fast part of a residual: from the median difference of neighbouring samples.
 pub(crate) fn from_differences(residual: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = residual
-        .windows(2)
-        .map(|pair| (pair[1] - pair[0]).abs())
-        .filter(|step| step.is_finite())
-        .collect();
+    let mut steps: Vec<f64> =
+        residual.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| step.is_finite()).collect();
     steps.sort_by(f64::total_cmp);
     let median = steps.get(steps.len() / 2).copied().unwrap_or_default();
     median / (0.6745 * std::f64::consts::SQRT_2)

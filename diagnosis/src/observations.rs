@@ -69,7 +69,12 @@ impl KnownError {
             let view = states.rows(from..end);
             let motions = terms.motions(&view, study.equations.motions.len(), false);
             let (positions, travels) = inputs(study, &view);
-            append(&mut known.tip, &study.interpreter.lever_values(&positions, &travels), &motions, end - from);
+            append(
+                &mut known.tip,
+                &study.interpreter.lever_values(&positions, &travels),
+                &motions,
+                end - from,
+            );
             if let Some(turn) = &mut known.turn {
                 append(turn, &study.interpreter.turn_values(&positions, &travels), &motions, end - from);
             }
@@ -88,7 +93,8 @@ fn append(sums: &mut [Vec<f64>; 3], arms: &[[Column<'_>; 3]], motions: &[Option<
 
 /// The positions of all axes in a stretch of rows, and the free travels, which are positions by default.
 fn inputs<'s>(study: &Study<'_>, view: &Rows<'s>) -> (Vec<&'s [f64]>, Vec<&'s [f64]>) {
-    let positions: Vec<&[f64]> = (0..study.equations.axes.len()).map(|axis| view.axis(axis).position).collect();
+    let positions: Vec<&[f64]> =
+        (0..study.equations.axes.len()).map(|axis| view.axis(axis).position).collect();
     let travels = study.equations.travels.iter().map(|travel| positions[travel.axis]).collect();
     (positions, travels)
 }
@@ -204,7 +210,13 @@ impl<'c> Frame<'c> {
     }
 
     /// Observed minus predicted, without the instrument's settings but for a ballbar's, which act exactly.
-    pub(crate) fn residual(&self, study: &Study<'_>, scene: usize, channel: &Channel, model: &Model) -> Vec<f64> {
+    pub(crate) fn residual(
+        &self,
+        study: &Study<'_>,
+        scene: usize,
+        channel: &Channel,
+        model: &Model,
+    ) -> Vec<f64> {
         let observed = &channel.values[self.rows.clone()];
         let tip = |d: usize, row: usize| self.nominal[d][row] + self.error[d][row];
         let moved = |d: usize, row: usize| tip(d, row) - self.reference[d][row];
@@ -276,9 +288,10 @@ impl<'c> Frame<'c> {
             let value = |row: usize| dot(direction(row), [0, 1, 2].map(|d| parts[d].at(row)));
             (!unseen).then(|| (0..rows).map(value).collect::<Vec<f64>>()).and_then(seen)
         };
-        let along = |of: &[[Column<'_>; 3]], direction: &dyn Fn(usize) -> [f64; 3]| -> Vec<Option<Vec<f64>>> {
-            of.iter().map(|parts| projected(parts, direction)).collect()
-        };
+        let along =
+            |of: &[[Column<'_>; 3]], direction: &dyn Fn(usize) -> [f64; 3]| -> Vec<Option<Vec<f64>>> {
+                of.iter().map(|parts| projected(parts, direction)).collect()
+            };
         match channel.kind {
             Kind::Tip(d) => self.levers.iter().map(|parts| part(&parts[d], rows)).collect(),
             Kind::Radius { center, radius } => {
@@ -376,8 +389,10 @@ impl<'c> Frame<'c> {
         let mut sum = vec![0.0; self.len()];
         for fitted in model {
             let setting = fitted.effect.setting_of(scene);
-            if let (Some(setting @ (Setting::Offset { .. } | Setting::RunOffset { .. } | Setting::Cosine)), [coefficient]) =
-                (setting, fitted.coefficients.as_slice())
+            if let (
+                Some(setting @ (Setting::Offset { .. } | Setting::RunOffset { .. } | Setting::Cosine)),
+                [coefficient],
+            ) = (setting, fitted.coefficients.as_slice())
                 && let Some(column) = self.setting(study, scene, number, setting, model)
             {
                 for (sum, value) in sum.iter_mut().zip(column) {
@@ -430,7 +445,9 @@ fn weighted_sum(levers: &[[Column<'_>; 3]], motions: &[Option<Vec<f64>>], rows: 
         for (error, lever) in error.iter_mut().zip(levers) {
             match lever {
                 Column::Same(0.0) => {}
-                Column::Same(lever) => error.iter_mut().zip(motion).for_each(|(error, motion)| *error += lever * motion),
+                Column::Same(lever) => {
+                    error.iter_mut().zip(motion).for_each(|(error, motion)| *error += lever * motion)
+                }
                 Column::Rows(lever) => {
                     for ((error, lever), motion) in error.iter_mut().zip(lever.iter()).zip(motion) {
                         *error += lever * motion;

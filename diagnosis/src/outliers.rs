@@ -11,7 +11,8 @@ const NEIGHBOURS: usize = 4;
 /// Marks the outliers of a residual.
 pub(crate) fn mark(residual: &[f64]) -> Vec<bool> {
     let distances: Vec<f64> = (0..residual.len()).map(|row| from_neighbours(residual, row)).collect();
-    let mut sizes: Vec<f64> = distances.iter().map(|distance| distance.abs()).filter(|size| size.is_finite()).collect();
+    let mut sizes: Vec<f64> =
+        distances.iter().map(|distance| distance.abs()).filter(|size| size.is_finite()).collect();
     if sizes.is_empty() {
         return vec![false; residual.len()];
     }
@@ -41,3 +42,6 @@ fn median<'v>(values: impl Iterator<Item = &'v f64>) -> Option<f64> {
     few.sort_by(f64::total_cmp);
     few.get(few.len() / 2).copied()
 }
+
+#[cfg(test)]
+mod tests;

@@ -27,11 +27,7 @@ pub(crate) struct Described<'f> {
 
 /// The unit in which an axis is spoken of: for one mm, or one rad of a rotary axis.
 pub(crate) fn axis_unit(study: &Study<'_>, axis: usize) -> (f64, &'static str) {
-    if !study.equations.axes[axis].rotary {
-        (1.0, "mm")
-    } else {
-        angle_unit(study)
-    }
+    if !study.equations.axes[axis].rotary { (1.0, "mm") } else { angle_unit(study) }
 }
 
 /// The unit in which the recordings speak of angles of rotary axes.
@@ -99,7 +95,10 @@ impl<'f> Described<'f> {
         match &self.fitted.effect.shape {
             Shape::Constant => vec![plain("value", 0)],
             Shape::Polynomial { axis, .. } => {
-                vec![axis_name(study, *axis), Parameter::list("coefficients", self.powers(axis_unit(study, *axis)))]
+                vec![
+                    axis_name(study, *axis),
+                    Parameter::list("coefficients", self.powers(axis_unit(study, *axis))),
+                ]
             }
             Shape::SensorPolynomial { sensor, .. } => {
                 vec![sensor_name(study, *sensor), Parameter::list("coefficients", self.powers((1.0, "K")))]
@@ -137,7 +136,11 @@ impl<'f> Described<'f> {
             Shape::Acceleration { .. } => vec![Parameter::fitted("gain", self.reciprocal("1/s^2"))],
             Shape::Expansion { axis, sensor, reference } => {
                 let (axis_factor, axis_unit) = axis_unit(study, *axis);
-                let unit = if axis_unit == unit { "1/K".to_owned() } else { format!("{}/K", self.per(axis_unit, 1)) };
+                let unit = if axis_unit == unit {
+                    "1/K".to_owned()
+                } else {
+                    format!("{}/K", self.per(axis_unit, 1))
+                };
                 let coefficient = self.linear(0, factor / axis_factor, unit);
                 vec![
                     sensor_name(study, *sensor),
@@ -203,7 +206,10 @@ impl<'f> Described<'f> {
                 "amplitude",
                 self.derived(amplitude, &[a / amplitude, b / amplitude], (factor, unit.to_owned())),
             ),
-            Parameter::fitted("phase", self.derived(phase, &[-b / square, a / square], (1.0, "rad".to_owned()))),
+            Parameter::fitted(
+                "phase",
+                self.derived(phase, &[-b / square, a / square], (1.0, "rad".to_owned())),
+            ),
         ]
     }
 
@@ -229,16 +235,20 @@ impl<'f> Described<'f> {
             Shape::Polynomial { axis, .. } => {
                 CalibratedTerm::Polynomial { input: SeriesInput::Axis(*axis), coefficients: in_position() }
             }
-            Shape::SensorPolynomial { sensor, .. } => {
-                CalibratedTerm::Polynomial { input: SeriesInput::Sensor(*sensor), coefficients: in_position() }
-            }
+            Shape::SensorPolynomial { sensor, .. } => CalibratedTerm::Polynomial {
+                input: SeriesInput::Sensor(*sensor),
+                coefficients: in_position(),
+            },
             Shape::Coupling { axis, .. } => {
                 let coefficients = in_position().into_iter().skip(1).collect();
                 CalibratedTerm::Coupling { axis: *axis, coefficients }
             }
             Shape::Table { axis, nodes, directed } => CalibratedTerm::Table {
                 axis: *axis,
-                curve: Curve { nodes: CurveNodes::At(nodes.clone()), values: self.curve(nodes.len(), *directed) },
+                curve: Curve {
+                    nodes: CurveNodes::At(nodes.clone()),
+                    values: self.curve(nodes.len(), *directed),
+                },
             },
             Shape::Backlash { axis, wind_up } => {
                 CalibratedTerm::Backlash { axis: *axis, lost_motion: first, wind_up: *wind_up }

@@ -96,7 +96,10 @@ fn measure(study: &Study<'_>, scene: usize, free: &Model, after: &Appraisal, run
         .filter(|channel| study.scenes[scene].channels[*channel].kind.outside());
     let zero = |channel: usize, run: i64| -> f64 {
         let wanted = Some(Setting::RunOffset { channel, run });
-        free.iter().filter(|fitted| fitted.effect.setting_of(scene) == wanted).flat_map(|fitted| &fitted.coefficients).sum()
+        free.iter()
+            .filter(|fitted| fitted.effect.setting_of(scene) == wanted)
+            .flat_map(|fitted| &fitted.coefficients)
+            .sum()
     };
     let mut zeros = Vec::new();
     let (mut between, mut within) = (0.0_f64, 0.0_f64);
@@ -124,7 +127,10 @@ fn deviation(values: &[f64]) -> f64 {
 pub(crate) fn describe(study: &Study<'_>, scatter: &Scatter, unit: (f64, &'static str)) -> Repeatability {
     let scene = &study.scenes[scatter.scene];
     let mean = |values: &[f64], run: i64| {
-        let of_run = values.iter().zip(&scene.recording.run).filter(|(value, known)| **known == run && value.is_finite());
+        let of_run = values
+            .iter()
+            .zip(&scene.recording.run)
+            .filter(|(value, known)| **known == run && value.is_finite());
         let (sum, count) = of_run.fold((0.0, 0.0), |(sum, count), (value, _)| (sum + value, count + 1.0));
         sum / f64::max(count, 1.0)
     };
@@ -135,7 +141,9 @@ pub(crate) fn describe(study: &Study<'_>, scatter: &Scatter, unit: (f64, &'stati
     }
     let strongest = states
         .into_iter()
-        .flat_map(|(name, state)| scatter.zeros.iter().map(move |zeros| (name.clone(), correlation(zeros, &state))))
+        .flat_map(|(name, state)| {
+            scatter.zeros.iter().map(move |zeros| (name.clone(), correlation(zeros, &state)))
+        })
         .filter(|(_, correlation)| correlation.is_finite())
         .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     let detail = match strongest {
@@ -147,7 +155,12 @@ pub(crate) fn describe(study: &Study<'_>, scatter: &Scatter, unit: (f64, &'stati
         ),
         None => "nothing that was recorded explains it".to_owned(),
     };
-    Repeatability { between_runs: scatter.between * unit.0, expected: scatter.within * unit.0, unit: unit.1, detail }
+    Repeatability {
+        between_runs: scatter.between * unit.0,
+        expected: scatter.within * unit.0,
+        unit: unit.1,
+        detail,
+    }
 }
 
 /// The correlation from which on zeros are said to follow a state.

@@ -31,7 +31,9 @@ pub(crate) fn price(study: &Study<'_>, effect: &Effect, samples: f64, tries: f64
         Shape::Cyclic { .. } | Shape::Vibration { .. } => waves.max(1.0).ln(),
         _ => 0.0,
     };
-    crate::number(parameters) * parameter_price(samples) + 2.0 * (tries.ln() + waves) + simplicity(study, effect)
+    (crate::number(parameters) - FIRST_SAVES) * parameter_price(samples)
+        + 2.0 * (tries.ln() + waves)
+        + simplicity(study, effect)
 }
 
 /// What a price counts for columns that others hold already.
@@ -39,11 +41,14 @@ pub(crate) fn untold_price(columns: usize, samples: f64) -> f64 {
     crate::number(columns) * parameter_price(samples)
 }
 
-/// What one more parameter must take from the cost. Correlated samples tell less than their number, which the held-out
-/// test and the judge see to; so this is less than the logarithm of Schwarz's criterion.
+/// What one more parameter must take from the cost: Schwarz's criterion.
 fn parameter_price(samples: f64) -> f64 {
-    0.6 * samples.max(2.0).ln()
+    samples.max(2.0).ln()
 }
+
+/// The share of its price that the first parameter of an effect is spared: the held-out test and the judge look after single
+/// parameters, while flexible shapes are the ones that fit anything.
+const FIRST_SAVES: f64 = 0.4;
 
 /// The share of an effect that the others of a set must leave: two effects that nearly cancel are no explanation.
 const APART: f64 = 1e-3;
@@ -204,7 +209,8 @@ impl<'d> Choice<'d> {
         let rank = self.design.columns(regressor).filter(|column| swept.take(*column)).count();
         let mut chosen = set.chosen.clone();
         chosen.push(regressor);
-        let cost = self.misfit(swept.remaining()) + price + self.prices[regressor] - self.missing(regressor, rank);
+        let cost =
+            self.misfit(swept.remaining()) + price + self.prices[regressor] - self.missing(regressor, rank);
         Set { chosen, swept, cost }
     }
 
@@ -217,7 +223,8 @@ impl<'d> Choice<'d> {
             swept.drop(column);
         }
         let chosen = set.chosen.iter().copied().filter(|known| *known != regressor).collect();
-        let cost = self.misfit(swept.remaining()) + price - self.prices[regressor] + self.missing(regressor, rank);
+        let cost =
+            self.misfit(swept.remaining()) + price - self.prices[regressor] + self.missing(regressor, rank);
         Set { chosen, swept, cost }
     }
 

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use crate::noise::typical_step;
 use crate::recording::{AxisChannels, Recording};
+use crate::way::{CORNER, Way};
 
 /// The states of all rows of one recording.
 #[derive(Clone, Debug)]
@@ -108,48 +109,23 @@ impl States {
 
 /// The position that stands for an axis: programmed, or the drive's where nothing was programmed; 0 where neither is known.
 pub(crate) fn nominal_position(axis: &AxisChannels, rows: usize) -> Vec<f64> {
-    axis.command.as_ref().or(axis.actual.as_ref()).or(axis.measured.as_ref()).cloned().unwrap_or(vec![0.0; rows])
+    axis.command
+        .as_ref()
+        .or(axis.actual.as_ref())
+        .or(axis.measured.as_ref())
+        .cloned()
+        .unwrap_or(vec![0.0; rows])
 }
 
 fn axis_states(time: &[f64], run: &[i64], axis: &AxisChannels, lag: f64, clock: f64) -> AxisStates {
     let programmed = nominal_position(axis, time.len());
-    let command = shifted(time, &programmed, clock);
-    let resolution = resolution(axis, &command);
+    let resolution = resolution(axis, &programmed);
+    let way = Way::new(time, &programmed, derivative(time, run, &programmed));
     if lag > 0.0 {
-        behind_loop(time, run, &command, lag, resolution)
+        behind_loop(time, run, &way, lag, clock, resolution)
     } else {
-        // A little later: what is seen then is the way just before, not the mean of the ways before and after.
-        let step = 1e-3 * typical_step(time);
-        let later = shifted(time, &programmed, clock + step);
-        let clock_slope = later.iter().zip(&command).map(|(later, now)| (later - now) / step).collect();
-        as_commanded(time, run, command, clock_slope, resolution)
+        as_programmed(time, run, &way, clock, resolution)
     }
-}
-
-/// The position that the axis had `clock` earlier, between rows by straight lines.
-fn shifted(time: &[f64], position: &[f64], clock: f64) -> Vec<f64> {
-    if clock == 0.0 {
-        return position.to_vec();
-    }
-    let mut from = 0;
-    let at = |row: usize| (time[row], position[row]);
-    (0..time.len())
-        .map(|row| {
-            let wanted = time[row] - clock;
-            while from + 1 < time.len() && time[from + 1] <= wanted {
-                from += 1;
-            }
-            while from > 0 && time[from] > wanted {
-                from -= 1;
-            }
-            let (start, low) = at(from);
-            if from + 1 == time.len() || wanted <= start {
-                return low;
-            }
-            let (end, high) = at(from + 1);
-            low + (high - low) * (wanted - start) / (end - start)
-        })
-        .collect()
 }
 
 /// How far an axis must turn back before it has really turned: nothing but rounding for a programmed position; more for a
@@ -164,46 +140,42 @@ fn resolution(axis: &AxisChannels, positions: &[f64]) -> f64 {
 }
 
 /// Without a loop. A quick loop stays behind by its time constant times the speed on the way to a row, as a late clock does.
-fn as_commanded(time: &[f64], run: &[i64], position: Vec<f64>, clock_slope: Vec<f64>, resolution: f64) -> AxisStates {
+fn as_programmed(time: &[f64], run: &[i64], way: &Way<'_>, clock: f64, resolution: f64) -> AxisStates {
+    let position = way.earlier(clock);
+    // A little earlier: what is seen then is the way just before, not the mean of the ways before and after.
+    let step = 1e-3 * typical_step(time);
+    let clock_slope: Vec<f64> = way
+        .earlier(clock + step)
+        .iter()
+        .zip(&position)
+        .map(|(earlier, now)| (earlier - now) / step)
+        .collect();
     let acceleration = derivative(time, run, &derivative(time, run, &position));
     let (direction, since_reversal, moves) = directions(time, &position, resolution);
     let lag_slope = clock_slope.clone();
     AxisStates { position, acceleration, direction, since_reversal, lag_slope, clock_slope, moves }
 }
 
-/// The first-order position loop with time constant `lag`, exact for commands that are straight between rows.
-fn behind_loop(time: &[f64], run: &[i64], command: &[f64], lag: f64, resolution: f64) -> AxisStates {
-    let position = follow(time, command, lag);
-    let step = 1e-4;
-    let further = follow(time, command, lag * (1.0 + step));
-    let lag_slope = further.iter().zip(&position).map(|(far, near)| (far - near) / (lag * step)).collect();
+/// The relative step by which the slope with the time constant is taken.
+const LAG_STEP: f64 = 1e-4;
+
+fn behind_loop(
+    time: &[f64],
+    run: &[i64],
+    way: &Way<'_>,
+    lag: f64,
+    clock: f64,
+    resolution: f64,
+) -> AxisStates {
+    let (position, command) = way.behind_loop(lag, clock);
+    let (further, _) = way.behind_loop(lag * (1.0 + LAG_STEP), clock);
+    let lag_slope =
+        further.iter().zip(&position).map(|(far, near)| (far - near) / (lag * LAG_STEP)).collect();
     let velocity: Vec<f64> = command.iter().zip(&position).map(|(command, q)| (command - q) / lag).collect();
     let acceleration = derivative(time, run, &velocity);
     let clock_slope = velocity.iter().map(|velocity| -velocity).collect();
     let (direction, since_reversal, moves) = directions(time, &position, resolution);
     AxisStates { position, acceleration, direction, since_reversal, lag_slope, clock_slope, moves }
-}
-
-fn follow(time: &[f64], command: &[f64], lag: f64) -> Vec<f64> {
-    let mut followed = Vec::with_capacity(command.len());
-    let mut last: Option<(f64, f64, f64)> = None;
-    for (time, command) in time.iter().zip(command) {
-        let position = match last {
-            _ if command.is_nan() => f64::NAN,
-            None => *command,
-            Some((before, from, position)) => {
-                let step = time - before;
-                let slope = (command - from) / step;
-                let error = position - from + slope * lag;
-                command - slope * lag + error * (-step / lag).exp()
-            }
-        };
-        if position.is_finite() {
-            last = Some((*time, *command, position));
-        }
-        followed.push(position);
-    }
-    followed
 }
 
 /// The derivative in time by the parabola through each sample and its neighbours in the same run; NaN samples are passed over.
@@ -272,13 +244,13 @@ pub(crate) fn behind_corners(time: &[f64], run: &[i64], position: &[f64]) -> Vec
     (0..time.len())
         .map(|row| {
             let inside = row >= 2 && row + 1 < time.len() && run[row - 2] == run[row + 1];
-            let (before, here, after) = if inside { (slope(row - 1), slope(row), slope(row + 1)) } else { return false };
+            let (before, here, after) =
+                if inside { (slope(row - 1), slope(row), slope(row + 1)) } else { return false };
             let mixed = (here - before).abs().min((after - here).abs()) > MIXED * fastest;
             mixed && (after - before).abs() > CORNER * fastest
         })
         .collect()
 }
 
-/// The change of speed, as a share of the highest, that is a corner, and the least of it that falls before and behind the row.
-const CORNER: f64 = 0.3;
+/// The least share of the highest speed by which the speed changes before and behind such a row.
 const MIXED: f64 = 0.02;

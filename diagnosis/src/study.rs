@@ -218,7 +218,10 @@ impl<'a> Scene<'a> {
             leans: leans(recording, interpreter),
             recording,
             temperatures: temperatures(recording, calibration, sensors),
-            loads: loads.iter().map(|(name, _)| column(&recording.loads, name, recording.time.len())).collect(),
+            loads: loads
+                .iter()
+                .map(|(name, _)| column(&recording.loads, name, recording.time.len()))
+                .collect(),
             channels: channels(recording),
             blocks: blocks(recording),
         }
@@ -258,7 +261,9 @@ impl<'a> Scene<'a> {
 fn corners(recording: &Recording) -> Vec<bool> {
     let mut corners = vec![false; recording.time.len()];
     for position in programmed(recording) {
-        for (corner, here) in corners.iter_mut().zip(behind_corners(&recording.time, &recording.run, &position)) {
+        for (corner, here) in
+            corners.iter_mut().zip(behind_corners(&recording.time, &recording.run, &position))
+        {
             *corner |= here;
         }
     }

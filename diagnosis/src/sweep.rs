@@ -94,7 +94,8 @@ impl Swept {
 
     /// How much the remaining sum of squares falls when these columns, not yet in, are taken in.
     pub(crate) fn promise(&self, columns: &[usize]) -> (f64, usize) {
-        let open: Vec<usize> = columns.iter().copied().filter(|c| self.independence(*c) > INDEPENDENT).collect();
+        let open: Vec<usize> =
+            columns.iter().copied().filter(|c| self.independence(*c) > INDEPENDENT).collect();
         self.quadratic(&open, 1.0)
     }
 

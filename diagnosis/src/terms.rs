@@ -209,8 +209,12 @@ impl Shape {
             }
             Self::Coupling { axis, degree: _, scale } => coupling::fill(rows, *axis, *scale, out),
             Self::Table { axis, nodes, directed } => table::fill(rows, *axis, nodes, *directed, out),
-            Self::Backlash { axis, wind_up } => one(out, |out| backlash::fill(rows, *axis, *wind_up, memory, out)),
-            Self::ReversalSpike { axis, decay } => one(out, |out| reversal_spike::fill(rows, *axis, *decay, out)),
+            Self::Backlash { axis, wind_up } => {
+                one(out, |out| backlash::fill(rows, *axis, *wind_up, memory, out))
+            }
+            Self::ReversalSpike { axis, decay } => {
+                one(out, |out| reversal_spike::fill(rows, *axis, *decay, out))
+            }
             Self::Cyclic { axis, period } => cyclic::fill(rows, *axis, *period, out),
             Self::Lag { axis } => one(out, |out| lag::fill(rows, *axis, out)),
             Self::Acceleration { axis } => one(out, |out| acceleration::fill(rows, *axis, out)),

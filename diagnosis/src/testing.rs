@@ -14,7 +14,9 @@ use model_dsl::source::SourceFile;
 use model_dsl::{Compiled, compile, compile_word, yaml};
 use simulation::noise::{Noise, Source};
 use simulation::path::{Shape, Stroke};
-use simulation::{Channel, Commands, Instrument as Reads, Measurement, Path, Plant, Scenario, Simulated, Temperature};
+use simulation::{
+    Channel, Commands, Instrument as Reads, Measurement, Path, Plant, Scenario, Simulated, Temperature,
+};
 
 use crate::recording::{AxisChannels, Instrument, Line, Named, Recording};
 
@@ -46,10 +48,14 @@ impl Bench {
     /// 120 mm long.
     pub(crate) fn calibration(&self, errors: &str) -> Calibration {
         let constants = self.names.constants.iter().filter(|(_, default)| default.is_none());
-        let constants = constants.map(|(name, _)| format!("{name}: {} mm", if name == "Zt" { 120 } else { 0 }));
-        let constants: Vec<String> = constants.collect();
         let constants =
-            if constants.is_empty() { String::new() } else { format!("constants: {{{}}}\n", constants.join(", ")) };
+            constants.map(|(name, _)| format!("{name}: {} mm", if name == "Zt" { 120 } else { 0 }));
+        let constants: Vec<String> = constants.collect();
+        let constants = if constants.is_empty() {
+            String::new()
+        } else {
+            format!("constants: {{{}}}\n", constants.join(", "))
+        };
         let text = format!("calibration: 1\nmachine: {}\n{constants}errors: {errors}\n", self.name);
         let source = SourceFile::new("calibration.yaml", text);
         let mut findings = Diagnostics::new();
@@ -127,8 +133,9 @@ pub(crate) fn recording(simulated: Simulated) -> Recording {
         ..Recording::default()
     };
     let axes = simulated.commands.into_iter().zip(simulated.actual);
-    recording.axes =
-        axes.map(|(command, actual)| AxisChannels { command: Some(command), actual, measured: None }).collect();
+    recording.axes = axes
+        .map(|(command, actual)| AxisChannels { command: Some(command), actual, measured: None })
+        .collect();
     for reading in simulated.readings {
         assert_eq!(reading.values.len(), rows);
         match reading.channel {
@@ -220,7 +227,8 @@ pub(crate) fn warming(name: &str, by: f64, time_constant: f64) -> Temperature {
 
 /// A recording of nothing but time and the programmed positions of the axes, one column each.
 pub(crate) fn programmed(time: &[f64], commands: &[Vec<f64>]) -> Recording {
-    let axis = |command: &Vec<f64>| AxisChannels { command: Some(command.clone()), ..AxisChannels::default() };
+    let axis =
+        |command: &Vec<f64>| AxisChannels { command: Some(command.clone()), ..AxisChannels::default() };
     Recording {
         time: time.to_vec(),
         run: vec![1; time.len()],
@@ -262,7 +270,11 @@ pub(crate) fn uneven(seed: u64, count: usize, step: f64) -> Vec<f64> {
 pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     let apart = |(a, b): (&f64, &f64)| if a.is_nan() && b.is_nan() { 0.0 } else { (a - b).abs() };
-    let worst = a.iter().zip(b).map(apart).fold(0.0, |worst: f64, apart| if apart.is_nan() { f64::INFINITY } else { worst.max(apart) });
+    let worst = a
+        .iter()
+        .zip(b)
+        .map(apart)
+        .fold(0.0, |worst: f64, apart| if apart.is_nan() { f64::INFINITY } else { worst.max(apart) });
     worst
 }
 

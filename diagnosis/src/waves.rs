@@ -98,15 +98,24 @@ struct Source {
 }
 
 /// The weighted residuals of all channels of a scene under a model.
-pub(crate) fn weighted(study: &Study<'_>, scene: usize, model: &Model, noises: &[Noise], course: &Course) -> Vec<Weighted> {
+pub(crate) fn weighted(
+    study: &Study<'_>,
+    scene: usize,
+    model: &Model,
+    noises: &[Noise],
+    course: &Course,
+) -> Vec<Weighted> {
     let channels = &study.scenes[scene].channels;
     let raws = residuals(study, scene, model, course);
     raws.into_iter()
         .zip(channels)
         .zip(noises)
         .map(|((raw, channel), noise)| {
-            let valid: Vec<bool> =
-                raw.iter().zip(&channel.outliers).map(|(value, outlier)| value.is_finite() && !outlier).collect();
+            let valid: Vec<bool> = raw
+                .iter()
+                .zip(&channel.outliers)
+                .map(|(value, outlier)| value.is_finite() && !outlier)
+                .collect();
             let steps = Whitening::new(*noise).steps(&study.scenes[scene].recording.time, &valid);
             let mut white = raw;
             whiten(&steps, &mut 0.0, &mut white);
@@ -172,9 +181,11 @@ pub(crate) fn peaks(
             if shortest < travel.range() / 2.0 {
                 tried += travel.range() / shortest;
                 let found = spectrum(&source.products, &positions, travel.low, travel.range(), shortest);
-                peaks.extend(best(&found, 2.0 / travel.range(), 3).into_iter().map(|(frequency, power)| Peak {
-                    effect: effect(source, Shape::Cyclic { axis, period: 1.0 / frequency }),
-                    gain: power / source.strength,
+                peaks.extend(best(&found, 2.0 / travel.range(), 3).into_iter().map(|(frequency, power)| {
+                    Peak {
+                        effect: effect(source, Shape::Cyclic { axis, period: 1.0 / frequency }),
+                        gain: power / source.strength,
+                    }
                 }));
             }
         }
@@ -245,7 +256,9 @@ fn add_sources(
         let weight = residual.weight;
         let gains = frame.gains(study, scene, channel, model, side);
         for source in &mut here {
-            let (Some(gain), Some(target)) = (&gains[source.place.motion], source.products.last_mut()) else { continue };
+            let (Some(gain), Some(target)) = (&gains[source.place.motion], source.products.last_mut()) else {
+                continue;
+            };
             for (row, gain) in rows.clone().zip(gain) {
                 if residual.valid[row] && gain.is_finite() {
                     target[row] += gain * residual.weighted[row];
@@ -308,3 +321,6 @@ fn vertex(three: &[(f64, f64)]) -> f64 {
     let shift = if curvature < 0.0 { 0.5 * (left - right) / curvature } else { 0.0 };
     three[1].0 + shift * (three[1].0 - three[0].0)
 }
+
+#[cfg(test)]
+mod tests;

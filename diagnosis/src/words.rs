@@ -3,23 +3,26 @@
 //! In: an effect. Out: link, side, state and a sentence.
 
 use crate::alternatives::state;
+use crate::curves::active;
 use crate::diagnosis::{Interval, IntervalOf, Location};
-use crate::model::{Effect, Side};
+use crate::model::{Effect, Fitted, Side};
 use crate::parameters::axis_unit;
 use crate::study::Study;
 use crate::terms::Shape;
 
 /// Where an effect acts. `others` are the names that could stand for it: a side is only told where all agree.
-pub(crate) fn location(study: &Study<'_>, effect: &Effect, others: &[Effect]) -> Location {
+pub(crate) fn location(study: &Study<'_>, fitted: &Fitted, others: &[Effect]) -> Location {
+    let effect = &fitted.effect;
     let Some(motion) = effect.motion() else { return Location::default() };
     let own = side(study, effect);
-    let agreed = others.iter().filter(|other| other.motion().is_some()).all(|other| side(study, other) == own);
+    let agreed =
+        others.iter().filter(|other| other.motion().is_some()).all(|other| side(study, other) == own);
     Location {
         link: study.equations.motions[motion].link.clone(),
         side: if agreed { own } else { "unknown" },
         state: state_word(&effect.shape),
         detail: detail(study, effect),
-        interval: interval(study, effect),
+        interval: interval(study, fitted),
     }
 }
 
@@ -90,13 +93,11 @@ fn detail(study: &Study<'_>, effect: &Effect) -> String {
     }
 }
 
-fn interval(study: &Study<'_>, effect: &Effect) -> Option<Interval> {
-    match &effect.shape {
-        Shape::Table { axis, nodes, .. } => {
-            let (factor, unit) = axis_unit(study, *axis);
-            let of = IntervalOf::Axis(study.equations.axes[*axis].letter.clone());
-            Some(Interval { of, from: nodes.first()? * factor, to: nodes.last()? * factor, unit })
-        }
-        _ => None,
-    }
+/// Where a table is more than its median.
+fn interval(study: &Study<'_>, fitted: &Fitted) -> Option<Interval> {
+    let axis = fitted.effect.shape.axis()?;
+    let (from, to) = active(fitted)?;
+    let (factor, unit) = axis_unit(study, axis);
+    let of = IntervalOf::Axis(study.equations.axes[axis].letter.clone());
+    Some(Interval { of, from: from * factor, to: to * factor, unit })
 }

@@ -29,7 +29,9 @@ pub(crate) fn free_held_out(study: &Study<'_>, model: &mut Model) {
         let settings: Model = own.iter().map(|number| model[*number].clone()).collect();
         design.rebase(&settings);
         let (products, _) = design.sum(|block| block.scene == scene);
-        for (number, fitted) in own.into_iter().zip(fit::linear(&design, &products, design.regressors.len(), &[])) {
+        for (number, fitted) in
+            own.into_iter().zip(fit::linear(&design, &products, design.regressors.len(), &[]))
+        {
             model[number] = fitted;
         }
     }

@@ -1,5 +1,7 @@
 //! Random choices. In: a seed and the number of a case. Out: numbers, the same ones every time.
 
+use std::f64::consts::TAU;
+
 use simulation::noise::Source;
 
 /// A stream of choices.
@@ -66,12 +68,12 @@ impl Draw {
         let waves: Vec<[f64; 3]> = (0..4)
             .map(|wave| {
                 let turns = 0.4 + 0.8 * f64::from(wave) + self.between(-0.2, 0.2);
-                [turns, self.between(-1.0, 1.0) / (1.0 + f64::from(wave)), self.between(0.0, 6.3)]
+                [turns, self.between(-1.0, 1.0) / (1.0 + f64::from(wave)), self.between(0.0, TAU)]
             })
             .collect();
         let at = |node: usize| {
             let along = node as f64 / (nodes - 1).max(1) as f64;
-            waves.iter().map(|[turns, size, phase]| size * (6.283 * turns * along + phase).sin()).sum::<f64>()
+            waves.iter().map(|[turns, size, phase]| size * (TAU * turns * along + phase).sin()).sum::<f64>()
         };
         let raw: Vec<f64> = (0..nodes).map(at).collect();
         let largest = raw.iter().fold(1e-9_f64, |largest, value| largest.max(value.abs()));

@@ -143,7 +143,7 @@ pub(crate) fn draw(
             mostly_own,
             CalibratedTerm::Backlash {
                 axis,
-                lost_motion: draw.chance(0.9).then_some(1e-3).unwrap_or(-1e-3),
+                lost_motion: if draw.chance(0.9) { 1e-3 } else { -1e-3 },
                 wind_up: 0.0,
             },
         ),

@@ -15,16 +15,22 @@ fn recorded(bench: &Bench, shape: PathShape, directions: &str, heights: &[f64]) 
 }
 
 /// The groups of these effects, by their names and shapes.
-fn grouped(bench: &Bench, recording: &Recording, effects: &[(&str, Shape)]) -> Vec<Vec<(String, &'static str)>> {
+fn grouped(
+    bench: &Bench,
+    recording: &Recording,
+    effects: &[(&str, Shape)],
+) -> Vec<Vec<(String, &'static str)>> {
     let study = Study::new(bench.equations(), None, &[recording]);
     let courses = [Course::new(&study, 0, &[])];
-    let noises = vec![vec![Noise { white: 1e-3, wander: 0.0, time_constant: 1.0 }; study.scenes[0].channels.len()]];
+    let noises =
+        vec![vec![Noise { white: 1e-3, wander: 0.0, time_constant: 1.0 }; study.scenes[0].channels.len()]];
     let effect = |(name, shape): &(&str, Shape)| Effect {
         place: Place::Motion { motion: bench.motion(name), side: Side::After },
         shape: shape.clone(),
     };
     let found = groups(&study, &courses, &noises, effects.iter().map(effect).collect());
-    let named = |effect: &Effect| (bench.names.motions[effect.motion().unwrap()].name.clone(), effect.shape.name());
+    let named =
+        |effect: &Effect| (bench.names.motions[effect.motion().unwrap()].name.clone(), effect.shape.name());
     let members = |kin: &Kin| std::iter::once(&kin.effect).chain(&kin.equals).map(named).collect::<Vec<_>>();
     let mut found: Vec<Vec<_>> = found.iter().map(members).collect();
     found.iter_mut().for_each(|group| group.sort());
@@ -52,12 +58,21 @@ fn a_squareness_is_a_guide_that_leans_and_no_yaw() {
     let bench = Bench::of("XYFZ");
     let linear = Shape::Polynomial { axis: 1, degree: 1, center: 120.0, scale: 60.0 };
     let bent = Shape::Polynomial { axis: 1, degree: 2, center: 120.0, scale: 60.0 };
-    let effects = [("EC0Y", Shape::Constant), ("EXY", linear.clone()), ("EXY", bent), ("EYY", linear.clone()), ("ECY", linear)];
+    let effects = [
+        ("EC0Y", Shape::Constant),
+        ("EXY", linear.clone()),
+        ("EXY", bent),
+        ("EYY", linear.clone()),
+        ("ECY", linear),
+    ];
     for shape in [circle(60.0), line(1, 40.0, 200.0)] {
         let recording = recorded(&bench, shape, "xy", &[-50.0]);
         let groups = grouped(&bench, &recording, &effects);
         let of_squareness = groups.iter().find(|group| names(group).contains(&"EC0Y")).unwrap();
-        assert_eq!(of_squareness.as_slice(), [("EC0Y".to_owned(), "constant"), ("EXY".to_owned(), "polynomial")]);
+        assert_eq!(
+            of_squareness.as_slice(),
+            [("EC0Y".to_owned(), "constant"), ("EXY".to_owned(), "polynomial")]
+        );
     }
     // The simplest of the group stands for it.
     let recording = recorded(&bench, circle(60.0), "xy", &[-50.0]);

@@ -8,7 +8,8 @@ use crate::testing::{normals, uneven};
 
 /// The covariance of the samples that are there.
 fn covariance(noise: Noise, time: &[f64], valid: &[bool]) -> DMatrix<f64> {
-    let known: Vec<f64> = time.iter().zip(valid).filter(|(_, valid)| **valid).map(|(time, _)| *time).collect();
+    let known: Vec<f64> =
+        time.iter().zip(valid).filter(|(_, valid)| **valid).map(|(time, _)| *time).collect();
     DMatrix::from_fn(known.len(), known.len(), |row, column| {
         let apart = (known[row] - known[column]).abs();
         let white = if row == column { noise.white * noise.white } else { 0.0 };
@@ -61,7 +62,8 @@ fn whitening_is_the_inverse_cholesky_factor() {
 fn missing_samples_do_not_count_whatever_stands_there() {
     let (noise, time, valid) = cases().remove(1);
     let values = normals(11, time.len());
-    let spoiled: Vec<f64> = values.iter().zip(&valid).map(|(v, valid)| if *valid { *v } else { f64::NAN }).collect();
+    let spoiled: Vec<f64> =
+        values.iter().zip(&valid).map(|(v, valid)| if *valid { *v } else { f64::NAN }).collect();
     assert_eq!(whitened(noise, &time, &valid, &values), whitened(noise, &time, &valid, &spoiled));
 }
 
@@ -165,9 +167,11 @@ fn a_wandering_sensor_is_told_with_its_time_constant() {
     for seed in 0..seeds {
         let values = drawn(kind, &time, seed);
         let (noise, least) = estimate(&time, &values, &all(&time), 0.0);
-        assert!(least <= deviance(&time, &values, &all(&time), truth).0 + 1e-2, "the truth is likelier: {noise:?}");
-        for (log, ratio) in
-            logs.iter_mut().zip([noise.white, noise.wander / 1.5, noise.time_constant / 2.0])
+        assert!(
+            least <= deviance(&time, &values, &all(&time), truth).0 + 1e-2,
+            "the truth is likelier: {noise:?}"
+        );
+        for (log, ratio) in logs.iter_mut().zip([noise.white, noise.wander / 1.5, noise.time_constant / 2.0])
         {
             assert!((0.5..2.0).contains(&ratio), "{noise:?}");
             *log += ratio.ln() / crate::number(6);
@@ -219,7 +223,11 @@ fn noise_is_never_below_the_rounding() {
 
 #[test]
 fn differences_tell_the_fast_part_whatever_drifts_below() {
-    let mut values: Vec<f64> = normals(21, 5000).iter().zip(0_u32..).map(|(value, row)| 0.4 * value + 0.02 * f64::from(row)).collect();
+    let mut values: Vec<f64> = normals(21, 5000)
+        .iter()
+        .zip(0_u32..)
+        .map(|(value, row)| 0.4 * value + 0.02 * f64::from(row))
+        .collect();
     values[77] = f64::NAN;
     values[200] = 1e6;
     assert!((from_differences(&values) / 0.4 - 1.0).abs() < 0.06, "{}", from_differences(&values));
@@ -237,7 +245,9 @@ fn rounding_is_told_from_the_values_themselves() {
         assert!((rounding(&rounded) / (step / 12f64.sqrt()) - 1.0).abs() < 1e-6, "{step}");
     }
     assert!(rounding(&values) < 1e-6, "what was not rounded has next to none");
-    assert!([&[][..], &[0.0], &[f64::NAN]].iter().all(|values| rounding(values) > 0.0 && rounding(values) < 1e-6));
+    assert!(
+        [&[][..], &[0.0], &[f64::NAN]].iter().all(|values| rounding(values) > 0.0 && rounding(values) < 1e-6)
+    );
 }
 
 #[test]
@@ -250,5 +260,4 @@ fn the_typical_step_is_the_median() {
 fn white_noise_of_the_same_size_has_the_same_variance() {
     let noise = Noise { white: 3.0, wander: 4.0, time_constant: 7.0 };
     assert_eq!(noise.as_white(), Noise { white: 5.0, wander: 0.0, time_constant: 7.0 });
-
 }

@@ -20,13 +20,33 @@ fn errors(size: f64) -> String {
           EAX: {} urad, EBX: [{{polynomial: {{axis: X, per: mm, unit: urad, coefficients: [{}, {}]}}}}], ECX: {} urad, \
           EAY: {} urad, ECY: [{{coupling: {{axis: X, per: mm, unit: urad, coefficients: [{}]}}}}], EBZ: {} urad, EYX: {} um, \
           EC0Y: {} urad, EB0Z: {} urad, EA0Z: {} urad}}",
-        n(5.0), n(0.2), n(12.0), n(7.0), n(1.5), n(80.0), n(30.0), n(0.8), n(-60.0), n(45.0), n(0.5), n(90.0), n(8.0),
-        n(150.0), n(-120.0), n(70.0)
+        n(5.0),
+        n(0.2),
+        n(12.0),
+        n(7.0),
+        n(1.5),
+        n(80.0),
+        n(30.0),
+        n(0.8),
+        n(-60.0),
+        n(45.0),
+        n(0.5),
+        n(90.0),
+        n(8.0),
+        n(150.0),
+        n(-120.0),
+        n(70.0)
     )
 }
 
 /// What is left of a recording under the calibration that made it and settings of the instrument; offsets left free.
-fn worst(bench: &Bench, errors: &str, instrument: Reads, shape: PathShape, settings: &[(Setting, f64)]) -> f64 {
+fn worst(
+    bench: &Bench,
+    errors: &str,
+    instrument: Reads,
+    shape: PathShape,
+    settings: &[(Setting, f64)],
+) -> f64 {
     let calibration = bench.calibration(errors);
     let mut scenario = scenario(path(shape, 30.0, 20.0), instrument);
     scenario.path.at = vec![vec![200.0], vec![90.0], vec![-60.0]];
@@ -67,20 +87,30 @@ fn every_instrument_is_predicted_to_first_order() {
         is_of_second_order(what, left, 5e-4);
     }
     let about = Reads::Angular { axis: Some(0), about: [0.0, 0.6, 0.8] };
-    is_of_second_order("angular", |size| worst(&bench, &errors(size), about.clone(), line(0, 20.0, 300.0), &[]), 1e-6);
+    is_of_second_order(
+        "angular",
+        |size| worst(&bench, &errors(size), about.clone(), line(0, 20.0, 300.0), &[]),
+        1e-6,
+    );
 }
 
 #[test]
 fn known_centres_radii_and_clocks_leave_nothing_more() {
     let bench = Bench::of("XYFZ");
     let off = [0.03, -0.02, 0.0];
-    let settings = [
-        (Setting::Eccentricity { direction: 0 }, off[0]),
-        (Setting::Eccentricity { direction: 1 }, off[1]),
-    ];
+    let settings =
+        [(Setting::Eccentricity { direction: 0 }, off[0]), (Setting::Eccentricity { direction: 1 }, off[1])];
     let left = worst(&bench, "{}", ballbar(off), circle(70.0), &settings);
     assert!(left < 1e-10, "a centre is taken exactly, {left}");
-    let left = |size: f64| worst(&bench, &errors(size), ballbar(off.map(|part| part * size)), circle(70.0), &settings.map(|(setting, value)| (setting, value * size)));
+    let left = |size: f64| {
+        worst(
+            &bench,
+            &errors(size),
+            ballbar(off.map(|part| part * size)),
+            circle(70.0),
+            &settings.map(|(setting, value)| (setting, value * size)),
+        )
+    };
     is_of_second_order("eccentric ballbar", left, 5e-4);
     // The bar is longer than it says: its readings are too small by the offset that it adds.
     let longer = Reads::Ballbar { center: None, radius: None, eccentricity: [0.0; 3], offset: -0.005 };
@@ -97,11 +127,13 @@ fn known_centres_radii_and_clocks_leave_nothing_more() {
 fn read_late(errors: &str, clock: f64) -> (Vec<f64>, Vec<f64>, f64) {
     let bench = Bench::of("XYFZ");
     let calibration = bench.calibration(errors);
-    let commands = commands(&bench.record(&calibration, &scenario(path(circle(70.0), 30.0, 20.0), position("xy"))));
+    let commands =
+        commands(&bench.record(&calibration, &scenario(path(circle(70.0), 30.0, 20.0), position("xy"))));
     let mut measurement = simulation::Measurement::perfect(position("xy"));
     measurement.clock = clock;
     measurement.drives = vec![0, 1];
-    let recording = recording(simulation::replay(&bench.plant(&calibration), &commands, &measurement).unwrap());
+    let recording =
+        recording(simulation::replay(&bench.plant(&calibration), &commands, &measurement).unwrap());
     let study = Study::new(bench.equations(), Some(&calibration), &[&recording]);
     let model = vec![Fitted { effect: Effect::setting(0, Setting::Clock), coefficients: vec![clock] }];
     let mut residuals = waves::residuals(&study, 0, &model, &Course::new(&study, 0, &model));
@@ -113,7 +145,8 @@ fn read_late(errors: &str, clock: f64) -> (Vec<f64>, Vec<f64>, f64) {
 #[test]
 fn a_late_clock_shows_the_state_so_much_earlier() {
     for clock in [0.03, -0.02] {
-        let (outside, drive, blind) = read_late("{EXX: 3 um, EYY: [{cyclic: {period: 10 mm, amplitude: 7 um, phase: 1 rad}}]}", clock);
+        let (outside, drive, blind) =
+            read_late("{EXX: 3 um, EYY: [{cyclic: {period: 10 mm, amplitude: 7 um, phase: 1 rad}}]}", clock);
         assert!(peak(&outside) < 1e-6, "{clock}: {}", peak(&outside));
         assert!(blind > 0.5 * 30.0 * clock.abs());
         // The drives have a clock of their own.
@@ -164,7 +197,9 @@ fn drives_see_what_came_in_on_their_side_only() {
     };
     let after = bench.record(&calibration, &scenario);
     let shape = Shape::Backlash { axis: 0, wind_up: 0.0 };
-    for (recording, side, other) in [(&at_drive, Side::Drive, Side::After), (&after, Side::After, Side::Drive)] {
+    for (recording, side, other) in
+        [(&at_drive, Side::Drive, Side::After), (&after, Side::After, Side::Drive)]
+    {
         let study = Study::new(bench.equations(), Some(&friction), &[recording]);
         let left = |side: Side| {
             let effect = Effect { place: Place::Motion { motion: 0, side }, shape: shape.clone() };

@@ -11,10 +11,15 @@ use crate::testing::{Bench, normals, peak, programmed, uneven};
 
 fn recording(axes: usize) -> Recording {
     let time = uneven(51, 90, 0.1);
-    let wave = |axis: usize| time.iter().map(|t| 70.0 * (t * (0.7 + crate::number(axis))).sin() + 40.0).collect();
+    let wave =
+        |axis: usize| time.iter().map(|t| 70.0 * (t * (0.7 + crate::number(axis))).sin() + 40.0).collect();
     let commands: Vec<Vec<f64>> = (0..axes).map(wave).collect();
     let mut recording = programmed(&time, &commands);
-    let named = |name: &str, unit: &str, values: Vec<f64>| crate::recording::Named { name: name.to_owned(), unit: unit.to_owned(), values };
+    let named = |name: &str, unit: &str, values: Vec<f64>| crate::recording::Named {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        values,
+    };
     recording.temperatures = vec![named("spindle", "degC", time.iter().map(|t| 20.0 + t).collect())];
     recording.loads = vec![named("force", "N", time.iter().map(|t| 90.0 * t.sin()).collect())];
     recording
@@ -31,7 +36,9 @@ fn covariance(values: &[f64], share: f64) -> DMatrix<f64> {
     let size = values.len();
     let numbers = normals(52, size * size);
     let mixed = DMatrix::from_fn(size, size, |row, column| {
-        share * values[row].abs() * (numbers[row * size + column] * 0.4 + if row == column { 1.0 } else { 0.0 })
+        share
+            * values[row].abs()
+            * (numbers[row * size + column] * 0.4 + if row == column { 1.0 } else { 0.0 })
     });
     &mixed * mixed.transpose()
 }
@@ -47,15 +54,28 @@ fn estimates(parameters: &[Parameter]) -> Vec<Estimate> {
 }
 
 fn cases(study: &Study<'_>) -> Vec<Fitted> {
-    let fitted = |motion: &str, shape: Shape, coefficients: &[f64]| fitted(study, motion, shape, coefficients);
+    let fitted =
+        |motion: &str, shape: Shape, coefficients: &[f64]| fitted(study, motion, shape, coefficients);
     let (center, scale) = (40.0, 70.0);
     vec![
         fitted("EC0Y", Shape::Constant, &[4e-5]),
         fitted("EXX", Shape::Polynomial { axis: 0, degree: 3, center, scale }, &[0.01, -0.02, 0.004, 0.003]),
-        fitted("EZZ", Shape::SensorPolynomial { sensor: 0, degree: 2, center: 24.0, scale: 4.0 }, &[0.01, -0.02, 0.004]),
+        fitted(
+            "EZZ",
+            Shape::SensorPolynomial { sensor: 0, degree: 2, center: 24.0, scale: 4.0 },
+            &[0.01, -0.02, 0.004],
+        ),
         fitted("EBX", Shape::Coupling { axis: 1, degree: 2, scale: 110.0 }, &[3e-5, -2e-5]),
-        fitted("EXX", Shape::Table { axis: 0, nodes: vec![-30.0, 40.0, 110.0], directed: true }, &[1e-3, 2e-3, 0.0, 1e-3, -2e-3, 5e-3]),
-        fitted("EXX", Shape::Table { axis: 0, nodes: vec![-30.0, 40.0, 110.0], directed: false }, &[1e-3, 2e-3, -4e-3]),
+        fitted(
+            "EXX",
+            Shape::Table { axis: 0, nodes: vec![-30.0, 40.0, 110.0], directed: true },
+            &[1e-3, 2e-3, 0.0, 1e-3, -2e-3, 5e-3],
+        ),
+        fitted(
+            "EXX",
+            Shape::Table { axis: 0, nodes: vec![-30.0, 40.0, 110.0], directed: false },
+            &[1e-3, 2e-3, -4e-3],
+        ),
         fitted("EXX", Shape::Backlash { axis: 0, wind_up: 0.0 }, &[0.01]),
         fitted("EXX", Shape::Backlash { axis: 0, wind_up: 4.0 }, &[0.01]),
         fitted("EXX", Shape::ReversalSpike { axis: 0, decay: 0.2 }, &[0.01]),
@@ -79,7 +99,8 @@ fn numbers(fitted: &Fitted) -> Vec<f64> {
 
 fn with_numbers(fitted: &Fitted, numbers: &[f64]) -> Fitted {
     let (coefficients, rest) = numbers.split_at(fitted.coefficients.len());
-    let shape = rest.first().map_or(fitted.effect.shape.clone(), |value| fitted.effect.shape.with_nonlinear(*value));
+    let shape =
+        rest.first().map_or(fitted.effect.shape.clone(), |value| fitted.effect.shape.with_nonlinear(*value));
     Fitted { effect: Effect { place: fitted.effect.place, shape }, coefficients: coefficients.to_vec() }
 }
 
@@ -112,7 +133,11 @@ fn intervals_are_those_of_random_draws() {
             let deviation = (squares / count - (sum / count).powi(2)).max(0.0).sqrt();
             let half = (told.ci95.1 - told.ci95.0) / 2.0;
             // 2000 draws tell a deviation to 1.6 %.
-            assert!((half - 1.96 * deviation).abs() <= 0.08 * half, "{:?}: {told:?}, drawn {deviation}", fitted.effect.shape);
+            assert!(
+                (half - 1.96 * deviation).abs() <= 0.08 * half,
+                "{:?}: {told:?}, drawn {deviation}",
+                fitted.effect.shape
+            );
             assert!(told.ci95.0 <= told.value && told.value <= told.ci95.1);
         }
     }
@@ -125,10 +150,29 @@ fn names_and_units_are_those_of_calibration_files() {
     let study = Study::new(bench.equations(), None, &[&recording]);
     let expected: [&[(&str, &str)]; 18] = [
         &[("value", "rad")],
-        &[("axis", "X"), ("coefficients", "mm"), ("coefficients", ""), ("coefficients", "1/mm"), ("coefficients", "1/mm^2")],
-        &[("sensor", "spindle"), ("coefficients", "mm"), ("coefficients", "mm/K"), ("coefficients", "mm/K^2")],
+        &[
+            ("axis", "X"),
+            ("coefficients", "mm"),
+            ("coefficients", ""),
+            ("coefficients", "1/mm"),
+            ("coefficients", "1/mm^2"),
+        ],
+        &[
+            ("sensor", "spindle"),
+            ("coefficients", "mm"),
+            ("coefficients", "mm/K"),
+            ("coefficients", "mm/K^2"),
+        ],
         &[("axis", "Y"), ("coefficients", "rad/mm"), ("coefficients", "rad/mm^2")],
-        &[("axis", "X"), ("values", "mm"), ("values", "mm"), ("values", "mm"), ("values", "mm"), ("values", "mm"), ("values", "mm")],
+        &[
+            ("axis", "X"),
+            ("values", "mm"),
+            ("values", "mm"),
+            ("values", "mm"),
+            ("values", "mm"),
+            ("values", "mm"),
+            ("values", "mm"),
+        ],
         &[("axis", "X"), ("values", "mm"), ("values", "mm"), ("values", "mm")],
         &[("lost_motion", "mm")],
         &[("lost_motion", "mm"), ("wind_up", "mm")],
@@ -171,7 +215,9 @@ fn waves_have_an_amplitude_and_a_phase_and_loops_a_gain() {
     // A sin(x + f) = A cos f sin x + A sin f cos x.
     let (amplitude, phase) = (told[1].value, told[2].value);
     assert!((amplitude - 0.005).abs() < 1e-15);
-    assert!((amplitude * phase.cos() + 0.003).abs() < 1e-15 && (amplitude * phase.sin() - 0.004).abs() < 1e-15);
+    assert!(
+        (amplitude * phase.cos() + 0.003).abs() < 1e-15 && (amplitude * phase.sin() - 0.004).abs() < 1e-15
+    );
     let lag = fitted(&study, "EXX", Shape::Lag { axis: 0 }, &[0.02]);
     let told = estimates(&Described::new(&study, &lag, &DMatrix::from_element(1, 1, 1e-6)).parameters());
     assert!((told[0].value - 50.0).abs() < 1e-12);
@@ -190,7 +236,12 @@ fn angles_of_a_rotary_axis_are_told_in_the_unit_of_the_recording() {
     let told = estimates(&Described::new(&study, &wave, &DMatrix::zeros(3, 3)).parameters());
     assert!((told[0].value - 30.0).abs() < 1e-9 && told[0].unit == "deg");
     assert!((told[1].value - 1e-3).abs() < 1e-12 && told[1].unit == "deg");
-    let scale = fitted(&study, "ECC", Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 1.0 }, &[0.0, 1e-4, 2e-5]);
+    let scale = fitted(
+        &study,
+        "ECC",
+        Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 1.0 },
+        &[0.0, 1e-4, 2e-5],
+    );
     let told = estimates(&Described::new(&study, &scale, &DMatrix::zeros(3, 3)).parameters());
     assert!((told[1].value - 1e-4).abs() < 1e-15 && told[1].unit.is_empty());
     // 2e-5 rad/rad^2 is 2e-5 * (180/pi) / (180/pi)^2 deg/deg^2.
@@ -208,14 +259,17 @@ fn what_is_written_into_the_calibration_is_what_was_fitted() {
     let value = |shape: &Shape, coefficients: &[f64]| {
         let mut columns = vec![Vec::new(); shape.columns()];
         shape.fill(&rows, &mut Memory::default(), &mut columns);
-        (0..rows.len()).map(|row| columns.iter().zip(coefficients).map(|(c, k)| c[row] * k).sum()).collect::<Vec<f64>>()
+        (0..rows.len())
+            .map(|row| columns.iter().zip(coefficients).map(|(c, k)| c[row] * k).sum())
+            .collect::<Vec<f64>>()
     };
     for fitted in cases(&study) {
         let covariance = covariance(&numbers(&fitted), 0.01);
         let term = Described::new(&study, &fitted, &covariance).calibrated();
         assert_eq!(term.name(), fitted.effect.shape.name());
         let (shape, coefficients) = known(&term, |name| (name == "force").then_some(0)).unwrap();
-        let (before, after) = (value(&fitted.effect.shape, &fitted.coefficients), value(&shape, &coefficients));
+        let (before, after) =
+            (value(&fitted.effect.shape, &fitted.coefficients), value(&shape, &coefficients));
         assert!(crate::testing::distance(&before, &after) < 1e-12 * peak(&before).max(1e-3), "{term:?}");
     }
 }

@@ -24,8 +24,6 @@ fn behind_a_loop_a_ramp_is_the_closed_solution() {
     let slope = |t: &f64| speed * ((-t / lag).exp() * (1.0 + t / lag) - 1.0);
     let slopes: Vec<f64> = time.iter().map(slope).collect();
     assert!(distance(&states.lag_slope, &slopes) < 1e-3 * speed);
-    let velocities: Vec<f64> = time.iter().map(|t| speed * (1.0 - (-t / lag).exp())).collect();
-    assert!(distance(&states.velocity, &velocities) < 1e-9);
 }
 
 #[test]
@@ -110,7 +108,8 @@ fn the_rounding_of_a_programmed_position_is_no_motion() {
     let time: Vec<f64> = (0..40).map(f64::from).collect();
     // To 100 mm, then a rest that trembles in the last digit.
     let rest = |row: u32| 100.0 + if row % 2 == 0 { 1e-12 } else { 0.0 };
-    let command: Vec<f64> = (0..40).map(|row| if row < 20 { 5.0 * f64::from(row) } else { rest(row) }).collect();
+    let command: Vec<f64> =
+        (0..40).map(|row| if row < 20 { 5.0 * f64::from(row) } else { rest(row) }).collect();
     let found = axis(&time, &command, 0.0);
     assert!(found.direction.iter().all(|d| *d == 1.0));
     let still = axis(&time, &vec![37.5; 40], 0.0);
@@ -122,16 +121,27 @@ fn derivatives_of_parabolas_are_exact_at_uneven_times() {
     let time = uneven(6, 50, 0.3);
     let values: Vec<f64> = time.iter().map(|t| 2.0 - 3.0 * t + 1.7 * t * t).collect();
     let expected: Vec<f64> = time.iter().map(|t| -3.0 + 3.4 * t).collect();
-    let found = derivative(&time, &values);
+    let found = derivative(&time, &[1; 50], &values);
     assert!(distance(&found[1..49], &expected[1..49]) < 1e-9 * peak(&expected));
     let mut gappy = values.clone();
     gappy[17] = f64::NAN;
     gappy[30..34].fill(f64::NAN);
-    let found = derivative(&time, &gappy);
+    let found = derivative(&time, &[1; 50], &gappy);
     for row in (1..49).filter(|row| !gappy[*row].is_nan()) {
         assert!((found[row] - expected[row]).abs() < 1e-9 * peak(&expected), "{row}");
     }
-    assert!(found[17].is_nan() && derivative(&[0.0], &[3.0]) == [0.0] && derivative(&[], &[]).is_empty());
+    assert!(
+        found[17].is_nan()
+            && derivative(&[0.0], &[1], &[3.0]) == [0.0]
+            && derivative(&[], &[], &[]).is_empty()
+    );
+}
+
+#[test]
+fn derivatives_stay_within_a_run() {
+    let time = [0.0, 1.0, 3.0, 10.0, 11.0, 12.0];
+    let values = time.map(|t| if t < 5.0 { 2.0 * t } else { 50.0 - 3.0 * t });
+    assert_eq!(derivative(&time, &[1, 1, 1, 2, 2, 2], &values), [2.0, 2.0, 2.0, -3.0, -3.0, -3.0]);
 }
 
 #[test]
@@ -143,7 +153,7 @@ fn states_are_those_of_the_exact_machine() {
     let plant = bench.plant(&truth);
     let recording = bench.recorded(&plant, &scenario(spiral, simulation::Instrument::position()));
     let states = States::new(&recording, Vec::new(), Vec::new(), &[1.0 / 30.0, 1.0 / 45.0, 0.0], 0.0);
-    let mut worst = [0.0_f64; 3];
+    let mut worst = [0.0_f64; 2];
     let mut turned = 0;
     let mut each = |moment: &simulation::Moment<'_>| {
         let row = moment.state.row;
@@ -157,13 +167,10 @@ fn states_are_those_of_the_exact_machine() {
                 worst[1] = worst[1].max((axis.since_reversal[row] - since).abs());
                 turned += 1;
             }
-            worst[2] = worst[2].max((axis.velocity[row] - moment.state.velocity(number)).abs());
         }
     };
     plant.run(&commands(&recording), &mut each).unwrap();
     assert!(worst[0] < 1e-9 && worst[1] < 1e-9, "{worst:?}");
-    // One takes the loop's own velocity, the other differences of positions 0.02 s apart.
-    assert!(worst[2] < 3.0, "{worst:?}");
     assert!(turned > 100);
     assert!(!states.axes[2].moves);
 }
@@ -184,7 +191,11 @@ fn views_are_the_rows_themselves() {
 
 #[test]
 fn the_drive_stands_in_where_nothing_was_programmed() {
-    let channels = |command: Option<Vec<f64>>, actual: Option<Vec<f64>>| AxisChannels { command, actual, measured: None };
+    let channels = |command: Option<Vec<f64>>, actual: Option<Vec<f64>>| AxisChannels {
+        command,
+        actual,
+        measured: None,
+    };
     assert_eq!(nominal_position(&channels(Some(vec![1.0]), Some(vec![2.0])), 1), [1.0]);
     assert_eq!(nominal_position(&channels(None, Some(vec![2.0])), 1), [2.0]);
     assert_eq!(nominal_position(&channels(None, None), 3), [0.0; 3]);

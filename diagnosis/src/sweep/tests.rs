@@ -122,7 +122,10 @@ fn promise_and_worth_are_what_taking_and_dropping_do() {
             let (gain, promised) = start.promise(group);
             assert!(near(gain, start.remaining() - taken.remaining()), "{group:?} beside {inside:?}");
             assert_eq!(promised, rank, "{group:?} beside {inside:?}");
-            assert!(near(taken.worth(group), start.remaining() - taken.remaining()), "{group:?} in {inside:?}");
+            assert!(
+                near(taken.worth(group), start.remaining() - taken.remaining()),
+                "{group:?} in {inside:?}"
+            );
         }
     }
     assert_eq!(swept().promise(&[]), (0.0, 0));

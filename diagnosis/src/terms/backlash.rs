@@ -18,7 +18,9 @@ pub(super) fn fill(rows: &Rows<'_>, axis: usize, wind_up: f64, memory: &mut Memo
     for (position, direction) in axis.position.iter().zip(axis.direction) {
         let u = match memory.value {
             None => *direction,
-            Some(u) if position.is_finite() => (u + 2.0 * (position - memory.last) / wind_up).clamp(-1.0, 1.0),
+            Some(u) if position.is_finite() => {
+                (u + 2.0 * (position - memory.last) / wind_up).clamp(-1.0, 1.0)
+            }
             Some(u) => u,
         };
         if position.is_finite() {

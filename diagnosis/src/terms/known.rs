@@ -30,10 +30,10 @@ pub(crate) fn known(
         CalibratedTerm::Cyclic { axis, period, amplitude, phase } => {
             (Shape::Cyclic { axis: *axis, period: *period }, wave(*amplitude, *phase))
         }
-        CalibratedTerm::Lag { axis, gain } => {
-            (Shape::Lag { axis: *axis }, vec![1.0 / gain])
+        CalibratedTerm::Lag { axis, gain } => (Shape::Lag { axis: *axis }, vec![1.0 / gain]),
+        CalibratedTerm::Acceleration { axis, gain } => {
+            (Shape::Acceleration { axis: *axis }, vec![1.0 / gain])
         }
-        CalibratedTerm::Acceleration { axis, gain } => (Shape::Acceleration { axis: *axis }, vec![1.0 / gain]),
         CalibratedTerm::Expansion { axis, sensor, coefficient, reference } => {
             (Shape::Expansion { axis: *axis, sensor: *sensor, reference: *reference }, vec![*coefficient])
         }
@@ -80,11 +80,9 @@ fn table(axis: usize, curve: &Curve) -> (Shape, Vec<f64>) {
 fn nodes(nodes: &CurveNodes, count: usize) -> Vec<f64> {
     match nodes {
         CurveNodes::At(at) => at.clone(),
-        CurveNodes::Uniform { start, step } => {
-            std::iter::successors(Some(0.0), |number| Some(number + 1.0))
-                .take(count)
-                .map(|number| start + step * number)
-                .collect()
-        }
+        CurveNodes::Uniform { start, step } => std::iter::successors(Some(0.0), |number| Some(number + 1.0))
+            .take(count)
+            .map(|number| start + step * number)
+            .collect(),
     }
 }

@@ -26,9 +26,8 @@ pub(crate) fn fill(inputs: &[f64], center: f64, scale: f64, first: usize, out: &
 /// temperature) itself, from power 0 on: a row for each power.
 pub(crate) fn in_position(shape: &Shape) -> Vec<Vec<f64>> {
     let (first, degree, center, scale) = match *shape {
-        Shape::Polynomial { degree, center, scale, .. } | Shape::SensorPolynomial { degree, center, scale, .. } => {
-            (0, degree, center, scale)
-        }
+        Shape::Polynomial { degree, center, scale, .. }
+        | Shape::SensorPolynomial { degree, center, scale, .. } => (0, degree, center, scale),
         Shape::Coupling { degree, scale, .. } => (1, degree, 0.0, scale),
         _ => return Vec::new(),
     };
@@ -36,8 +35,8 @@ pub(crate) fn in_position(shape: &Shape) -> Vec<Vec<f64>> {
     let mut matrix = vec![vec![0.0; degree + 1 - first]; degree + 1];
     for k in first..=degree {
         let mut binomial = 1.0;
-        for m in 0..=k {
-            matrix[m][k - first] = binomial * power(-center, k - m) / power(scale, k);
+        for (m, row) in matrix.iter_mut().enumerate().take(k + 1) {
+            row[k - first] = binomial * power(-center, k - m) / power(scale, k);
             binomial *= crate::number(k - m) / crate::number(m + 1);
         }
     }

@@ -68,7 +68,8 @@ pub(crate) fn called<'d>(diagnosis: &'d Diagnosis, name: &str) -> &'d Finding {
 /// The fitted numbers of a parameter.
 #[track_caller]
 pub(crate) fn numbers(finding: &Finding, name: &str) -> Vec<Estimate> {
-    match finding.parameters.iter().find(|parameter| parameter.name == name).map(|parameter| &parameter.value) {
+    match finding.parameters.iter().find(|parameter| parameter.name == name).map(|parameter| &parameter.value)
+    {
         Some(ParameterValue::Fitted(estimate)) => vec![estimate.clone()],
         Some(ParameterValue::List(list)) => list.clone(),
         other => panic!("{name} of {} {} is {other:?}", finding.motion, finding.term),
@@ -88,7 +89,11 @@ pub(crate) fn setting(settings: &[SettingFinding], term: &str, name: &str) -> Es
 
 /// How far a number is from the truth, in half widths of its interval.
 pub(crate) fn off(estimate: &Estimate, truth: f64) -> f64 {
-    let side = if truth > estimate.value { estimate.ci95.1 - estimate.value } else { estimate.value - estimate.ci95.0 };
+    let side = if truth > estimate.value {
+        estimate.ci95.1 - estimate.value
+    } else {
+        estimate.value - estimate.ci95.0
+    };
     (truth - estimate.value).abs() / side
 }
 

@@ -28,7 +28,14 @@ fn runs(path: Path, runs: u32) -> Path {
 }
 
 fn cases() -> Vec<Case> {
-    let stage = |path: Path, concealed, name, truth| Case { machine: "FX", path, directions: "x", concealed, name, truth };
+    let stage = |path: Path, concealed, name, truth| Case {
+        machine: "FX",
+        path,
+        directions: "x",
+        concealed,
+        name,
+        truth,
+    };
     let mill = |path: Path, directions, concealed, name, truth| Case {
         machine: "xyfz-mill",
         path: Path { at: vec![vec![250.0], vec![140.0], vec![-50.0]], ..path },
@@ -51,7 +58,12 @@ fn cases() -> Vec<Case> {
             "EXX polynomial",
             &[("coefficients", &[f64::NAN, -0.08e-3, 2.6667e-7])],
         ),
-        stage(there_and_back(), "{EXX: [{backlash: {lost_motion: 6 um}}]}", "EXX backlash", &[("lost_motion", &[0.006])]),
+        stage(
+            there_and_back(),
+            "{EXX: [{backlash: {lost_motion: 6 um}}]}",
+            "EXX backlash",
+            &[("lost_motion", &[0.006])],
+        ),
         stage(
             there_and_back(),
             "{EXX: [{backlash: {lost_motion: 6 um, wind_up: 60 mm}}]}",
@@ -72,7 +84,12 @@ fn cases() -> Vec<Case> {
             &[("period", &[10.0]), ("amplitude", &[0.003]), ("phase", &[1.0])],
         ),
         mill(round(), "xy", "{EXX: [{lag: {gain: 5000 1/s}}]}", "EXX lag", &[("gain", &[5000.0])]),
-        stage(jerky, "{EXX: [{acceleration: {gain: 25000 1/s^2}}]}", "EXX acceleration", &[("gain", &[25_000.0])]),
+        stage(
+            jerky,
+            "{EXX: [{acceleration: {gain: 25000 1/s^2}}]}",
+            "EXX acceleration",
+            &[("gain", &[25_000.0])],
+        ),
         stage(
             warm(),
             "{EXX: [{expansion: {sensor: scale, coefficient: 1.2e-6 1/K, reference: 20 degC}}]}",
@@ -94,11 +111,11 @@ fn cases() -> Vec<Case> {
             &[("coefficient", &[0.5e-3]), ("time_constant", &[120.0])],
         ),
         mill(
-            there_and_back(),
+            warm(),
             "xz",
-            "{EZZ: [{drift: {amplitude: 5 um, time_constant: 30 s}}]}",
+            "{EZZ: [{drift: {amplitude: 5 um, time_constant: 120 s}}]}",
             "EZZ drift",
-            &[("amplitude", &[0.005]), ("time_constant", &[30.0])],
+            &[("amplitude", &[0.005]), ("time_constant", &[120.0])],
         ),
         stage(
             fine(),
@@ -127,10 +144,15 @@ fn recorded(case: &Case, seed: u64) -> Scenario {
     if case.concealed.contains("scale") {
         scenario.temperatures = vec![warming("scale", 10.0, 150.0)];
     }
+    if case.concealed.contains("drift") {
+        // The last run hardly drifts any more and would bear out nothing.
+        scenario.holdout = vec![3];
+    }
     if case.concealed.contains("force") {
         let pulses = Pulses { height: 100.0, period: 7.3, width: 3.1, start: 1.0 };
         let pulses = Some(pulses);
-        scenario.loads = vec![Load { name: "force".to_owned(), unit: "N".to_owned(), pulses, ..Load::default() }];
+        scenario.loads =
+            vec![Load { name: "force".to_owned(), unit: "N".to_owned(), pulses, ..Load::default() }];
     }
     scenario
 }
@@ -147,12 +169,19 @@ fn distances(seed: u64) -> Vec<f64> {
         let diagnosis = diagnosed(&bench, &known, &[&recording]);
         if diagnosis.verdict != Verdict::LeftOutPhysics || found(&diagnosis) != [case.name] {
             let others: Vec<_> = diagnosis.findings.iter().map(names).collect();
-            wrong.push(format!("{} ({seed}): {:?} {others:?} {:?}", case.concealed, diagnosis.verdict, diagnosis.settings));
+            wrong.push(format!(
+                "{} ({seed}): {:?} {others:?} {:?}",
+                case.concealed, diagnosis.verdict, diagnosis.settings
+            ));
             continue;
         }
         // What remains of the held-out data is the noise.
         let held_out = diagnosis.after.holdout_rms.unwrap();
-        if (held_out / SIGMA - 1.0).abs() > 0.12 {
+        let samples =
+            recording.run.iter().filter(|run| recording.holdout.as_ref().unwrap().contains(run)).count();
+        // Four deviations of so many samples, and what the uncertainty of the fit adds.
+        let scatter = 4.0 / (2.0 * f64::from(u32::try_from(samples).unwrap())).sqrt();
+        if (held_out / SIGMA - 1.0).abs() > scatter + 0.03 {
             wrong.push(format!("{} ({seed}): held-out rms {held_out}", case.name));
         }
         for (name, truth) in case.truth {
@@ -184,9 +213,9 @@ fn every_term_alone_is_found_by_name_with_its_parameters() {
 fn a_curve_that_no_smooth_term_follows_is_a_table() {
     let bench = Bench::of("FX");
     let known = bench.calibration(STAGE);
-    let concealed = "{EXX: [{table: {axis: X, at: {unit: mm, values: [0, 40, 70, 100, 120, 170, 200, 260, 300]}, unit: um, values: [0, 4, -5, -6, 5, 6, -4, -5, 2]}}]}";
-    let concealed = concealed.replace("at: {unit: mm, values: [0, 40, 70, 100, 120, 170, 200, 260, 300]}", "at: [0 mm, 40 mm, 70 mm, 100 mm, 120 mm, 170 mm, 200 mm, 260 mm, 300 mm]");
-    let truth = together(&known, &bench.calibration(&concealed));
+    let concealed = "{EXX: [{table: {axis: X, at: [0, 40, 70, 100, 120, 170, 200, 260, 300], per: mm, unit: um, \
+        values: [0, 4, -5, -6, 5, 6, -4, -5, 2]}}]}";
+    let truth = together(&known, &bench.calibration(concealed));
     let path = runs(path(line(0, 0.0, 300.0), 20.0, 8.0), 5);
     let recording = bench.record(&truth, &noisy(path, position("x"), SIGMA, 4));
     let diagnosis = diagnosed(&bench, &known, &[&recording]);

@@ -8,8 +8,11 @@
 )]
 
 mod common;
+mod confusions;
 mod each_term;
 #[path = "../../src/testing.rs"]
 mod testing;
+mod verdicts;
 
+// What the machines and recordings of the tests are made for, under the name that they know it by.
 use diagnosis::recording;

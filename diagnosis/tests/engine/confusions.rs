@@ -1,0 +1,197 @@
+//! What one recording cannot tell apart is told together; what two can, is not.
+
+use diagnosis::diagnosis::Verdict;
+use simulation::{Instrument, Path};
+
+use crate::common::*;
+use crate::testing::*;
+
+fn at_heights(heights: &[f64], directions: &str, seed: u64) -> simulation::Scenario {
+    let runs = 3 * u32::try_from(heights.len()).unwrap();
+    let lines = path(line(0, 100.0, 400.0), 25.0, 5.0);
+    let lines = Path { at: vec![vec![], vec![140.0], heights.to_vec()], runs, ..lines };
+    noisy(lines, position(directions), 0.001, seed)
+}
+
+#[test]
+fn one_height_leaves_a_pitch_beside_a_position_and_two_heights_name_it() {
+    let bench = Bench::of("xyfz-mill");
+    let known = bench.calibration(MILL);
+    let truth = together(&known, &bench.calibration("{EBX: [{backlash: {lost_motion: 60 urad}}]}"));
+    let low = bench.record(&truth, &at_heights(&[-100.0], "x", 1));
+    let high = bench.record(&truth, &at_heights(&[-10.0], "x", 2));
+    for alone in [&low, &high] {
+        let diagnosis = diagnosed(&bench, &known, &[alone]);
+        assert_eq!(diagnosis.findings.len(), 1);
+        let names = names(called(&diagnosis, "EBX backlash"));
+        assert!(names.contains(&"EXX backlash".to_owned()), "{names:?}");
+        let finding = &diagnosis.findings[0];
+        let other = finding.alternatives.iter().find(|other| other.term == "backlash").unwrap();
+        assert!(other.separate_by.contains(" Z"), "{}", other.separate_by);
+    }
+    let diagnosis = diagnosed(&bench, &known, &[&low, &high]);
+    assert_eq!(found(&diagnosis), ["EBX backlash"]);
+    let names = names(&diagnosis.findings[0]);
+    assert!(!names.contains(&"EXX backlash".to_owned()), "{names:?}");
+    let lost = &numbers(&diagnosis.findings[0], "lost_motion")[0];
+    assert!(off(lost, 60e-6) < FAR && lost.unit == "rad", "{lost:?}");
+    // The same two heights in the runs of one recording say the same.
+    let both = bench.record(&truth, &at_heights(&[-100.0, -10.0], "x", 3));
+    assert_eq!(found(&diagnosed(&bench, &known, &[&both])), ["EBX backlash"]);
+}
+
+#[test]
+fn a_squareness_and_a_leaning_guide_are_one_until_nothing_tells_them() {
+    // First order: EC0Y adds to X what EXY linear in y adds. No recording of the tip separates them.
+    let bench = Bench::of("xyfz-mill");
+    let known = bench.calibration(MILL);
+    let truth = together(&known, &bench.calibration("{EC0Y: 40 urad}"));
+    let round =
+        Path { at: vec![vec![250.0], vec![140.0], vec![-50.0]], runs: 3, ..path(circle(90.0), 25.0, 5.0) };
+    let recording = bench.record(&truth, &noisy(round, position("xy"), 0.001, 4));
+    let diagnosis = diagnosed(&bench, &known, &[&recording]);
+    assert_eq!(found(&diagnosis), ["EC0Y constant"]);
+    assert!(names(&diagnosis.findings[0]).contains(&"EXY polynomial".to_owned()));
+}
+
+#[test]
+fn a_scale_and_a_coupling_are_told_apart_where_the_other_axis_stands_elsewhere() {
+    let bench = Bench::of("xyfz-mill");
+    let known = bench.calibration(MILL);
+    // The yaw of X changes with y: what that does in Y is proportional to x y. At one x it is a scale of Y.
+    let truth = together(
+        &known,
+        &bench.calibration("{ECX: [{coupling: {axis: Y, per: mm, unit: urad, coefficients: [0.3]}}]}"),
+    );
+    let along_y = |x: f64, seed: u64| {
+        let lines = path(line(1, 40.0, 240.0), 25.0, 6.0);
+        let lines = Path { at: vec![vec![x], vec![], vec![-50.0]], runs: 3, ..lines };
+        bench.record(&truth, &noisy(lines, position("y"), 0.001, seed))
+    };
+    let (left, right) = (along_y(100.0, 5), along_y(450.0, 6));
+    let alone = diagnosed(&bench, &known, &[&right]);
+    // At most four other names are told, the simplest; that it may be another is what counts.
+    assert!(!called(&alone, "EYY polynomial").alternatives.is_empty());
+    let both = diagnosed(&bench, &known, &[&left, &right]);
+    assert_eq!(found(&both), ["ECX coupling"], "{:?}", both.findings.iter().map(names).collect::<Vec<_>>());
+    let coefficient = &numbers(&both.findings[0], "coefficients")[0];
+    assert!(off(coefficient, 0.3e-6) < FAR, "{coefficient:?}");
+}
+
+/// Circles that start at speed, read so many times a second.
+fn round(rate: f64) -> Path {
+    Path { at: vec![vec![250.0], vec![140.0], vec![-50.0]], runs: 3, ..path(circle(90.0), 20.0, rate) }
+}
+
+#[test]
+fn equal_lags_and_a_late_clock_are_told_together() {
+    let bench = Bench::of("xyfz-mill");
+    let known = bench.calibration(MILL);
+    let lags = bench.calibration("{EXX: [{lag: {gain: 1000 1/s}}], EYY: [{lag: {gain: 1000 1/s}}]}");
+    // All the time the path is late by 1 ms, 20 um. Loops make the circle smaller by (20 / 90 / 1000)^2 / 2 of it: 2 nm.
+    for late in [true, false] {
+        let truth = if late { known.clone() } else { together(&known, &lags) };
+        let mut scenario = noisy(round(20.0), position("xy"), 0.001, 7);
+        scenario.measurement.clock = if late { 0.001 } else { 0.0 };
+        let diagnosis = diagnosed(&bench, &known, &[&bench.record(&truth, &scenario)]);
+        assert_eq!(diagnosis.verdict, Verdict::LeftOutPhysics);
+        let of_findings: Vec<String> = diagnosis.findings.iter().flat_map(names).collect();
+        let of_clock: Vec<_> = diagnosis.settings.iter().filter(|setting| setting.term == "clock").collect();
+        let others = of_clock.iter().flat_map(|setting| &setting.alternatives);
+        let of_settings: Vec<String> =
+            others.map(|other| format!("{} {}", other.motion, other.term)).collect();
+        let clock = !of_clock.is_empty() || of_findings.contains(&"instrument clock".to_owned());
+        let lag = of_findings.iter().chain(&of_settings).any(|name| name.ends_with(" lag"));
+        assert!(clock && lag, "late {late}: findings {of_findings:?}, clock {of_clock:?}");
+        let kinds = ["lag", "clock"];
+        assert!(
+            diagnosis.findings.iter().all(|finding| kinds.contains(&finding.term)),
+            "{:?}",
+            found(&diagnosis)
+        );
+    }
+}
+
+#[test]
+fn a_late_clock_on_a_round_path_is_no_scale() {
+    // Rows 4 mm apart on a circle of 90 mm: between them the path is round, and its chord 22 um from it.
+    let bench = Bench::of("xyfz-mill");
+    let known = bench.calibration(MILL);
+    let mut scenario = noisy(round(5.0), position("xy"), 0.001, 7);
+    scenario.measurement.clock = 0.0025;
+    let diagnosis = diagnosed(&bench, &known, &[&bench.record(&known, &scenario)]);
+    let clock = setting(&diagnosis.settings, "clock", "offset");
+    assert!(off(&clock, 0.0025) < FAR, "{clock:?}");
+    assert!(diagnosis.findings.is_empty(), "{:?}", found(&diagnosis));
+}
+
+#[test]
+fn a_ballbar_sees_the_difference_of_two_lags() {
+    let bench = Bench::of("xyfz-mill");
+    let known = bench.calibration(MILL);
+    let truth =
+        together(&known, &bench.calibration("{EXX: [{lag: {gain: 50 1/s}}], EYY: [{lag: {gain: 52 1/s}}]}"));
+    let round =
+        Path { at: vec![vec![250.0], vec![140.0], vec![-50.0]], runs: 3, ..path(circle(100.0), 30.0, 12.0) };
+    let recording = bench.record(&truth, &noisy(round, ballbar([0.015, -0.01, 0.0]), 0.001, 8));
+    let diagnosis = diagnosed(&bench, &known, &[&recording]);
+    assert_eq!(diagnosis.verdict, Verdict::LeftOutPhysics);
+    assert!(found(&diagnosis).iter().all(|name| name.ends_with(" lag")), "{:?}", found(&diagnosis));
+    // Whichever names it bears, what the lags do is explained to the noise.
+    assert!(diagnosis.after.holdout_rms.unwrap() < 1.1 * 0.001);
+    for (name, truth) in [("x", 0.015), ("y", -0.01)] {
+        let estimate = setting(&diagnosis.settings, "eccentricity", name);
+        assert!(
+            off(&estimate, truth) < 2.0 && (estimate.value - truth).abs() < 0.001,
+            "{name}: {estimate:?}"
+        );
+    }
+}
+
+#[test]
+fn the_drives_own_feedback_tells_friction_from_play() {
+    let bench = Bench::of("FX");
+    let known = bench.calibration(STAGE);
+    let truth = together(&known, &bench.calibration("{EXX: [{backlash: {lost_motion: 6 um}}]}"));
+    let lines = Path { runs: 3, ..path(line(0, 0.0, 300.0), 20.0, 8.0) };
+    let mut scenario = noisy(lines, position("x"), 0.001, 9);
+    let blind = diagnosed(&bench, &known, &[&bench.record(&truth, &scenario)]);
+    assert_eq!(
+        (found(&blind).as_slice(), blind.findings[0].location.side),
+        (&["EXX backlash".to_owned()][..], "unknown")
+    );
+    scenario.measurement.drives = vec![0];
+    scenario.measurement.drive_noise = simulation::noise::Noise::white(0.0005);
+    let mut plant = bench.plant(&truth);
+    let play = diagnosed(&bench, &known, &[&bench.recorded(&plant, &scenario)]);
+    // Of the two terms of EXX, the known table is on neither side of concern; the play is the second.
+    plant.see_at_drive(&bench.compiled.machine, "EXX", "backlash").unwrap();
+    let friction = diagnosed(&bench, &known, &[&bench.recorded(&plant, &scenario)]);
+    for (diagnosis, side) in [(play, "transmission"), (friction, "drive")] {
+        assert_eq!(found(&diagnosis), ["EXX backlash"], "{side}");
+        assert_eq!(diagnosis.findings[0].location.side, side);
+        let lost = &numbers(&diagnosis.findings[0], "lost_motion")[0];
+        assert!(off(lost, 0.006) < FAR, "{lost:?}");
+    }
+}
+
+#[test]
+fn a_slanted_beam_and_a_short_scale_are_told_together() {
+    let bench = Bench::of("FX");
+    let known = bench.calibration(STAGE);
+    let lines = Path { runs: 3, ..path(line(0, 0.0, 300.0), 20.0, 8.0) };
+    let beam = Instrument::Linear { axis: 0, direction: [1.0, 0.0, 0.0], cosine: 8e-3 };
+    let diagnosis = diagnosed(&bench, &known, &[&bench.record(&known, &noisy(lines, beam, 0.001, 10))]);
+    // 32 ppm of 300 mm: 10 um, as a scale of 32 ppm that is too short.
+    let from_findings: Vec<String> = diagnosis.findings.iter().flat_map(names).collect();
+    let of_setting = diagnosis.settings.iter().filter(|setting| setting.term == "cosine");
+    let others: Vec<String> = of_setting
+        .clone()
+        .flat_map(|setting| &setting.alternatives)
+        .map(|other| format!("{} {}", other.motion, other.term))
+        .collect();
+    let cosine = of_setting.count() > 0 || from_findings.contains(&"instrument cosine".to_owned());
+    let scale = from_findings.iter().chain(&others).any(|name| name == "EXX polynomial");
+    assert!(cosine && scale, "{from_findings:?} {:?}", diagnosis.settings);
+    assert_eq!(diagnosis.verdict, Verdict::LeftOutPhysics);
+}

@@ -9,11 +9,9 @@ use crate::design::{Design, Products, Regressor};
 use crate::fit::{self, Fit};
 use crate::model::{Fitted, Model};
 use crate::noise::Noise;
-use crate::observations::Course;
 use crate::search::{price, untold_price};
 use crate::study::Study;
 use crate::sweep::Swept;
-use crate::waves;
 use crate::zeros;
 
 /// How much was tried before this model was chosen.
@@ -81,7 +79,7 @@ fn weakest(
             || !returns(&design, &swept, number, scale)
             || !steady(&design, &swept, number)
             || noise_explains(study, &design, &swept, fit, appraisal, number, price)
-            || !pays(study, fit, appraisal, number);
+            || !pays(study, &design, &swept, fit, appraisal, number);
         if fails && failing.is_none_or(|(least, _)| worth < least) {
             failing = Some((worth, number));
         }
@@ -89,31 +87,41 @@ fn weakest(
     failing.map(|(_, number)| number)
 }
 
-/// Whether the held-out samples, taken as they are, come nearer to the model through the effect, and whether it is large
-/// enough anywhere to matter beside the noise of a sample.
-fn pays(study: &Study<'_>, fit: &Fit, appraisal: &Appraisal, number: usize) -> bool {
-    let mut without = fit.model.clone();
-    without.remove(number);
+/// Whether the held-out samples, taken as they are, come nearer to the model through the effect than to the others fitted
+/// without it, and whether the effect is large enough anywhere to matter beside the noise of a sample.
+fn pays(
+    study: &Study<'_>,
+    design: &Design,
+    swept: &Swept,
+    fit: &Fit,
+    appraisal: &Appraisal,
+    number: usize,
+) -> bool {
+    let mut bare = fit.model.clone();
+    bare.remove(number);
+    let others = without(design, swept, &fit.model, number);
+    let [bare, others] = [bare, others].map(|model| zeros::residuals(study, &model));
     let (mut gained, mut expected, mut peak) = (0.0, 0.0, 0.0_f64);
     for (scene, known) in study.scenes.iter().enumerate() {
-        let course = Course::new(study, scene, &without);
         let fitted = known.fitted_rows();
-        for (channel, bare) in waves::residuals(study, scene, &without, &course).into_iter().enumerate() {
+        for channel in 0..known.channels.len() {
             let noise = appraisal.noises[scene][channel];
             let size = noise.white.hypot(noise.wander);
             let left = &appraisal.residuals[scene][channel];
+            let (bare, others) = (&bare[scene][channel], &others[scene][channel]);
             let usable = |row: usize| bare[row].is_finite() && !appraisal.outliers[scene][channel][row];
             let rows: Vec<usize> = (0..bare.len()).filter(|row| usable(*row)).collect();
-            let mut effect: Vec<f64> = rows.iter().map(|row| (bare[*row] - left[*row]) / size).collect();
-            zeros::center(&mut effect);
-            peak = effect.iter().fold(peak, |peak, value| peak.max(value.abs()));
-            let held: Vec<usize> = (0..rows.len()).filter(|at| !fitted[rows[*at]]).collect();
-            let mut signal: Vec<f64> = held.iter().map(|at| effect[*at]).collect();
+            let effect = |row: usize| (bare[row] - left[row]) / size;
+            let mut everywhere: Vec<f64> = rows.iter().map(|row| effect(*row)).collect();
+            zeros::center(&mut everywhere);
+            peak = everywhere.iter().fold(peak, |peak, value| peak.max(value.abs()));
+            let held = || rows.iter().copied().filter(|row| !fitted[*row]);
+            let mut signal: Vec<f64> = held().map(effect).collect();
             zeros::center(&mut signal);
-            for (at, signal) in held.iter().zip(signal) {
-                gained += signal * (2.0 * left[rows[*at]] / size + signal);
-                expected += signal * signal;
-            }
+            expected += signal.iter().map(|value| value * value).sum::<f64>();
+            gained += held()
+                .map(|row| (others[row] * others[row] - left[row] * left[row]) / (size * size))
+                .sum::<f64>();
         }
     }
     peak > MATERIAL && (expected < TELLING || gained > 0.0)

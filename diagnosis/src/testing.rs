@@ -270,12 +270,10 @@ pub(crate) fn uneven(seed: u64, count: usize, step: f64) -> Vec<f64> {
 pub(crate) fn distance(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     let apart = |(a, b): (&f64, &f64)| if a.is_nan() && b.is_nan() { 0.0 } else { (a - b).abs() };
-    let worst = a
-        .iter()
+    a.iter()
         .zip(b)
         .map(apart)
-        .fold(0.0, |worst: f64, apart| if apart.is_nan() { f64::INFINITY } else { worst.max(apart) });
-    worst
+        .fold(0.0, |worst: f64, apart| if apart.is_nan() { f64::INFINITY } else { worst.max(apart) })
 }
 
 /// The largest size in a column.

@@ -149,12 +149,15 @@ fn recorded(bench: &Bench, instrument: Reads, shape: PathShape, drives: bool) ->
     bench.record(&bench.calibration(ERRORS), &scenario)
 }
 
+/// A name, an instrument, a path and settings of the instrument.
+type Case = (&'static str, Reads, PathShape, Vec<(Setting, f64)>);
+
 #[test]
 fn columns_are_how_the_residual_falls_for_every_instrument() {
     let bench = Bench::of("XYFZ");
     let known = bench.calibration(ERRORS);
     let slanted = [0.6, 0.0, 0.8];
-    let cases: [(&str, Reads, PathShape, Vec<(Setting, f64)>); 6] = [
+    let cases: [Case; 6] = [
         ("position", position("xyz"), circle(60.0), vec![(Setting::Clock, 0.02)]),
         (
             "ballbar",

@@ -212,10 +212,10 @@ fn estimates_see_through_gaps() {
 #[test]
 fn noise_is_never_below_the_rounding() {
     let time: Vec<f64> = (0..100).map(f64::from).collect();
-    let (noise, _) = estimate(&time, &vec![0.0; 100], &all(&time), 2.9e-5);
+    let (noise, _) = estimate(&time, &[0.0; 100], &all(&time), 2.9e-5);
     assert_eq!(noise.white, 2.9e-5);
     // Nothing but missing samples, or no samples at all: still numbers.
-    let (noise, _) = estimate(&time, &vec![f64::NAN; 100], &vec![false; 100], 2.9e-5);
+    let (noise, _) = estimate(&time, &[f64::NAN; 100], &[false; 100], 2.9e-5);
     assert!(noise.white.is_finite() && noise.white > 0.0, "{noise:?}");
     let (noise, _) = estimate(&[], &[], &[], 2.9e-5);
     assert!(noise.white.is_finite() && noise.white > 0.0, "{noise:?}");

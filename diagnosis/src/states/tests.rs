@@ -107,7 +107,7 @@ fn directions_are_of_the_last_real_motion() {
 fn the_rounding_of_a_programmed_position_is_no_motion() {
     let time: Vec<f64> = (0..40).map(f64::from).collect();
     // To 100 mm, then a rest that trembles in the last digit.
-    let rest = |row: u32| 100.0 + if row % 2 == 0 { 1e-12 } else { 0.0 };
+    let rest = |row: u32| 100.0 + if row.is_multiple_of(2) { 1e-12 } else { 0.0 };
     let command: Vec<f64> =
         (0..40).map(|row| if row < 20 { 5.0 * f64::from(row) } else { rest(row) }).collect();
     let found = axis(&time, &command, 0.0);

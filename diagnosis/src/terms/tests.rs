@@ -118,7 +118,7 @@ fn a_filtered_temperature_is_that_of_the_runtime_in_fine_steps() {
     let term = CalibratedTerm::Growth { sensor: 0, coefficient: 0.01, reference: 20.0, time_constant: 2.0 };
     let apart = |step: f64| {
         let time: Vec<f64> = (0..).map(|row| step * f64::from(row)).take_while(|t| *t < 12.0).collect();
-        let recording = programmed(&time, &[time.clone()]);
+        let recording = programmed(&time, std::slice::from_ref(&time));
         let warm = time.iter().map(|t| 21.0 + t.sin()).collect();
         let states = States::new(&recording, vec![warm], Vec::new(), &[0.0], 0.0);
         distance(&value(&term, &states), &by_runtime(&term, &states))
@@ -132,7 +132,7 @@ fn a_filtered_temperature_is_that_of_the_runtime_in_fine_steps() {
 fn a_filtered_temperature_that_rises_evenly_is_the_closed_solution() {
     let (rate, lag) = (0.3, 2.5);
     let time = uneven(43, 150, 0.1);
-    let recording = programmed(&time, &[time.clone()]);
+    let recording = programmed(&time, std::slice::from_ref(&time));
     let mut warm: Vec<f64> = time.iter().map(|t| 22.0 + rate * t).collect();
     let behind = |t: &f64| 22.0 + rate * (t - lag * (1.0 - (-t / lag).exp())) - 20.0;
     let expected: Vec<f64> = time.iter().map(behind).collect();
@@ -258,7 +258,7 @@ fn polynomials_of_the_scaled_position_become_those_of_the_position() {
                 (0, center, scale)
             }
             Shape::Coupling { scale, .. } => (1, 0.0, scale),
-            _ => unreachable!(),
+            _ => panic!("no polynomial: {shape:?}"),
         };
         let matrix = polynomial_in_position(&shape);
         let powers: Vec<f64> =

@@ -189,7 +189,7 @@ fn distances(seed: u64) -> Vec<f64> {
             assert_eq!(estimates.len(), truth.len(), "{name} of {}", case.name);
             for (estimate, truth) in estimates.iter().zip(*truth).filter(|(_, truth)| truth.is_finite()) {
                 let off = off(estimate, *truth);
-                if !(off < FAR) {
+                if off.is_nan() || off >= FAR {
                     wrong.push(format!("{name} of {} ({seed}): {truth} but {estimate:?}", case.name));
                 }
                 distances.push(off);

@@ -100,15 +100,15 @@ fn pays(
     let mut bare = fit.model.clone();
     bare.remove(number);
     let others = without(design, swept, &fit.model, number);
-    let [bare, others] = [bare, others].map(|model| zeros::residuals(study, &model));
+    let [bare, others, whole] = [&bare, &others, &fit.model].map(|model| zeros::residuals(study, model));
     let (mut gained, mut expected, mut peak) = (0.0, 0.0, 0.0_f64);
     for (scene, known) in study.scenes.iter().enumerate() {
         let fitted = known.fitted_rows();
         for channel in 0..known.channels.len() {
             let noise = appraisal.noises[scene][channel];
             let size = noise.white.hypot(noise.wander);
-            let left = &appraisal.residuals[scene][channel];
-            let (bare, others) = (&bare[scene][channel], &others[scene][channel]);
+            let (bare, others, left) =
+                (&bare[scene][channel], &others[scene][channel], &whole[scene][channel]);
             let usable = |row: usize| bare[row].is_finite() && !appraisal.outliers[scene][channel][row];
             let rows: Vec<usize> = (0..bare.len()).filter(|row| usable(*row)).collect();
             let effect = |row: usize| (bare[row] - left[row]) / size;

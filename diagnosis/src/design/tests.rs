@@ -108,6 +108,8 @@ fn columns_are_slopes(study: &Study<'_>, model: &Model, effects: &[Effect], what
                 let share = match effect.shape {
                     // Between rows 0.1 s apart the command is straight: the velocity of a piece is not that of its end.
                     Shape::Instrument(Setting::Clock) => 0.06,
+                    // How a loop changes is taken by a step of the time constant, and acts on all that reads the position.
+                    Shape::Lag { .. } => 0.01,
                     _ => 3e-3,
                 };
                 let allowed = share * size.max(peak(&slope)) + 1e-9 / step;

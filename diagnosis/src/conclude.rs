@@ -45,12 +45,13 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, progress: &mut dyn FnMut(Progress)) 
         ..Diagnosis::default()
     };
     if let Some(reason) = too_little(&study) {
-        diagnosis.undecided.push(reason);
-        diagnosis.recordings = study.scenes.iter().map(summary).collect();
-        return diagnosis;
+        return undecidable(diagnosis, &study, reason);
     }
     let units = Units::new(&study);
     let bare = bare_model(&mut study);
+    if let Some(reason) = astray(&study, &bare) {
+        return undecidable(diagnosis, &study, reason);
+    }
     diagnosis.before = units.residual(&study, &bare);
     let mut step = |done: f64| progress(Progress { step: "looking for left-out physics", done: 0.9 * done });
     let always = candidates::always(&study);
@@ -193,7 +194,54 @@ fn too_little(study: &Study<'_>) -> Option<String> {
     } else {
         return None;
     };
-    Some(format!("Nothing can be decided from this recording, because {because}."))
+    Some(because)
+}
+
+fn undecidable(mut diagnosis: Diagnosis, study: &Study<'_>, because: String) -> Diagnosis {
+    let sentence = format!("Nothing can be decided from this recording, because {because}.");
+    diagnosis.undecided.push(sentence.clone());
+    diagnosis.undecidable = Some(sentence);
+    let nothing = Residual { rms: f64::NAN, holdout_rms: None, unit: "mm" };
+    (diagnosis.before, diagnosis.after) = (nothing, nothing);
+    diagnosis.noise = NoiseSummary { value: f64::NAN, unit: "mm", ..NoiseSummary::default() };
+    diagnosis.recordings = study.scenes.iter().map(summary).collect();
+    diagnosis
+}
+
+/// Why what was observed cannot be this machine on this path, where that is so: half of the samples of a channel lie far off,
+/// against the travel. No error of a machine is as large; a wrong unit, a wrong column and a wrong axis are.
+fn astray(study: &Study<'_>, bare: &Model) -> Option<String> {
+    for (scene, residuals) in zeros::residuals(study, bare).into_iter().enumerate() {
+        let travel =
+            study.scenes[scene].recording.axes.iter().filter_map(|axis| axis.command.as_deref()).map(range);
+        let travel = travel.fold(0.0, f64::max);
+        for (channel, residual) in study.scenes[scene].channels.iter().zip(residuals) {
+            let mut sizes: Vec<f64> =
+                residual.iter().map(|value| value.abs()).filter(|size| size.is_finite()).collect();
+            sizes.sort_by(f64::total_cmp);
+            let median = sizes.get(sizes.len() / 2).copied().unwrap_or_default();
+            let slack = if channel.kind.angular(study.equations) { FAR_OFF.1 } else { FAR_OFF.0 };
+            if median > slack + FAR_OFF_OF_TRAVEL * travel {
+                return Some(format!(
+                    "`{}` of {} does not follow the programmed path: half of its samples are off by more than {median:.3}; \
+                     look at its column, its unit and the axes",
+                    channel.name, study.scenes[scene].recording.file
+                ));
+            }
+        }
+    }
+    None
+}
+
+/// How far off, mm and rad, and as a share of the travel, is too far for an error of a machine.
+const FAR_OFF: (f64, f64) = (0.5, 0.01);
+const FAR_OFF_OF_TRAVEL: f64 = 0.05;
+
+fn range(values: &[f64]) -> f64 {
+    let known = values.iter().filter(|value| value.is_finite());
+    let (low, high) =
+        known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), q| (low.min(*q), high.max(*q)));
+    (high - low).max(0.0)
 }
 
 fn fitted_runs(scene: &Scene<'_>) -> Vec<i64> {

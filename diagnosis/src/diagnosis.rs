@@ -11,6 +11,9 @@ pub struct Diagnosis {
     pub recordings: Vec<Summary>,
     /// The verdict.
     pub verdict: Verdict,
+    /// Why nothing at all can be decided from these recordings, a whole sentence, where that is so: the verdict then says
+    /// nothing, and there are no figures and no findings.
+    pub undecidable: Option<String>,
     /// The noise: what stands above it is systematic.
     pub noise: NoiseSummary,
     /// The residual of the calibration alone, its free zeros fitted.

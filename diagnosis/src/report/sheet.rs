@@ -64,7 +64,7 @@ pub(super) fn sheet(diagnosis: &Diagnosis) -> Sheet {
         items("Repeatability", remains::repeatability(diagnosis)),
         list("What to measure next", remains::next_measurements(diagnosis)),
         list("What these recordings cannot decide", diagnosis.undecided.clone()),
-        items("Figures", data::figures(diagnosis)),
+        items("Figures", if diagnosis.undecidable.is_some() { Vec::new() } else { data::figures(diagnosis) }),
         items("Recordings", data::recordings(diagnosis)),
     ];
     Sheet {

@@ -5,6 +5,9 @@ use super::remains::brief;
 use crate::diagnosis::{Diagnosis, Verdict};
 
 pub(super) fn sentence(diagnosis: &Diagnosis) -> String {
+    if let Some(sentence) = &diagnosis.undecidable {
+        return format!("undecided: {}", sentence.trim_end_matches('.'));
+    }
     match diagnosis.verdict {
         Verdict::Adequate => adequate(diagnosis),
         Verdict::LeftOutPhysics => format!("left-out physics: {}", found(diagnosis)),

@@ -7,10 +7,9 @@
 use crate::design::in_parallel;
 use crate::model::Model;
 use crate::noise::{self, Noise};
-use crate::observations::Course;
+use crate::observations::{self, Course};
 use crate::outliers;
 use crate::study::Study;
-use crate::waves;
 
 /// What a model leaves.
 pub(crate) struct Appraisal {
@@ -29,7 +28,7 @@ impl Appraisal {
             Self { residuals: Vec::new(), outliers: Vec::new(), noises: Vec::new(), deviance: 0.0 };
         for scene in 0..study.scenes.len() {
             let course = Course::new(study, scene, model);
-            appraisal.add(study, scene, waves::residuals(study, scene, model, &course));
+            appraisal.add(study, scene, observations::residuals(study, scene, model, &course));
         }
         appraisal
     }

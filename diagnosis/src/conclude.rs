@@ -18,6 +18,7 @@ use crate::model::{Effect, Fitted, Model};
 use crate::parameters::{Described, WIDTH_95, axis_unit};
 use crate::recording::Instrument;
 use crate::repeats;
+use crate::rest;
 use crate::study::{Kind, Scene, Study};
 use crate::sweep::Swept;
 use crate::terms::{Setting, Shape};
@@ -34,6 +35,7 @@ const NAMES: usize = 4;
 pub(crate) fn diagnose(inputs: &Inputs<'_>, progress: &mut dyn FnMut(Progress)) -> Diagnosis {
     let recordings: Vec<_> = inputs.recordings.iter().copied().chain(inputs.holdout).collect();
     let mut study = Study::new(inputs.equations, inputs.calibration, &recordings);
+    rest::tell(&mut study);
     if inputs.holdout.is_some()
         && let Some(scene) = study.scenes.last_mut()
     {

@@ -11,7 +11,7 @@ use nalgebra::DMatrix;
 
 use crate::model::{Effect, Model, Place, Side};
 use crate::noise::{Noise, Step, Whitening, whiten};
-use crate::observations::{Course, Frame, Terms, acts};
+use crate::observations::{Course, Frame, STRETCH, Terms, acts};
 use crate::states::Rows;
 use crate::study::{Channel, Kind, Study};
 use crate::terms::{Memory, Shape};
@@ -56,9 +56,6 @@ pub(crate) struct Products {
     /// How many samples there are.
     pub(crate) samples: f64,
 }
-
-/// How many rows are worked on at a time.
-pub(crate) const STRETCH: usize = 1024;
 
 impl Design {
     /// Runs through all recordings once.

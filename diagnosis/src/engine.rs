@@ -15,7 +15,7 @@ use crate::kinship::{self, Kin};
 use crate::local::Feature;
 use crate::model::{Effect, Fitted, Model, Place, Side};
 use crate::noise::{self, Noise};
-use crate::observations::Course;
+use crate::observations::{self, Course};
 use crate::search::{Choice, rivals};
 use crate::study::Study;
 use crate::sweep::Swept;
@@ -215,7 +215,7 @@ fn all_residuals(
 fn first_noises(study: &Study<'_>, model: &Model, courses: &[Course]) -> Vec<Vec<Noise>> {
     let each = courses.iter().enumerate();
     each.map(|(scene, course)| {
-        let residuals = waves::residuals(study, scene, model, course);
+        let residuals = observations::residuals(study, scene, model, course);
         let channels = residuals.iter().zip(&study.scenes[scene].channels);
         channels
             .map(|(residual, channel)| {

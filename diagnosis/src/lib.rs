@@ -24,6 +24,7 @@ mod parameters;
 pub mod recording;
 mod repeats;
 pub mod report;
+mod rest;
 mod search;
 mod states;
 mod study;

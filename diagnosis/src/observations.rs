@@ -8,12 +8,14 @@ use std::ops::Range;
 
 use model_dsl::program::Column;
 
-use crate::design::STRETCH;
 use crate::model::{Effect, Fitted, Model, Place, Side};
 use crate::recording::Recording;
 use crate::states::{Rows, States};
 use crate::study::{Channel, Kind, Scene, Study, programmed};
 use crate::terms::{Memory, Setting, Shape};
+
+/// How many rows are worked on at a time.
+pub(crate) const STRETCH: usize = 1024;
 
 /// The states of one recording under a model: those that the instrument shows, and those of the drives.
 pub(crate) struct Course {
@@ -477,18 +479,36 @@ fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// The sum of distances of each channel from its median under the calibration alone.
-pub(crate) fn misfit(study: &Study<'_>, scene: usize) -> f64 {
-    let model = Model::new();
-    let course = Course::new(study, scene, &model);
-    let residuals = crate::waves::residuals(study, scene, &model, &course);
-    let spread = |residual: &Vec<f64>| {
-        let mut known: Vec<f64> = residual.iter().copied().filter(|value| value.is_finite()).collect();
-        known.sort_by(f64::total_cmp);
-        let middle = known.get(known.len() / 2).copied().unwrap_or_default();
-        known.iter().map(|value| (value - middle).abs()).sum::<f64>()
-    };
-    residuals.iter().map(spread).sum()
+/// Observed minus predicted of all channels of a scene, settings of the instrument included.
+pub(crate) fn residuals(study: &Study<'_>, scene: usize, model: &Model, course: &Course) -> Vec<Vec<f64>> {
+    let channels = &study.scenes[scene].channels;
+    let mut residuals: Vec<Vec<f64>> = channels.iter().map(|_| Vec::new()).collect();
+    each_frame(study, scene, model, course, |frame| {
+        for (number, (channel, residual)) in channels.iter().zip(&mut residuals).enumerate() {
+            let settings = frame.settings(study, scene, number, model);
+            let values = frame.residual(study, scene, channel, model);
+            residual.extend(values.iter().zip(settings).map(|(value, setting)| value - setting));
+        }
+    });
+    residuals
+}
+
+/// Runs through the rows of a scene in stretches.
+pub(crate) fn each_frame(
+    study: &Study<'_>,
+    scene: usize,
+    model: &Model,
+    course: &Course,
+    mut each: impl FnMut(&Frame<'_>),
+) {
+    let (mut terms, mut drive_terms) = (Terms::new(model), Terms::new(model));
+    let rows = study.scenes[scene].rows();
+    let mut from = 0;
+    while from < rows {
+        let end = (from + STRETCH).min(rows);
+        each(&Frame::new(study, course, from..end, &mut terms, &mut drive_terms));
+        from = end;
+    }
 }
 
 /// The columns of one effect in a stretch of rows of one channel are its gain times its term; this is the effect's part.

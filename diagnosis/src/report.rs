@@ -14,6 +14,7 @@ mod figure;
 mod finding;
 mod html;
 mod instrument;
+mod item;
 mod json;
 mod parameter;
 mod physics;

@@ -12,7 +12,6 @@ use model_dsl::program::Interpreter;
 
 use crate::model::{Effect, Fitted, Place, Side};
 use crate::noise;
-use crate::observations;
 use crate::recording::{Instrument, Recording};
 use crate::states::{behind_corners, nominal_position};
 use crate::terms;
@@ -122,25 +121,7 @@ impl<'a> Study<'a> {
             .iter()
             .map(|recording| Scene::new(recording, calibration, &sensors, &loads, &interpreter))
             .collect();
-        let mut study = Self { equations, interpreter, sensors, loads, scenes, known, own };
-        study.tell_rest();
-        study
-    }
-
-    /// Decides for each recording with rows far apart whether its axes move or rest while they are read: a laser at
-    /// stations reads axes at rest, a slow log moving ones, and the programmed positions alone do not tell.
-    fn tell_rest(&mut self) {
-        if !self.known.iter().any(|fitted| fitted.effect.shape.name() == "lag") {
-            return;
-        }
-        for scene in 0..self.scenes.len() {
-            if self.scenes[scene].sparse() {
-                let moving = observations::misfit(self, scene);
-                self.scenes[scene].at_rest = true;
-                let resting = observations::misfit(self, scene);
-                self.scenes[scene].at_rest = resting < moving;
-            }
-        }
+        Self { equations, interpreter, sensors, loads, scenes, known, own }
     }
 
     /// Whether the drive's own feedback of an axis was recorded anywhere.

@@ -9,11 +9,10 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use crate::candidates::Travel;
-use crate::design::STRETCH;
 use crate::kinship;
 use crate::model::{Effect, Model, Place, Side};
 use crate::noise::{Noise, Whitening, typical_step, unwhiten, whiten};
-use crate::observations::{Course, Frame, Terms};
+use crate::observations::{Course, Frame, each_frame, residuals};
 use crate::study::Study;
 use crate::terms::Shape;
 
@@ -125,38 +124,6 @@ pub(crate) fn weighted(
             Weighted { weighted, valid, weight }
         })
         .collect()
-}
-
-/// Observed minus predicted of all channels of a scene, settings of the instrument included.
-pub(crate) fn residuals(study: &Study<'_>, scene: usize, model: &Model, course: &Course) -> Vec<Vec<f64>> {
-    let channels = &study.scenes[scene].channels;
-    let mut residuals: Vec<Vec<f64>> = channels.iter().map(|_| Vec::new()).collect();
-    each_frame(study, scene, model, course, |frame| {
-        for (number, (channel, residual)) in channels.iter().zip(&mut residuals).enumerate() {
-            let settings = frame.settings(study, scene, number, model);
-            let values = frame.residual(study, scene, channel, model);
-            residual.extend(values.iter().zip(settings).map(|(value, setting)| value - setting));
-        }
-    });
-    residuals
-}
-
-/// Runs through the rows of a scene in stretches.
-pub(crate) fn each_frame(
-    study: &Study<'_>,
-    scene: usize,
-    model: &Model,
-    course: &Course,
-    mut each: impl FnMut(&Frame<'_>),
-) {
-    let (mut terms, mut drive_terms) = (Terms::new(model), Terms::new(model));
-    let rows = study.scenes[scene].rows();
-    let mut from = 0;
-    while from < rows {
-        let end = (from + STRETCH).min(rows);
-        each(&Frame::new(study, course, from..end, &mut terms, &mut drive_terms));
-        from = end;
-    }
 }
 
 /// The most promising waves of every kind, and how many independent ones were looked at.

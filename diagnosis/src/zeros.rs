@@ -8,10 +8,9 @@ use crate::appraisal::Appraisal;
 use crate::design::{Design, Regressor};
 use crate::fit;
 use crate::model::{Model, Place};
-use crate::observations::Course;
+use crate::observations::{self, Course};
 use crate::study::Study;
 use crate::terms::{Setting, Shape};
-use crate::waves;
 
 /// Fits the settings that are always free of every recording of which no row is fitted.
 pub(crate) fn free_held_out(study: &Study<'_>, model: &mut Model) {
@@ -43,7 +42,7 @@ pub(crate) fn residuals(study: &Study<'_>, model: &Model) -> Vec<Vec<Vec<f64>>> 
     let each = study.scenes.iter().enumerate();
     each.map(|(scene, known)| {
         let course = Course::new(study, scene, model);
-        let mut residuals = waves::residuals(study, scene, model, &course);
+        let mut residuals = observations::residuals(study, scene, model, &course);
         let loose = model
             .iter()
             .any(|fitted| matches!(fitted.effect.setting_of(scene), Some(Setting::RunOffset { .. })));

@@ -3,7 +3,7 @@
 //! In: columns from a path or from a recording. Out: the same, checked to fit together. Everything is in mm, rad, s,
 //! degC and the units of the loads.
 
-use crate::plant::PlantError;
+use crate::plant::error::PlantError;
 
 /// A named column, such as a temperature or a load.
 #[derive(Clone, Debug, Default, PartialEq)]

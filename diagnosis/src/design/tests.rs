@@ -10,7 +10,6 @@ use crate::recording::Recording;
 use crate::study::Block;
 use crate::terms::Setting;
 use crate::testing::{Bench, ballbar, circle, distance, line, noisy, normals, path, peak, position, warming};
-use crate::waves;
 
 const ERRORS: &str = "{EXX: [{polynomial: {axis: X, per: mm, unit: um, coefficients: [3, 0.05]}}], \
     EYY: [{lag: {gain: 25 1/s}}], EBX: [{table: {axis: X, start: -100 mm, step: 40 mm, unit: urad, values: [0, 20, -10, 30, 5, 0]}}], \
@@ -18,7 +17,7 @@ const ERRORS: &str = "{EXX: [{polynomial: {axis: X, per: mm, unit: um, coefficie
 
 /// What a model leaves of every channel of the one recording, instrument settings taken out.
 fn left(study: &Study<'_>, model: &Model) -> Vec<Vec<f64>> {
-    waves::residuals(study, 0, model, &Course::new(study, 0, model))
+    crate::observations::residuals(study, 0, model, &Course::new(study, 0, model))
 }
 
 /// The columns of regressors for one channel over all rows, the residual last.

@@ -5,7 +5,6 @@ use simulation::{Instrument as Reads, Normal};
 use super::*;
 use crate::terms::Setting;
 use crate::testing::{Bench, ballbar, circle, distance, line, path, peak, position, scenario, warming};
-use crate::waves;
 use simulation::path::Shape as PathShape;
 
 /// Errors of every kind, `size` times those of a bad machine.
@@ -57,7 +56,7 @@ fn worst(
     };
     let model: Model = settings.iter().map(fitted).collect();
     let course = Course::new(&study, 0, &model);
-    let mut residuals = waves::residuals(&study, 0, &model, &course);
+    let mut residuals = residuals(&study, 0, &model, &course);
     assert!(!residuals.is_empty());
     residuals.iter_mut().for_each(|residual| crate::zeros::center(residual));
     residuals.iter().map(|residual| peak(residual)).fold(0.0, f64::max)
@@ -138,7 +137,7 @@ fn read_late(errors: &str, clock: f64) -> [Vec<f64>; 3] {
     let recording = bench.record(&calibration, &scenario);
     let study = Study::new(bench.equations(), Some(&calibration), &[&recording]);
     assert!(study.scenes[0].channels[2].kind == Kind::Drive(0));
-    let left = |model: &Model| waves::residuals(&study, 0, model, &Course::new(&study, 0, model));
+    let left = |model: &Model| residuals(&study, 0, model, &Course::new(&study, 0, model));
     let mut seen =
         left(&vec![Fitted { effect: Effect::setting(0, Setting::Clock), coefficients: vec![clock] }]);
     let (outside, drive) = (seen[0].clone(), seen.swap_remove(2));
@@ -185,10 +184,10 @@ fn a_rotary_stage_is_read_in_the_sense_of_its_command() {
         let recording = bench.record(&calibration, &scenario(path(line(0, 0.0, 2.0), 0.2, 20.0), instrument));
         let study = Study::new(bench.equations(), Some(&calibration), &[&recording]);
         assert_eq!(study.scenes[0].channels[0].kind, Kind::Stage(0));
-        let left = waves::residuals(&study, 0, &Vec::new(), &Course::new(&study, 0, &[]));
+        let left = residuals(&study, 0, &Vec::new(), &Course::new(&study, 0, &[]));
         assert!(peak(&left[0]) < 1e-8, "{machine}: {}", peak(&left[0]));
         let bare = Study::new(bench.equations(), None, &[&recording]);
-        let left = waves::residuals(&bare, 0, &Vec::new(), &Course::new(&bare, 0, &[]));
+        let left = residuals(&bare, 0, &Vec::new(), &Course::new(&bare, 0, &[]));
         assert!(peak(&left[0]) > 60e-6);
     }
 }
@@ -214,7 +213,7 @@ fn drives_see_what_came_in_on_their_side_only() {
         let left = |side: Side| {
             let effect = Effect { place: Place::Motion { motion: 0, side }, shape: shape.clone() };
             let model = vec![Fitted { effect, coefficients: vec![0.01] }];
-            let residuals = waves::residuals(&study, 0, &model, &Course::new(&study, 0, &model));
+            let residuals = residuals(&study, 0, &model, &Course::new(&study, 0, &model));
             residuals.iter().map(|residual| peak(residual)).fold(0.0, f64::max)
         };
         assert!(left(side) < 1e-9, "{side:?}");
@@ -237,7 +236,7 @@ fn stretches_make_no_difference() {
     };
     let model = vec![Fitted { effect: wound, coefficients: vec![0.01] }];
     let course = Course::new(&study, 0, &model);
-    let pieces = waves::residuals(&study, 0, &model, &course);
+    let pieces = residuals(&study, 0, &model, &course);
     let (mut terms, mut drive_terms) = (Terms::new(&model), Terms::new(&model));
     let whole = Frame::new(&study, &course, 0..recording.time.len(), &mut terms, &mut drive_terms);
     for (number, channel) in study.scenes[0].channels.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! What the diagnosis stands on. In: a diagnosis. Out: the noise, the residuals and the recordings, in words.
 
 use super::figure::size;
-use super::sheet::Item;
+use super::item::Item;
 use crate::diagnosis::{Diagnosis, NoiseSummary, Residual, Summary};
 
 /// The noise, and what the model leaves before and after.

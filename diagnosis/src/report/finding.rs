@@ -2,8 +2,8 @@
 //! else it could be, and what compensation does about it.
 
 use super::figure::{change, percent};
+use super::item::Item;
 use super::physics::{first_power, friction, interval, left, removed, side, state, title};
-use super::sheet::Item;
 use super::{parameter, remains, told};
 use crate::diagnosis::{Alternative, Diagnosis, Evidence, Finding, Location};
 

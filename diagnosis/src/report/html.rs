@@ -1,6 +1,7 @@
 //! The report as a page. In: a diagnosis. Out: one HTML file with its style inside: no script, nothing fetched.
 
-use super::sheet::{Body, Fact, Item, Section, sheet};
+use super::item::{Fact, Item};
+use super::sheet::{Body, Section, sheet};
 use crate::diagnosis::Diagnosis;
 
 const STYLE: &str = "\

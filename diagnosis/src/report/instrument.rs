@@ -1,9 +1,9 @@
 //! Settings of the instruments in words. In: those that the data demand. Out: an item each.
 
 use super::finding::alternatives;
+use super::item::Item;
 use super::parameter;
 use super::physics::title;
-use super::sheet::Item;
 use crate::diagnosis::{Diagnosis, SettingFinding};
 
 /// All settings, in order.

@@ -2,8 +2,8 @@
 //! next, in words.
 
 use super::figure::size;
+use super::item::Item;
 use super::physics::{interval, state};
-use super::sheet::Item;
 use super::told;
 use crate::diagnosis::{Diagnosis, Repeatability, Unexplained};
 

@@ -1,6 +1,7 @@
 //! What the report says, before it is text or a page. In: a diagnosis. Out: its sections in order, each with items of
 //! labelled facts or with plain sentences.
 
+use super::item::Item;
 use super::{data, finding, instrument, remains, verdict};
 use crate::diagnosis::Diagnosis;
 
@@ -24,29 +25,6 @@ pub(super) enum Body {
     Items(Vec<Item>),
     /// Sentences, in order.
     List(Vec<String>),
-}
-
-/// One thing and what is to be said of it.
-pub(super) struct Item {
-    pub(super) title: String,
-    pub(super) facts: Vec<Fact>,
-}
-
-/// A labelled fact of one or more lines.
-pub(super) struct Fact {
-    pub(super) label: &'static str,
-    pub(super) lines: Vec<String>,
-}
-
-impl Item {
-    /// An item; facts without a line are left out.
-    pub(super) fn new(title: String, facts: impl IntoIterator<Item = (&'static str, Vec<String>)>) -> Self {
-        let facts = facts.into_iter().filter_map(|(label, lines)| {
-            let lines: Vec<String> = lines.into_iter().filter(|line| !line.is_empty()).collect();
-            (!lines.is_empty()).then_some(Fact { label, lines })
-        });
-        Self { title, facts: facts.collect() }
-    }
 }
 
 /// The report of a diagnosis. Sections that have nothing to say are left out.

@@ -3,7 +3,8 @@
 
 use textwrap::{Options, WordSeparator, WordSplitter, fill};
 
-use super::sheet::{Body, Fact, Item, Section, sheet};
+use super::item::{Fact, Item};
+use super::sheet::{Body, Section, sheet};
 use crate::diagnosis::Diagnosis;
 
 /// The widest line.

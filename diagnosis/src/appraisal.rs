@@ -4,10 +4,11 @@
 //! that are fitted. Two models are compared by their likelihoods, each with the noise that suits it best: an effect that a
 //! wandering sensor explains as well is then worth nothing.
 
+use crate::course::Course;
 use crate::design::in_parallel;
 use crate::model::Model;
 use crate::noise::{self, Noise};
-use crate::observations::{self, Course};
+use crate::observations;
 use crate::outliers;
 use crate::study::Study;
 

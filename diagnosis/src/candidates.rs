@@ -3,9 +3,9 @@
 //! In: the study. Out: effects, from the machine itself: each error motion, with each term whose state was recorded.
 //! Terms with a parameter that is not linear stand on a grid; periods and frequencies are searched for elsewhere.
 
+use crate::course::Course;
 use crate::model::{Effect, Place, Side};
 use crate::noise::typical_step;
-use crate::observations::Course;
 use crate::study::{Kind, Study};
 use crate::terms::{REFERENCE_TEMPERATURE, Setting, Shape};
 
@@ -198,8 +198,11 @@ fn along(study: &Study<'_>, motion: usize, axis: usize, travel: &Travel, grids: 
 
 /// The middle and the half range of what a sensor read over all recordings, degC.
 fn warmth(study: &Study<'_>, sensor: usize) -> (f64, f64) {
-    let known =
-        study.scenes.iter().flat_map(|scene| &scene.temperatures[sensor]).filter(|value| value.is_finite());
+    let known = study
+        .scenes
+        .iter()
+        .flat_map(|scene| &scene.given.temperatures[sensor])
+        .filter(|value| value.is_finite());
     let (low, high) =
         known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| (low.min(*t), high.max(*t)));
     ((low + high) / 2.0, ((high - low) / 2.0).max(1e-3))
@@ -208,7 +211,10 @@ fn warmth(study: &Study<'_>, sensor: usize) -> (f64, f64) {
 /// The sensors of which there are samples in every recording.
 fn recorded(study: &Study<'_>) -> Vec<usize> {
     let known = |sensor: &usize| {
-        study.scenes.iter().all(|scene| scene.temperatures[*sensor].iter().any(|value| value.is_finite()))
+        study
+            .scenes
+            .iter()
+            .all(|scene| scene.given.temperatures[*sensor].iter().any(|value| value.is_finite()))
     };
     (0..study.sensors.len()).filter(known).collect()
 }

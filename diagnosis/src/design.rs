@@ -9,9 +9,10 @@ use std::panic::resume_unwind;
 
 use nalgebra::DMatrix;
 
+use crate::course::{Course, Terms};
 use crate::model::{Effect, Model, Place, Side};
 use crate::noise::{Noise, Step, Whitening, whiten};
-use crate::observations::{Course, Frame, STRETCH, Terms, acts};
+use crate::observations::{Frame, STRETCH, acts};
 use crate::states::Rows;
 use crate::study::{Channel, Kind, Study};
 use crate::terms::{Memory, Shape};
@@ -175,17 +176,17 @@ pub(crate) fn in_parallel<T: Send>(count: usize, job: &(impl Fn(usize) -> T + Sy
     if workers <= 1 {
         return (0..count).map(job).collect();
     }
-    let mut results: Vec<(usize, T)> = std::thread::scope(|scope| {
-        let handles: Vec<_> = (0..workers)
-            .map(|worker| {
-                scope.spawn(move || {
-                    (worker..count).step_by(workers).map(|number| (number, job(number))).collect::<Vec<_>>()
-                })
-            })
-            .collect();
-        let joined =
-            handles.into_iter().map(|handle| handle.join().unwrap_or_else(|panic| resume_unwind(panic)));
-        joined.flatten().collect()
+    let share = |worker: usize| -> Vec<(usize, T)> {
+        (worker..count).step_by(workers).map(|number| (number, job(number))).collect()
+    };
+    let mut results = std::thread::scope(|scope| {
+        let others: Vec<_> = (1..workers).map(|worker| scope.spawn(move || share(worker))).collect();
+        // This thread has its share too.
+        let mut results = share(0);
+        for other in others {
+            results.extend(other.join().unwrap_or_else(|panic| resume_unwind(panic)));
+        }
+        results
     });
     results.sort_by_key(|(number, _)| *number);
     results.into_iter().map(|(_, result)| result).collect()
@@ -264,13 +265,18 @@ impl<'r> ChannelRun<'r> {
             let end = (from + STRETCH).min(rows);
             let frame = Frame::new(study, course, from..end, &mut terms, &mut drive_terms);
             let view = course.states(self.channel().kind).rows(from..end);
-            let columns = self.raw_columns(&frame, &view);
-            let valid = |row: usize| (0..=self.width).all(|column| columns[(row, column)].is_finite());
-            let drawn = DMatrix::from_fn(end - from, count, |_, _| random.next());
-            let kept: Vec<usize> = (0..end - from).filter(|row| valid(*row)).collect();
-            let (columns, drawn) = (columns.select_rows(&kept) * weight, drawn.select_rows(&kept));
+            let mut columns = self.raw_columns(&frame, &view);
+            columns *= weight;
+            let mut drawn = DMatrix::from_fn(end - from, count, |_, _| random.next());
+            for row in 0..end - from {
+                if columns.row(row).iter().all(|value| value.is_finite()) {
+                    samples += 1.0;
+                } else {
+                    columns.row_mut(row).fill(0.0);
+                    drawn.row_mut(row).fill(0.0);
+                }
+            }
             let columns = columns.columns(0, self.width);
-            samples += crate::number(kept.len());
             let products = drawn.transpose() * columns;
             for (number, sum) in weights.iter_mut().enumerate() {
                 *sum += drawn.column(number).sum();

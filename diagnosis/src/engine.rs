@@ -6,6 +6,7 @@
 
 use crate::appraisal::Appraisal;
 use crate::candidates::{self, Travel};
+use crate::course::Course;
 use crate::curves;
 use crate::design::{Design, Regressor};
 use crate::dynamics;
@@ -15,7 +16,7 @@ use crate::kinship::{self, Kin};
 use crate::local::Feature;
 use crate::model::{Effect, Fitted, Model, Place, Side};
 use crate::noise::{self, Noise};
-use crate::observations::{self, Course};
+use crate::observations;
 use crate::search::{Choice, rivals};
 use crate::study::Study;
 use crate::sweep::Swept;

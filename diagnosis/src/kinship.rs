@@ -7,10 +7,10 @@
 use nalgebra::DMatrix;
 
 use crate::candidates::simplicity;
+use crate::course::Course;
 use crate::design::{ChannelRun, Regressor, in_parallel};
 use crate::model::{Effect, Model};
 use crate::noise::Noise;
-use crate::observations::Course;
 use crate::study::Study;
 
 /// An effect, and others that the recordings show alike.

@@ -7,6 +7,7 @@ mod alternatives;
 mod appraisal;
 mod candidates;
 mod conclude;
+mod course;
 mod curves;
 mod design;
 pub mod diagnosis;

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use crate::appraisal::Appraisal;
 use crate::candidates::Travel;
-use crate::observations::Course;
+use crate::course::Course;
 use crate::study::Study;
 
 /// Something that comes back at one place of an axis.

@@ -8,150 +8,13 @@ use std::ops::Range;
 
 use model_dsl::program::Column;
 
-use crate::model::{Effect, Fitted, Model, Place, Side};
-use crate::recording::Recording;
-use crate::states::{Rows, States};
-use crate::study::{Channel, Kind, Scene, Study, programmed};
-use crate::terms::{Memory, Setting, Shape};
+use crate::course::{Course, Terms, inputs, weighted_sum};
+use crate::model::{Effect, Model, Place, Side};
+use crate::study::{Channel, Kind, Study};
+use crate::terms::Setting;
 
 /// How many rows are worked on at a time.
-pub(crate) const STRETCH: usize = 1024;
-
-/// The states of one recording under a model: those that the instrument shows, and those of the drives.
-pub(crate) struct Course {
-    /// Behind the loops, shifted by the instrument's clock.
-    pub(crate) shown: States,
-    /// Behind the loops, on the drives' own clock; only where it differs.
-    drives: Option<States>,
-    programmed: Vec<Vec<f64>>,
-    /// What the calibration says of the tip and of its rotation in every row.
-    known: KnownError,
-}
-
-/// The error of the tip, and the rotation of the tool relative to the part, X, Y, Z each; the rotation only where a channel
-/// shows it.
-struct KnownError {
-    tip: [Vec<f64>; 3],
-    turn: Option<[Vec<f64>; 3]>,
-}
-
-impl Course {
-    /// The course of a recording under a model.
-    pub(crate) fn new(study: &Study<'_>, scene: usize, model: &[Fitted]) -> Self {
-        let recording = study.scenes[scene].recording;
-        let at_rest = study.scenes[scene].at_rest;
-        let lags = if at_rest { vec![0.0; study.equations.axes.len()] } else { lags(study, model) };
-        let clock = clock(scene, model);
-        let shown = states(&study.scenes[scene], &lags, clock);
-        let drives = (clock != 0.0).then(|| states(&study.scenes[scene], &lags, 0.0));
-        let known = KnownError::new(study, scene, &shown);
-        Self { shown, drives, programmed: programmed(recording), known }
-    }
-
-    /// The states that a channel shows.
-    pub(crate) fn states(&self, kind: Kind) -> &States {
-        match (&self.drives, kind) {
-            (Some(drives), Kind::Drive(_)) => drives,
-            _ => &self.shown,
-        }
-    }
-}
-
-impl KnownError {
-    /// Adds up the calibration's terms. Its loops are in the states already.
-    fn new(study: &Study<'_>, scene: usize, states: &States) -> Self {
-        let channels = &study.scenes[scene].channels;
-        let turning = channels.iter().any(|channel| matches!(channel.kind, Kind::Turn(_) | Kind::Stage(_)));
-        let mut known = Self { tip: Default::default(), turn: turning.then(Default::default) };
-        let mut terms = Terms::of(study.known.iter());
-        let rows = states.time.len();
-        let mut from = 0;
-        while from < rows {
-            let end = (from + STRETCH).min(rows);
-            let view = states.rows(from..end);
-            let motions = terms.motions(&view, study.equations.motions.len(), false);
-            let (positions, travels) = inputs(study, &view);
-            append(
-                &mut known.tip,
-                &study.interpreter.lever_values(&positions, &travels),
-                &motions,
-                end - from,
-            );
-            if let Some(turn) = &mut known.turn {
-                append(turn, &study.interpreter.turn_values(&positions, &travels), &motions, end - from);
-            }
-            from = end;
-        }
-        known
-    }
-}
-
-/// Appends the sum of arms times motions in a stretch of rows.
-fn append(sums: &mut [Vec<f64>; 3], arms: &[[Column<'_>; 3]], motions: &[Option<Vec<f64>>], rows: usize) {
-    for (sum, part) in sums.iter_mut().zip(weighted_sum(arms, motions, rows)) {
-        sum.extend(part);
-    }
-}
-
-/// The positions of all axes in a stretch of rows, and the free travels, which are positions by default.
-fn inputs<'s>(study: &Study<'_>, view: &Rows<'s>) -> (Vec<&'s [f64]>, Vec<&'s [f64]>) {
-    let positions: Vec<&[f64]> =
-        (0..study.equations.axes.len()).map(|axis| view.axis(axis).position).collect();
-    let travels = study.equations.travels.iter().map(|travel| positions[travel.axis]).collect();
-    (positions, travels)
-}
-
-fn states(scene: &Scene<'_>, lags: &[f64], clock: f64) -> States {
-    let recording: &Recording = scene.recording;
-    States::new(recording, scene.temperatures.clone(), scene.loads.clone(), lags, clock)
-}
-
-/// The time constant of each axis's position loop: those of the calibration and of the model add.
-fn lags(study: &Study<'_>, model: &[Fitted]) -> Vec<f64> {
-    let mut lags = vec![0.0; study.equations.axes.len()];
-    for fitted in study.known.iter().chain(model) {
-        if let (Shape::Lag { axis }, [lag]) = (&fitted.effect.shape, fitted.coefficients.as_slice()) {
-            lags[*axis] += lag;
-        }
-    }
-    lags.iter().map(|lag| lag.max(0.0)).collect()
-}
-
-fn clock(scene: usize, model: &[Fitted]) -> f64 {
-    let clocks = model.iter().filter(|fitted| fitted.effect.setting_of(scene) == Some(Setting::Clock));
-    clocks.filter_map(|fitted| fitted.coefficients.first()).sum()
-}
-
-/// Terms whose memory runs through the rows of one recording, each term once.
-pub(crate) struct Terms<'m> {
-    fitted: Vec<(&'m Fitted, Memory)>,
-}
-
-impl<'m> Terms<'m> {
-    /// All terms of the machine in a model, at the beginning of a recording.
-    pub(crate) fn new(model: &'m Model) -> Self {
-        Self::of(model.iter())
-    }
-
-    fn of(fitted: impl Iterator<Item = &'m Fitted>) -> Self {
-        let machine = fitted.filter(|fitted| fitted.effect.motion().is_some());
-        Self { fitted: machine.map(|fitted| (fitted, Memory::default())).collect() }
-    }
-
-    /// The value of every error motion in the next stretch of rows; on the drives' side alone where `drive` is set.
-    fn motions(&mut self, rows: &Rows<'_>, motions: usize, drive: bool) -> Vec<Option<Vec<f64>>> {
-        let mut sums: Vec<Option<Vec<f64>>> = vec![None; motions];
-        for (fitted, memory) in &mut self.fitted {
-            if let Place::Motion { motion, side } = fitted.effect.place
-                && (!drive || side == Side::Drive)
-            {
-                let sum = sums[motion].get_or_insert_with(|| vec![0.0; rows.len()]);
-                fitted.effect.shape.add(&fitted.coefficients, rows, memory, sum);
-            }
-        }
-        sums
-    }
-}
+pub(crate) const STRETCH: usize = 256;
 
 /// Everything about a stretch of rows that the channels share.
 pub(crate) struct Frame<'c> {
@@ -181,13 +44,14 @@ impl<'c> Frame<'c> {
         let view = course.shown.rows(rows.clone());
         let (positions, travels) = inputs(study, &view);
         let programmed: Vec<&'c [f64]> =
-            course.programmed.iter().map(|position| &position[rows.clone()]).collect();
+            course.shown.given.programmed.iter().map(|position| &position[rows.clone()]).collect();
         let interpreter = &study.interpreter;
         let levers = interpreter.lever_values(&positions, &travels);
         let motions = terms.motions(&view, levers.len(), false);
         let drive_rows = course.drives.as_ref().unwrap_or(&course.shown).rows(rows.clone());
         let drive_motions = drive_terms.motions(&drive_rows, levers.len(), true);
-        let first: Vec<f64> = course.programmed.iter().map(|position| first_known(position)).collect();
+        let first: Vec<f64> =
+            course.shown.given.programmed.iter().map(|position| first_known(position)).collect();
         Self {
             error: plus(weighted_sum(&levers, &motions, rows.len()), &course.known.tip, &rows),
             turns: interpreter.turn_values(&positions, &travels),
@@ -439,28 +303,6 @@ fn plus(mut sums: [Vec<f64>; 3], known: &[Vec<f64>; 3], rows: &Range<usize>) -> 
     sums
 }
 
-/// The sum of arms times motions, in three directions.
-fn weighted_sum(levers: &[[Column<'_>; 3]], motions: &[Option<Vec<f64>>], rows: usize) -> [Vec<f64>; 3] {
-    let mut error = [vec![0.0; rows], vec![0.0; rows], vec![0.0; rows]];
-    for (levers, motion) in levers.iter().zip(motions) {
-        let Some(motion) = motion else { continue };
-        for (error, lever) in error.iter_mut().zip(levers) {
-            match lever {
-                Column::Same(0.0) => {}
-                Column::Same(lever) => {
-                    error.iter_mut().zip(motion).for_each(|(error, motion)| *error += lever * motion)
-                }
-                Column::Rows(lever) => {
-                    for ((error, lever), motion) in error.iter_mut().zip(lever.iter()).zip(motion) {
-                        *error += lever * motion;
-                    }
-                }
-            }
-        }
-    }
-    error
-}
-
 /// The direction about which a rotary axis's own motion counts +1.
 fn stage_direction(study: &Study<'_>, axis: usize, turns: &[[Column<'_>; 3]]) -> [f64; 3] {
     let own = study.own[axis].and_then(|own| turns.get(own));
@@ -482,7 +324,8 @@ fn length(a: [f64; 3]) -> f64 {
 /// Observed minus predicted of all channels of a scene, settings of the instrument included.
 pub(crate) fn residuals(study: &Study<'_>, scene: usize, model: &Model, course: &Course) -> Vec<Vec<f64>> {
     let channels = &study.scenes[scene].channels;
-    let mut residuals: Vec<Vec<f64>> = channels.iter().map(|_| Vec::new()).collect();
+    let rows = study.scenes[scene].rows();
+    let mut residuals: Vec<Vec<f64>> = channels.iter().map(|_| Vec::with_capacity(rows)).collect();
     each_frame(study, scene, model, course, |frame| {
         for (number, (channel, residual)) in channels.iter().zip(&mut residuals).enumerate() {
             let settings = frame.settings(study, scene, number, model);

@@ -136,7 +136,7 @@ pub(crate) fn describe(study: &Study<'_>, scatter: &Scatter, unit: (f64, &'stati
     };
     let by_run = |values: &[f64]| scatter.runs.iter().map(|run| mean(values, *run)).collect::<Vec<f64>>();
     let mut states = vec![("time".to_owned(), by_run(&scene.recording.time))];
-    for (name, values) in study.sensors.iter().zip(&scene.temperatures) {
+    for (name, values) in study.sensors.iter().zip(scene.given.temperatures.iter()) {
         states.push((format!("temperature {name}"), by_run(values)));
     }
     let strongest = states

@@ -4,8 +4,9 @@
 //! reads axes at rest, a slow log moving ones, and the programmed positions alone do not tell; a calibration that knows a
 //! position loop does.
 
+use crate::course::Course;
 use crate::model::Model;
-use crate::observations::{Course, residuals};
+use crate::observations::residuals;
 use crate::study::Study;
 
 /// Decides it by what the calibration's loops explain better.

@@ -5,36 +5,69 @@
 //! where the axis has one; and views of stretches of rows.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::noise::typical_step;
 use crate::recording::{AxisChannels, Recording};
 use crate::way::{CORNER, Way};
 
+/// A column of one entry a row, held once wherever it is needed: a recording has many rows.
+pub(crate) type Shared = Arc<[f64]>;
+
+/// What states start from: what a recording says in each row, under the numbers of the study.
+#[derive(Clone, Debug)]
+pub(crate) struct Given {
+    /// s, from the first row.
+    pub(crate) time: Shared,
+    /// The programmed position of each axis.
+    pub(crate) programmed: Arc<[Shared]>,
+    /// By the sensors of the study; NaN where the recording lacks one.
+    pub(crate) temperatures: Arc<[Vec<f64>]>,
+    pub(crate) loads: Arc<[Vec<f64>]>,
+}
+
+impl Given {
+    /// What a recording says, with sensors and loads in the study's order.
+    pub(crate) fn new(recording: &Recording, temperatures: Vec<Vec<f64>>, loads: Vec<Vec<f64>>) -> Self {
+        let rows = recording.time.len();
+        Self {
+            time: recording.time.as_slice().into(),
+            programmed: recording.axes.iter().map(|axis| nominal_position(axis, rows)).collect(),
+            temperatures: temperatures.into(),
+            loads: loads.into(),
+        }
+    }
+}
+
 /// The states of all rows of one recording.
 #[derive(Clone, Debug)]
 pub(crate) struct States {
-    pub(crate) time: Vec<f64>,
+    pub(crate) given: Given,
     pub(crate) axes: Vec<AxisStates>,
-    /// By the sensors of the study; NaN where this recording lacks one.
-    pub(crate) temperatures: Vec<Vec<f64>>,
-    pub(crate) loads: Vec<Vec<f64>>,
 }
 
 /// The states of one axis, one entry a row: mm or rad, and s.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct AxisStates {
-    pub(crate) position: Vec<f64>,
-    pub(crate) acceleration: Vec<f64>,
+    pub(crate) position: Shared,
+    pub(crate) acceleration: Shared,
     /// +1 or -1: that of the last real motion; +1 before the first.
-    pub(crate) direction: Vec<f64>,
+    pub(crate) direction: Shared,
     /// Infinite before the first reversal.
-    pub(crate) since_reversal: Vec<f64>,
+    pub(crate) since_reversal: Shared,
     /// How the position changes with the time constant of the loop.
-    pub(crate) lag_slope: Vec<f64>,
+    pub(crate) lag_slope: Shared,
     /// How the position changes with the offset of the instrument's clock.
-    pub(crate) clock_slope: Vec<f64>,
+    pub(crate) clock_slope: Shared,
     /// Whether the axis moves at all.
     pub(crate) moves: bool,
+}
+
+/// The columns of an axis that stands, the same for each of them.
+struct Standing {
+    zero: Shared,
+    forward: Shared,
+    never: Shared,
 }
 
 /// The states in a stretch of rows.
@@ -77,54 +110,80 @@ impl<'s> Rows<'s> {
 
     /// A sensor by number, degC.
     pub(crate) fn temperature(&self, number: usize) -> &'s [f64] {
-        &self.states.temperatures[number][self.first..self.end]
+        &self.states.given.temperatures[number][self.first..self.end]
     }
 
     /// A load by number.
     pub(crate) fn load(&self, number: usize) -> &'s [f64] {
-        &self.states.loads[number][self.first..self.end]
+        &self.states.given.loads[number][self.first..self.end]
     }
 }
 
 impl States {
-    /// The states of a recording whose temperatures and loads are given by the numbers of the study.
-    pub(crate) fn new(
-        recording: &Recording,
-        temperatures: Vec<Vec<f64>>,
-        loads: Vec<Vec<f64>>,
-        lags: &[f64],
-        clock: f64,
-    ) -> Self {
-        let time = recording.time.clone();
-        let axes = recording.axes.iter().zip(lags);
-        let axes = axes.map(|(axis, lag)| axis_states(&time, &recording.run, axis, *lag, clock)).collect();
-        Self { time, axes, temperatures, loads }
+    /// The states of a recording behind loops of these time constants, shown by a clock with this offset.
+    pub(crate) fn new(recording: &Recording, given: &Given, lags: &[f64], clock: f64) -> Self {
+        let mut standing: Option<Standing> = None;
+        let mut axes = Vec::with_capacity(lags.len());
+        for ((axis, programmed), lag) in recording.axes.iter().zip(given.programmed.iter()).zip(lags) {
+            axes.push(if stands(programmed) {
+                standing.get_or_insert_with(|| Standing::new(programmed.len())).at(programmed)
+            } else {
+                axis_states(&given.time, &recording.run, axis, programmed, *lag, clock)
+            });
+        }
+        Self { given: given.clone(), axes }
     }
 
     /// The states in a stretch of rows.
     pub(crate) fn rows(&self, rows: Range<usize>) -> Rows<'_> {
-        Rows { states: self, first: rows.start, end: rows.end, time: &self.time[rows] }
+        Rows { states: self, first: rows.start, end: rows.end, time: &self.given.time[rows] }
+    }
+}
+
+/// Whether an axis is at one place in every row.
+fn stands(programmed: &[f64]) -> bool {
+    programmed.first().is_some_and(|first| first.is_finite() && programmed.iter().all(|q| q == first))
+}
+
+impl Standing {
+    fn new(rows: usize) -> Self {
+        let all = |value: f64| vec![value; rows].into();
+        Self { zero: all(0.0), forward: all(1.0), never: all(f64::INFINITY) }
+    }
+
+    fn at(&self, position: &Shared) -> AxisStates {
+        AxisStates {
+            position: position.clone(),
+            acceleration: self.zero.clone(),
+            direction: self.forward.clone(),
+            since_reversal: self.never.clone(),
+            lag_slope: self.zero.clone(),
+            clock_slope: self.zero.clone(),
+            moves: false,
+        }
     }
 }
 
 /// The position that stands for an axis: programmed, or the drive's where nothing was programmed; 0 where neither is known.
-pub(crate) fn nominal_position(axis: &AxisChannels, rows: usize) -> Vec<f64> {
-    axis.command
-        .as_ref()
-        .or(axis.actual.as_ref())
-        .or(axis.measured.as_ref())
-        .cloned()
-        .unwrap_or(vec![0.0; rows])
+pub(crate) fn nominal_position(axis: &AxisChannels, rows: usize) -> Shared {
+    let known = axis.command.as_ref().or(axis.actual.as_ref()).or(axis.measured.as_ref());
+    known.map_or_else(|| vec![0.0; rows].into(), |known| known.as_slice().into())
 }
 
-fn axis_states(time: &[f64], run: &[i64], axis: &AxisChannels, lag: f64, clock: f64) -> AxisStates {
-    let programmed = nominal_position(axis, time.len());
-    let resolution = resolution(axis, &programmed);
-    let way = Way::new(time, &programmed, derivative(time, run, &programmed));
+fn axis_states(
+    time: &[f64],
+    run: &[i64],
+    axis: &AxisChannels,
+    programmed: &Shared,
+    lag: f64,
+    clock: f64,
+) -> AxisStates {
+    let resolution = resolution(axis, programmed);
+    let way = Way::new(time, programmed, derivative(time, run, programmed));
     if lag > 0.0 {
         behind_loop(time, run, &way, lag, clock, resolution)
     } else {
-        as_programmed(time, run, &way, clock, resolution)
+        as_programmed(time, run, &way, programmed, clock, resolution)
     }
 }
 
@@ -140,20 +199,31 @@ fn resolution(axis: &AxisChannels, positions: &[f64]) -> f64 {
 }
 
 /// Without a loop. A quick loop stays behind by its time constant times the speed on the way to a row, as a late clock does.
-fn as_programmed(time: &[f64], run: &[i64], way: &Way<'_>, clock: f64, resolution: f64) -> AxisStates {
-    let position = way.earlier(clock);
+fn as_programmed(
+    time: &[f64],
+    run: &[i64],
+    way: &Way<'_>,
+    programmed: &Shared,
+    clock: f64,
+    resolution: f64,
+) -> AxisStates {
+    let position = if clock == 0.0 { programmed.clone() } else { way.earlier(clock).into() };
     // A little earlier: what is seen then is the way just before, not the mean of the ways before and after.
     let step = 1e-3 * typical_step(time);
-    let clock_slope: Vec<f64> = way
-        .earlier(clock + step)
-        .iter()
-        .zip(&position)
-        .map(|(earlier, now)| (earlier - now) / step)
-        .collect();
-    let acceleration = derivative(time, run, &derivative(time, run, &position));
+    let mut slope = way.earlier(clock + step);
+    slope.iter_mut().zip(position.iter()).for_each(|(earlier, now)| *earlier = (*earlier - now) / step);
+    let slope: Shared = slope.into();
+    let acceleration = derivative(time, run, &derivative(time, run, &position)).into();
     let (direction, since_reversal, moves) = directions(time, &position, resolution);
-    let lag_slope = clock_slope.clone();
-    AxisStates { position, acceleration, direction, since_reversal, lag_slope, clock_slope, moves }
+    AxisStates {
+        position,
+        acceleration,
+        direction: direction.into(),
+        since_reversal: since_reversal.into(),
+        lag_slope: slope.clone(),
+        clock_slope: slope,
+        moves,
+    }
 }
 
 /// The relative step by which the slope with the time constant is taken.
@@ -168,14 +238,21 @@ fn behind_loop(
     resolution: f64,
 ) -> AxisStates {
     let (position, command) = way.behind_loop(lag, clock);
-    let (further, _) = way.behind_loop(lag * (1.0 + LAG_STEP), clock);
-    let lag_slope =
-        further.iter().zip(&position).map(|(far, near)| (far - near) / (lag * LAG_STEP)).collect();
-    let velocity: Vec<f64> = command.iter().zip(&position).map(|(command, q)| (command - q) / lag).collect();
+    let (mut lag_slope, _) = way.behind_loop(lag * (1.0 + LAG_STEP), clock);
+    lag_slope.iter_mut().zip(&position).for_each(|(far, near)| *far = (*far - near) / (lag * LAG_STEP));
+    let mut velocity = command;
+    velocity.iter_mut().zip(&position).for_each(|(command, q)| *command = (*command - q) / lag);
     let acceleration = derivative(time, run, &velocity);
-    let clock_slope = velocity.iter().map(|velocity| -velocity).collect();
     let (direction, since_reversal, moves) = directions(time, &position, resolution);
-    AxisStates { position, acceleration, direction, since_reversal, lag_slope, clock_slope, moves }
+    AxisStates {
+        position: position.into(),
+        acceleration: acceleration.into(),
+        direction: direction.into(),
+        since_reversal: since_reversal.into(),
+        lag_slope: lag_slope.into(),
+        clock_slope: velocity.iter().map(|velocity| -velocity).collect(),
+        moves,
+    }
 }
 
 /// The derivative in time by the parabola through each sample and its neighbours in the same run; NaN samples are passed over.

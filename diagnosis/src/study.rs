@@ -13,7 +13,7 @@ use model_dsl::program::Interpreter;
 use crate::model::{Effect, Fitted, Place, Side};
 use crate::noise;
 use crate::recording::{Instrument, Recording};
-use crate::states::{behind_corners, nominal_position};
+use crate::states::{Given, Shared, behind_corners};
 use crate::terms;
 
 /// A machine, what is known of it, and what was recorded.
@@ -34,8 +34,7 @@ pub(crate) struct Study<'a> {
 /// One recording in the study.
 pub(crate) struct Scene<'a> {
     pub(crate) recording: &'a Recording,
-    pub(crate) temperatures: Vec<Vec<f64>>,
-    pub(crate) loads: Vec<Vec<f64>>,
+    pub(crate) given: Given,
     pub(crate) channels: Vec<Channel>,
     pub(crate) blocks: Vec<Block>,
     /// Rows that are left out because an axis turned a corner just before, between two rows.
@@ -193,16 +192,15 @@ impl<'a> Scene<'a> {
         loads: &[(String, String)],
         interpreter: &Interpreter,
     ) -> Self {
+        let rows = recording.time.len();
+        let loads = loads.iter().map(|(name, _)| column(&recording.loads, name, rows)).collect();
+        let given = Given::new(recording, temperatures(recording, calibration, sensors), loads);
         Self {
             at_rest: false,
-            corners: corners(recording),
-            leans: leans(recording, interpreter),
+            corners: corners(recording, &given.programmed),
+            leans: leans(recording, &given.programmed, interpreter),
             recording,
-            temperatures: temperatures(recording, calibration, sensors),
-            loads: loads
-                .iter()
-                .map(|(name, _)| column(&recording.loads, name, recording.time.len()))
-                .collect(),
+            given,
             channels: channels(recording),
             blocks: blocks(recording),
         }
@@ -239,11 +237,11 @@ impl<'a> Scene<'a> {
     }
 }
 
-fn corners(recording: &Recording) -> Vec<bool> {
+fn corners(recording: &Recording, programmed: &[Shared]) -> Vec<bool> {
     let mut corners = vec![false; recording.time.len()];
-    for position in programmed(recording) {
+    for position in programmed {
         for (corner, here) in
-            corners.iter_mut().zip(behind_corners(&recording.time, &recording.run, &position))
+            corners.iter_mut().zip(behind_corners(&recording.time, &recording.run, position))
         {
             *corner |= here;
         }
@@ -259,10 +257,9 @@ const MANY: usize = 20;
 /// A ballbar that leans less than this share of its length into a direction shows nothing of it.
 const LEANS: f64 = 0.02;
 
-fn leans(recording: &Recording, interpreter: &Interpreter) -> [bool; 3] {
+fn leans(recording: &Recording, programmed: &[Shared], interpreter: &Interpreter) -> [bool; 3] {
     let Instrument::Ballbar { center, radius } = recording.instrument else { return [true; 3] };
-    let positions = programmed(recording);
-    let positions: Vec<&[f64]> = positions.iter().map(Vec::as_slice).collect();
+    let positions: Vec<&[f64]> = programmed.iter().map(|position| &**position).collect();
     let nominal = interpreter.nominal_columns(&positions);
     [0, 1, 2].map(|d| nominal[d].iter().any(|place| (place - center[d]).abs() > LEANS * radius))
 }
@@ -396,9 +393,4 @@ pub(crate) fn runs(run: &[i64]) -> Vec<(Range<usize>, i64)> {
         }
     }
     runs
-}
-
-/// The programmed positions of all axes of a recording.
-pub(crate) fn programmed(recording: &Recording) -> Vec<Vec<f64>> {
-    recording.axes.iter().map(|axis| nominal_position(axis, recording.time.len())).collect()
 }

@@ -5,14 +5,14 @@
 //! noise, sorted into fine bins of position or time, and Fourier transformed at once: each bin of the spectrum is then
 //! what generalised least squares would gain from that wave.
 
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
+use realfft::RealFftPlanner;
 
 use crate::candidates::Travel;
+use crate::course::Course;
 use crate::kinship;
 use crate::model::{Effect, Model, Place, Side};
 use crate::noise::{Noise, Whitening, typical_step, unwhiten, whiten};
-use crate::observations::{Course, Frame, each_frame, residuals};
+use crate::observations::{Frame, each_frame, residuals};
 use crate::study::Study;
 use crate::terms::Shape;
 
@@ -57,7 +57,8 @@ pub(crate) fn places(
     noises: &[Vec<Noise>],
     travels: &[Travel],
 ) -> Vec<WavePlace> {
-    let span = courses.iter().filter_map(|course| course.shown.time.last()).copied().fold(0.0, f64::max);
+    let span =
+        courses.iter().filter_map(|course| course.shown.given.time.last()).copied().fold(0.0, f64::max);
     let mut samples = Vec::new();
     for (motion, known) in study.equations.motions.iter().enumerate().filter(|(_, known)| !known.alignment) {
         let driven = known.axis.is_some_and(|axis| study.own[axis] == Some(motion) && study.has_drive(axis));
@@ -142,7 +143,7 @@ pub(crate) fn peaks(
         let own_axis = study.equations.motions[source.place.motion].axis;
         if let Some(axis) = own_axis.filter(|_| source.place.cyclic) {
             let positions: Vec<&[f64]> =
-                courses.iter().map(|course| course.shown.axes[axis].position.as_slice()).collect();
+                courses.iter().map(|course| &*course.shown.axes[axis].position).collect();
             let travel = &travels[axis];
             let shortest = 2.2 * travel.step;
             if shortest < travel.range() / 2.0 {
@@ -156,7 +157,7 @@ pub(crate) fn peaks(
                 }));
             }
         }
-        let times: Vec<&[f64]> = courses.iter().map(|course| course.shown.time.as_slice()).collect();
+        let times: Vec<&[f64]> = courses.iter().map(|course| &*course.shown.given.time).collect();
         let span = times.iter().filter_map(|time| time.last()).copied().fold(0.0, f64::max);
         let step = times.iter().map(|time| typical_step(time)).fold(f64::INFINITY, f64::min);
         if source.place.vibration && span > 10.0 * step {
@@ -248,25 +249,39 @@ fn mean_weight(white: &[f64], weighted: &[f64], valid: &[bool]) -> f64 {
 /// steps up to that of the shortest period: pairs of frequency and power.
 fn spectrum(weights: &[Vec<f64>], places: &[&[f64]], low: f64, range: f64, shortest: f64) -> Vec<(f64, f64)> {
     // Three bins for the shortest period, and the range padded to twice its length.
-    let wanted = 2.0 * range / shortest * 3.0;
-    let size = (8..23).map(|power| 1 << power).find(|size| crate::number(*size) >= wanted).unwrap_or(1 << 23);
+    let size = transform_size(2.0 * range / shortest * 3.0);
     let bin = 2.0 * range / crate::number(size);
-    let mut bins = vec![Complex::new(0.0, 0.0); size];
+    let mut bins = vec![0.0; size];
     for (weights, places) in weights.iter().zip(places) {
         for (weight, place) in weights.iter().zip(*places) {
             if let Some(target) = crate::index((place - low) / bin).and_then(|index| bins.get_mut(index)) {
-                target.re += weight;
+                *target += weight;
             }
         }
     }
-    FftPlanner::new().plan_fft_forward(size).process(&mut bins);
+    let transform = RealFftPlanner::new().plan_fft_forward(size);
+    let mut lines = transform.make_output_vec();
+    if transform.process(&mut bins, &mut lines).is_err() {
+        // It fails for lengths alone that are not its own.
+        return Vec::new();
+    }
     let step = 1.0 / (2.0 * range);
-    let frequencies = (0..size / 2).map(|number| crate::number(number) * step);
+    let frequencies = (0..lines.len()).map(|number| crate::number(number) * step);
     frequencies
-        .zip(bins)
+        .zip(lines)
         .take_while(|(frequency, _)| *frequency <= 1.0 / shortest)
-        .map(|(frequency, value)| (frequency, value.norm_sqr()))
+        .map(|(frequency, line)| (frequency, line.norm_sqr()))
         .collect()
+}
+
+/// The most bins of a transform.
+const MOST_BINS: usize = 1 << 23;
+
+/// A length that transforms fast, at least `wanted` where that is not too long: a power of two, or three quarters or
+/// five eighths of one.
+fn transform_size(wanted: f64) -> usize {
+    let sizes = (8..=23).map(|power| 1_usize << power).flat_map(|size| [size / 8 * 5, size / 4 * 3, size]);
+    sizes.into_iter().find(|size| crate::number(*size) >= wanted).unwrap_or(MOST_BINS)
 }
 
 /// The highest peaks above a frequency, measured against the spectrum around them, so that a slope is no peak.

@@ -5,10 +5,11 @@
 //! here.
 
 use crate::appraisal::Appraisal;
+use crate::course::Course;
 use crate::design::{Design, Regressor};
 use crate::fit;
 use crate::model::{Model, Place};
-use crate::observations::{self, Course};
+use crate::observations;
 use crate::study::Study;
 use crate::terms::{Setting, Shape};
 

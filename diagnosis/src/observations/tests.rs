@@ -3,7 +3,9 @@
 use simulation::{Instrument as Reads, Normal};
 
 use super::*;
+use crate::model::Fitted;
 use crate::terms::Setting;
+use crate::terms::Shape;
 use crate::testing::{Bench, ballbar, circle, distance, line, path, peak, position, scenario, warming};
 use simulation::path::Shape as PathShape;
 

@@ -254,7 +254,7 @@ fn what_is_written_into_the_calibration_is_what_was_fitted() {
     let recording = recording(3);
     let study = Study::new(bench.equations(), None, &[&recording]);
     let scene = &study.scenes[0];
-    let states = States::new(&recording, scene.temperatures.clone(), scene.loads.clone(), &[0.0; 3], 0.0);
+    let states = States::new(&recording, &scene.given, &[0.0; 3], 0.0);
     let rows = states.rows(0..recording.time.len());
     let value = |shape: &Shape, coefficients: &[f64]| {
         let mut columns = vec![Vec::new(); shape.columns()];

@@ -6,7 +6,7 @@ use simulation::path::Shape;
 
 fn states(time: &[f64], command: &[f64], lag: f64, clock: f64) -> States {
     let recording = programmed(time, &[command.to_vec()]);
-    States::new(&recording, Vec::new(), Vec::new(), &[lag], clock)
+    States::new(&recording, &Given::new(&recording, Vec::new(), Vec::new()), &[lag], clock)
 }
 
 fn axis(time: &[f64], command: &[f64], lag: f64) -> AxisStates {
@@ -102,7 +102,7 @@ fn directions_are_of_the_last_real_motion() {
     let time: Vec<f64> = (0..15).map(f64::from).collect();
     let found = axis(&time, &position, 0.0);
     let d = [1.0, 1.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, -1.0, -1.0];
-    assert_eq!(found.direction, d);
+    assert_eq!(*found.direction, d);
     // The first motion is no reversal.
     assert!(found.since_reversal[..10].iter().all(|since| since.is_infinite() && *since > 0.0));
     assert_eq!(found.since_reversal[10..], [0.0, 1.0, 2.0, 0.0, 1.0]);
@@ -158,7 +158,12 @@ fn states_are_those_of_the_exact_machine() {
     spiral.acceleration = Some(200.0);
     let plant = bench.plant(&truth);
     let recording = bench.recorded(&plant, &scenario(spiral, simulation::Instrument::position()));
-    let states = States::new(&recording, Vec::new(), Vec::new(), &[1.0 / 30.0, 1.0 / 45.0, 0.0], 0.0);
+    let states = States::new(
+        &recording,
+        &Given::new(&recording, Vec::new(), Vec::new()),
+        &[1.0 / 30.0, 1.0 / 45.0, 0.0],
+        0.0,
+    );
     let mut worst = [0.0_f64; 2];
     let mut turned = 0;
     let mut each = |moment: &simulation::Moment<'_>| {
@@ -188,7 +193,8 @@ fn views_are_the_rows_themselves() {
     let recording = programmed(&time, std::slice::from_ref(&command));
     let warm: Vec<f64> = time.iter().map(|t| 20.0 + t).collect();
     let load: Vec<f64> = time.iter().map(|t| 3.0 * t).collect();
-    let states = States::new(&recording, vec![warm.clone()], vec![load.clone()], &[0.0], 0.0);
+    let states =
+        States::new(&recording, &Given::new(&recording, vec![warm.clone()], vec![load.clone()]), &[0.0], 0.0);
     let rows = states.rows(5..9);
     assert_eq!(rows.len(), 4);
     assert_eq!((rows.time, rows.axis(0).position), (&time[5..9], &command[5..9]));
@@ -202,7 +208,7 @@ fn the_drive_stands_in_where_nothing_was_programmed() {
         actual,
         measured: None,
     };
-    assert_eq!(nominal_position(&channels(Some(vec![1.0]), Some(vec![2.0])), 1), [1.0]);
-    assert_eq!(nominal_position(&channels(None, Some(vec![2.0])), 1), [2.0]);
-    assert_eq!(nominal_position(&channels(None, None), 3), [0.0; 3]);
+    assert_eq!(*nominal_position(&channels(Some(vec![1.0]), Some(vec![2.0])), 1), [1.0]);
+    assert_eq!(*nominal_position(&channels(None, Some(vec![2.0])), 1), [2.0]);
+    assert_eq!(*nominal_position(&channels(None, None), 3), [0.0; 3]);
 }

@@ -6,7 +6,7 @@ use abbe_runtime::{Direction, Sample, TermState};
 use model_dsl::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, SeriesInput};
 
 use super::*;
-use crate::states::States;
+use crate::states::{Given, States};
 use crate::testing::{distance, normals, peak, programmed, uneven};
 
 const ROWS: usize = 240;
@@ -19,14 +19,14 @@ fn states() -> States {
     let recording = programmed(&time, &[x, y]);
     let warm = time.iter().map(|t| 21.0 + 3.0 * (1.0 - (-t / 4.0).exp())).collect();
     let load = time.iter().map(|t| 100.0 * (3.0 * t).sin()).collect();
-    States::new(&recording, vec![warm], vec![load], &[0.0, 0.0], 0.0)
+    States::new(&recording, &Given::new(&recording, vec![warm], vec![load]), &[0.0, 0.0], 0.0)
 }
 
 fn value(term: &CalibratedTerm, states: &States) -> Vec<f64> {
     let (shape, coefficients) = known(term, |name| (name == "force").then_some(0)).unwrap();
     assert_eq!(shape.name(), term.name());
     assert_eq!(shape.columns(), coefficients.len());
-    let rows = states.rows(0..states.time.len());
+    let rows = states.rows(0..states.given.time.len());
     let mut sum = vec![0.0; rows.len()];
     shape.add(&coefficients, &rows, &mut Memory::default(), &mut sum);
     // Columns times coefficients say the same; but a loop is in the states, and its column is how they change.
@@ -44,31 +44,31 @@ fn value(term: &CalibratedTerm, states: &States) -> Vec<f64> {
 fn by_runtime(term: &CalibratedTerm, states: &States) -> Vec<f64> {
     let term = term.runtime().unwrap();
     let mut memory = TermState::default();
-    let mut before = states.time[0];
+    let mut before = states.given.time[0];
     let row = |row: usize| {
         let position: Vec<f64> = states.axes.iter().map(|axis| axis.position[row]).collect();
         // The derivatives of the positions above.
-        let t = states.time[row];
+        let t = states.given.time[row];
         let velocity = [48.0 * (0.8 * t).cos(), -51.0 * (1.7 * t + 1.0).sin()];
         let way = |axis: &crate::states::AxisStates| match axis.direction[row] {
             d if d > 0.0 => Direction::Positive,
             _ => Direction::Negative,
         };
         let direction: Vec<Direction> = states.axes.iter().map(way).collect();
-        let temperature: Vec<f64> = states.temperatures.iter().map(|sensor| sensor[row]).collect();
+        let temperature: Vec<f64> = states.given.temperatures.iter().map(|sensor| sensor[row]).collect();
         let sample = Sample {
             position: &position,
             travel: &[],
             direction: &direction,
             velocity: &velocity,
             temperature: &temperature,
-            time_step: states.time[row] - before,
+            time_step: states.given.time[row] - before,
         };
-        before = states.time[row];
+        before = states.given.time[row];
         term.advance(&sample, &mut memory);
         term.value(&sample, &memory)
     };
-    (0..states.time.len()).map(row).collect()
+    (0..states.given.time.len()).map(row).collect()
 }
 
 fn table(nodes: CurveNodes, values: CurveValues) -> CalibratedTerm {
@@ -116,7 +116,7 @@ fn a_filtered_temperature_is_that_of_the_runtime_in_fine_steps() {
         let time: Vec<f64> = (0..).map(|row| step * f64::from(row)).take_while(|t| *t < 12.0).collect();
         let recording = programmed(&time, std::slice::from_ref(&time));
         let warm = time.iter().map(|t| 21.0 + t.sin()).collect();
-        let states = States::new(&recording, vec![warm], Vec::new(), &[0.0], 0.0);
+        let states = States::new(&recording, &Given::new(&recording, vec![warm], Vec::new()), &[0.0], 0.0);
         distance(&value(&term, &states), &by_runtime(&term, &states))
     };
     // The runtime holds the temperature through a step: the difference is of the order of the step.
@@ -133,11 +133,15 @@ fn a_filtered_temperature_that_rises_evenly_is_the_closed_solution() {
     let behind = |t: &f64| 22.0 + rate * (t - lag * (1.0 - (-t / lag).exp())) - 20.0;
     let expected: Vec<f64> = time.iter().map(behind).collect();
     let term = CalibratedTerm::Growth { sensor: 0, coefficient: 1.0, reference: 20.0, time_constant: lag };
-    let found = value(&term, &States::new(&recording, vec![warm.clone()], Vec::new(), &[0.0], 0.0));
+    let found = value(
+        &term,
+        &States::new(&recording, &Given::new(&recording, vec![warm.clone()], Vec::new()), &[0.0], 0.0),
+    );
     assert!(distance(&found, &expected) < 1e-10);
     // A gap is bridged: the filter runs on through it.
     warm[40..70].fill(f64::NAN);
-    let found = value(&term, &States::new(&recording, vec![warm], Vec::new(), &[0.0], 0.0));
+    let found =
+        value(&term, &States::new(&recording, &Given::new(&recording, vec![warm], Vec::new()), &[0.0], 0.0));
     assert!(found[40..70].iter().all(|value| value.is_nan()));
     assert!(distance(&found[70..], &expected[70..]) < 1e-10);
 }
@@ -147,7 +151,8 @@ fn terms_that_no_controller_has_are_their_formulas() {
     let states = states();
     let axis = &states.axes[0];
     let check = |term: CalibratedTerm, formula: &dyn Fn(usize, f64) -> f64| {
-        let expected: Vec<f64> = states.time.iter().enumerate().map(|(row, t)| formula(row, *t)).collect();
+        let expected: Vec<f64> =
+            states.given.time.iter().enumerate().map(|(row, t)| formula(row, *t)).collect();
         assert!(peak(&expected) > 0.0);
         assert!(distance(&value(&term, &states), &expected) <= 1e-12 * peak(&expected), "{term:?}");
     };
@@ -158,7 +163,7 @@ fn terms_that_no_controller_has_are_their_formulas() {
         0.2 * (TAU * 1.3 * t - 1.1).sin()
     });
     check(CalibratedTerm::Compliance { load: "force".to_owned(), coefficient: -2e-4 }, &|row, _| {
-        -2e-4 * states.loads[0][row]
+        -2e-4 * states.given.loads[0][row]
     });
     check(CalibratedTerm::Acceleration { axis: 0, gain: 400.0 }, &|row, _| -axis.acceleration[row] / 400.0);
     // From the positions alone: where x turned last.
@@ -173,7 +178,7 @@ fn terms_that_no_controller_has_are_their_formulas() {
         turned(row).map_or(0.0, |at| {
             -0.01
                 * (axis.position[at] - axis.position[at - 1]).signum()
-                * (-(t - states.time[at]) / 0.4).exp()
+                * (-(t - states.given.time[at]) / 0.4).exp()
         })
     });
     let missing = CalibratedTerm::Compliance { load: "current".to_owned(), coefficient: 1.0 };
@@ -228,7 +233,7 @@ fn memory_goes_on_from_stretch_to_stretch() {
 fn a_missing_position_is_a_missing_term() {
     let time: Vec<f64> = (0..6).map(f64::from).collect();
     let recording = programmed(&time, &[vec![0.0, 1.0, f64::NAN, 3.0, 2.0, 1.0]]);
-    let states = States::new(&recording, Vec::new(), Vec::new(), &[0.0], 0.0);
+    let states = States::new(&recording, &Given::new(&recording, Vec::new(), Vec::new()), &[0.0], 0.0);
     let terms = [
         CalibratedTerm::Polynomial { input: SeriesInput::Axis(0), coefficients: vec![1.0, 2.0] },
         table(CurveNodes::At(vec![0.0, 3.0]), CurveValues::Both(vec![0.0, 1.0])),

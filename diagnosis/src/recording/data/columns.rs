@@ -145,6 +145,10 @@ impl<'h> Columns<'h> {
                 return Err(DataError::new(self.name, message).help(help));
             }
         }
+        // Growing left up to as much room again.
+        self.table.time.shrink_to_fit();
+        self.table.run.shrink_to_fit();
+        self.table.values.iter_mut().for_each(|(_, values)| values.shrink_to_fit());
         self.table.restarted = self.clock.restarted;
         Ok(self.table)
     }

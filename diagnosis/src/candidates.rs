@@ -190,10 +190,32 @@ fn along(study: &Study<'_>, motion: usize, axis: usize, travel: &Travel, grids: 
     shapes.push(Shape::Backlash { axis, wind_up: 0.0 });
     shapes.extend((1..=HIGHEST_POWER).map(|degree| Shape::Polynomial { axis, degree, center, scale }));
     shapes.push(Shape::Acceleration { axis });
-    let wind_ups = geometric(3.0 * travel.step, 0.4 * travel.range(), 2.0);
-    shapes.extend(wind_ups.into_iter().map(|wind_up| Shape::Backlash { axis, wind_up }));
+    shapes.extend(wind_ups(axis, travel));
     shapes.extend(grids.decays.iter().map(|decay| Shape::ReversalSpike { axis, decay: *decay }));
     shapes
+}
+
+/// Forms of a term with more parameters, of which the first ones mean the same.
+pub(crate) fn richer(shape: &Shape, travels: &[Travel]) -> Vec<Shape> {
+    match *shape {
+        Shape::Polynomial { axis, degree, center, scale } => (degree + 1..=HIGHEST_POWER)
+            .map(|degree| Shape::Polynomial { axis, degree, center, scale })
+            .collect(),
+        Shape::SensorPolynomial { sensor, degree, center, scale } => {
+            vec![Shape::SensorPolynomial { sensor, degree: degree + 1, center, scale }]
+        }
+        Shape::Coupling { axis, degree, scale } => {
+            (degree + 1..=HIGHEST_COUPLING).map(|degree| Shape::Coupling { axis, degree, scale }).collect()
+        }
+        Shape::Backlash { axis, wind_up } if wind_up == 0.0 => wind_ups(axis, &travels[axis]),
+        _ => Vec::new(),
+    }
+}
+
+/// Plays that are taken up over part of the travel.
+fn wind_ups(axis: usize, travel: &Travel) -> Vec<Shape> {
+    let wind_ups = geometric(3.0 * travel.step, 0.4 * travel.range(), 2.0);
+    wind_ups.into_iter().map(|wind_up| Shape::Backlash { axis, wind_up }).collect()
 }
 
 /// The middle and the half range of what a sensor read over all recordings, degC.

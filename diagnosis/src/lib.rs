@@ -6,6 +6,7 @@
 mod alternatives;
 mod appraisal;
 mod candidates;
+mod certainty;
 mod conclude;
 mod course;
 mod curves;

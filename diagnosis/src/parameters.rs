@@ -5,22 +5,20 @@
 //! are functions of what was fitted; their variances follow to first order.
 
 use model_dsl::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, SeriesInput};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
+use crate::certainty::{Certainty, WIDTH_95};
 use crate::diagnosis::{Estimate, Parameter, ParameterValue};
 use crate::model::Fitted;
 use crate::recording::AngleUnit;
 use crate::study::Study;
 use crate::terms::{Shape, polynomial_in_position};
 
-/// The half width of a 95 % interval in standard deviations.
-pub(crate) const WIDTH_95: f64 = 1.959_964;
-
-/// A fitted effect and the covariance of its coefficients, its nonlinear parameter last.
+/// A fitted effect and how certain it is.
 pub(crate) struct Described<'f> {
     study: &'f Study<'f>,
     fitted: &'f Fitted,
-    covariance: &'f DMatrix<f64>,
+    certainty: &'f Certainty,
     /// Recorded units for one internal unit of the motion, and their name.
     motion_unit: (f64, &'static str),
 }
@@ -48,9 +46,9 @@ pub(crate) fn motion_unit(study: &Study<'_>, motion: usize) -> (f64, &'static st
 
 impl<'f> Described<'f> {
     /// An effect of the machine or of an instrument.
-    pub(crate) fn new(study: &'f Study<'f>, fitted: &'f Fitted, covariance: &'f DMatrix<f64>) -> Self {
+    pub(crate) fn new(study: &'f Study<'f>, fitted: &'f Fitted, certainty: &'f Certainty) -> Self {
         let motion_unit = fitted.effect.motion().map_or((1.0, "mm"), |motion| motion_unit(study, motion));
-        Self { study, fitted, covariance, motion_unit }
+        Self { study, fitted, certainty, motion_unit }
     }
 
     fn coefficient(&self, number: usize) -> f64 {
@@ -59,9 +57,10 @@ impl<'f> Described<'f> {
 
     /// A function of the coefficients and the nonlinear parameter with this gradient.
     fn derived(&self, value: f64, gradient: &[f64], unit: (f64, String)) -> Estimate {
-        let size = self.covariance.nrows();
+        let covariance = &self.certainty.covariance;
+        let size = covariance.nrows();
         let gradient = DVector::from_fn(size, |row, _| gradient.get(row).copied().unwrap_or_default());
-        let variance = gradient.dot(&(self.covariance * &gradient)).max(0.0);
+        let variance = gradient.dot(&(covariance * &gradient)).max(0.0);
         let (factor, unit) = unit;
         let (value, half) = (value * factor, WIDTH_95 * variance.sqrt() * factor.abs());
         Estimate { value, ci95: (value - half, value + half), unit }
@@ -73,10 +72,21 @@ impl<'f> Described<'f> {
         self.derived(self.coefficient(number), &gradient, (factor, unit))
     }
 
-    /// The nonlinear parameter, whose variance stands last.
+    /// The same effect in the richer form that the data lean to.
+    fn richer(&self) -> Option<Self> {
+        let richer = self.certainty.richer.as_ref()?;
+        let certainty = &richer.certainty;
+        Some(Self { fitted: &richer.fitted, certainty, study: self.study, motion_unit: self.motion_unit })
+    }
+
+    /// The nonlinear parameter, with its own interval; where none is known, its variance stands last.
     fn nonlinear(&self, factor: f64, unit: &str) -> Estimate {
         let value = self.fitted.effect.shape.nonlinear().map_or(0.0, |parameter| parameter.value);
-        let mut gradient = vec![0.0; self.covariance.nrows()];
+        if let Some((low, high)) = self.certainty.nonlinear {
+            let ci95 = (low * factor, high * factor);
+            return Estimate { value: value * factor, ci95, unit: unit.to_owned() };
+        }
+        let mut gradient = vec![0.0; self.certainty.covariance.nrows()];
         if let Some(last) = gradient.last_mut() {
             *last = 1.0;
         }
@@ -87,8 +97,20 @@ impl<'f> Described<'f> {
         per(self.motion_unit.1, under, power)
     }
 
-    /// The parameters, in the order of calibration files.
+    /// The parameters, in the order of calibration files. Where the data lean to a richer form, the intervals hold its numbers
+    /// too.
     pub(crate) fn parameters(&self) -> Vec<Parameter> {
+        let mut parameters = self.as_fitted();
+        let richer = self.richer().map(|richer| richer.as_fitted()).unwrap_or_default();
+        for parameter in &mut parameters {
+            if let Some(other) = richer.iter().find(|other| other.name == parameter.name) {
+                parameter.value.hold(&other.value);
+            }
+        }
+        parameters
+    }
+
+    fn as_fitted(&self) -> Vec<Parameter> {
         let (factor, unit) = self.motion_unit;
         let study = self.study;
         let plain = |name, number| Parameter::fitted(name, self.linear(number, factor, unit.to_owned()));
@@ -177,7 +199,7 @@ impl<'f> Described<'f> {
     /// the recordings' free zeros hold the power 0, it is nothing that could be told.
     fn power_rows(&self) -> Vec<Vec<f64>> {
         let mut rows = polynomial_in_position(&self.fitted.effect.shape);
-        let untold = self.coefficient(0) == 0.0 && self.covariance[(0, 0)] == 0.0;
+        let untold = self.coefficient(0) == 0.0 && self.certainty.covariance[(0, 0)] == 0.0;
         if let (true, Some(row)) = (untold, rows.first_mut()) {
             row.fill(0.0);
         }
@@ -216,7 +238,7 @@ impl<'f> Described<'f> {
     /// 1 / coefficient; its interval is that of the coefficient turned over, since the gain itself is not near normal.
     fn reciprocal(&self, unit: &str) -> Estimate {
         let value = self.coefficient(0);
-        let half = WIDTH_95 * self.covariance[(0, 0)].max(0.0).sqrt();
+        let half = WIDTH_95 * self.certainty.covariance[(0, 0)].max(0.0).sqrt();
         let ends = (1.0 / (value + half), 1.0 / (value - half).max(1e-9));
         Estimate { value: 1.0 / value, ci95: ends, unit: unit.to_owned() }
     }
@@ -313,6 +335,22 @@ fn axis_name(study: &Study<'_>, axis: usize) -> Parameter {
 
 fn sensor_name(study: &Study<'_>, sensor: usize) -> Parameter {
     Parameter { name: "sensor", value: ParameterValue::Name(study.sensors[sensor].clone()) }
+}
+
+impl ParameterValue {
+    /// Widens intervals so that they hold those of the same parameters elsewhere.
+    fn hold(&mut self, other: &Self) {
+        let widen = |own: &mut Estimate, other: &Estimate| {
+            own.ci95 = (own.ci95.0.min(other.ci95.0), own.ci95.1.max(other.ci95.1));
+        };
+        match (self, other) {
+            (Self::Fitted(own), Self::Fitted(other)) => widen(own, other),
+            (Self::List(own), Self::List(other)) => {
+                own.iter_mut().zip(other).for_each(|(own, other)| widen(own, other));
+            }
+            _ => {}
+        }
+    }
 }
 
 impl Parameter {

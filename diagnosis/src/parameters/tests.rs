@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use nalgebra::DMatrix;
+
 use super::*;
 use crate::model::{Effect, Place, Side};
 use crate::recording::{AngleUnit, Recording};
@@ -113,7 +115,8 @@ fn intervals_are_those_of_random_draws() {
         let truth = numbers(&fitted);
         let covariance = covariance(&truth.iter().map(|v| v.abs().max(1e-4)).collect::<Vec<f64>>(), 0.01);
         let root = covariance.clone().cholesky().unwrap().l();
-        let told = estimates(&Described::new(&study, &fitted, &covariance).parameters());
+        let told =
+            estimates(&Described::new(&study, &fitted, &Certainty::linear(covariance.clone())).parameters());
         assert!(!told.is_empty());
         let draws = 2000;
         let deviates = normals(53, draws * truth.len());
@@ -122,7 +125,9 @@ fn intervals_are_those_of_random_draws() {
             let moved = &root * DVector::from_column_slice(draw);
             let values: Vec<f64> = truth.iter().zip(&moved).map(|(value, by)| value + by).collect();
             let drawn = with_numbers(&fitted, &values);
-            let drawn = estimates(&Described::new(&study, &drawn, &covariance).parameters());
+            let drawn = estimates(
+                &Described::new(&study, &drawn, &Certainty::linear(covariance.clone())).parameters(),
+            );
             for ((sum, drawn), told) in sums.iter_mut().zip(drawn).zip(&told) {
                 let off = drawn.value - told.value;
                 *sum = (sum.0 + off, sum.1 + off * off);
@@ -189,7 +194,7 @@ fn names_and_units_are_those_of_calibration_files() {
     ];
     for (fitted, expected) in cases(&study).iter().zip(expected) {
         let covariance = covariance(&numbers(fitted), 0.01);
-        let parameters = Described::new(&study, fitted, &covariance).parameters();
+        let parameters = Described::new(&study, fitted, &Certainty::linear(covariance.clone())).parameters();
         let words = |parameter: &Parameter| -> Vec<(&'static str, String)> {
             let words = match &parameter.value {
                 ParameterValue::Name(name) => vec![name.clone()],
@@ -211,7 +216,8 @@ fn waves_have_an_amplitude_and_a_phase_and_loops_a_gain() {
     let recording = recording(3);
     let study = Study::new(bench.equations(), None, &[&recording]);
     let wave = fitted(&study, "EXX", Shape::Cyclic { axis: 0, period: 9.0 }, &[-0.003, 0.004]);
-    let told = estimates(&Described::new(&study, &wave, &DMatrix::zeros(3, 3)).parameters());
+    let told =
+        estimates(&Described::new(&study, &wave, &Certainty::linear(DMatrix::zeros(3, 3))).parameters());
     // A sin(x + f) = A cos f sin x + A sin f cos x.
     let (amplitude, phase) = (told[1].value, told[2].value);
     assert!((amplitude - 0.005).abs() < 1e-15);
@@ -219,7 +225,9 @@ fn waves_have_an_amplitude_and_a_phase_and_loops_a_gain() {
         (amplitude * phase.cos() + 0.003).abs() < 1e-15 && (amplitude * phase.sin() - 0.004).abs() < 1e-15
     );
     let lag = fitted(&study, "EXX", Shape::Lag { axis: 0 }, &[0.02]);
-    let told = estimates(&Described::new(&study, &lag, &DMatrix::from_element(1, 1, 1e-6)).parameters());
+    let told = estimates(
+        &Described::new(&study, &lag, &Certainty::linear(DMatrix::from_element(1, 1, 1e-6))).parameters(),
+    );
     assert!((told[0].value - 50.0).abs() < 1e-12);
     // The interval is that of the time constant turned over, 0.02 -+ 1.96 * 0.001.
     assert!((told[0].ci95.0 - 1.0 / 0.02196).abs() < 1e-3 && (told[0].ci95.1 - 1.0 / 0.01804).abs() < 1e-3);
@@ -233,7 +241,8 @@ fn angles_of_a_rotary_axis_are_told_in_the_unit_of_the_recording() {
     let study = Study::new(bench.equations(), None, &[&recording]);
     let degree = PI / 180.0;
     let wave = fitted(&study, "ECC", Shape::Cyclic { axis: 0, period: 30.0 * degree }, &[1e-3 * degree, 0.0]);
-    let told = estimates(&Described::new(&study, &wave, &DMatrix::zeros(3, 3)).parameters());
+    let told =
+        estimates(&Described::new(&study, &wave, &Certainty::linear(DMatrix::zeros(3, 3))).parameters());
     assert!((told[0].value - 30.0).abs() < 1e-9 && told[0].unit == "deg");
     assert!((told[1].value - 1e-3).abs() < 1e-12 && told[1].unit == "deg");
     let scale = fitted(
@@ -242,7 +251,8 @@ fn angles_of_a_rotary_axis_are_told_in_the_unit_of_the_recording() {
         Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 1.0 },
         &[0.0, 1e-4, 2e-5],
     );
-    let told = estimates(&Described::new(&study, &scale, &DMatrix::zeros(3, 3)).parameters());
+    let told =
+        estimates(&Described::new(&study, &scale, &Certainty::linear(DMatrix::zeros(3, 3))).parameters());
     assert!((told[1].value - 1e-4).abs() < 1e-15 && told[1].unit.is_empty());
     // 2e-5 rad/rad^2 is 2e-5 * (180/pi) / (180/pi)^2 deg/deg^2.
     assert!((told[2].value - 2e-5 * degree).abs() < 1e-15 && told[2].unit == "1/deg", "{:?}", told[2]);
@@ -265,7 +275,7 @@ fn what_is_written_into_the_calibration_is_what_was_fitted() {
     };
     for fitted in cases(&study) {
         let covariance = covariance(&numbers(&fitted), 0.01);
-        let term = Described::new(&study, &fitted, &covariance).calibrated();
+        let term = Described::new(&study, &fitted, &Certainty::linear(covariance.clone())).calibrated();
         assert_eq!(term.name(), fitted.effect.shape.name());
         let (shape, coefficients) = known(&term, |name| (name == "force").then_some(0)).unwrap();
         let (before, after) =
@@ -282,7 +292,8 @@ fn a_power_that_the_free_zero_holds_is_not_told() {
     let shape = Shape::Polynomial { axis: 0, degree: 1, center: 200.0, scale: 100.0 };
     let scale = fitted(&study, "EXX", shape, &[0.0, 0.01]);
     let covariance = DMatrix::from_diagonal(&DVector::from_vec(vec![0.0, 1e-8]));
-    let told = estimates(&Described::new(&study, &scale, &covariance).parameters());
+    let told =
+        estimates(&Described::new(&study, &scale, &Certainty::linear(covariance.clone())).parameters());
     assert_eq!((told[0].value, told[0].ci95), (0.0, (0.0, 0.0)));
     assert!((told[1].value - 1e-4).abs() < 1e-15);
     assert!((told[1].ci95.1 - told[1].ci95.0 - 2.0 * 1.96e-6).abs() < 1e-9);

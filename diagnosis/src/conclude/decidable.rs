@@ -1,0 +1,117 @@
+//! What can be decided at all.
+//!
+//! In: a study, and what the instruments' settings alone leave. Out: sentences about what its recordings cannot tell, and
+//! the reason why nothing can be claimed from them, where that is so.
+
+use crate::model::Model;
+use crate::study::Study;
+use crate::zeros;
+
+/// The fewest samples from which anything is claimed.
+const FEWEST: usize = 24;
+
+/// What the recordings cannot tell, whatever is found.
+pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
+    let mut sentences = Vec::new();
+    let moving = |axis: usize| {
+        study.scenes.iter().any(|scene| {
+            let known = &scene.recording.axes[axis];
+            let positions = known.command.as_ref().or(known.actual.as_ref()).or(known.measured.as_ref());
+            let mut finite = positions.into_iter().flatten().filter(|position| position.is_finite());
+            finite.next().is_some_and(|first| finite.any(|position| position != first))
+        })
+    };
+    let axes = &study.equations.axes;
+    let still: Vec<&str> =
+        (0..axes.len()).filter(|axis| !moving(*axis)).map(|axis| axes[axis].letter.as_str()).collect();
+    if still.len() == axes.len() {
+        sentences.push(
+            "What depends on position, direction or speed cannot be decided from this recording, because no axis moves."
+                .to_owned(),
+        );
+    } else if !still.is_empty() {
+        let verb = if still.len() == 1 { "does" } else { "do" };
+        sentences.push(format!(
+            "What depends on the motion of {} cannot be decided from this recording, because {} {verb} not move.",
+            still.join(" and "),
+            if still.len() == 1 { "it" } else { "they" }
+        ));
+    }
+    let corners: usize =
+        study.scenes.iter().map(|scene| scene.corners.iter().filter(|corner| **corner).count()).sum();
+    if corners > 0 {
+        sentences.push(format!(
+            "What happens at corners of the path cannot be decided in {corners} rows, which are left out, because the path \
+             turned between two rows."
+        ));
+    }
+    if study.scenes.iter().all(|scene| scene.run_numbers().len() < 2) {
+        sentences.push(
+            "Whether runs repeat cannot be decided from this recording, because there is one run.".to_owned(),
+        );
+    }
+    sentences
+}
+
+/// Why nothing at all can be claimed, where that is so.
+pub(super) fn too_little(study: &Study<'_>) -> Option<String> {
+    let mut fitted = 0;
+    let mut held_out = 0;
+    for scene in &study.scenes {
+        let rows = scene.fitted_rows();
+        for channel in &scene.channels {
+            for (value, fits) in channel.values.iter().zip(&rows) {
+                fitted += usize::from(value.is_finite() && *fits);
+                held_out += usize::from(value.is_finite() && !*fits);
+            }
+        }
+    }
+    let because = if fitted + held_out == 0 {
+        "it holds nothing that was observed".to_owned()
+    } else if fitted < FEWEST {
+        format!(
+            "{fitted} samples to fit are too few to tell an effect from noise (at least {FEWEST} are needed)"
+        )
+    } else if held_out == 0 {
+        "nothing is left to hold out, and what is not tested on other data is not claimed".to_owned()
+    } else {
+        return None;
+    };
+    Some(because)
+}
+
+/// Why what was observed cannot be this machine on this path, where that is so: half of the samples of a channel lie far off,
+/// against the travel. No error of a machine is as large; a wrong unit, a wrong column and a wrong axis are.
+pub(super) fn astray(study: &Study<'_>, bare: &Model) -> Option<String> {
+    for (scene, residuals) in zeros::residuals(study, bare).into_iter().enumerate() {
+        let travel =
+            study.scenes[scene].recording.axes.iter().filter_map(|axis| axis.command.as_deref()).map(range);
+        let travel = travel.fold(0.0, f64::max);
+        for (channel, residual) in study.scenes[scene].channels.iter().zip(residuals) {
+            let mut sizes: Vec<f64> =
+                residual.iter().map(|value| value.abs()).filter(|size| size.is_finite()).collect();
+            sizes.sort_by(f64::total_cmp);
+            let median = sizes.get(sizes.len() / 2).copied().unwrap_or_default();
+            let slack = if channel.kind.angular(study.equations) { FAR_OFF.1 } else { FAR_OFF.0 };
+            if median > slack + FAR_OFF_OF_TRAVEL * travel {
+                return Some(format!(
+                    "`{}` of {} does not follow the programmed path: half of its samples are off by more than {median:.3}; \
+                     look at its column, its unit and the axes",
+                    channel.name, study.scenes[scene].recording.file
+                ));
+            }
+        }
+    }
+    None
+}
+
+/// How far off, mm and rad, and as a share of the travel, is too far for an error of a machine.
+const FAR_OFF: (f64, f64) = (0.5, 0.01);
+const FAR_OFF_OF_TRAVEL: f64 = 0.05;
+
+fn range(values: &[f64]) -> f64 {
+    let known = values.iter().filter(|value| value.is_finite());
+    let (low, high) =
+        known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), q| (low.min(*q), high.max(*q)));
+    (high - low).max(0.0)
+}

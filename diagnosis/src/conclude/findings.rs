@@ -1,0 +1,162 @@
+//! Findings: the effects of a fitted model in words and numbers.
+//!
+//! In: what the engine found. Out: a finding for each effect of the machine, with its parameters, its share, its evidence
+//! on held-out data and its other names; and the settings of instruments that the data demand.
+
+use super::units::Units;
+use crate::alternatives;
+use crate::certainty::{self, WIDTH_95};
+use crate::diagnosis::{Alternative, Diagnosis, Evidence, Finding, Parameter, Residual, SettingFinding};
+use crate::engine::Found;
+use crate::judge;
+use crate::model::Effect;
+use crate::parameters::Described;
+use crate::study::Study;
+use crate::sweep::Swept;
+use crate::terms::{Setting, Shape};
+use crate::words;
+use crate::zeros;
+
+/// How many names are told for one finding at most.
+const NAMES: usize = 4;
+
+/// Fills findings and settings.
+pub(super) fn report(study: &Study<'_>, found: &Found, units: &Units, diagnosis: &mut Diagnosis) {
+    let names = alternatives::find(study, found);
+    let design = judge::design(study, &found.fit.model, &found.appraisal.noises);
+    let (products, _) = design.fitted();
+    let mut swept = Swept::new(&products);
+    for column in 0..design.width {
+        swept.take(column);
+    }
+    let with = held_rms(&diagnosis.after);
+    let shares = shares(study, found, units);
+    let certainties = certainty::certainties(study, &found.fit, &found.appraisal.noises, &found.travels);
+    for (number, fitted) in found.fit.model.iter().enumerate() {
+        let described = Described::new(study, fitted, &certainties[number]);
+        let names = number.checked_sub(found.always).map_or(&[] as &[Effect], |place| &names[place]);
+        let alternatives = told(study, &fitted.effect, names);
+        let Some(motion) = fitted.effect.motion() else {
+            if let Some(setting) = setting(found, number, alternatives) {
+                diagnosis.settings.push(setting);
+            }
+            continue;
+        };
+        let mut reduced = judge::without(&design, &swept, &found.fit.model, number);
+        zeros::free_held_out(study, &mut reduced);
+        let without = held_rms(&units.residual(study, &reduced));
+        let known = &study.equations.motions[motion];
+        let calibrated = described.calibrated();
+        diagnosis.findings.push(Finding {
+            motion: known.name.clone(),
+            motion_number: motion,
+            motion_meaning: known.meaning.clone(),
+            term: fitted.effect.shape.name(),
+            parameters: described.parameters(),
+            share: shares[number],
+            location: words::location(study, fitted, names),
+            evidence: Evidence { with, without, unit: units.unit.1 },
+            alternatives,
+            explanation: fitted.effect.shape.meaning().to_owned(),
+            compensable: calibrated.compensable(),
+            sensor: calibrated.sensor().map(|sensor| study.sensors[sensor].clone()),
+            calibrated,
+        });
+    }
+    diagnosis.findings.sort_by(|a, b| b.share.total_cmp(&a.share));
+    diagnosis.settings = joined(std::mem::take(&mut diagnosis.settings));
+}
+
+/// The part of each effect in what all effects of the machine do together to the data that were held out (to all data, where
+/// none were): its product with the sum over the square of the sum, zeros of channels left free.
+fn shares(study: &Study<'_>, found: &Found, units: &Units) -> Vec<f64> {
+    let model = &found.fit.model;
+    let whole = units.held_out(study, model);
+    let difference = |number: usize| -> Vec<f64> {
+        if model[number].effect.motion().is_none() {
+            return Vec::new();
+        }
+        let mut without = model.clone();
+        without.remove(number);
+        units.held_out(study, &without).iter().zip(&whole).map(|(without, whole)| without - whole).collect()
+    };
+    let signals: Vec<Vec<f64>> = (0..model.len()).map(difference).collect();
+    let sum: Vec<f64> =
+        (0..whole.len()).map(|at| signals.iter().filter_map(|signal| signal.get(at)).sum()).collect();
+    let product = |signal: &[f64]| signal.iter().zip(&sum).map(|(a, b)| a * b).sum::<f64>();
+    let square = product(&sum).max(f64::MIN_POSITIVE);
+    signals.iter().map(|signal| (product(signal) / square).clamp(0.0, 1.0)).collect()
+}
+
+fn held_rms(residual: &Residual) -> f64 {
+    residual.holdout_rms.unwrap_or(residual.rms)
+}
+
+/// At most four other names, each once.
+fn told(study: &Study<'_>, effect: &Effect, names: &[Effect]) -> Vec<Alternative> {
+    let mut told: Vec<Alternative> = Vec::new();
+    for name in names {
+        let motion =
+            name.motion().map_or("instrument", |motion| study.equations.motions[motion].name.as_str());
+        let term = name.shape.name();
+        let own =
+            effect.motion().map_or("instrument", |motion| study.equations.motions[motion].name.as_str());
+        let known = told.iter().any(|known| known.motion == motion && known.term == term);
+        if told.len() < NAMES && !known && (own, effect.shape.name()) != (motion, term) {
+            let separate_by = alternatives::separate_by(study, effect, name);
+            told.push(Alternative { motion: motion.to_owned(), term, separate_by });
+        }
+    }
+    told
+}
+
+/// A setting of an instrument, where the data demand it: it is far from zero.
+fn setting(found: &Found, number: usize, alternatives: Vec<Alternative>) -> Option<SettingFinding> {
+    let fitted = &found.fit.model[number];
+    let (crate::model::Place::Instrument { recording }, Shape::Instrument(setting)) =
+        (fitted.effect.place, &fitted.effect.shape)
+    else {
+        return None;
+    };
+    let (value, variance) = (*fitted.coefficients.first()?, found.fit.covariances[number][(0, 0)]);
+    let half = WIDTH_95 * variance.max(0.0).sqrt();
+    if value.abs() < DEMANDED * half / WIDTH_95 {
+        return None;
+    }
+    let estimate = |value: f64, ends: (f64, f64), unit: &str| crate::diagnosis::Estimate {
+        value,
+        ci95: ends,
+        unit: unit.to_owned(),
+    };
+    let plain = |unit: &str| estimate(value, (value - half, value + half), unit);
+    let parameter = match setting {
+        Setting::Offset { .. } | Setting::RunOffset { .. } => return None,
+        Setting::Eccentricity { direction } => Parameter::fitted(["x", "y", "z"][*direction], plain("mm")),
+        Setting::Radius => Parameter::fitted("offset", plain("mm")),
+        Setting::Clock => Parameter::fitted("offset", plain("s")),
+        Setting::Cosine => {
+            let angle = |half_square: f64| (2.0 * half_square.max(0.0)).sqrt();
+            let ends = (angle(value - half), angle(value + half));
+            Parameter::fitted("angle", estimate(angle(value), ends, "rad"))
+        }
+    };
+    Some(SettingFinding { recording, term: setting.name(), parameters: vec![parameter], alternatives })
+}
+
+/// A setting of an instrument is told from this many standard deviations on.
+const DEMANDED: f64 = 4.0;
+
+/// The directions of one eccentricity, brought together.
+fn joined(settings: Vec<SettingFinding>) -> Vec<SettingFinding> {
+    let mut joined: Vec<SettingFinding> = Vec::new();
+    for setting in settings {
+        match joined
+            .iter_mut()
+            .find(|known| known.term == setting.term && known.recording == setting.recording)
+        {
+            Some(known) => known.parameters.extend(setting.parameters),
+            None => joined.push(setting),
+        }
+    }
+    joined
+}

@@ -1,0 +1,101 @@
+//! Sizes: how large residuals and noise are, in the unit that a diagnosis speaks in.
+//!
+//! In: models and what they leave. Out: root mean squares over the channels that an instrument outside the drives reads,
+//! or over the drives' own where there is no other.
+
+use crate::appraisal::Appraisal;
+use crate::diagnosis::{NoiseSummary, Residual};
+use crate::model::Model;
+use crate::parameters::axis_unit;
+use crate::study::{Kind, Study};
+use crate::zeros;
+
+/// The unit in which residuals are told, and which channels count.
+pub(super) struct Units {
+    pub(super) unit: (f64, &'static str),
+    outside: bool,
+    angular: bool,
+}
+
+impl Units {
+    pub(super) fn new(study: &Study<'_>) -> Self {
+        let kinds = || study.scenes.iter().flat_map(|scene| &scene.channels).map(|channel| channel.kind);
+        let outside = kinds().any(Kind::outside);
+        let first = kinds().find(|kind| kind.outside() == outside);
+        let angular = first.is_some_and(|kind| kind.angular(study.equations));
+        let unit = match first {
+            Some(Kind::Stage(axis) | Kind::Drive(axis)) => axis_unit(study, axis),
+            _ if angular => (1.0, "rad"),
+            _ => (1.0, "mm"),
+        };
+        Self { unit, outside, angular }
+    }
+
+    fn counts(&self, study: &Study<'_>, kind: Kind) -> bool {
+        kind.outside() == self.outside && kind.angular(study.equations) == self.angular
+    }
+
+    /// The size of what a model leaves.
+    pub(super) fn residual(&self, study: &Study<'_>, model: &Model) -> Residual {
+        let (mut all, mut held) = ((0.0, 0.0), (0.0, 0.0));
+        for (scene, residuals) in zeros::residuals(study, model).into_iter().enumerate() {
+            let fitted = study.scenes[scene].fitted_rows();
+            for (channel, residual) in study.scenes[scene].channels.iter().zip(residuals) {
+                if !self.counts(study, channel.kind) {
+                    continue;
+                }
+                for ((value, outlier), fits) in residual.iter().zip(&channel.outliers).zip(&fitted) {
+                    if value.is_finite() && !outlier {
+                        all = (all.0 + value * value, all.1 + 1.0);
+                        if !fits {
+                            held = (held.0 + value * value, held.1 + 1.0);
+                        }
+                    }
+                }
+            }
+        }
+        let rms = |(squares, count): (f64, f64)| (squares / f64::max(count, 1.0)).sqrt() * self.unit.0;
+        Residual { rms: rms(all), holdout_rms: (held.1 > 0.0).then(|| rms(held)), unit: self.unit.1 }
+    }
+
+    /// The residuals of all counted channels on the held-out rows (on all rows where none are), the mean of each channel
+    /// taken out.
+    pub(super) fn held_out(&self, study: &Study<'_>, model: &Model) -> Vec<f64> {
+        let any = study.scenes.iter().any(|scene| scene.blocks.iter().any(|block| block.held_out));
+        let mut values = Vec::new();
+        for (scene, residuals) in zeros::residuals(study, model).into_iter().enumerate() {
+            let fitted = study.scenes[scene].fitted_rows();
+            for (channel, residual) in study.scenes[scene].channels.iter().zip(residuals) {
+                if self.counts(study, channel.kind) {
+                    let chosen = (0..residual.len()).filter(|row| {
+                        residual[*row].is_finite() && !channel.outliers[*row] && !(any && fitted[*row])
+                    });
+                    let mut of_channel: Vec<f64> = chosen.map(|row| residual[row]).collect();
+                    zeros::center(&mut of_channel);
+                    values.extend(of_channel);
+                }
+            }
+        }
+        values
+    }
+
+    pub(super) fn noise(&self, study: &Study<'_>, appraisal: &Appraisal) -> NoiseSummary {
+        let channels = study
+            .scenes
+            .iter()
+            .zip(&appraisal.noises)
+            .flat_map(|(scene, noises)| scene.channels.iter().zip(noises));
+        let counted: Vec<_> = channels
+            .filter(|(channel, _)| self.counts(study, channel.kind))
+            .map(|(_, noise)| *noise)
+            .collect();
+        let count = crate::number(counted.len()).max(1.0);
+        let mean = |part: &dyn Fn(&crate::noise::Noise) -> f64| {
+            (counted.iter().map(|noise| part(noise) * part(noise)).sum::<f64>() / count).sqrt() * self.unit.0
+        };
+        let (white, wander) = (mean(&|noise| noise.white), mean(&|noise| noise.wander));
+        let wandering = counted.iter().filter(|noise| noise.wander > 0.0);
+        let time_constant = wandering.map(|noise| noise.time_constant).fold(0.0, f64::max);
+        NoiseSummary { value: white.hypot(wander), unit: self.unit.1, white, wander, time_constant }
+    }
+}

@@ -73,8 +73,7 @@ fn concealed_effects_are_found_and_nothing_else() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     let far: Vec<&String> = intervals.filter(|(.., near)| !near).map(|(what, ..)| what).collect();
     assert!(far.is_empty(), "outside twice the interval: {far:#?}");
-    // Of thirty intervals five fail once in a thousand times.
-    assert!(20 * held >= 17 * all, "{held} of {all} intervals of 95 % hold the truth");
+    assert!(20 * held >= 19 * all, "{held} of {all} intervals of 95 % hold the truth");
 }
 
 /// The diagnoses of all examples held against their truths; on as many cores as there are.

@@ -3,16 +3,22 @@
 //! In: a plant, commands or a path that makes them, and an instrument with its faults. Out: the columns of a recording, with
 //! noise and without. A recording of a real machine can be replayed the same way: [`replay`] takes its commands.
 
+mod instants;
+mod reader;
+
 use std::fmt;
 
 use nalgebra::{Rotation3, Vector3};
 
 use crate::commands::{Column, Commands};
-use crate::instrument::{Channel, Instrument, Seen};
-use crate::noise::{Missing, Noise, Source};
+use crate::instrument::{Channel, Instrument};
+use crate::noise::{Missing, Noise};
 use crate::path::{Path, PathError, Timeline};
 use crate::plant::{Plant, PlantError, Pose};
 use crate::surroundings::{Load, Temperature};
+use instants::{merge, purposes_of};
+use reader::Reader;
+pub(crate) use reader::channel_name;
 
 /// A recording that is to be made.
 #[derive(Clone, Debug, PartialEq)]
@@ -239,15 +245,6 @@ fn looks(commands: &Commands, clock: f64) -> Option<Vec<f64>> {
     (clock != 0.0).then(|| rows.map(|(_, time)| time - clock).collect())
 }
 
-/// What each instant of a merged run is for.
-#[derive(Clone, Copy)]
-struct Purpose {
-    /// The row that it is, where it is written down.
-    row: Option<usize>,
-    /// The row whose reading is taken at it.
-    look: Option<usize>,
-}
-
 /// Runs the plant through rows and looks in order of time, and reads it.
 fn join(
     plant: &Plant,
@@ -321,183 +318,5 @@ fn check(plant: &Plant, instrument: &Instrument) -> Result<(), SimulationError> 
         Some(axis) => Err(SimulationError::NotRotary(*axis)),
         None if instrument.needs_circle() => Err(SimulationError::NoCircle),
         None => Ok(()),
-    }
-}
-
-fn purposes_of(commands: &Commands) -> Vec<Purpose> {
-    let mut next = 0;
-    let purpose = |row: usize| {
-        let row = commands.is_recorded(row).then(|| {
-            next += 1;
-            next - 1
-        });
-        Purpose { row, look: row }
-    };
-    (0..commands.time.len()).map(purpose).collect()
-}
-
-/// Merges the instants of the rows and those at which the instrument looks.
-fn merge(commands: &Commands, looks: &Commands) -> (Commands, Vec<Purpose>) {
-    let mut order: Vec<(f64, bool, usize)> = Vec::new();
-    order.extend(commands.time.iter().enumerate().map(|(row, time)| (*time, false, row)));
-    order.extend(looks.time.iter().enumerate().map(|(row, time)| (*time, true, row)));
-    order.sort_by(|left, right| left.0.total_cmp(&right.0));
-    let rows = purposes_of(commands);
-    let purpose = |&(_, look, row): &(f64, bool, usize)| {
-        if look {
-            Purpose { row: None, look: Some(row) }
-        } else {
-            Purpose { row: rows.get(row).and_then(|purpose| purpose.row), look: None }
-        }
-    };
-    let purposes = order.iter().map(purpose).collect();
-    let take = |own: &[f64], other: &[f64]| -> Vec<f64> {
-        let value = |&(_, look, row): &(f64, bool, usize)| if look { other.get(row) } else { own.get(row) };
-        order.iter().map(|entry| value(entry).copied().unwrap_or(f64::NAN)).collect()
-    };
-    let named = |own: &[Column], other: &[Column]| -> Vec<Column> {
-        let pairs = own.iter().zip(other);
-        pairs.map(|(own, other)| Column { values: take(&own.values, &other.values), ..own.clone() }).collect()
-    };
-    let run = |&(_, look, row): &(f64, bool, usize)| {
-        let runs = if look { &looks.run } else { &commands.run };
-        runs.get(row).copied().unwrap_or(1)
-    };
-    let positions = commands.positions.iter().zip(&looks.positions);
-    let merged = Commands {
-        time: order.iter().map(|(time, ..)| *time).collect(),
-        run: order.iter().map(run).collect(),
-        positions: positions.map(|(own, other)| take(own, other)).collect(),
-        temperatures: named(&commands.temperatures, &looks.temperatures),
-        loads: named(&commands.loads, &looks.loads),
-        recorded: Vec::new(),
-    };
-    (merged, purposes)
-}
-
-/// Reads the recorded rows.
-struct Reader<'r> {
-    plant: &'r Plant,
-    measurement: &'r Measurement,
-    time: &'r [f64],
-    run: &'r [i64],
-    positions: &'r [Vec<f64>],
-}
-
-impl Reader<'_> {
-    fn readings(&self, poses: &[Pose]) -> Vec<Reading> {
-        let instrument = &self.measurement.instrument;
-        let clean = self.read(poses);
-        let mut values = match self.displaced(poses) {
-            Some(displaced) => self.read(&displaced),
-            None => clean.clone(),
-        };
-        let channels = instrument.channels();
-        let lost = self.measurement.missing.lost(self.time, &mut self.source("missing"));
-        for (channel, values) in channels.iter().zip(&mut values) {
-            let mut source = self.source(&self.name(*channel));
-            self.measurement.noise.apply(self.time, values, &mut source);
-            values.iter_mut().zip(&lost).filter(|(_, lost)| **lost).for_each(|(value, _)| *value = f64::NAN);
-        }
-        let columns = channels.into_iter().zip(values).zip(clean);
-        columns.map(|((channel, values), clean)| Reading { channel, values, clean }).collect()
-    }
-
-    /// One column for each channel.
-    fn read(&self, poses: &[Pose]) -> Vec<Vec<f64>> {
-        let instrument = &self.measurement.instrument;
-        let channels = instrument.channels();
-        let mut columns = vec![Vec::with_capacity(poses.len()); channels.len()];
-        let mut start = None;
-        for (row, pose) in poses.iter().enumerate() {
-            let positions = self.command(row);
-            let nominal = self.plant.nominal(&positions);
-            let start = *start.get_or_insert(nominal.tip);
-            let seen = Seen { pose: *pose, nominal, positions: &positions, start };
-            for (channel, column) in channels.iter().zip(&mut columns) {
-                column.push(instrument.read(*channel, self.plant, &seen) + self.measurement.offset);
-            }
-        }
-        columns
-    }
-
-    fn command(&self, row: usize) -> Vec<f64> {
-        self.positions.iter().map(|column| column.get(row).copied().unwrap_or(f64::NAN)).collect()
-    }
-
-    /// The poses with the part displaced in its fixture, another way in every run.
-    fn displaced(&self, poses: &[Pose]) -> Option<Vec<Pose>> {
-        let sigma = self.measurement.fixture;
-        if sigma <= 0.0 {
-            return None;
-        }
-        let displacement = |run: &i64| {
-            let mut source = self.source(&format!("fixture.{run}"));
-            Vector3::from_fn(|_, _| sigma * source.normal())
-        };
-        let mut known: Vec<(i64, Vector3<f64>)> = Vec::new();
-        let displaced = poses.iter().zip(self.run).map(|(pose, run)| {
-            let by = match known.iter().find(|(other, _)| other == run) {
-                Some((_, by)) => *by,
-                None => {
-                    let by = displacement(run);
-                    known.push((*run, by));
-                    by
-                }
-            };
-            Pose { tip: pose.tip + by, ..*pose }
-        });
-        Some(displaced.collect())
-    }
-
-    fn normals(&self) -> Option<[Vec<f64>; 3]> {
-        let Instrument::Probe { normal } = &self.measurement.instrument else { return None };
-        let mut columns = [Vec::new(), Vec::new(), Vec::new()];
-        for row in 0..self.time.len() {
-            let direction = normal.at(self.plant.nominal(&self.command(row)).tip);
-            columns.iter_mut().zip(direction.iter()).for_each(|(column, entry)| column.push(*entry));
-        }
-        Some(columns)
-    }
-
-    fn drive(&self, axis: usize, mut column: Vec<f64>) -> Option<Vec<f64>> {
-        if !self.measurement.drives.contains(&axis) {
-            return None;
-        }
-        let letter = self.plant.names().axes.get(axis).map(|axis| axis.letter.to_ascii_lowercase())?;
-        let mut source = self.source(&format!("actual.{letter}"));
-        self.measurement.drive_noise.apply(self.time, &mut column, &mut source);
-        Some(column)
-    }
-
-    fn sensor(&self, mut column: Column, kind: &str) -> Column {
-        let mut noises = self.measurement.sensor_noise.iter();
-        if let Some((_, noise)) = noises.find(|(name, _)| *name == column.name) {
-            let mut source = self.source(&format!("{kind}.{}", column.name));
-            noise.apply(self.time, &mut column.values, &mut source);
-        }
-        column
-    }
-
-    fn source(&self, name: &str) -> Source {
-        Source::new(self.measurement.seed, name)
-    }
-
-    fn name(&self, channel: Channel) -> String {
-        channel_name(channel, &self.plant.names().axes)
-    }
-}
-
-/// The name of a channel in recordings.
-pub(crate) fn channel_name(channel: Channel, axes: &[model_dsl::calibration::AxisName]) -> String {
-    match channel {
-        Channel::Measured(direction) => {
-            format!("measured.{}", ["x", "y", "z"].get(direction).unwrap_or(&"?"))
-        }
-        Channel::Angle(axis) => {
-            let letter = axes.get(axis).map_or("?", |axis| axis.letter.as_str());
-            format!("measured.{}", letter.to_ascii_lowercase())
-        }
-        Channel::Deviation => "deviation".to_owned(),
     }
 }

@@ -25,7 +25,7 @@ impl Unit {
 }
 
 /// Name, factor, offset and kind of every unit, with its other spellings after it.
-const UNITS: [(&str, f64, f64, Dimension); 37] = [
+const UNITS: [(&str, f64, f64, Dimension); 38] = [
     ("mm", 1.0, 0.0, Dimension::LENGTH),
     ("um", 1e-3, 0.0, Dimension::LENGTH),
     ("\u{b5}m", 1e-3, 0.0, Dimension::LENGTH),
@@ -51,6 +51,7 @@ const UNITS: [(&str, f64, f64, Dimension); 37] = [
     ("ms", 1e-3, 0.0, Dimension::TIME),
     ("min", 60.0, 0.0, Dimension::TIME),
     ("Hz", 1.0, 0.0, Dimension::FREQUENCY),
+    ("kHz", 1e3, 0.0, Dimension::FREQUENCY),
     ("degC", 1.0, 0.0, Dimension::TEMPERATURE),
     ("\u{b0}C", 1.0, 0.0, Dimension::TEMPERATURE),
     ("K", 1.0, -273.15, Dimension::TEMPERATURE),

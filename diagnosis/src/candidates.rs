@@ -5,7 +5,8 @@
 
 use crate::course::Course;
 use crate::model::{Effect, Place, Side};
-use crate::noise::typical_step;
+use crate::ranges::shortest_step;
+use crate::states::AxisStates;
 use crate::study::{Kind, Study};
 use crate::terms::{REFERENCE_TEMPERATURE, Setting, Shape};
 
@@ -22,6 +23,8 @@ pub(crate) struct Travel {
     /// The typical step between rows while it moves.
     pub(crate) step: f64,
     pub(crate) moves: bool,
+    /// The mean time from reversal to reversal, s; 0 where there is none.
+    pub(crate) between: f64,
 }
 
 impl Travel {
@@ -33,10 +36,11 @@ impl Travel {
 
 /// The travel of every axis.
 pub(crate) fn travels(study: &Study<'_>, courses: &[Course]) -> Vec<Travel> {
-    (0..study.equations.axes.len()).map(|axis| travel(courses, axis)).collect()
+    let observed: f64 = study.scenes.iter().map(|scene| scene.observed).sum();
+    (0..study.equations.axes.len()).map(|axis| travel(courses, axis, observed)).collect()
 }
 
-fn travel(courses: &[Course], axis: usize) -> Travel {
+fn travel(courses: &[Course], axis: usize, observed: f64) -> Travel {
     let axes = || courses.iter().map(|course| &course.shown.axes[axis]);
     let positions =
         axes().flat_map(|axis| axis.position.iter().copied()).filter(|position| position.is_finite());
@@ -48,7 +52,10 @@ fn travel(courses: &[Course], axis: usize) -> Travel {
         .collect();
     steps.sort_by(f64::total_cmp);
     let step = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
-    Travel { low, high, step, moves: axes().any(|axis| axis.moves) && high > low }
+    let turned = |axis: &AxisStates| axis.direction.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    let reversals = crate::number(axes().map(turned).sum());
+    let between = if reversals > 0.0 { observed / reversals } else { 0.0 };
+    Travel { low, high, step, moves: axes().any(|axis| axis.moves) && high > low, between }
 }
 
 /// Settings of the instruments that are fitted whatever else is.
@@ -71,8 +78,8 @@ pub(crate) fn always(study: &Study<'_>) -> Vec<Effect> {
 }
 
 /// All candidates but waves, in order of simplicity.
-pub(crate) fn candidates(study: &Study<'_>, courses: &[Course], travels: &[Travel]) -> Vec<Effect> {
-    let grids = Grids::new(study, courses, travels);
+pub(crate) fn candidates(study: &Study<'_>, travels: &[Travel]) -> Vec<Effect> {
+    let grids = Grids::new(study);
     let outside = study.scenes.iter().flat_map(|scene| &scene.channels).any(|channel| channel.kind.outside());
     let mut effects = settings(study);
     for (motion, known) in study.equations.motions.iter().enumerate() {
@@ -101,36 +108,23 @@ fn settings(study: &Study<'_>) -> Vec<Effect> {
 
 /// Values of the parameters that are not linear.
 struct Grids {
-    decays: Vec<f64>,
+    /// The typical step between rows, s.
+    step: f64,
     filters: Vec<f64>,
     drifts: Vec<f64>,
 }
 
 impl Grids {
-    fn new(study: &Study<'_>, courses: &[Course], travels: &[Travel]) -> Self {
-        let step = study
-            .scenes
-            .iter()
-            .map(|scene| typical_step(&scene.recording.time))
-            .fold(f64::INFINITY, f64::min);
+    fn new(study: &Study<'_>) -> Self {
+        let step = shortest_step(study);
         let span =
             study.scenes.iter().filter_map(|scene| scene.recording.time.last()).copied().fold(0.0, f64::max);
-        let reversals = reversals(courses, travels);
-        let between = if reversals > 0.0 { span / reversals } else { 0.0 };
         Self {
-            decays: if reversals > 0.0 { geometric(0.7 * step, 0.25 * between, 2.0) } else { Vec::new() },
+            step,
             filters: geometric((4.0 * step).max(span / 60.0), 0.7 * span, 2.0),
             drifts: geometric((10.0 * step).max(span / 60.0), 3.0 * span, 2.5),
         }
     }
-}
-
-fn reversals(courses: &[Course], travels: &[Travel]) -> f64 {
-    let turns = |axis: usize| {
-        let directions = courses.iter().flat_map(|course| course.shown.axes[axis].direction.windows(2));
-        crate::number(directions.filter(|pair| pair[0] != pair[1]).count())
-    };
-    (0..travels.len()).map(turns).fold(0.0, f64::max)
 }
 
 /// From `low` to at most `high` by a factor.
@@ -191,7 +185,8 @@ fn along(study: &Study<'_>, motion: usize, axis: usize, travel: &Travel, grids: 
     shapes.extend((1..=HIGHEST_POWER).map(|degree| Shape::Polynomial { axis, degree, center, scale }));
     shapes.push(Shape::Acceleration { axis });
     shapes.extend(wind_ups(axis, travel));
-    shapes.extend(grids.decays.iter().map(|decay| Shape::ReversalSpike { axis, decay: *decay }));
+    let decays = geometric(0.7 * grids.step, 0.25 * travel.between, 2.0);
+    shapes.extend(decays.into_iter().map(|decay| Shape::ReversalSpike { axis, decay }));
     shapes
 }
 

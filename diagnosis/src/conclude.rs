@@ -5,22 +5,21 @@
 mod decidable;
 mod findings;
 mod summary;
+mod unexplained;
 mod units;
 
 use crate::appraisal::Appraisal;
 use crate::candidates;
 use crate::curves::BROAD;
-use crate::diagnosis::{
-    Diagnosis, Interval, IntervalOf, NoiseSummary, Residual, SettingFinding, Unexplained, Verdict,
-};
+use crate::diagnosis::{Diagnosis, NoiseSummary, Residual, SettingFinding, Verdict};
 use crate::engine::{self, Found};
 use crate::fit;
 use crate::local::{self, Feature};
 use crate::model::{Fitted, Model};
-use crate::parameters::axis_unit;
 use crate::repeats;
 use crate::rest;
 use crate::study::{Scene, Study};
+use crate::unsteady;
 use crate::zeros;
 use crate::{Inputs, Progress};
 use decidable::{astray, too_little, undecided};
@@ -65,13 +64,20 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, progress: &mut dyn FnMut(Progress)) 
         found = engine::find(&mut study, always, &mut step);
     }
     let feature = explain_locally(&mut study, &mut found);
+    let mut moving = if feature.is_none() { unsteady::moving(&study, &found.appraisal) } else { None };
+    if let Some(moving) = &mut moving {
+        unsteady::fit_plainly(&study, &mut found, moving);
+    }
     progress(Progress { step: "comparing with other names", done: 0.95 });
     zeros::free_held_out(&study, &mut found.fit.model);
     diagnosis.after = units.residual(&study, &found.fit.model);
     let quiet = feature.as_ref().and_then(|feature| engine::beside(&study, &found, feature));
     diagnosis.noise = units.noise(&study, quiet.as_ref().unwrap_or(&found.appraisal));
     report(&study, &found, &units, &mut diagnosis);
-    diagnosis.unexplained = feature.map(|feature| unexplained(&study, &found, &feature, &units));
+    diagnosis.unexplained = match feature {
+        Some(feature) => Some(unexplained::feature(&study, &found, &feature, &units)),
+        None => unexplained::unsteady(&study, &found, moving, &units),
+    };
     diagnosis.repeatability = scattered.first().map(|scatter| repeats::describe(&study, scatter, units.unit));
     diagnosis.verdict = verdict(&diagnosis);
     diagnosis.recordings = study.scenes.iter().map(summary).collect();
@@ -140,31 +146,4 @@ fn undecidable(mut diagnosis: Diagnosis, study: &Study<'_>, because: String) -> 
     diagnosis.noise = NoiseSummary { value: f64::NAN, unit: "mm", ..NoiseSummary::default() };
     diagnosis.recordings = study.scenes.iter().map(summary).collect();
     diagnosis
-}
-
-fn unexplained(study: &Study<'_>, found: &Found, feature: &Feature, units: &Units) -> Unexplained {
-    let channel = &study.scenes[feature.scene].channels[feature.channel];
-    let axis = &study.equations.axes[feature.axis];
-    let (factor, unit) = axis_unit(study, feature.axis);
-    let (from, to) = (feature.from * factor, feature.to * factor);
-    let which = match feature.direction {
-        d if d > 0.0 => "while it moves forward",
-        d if d < 0.0 => "while it moves backward",
-        _ => "in both directions of motion",
-    };
-    let table_of = engine::table_motion(study, found, feature)
-        .map(|motion| study.equations.motions[motion].name.clone());
-    Unexplained {
-        link: Some(axis.letter.clone()),
-        direction: channel.name.clone(),
-        state: "position",
-        interval: Some(Interval { of: IntervalOf::Axis(axis.letter.clone()), from, to, unit }),
-        rms: feature.rms * units.unit.0,
-        unit: units.unit.1,
-        detail: format!(
-            "comes back in every pass of {} from {from:.1} to {to:.1} {unit}, {which}; no term of the vocabulary has this form",
-            axis.letter
-        ),
-        table_of,
-    }
 }

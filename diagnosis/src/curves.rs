@@ -17,7 +17,7 @@ const NODES: [usize; 3] = [8, 12, 20];
 /// A wave of more than this share of the travel may be part of a curve.
 const LONG: f64 = 0.12;
 
-/// Tries tables for every motion of which two or more smooth terms are in the model, or a polynomial of the highest power.
+/// Tries tables for every motion of which two or more smooth terms are in the model, or a polynomial of a high power.
 pub(crate) fn try_tables(
     study: &Study<'_>,
     mut fit: Fit,
@@ -44,11 +44,14 @@ pub(crate) fn try_tables(
             continue;
         }
         let kept: Model = fit.model.iter().filter(|fitted| !imitates(fitted)).cloned().collect();
-        for nodes in NODES {
+        for shape in tables(study, axis, &travels[axis]) {
             let mut trial = kept.clone();
-            let effect = Effect { place, shape: table(axis, &travels[axis], nodes) };
+            let effect = Effect { place, shape };
             trial.push(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
             let trial = fit::refine(study, trial, noises, travels);
+            if cost(study, &trial, always, tries) >= cost(study, &fit, always, tries) {
+                continue;
+            }
             // A curve that is flat but for one place is a place; that is looked for elsewhere, without imitations.
             let local = trial
                 .model
@@ -59,9 +62,7 @@ pub(crate) fn try_tables(
                 fit = fit::refine(study, kept, noises, travels);
                 break;
             }
-            if cost(study, &trial, always, tries) < cost(study, &fit, always, tries) {
-                fit = trial;
-            }
+            fit = trial;
         }
     }
     fit
@@ -103,10 +104,59 @@ fn smooth(effect: &Effect, travels: &[Travel]) -> Option<usize> {
     }
 }
 
-/// A table with nodes at equal steps over the travel.
-pub(crate) fn table(axis: usize, travel: &Travel, nodes: usize) -> Shape {
-    let at = |node: usize| travel.low + travel.range() * crate::number(node) / crate::number(nodes - 1);
-    Shape::Table { axis, nodes: (0..nodes).map(at).collect(), directed: false }
+/// Tables of an axis: with nodes at its stations, where it stands at a few; else at equal steps, as long as there is something
+/// at every node.
+fn tables(study: &Study<'_>, axis: usize, travel: &Travel) -> Vec<Shape> {
+    let places = places(study, axis);
+    let nodes = match stations(&places, travel) {
+        Some(stations) => vec![stations],
+        None => NODES.map(|count| even(travel, count)).into_iter().filter(|n| held(n, &places)).collect(),
+    };
+    nodes.into_iter().map(|nodes| Shape::Table { axis, nodes, directed: false }).collect()
+}
+
+fn even(travel: &Travel, count: usize) -> Vec<f64> {
+    let at = |node: usize| travel.low + travel.range() * crate::number(node) / crate::number(count - 1);
+    (0..count).map(at).collect()
+}
+
+/// The programmed positions of an axis in the rows in which something was observed, in order.
+fn places(study: &Study<'_>, axis: usize) -> Vec<f64> {
+    let mut places = Vec::new();
+    for scene in &study.scenes {
+        let observed = |row: usize| scene.channels.iter().any(|channel| channel.values[row].is_finite());
+        let known = scene.given.programmed[axis].iter().enumerate();
+        places.extend(known.filter(|(row, q)| q.is_finite() && observed(*row)).map(|(_, q)| *q));
+    }
+    places.sort_by(f64::total_cmp);
+    places
+}
+
+/// The places at which an axis was observed, where they are few: within a thousandth of the travel a place is the same.
+fn stations(places: &[f64], travel: &Travel) -> Option<Vec<f64>> {
+    let mut stations: Vec<f64> = Vec::new();
+    for place in places {
+        if stations.last().is_none_or(|last| place - last > 1e-3 * travel.range()) {
+            stations.push(*place);
+        }
+        if stations.len() > MOST_STATIONS {
+            return None;
+        }
+    }
+    (stations.len() >= FEWEST_STATIONS).then_some(stations)
+}
+
+/// The fewest and the most stations that make the nodes of a table.
+const FEWEST_STATIONS: usize = 4;
+const MOST_STATIONS: usize = 40;
+
+/// Whether something was observed nearer to every node than to its neighbours.
+fn held(nodes: &[f64], places: &[f64]) -> bool {
+    let half = nodes.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min) / 2.0;
+    nodes.iter().all(|node| {
+        let from = places.partition_point(|place| *place < node - half);
+        places.get(from).is_some_and(|place| *place <= node + half)
+    })
 }
 
 /// What a fit costs: its misfit and the price of its effects.

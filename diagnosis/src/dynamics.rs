@@ -10,7 +10,8 @@ use crate::curves::cost;
 use crate::fit::{self, Fit};
 use crate::judge::Tries;
 use crate::model::{Effect, Fitted, Model, Place, Side};
-use crate::noise::{Noise, typical_step};
+use crate::noise::Noise;
+use crate::ranges::shortest_step;
 use crate::study::Study;
 use crate::terms::{Setting, Shape};
 
@@ -43,8 +44,7 @@ pub(crate) fn try_loops(
         .filter(|(number, fitted)| *number < always || !mistakable(&fitted.effect))
         .map(|(_, fitted)| fitted.clone())
         .collect();
-    let step =
-        study.scenes.iter().map(|scene| typical_step(&scene.recording.time)).fold(f64::INFINITY, f64::min);
+    let step = shortest_step(study);
     for time_constant in geometric(0.5 * step, (40.0 * step).min(0.3), 2.0) {
         let trial = with_loops(study, &kept, &now.model, time_constant, travels);
         let fit = fit::refine(study, trial, noises, travels);

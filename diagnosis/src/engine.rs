@@ -17,11 +17,13 @@ use crate::local::Feature;
 use crate::model::{Effect, Fitted, Model, Place, Side};
 use crate::noise::{self, Noise};
 use crate::observations;
+use crate::ranges::{Resolution, limit};
 use crate::search::{Choice, rivals};
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
-use crate::waves::{self, Weighted};
+use crate::unsteady::{self, Band};
+use crate::waves::{self, WavePlace, Weighted};
 
 /// The most rounds.
 const ROUNDS: usize = 6;
@@ -34,6 +36,8 @@ pub(crate) struct Found {
     pub(crate) appraisal: Appraisal,
     pub(crate) pool: Vec<Kin>,
     pub(crate) travels: Vec<Travel>,
+    /// Oscillations that are not steady, and not in the model.
+    pub(crate) bands: Vec<Band>,
     /// How many of the model's first effects are settings that are always fitted.
     pub(crate) always: usize,
     pub(crate) tries: Tries,
@@ -41,47 +45,117 @@ pub(crate) struct Found {
 
 /// Looks for the model. `always` are the settings that are fitted whatever else is.
 pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dyn FnMut(f64)) -> Found {
-    let mut model: Model =
-        always.into_iter().map(|effect| Fitted { effect, coefficients: vec![0.0] }).collect();
-    let always = model.len();
-    let mut courses = courses(study, &model);
-    let travels = candidates::travels(study, &courses);
-    let mut noises = first_noises(study, &model, &courses);
-    let pool = candidates::candidates(study, &courses, &travels);
-    let pool = kinship::groups(study, &courses, &noises, pool);
-    let places = waves::places(study, &courses, &noises, &travels);
-    let mut tries = Tries { candidates: crate::number(pool.len() + WAVES), waves: 1.0 };
-    for round in 0..ROUNDS {
-        progress(crate::number(round + 1) / crate::number(ROUNDS + 2));
-        let residuals = all_residuals(study, &model, &noises, &courses);
-        let (peaks, waves) = waves::peaks(study, &model, &courses, &residuals, &travels, &places);
-        tries.waves = waves;
-        let others = other_peaks(study, &model, &noises, &travels);
-        // One course of states at a time is enough for the memory.
-        drop((std::mem::take(&mut courses), residuals));
-        let mut regressors = regressors(study, &model, always, &pool, peaks);
-        regressors.extend(others.into_iter().map(Regressor::of));
-        let next = choose(study, &model, &noises, regressors, always, waves);
-        let mut next = fit::refine(study, next, &noises, &travels).model;
-        let mut settled = same_effects(&model, &next);
-        if settled || round + 1 == ROUNDS {
-            next = dynamics::try_loops(study, next, always, &noises, &travels, tries);
-            settled = same_effects(&model, &next);
-        }
-        model = next;
-        courses = self::courses(study, &model);
-        let appraisal = Appraisal::new(study, &model);
-        appraisal.mark(study);
-        let quiet = same_noises(&noises, &appraisal.noises);
-        noises = appraisal.noises;
-        if settled && quiet && round > 0 {
-            break;
+    let mut search = Search::new(study, always);
+    search.go_round(study, progress);
+    let mut fit = search.fit(study);
+    let curved =
+        curves::try_tables(study, fit.clone(), search.always, &search.noises, &search.travels, search.tries);
+    if same_effects(&curved.model, &fit.model) {
+        fit = curved;
+    } else {
+        // Beside a curve, what stood in for its bends may look different.
+        search.model = curved.model;
+        search.go_round(study, progress);
+        fit = search.fit(study);
+    }
+    let Search { pool, travels, always, tries, .. } = search;
+    let (mut fit, mut appraisal) = judge::uphold(study, fit, always, &travels, tries);
+    let bands = unsteady::take_bands(&mut fit.model, always);
+    if !bands.is_empty() {
+        let steady = fit::refine(study, fit.model, &appraisal.noises, &travels);
+        (fit, appraisal) = judge::uphold(study, steady, always, &travels, tries);
+    }
+    Found { fit, appraisal, pool, travels, bands, always, tries }
+}
+
+/// A search on its way.
+struct Search {
+    model: Model,
+    noises: Vec<Vec<Noise>>,
+    courses: Vec<Course>,
+    travels: Vec<Travel>,
+    pool: Vec<Kin>,
+    places: Vec<WavePlace>,
+    always: usize,
+    tries: Tries,
+}
+
+impl Search {
+    fn new(study: &Study<'_>, always: Vec<Effect>) -> Self {
+        let model: Model =
+            always.into_iter().map(|effect| Fitted { effect, coefficients: vec![0.0] }).collect();
+        let courses = courses(study, &model);
+        let travels = candidates::travels(study, &courses);
+        let noises = first_noises(study, &model, &courses);
+        let pool = candidates::candidates(study, &travels);
+        let pool = kinship::groups(study, &courses, &noises, pool);
+        let places = waves::places(study, &courses, &noises, &travels);
+        let tries = Tries { candidates: crate::number(pool.len() + WAVES), waves: 1.0 };
+        Self { always: model.len(), model, noises, courses, travels, pool, places, tries }
+    }
+
+    /// Chooses anew, with a better idea of the noise each time, until nothing changes.
+    fn go_round(&mut self, study: &mut Study<'_>, progress: &mut dyn FnMut(f64)) {
+        for round in 0..ROUNDS {
+            progress(crate::number(round + 1) / crate::number(ROUNDS + 2));
+            let next = self.choose(study);
+            let mut next = fit::refine(study, next, &self.noises, &self.travels).model;
+            let mut settled = same_effects(&self.model, &next);
+            if settled || round + 1 == ROUNDS {
+                next = dynamics::try_loops(study, next, self.always, &self.noises, &self.travels, self.tries);
+                settled = same_effects(&self.model, &next);
+            }
+            self.model = next;
+            self.courses = courses(study, &self.model);
+            let appraisal = Appraisal::new(study, &self.model);
+            appraisal.mark(study);
+            let quiet = same_noises(&self.noises, &appraisal.noises);
+            self.noises = appraisal.noises;
+            if settled && quiet && round > 0 {
+                break;
+            }
         }
     }
-    let fit = fit::refine(study, model, &noises, &travels);
-    let fit = curves::try_tables(study, fit, always, &noises, &travels, tries);
-    let (fit, appraisal) = judge::uphold(study, fit, always, &travels, tries);
-    Found { fit, appraisal, pool, travels, always, tries }
+
+    /// The best set of effects under the present noise, by linear least squares.
+    fn choose(&mut self, study: &Study<'_>) -> Model {
+        let residuals = all_residuals(study, &self.model, &self.noises, &self.courses);
+        let (peaks, waves) =
+            waves::peaks(study, &self.model, &self.courses, &residuals, &self.travels, &self.places);
+        self.tries.waves = waves;
+        let others = other_peaks(study, &self.model, &self.noises, &self.travels);
+        // One course of states at a time is enough for the memory.
+        drop((std::mem::take(&mut self.courses), residuals));
+        let mut regressors = regressors(study, &self.model, self.always, &self.pool, peaks);
+        regressors.extend(others.into_iter().map(Regressor::of));
+        let mut design = Design::new(study, &self.model, &self.noises, regressors);
+        design.rebase(&self.model);
+        let (products, samples) = design.fitted();
+        let resolution = Resolution::new(study, &self.travels);
+        let choice =
+            Choice::new(study, &design, products.clone(), samples, self.always, waves, resolution).best();
+        fit::linear(&design, &products, self.always, &choice)
+    }
+
+    /// Fits the model; what has run to the end of its range becomes what it is there.
+    fn fit(&self, study: &Study<'_>) -> Fit {
+        let mut fit = fit::refine(study, self.model.clone(), &self.noises, &self.travels);
+        let mut model: Model = Vec::new();
+        for fitted in &fit.model {
+            let mut fitted = fitted.clone();
+            if let Some(limit) = limit(study, &self.travels, &fitted.effect.shape) {
+                fitted.effect.shape = limit;
+            }
+            // At its end it may have become one that stands there already.
+            if !model.iter().any(|known| known.effect == fitted.effect) {
+                model.push(fitted);
+            }
+        }
+        if !same_effects(&model, &fit.model) {
+            fit = fit::refine(study, model, &self.noises, &self.travels);
+        }
+        fit
+    }
 }
 
 /// How many nodes a table gets, at most.
@@ -101,8 +175,9 @@ pub(crate) fn with_table(study: &mut Study<'_>, found: &Found, feature: &Feature
     let fit = fit::refine(study, model, &found.appraisal.noises, &found.travels);
     let (fit, appraisal) = judge::uphold(study, fit, found.always, &found.travels, found.tries);
     let upheld = fit.model.iter().any(|fitted| fitted.effect == effect);
-    let (pool, travels) = (found.pool.clone(), found.travels.clone());
-    upheld.then_some(Found { fit, appraisal, pool, travels, always: found.always, tries: found.tries })
+    let (pool, travels, bands) = (found.pool.clone(), found.travels.clone(), found.bands.clone());
+    let (always, tries) = (found.always, found.tries);
+    upheld.then_some(Found { fit, appraisal, pool, travels, bands, always, tries })
 }
 
 /// What is left beside a feature: the appraisal of the model with a table in its place.
@@ -183,21 +258,6 @@ fn other_peaks(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], travels:
     effects
 }
 
-fn choose(
-    study: &Study<'_>,
-    model: &Model,
-    noises: &[Vec<Noise>],
-    regressors: Vec<Regressor>,
-    always: usize,
-    waves: f64,
-) -> Model {
-    let mut design = Design::new(study, model, noises, regressors);
-    design.rebase(model);
-    let (products, samples) = design.fitted();
-    let chosen = Choice::new(study, &design, products.clone(), samples, always, waves).best();
-    fit::linear(&design, &products, always, &chosen)
-}
-
 pub(crate) fn courses(study: &Study<'_>, model: &Model) -> Vec<Course> {
     (0..study.scenes.len()).map(|scene| Course::new(study, scene, model)).collect()
 }
@@ -221,7 +281,7 @@ fn first_noises(study: &Study<'_>, model: &Model, courses: &[Course]) -> Vec<Vec
         channels
             .map(|(residual, channel)| {
                 let white = noise::from_differences(residual).max(channel.rounding);
-                Noise { white, wander: 0.0, time_constant: 1.0 }
+                Noise::white(white)
             })
             .collect()
     })

@@ -8,6 +8,7 @@ use crate::candidates::Travel;
 use crate::design::{Design, Regressor};
 use crate::model::{Effect, Fitted, Model};
 use crate::noise::Noise;
+use crate::ranges::range;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
@@ -47,7 +48,7 @@ pub(crate) fn refine(study: &Study<'_>, model: Model, noises: &[Vec<Noise>], tra
     let mut best = Linearised::new(study, model, noises);
     let mut size = 1.0;
     for _ in 0..STEPS {
-        let next = Linearised::new(study, best.stepped(size, travels), noises);
+        let next = Linearised::new(study, best.stepped(study, size, travels), noises);
         let fall = (best.remaining - next.remaining) / best.remaining;
         if fall >= 0.0 {
             best = next;
@@ -97,7 +98,7 @@ impl Linearised {
     }
 
     /// The model after a step of this size (1: the whole step) towards the least squares.
-    fn stepped(&self, size: f64, travels: &[Travel]) -> Model {
+    fn stepped(&self, study: &Study<'_>, size: f64, travels: &[Travel]) -> Model {
         let step = |(number, fitted): (usize, &Fitted)| {
             let change = |column: usize| size * self.swept.coefficient(column);
             let coefficients: Vec<f64> = fitted
@@ -115,7 +116,9 @@ impl Linearised {
                 let change = change(self.design.first[slope]);
                 let most = furthest(&fitted.effect.shape, travels);
                 let change = change.clamp(-most, most).clamp(-0.5 * parameter.value, parameter.value);
-                fitted.effect.shape.with_nonlinear(parameter.value + change)
+                let (least, most) = range(study, travels, &fitted.effect.shape);
+                let value = (parameter.value + change).max(least.min(parameter.value));
+                fitted.effect.shape.with_nonlinear(value.min(most.max(parameter.value)))
             });
             let shape = moved.unwrap_or_else(|| fitted.effect.shape.clone());
             Fitted { effect: Effect { place: fitted.effect.place, shape }, coefficients }

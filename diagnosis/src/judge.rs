@@ -106,7 +106,7 @@ fn pays(
         let fitted = known.fitted_rows();
         for channel in 0..known.channels.len() {
             let noise = appraisal.noises[scene][channel];
-            let size = noise.white.hypot(noise.wander);
+            let size = noise.size();
             let (bare, others, left) =
                 (&bare[scene][channel], &others[scene][channel], &whole[scene][channel]);
             let usable = |row: usize| bare[row].is_finite() && !appraisal.outliers[scene][channel][row];

@@ -23,6 +23,7 @@ mod noise;
 mod observations;
 mod outliers;
 mod parameters;
+mod ranges;
 pub mod recording;
 mod repeats;
 pub mod report;
@@ -34,6 +35,7 @@ mod sweep;
 mod terms;
 #[cfg(test)]
 mod testing;
+mod unsteady;
 mod waves;
 mod way;
 mod words;

@@ -41,6 +41,8 @@ impl Feature {
 const SURE: f64 = 6.0;
 /// It must be this share of the noise of a single sample, at least.
 const MATERIAL: f64 = 0.7;
+/// And this share of that of the noisiest channel beside it: a fine feedback shows what does not matter to the whole.
+const BESIDE: f64 = 0.3;
 /// Places of at least this share of the height belong to the feature.
 const FLANK: f64 = 0.25;
 /// The fewest passes and places.
@@ -58,7 +60,10 @@ pub(crate) fn strongest(
 ) -> Option<Feature> {
     let mut best: Option<Feature> = None;
     for (scene, known) in study.scenes.iter().enumerate() {
+        let angular = |channel: usize| known.channels[channel].kind.angular(study.equations);
         for (channel, observed) in known.channels.iter().enumerate() {
+            let alike = (0..known.channels.len()).filter(|other| angular(*other) == angular(channel));
+            let loudest = alike.map(|other| appraisal.noises[scene][other].size()).fold(0.0, f64::max);
             for (axis, travel) in travels.iter().enumerate().filter(|(_, travel)| travel.moves) {
                 let position = &courses[scene].states(observed.kind).axes[axis].position;
                 let moves = &courses[scene].states(observed.kind).axes[axis].direction;
@@ -72,10 +77,9 @@ pub(crate) fn strongest(
                         .filter(|(_, d)| direction == 0.0 || *d == direction)
                         .map(|(rows, _)| rows)
                         .collect();
-                    let noise = appraisal.noises[scene][channel];
+                    let noise = appraisal.noises[scene][channel].size();
                     let profile = Profile::new(residual, position, &chosen, &valid, travel);
-                    let feature =
-                        profile.and_then(|profile| profile.feature(noise.white.hypot(noise.wander)));
+                    let feature = profile.and_then(|profile| profile.feature(noise.max(BESIDE * loudest)));
                     if let Some(found) = feature
                         && best.as_ref().is_none_or(|best| found.strength > 1.2 * best.strength)
                     {

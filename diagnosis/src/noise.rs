@@ -16,9 +16,19 @@ pub(crate) struct Noise {
 }
 
 impl Noise {
+    /// White noise alone.
+    pub(crate) fn white(deviation: f64) -> Self {
+        Self { white: deviation, wander: 0.0, time_constant: 1.0 }
+    }
+
+    /// The standard deviation of a sample.
+    pub(crate) fn size(&self) -> f64 {
+        self.white.hypot(self.wander)
+    }
+
     /// White noise of the same size.
     pub(crate) fn as_white(&self) -> Self {
-        Self { white: self.white.hypot(self.wander), wander: 0.0, ..*self }
+        Self { white: self.size(), wander: 0.0, ..*self }
     }
 }
 
@@ -163,10 +173,17 @@ pub(crate) fn estimate(time: &[f64], residual: &[f64], valid: &[bool], floor: f6
     if value < white.0 - WORTH {
         let (ratio, time_constant) = (point[0].clamp(-12.0, 12.0).exp(), point[1].exp());
         let scale = deviance(time, residual, valid, unit(ratio, time_constant)).1.sqrt();
-        return (Noise { white: scale.max(floor), wander: ratio * scale, time_constant }, value);
+        let wander = ratio * scale;
+        let reach = wander * (1.0 - (-2.0 * span / time_constant).exp()).sqrt();
+        return (Noise { white: scale.max(floor).max(ROUGH * reach), wander, time_constant }, value);
     }
     (Noise { white: white.1.sqrt().max(floor), wander: 0.0, time_constant: span }, white.0)
 }
+
+/// The least white part, as a share of how far the wandering part gets. What wanders without any white part is no sensor but
+/// what the model leaves out, which has a slope at every moment: its steps from row to row are so small that a fit would
+/// follow slopes alone, and not see how far the machine is off.
+const ROUGH: f64 = 0.1;
 
 /// How much the wandering must lower minus twice the log-likelihood: chance does it with two more parameters in one of a
 /// hundred cases.

@@ -107,7 +107,7 @@ fn measure(study: &Study<'_>, scene: usize, free: &Model, after: &Appraisal, run
         let of_runs: Vec<f64> = runs.iter().map(|run| zero(channel, *run)).collect();
         let noise = after.noises[scene][channel];
         let spread = deviation(&of_runs);
-        let size = noise.white.hypot(noise.wander);
+        let size = noise.size();
         if spread * within.max(f64::MIN_POSITIVE) >= between * size {
             (between, within) = (spread, size);
         }

@@ -10,6 +10,7 @@ use nalgebra::DMatrix;
 use crate::candidates::simplicity;
 use crate::design::Design;
 use crate::model::Effect;
+use crate::ranges::Resolution;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::{Setting, Shape};
@@ -63,6 +64,7 @@ pub(crate) struct Choice<'d> {
     prices: Vec<f64>,
     samples: f64,
     products: DMatrix<f64>,
+    resolution: Resolution,
 }
 
 /// A set of effects on the way.
@@ -83,13 +85,14 @@ impl<'d> Choice<'d> {
         samples: f64,
         always: usize,
         waves: f64,
+        resolution: Resolution,
     ) -> Self {
         let open: Vec<usize> = (always..design.regressors.len()).collect();
         let fixed = design.first.get(always).copied().unwrap_or(design.width);
         let tries = crate::number(open.len().max(2));
         let price = |effect: &Effect| price(study, effect, samples, tries, waves);
         let prices = design.regressors.iter().map(|regressor| price(&regressor.effect)).collect();
-        Self { design, always: (0..fixed).collect(), open, prices, samples, products }
+        Self { design, always: (0..fixed).collect(), open, prices, samples, products, resolution }
     }
 
     /// The best set found, by numbers of regressors.
@@ -178,7 +181,12 @@ impl<'d> Choice<'d> {
     /// Whether an effect may stand beside those of a set: it is not there yet in another form, and has the right sign.
     fn fits(&self, set: &Set, regressor: usize) -> bool {
         let effect = &self.design.regressors[regressor].effect;
-        if set.chosen.iter().any(|chosen| rivals(&self.design.regressors[*chosen].effect, effect)) {
+        let against = |chosen: &usize| {
+            let known = &self.design.regressors[*chosen].effect;
+            rivals(known, effect)
+                || known.place == effect.place && self.resolution.blurs(&known.shape, &effect.shape)
+        };
+        if set.chosen.iter().any(against) {
             return false;
         }
         let mut columns = self.design.columns(regressor);

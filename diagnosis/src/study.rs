@@ -37,6 +37,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) given: Given,
     pub(crate) channels: Vec<Channel>,
     pub(crate) blocks: Vec<Block>,
+    /// How long it was observed, s: gaps and pauses left out.
+    pub(crate) observed: f64,
     /// Rows that are left out because an axis turned a corner just before, between two rows.
     pub(crate) corners: Vec<bool>,
     /// Whether the axes are at rest in every row, as far as position loops go: rows far apart, which a calibration with
@@ -197,6 +199,7 @@ impl<'a> Scene<'a> {
         let given = Given::new(recording, temperatures(recording, calibration, sensors), loads);
         Self {
             at_rest: false,
+            observed: observed(&recording.time),
             corners: corners(recording, &given.programmed),
             leans: leans(recording, &given.programmed, interpreter),
             recording,
@@ -250,6 +253,15 @@ fn corners(recording: &Recording, programmed: &[Shared]) -> Vec<bool> {
     let share = corners.iter().filter(|corner| **corner).count() * MANY;
     if share > corners.len() { vec![false; corners.len()] } else { corners }
 }
+
+/// The time of all steps that are no gaps.
+fn observed(time: &[f64]) -> f64 {
+    let longest = GAP * noise::typical_step(time);
+    time.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step <= longest).sum()
+}
+
+/// A step of time so many times as long as the typical one is a gap.
+const GAP: f64 = 20.0;
 
 /// One row in so many may lie behind a corner.
 const MANY: usize = 20;

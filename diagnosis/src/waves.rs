@@ -11,8 +11,9 @@ use crate::candidates::Travel;
 use crate::course::Course;
 use crate::kinship;
 use crate::model::{Effect, Model, Place, Side};
-use crate::noise::{Noise, Whitening, typical_step, unwhiten, whiten};
+use crate::noise::{Noise, Whitening, unwhiten, whiten};
 use crate::observations::{Frame, each_frame, residuals};
+use crate::ranges::{CYCLES, shortest_step};
 use crate::study::Study;
 use crate::terms::Shape;
 
@@ -159,11 +160,12 @@ pub(crate) fn peaks(
         }
         let times: Vec<&[f64]> = courses.iter().map(|course| &*course.shown.given.time).collect();
         let span = times.iter().filter_map(|time| time.last()).copied().fold(0.0, f64::max);
-        let step = times.iter().map(|time| typical_step(time)).fold(f64::INFINITY, f64::min);
+        let step = shortest_step(study);
+        let observed = study.scenes.iter().map(|scene| scene.observed).fold(0.0, f64::max);
         if source.place.vibration && span > 10.0 * step {
             tried += span / (2.0 * step);
             let found = spectrum(&source.products, &times, 0.0, span, 2.0 * step);
-            peaks.extend(best(&found, 5.0 / span, 3).into_iter().map(|(frequency, power)| Peak {
+            peaks.extend(best(&found, CYCLES / observed, 3).into_iter().map(|(frequency, power)| Peak {
                 effect: effect(source, Shape::Vibration { frequency }),
                 gain: power / source.strength,
             }));

@@ -40,7 +40,7 @@ fn held(
         ];
         let courses = engine::courses(&study, &model);
         let travels = candidates::travels(&study, &courses);
-        let noises = vec![vec![Noise { white: 1e-3, wander: 0.0, time_constant: 1.0 }]];
+        let noises = vec![vec![Noise::white(1e-3)]];
         let fit = fit::refine(&study, model, &noises, &travels);
         let certainty = certainties(&study, &fit, &noises, &travels).remove(1);
         let plain = Certainty { richer: None, ..certainty.clone() };

@@ -31,7 +31,7 @@ impl Units {
         Self { unit, outside, angular }
     }
 
-    fn counts(&self, study: &Study<'_>, kind: Kind) -> bool {
+    pub(super) fn counts(&self, study: &Study<'_>, kind: Kind) -> bool {
         kind.outside() == self.outside && kind.angular(study.equations) == self.angular
     }
 

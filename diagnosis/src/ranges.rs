@@ -1,0 +1,90 @@
+//! Ranges: where a parameter that is not linear can be told from a recording at all.
+//!
+//! In: a term and what the axes did. Out: the least and the greatest value of its nonlinear parameter. Beyond it a wave is a
+//! slope, a decay is a step and a settling is a jump: the fit would follow whatever the noise does there and give it a name.
+
+use crate::candidates::Travel;
+use crate::noise::typical_step;
+use crate::study::Study;
+use crate::terms::Shape;
+
+/// The fewest cycles of a vibration in the time that was observed.
+pub(crate) const CYCLES: f64 = 6.0;
+/// The fewest periods of a cyclic error in the travel.
+const PERIODS: f64 = 1.6;
+/// A decay may last this share of the time from reversal to reversal.
+const DECAY: f64 = 0.3;
+/// A play may be taken up over this share of the travel.
+const WIND_UP: f64 = 0.8;
+/// A settling may last so many times as long as the recording.
+const SETTLING: f64 = 6.0;
+
+/// The range of the nonlinear parameter of a shape, in mm, rad, s or Hz.
+pub(crate) fn range(study: &Study<'_>, travels: &[Travel], shape: &Shape) -> (f64, f64) {
+    let step = shortest_step(study);
+    let observed = study.scenes.iter().map(|scene| scene.observed).fold(0.0, f64::max);
+    let travel = shape.axis().and_then(|axis| travels.get(axis)).copied().unwrap_or_default();
+    match shape {
+        Shape::Backlash { .. } => (travel.step.min(WIND_UP * travel.range()), WIND_UP * travel.range()),
+        Shape::ReversalSpike { .. } => (0.3 * step, DECAY * travel.between),
+        Shape::Cyclic { .. } => (2.0 * travel.step, travel.range() / PERIODS),
+        Shape::Vibration { .. } => (CYCLES / observed, 0.5 / step),
+        Shape::Drift { .. } => (5.0 * step, SETTLING * observed),
+        Shape::Growth { .. } => (step, SETTLING * observed),
+        _ => (f64::NEG_INFINITY, f64::INFINITY),
+    }
+}
+
+/// What a shape has become whose parameter has run to the end of its range: a spike that does not fade before the axis turns
+/// again is a step, and play that is taken up between two rows is taken up at once.
+pub(crate) fn limit(study: &Study<'_>, travels: &[Travel], shape: &Shape) -> Option<Shape> {
+    let (least, most) = range(study, travels, shape);
+    match *shape {
+        Shape::ReversalSpike { axis, decay } if decay >= AT_END * most => {
+            Some(Shape::Backlash { axis, wind_up: 0.0 })
+        }
+        Shape::Backlash { axis, wind_up } if wind_up > 0.0 && AT_END * wind_up <= least => {
+            Some(Shape::Backlash { axis, wind_up: 0.0 })
+        }
+        _ => None,
+    }
+}
+
+/// At the end of a range is what has come so near to it.
+const AT_END: f64 = 0.98;
+
+/// How near two waves may be to one another and still be told apart: one turn more or less over all that was observed.
+#[derive(Clone, Debug)]
+pub(crate) struct Resolution {
+    /// Hz.
+    frequency: f64,
+    /// Periods for each mm or rad of each axis.
+    along: Vec<f64>,
+}
+
+impl Resolution {
+    /// What the recordings resolve.
+    pub(crate) fn new(study: &Study<'_>, travels: &[Travel]) -> Self {
+        let observed = study.scenes.iter().map(|scene| scene.observed).fold(0.0, f64::max);
+        Self { frequency: 1.0 / observed, along: travels.iter().map(|travel| 1.0 / travel.range()).collect() }
+    }
+
+    /// Whether two shapes are waves that cannot be told apart.
+    pub(crate) fn blurs(&self, a: &Shape, b: &Shape) -> bool {
+        match (a, b) {
+            (Shape::Vibration { frequency: a }, Shape::Vibration { frequency: b }) => {
+                (a - b).abs() < self.frequency
+            }
+            (Shape::Cyclic { axis, period: a }, Shape::Cyclic { axis: other, period: b }) => {
+                axis == other && (1.0 / a - 1.0 / b).abs() < self.along[*axis]
+            }
+            _ => false,
+        }
+    }
+}
+
+/// The shortest typical step of time of all recordings.
+pub(crate) fn shortest_step(study: &Study<'_>) -> f64 {
+    let steps = study.scenes.iter().map(|scene| typical_step(&scene.recording.time));
+    steps.fold(f64::INFINITY, f64::min)
+}

@@ -1,0 +1,220 @@
+//! The unsteady: what is neither noise nor a term.
+//!
+//! In: a fitted model and what it leaves. Out: oscillations whose strength comes and goes, which a sum of steady vibrations
+//! would imitate line by line; and residuals that move smoothly, as no sensor's noise does: something of the machine that
+//! is still left out, with the term that comes nearest to it.
+
+use crate::appraisal::Appraisal;
+use crate::candidates::simplicity;
+use crate::design::{Design, Regressor};
+use crate::engine::Found;
+use crate::fit;
+use crate::model::{Effect, Fitted, Model, Place};
+use crate::noise::{self, Noise, typical_step};
+use crate::study::Study;
+use crate::sweep::Swept;
+use crate::terms::Shape;
+use crate::zeros;
+
+/// An oscillation of an error motion that is spread over a band of frequencies.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Band {
+    pub(crate) motion: usize,
+    /// Hz.
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    /// mm or rad of the motion.
+    pub(crate) rms: f64,
+}
+
+/// How many vibrations of one motion so near to one another are one that is not steady.
+const LINES: usize = 3;
+/// How near, as a share of the frequency.
+const NEAR: f64 = 0.02;
+
+/// Takes oscillations that are not steady out of a model.
+pub(crate) fn take_bands(model: &mut Model, always: usize) -> Vec<Band> {
+    let mut bands = Vec::new();
+    while let Some(members) = crowded(model, always) {
+        let motion = model[members[0]].effect.motion().unwrap_or_default();
+        let frequencies = members.iter().filter_map(|number| frequency(&model[*number].effect));
+        let (from, to) =
+            frequencies.fold((f64::INFINITY, 0.0), |(from, to), f| (f64::min(from, f), f64::max(to, f)));
+        let squares = members.iter().flat_map(|number| &model[*number].coefficients);
+        let rms = (squares.map(|value| value * value).sum::<f64>() / 2.0).sqrt();
+        bands.push(Band { motion, from, to, rms });
+        members.iter().rev().for_each(|number| drop(model.remove(*number)));
+    }
+    bands
+}
+
+fn frequency(effect: &Effect) -> Option<f64> {
+    match effect.shape {
+        Shape::Vibration { frequency } => Some(frequency),
+        _ => None,
+    }
+}
+
+/// Vibrations of one motion that crowd around one of them, in the order of the model.
+fn crowded(model: &Model, always: usize) -> Option<Vec<usize>> {
+    (always..model.len()).find_map(|center| {
+        let (motion, around) = (model[center].effect.motion(), frequency(&model[center].effect)?);
+        let near = |number: &usize| {
+            let effect = &model[*number].effect;
+            effect.motion() == motion
+                && frequency(effect).is_some_and(|frequency| (frequency / around - 1.0).abs() < NEAR)
+        };
+        let members: Vec<usize> = (always..model.len()).filter(near).collect();
+        (members.len() >= LINES).then_some(members)
+    })
+}
+
+/// A channel that moves smoothly.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moving {
+    pub(crate) scene: usize,
+    pub(crate) channel: usize,
+    /// mm or rad.
+    pub(crate) rms: f64,
+    /// The time over which it keeps its direction, s.
+    pub(crate) time: f64,
+}
+
+/// From lag to lag by this factor.
+const LAGS: f64 = 1.4;
+/// The fewest stretches of two lags in what was observed.
+const STRETCHES: f64 = 8.0;
+/// Over the lag it moves by this share of its variance, at least; a shorter way is nothing.
+const FAR: f64 = 0.05;
+/// The variance of second differences over that of first ones: 2 for a random walk, 3 for white noise, less for what keeps
+/// its direction.
+const KEEPS: f64 = 0.8;
+
+/// The channel whose residual moves smoothly, the largest of them.
+pub(crate) fn moving(study: &Study<'_>, appraisal: &Appraisal) -> Option<Moving> {
+    let mut found: Option<Moving> = None;
+    for (scene, known) in study.scenes.iter().enumerate() {
+        let step = typical_step(&known.recording.time);
+        for channel in 0..known.channels.len() {
+            let residual: Vec<f64> = appraisal.residuals[scene][channel]
+                .iter()
+                .zip(&appraisal.outliers[scene][channel])
+                .map(|(value, outlier)| if *outlier { f64::NAN } else { *value })
+                .collect();
+            if let Some((lag, rms)) = keeps_on(&known.recording.time, &residual, step)
+                && found.is_none_or(|found| found.rms < rms)
+            {
+                found = Some(Moving { scene, channel, rms, time: lag });
+            }
+        }
+    }
+    found
+}
+
+/// The shortest time over which a residual goes far and keeps its direction, and its standard deviation.
+fn keeps_on(time: &[f64], residual: &[f64], step: f64) -> Option<(f64, f64)> {
+    let known: Vec<f64> = residual.iter().copied().filter(|value| value.is_finite()).collect();
+    let count = crate::number(known.len());
+    let mean = known.iter().sum::<f64>() / f64::max(count, 1.0);
+    let variance = known.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / f64::max(count, 1.0);
+    let mut lag = 1;
+    while crate::number(2 * lag) * STRETCHES < count {
+        let far = differences(time, residual, step, lag).filter(|(first, _)| *first > FAR * variance);
+        if let Some((first, second)) = far {
+            return (second < KEEPS * first).then(|| (crate::number(lag) * step, variance.sqrt()));
+        }
+        lag = crate::index(crate::number(lag) * LAGS).unwrap_or(lag).max(lag + 1);
+    }
+    None
+}
+
+/// The mean squares of first and second differences over a lag, gaps left out.
+fn differences(time: &[f64], residual: &[f64], step: f64, lag: usize) -> Option<(f64, f64)> {
+    let longest = 1.5 * step * crate::number(lag);
+    let (mut first, mut second, mut count) = (0.0, 0.0, 0.0);
+    for row in 0..residual.len().saturating_sub(2 * lag) {
+        let [a, b, c] = [0, 1, 2].map(|number| residual[row + number * lag]);
+        let whole = time[row + lag] - time[row] < longest && time[row + 2 * lag] - time[row + lag] < longest;
+        if whole && a.is_finite() && b.is_finite() && c.is_finite() {
+            first += ((b - a).powi(2) + (c - b).powi(2)) / 2.0;
+            second += (c - 2.0 * b + a).powi(2);
+            count += 1.0;
+        }
+    }
+    (count > 0.0).then(|| (first / count, second / count))
+}
+
+/// Fits a model again to samples each for itself. As noise, what moves smoothly is a walk whose steps are known to a hair, and
+/// weighted so, steps would count and not how far the machine is off. Stretches over which it keeps its direction count once.
+pub(crate) fn fit_plainly(study: &Study<'_>, found: &mut Found, moving: &mut Moving) {
+    let noises = as_white(&found.appraisal);
+    found.fit = fit::refine(study, found.fit.model.clone(), &noises, &found.travels);
+    let step = typical_step(&study.scenes[moving.scene].recording.time);
+    let alike = (2.0 * moving.time / step).max(1.0);
+    found.fit.covariances.iter_mut().for_each(|covariance| *covariance *= alike);
+    found.appraisal = Appraisal::new(study, &found.fit.model);
+    let residuals = found.appraisal.residuals.iter().flatten();
+    for (noise, residual) in found.appraisal.noises.iter_mut().flatten().zip(residuals) {
+        *noise = apart(residual, moving.time);
+    }
+    moving.rms = found.appraisal.noises[moving.scene][moving.channel].size();
+}
+
+/// The noise of a channel as what is new from sample to sample, and what moves.
+fn apart(residual: &[f64], time_constant: f64) -> Noise {
+    let mut known: Vec<f64> = residual.iter().copied().filter(|value| value.is_finite()).collect();
+    zeros::center(&mut known);
+    let square = known.iter().map(|value| value * value).sum::<f64>() / crate::number(known.len().max(1));
+    let white = noise::from_differences(residual).min(square.sqrt());
+    Noise { white, wander: (square - white * white).max(0.0).sqrt(), time_constant }
+}
+
+fn as_white(appraisal: &Appraisal) -> Vec<Vec<Noise>> {
+    appraisal.noises.iter().map(|channels| channels.iter().map(Noise::as_white).collect()).collect()
+}
+
+/// A term that takes this share of what remains, alone, comes near to it.
+const COMES_NEAR: f64 = 0.4;
+
+/// A term that comes near to what remains.
+pub(crate) struct Suspect {
+    /// As least squares fits it, every sample for itself.
+    pub(crate) fitted: Fitted,
+    /// The share of the remaining squares that it takes.
+    pub(crate) share: f64,
+}
+
+/// The plain term that would take most of what remains, were the noise white.
+pub(crate) fn suspect(study: &Study<'_>, found: &Found) -> Option<Suspect> {
+    let model = &found.fit.model;
+    let noises = as_white(&found.appraisal);
+    let plain = |effect: &Effect| {
+        matches!(effect.place, Place::Motion { .. }) && effect.shape.columns() <= 2 && !effect.shape.is_wave()
+    };
+    let others: Vec<Effect> =
+        found.pool.iter().map(|kin| kin.effect.clone()).filter(|effect| plain(effect)).collect();
+    let mut regressors: Vec<Regressor> =
+        model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+    regressors.extend(others.iter().cloned().map(Regressor::of));
+    let design = Design::new(study, model, &noises, regressors);
+    let (products, samples) = design.fitted();
+    let mut swept = Swept::new(&products);
+    for column in (0..model.len()).flat_map(|number| design.columns(number)) {
+        swept.take(column);
+    }
+    let remaining = swept.remaining().max(f64::MIN_POSITIVE);
+    let share = |number: usize| {
+        let columns: Vec<usize> = design.columns(model.len() + number).collect();
+        swept.promise(&columns).0 / remaining
+    };
+    let worth = |number: usize| share(number) - simplicity(study, &others[number]) / samples.max(1.0);
+    let best = (0..others.len()).max_by(|a, b| worth(*a).total_cmp(&worth(*b)))?;
+    let share = share(best);
+    let columns: Vec<usize> = design.columns(model.len() + best).collect();
+    for column in &columns {
+        swept.take(*column);
+    }
+    let coefficients = columns.iter().map(|column| swept.coefficient(*column)).collect();
+    let fitted = Fitted { effect: others[best].clone(), coefficients };
+    (share > COMES_NEAR).then_some(Suspect { fitted, share })
+}

@@ -63,7 +63,7 @@
 //!
 //! let exx = [
 //!     Term::Polynomial { input: Input::Axis(0), coefficients: &[0.0, 70e-6] },
-//!     Term::Backlash { axis: 0, lost_motion: 0.010, wind_up: 0.0 },
+//!     Term::Backlash { axis: 0, lost_motion: 0.010, wind_up: 0.0, ramp: 0.0 },
 //! ];
 //! let motions = [ErrorMotion { terms: &exx }];
 //! let mut states = [TermState::default(); 2];

@@ -6,3 +6,4 @@
 
 mod bench;
 mod moore;
+mod stlbb;

@@ -6,4 +6,5 @@
 
 mod bench;
 mod moore;
+mod postech;
 mod stlbb;

@@ -5,6 +5,7 @@
 //! simulation nor a page is judged by itself.
 
 mod bench;
+mod excello;
 mod moore;
 mod postech;
 mod stlbb;

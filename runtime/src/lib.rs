@@ -16,8 +16,8 @@
 //! # One sum
 //!
 //! The error is `E = sum over j of L_j e_j`. The lever arms L_j are the [`Kinematics`]; the error motions e_j are sums of
-//! terms. A term that remembers (a play with wind-up, a filtered temperature) keeps its memory in a [`TermState`], which is
-//! advanced once a cycle and stands still while the inverse searches.
+//! terms. A term that remembers (a play with wind-up, a filtered temperature, the ramp of a reversal) keeps its memory in a
+//! [`TermState`], which is advanced once a cycle and stands still while the inverse searches.
 //!
 //! # The inverse
 //!

@@ -72,8 +72,7 @@ impl Calibrated {
         let motions = self.equations.motions.iter().enumerate();
         motions
             .map(|(number, motion)| {
-                let terms = self.calibration.terms(number).iter();
-                let terms = terms.filter_map(|term| match term.value.runtime() {
+                let terms = self.calibration.runtime(number).filter_map(|term| match term {
                     Ok(term) => Some(term),
                     Err(reason) => {
                         left_out(format!("warning: left out of {}: {reason}", motion.name));

@@ -388,6 +388,23 @@ fn the_output_is_no_input_under_the_same_names() {
     assert!(twice.err.contains("`error_x`") && twice.err.contains("`x_comp`"), "{}", twice.err);
 }
 
+/// The published way of a reversal: the correction is spread over time, what is told of the machine is not.
+#[test]
+fn a_ramp_spreads_the_correction_of_a_reversal() {
+    let text = BACKLASH.replace("lost_motion: 10 um", "lost_motion: 10 um, ramp: 100 ms");
+    let ramped = file("ramped", "ramp.yaml", &text);
+    let run = abbe(&["compensate", &ramped], "x,y,z\n1,0,0\n");
+    assert!(run.status == 2 && run.err.contains("a `ramp` of the calibration needs"), "{}", run.err);
+    let rows = "t,x,y,z\n0,1,0,0\n0.02,2,0,0\n0.04,1,0,0\n0.07,1,0,0\n0.2,1,0,0\n";
+    let out = abbe(&["compensate", &ramped], rows).out;
+    let (error, command) = (column(&out, "error_x"), column(&out, "x_comp"));
+    let expected = [(-0.005, 1.005), (-0.005, 2.005), (0.005, 1.003), (0.005, 1.0), (0.005, 0.995)];
+    assert_eq!(error.len(), expected.len(), "{out}");
+    for ((error, command), expected) in error.iter().zip(&command).zip(expected) {
+        assert!((error - expected.0).abs() < 1e-9 && (command - expected.1).abs() < 1e-9, "{out}");
+    }
+}
+
 #[test]
 fn an_axis_cannot_move_in_no_time_where_its_speed_matters() {
     let text = BACKLASH.replace("backlash: {lost_motion: 10 um}", "lag: {gain: 20 1/s}");

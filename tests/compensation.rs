@@ -59,7 +59,7 @@ impl Numbers {
             vec![
                 Term::Polynomial { input: Input::Axis(axis), coefficients: &self.polynomials[number] },
                 Term::Table { axis, table: Table::at(&self.nodes, values).unwrap() },
-                Term::Backlash { axis, lost_motion: *constant, wind_up: 0.0 },
+                Term::Backlash { axis, lost_motion: *constant, wind_up: 0.0, ramp: 0.0 },
                 Term::Cyclic { axis, period: 10.0, amplitude: constant / 10.0, phase: 0.3 },
                 Term::Expansion { axis, sensor: 0, coefficient: slope / 10.0, reference: 20.0 },
                 Term::Growth { sensor: 0, coefficient: constant / 10.0, reference: 20.0, time_constant: 0.0 },

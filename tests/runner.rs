@@ -16,6 +16,7 @@ mod compensation;
 mod concealed;
 mod counts;
 mod diagnose;
+mod experiments;
 mod generated;
 mod laws;
 mod machine_files;

@@ -51,6 +51,8 @@ pub use sensors::{Sensor, SensorKind, SensorReadings, Sensors};
 pub use term::{CalibratedTerm, Curve, CurveNodes, CurveValues, NotCompensable, SeriesInput, TERM_NAMES};
 pub use write::write;
 
+use abbe_runtime::Term;
+
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::{Span, Spanned};
 
@@ -89,11 +91,32 @@ pub struct CalibratedMotion {
     pub span: Span,
     /// Its terms, each at the place of its name, or of its value where that stands alone.
     pub terms: Vec<Spanned<CalibratedTerm>>,
+    /// The ramps over which the correction of reversals is spread, for those of its terms that have one.
+    pub ramps: Vec<Ramp>,
+}
+
+/// How a correction follows a reversal: gradually, since no drive makes its move at once.
+///
+/// It stands beside the term and not in it, since it is a setting of the compensation: what the machine does, and so what
+/// a simulation or a diagnosis makes of the term, is the same with any ramp.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Ramp {
+    /// The `backlash` that it belongs to: its place among the terms of the motion.
+    pub term: usize,
+    /// The time over which the correction of a whole reversal is spread, s, greater than zero.
+    pub time: f64,
 }
 
 impl PartialEq for CalibratedMotion {
     fn eq(&self, other: &Self) -> bool {
-        (self.motion, &self.terms) == (other.motion, &other.terms)
+        (self.motion, &self.terms, &self.ramps) == (other.motion, &other.terms, &other.ramps)
+    }
+}
+
+impl CalibratedMotion {
+    /// The ramp of the term at this place, s; 0 where its correction is made at once.
+    pub fn ramp(&self, place: usize) -> f64 {
+        self.ramps.iter().find(|ramp| ramp.term == place).map_or(0.0, |ramp| ramp.time)
     }
 }
 
@@ -102,6 +125,20 @@ impl Calibration {
     pub fn terms(&self, motion: usize) -> &[Spanned<CalibratedTerm>] {
         let listed = self.motions.iter().find(|listed| listed.motion == motion);
         listed.map_or(&[], |listed| &listed.terms)
+    }
+
+    /// The terms of an error motion as the runtime compensates them, their ramps included; for each that it cannot, why.
+    pub fn runtime(&self, motion: usize) -> impl Iterator<Item = Result<Term<'_>, NotCompensable>> {
+        let listed = self.motions.iter().filter(move |listed| listed.motion == motion);
+        listed.flat_map(|listed| {
+            listed.terms.iter().enumerate().map(|(place, term)| {
+                let mut term = term.value.runtime()?;
+                if let Term::Backlash { ramp, .. } = &mut term {
+                    *ramp = listed.ramp(place);
+                }
+                Ok(term)
+            })
+        })
     }
 
     /// Reports every term that no controller can compensate in real time, at its name (E0425).

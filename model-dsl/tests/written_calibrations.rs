@@ -305,6 +305,7 @@ errors:
     - backlash: {lost_motion: 0.01 mm}
     - backlash: {lost_motion: 0.002 mm, wind_up: 0.5 mm, axis: Y}
     - expansion: {sensor: body, coefficient: 1.15e-5 1/K, reference: 20 degC}
+    - backlash: {lost_motion: 0.002 mm, wind_up: 0.5 mm, axis: Y, ramp: 0.05 s}
     - lag: {gain: 16.28 1/s}
     - lag: {gain: 2 rad/mm/s, axis: C}
   EBX:

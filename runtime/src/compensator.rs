@@ -87,7 +87,8 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
     ///
     /// The command solves `J (c - target) + E(c) = 0` as far as the axes reach, J being the directions of the axes, by
     /// `c <- target - J^+ E(c)` from `c = target` on. Direction, velocity, temperature and memories are those of the sample
-    /// throughout. What no axis reaches is left in [`Outcome::remaining`].
+    /// throughout. What no axis reaches is left in [`Outcome::remaining`], and so is what the ramp of a backlash leaves for
+    /// later cycles: E is then [`Term::corrected`](crate::Term::corrected).
     ///
     /// # Errors
     /// Every [`Refusal`] leaves the position of the sample in `out`, and nothing of a correction.
@@ -153,10 +154,24 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
 
     /// The error in a state of the machine; memories are read only.
     fn error_at(&mut self, sample: &Sample<'_>) -> [f64; 3] {
+        self.sum_at(sample, |motion, states| motion.value(sample, states))
+    }
+
+    /// The part of the error in a state of the machine that is corrected in this cycle; memories are read only.
+    fn corrected_at(&mut self, sample: &Sample<'_>) -> [f64; 3] {
+        self.sum_at(sample, |motion, states| motion.corrected(sample, states))
+    }
+
+    /// The sum of lever arms times these values of the error motions.
+    fn sum_at(
+        &mut self,
+        sample: &Sample<'_>,
+        of: impl Fn(&ErrorMotion<'_>, &[TermState]) -> f64,
+    ) -> [f64; 3] {
         let mut rest = &*self.states;
         for (motion, value) in self.motions.iter().zip(self.work.motions.iter_mut()) {
             let (states, others) = rest.split_at_checked(motion.terms.len()).unwrap_or_default();
-            *value = motion.value(sample, states);
+            *value = of(motion, states);
             rest = others;
         }
         let travel = if sample.travel.is_empty() {
@@ -177,21 +192,23 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
             return Err(Refusal::NotFinite);
         }
         let reach = Reach::new(self.work.directions);
-        let (pull, remaining, iterations) = self.iterate(sample, error, &reach, out)?;
+        let start = if self.needs.ramp { self.corrected_at(sample) } else { error };
+        let (pull, remaining, iterations) = self.iterate(sample, start, &reach, out)?;
         self.check_limit(spread(self.work.directions, pull))?;
         Ok(Outcome { error, remaining, iterations })
     }
 
-    /// The fixed point: returns `A^+ E` there, the error that it leaves, and the steps taken.
+    /// The fixed point, from the corrected error at the target on: returns `A^+ E` there, the error that it leaves, and
+    /// the steps taken.
     fn iterate(
         &mut self,
         sample: &Sample<'_>,
-        error: [f64; 3],
+        start: [f64; 3],
         reach: &Reach,
         out: &mut [f64],
     ) -> Result<([f64; 3], [f64; 3], u32), Refusal> {
         let mut distance = f64::INFINITY;
-        let mut here = error;
+        let mut here = start;
         let mut pull = [0.0; 3];
         for iterations in 1..=self.convergence.iterations {
             let next = reach.apply(here);
@@ -200,12 +217,15 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
             self.correct(sample, pull, out);
             if distance <= self.convergence.tolerance {
                 let made = tip(self.work.directions, pull);
+                if self.needs.ramp {
+                    here = self.error_at(&Sample { position: out, ..*sample });
+                }
                 return Ok((pull, add_scaled(here, -1.0, made), iterations));
             }
             if !distance.is_finite() {
                 return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
             }
-            here = self.error_at(&Sample { position: out, ..*sample });
+            here = self.corrected_at(&Sample { position: out, ..*sample });
         }
         Err(Refusal::NotConverging { iterations: self.convergence.iterations, distance })
     }

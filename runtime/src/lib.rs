@@ -16,8 +16,8 @@
 //! # One sum
 //!
 //! The error is `E = sum over j of L_j e_j`. The lever arms L_j are the [`Kinematics`]; the error motions e_j are sums of
-//! terms. A term that remembers (a play with wind-up, a filtered temperature) keeps its memory in a [`TermState`], which is
-//! advanced once a cycle and stands still while the inverse searches.
+//! terms. A term that remembers (a play with wind-up, a filtered temperature, the ramp of a reversal) keeps its memory in a
+//! [`TermState`], which is advanced once a cycle and stands still while the inverse searches.
 //!
 //! # The inverse
 //!
@@ -63,7 +63,7 @@
 //!
 //! let exx = [
 //!     Term::Polynomial { input: Input::Axis(0), coefficients: &[0.0, 70e-6] },
-//!     Term::Backlash { axis: 0, lost_motion: 0.010, wind_up: 0.0 },
+//!     Term::Backlash { axis: 0, lost_motion: 0.010, wind_up: 0.0, ramp: 0.0 },
 //! ];
 //! let motions = [ErrorMotion { terms: &exx }];
 //! let mut states = [TermState::default(); 2];

@@ -16,11 +16,21 @@ impl ErrorMotion<'_> {
     /// The value in a state of the machine, in mm or rad; `states` holds one state a term, or the value is NaN.
     #[must_use]
     pub fn value(&self, sample: &Sample<'_>, states: &[TermState]) -> f64 {
+        self.sum(states, |term, state| term.value(sample, state))
+    }
+
+    /// The part of the value that is corrected in this cycle, see [`Term::corrected`]; in mm or rad.
+    #[must_use]
+    pub fn corrected(&self, sample: &Sample<'_>, states: &[TermState]) -> f64 {
+        self.sum(states, |term, state| term.corrected(sample, state))
+    }
+
+    /// The sum over the terms; NaN where there is not one state a term.
+    fn sum(&self, states: &[TermState], of: impl Fn(&Term<'_>, &TermState) -> f64) -> f64 {
         if states.len() != self.terms.len() {
             return f64::NAN;
         }
-        let terms = self.terms.iter().zip(states);
-        terms.fold(0.0, |sum, (term, state)| sum + term.value(sample, state))
+        self.terms.iter().zip(states).fold(0.0, |sum, (term, state)| sum + of(term, state))
     }
 
     /// Takes the memory of every term over to the cycle of this sample: once a cycle, before the value is asked.

@@ -4,11 +4,15 @@
 //! error motion. It exists because an error motion is the sum of such pieces and nothing else.
 
 mod check;
+mod memory;
 
 use core::f64::consts::TAU;
 
-use crate::math::{exp_m1, sin};
-use crate::{Direction, Sample, Table};
+use self::memory::{advance_filter, advance_play, follow, followed, take_up};
+use crate::math::sin;
+use crate::{Sample, Table};
+
+pub use self::memory::TermState;
 
 /// What a polynomial reads.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -59,6 +63,9 @@ pub enum Term<'a> {
         lost_motion: f64,
         /// Wind-up w, in mm or rad: the travel after a reversal over which the play is taken up; 0: at once.
         wind_up: f64,
+        /// Ramp, in s: the time over which the correction of a whole reversal is spread; 0: it is made at once. The play
+        /// itself knows nothing of it: see [`Term::corrected`].
+        ramp: f64,
     },
     /// `A sin(2 pi q / P + f)`: pitch error of a screw, interpolation error of an encoder.
     Cyclic {
@@ -102,17 +109,6 @@ pub enum Term<'a> {
     },
 }
 
-/// What a term remembers from cycle to cycle: the take-up of a play, the filtered temperature of a growth.
-///
-/// Every term has one, in the order of the terms; most never touch it. The default is that of a machine just started.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct TermState {
-    /// Take-up u within [-1, 1], or filtered temperature in degC; none before the first cycle.
-    memory: Option<f64>,
-    /// Position of the axis in the cycle before, in mm or rad.
-    last: f64,
-}
-
 impl Term<'_> {
     /// The value of the term in a state of the machine, in mm or rad; NaN where the sample lacks what it reads.
     ///
@@ -130,7 +126,7 @@ impl Term<'_> {
             Self::Table { axis, table } => sample
                 .direction(axis)
                 .map_or(f64::NAN, |direction| table.value(sample.position(axis), direction)),
-            Self::Backlash { axis, lost_motion, wind_up } => {
+            Self::Backlash { axis, lost_motion, wind_up, .. } => {
                 -0.5 * lost_motion * take_up(sample, axis, wind_up, state)
             }
             Self::Cyclic { axis, period, amplitude, phase } => {
@@ -148,13 +144,33 @@ impl Term<'_> {
         }
     }
 
+    /// The part of the value that is corrected in this cycle, in mm or rad: all of it, but for a backlash with a ramp.
+    ///
+    /// A drive cannot make the move that a reversal asks for at once: told to, it overshoots. Behind a ramp r the
+    /// correction follows the take-up u by no more than `2 dt / r` a cycle, as CRADA Y1293-0207 spreads its
+    /// compensation move over steps, and ends exactly on it; a reversal on the way turns it back from where it is.
+    #[must_use]
+    pub fn corrected(&self, sample: &Sample<'_>, state: &TermState) -> f64 {
+        match *self {
+            Self::Backlash { axis, lost_motion, wind_up, ramp } if ramp > 0.0 => {
+                -0.5 * lost_motion * followed(state, take_up(sample, axis, wind_up, state))
+            }
+            _ => self.value(sample, state),
+        }
+    }
+
     /// Takes the term's memory over to the cycle of this sample: once a cycle, before its value is asked.
     ///
     /// A sample that lacks what the term reads, or holds NaN there, leaves the memory as it was.
     pub fn advance(&self, sample: &Sample<'_>, state: &mut TermState) {
         match *self {
-            Self::Backlash { axis, wind_up, .. } if wind_up > 0.0 => {
-                advance_play(sample, axis, wind_up, state);
+            Self::Backlash { axis, wind_up, ramp, .. } => {
+                if wind_up > 0.0 {
+                    advance_play(sample, axis, wind_up, state);
+                }
+                if ramp > 0.0 {
+                    follow(take_up(sample, axis, wind_up, state), sample.time_step, ramp, state);
+                }
             }
             Self::Growth { sensor, time_constant, .. } if time_constant > 0.0 => {
                 advance_filter(sample, sensor, time_constant, state);
@@ -175,34 +191,4 @@ fn read(input: Input, sample: &Sample<'_>) -> f64 {
 /// The polynomial with the given coefficients from the constant upwards; NaN at NaN, even where it has no coefficient.
 fn horner(coefficients: &[f64], at: f64) -> f64 {
     coefficients.iter().rev().fold(0.0 * at, |sum, coefficient| sum * at + coefficient)
-}
-
-/// The take-up of a play: the direction itself, or where there is a wind-up the u of the play operator.
-fn take_up(sample: &Sample<'_>, axis: usize, wind_up: f64, state: &TermState) -> f64 {
-    let direction = sample.direction(axis).map_or(f64::NAN, Direction::sign);
-    if wind_up > 0.0 { state.memory.unwrap_or(direction) } else { direction }
-}
-
-/// The play operator: u follows the position by 2 dq / w and stops at -1 and +1. It starts taken up in the direction
-/// of the first sample.
-fn advance_play(sample: &Sample<'_>, axis: usize, wind_up: f64, state: &mut TermState) {
-    let position = sample.position(axis);
-    let Some(direction) = sample.direction(axis) else { return };
-    if !position.is_finite() {
-        return;
-    }
-    let moved = state.memory.map(|u| u + 2.0 * (position - state.last) / wind_up);
-    state.memory = Some(moved.unwrap_or(direction.sign()).clamp(-1.0, 1.0));
-    state.last = position;
-}
-
-/// The filter T* += (T - T*) (1 - exp(-dt / tau)): exact for a temperature that holds through the step.
-fn advance_filter(sample: &Sample<'_>, sensor: usize, time_constant: f64, state: &mut TermState) {
-    let now = sample.temperature(sensor);
-    if !now.is_finite() || !sample.time_step.is_finite() {
-        return;
-    }
-    let before = state.memory.unwrap_or(now);
-    let share = -exp_m1(-sample.time_step.max(0.0) / time_constant);
-    state.memory = Some(before + (now - before) * share);
 }

@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use abbe_runtime::{Compensator, ErrorMotion, Limits, Outcome, TermState, Work, states_needed};
 use csv::ByteRecord;
-use model_dsl::calibration::CalibratedTerm;
+use model_dsl::calibration::{CalibratedMotion, CalibratedTerm};
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
 
@@ -265,16 +265,21 @@ fn read(reader: &mut Reader, row: &mut ByteRecord) -> Result<bool, Failure> {
 fn wanted(calibrated: &Calibrated) -> Wanted<'_> {
     let sensors =
         calibrated.calibration.sensors.inputs().map(|(_, sensor)| sensor.name.value.as_str()).collect();
-    let terms = calibrated.calibration.motions.iter().flat_map(|motion| &motion.terms);
-    let time = terms.map(|term| &term.value).find(|term| {
-        matches!(term, CalibratedTerm::Lag { .. })
-            || matches!(term, CalibratedTerm::Growth { time_constant, .. } if *time_constant > 0.0)
+    let mut motions = calibrated.calibration.motions.iter();
+    Wanted { equations: &calibrated.equations, sensors, time: motions.find_map(timed) }
+}
+
+/// What of an error motion depends on the time between rows, in words.
+fn timed(motion: &CalibratedMotion) -> Option<String> {
+    let terms = motion.terms.iter().enumerate();
+    let mut needing = terms.filter_map(|(place, term)| match &term.value {
+        CalibratedTerm::Growth { time_constant, .. } if *time_constant <= 0.0 => None,
+        term @ (CalibratedTerm::Lag { .. } | CalibratedTerm::Growth { .. }) => {
+            Some(format!("the term `{}` of the calibration", term.name()))
+        }
+        _ => (motion.ramp(place) > 0.0).then(|| "a `ramp` of the calibration".to_owned()),
     });
-    Wanted {
-        equations: &calibrated.equations,
-        sensors,
-        time: time.map(|term| format!("the term `{}` of the calibration", term.name())),
-    }
+    needing.next()
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ const Z: usize = 1;
 /// Positioning of X: 12 um/m of scale and 8 um of lost motion.
 const EXX: [Term<'static>; 2] = [
     Term::Polynomial { input: Input::Axis(X), coefficients: &[0.0, 12e-6] },
-    Term::Backlash { axis: X, lost_motion: 0.008, wind_up: 0.0 },
+    Term::Backlash { axis: X, lost_motion: 0.008, wind_up: 0.0, ramp: 0.0 },
 ];
 /// X turned against Z by 30 urad.
 const EB0X: [Term<'static>; 1] = [Term::Constant { value: 30e-6 }];

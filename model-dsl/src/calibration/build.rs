@@ -45,7 +45,12 @@ impl Calibration {
         let term = unplaced(term);
         match self.motions.iter_mut().find(|listed| listed.motion == motion) {
             Some(listed) => listed.terms.push(term),
-            None => self.motions.push(CalibratedMotion { motion, span: Span::default(), terms: vec![term] }),
+            None => self.motions.push(CalibratedMotion {
+                motion,
+                span: Span::default(),
+                terms: vec![term],
+                ramps: Vec::new(),
+            }),
         }
     }
 }

@@ -3,9 +3,9 @@
 use super::fields::{Fields, keys, word};
 use super::names::MachineNames;
 use super::parameters::Context;
-use super::read_term::{read_item, read_plain};
+use super::read_term::{Item, read_item, read_plain};
 use super::sensors::{Sensors, read_derived};
-use super::{CalibratedMotion, Calibration, Limits};
+use super::{CalibratedMotion, Calibration, Limits, Ramp};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::quantity::{self, Dimension};
 use crate::source::{Span, Spanned};
@@ -182,8 +182,11 @@ fn read_motions(
         if let Some(first) = places.insert(motion, name.span) {
             diagnostics.push(repeated_motion(motion, name, first, names));
         }
-        let terms = read_terms(motion, value, names, sensors, diagnostics);
-        motions.push(CalibratedMotion { motion, span: name.span, terms });
+        let items = read_terms(motion, value, names, sensors, diagnostics);
+        let ramped = items.iter().enumerate().filter(|(_, item)| item.ramp > 0.0);
+        let ramps = ramped.map(|(term, item)| Ramp { term, time: item.ramp }).collect();
+        let terms = items.into_iter().map(|item| item.term).collect();
+        motions.push(CalibratedMotion { motion, span: name.span, terms, ramps });
     }
     motions
 }
@@ -220,7 +223,7 @@ fn read_terms(
     names: &MachineNames,
     sensors: &mut Sensors,
     diagnostics: &mut Diagnostics,
-) -> Vec<Spanned<super::CalibratedTerm>> {
+) -> Vec<Item> {
     let Some(motion) = names.motions.get(motion) else {
         return Vec::new();
     };

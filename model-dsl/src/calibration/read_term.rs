@@ -11,8 +11,16 @@ use crate::source::Spanned;
 use crate::suggest::nearest;
 use crate::yaml::Node;
 
+/// An item of a motion's list.
+pub(super) struct Item {
+    /// The term, at the place of its name.
+    pub(super) term: Spanned<CalibratedTerm>,
+    /// The time over which its correction follows a reversal, s; 0: at once.
+    pub(super) ramp: f64,
+}
+
 /// Reads an item of a motion's list: a mapping of exactly one term's name to its parameters.
-pub(super) fn read_item(item: &Node, context: &mut Context<'_>) -> Option<Spanned<CalibratedTerm>> {
+pub(super) fn read_item(item: &Node, context: &mut Context<'_>) -> Option<Item> {
     let motion = &context.motion.name;
     let (name, parameters) = match item.entries() {
         Some([(name, parameters)]) => (name, parameters),
@@ -30,11 +38,16 @@ pub(super) fn read_item(item: &Node, context: &mut Context<'_>) -> Option<Spanne
             return None;
         }
     };
-    let term = read_named(name, parameters, context)?;
-    Some(Spanned::new(term, name.span))
+    let (term, ramp) = read_named(name, parameters, context)?;
+    Some(Item { term: Spanned::new(term, name.span), ramp })
 }
 
-fn read_named(name: &Spanned<String>, node: &Node, context: &mut Context<'_>) -> Option<CalibratedTerm> {
+/// The term, and the ramp of its correction in s.
+fn read_named(
+    name: &Spanned<String>,
+    node: &Node,
+    context: &mut Context<'_>,
+) -> Option<(CalibratedTerm, f64)> {
     let Some(known) = parameters_of(&name.value) else {
         context.diagnostics.push(unknown_term(name));
         return None;
@@ -43,7 +56,8 @@ fn read_named(name: &Spanned<String>, node: &Node, context: &mut Context<'_>) ->
     let wording = parameters(&what);
     let fields = Fields::open(node, name.span, wording, known, context.diagnostics)?;
     let mut term = Parameters { fields, what: &what, context };
-    match name.value.as_str() {
+    let ramp = if known.contains(&"ramp") { term.not_negative("ramp", Dimension::TIME) } else { Some(0.0) };
+    let read = match name.value.as_str() {
         "constant" => read_constant(&mut term),
         "polynomial" => read_polynomial(&mut term),
         "table" => read_table(&mut term),
@@ -59,7 +73,8 @@ fn read_named(name: &Spanned<String>, node: &Node, context: &mut Context<'_>) ->
         "coupling" => read_coupling(&mut term),
         "compliance" => read_compliance(&mut term),
         _ => None,
-    }
+    };
+    Some((read?, ramp?))
 }
 
 /// The parameters that a term may have, the one that is its own first; nothing for an unknown term.
@@ -68,7 +83,7 @@ fn parameters_of(term: &str) -> Option<&'static [&'static str]> {
         "constant" => &["value"],
         "polynomial" => &["axis", "sensor", "per", "unit", "coefficients"],
         "table" => &["axis", "start", "step", "at", "per", "unit", "values", "forward", "reverse"],
-        "backlash" => &["lost_motion", "wind_up", "axis"],
+        "backlash" => &["lost_motion", "wind_up", "ramp", "axis"],
         "reversal-spike" => &["height", "decay", "axis"],
         "cyclic" => &["period", "amplitude", "phase", "axis"],
         "lag" | "acceleration" => &["gain", "axis"],
@@ -99,10 +114,10 @@ fn read_constant(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
 }
 
 /// Reads a motion's value that stands alone, without a list: one constant term.
-pub(super) fn read_plain(node: &Node, context: &mut Context<'_>) -> Option<Spanned<CalibratedTerm>> {
+pub(super) fn read_plain(node: &Node, context: &mut Context<'_>) -> Option<Item> {
     let (kind, name) = (context.motion.dimension(), &context.motion.name);
     let value = quantity::read(node, kind, name, context.diagnostics)?;
-    Some(value.map(|value| CalibratedTerm::Constant { value }))
+    Some(Item { term: value.map(|value| CalibratedTerm::Constant { value }), ramp: 0.0 })
 }
 
 fn read_backlash(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {

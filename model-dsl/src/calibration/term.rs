@@ -265,7 +265,8 @@ impl CalibratedTerm {
         }
     }
 
-    /// The term as the runtime evaluates it, with the same indices of axes and sensors.
+    /// The term as the runtime evaluates it, with the same indices of axes and sensors; of a backlash, the physics without
+    /// a ramp, which [`Calibration::runtime`](super::Calibration::runtime) knows.
     ///
     /// # Errors
     ///
@@ -281,7 +282,9 @@ impl CalibratedTerm {
                 let table = curve.runtime().map_err(NotCompensable::Table)?;
                 Term::Table { axis: *axis, table }
             }
-            &Self::Backlash { axis, lost_motion, wind_up } => Term::Backlash { axis, lost_motion, wind_up },
+            &Self::Backlash { axis, lost_motion, wind_up } => {
+                Term::Backlash { axis, lost_motion, wind_up, ramp: 0.0 }
+            }
             &Self::Cyclic { axis, period, amplitude, phase } => {
                 Term::Cyclic { axis, period, amplitude, phase }
             }

@@ -2,7 +2,7 @@
 
 use super::names::MachineNames;
 use super::sensors::{SensorKind, Sensors};
-use super::spelling::{braces, brackets, quantity, sentence, term, word};
+use super::spelling::{Item, braces, brackets, quantity, sentence, term, word};
 use super::term::CalibratedTerm;
 use super::write_term::{Context, UNKNOWN, parameters};
 use super::{CalibratedMotion, Calibration};
@@ -70,7 +70,14 @@ fn motion(listed: &CalibratedMotion, calibration: &Calibration, names: &MachineN
             format!("  {name}: {}\n", quantity(value, context.motion_unit()))
         }
         terms => {
-            let lines = terms.iter().map(|one| term(one.value.name(), &parameters(&one.value, &context)));
+            let lines = terms.iter().enumerate().map(|(place, one)| {
+                let mut parameters = parameters(&one.value, &context);
+                let ramp = listed.ramp(place);
+                if ramp > 0.0 {
+                    parameters.push(("ramp", Item::One(quantity(ramp, "s"))));
+                }
+                term(one.value.name(), &parameters)
+            });
             format!("  {name}:\n{}", lines.collect::<String>())
         }
     }

@@ -44,7 +44,8 @@ pub struct Work<'a> {
 pub struct Outcome {
     /// Error of the tool tip relative to the part at the position of the sample, without compensation: mm, part frame.
     pub error: [f64; 3],
-    /// Error that stays at the position written, since no axis can correct it: mm, part frame. All of it when switched off.
+    /// Error that stays at the position written, since no axis can correct it or a ramp leaves it for later cycles: mm,
+    /// part frame. All of it when switched off.
     pub remaining: [f64; 3],
     /// Steps that the search took; 0 when switched off.
     pub iterations: u32,

@@ -13,6 +13,8 @@ pub(super) struct Needs {
     pub(super) sensors: usize,
     /// Whether a term reads velocities.
     pub(super) velocity: bool,
+    /// Whether the correction of a term is spread over time.
+    pub(super) ramp: bool,
 }
 
 /// The number of term states that a set of error motions needs: one for each term.
@@ -67,6 +69,7 @@ fn check_terms(motions: &[ErrorMotion<'_>], axes: usize) -> Result<Needs, SetupE
             let sensors = given.sensor().map_or(0, |sensor| sensor.saturating_add(1));
             needs.sensors = needs.sensors.max(sensors);
             needs.velocity |= matches!(given, Term::Lag { .. });
+            needs.ramp |= given.is_ramped();
         }
     }
     Ok(needs)

@@ -32,6 +32,11 @@ impl Term<'_> {
         }
     }
 
+    /// Whether the correction of the term is spread over time.
+    pub(crate) fn is_ramped(&self) -> bool {
+        matches!(*self, Self::Backlash { ramp, .. } if ramp > 0.0)
+    }
+
     /// The name of the first parameter that is not finite or out of its range.
     pub(crate) fn bad_parameter(&self) -> Option<&'static str> {
         let checks = match *self {
@@ -41,9 +46,11 @@ impl Term<'_> {
                 [("coefficients", finite), FINE, FINE]
             }
             Self::Table { .. } => [FINE, FINE, FINE],
-            Self::Backlash { lost_motion, wind_up, .. } => {
-                [("lost_motion", lost_motion.is_finite()), ("wind_up", not_negative(wind_up)), FINE]
-            }
+            Self::Backlash { lost_motion, wind_up, ramp, .. } => [
+                ("lost_motion", lost_motion.is_finite()),
+                ("wind_up", not_negative(wind_up)),
+                ("ramp", not_negative(ramp)),
+            ],
             Self::Cyclic { period, amplitude, phase, .. } => [
                 ("period", divisor(period)),
                 ("amplitude", amplitude.is_finite()),

@@ -160,7 +160,7 @@ fn switched_off_it_passes_positions_and_still_reports() {
 
 #[test]
 fn switched_off_it_still_follows_the_memories() {
-    let play = [Term::Backlash { axis: 0, lost_motion: 0.02, wind_up: 4.0 }];
+    let play = [Term::Backlash { axis: 0, lost_motion: 0.02, wind_up: 4.0, ramp: 0.0 }];
     let motions = [ErrorMotion { terms: &play }];
     let (error, _) = with(&Slide, &motions, |c| {
         c.enabled = false;
@@ -205,7 +205,7 @@ fn a_refused_sample_leaves_the_memories_as_they_were() {
 
 #[test]
 fn a_restart_forgets() {
-    let play = [Term::Backlash { axis: 0, lost_motion: 2.0, wind_up: 4.0 }];
+    let play = [Term::Backlash { axis: 0, lost_motion: 2.0, wind_up: 4.0, ramp: 0.0 }];
     let motions = [ErrorMotion { terms: &play }];
     let (errors, _) = with(&Slide, &motions, |c| {
         c.error(&at(&[0.0])).unwrap();
@@ -227,7 +227,7 @@ fn error_and_compensate_report_the_same_error() {
 
 #[test]
 fn the_direction_of_the_sample_holds_at_every_step() {
-    let play = [Term::Backlash { axis: 0, lost_motion: 0.01, wind_up: 0.0 }];
+    let play = [Term::Backlash { axis: 0, lost_motion: 0.01, wind_up: 0.0, ramp: 0.0 }];
     let (_, forward) = run(&play, &at(&[5.0]), |_| {});
     let (_, back) = run(&play, &Sample { direction: &[Direction::Negative], ..at(&[5.0]) }, |_| {});
     assert_eq!((forward, back), (5.005, 4.995));
@@ -307,7 +307,7 @@ fn bad_terms_are_named_by_motion_and_place() {
     };
     let parameter = |parameter| Err(SetupError::Parameter { motion: 0, term: 1, parameter });
     let cyclic = |period, amplitude, phase| told(Term::Cyclic { axis: 0, period, amplitude, phase });
-    let play = |lost_motion, wind_up| told(Term::Backlash { axis: 0, lost_motion, wind_up });
+    let play = |lost_motion, wind_up| told(Term::Backlash { axis: 0, lost_motion, wind_up, ramp: 0.0 });
     let growth = |coefficient, reference, time_constant| {
         told(Term::Growth { sensor: 4, coefficient, reference, time_constant })
     };

@@ -87,7 +87,7 @@ proptest! {
         let machine = TableMill { tool };
         let axes = [0, 0, 1, 1, 2];
         let polynomial = |k: usize| Term::Polynomial { input: Input::Axis(axes[k]), coefficients: &linear[k] };
-        let exx = [polynomial(0), Term::Backlash { axis: 0, lost_motion: 0.02, wind_up: 3.0 }];
+        let exx = [polynomial(0), Term::Backlash { axis: 0, lost_motion: 0.02, wind_up: 3.0, ramp: 0.0 }];
         let ezz = [polynomial(4), Term::Expansion { axis: 2, sensor: 0, coefficient: 12e-6, reference: 20.0 }];
         let others = [1, 2, 3].map(|k| [polynomial(k)]);
         let coupled = angular.map(|slope| [slope]);

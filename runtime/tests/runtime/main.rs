@@ -7,5 +7,6 @@
 mod common;
 mod cycle;
 mod inverse;
+mod ramp;
 mod tables;
 mod terms;

@@ -61,7 +61,7 @@ fn table_reads_the_curve_of_its_axis_and_direction() {
 
 #[test]
 fn backlash_lags_behind_the_motion() {
-    let term = Term::Backlash { axis: 0, lost_motion: 0.010, wind_up: 0.0 };
+    let term = Term::Backlash { axis: 0, lost_motion: 0.010, wind_up: 0.0, ramp: 0.0 };
     assert_eq!(value(term, &at(&[5.0])), -0.005);
     assert_eq!(value(term, &Sample { direction: &[Direction::Negative], ..at(&[5.0]) }), 0.005);
 }
@@ -99,7 +99,7 @@ fn what_a_sample_lacks_is_nan() {
         Term::Polynomial { input: Input::Axis(1), coefficients: &[1.0] },
         Term::Polynomial { input: Input::Sensor(0), coefficients: &[] },
         Term::Coupling { axis: 1, coefficients: &[] },
-        Term::Backlash { axis: 1, lost_motion: 1.0, wind_up: 0.0 },
+        Term::Backlash { axis: 1, lost_motion: 1.0, wind_up: 0.0, ramp: 0.0 },
         Term::Cyclic { axis: 1, period: 1.0, amplitude: 1.0, phase: 0.0 },
         Term::Expansion { axis: 0, sensor: 0, coefficient: 1.0, reference: 0.0 },
         Term::Growth { sensor: 0, coefficient: 1.0, reference: 0.0, time_constant: 0.0 },
@@ -124,7 +124,7 @@ fn travel(term: Term<'_>, positions: &[f64]) -> Vec<f64> {
 
 #[test]
 fn wind_up_is_taken_up_over_its_travel() {
-    let term = Term::Backlash { axis: 0, lost_motion: 2.0, wind_up: 4.0 };
+    let term = Term::Backlash { axis: 0, lost_motion: 2.0, wind_up: 4.0, ramp: 0.0 };
     // The value is -u: taken up at the start, from +1 to -1 over a travel of 4, half way (u = 0) after 2.
     let found = travel(term, &[10.0, 12.0, 11.0, 10.0, 8.0, 5.0, 6.0, 9.0, 12.0]);
     assert_eq!(found, [-1.0, -1.0, -0.5, 0.0, 1.0, 1.0, 0.5, -1.0, -1.0]);
@@ -132,7 +132,7 @@ fn wind_up_is_taken_up_over_its_travel() {
 
 #[test]
 fn wind_up_closes_its_loop_and_forgets_smaller_ones() {
-    let term = Term::Backlash { axis: 0, lost_motion: 2.0, wind_up: 4.0 };
+    let term = Term::Backlash { axis: 0, lost_motion: 2.0, wind_up: 4.0, ramp: 0.0 };
     let found = travel(term, &[0.0, 10.0, 9.0, 10.0, 20.0, 0.0, 20.0, 0.0]);
     assert_eq!(found[1], found[3]); // a small loop returns to where it began
     assert_eq!((found[4], found[5]), (-1.0, 1.0));
@@ -142,7 +142,7 @@ fn wind_up_closes_its_loop_and_forgets_smaller_ones() {
 #[test]
 fn wind_up_to_nothing_is_plain_backlash() {
     let positions: Vec<f64> = (0..200).map(|k| 30.0 * (f64::from(k) * 0.1).sin()).collect();
-    let narrow = travel(Term::Backlash { axis: 0, lost_motion: 2.0, wind_up: 1e-9 }, &positions);
+    let narrow = travel(Term::Backlash { axis: 0, lost_motion: 2.0, wind_up: 1e-9, ramp: 0.0 }, &positions);
     for (step, value) in positions.windows(2).zip(&narrow[1..]) {
         let direction = (step[1] - step[0]).signum();
         assert_eq!(*value, -direction);
@@ -151,7 +151,7 @@ fn wind_up_to_nothing_is_plain_backlash() {
 
 #[test]
 fn wind_up_starts_in_the_direction_given() {
-    let term = Term::Backlash { axis: 0, lost_motion: 2.0, wind_up: 4.0 };
+    let term = Term::Backlash { axis: 0, lost_motion: 2.0, wind_up: 4.0, ramp: 0.0 };
     let sample = Sample { direction: &[Direction::Negative], ..at(&[3.0]) };
     let mut state = TermState::default();
     assert_eq!(term.value(&sample, &state), 1.0);
@@ -161,7 +161,7 @@ fn wind_up_starts_in_the_direction_given() {
 
 #[test]
 fn asking_for_a_value_advances_nothing() {
-    let term = Term::Backlash { axis: 0, lost_motion: 2.0, wind_up: 4.0 };
+    let term = Term::Backlash { axis: 0, lost_motion: 2.0, wind_up: 4.0, ramp: 0.0 };
     let mut state = TermState::default();
     term.advance(&at(&[0.0]), &mut state);
     let before = state;
@@ -201,7 +201,7 @@ fn growth_without_a_time_constant_has_no_filter() {
 
 #[test]
 fn memories_are_not_poisoned() {
-    let play = Term::Backlash { axis: 0, lost_motion: 2.0, wind_up: 4.0 };
+    let play = Term::Backlash { axis: 0, lost_motion: 2.0, wind_up: 4.0, ramp: 0.0 };
     assert_eq!(travel(play, &[0.0, f64::NAN, -1.0])[2], -0.5);
     let growth = Term::Growth { sensor: 0, coefficient: 1.0, reference: 0.0, time_constant: 1.0 };
     let mut state = TermState::default();
@@ -216,7 +216,7 @@ fn an_error_motion_is_the_sum_of_its_terms() {
     let terms = [
         Term::Constant { value: 1.0 },
         Term::Coupling { axis: 0, coefficients: &[0.5] },
-        Term::Backlash { axis: 0, lost_motion: 4.0, wind_up: 0.0 },
+        Term::Backlash { axis: 0, lost_motion: 4.0, wind_up: 0.0, ramp: 0.0 },
     ];
     let motion = ErrorMotion { terms: &terms };
     assert_eq!(motion.value(&at(&[6.0]), &[TermState::default(); 3]), 1.0 + 3.0 - 2.0);
@@ -228,7 +228,7 @@ fn an_error_motion_is_the_sum_of_its_terms() {
 
 #[test]
 fn an_error_motion_advances_each_of_its_terms() {
-    let play = |lost_motion| Term::Backlash { axis: 0, lost_motion, wind_up: 4.0 };
+    let play = |lost_motion| Term::Backlash { axis: 0, lost_motion, wind_up: 4.0, ramp: 0.0 };
     let terms = [play(2.0), Term::Constant { value: 0.0 }, play(20.0)];
     let motion = ErrorMotion { terms: &terms };
     let mut states = [TermState::default(); 3];

@@ -129,6 +129,7 @@ fn signs_are_checked() {
     refused("EXX: [{drift: {amplitude: 1 um, time_constant: -5 s}}]", &[("E0419", "-5 s")]);
     refused("EXX: [{vibration: {frequency: 0 Hz, amplitude: 1 um, phase: 0 rad}}]", &[("E0419", "0 Hz")]);
     refused("EXX: [{backlash: {lost_motion: 1 um, wind_up: -1 mm}}]", &[("E0419", "-1 mm")]);
+    refused("EXX: [{backlash: {lost_motion: 1 um, ramp: -5 ms}}]", &[("E0419", "-5 ms")]);
     let growth = "EXX: [{growth: {sensor: a, coefficient: 1 um/K, reference: 20 degC, time_constant: 0 s}}]";
     refused(growth, &[("E0419", "0 s")]);
 }
@@ -143,6 +144,8 @@ fn kinds_are_checked() {
         "ECC: [{cyclic: {period: 1 mm, amplitude: 1 um, phase: 1}}]",
         &[("E0307", "mm"), ("E0307", "um"), ("E0306", "1")],
     );
+    refused("EXX: [{backlash: {lost_motion: 1 um, ramp: 2 mm}}]", &[("E0307", "mm")]);
+    refused("EXX: [{lag: {gain: 16 1/s, ramp: 2 ms}}]", &[("E0412", "ramp")]);
     refused("EXX: [{lag: {gain: 16 s}}]", &[("E0307", "s")]);
     refused("EXX: [{acceleration: {gain: 16 1/s}}]", &[("E0307", "1/s")]);
     let growth = "EXX: [{growth: {sensor: a, coefficient: 11 um/m/K, reference: 20 mm}}]";

@@ -189,6 +189,27 @@ fn every_other_term_is_read() {
     }
 }
 
+/// The ramp is the correction's: it reaches the runtime, and the term beside it is the same without it.
+#[test]
+fn a_ramp_stands_beside_its_term() {
+    let text = with_errors("EXX: [{constant: {value: 1 um}}, {backlash: {lost_motion: 3 um}}]");
+    let ramped = text.replace("lost_motion: 3 um", "lost_motion: 3 um, ramp: 50 ms");
+    let (plain, ..) = read_with_diagnostics(&text);
+    let (ramped, ..) = read_with_diagnostics(&ramped);
+    let (plain, ramped) = (plain.unwrap(), ramped.unwrap());
+    assert_eq!(plain.terms(0), ramped.terms(0));
+    assert_ne!(plain, ramped);
+    let ramps = |calibration: &Calibration| -> Vec<f64> {
+        let terms = calibration.runtime(0).map(|term| match term.unwrap() {
+            Term::Backlash { ramp, .. } => ramp,
+            _ => -1.0,
+        });
+        terms.collect()
+    };
+    assert_eq!((ramps(&plain), ramps(&ramped)), (vec![-1.0, 0.0], vec![-1.0, 0.05]));
+    assert_eq!(ramped.with(&[(0, CalibratedTerm::Constant { value: 1.0 })]).motions[0].ramp(1), 0.05);
+}
+
 #[test]
 fn angles_have_their_own_coefficients() {
     term("EBX: [{growth: {sensor: a, coefficient: 3 urad/K, reference: 20 degC}}]");

@@ -1,0 +1,132 @@
+//! Singular values: the scaled system, its decomposition and its pseudo-inverse.
+//!
+//! In: the columns of the system. Out: the solution of least scaled change (NISTIR 6722, equations 19, 28 and E8 to E20). Each
+//! column is divided by its greatest absolute value, one of zeros by 1; singular values up to `rows * norm * 2.2e-16` count
+//! as zero, the norm being the root of the sum of all squares.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::number;
+use crate::solution::{Problem, Solution, noise};
+
+/// The system `columns / scale = U S V'`.
+pub(crate) struct Decomposition {
+    u: DMatrix<f64>,
+    v: DMatrix<f64>,
+    scale: Vec<f64>,
+    /// From the largest to the smallest, one for each column.
+    pub(crate) singular: Vec<f64>,
+    /// Up to this they count as zero.
+    pub(crate) tolerance: f64,
+    /// How many do not.
+    pub(crate) rank: usize,
+}
+
+/// How columns are scaled before they are decomposed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scaling {
+    /// The greatest absolute value of each column is 1, as in the report.
+    Greatest,
+    /// They stay as they are: relative changes.
+    None,
+}
+
+impl Decomposition {
+    /// Decomposes a matrix; `share` of its norm is the tolerance. Nothing where the iteration does not end.
+    pub(crate) fn of(columns: &DMatrix<f64>, scaling: Scaling, share: Option<f64>) -> Option<Self> {
+        let scale: Vec<f64> = columns
+            .column_iter()
+            .map(|column| match column.amax() {
+                greatest if greatest > 0.0 && scaling == Scaling::Greatest => greatest.recip(),
+                _ => 1.0,
+            })
+            .collect();
+        let mut scaled = columns.clone();
+        for (mut column, scale) in scaled.column_iter_mut().zip(&scale) {
+            column *= *scale;
+        }
+        let (rows, unknowns) = scaled.shape();
+        let share = share.unwrap_or(number(rows) * f64::EPSILON);
+        let tolerance = share * scaled.norm();
+        // Rows of zeros make the decomposition tell every direction of the coefficients, also those that are not seen.
+        let tall = scaled.resize(rows.max(unknowns), unknowns, 0.0);
+        let decomposed = tall.try_svd(true, true, f64::EPSILON, ITERATIONS)?;
+        let singular: Vec<f64> = decomposed.singular_values.iter().copied().collect();
+        let rank = singular.iter().filter(|value| **value > tolerance).count();
+        let (u, v) = (decomposed.u?, decomposed.v_t?.transpose());
+        let u = u.rows(0, rows).into_owned();
+        singular.iter().all(|value| value.is_finite()).then_some(Self {
+            u,
+            v,
+            scale,
+            singular,
+            tolerance,
+            rank,
+        })
+    }
+
+    /// The solution of a problem of which this is the decomposition.
+    pub(crate) fn solve(&self, problem: &Problem) -> Solution {
+        let factors: Vec<f64> = self.counted().map(f64::recip).collect();
+        let change = self.combined(&problem.residual, &factors);
+        let left = problem.left(&change);
+        let noise = noise(left.norm_squared(), problem.free_rows() - number(self.rank));
+        let spread = self.spread(&factors).into_iter().map(|one| noise.map(|noise| noise * one));
+        Solution {
+            moved: vec![true; change.len()],
+            spread: spread.collect(),
+            leverage: self.leverage(&vec![1.0; self.rank]),
+            noise,
+            expected: None,
+            alternatives: vec![Vec::new(); change.len()],
+            change,
+        }
+    }
+
+    /// The singular values that count.
+    pub(crate) fn counted(&self) -> impl Iterator<Item = f64> {
+        self.singular.iter().copied().take(self.rank)
+    }
+
+    /// The components of readings along the singular directions that count.
+    pub(crate) fn components(&self, readings: &DVector<f64>) -> Vec<f64> {
+        (0..self.rank).map(|k| self.u.column(k).dot(readings)).collect()
+    }
+
+    /// The relative changes that readings demand, each singular direction with its factor.
+    pub(crate) fn combined(&self, readings: &DVector<f64>, factors: &[f64]) -> DVector<f64> {
+        let mut scaled = DVector::zeros(self.scale.len());
+        for (k, (component, factor)) in self.components(readings).iter().zip(factors).enumerate() {
+            scaled.axpy(component * factor, &self.v.column(k), 1.0);
+        }
+        DVector::from_iterator(self.scale.len(), scaled.iter().zip(&self.scale).map(|(d, scale)| d * scale))
+    }
+
+    /// The root of the sum of squares of the factors in each relative change.
+    pub(crate) fn spread(&self, factors: &[f64]) -> Vec<f64> {
+        let one = |(coefficient, scale): (usize, &f64)| {
+            let square =
+                |(k, factor): (usize, &f64)| self.v.get((coefficient, k)).map(|v| (v * factor).powi(2));
+            let sum: f64 = factors.iter().enumerate().filter_map(square).sum();
+            scale * sum.sqrt()
+        };
+        self.scale.iter().enumerate().map(one).collect()
+    }
+
+    /// The diagonal of the matrix that makes predictions of readings, each singular direction with its weight.
+    pub(crate) fn leverage(&self, weights: &[f64]) -> Vec<f64> {
+        let one = |row: usize| {
+            let weighted = |(k, weight): (usize, &f64)| self.u.get((row, k)).map(|u| u * u * weight);
+            weights.iter().enumerate().filter_map(weighted).sum()
+        };
+        (0..self.u.nrows()).map(one).collect()
+    }
+
+    /// The directions of the scaled coefficients that no reading shows, a column each.
+    pub(crate) fn null_space(&self) -> DMatrix<f64> {
+        self.v.columns(self.rank, self.v.ncols() - self.rank).into_owned()
+    }
+}
+
+/// Far more than the decomposition of a matrix of finite numbers needs.
+const ITERATIONS: usize = 100_000;

@@ -32,7 +32,7 @@ pub(crate) fn solve(problem: &Problem) -> Option<Solution> {
         expected.map(|expected| expected * (1.0 - seen * seen + remaining * remaining).max(0.0).sqrt())
     });
     Some(Solution {
-        moved: vec![true; change.len()],
+        moved: decomposition.seen().to_vec(),
         spread: spread.collect(),
         leverage: decomposition.leverage(&weights),
         noise,

@@ -14,6 +14,8 @@ pub(crate) struct Decomposition {
     u: DMatrix<f64>,
     v: DMatrix<f64>,
     scale: Vec<f64>,
+    /// Whether any reading shows the coefficient.
+    seen: Vec<bool>,
     /// From the largest to the smallest, one for each column.
     pub(crate) singular: Vec<f64>,
     /// Up to this they count as zero.
@@ -41,6 +43,10 @@ impl Decomposition {
                 _ => 1.0,
             })
             .collect();
+        let seen: Vec<bool> = columns.column_iter().map(|column| column.amax() > 0.0).collect();
+        if columns.is_empty() {
+            return Some(Self::of_nothing(columns.nrows()));
+        }
         let mut scaled = columns.clone();
         for (mut column, scale) in scaled.column_iter_mut().zip(&scale) {
             column *= *scale;
@@ -59,10 +65,24 @@ impl Decomposition {
             u,
             v,
             scale,
+            seen,
             singular,
             tolerance,
             rank,
         })
+    }
+
+    /// The decomposition of a system without coefficients.
+    fn of_nothing(rows: usize) -> Self {
+        Self {
+            u: DMatrix::zeros(rows, 0),
+            v: DMatrix::zeros(0, 0),
+            scale: Vec::new(),
+            seen: Vec::new(),
+            singular: Vec::new(),
+            tolerance: 0.0,
+            rank: 0,
+        }
     }
 
     /// The solution of a problem of which this is the decomposition.
@@ -73,7 +93,7 @@ impl Decomposition {
         let noise = noise(left.norm_squared(), problem.free_rows() - number(self.rank));
         let spread = self.spread(&factors).into_iter().map(|one| noise.map(|noise| noise * one));
         Solution {
-            moved: vec![true; change.len()],
+            moved: self.seen.clone(),
             spread: spread.collect(),
             leverage: self.leverage(&vec![1.0; self.rank]),
             noise,
@@ -99,7 +119,15 @@ impl Decomposition {
         for (k, (component, factor)) in self.components(readings).iter().zip(factors).enumerate() {
             scaled.axpy(component * factor, &self.v.column(k), 1.0);
         }
-        DVector::from_iterator(self.scale.len(), scaled.iter().zip(&self.scale).map(|(d, scale)| d * scale))
+        // What no reading shows stays, but for rounding.
+        let unscaled = scaled.iter().zip(&self.scale).zip(&self.seen);
+        let unscaled = unscaled.map(|((d, scale), seen)| if *seen { d * scale } else { 0.0 });
+        DVector::from_iterator(self.scale.len(), unscaled)
+    }
+
+    /// Whether any reading shows each coefficient.
+    pub(crate) fn seen(&self) -> &[bool] {
+        &self.seen
     }
 
     /// The root of the sum of squares of the factors in each relative change.

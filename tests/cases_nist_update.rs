@@ -294,6 +294,22 @@ fn the_fitted_part_is_met_at_least_as_well_as_in_the_report() {
             published[0], published[1], published[2]
         ));
     }
+    // The zeros in the constants instead: two more directions of the coefficients, and the same is left.
+    for (seed, updated) in SEEDS.zip(&updates) {
+        let part = report_part().recording(&case, &case.shipped, seed);
+        let known = case.disturbed(seed);
+        let inputs =
+            Inputs { equations: &case.compiled.equations, calibration: &known, recordings: vec![&part] };
+        let absolute = update::update(&inputs, &Options { datum: [false; 3], ..Options::default() }).unwrap();
+        assert_eq!((absolute.zeros, absolute.rank), (0, 9));
+        let same = |direction| {
+            after(&absolute, direction)
+                .iter()
+                .zip(after(updated, direction))
+                .all(|(one, other)| (one - other).abs() < 1e-3)
+        };
+        assert!(same("X") && same("Z") && absolute.changes.len() > updated.changes.len());
+    }
     // It is met by moving coefficients by many times themselves, as in the report's appendix B.
     let moved = |updated: &Update| updated.changes.iter().filter(|change| change.change.abs() > 1.0).count();
     assert!(updates.iter().all(|updated| moved(updated) >= 9 && updated.changes[0].change.abs() > 15.0));
@@ -341,6 +357,8 @@ fn a_knock_is_found_as_one_coefficient_and_a_second_part_tells_which() {
         };
         told[0] += usize::from(named(&one[2]));
         told[1] += usize::from(named(&two[2]));
+        let shape = |name: &str| name.starts_with("EB0Z.") || name.starts_with("EXZ.polynomial[");
+        assert!(one[2].changes.iter().all(|change| shape(&change.name)));
         motions += usize::from(one[2].changes[0].name.starts_with("EB0Z."));
         constants += usize::from(two[2].changes[0].name == "EB0Z.polynomial(start)[0]");
         let all: Vec<[f64; 2]> = one.iter().chain(&two).map(|updated| both(&updated.calibration)).collect();

@@ -158,3 +158,46 @@ impl Decomposition {
 
 /// Far more than the decomposition of a matrix of finite numbers needs.
 const ITERATIONS: usize = 100_000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A matrix of three independent columns, their sums and a column of zeros, of very different sizes.
+    fn dependent() -> DMatrix<f64> {
+        let column = |k: i32| DVector::from_fn(12, |row, _| (0.3 + number(row) * f64::from(k + 1)).sin());
+        let [a, b, c] = [0, 1, 2].map(column);
+        let columns = [a.clone() * 1e-6, b.clone() * 40.0, c.clone(), &a + &b, (&b - &c) * 1e3, &a * 0.0];
+        DMatrix::from_columns(&columns)
+    }
+
+    #[test]
+    fn the_rank_is_that_of_the_independent_columns_and_scales_are_those_of_the_report() {
+        let decomposition = Decomposition::of(&dependent(), Scaling::Greatest, None).unwrap();
+        assert_eq!((decomposition.rank, decomposition.null_space().ncols()), (3, 3));
+        for (column, scale) in dependent().column_iter().zip(&decomposition.scale) {
+            let greatest = column.amax() * scale;
+            assert!((greatest - 1.0).abs() < 1e-12 || (greatest == 0.0 && *scale == 1.0));
+        }
+        assert!(decomposition.tolerance > 0.0 && decomposition.singular.is_sorted_by(|a, b| a >= b));
+    }
+
+    #[test]
+    fn of_all_best_solutions_it_is_the_one_of_least_scaled_change() {
+        let columns = dependent();
+        let decomposition = Decomposition::of(&columns, Scaling::Greatest, None).unwrap();
+        let readings = DVector::from_fn(12, |row, _| number(row * row) - 20.0);
+        let factors: Vec<f64> = decomposition.counted().map(f64::recip).collect();
+        let solution = decomposition.combined(&readings, &factors);
+        // What is left is at right angles to every column: it is least.
+        let left = &readings - &columns * &solution;
+        for column in columns.column_iter() {
+            assert!(column.dot(&left).abs() <= 1e-9 * column.norm() * readings.norm());
+        }
+        // The scaled solution is at right angles to all that no reading shows: it is shortest.
+        let scaled = DVector::from_iterator(6, solution.iter().zip(&decomposition.scale).map(|(d, s)| d / s));
+        for direction in decomposition.null_space().column_iter() {
+            assert!(direction.dot(&scaled).abs() <= 1e-9 * scaled.norm());
+        }
+    }
+}

@@ -487,12 +487,14 @@ fn the_command_refuses_with_places_and_writes_nothing() {
     let linear = file("linear.yaml", &angle);
     let there = file("there.yaml", "kept");
     let new = at("never.yaml");
-    let cases: [(&[&str], i32, &[&str]); 7] = [
+    let data = at("part.csv");
+    let cases: [(&[&str], i32, &[&str]); 8] = [
         (&[known, &cold, "--output", &new], 2, &["E0626", "cold.yaml", "T27"]),
         (&[known, &linear, "--output", &new], 2, &["E0627", "linear.yaml", "probe"]),
         (&[other, &part, "--output", &new], 2, &["nist-turning-center", "postech-mill"]),
         (&[known, &part, "--output", &there], 2, &["is there already", "--force"]),
         (&[known, &part, "--output", known, "--force"], 2, &["read from"]),
+        (&[known, &part, "--output", &data, "--force"], 2, &["read from"]),
         (&[known, &part, "--output", &at("no/such/folder.yaml")], 2, &["no such folder"]),
         (&[known, &part, "--datum", "w"], 2, &["--datum"]),
     ];

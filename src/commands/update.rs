@@ -8,6 +8,7 @@ use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::yaml;
 use update::{Inputs, Method, Options, Update, UpdateError, report};
 
+use super::diagnose::files::Files;
 use super::simulate::machine_name;
 use crate::arguments::{Update as Arguments, UpdateFormat, UpdateMethod};
 use crate::calibrated::{self, Calibrated};
@@ -22,7 +23,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let parts = recorded::read_all(&arguments.measurements)?;
     check_machine(arguments, &known, &parts)?;
     if let Some(target) = &arguments.output {
-        check_target(target, arguments)?;
+        check_target(target, arguments, &known, &parts)?;
     }
     let inputs = Inputs {
         equations: &known.equations,
@@ -78,7 +79,12 @@ fn check_machine(arguments: &Arguments, known: &Calibrated, parts: &[Recorded]) 
 }
 
 /// Refuses a place that cannot be written to, before any work is done.
-fn check_target(target: &Path, arguments: &Arguments) -> Result<(), Failure> {
+fn check_target(
+    target: &Path,
+    arguments: &Arguments,
+    known: &Calibrated,
+    parts: &[Recorded],
+) -> Result<(), Failure> {
     let wrong = |what: &str, help: &str| {
         Err(Failure::Wrong(format!("error: {} {what}\nhelp: {help}", target.display())))
     };
@@ -88,8 +94,11 @@ fn check_target(target: &Path, arguments: &Arguments) -> Result<(), Failure> {
     if target.file_name().is_none() || target.is_dir() {
         return wrong("is a folder", "--output takes the name of a file");
     }
-    let read: Vec<&PathBuf> = arguments.measurements.iter().chain([&arguments.calibration]).collect();
-    let same = |file: &PathBuf| file.canonicalize().ok().zip(target.canonicalize().ok());
+    let machine = known.calibration.machine.value.as_str();
+    let parts = parts.iter().zip(&arguments.measurements);
+    let mut read: Vec<PathBuf> = parts.flat_map(|(part, path)| Files::of(part, path).all(None)).collect();
+    read.extend([arguments.calibration.clone(), arguments.calibration.with_file_name(machine)]);
+    let same = |file: PathBuf| file.canonicalize().ok().zip(target.canonicalize().ok());
     if read.into_iter().filter_map(same).any(|(file, target)| file == target) {
         return wrong("is one of the files that the update is read from", "--output takes another name");
     }

@@ -48,14 +48,16 @@ pub(crate) fn coefficients(calibration: &Calibration, names: &MachineNames) -> C
             let mut own = term.value.clone();
             let values: Vec<(String, f64)> =
                 numbers(&mut own).into_iter().map(|(part, value)| (part, *value)).collect();
+            // The values of a table belong together, every other number stands for itself.
             let whole = matches!(term.value, CalibratedTerm::Table { .. });
+            piece += usize::from(whole);
             for (number, (part, value)) in values.into_iter().enumerate() {
                 let name = format!("{head}{part}");
                 if value == 0.0 {
                     found.fixed.push(Fixed { name, reason: "is zero, and a relative change leaves it so" });
                     continue;
                 }
-                piece += usize::from(!whole || number == 0);
+                piece += usize::from(!whole);
                 found.moving.push(Coefficient {
                     motion: motion.motion,
                     place: [listed, place, number],

@@ -136,7 +136,8 @@ pub(crate) fn update(inputs: &Inputs<'_>, options: &Options) -> Result<Update, U
         Method::Ridge => ridge::solve(&problem),
         Method::Select => select::solve(&problem),
     };
-    let solution = solution.ok_or(UpdateError::NoDecomposition)?;
+    let finite = |solution: &Solution| solution.change.iter().all(|change| change.is_finite());
+    let solution = solution.filter(finite).ok_or(UpdateError::NoDecomposition)?;
     let test = Problem::of(&held_out, &moving, free, options.compensated);
     let alike = relations(&system.null_space());
     let left = problem.left(&solution.change);

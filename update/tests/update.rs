@@ -175,6 +175,26 @@ fn one_wrong_coefficient_is_found_by_select_and_met_by_all() {
 }
 
 #[test]
+fn a_table_is_moved_as_a_whole_and_its_zeros_stand() {
+    let bench = Bench::new();
+    let text = "calibration: 1\nmachine: XYFZ\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 50 mm}\nerrors:\n  EXX:\n    - polynomial: {per: mm, unit: um, coefficients: [0, 0.1]}\n    - table: {at: [0, 70, 130, 200], per: mm, unit: um, values: [0, 4, -6, 5]}\n";
+    let truth = bench.read(&text.replace("4, -6, 5", "9, -2, 8"));
+    let recording = bench.measured(&truth, 0.0002, 8);
+    let options = Options { method: Method::Select, ..Options::default() };
+    let updated = bench.update(&bench.read(text), &[&recording], options).unwrap();
+    let mut names: Vec<&str> = updated.changes.iter().map(|change| change.name.as_str()).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["EXX.table[1]", "EXX.table[2]", "EXX.table[3]"]);
+    assert!(updated.fixed.iter().any(|fixed| fixed.name == "EXX.table[0]"));
+    let after = |name: &str| updated.changes.iter().find(|change| change.name == name).unwrap().after;
+    assert!(
+        [("EXX.table[1]", 9e-3), ("EXX.table[2]", -2e-3), ("EXX.table[3]", 8e-3)]
+            .iter()
+            .all(|(name, value)| (after(name) - value).abs() < 4e-4)
+    );
+}
+
+#[test]
 fn uncertainties_cover_the_truth() {
     let bench = Bench::new();
     let truth = bench.read(EVERYTHING);

@@ -11,7 +11,7 @@ use crate::recorded::Recorded;
 use crate::written::folder;
 
 /// A recording with what its file names, as paths.
-pub(super) struct Files {
+pub(in crate::commands) struct Files {
     /// The recording file.
     pub(super) recording: PathBuf,
     /// The machine as the recording names it.
@@ -22,7 +22,7 @@ pub(super) struct Files {
 }
 
 impl Files {
-    pub(super) fn of(recorded: &Recorded, path: &Path) -> Self {
+    pub(in crate::commands) fn of(recorded: &Recorded, path: &Path) -> Self {
         let root = yaml::read(&recorded.source, &mut Diagnostics::new());
         let named = |key: &str| root.as_ref().and_then(|root| root.get(key)).and_then(|node| node.text());
         let file = |name: &str| beside(path, name);
@@ -35,7 +35,7 @@ impl Files {
     }
 
     /// All of them, the machine's file too where it is one; `known` is the machine as the calibration names it.
-    fn all(&self, known: Option<&str>) -> Vec<PathBuf> {
+    pub(in crate::commands) fn all(&self, known: Option<&str>) -> Vec<PathBuf> {
         let machine = beside(&self.recording, &self.machine);
         let known = self.calibration.as_deref().zip(known).map(|(path, name)| beside(path, name));
         let optional = [self.calibration.clone(), self.data.clone(), known];

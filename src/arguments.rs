@@ -27,6 +27,8 @@ pub(crate) enum Command {
     Diagnose(Diagnose),
     /// Write the recording that a calibration predicts: an exact machine, its instrument and their noise.
     Simulate(Simulate),
+    /// Change the coefficients of a calibration to what measured parts show.
+    Update(Update),
     /// Write a commented machine file to start from.
     New(New),
 }
@@ -116,6 +118,36 @@ pub(crate) struct Simulate {
 }
 
 #[derive(Args)]
+pub(crate) struct Update {
+    /// The calibration file whose coefficients are to be changed.
+    pub(crate) calibration: PathBuf,
+    /// Recordings of measured parts of that machine, by a probe with normals or as positions.
+    #[arg(required = true, value_name = "MEASUREMENTS")]
+    pub(crate) measurements: Vec<PathBuf>,
+    /// The new calibration file.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Replace a file that is there already.
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// How the coefficients are found.
+    #[arg(long, value_enum, default_value_t = UpdateMethod::Svd)]
+    pub(crate) method: UpdateMethod,
+    /// The share of the matrix's norm up to which singular values count as zero; readings times 2.2e-16 by default.
+    #[arg(long, value_parser = non_negative)]
+    pub(crate) tolerance: Option<f64>,
+    /// Where the zero of a part is free: `free` in all directions, `none`, or some such as `z` or `x,z`.
+    #[arg(long, default_value = "free", value_parser = datum)]
+    pub(crate) datum: Datum,
+    /// The parts were made with this calibration's compensation switched on.
+    #[arg(long)]
+    pub(crate) compensated: bool,
+    /// How to write the report.
+    #[arg(long, value_enum, default_value_t = UpdateFormat::Text)]
+    pub(crate) format: UpdateFormat,
+}
+
+#[derive(Args)]
 pub(crate) struct New {
     /// A topology word: axes that carry the part, F for the bed, axes that carry the tool.
     pub(crate) topology: String,
@@ -151,6 +183,45 @@ pub(crate) enum Names {
     Iso,
     /// The symbols of the machine file.
     Symbols,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum UpdateMethod {
+    /// The pseudo-inverse of the scaled system: the least change in scaled coefficients.
+    Svd,
+    /// Least squares held towards the present calibration; the strength by generalised cross-validation.
+    Ridge,
+    /// As few coefficients as pay; all others stand.
+    Select,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum UpdateFormat {
+    /// For a person at a terminal.
+    Text,
+    /// The schema abbe-update/1.
+    Json,
+}
+
+/// The directions X, Y, Z in which the zero of a part is free.
+#[derive(Clone, Copy)]
+pub(crate) struct Datum(pub(crate) [bool; 3]);
+
+fn datum(text: &str) -> Result<Datum, String> {
+    match text {
+        "free" => return Ok(Datum([true; 3])),
+        "none" => return Ok(Datum([false; 3])),
+        _ => {}
+    }
+    let mut free = [false; 3];
+    for word in text.split(',') {
+        let place = ["x", "y", "z"].iter().position(|letter| word.trim().eq_ignore_ascii_case(letter));
+        match place.and_then(|place| free.get_mut(place)) {
+            Some(slot) => *slot = true,
+            None => return Err("write `free`, `none`, or directions such as `z` or `x,z`".to_owned()),
+        }
+    }
+    Ok(Datum(free))
 }
 
 fn non_negative(text: &str) -> Result<f64, String> {

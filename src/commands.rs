@@ -7,3 +7,4 @@ pub(crate) mod diagnose;
 pub(crate) mod expand;
 pub(crate) mod new;
 pub(crate) mod simulate;
+pub(crate) mod update;

@@ -13,6 +13,7 @@ mod output;
 mod positions;
 mod recorded;
 mod shipped;
+mod written;
 
 use std::process::ExitCode;
 
@@ -39,6 +40,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Compensate(command) => commands::compensate::run(command),
         Command::Diagnose(command) => commands::diagnose::run(command),
         Command::Simulate(command) => commands::simulate::run(command),
+        Command::Update(command) => commands::update::run(command),
         Command::New(command) => commands::new::run(command),
     }
 }

@@ -11,6 +11,7 @@
 
 mod agreement;
 mod bounded;
+mod cases_nist_update;
 mod cli;
 mod compensation;
 mod concealed;

@@ -2,7 +2,7 @@
 //! calibration with what was found.
 
 mod display;
-mod files;
+pub(super) mod files;
 mod improved;
 
 use std::path::PathBuf;

@@ -1,8 +1,6 @@
-//! The files of a diagnosis. In: a recording with its path. Out: every file that it was read from; and the one way in which
-//! a file is written, whole or not at all.
+//! The files of a diagnosis. In: a recording with its path. Out: every file that it was read from, none of which is written
+//! over.
 
-use std::fs;
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use model_dsl::diagnostic::Diagnostics;
@@ -10,9 +8,10 @@ use model_dsl::yaml;
 
 use crate::failure::Failure;
 use crate::recorded::Recorded;
+use crate::written::folder;
 
 /// A recording with what its file names, as paths.
-pub(super) struct Files {
+pub(in crate::commands) struct Files {
     /// The recording file.
     pub(super) recording: PathBuf,
     /// The machine as the recording names it.
@@ -23,7 +22,7 @@ pub(super) struct Files {
 }
 
 impl Files {
-    pub(super) fn of(recorded: &Recorded, path: &Path) -> Self {
+    pub(in crate::commands) fn of(recorded: &Recorded, path: &Path) -> Self {
         let root = yaml::read(&recorded.source, &mut Diagnostics::new());
         let named = |key: &str| root.as_ref().and_then(|root| root.get(key)).and_then(|node| node.text());
         let file = |name: &str| beside(path, name);
@@ -36,7 +35,7 @@ impl Files {
     }
 
     /// All of them, the machine's file too where it is one; `known` is the machine as the calibration names it.
-    fn all(&self, known: Option<&str>) -> Vec<PathBuf> {
+    pub(in crate::commands) fn all(&self, known: Option<&str>) -> Vec<PathBuf> {
         let machine = beside(&self.recording, &self.machine);
         let known = self.calibration.as_deref().zip(known).map(|(path, name)| beside(path, name));
         let optional = [self.calibration.clone(), self.data.clone(), known];
@@ -66,30 +65,4 @@ pub(super) fn check_target(target: &Path, inputs: &[(Files, &Recorded)]) -> Resu
     });
     let same = read.filter_map(|file| file.canonicalize().ok()).any(|file| file == there);
     if same { Err(wrong("is one of the files that the diagnosis is read from")) } else { Ok(()) }
-}
-
-/// The folder of a file.
-pub(super) fn folder(file: &Path) -> PathBuf {
-    match file.parent() {
-        Some(parent) if parent != Path::new("") => parent.to_owned(),
-        _ => PathBuf::from("."),
-    }
-}
-
-/// Writes a file that gets its name only when it is complete and on the disk; what stood there before is replaced.
-pub(super) fn write_whole(target: &Path, text: &str) -> Result<(), Failure> {
-    let name = target.file_name().unwrap_or_default().to_string_lossy();
-    let part = target.with_file_name(format!(".{name}.{}.part", std::process::id()));
-    let written = write_to_disk(&part, text).and_then(|()| fs::rename(&part, target));
-    if written.is_err() {
-        // What is left of the attempt is of no use; that it cannot be removed is not the failure to tell of.
-        let _ = fs::remove_file(&part);
-    }
-    written.map_err(|error| Failure::io(&format!("cannot write {}", target.display()), &error))
-}
-
-fn write_to_disk(path: &Path, text: &str) -> io::Result<()> {
-    let mut file = fs::File::create(path)?;
-    file.write_all(text.as_bytes())?;
-    file.sync_all()
 }

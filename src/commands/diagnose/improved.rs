@@ -6,16 +6,13 @@ use std::path::Path;
 use diagnosis::diagnosis::{Diagnosis, Finding};
 use diagnosis::report;
 use model_dsl::calibration::{self, CalibratedTerm, Calibration, SeriesInput};
-use model_dsl::diagnostic::Diagnostics;
-use model_dsl::equations::Equations;
-use model_dsl::source::SourceFile;
-use model_dsl::yaml;
 
-use super::files::{Files, folder, write_whole};
+use super::files::Files;
 use crate::commands::simulate::machine_name;
 use crate::failure::Failure;
-use crate::output::{rendered, warn};
+use crate::output::warn;
 use crate::recorded::Recorded;
+use crate::written::{self, comment, folder};
 
 /// Writes the known calibration with the findings added; without findings it is written as it is, with a warning.
 pub(super) fn write(
@@ -27,8 +24,7 @@ pub(super) fn write(
     let names = recorded.equations.names();
     let improved = improved(known(target, recorded, files), &diagnosis.findings);
     let text = comments(recorded, files, diagnosis) + &calibration::write(&improved, &names);
-    check(target, &text, &recorded.equations)?;
-    write_whole(target, &text)?;
+    written::calibration(target, &text, &recorded.equations)?;
     tell(target, diagnosis);
     Ok(())
 }
@@ -96,7 +92,7 @@ fn comments(recorded: &Recorded, files: &Files, diagnosis: &Diagnosis) -> String
         format!("Known before: {known}."),
         format!("Added: {added}."),
     ];
-    lines.map(|line| format!("# {}\n", one_line(&line))).concat()
+    lines.map(|line| comment(&line)).concat()
 }
 
 /// What the model leaves, before and after, in the units of the diagnosis.
@@ -113,28 +109,6 @@ fn rms(diagnosis: &Diagnosis) -> String {
         after.unit,
         held_out.unwrap_or_default()
     )
-}
-
-/// A comment ends with its line: a file's name must not end it.
-fn one_line(text: &str) -> String {
-    let control =
-        |letter: char| letter.is_control() || matches!(letter, '\u{2028}' | '\u{2029}' | '\u{feff}');
-    text.chars().map(|letter| if control(letter) { ' ' } else { letter }).collect()
-}
-
-/// Nothing is written that the compiler would not take.
-fn check(target: &Path, text: &str, equations: &Equations) -> Result<(), Failure> {
-    let source = SourceFile::new(target.display().to_string(), text);
-    let mut diagnostics = Diagnostics::new();
-    let root = yaml::read(&source, &mut diagnostics);
-    let read = root.and_then(|root| calibration::read(&root, &equations.names(), &mut diagnostics));
-    match read {
-        Some(_) => Ok(()),
-        None => Err(Failure::Wrong(format!(
-            "{}\nerror: the calibration was not written, since it could not be read again; this is a fault of Abbe",
-            rendered(&source, &diagnostics).trim_end()
-        ))),
-    }
 }
 
 /// What whoever uses the file should know.

@@ -1,0 +1,64 @@
+//! Files that are written. In: a name and a text. Out: the file, whole or not at all; a calibration only where the compiler
+//! reads it again.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use model_dsl::calibration;
+use model_dsl::diagnostic::Diagnostics;
+use model_dsl::equations::Equations;
+use model_dsl::source::SourceFile;
+use model_dsl::yaml;
+
+use crate::failure::Failure;
+use crate::output::rendered;
+
+/// The folder of a file.
+pub(crate) fn folder(file: &Path) -> PathBuf {
+    match file.parent() {
+        Some(parent) if parent != Path::new("") => parent.to_owned(),
+        _ => PathBuf::from("."),
+    }
+}
+
+/// A line of comment: it ends with its line, and a file's name in it must not end it.
+pub(crate) fn comment(text: &str) -> String {
+    let control =
+        |letter: char| letter.is_control() || matches!(letter, '\u{2028}' | '\u{2029}' | '\u{feff}');
+    let text: String = text.chars().map(|letter| if control(letter) { ' ' } else { letter }).collect();
+    format!("# {text}\n")
+}
+
+/// Writes a calibration; nothing is written that the compiler would not take.
+pub(crate) fn calibration(target: &Path, text: &str, equations: &Equations) -> Result<(), Failure> {
+    let source = SourceFile::new(target.display().to_string(), text);
+    let mut diagnostics = Diagnostics::new();
+    let root = yaml::read(&source, &mut diagnostics);
+    let read = root.and_then(|root| calibration::read(&root, &equations.names(), &mut diagnostics));
+    match read {
+        Some(_) => whole(target, text),
+        None => Err(Failure::Wrong(format!(
+            "{}\nerror: the calibration was not written, since it could not be read again; this is a fault of Abbe",
+            rendered(&source, &diagnostics).trim_end()
+        ))),
+    }
+}
+
+/// Writes a file that gets its name only when it is complete and on the disk; what stood there before is replaced.
+fn whole(target: &Path, text: &str) -> Result<(), Failure> {
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    let part = target.with_file_name(format!(".{name}.{}.part", std::process::id()));
+    let written = write_to_disk(&part, text).and_then(|()| fs::rename(&part, target));
+    if written.is_err() {
+        // What is left of the attempt is of no use; that it cannot be removed is not the failure to tell of.
+        let _ = fs::remove_file(&part);
+    }
+    written.map_err(|error| Failure::io(&format!("cannot write {}", target.display()), &error))
+}
+
+fn write_to_disk(path: &Path, text: &str) -> io::Result<()> {
+    let mut file = fs::File::create(path)?;
+    file.write_all(text.as_bytes())?;
+    file.sync_all()
+}

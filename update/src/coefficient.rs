@@ -1,0 +1,214 @@
+//! Coefficients: the numbers of a calibration in which the error is linear.
+//!
+//! In: a calibration and the names of its machine. Out: every such number with its place, its name for people, its unit
+//! and the term that has it as 1 and all others of the term as 0; and a list of what stands, with the reason. One function
+//! lists the numbers of a term, for reading and for writing, so that no number can be read in one place and written in
+//! another.
+
+use model_dsl::calibration::{CalibratedTerm, Calibration, CurveValues, MachineNames, SeriesInput};
+
+use crate::update::Fixed;
+
+/// One coefficient.
+#[derive(Clone, Debug)]
+pub(crate) struct Coefficient {
+    /// Its error motion, by number.
+    pub(crate) motion: usize,
+    /// The motion's place in the calibration, the term's place in the motion, the number's place in the term.
+    pub(crate) place: [usize; 3],
+    /// `EXX.polynomial[1]`.
+    pub(crate) name: String,
+    /// The value, in mm, rad, degC.
+    pub(crate) value: f64,
+    /// The unit of the value.
+    pub(crate) unit: String,
+    /// Coefficients of the same number are moved together by `select`: the values of one table.
+    pub(crate) piece: usize,
+    /// The term with this coefficient 1 and its others 0.
+    pub(crate) unit_term: CalibratedTerm,
+}
+
+/// What a calibration has: what may move, and what stands.
+pub(crate) struct Coefficients {
+    pub(crate) moving: Vec<Coefficient>,
+    pub(crate) fixed: Vec<Fixed>,
+}
+
+/// Lists the coefficients of a calibration in its order.
+pub(crate) fn coefficients(calibration: &Calibration, names: &MachineNames) -> Coefficients {
+    let mut found = Coefficients { moving: Vec::new(), fixed: Vec::new() };
+    let mut piece = 0;
+    for (listed, motion) in calibration.motions.iter().enumerate() {
+        let mut heads: Vec<String> = Vec::new();
+        for (place, term) in motion.terms.iter().enumerate() {
+            let words = Words { names, calibration, motion: motion.motion };
+            let head = unlike(words.head(&term.value), &heads);
+            heads.push(head.clone());
+            found.fixed.extend(stands(&term.value, &head));
+            let mut own = term.value.clone();
+            let values: Vec<(String, f64)> =
+                numbers(&mut own).into_iter().map(|(part, value)| (part, *value)).collect();
+            // The values of a table belong together, every other number stands for itself.
+            let whole = matches!(term.value, CalibratedTerm::Table { .. });
+            piece += usize::from(whole);
+            for (number, (part, value)) in values.into_iter().enumerate() {
+                let name = format!("{head}{part}");
+                if value == 0.0 {
+                    found.fixed.push(Fixed { name, reason: "is zero, and a relative change leaves it so" });
+                    continue;
+                }
+                piece += usize::from(!whole);
+                found.moving.push(Coefficient {
+                    motion: motion.motion,
+                    place: [listed, place, number],
+                    name,
+                    value,
+                    unit: words.unit(&term.value, number),
+                    piece,
+                    unit_term: unit_term(&term.value, number),
+                });
+            }
+        }
+    }
+    found
+}
+
+/// Writes a value to a coefficient's place.
+pub(crate) fn set(calibration: &mut Calibration, coefficient: &Coefficient, value: f64) {
+    let [listed, place, number] = coefficient.place;
+    let motion = calibration.motions.get_mut(listed);
+    let term = motion.and_then(|motion| motion.terms.get_mut(place));
+    if let Some((_, slot)) = term.and_then(|term| numbers(&mut term.value).into_iter().nth(number)) {
+        *slot = value;
+    }
+}
+
+/// The numbers in which the value of a term is linear, each with its name behind that of the term; none for terms that no
+/// point of a part shows.
+fn numbers(term: &mut CalibratedTerm) -> Vec<(String, &mut f64)> {
+    match term {
+        CalibratedTerm::Constant { value } => vec![(String::new(), value)],
+        CalibratedTerm::Polynomial { coefficients, .. } => indexed(coefficients, 0, ""),
+        CalibratedTerm::Coupling { coefficients, .. } => indexed(coefficients, 1, ""),
+        CalibratedTerm::Table { curve, .. } => match &mut curve.values {
+            CurveValues::Both(values) => indexed(values, 0, ""),
+            CurveValues::Directed { forward, reverse } => {
+                let mut all = indexed(forward, 0, ".forward");
+                all.extend(indexed(reverse, 0, ".reverse"));
+                all
+            }
+        },
+        CalibratedTerm::Backlash { lost_motion, .. } => vec![(".lost_motion".to_owned(), lost_motion)],
+        CalibratedTerm::Cyclic { amplitude, .. } => vec![(".amplitude".to_owned(), amplitude)],
+        CalibratedTerm::Expansion { coefficient, .. } | CalibratedTerm::Growth { coefficient, .. } => {
+            vec![(".coefficient".to_owned(), coefficient)]
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn indexed<'v>(values: &'v mut [f64], first: usize, word: &str) -> Vec<(String, &'v mut f64)> {
+    values.iter_mut().enumerate().map(|(k, value)| (format!("{word}[{}]", first + k), value)).collect()
+}
+
+fn unit_term(term: &CalibratedTerm, number: usize) -> CalibratedTerm {
+    let mut unit = term.clone();
+    for (place, (_, value)) in numbers(&mut unit).into_iter().enumerate() {
+        *value = if place == number { 1.0 } else { 0.0 };
+    }
+    unit
+}
+
+/// The numbers of a term that are not moved.
+fn stands(term: &CalibratedTerm, head: &str) -> Vec<Fixed> {
+    let shape = "shapes its term, which is not linear in it";
+    let at_rest = "is left out, since points are taken at rest";
+    let over_time = "is left out: only a recording over time shows it, see abbe diagnose";
+    let entries: Vec<(&str, &'static str)> = match term {
+        CalibratedTerm::Backlash { wind_up, .. } if *wind_up > 0.0 => vec![(".wind_up", shape)],
+        CalibratedTerm::Cyclic { .. } => vec![(".period", shape), (".phase", shape)],
+        CalibratedTerm::Expansion { .. } => vec![(".reference", shape)],
+        CalibratedTerm::Growth { time_constant, .. } if *time_constant > 0.0 => {
+            vec![(".reference", shape), (".time_constant", shape)]
+        }
+        CalibratedTerm::Growth { .. } => vec![(".reference", shape)],
+        CalibratedTerm::Lag { .. } | CalibratedTerm::Acceleration { .. } => vec![("", at_rest)],
+        CalibratedTerm::ReversalSpike { .. }
+        | CalibratedTerm::Drift { .. }
+        | CalibratedTerm::Vibration { .. }
+        | CalibratedTerm::Compliance { .. } => vec![("", over_time)],
+        _ => Vec::new(),
+    };
+    entries.into_iter().map(|(part, reason)| Fixed { name: format!("{head}{part}"), reason }).collect()
+}
+
+/// What coefficients are named against.
+struct Words<'w> {
+    names: &'w MachineNames,
+    calibration: &'w Calibration,
+    motion: usize,
+}
+
+impl Words<'_> {
+    /// `EXX.polynomial`, with the sensor or another axis in brackets: `EBX.polynomial(body)`.
+    fn head(&self, term: &CalibratedTerm) -> String {
+        let motion = self.names.motions.get(self.motion);
+        let own = motion.and_then(|motion| motion.axis.as_deref()).and_then(|letter| self.names.axis(letter));
+        let sensor = term.sensor().and_then(|sensor| self.calibration.sensors.iter().nth(sensor));
+        let of = match (sensor, axis(term)) {
+            (Some(sensor), _) => format!("({})", sensor.name.value),
+            (None, Some(axis)) if Some(axis) != own => {
+                format!("({})", self.names.axes.get(axis).map_or("?", |axis| &axis.letter))
+            }
+            _ => String::new(),
+        };
+        format!("{}.{}{of}", motion.map_or("?", |motion| &motion.name), term.name())
+    }
+
+    fn unit(&self, term: &CalibratedTerm, number: usize) -> String {
+        let angular = self.names.motions.get(self.motion).is_some_and(|motion| motion.angular);
+        let unit = if angular { "rad" } else { "mm" };
+        let rotary = |axis: usize| self.names.axes.get(axis).is_some_and(|axis| axis.rotary);
+        let of_axis = |axis: usize| if rotary(axis) { "rad" } else { "mm" };
+        match term {
+            CalibratedTerm::Polynomial { input: SeriesInput::Axis(axis), .. } => {
+                per(unit, of_axis(*axis), number)
+            }
+            CalibratedTerm::Polynomial { input: SeriesInput::Sensor(_), .. } => per(unit, "K", number),
+            CalibratedTerm::Coupling { axis, .. } => per(unit, of_axis(*axis), number + 1),
+            CalibratedTerm::Expansion { axis, .. } => format!("{unit}/{}/K", of_axis(*axis)),
+            CalibratedTerm::Growth { .. } => format!("{unit}/K"),
+            _ => unit.to_owned(),
+        }
+    }
+}
+
+fn per(unit: &str, of: &str, power: usize) -> String {
+    match power {
+        0 => unit.to_owned(),
+        1 => format!("{unit}/{of}"),
+        _ => format!("{unit}/{of}^{power}"),
+    }
+}
+
+/// The axis that a term reads.
+fn axis(term: &CalibratedTerm) -> Option<usize> {
+    match term {
+        CalibratedTerm::Polynomial { input: SeriesInput::Axis(axis), .. }
+        | CalibratedTerm::Table { axis, .. }
+        | CalibratedTerm::Backlash { axis, .. }
+        | CalibratedTerm::Cyclic { axis, .. }
+        | CalibratedTerm::Coupling { axis, .. }
+        | CalibratedTerm::Lag { axis, .. }
+        | CalibratedTerm::ReversalSpike { axis, .. }
+        | CalibratedTerm::Acceleration { axis, .. } => Some(*axis),
+        _ => None,
+    }
+}
+
+/// A second term of the same name in one motion is told by its number.
+fn unlike(head: String, heads: &[String]) -> String {
+    let alike =
+        heads.iter().filter(|known| **known == head || known.starts_with(&format!("{head}#"))).count();
+    if alike == 0 { head } else { format!("{head}#{}", alike + 1) }
+}

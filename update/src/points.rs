@@ -1,0 +1,272 @@
+//! Points: every reading of every part, with what each coefficient moves it by.
+//!
+//! In: recordings and the coefficients of a calibration. Out: for each reading its direction, its deviation and, for each
+//! coefficient A, the displacement along the direction that A itself makes there: `(n . L) phi A`. Their sum is what the
+//! calibration predicts, and a relative change dA of one adds dA times its own share. Rows are gone through in their
+//! order, also those without a reading: they show from where an axis came.
+
+use abbe_runtime::{Direction, DirectionTracker, Sample, Term, TermState};
+use diagnosis::recording::{AxisChannels, Instrument, Recording};
+use model_dsl::calibration::{Calibration, SensorReadings};
+use model_dsl::equations::Equations;
+use model_dsl::program::Interpreter;
+
+use crate::coefficient::Coefficient;
+use crate::error::UpdateError;
+use crate::update::Part;
+
+/// How far an axis must move back before its direction turns, mm or rad: the rounding of a programmed position.
+const HYSTERESIS: f64 = 1e-9;
+
+/// One reading.
+#[derive(Clone, Debug)]
+pub(crate) struct Point {
+    /// The setting-up that it was measured in, by number over all recordings.
+    pub(crate) setting: usize,
+    /// The direction of the reading, part frame, a unit vector.
+    pub(crate) direction: [f64; 3],
+    /// The deviation along it, mm.
+    pub(crate) deviation: f64,
+    /// Whether it is kept for the test.
+    pub(crate) held_out: bool,
+    /// What each coefficient displaces it by, mm.
+    pub(crate) shares: Vec<f64>,
+}
+
+impl Point {
+    /// What the calibration predicts there, mm.
+    pub(crate) fn predicted(&self) -> f64 {
+        self.shares.iter().sum()
+    }
+}
+
+/// All readings, and the parts that they are of.
+pub(crate) struct Points {
+    pub(crate) points: Vec<Point>,
+    pub(crate) parts: Vec<Part>,
+}
+
+/// What the points are taken with.
+pub(crate) struct Machine<'m> {
+    pub(crate) equations: &'m Equations,
+    pub(crate) calibration: &'m Calibration,
+    pub(crate) coefficients: &'m [Coefficient],
+}
+
+impl Machine<'_> {
+    /// The readings of all recordings.
+    pub(crate) fn points(&self, recordings: &[&Recording]) -> Result<Points, UpdateError> {
+        let interpreter = Interpreter::new(self.equations, &self.calibration.constants);
+        let mut all = Points { points: Vec::new(), parts: Vec::new() };
+        let mut settings = 0;
+        for (number, recording) in recordings.iter().enumerate() {
+            if !matches!(recording.instrument, Instrument::Probe | Instrument::Position) {
+                return Err(UpdateError::Instrument { recording: number });
+            }
+            let course = Course::of(self, recording, number)?;
+            let (points, left_out) = course.points(&interpreter, settings);
+            settings += course.runs.len();
+            all.parts.push(Part {
+                file: recording.file.clone(),
+                title: recording.title.clone(),
+                points: points.iter().filter(|point| !point.held_out).count(),
+                held_out: points.iter().filter(|point| point.held_out).count(),
+                left_out,
+                standing: course.standing(),
+            });
+            all.points.extend(points);
+        }
+        Ok(all)
+    }
+}
+
+/// One recording on its way through its rows.
+struct Course<'c> {
+    machine: &'c Machine<'c>,
+    recording: &'c Recording,
+    positions: Vec<Vec<f64>>,
+    temperatures: Vec<Option<Vec<f64>>>,
+    /// The runs in order of their first rows.
+    runs: Vec<i64>,
+}
+
+impl<'c> Course<'c> {
+    fn of(machine: &'c Machine<'c>, recording: &'c Recording, number: usize) -> Result<Self, UpdateError> {
+        let rows = recording.time.len();
+        let axes = machine.equations.axes.len();
+        let known = |axis: usize| recording.axes.get(axis).and_then(position).cloned();
+        let mut runs: Vec<i64> = Vec::new();
+        for run in &recording.run {
+            if !runs.contains(run) {
+                runs.push(*run);
+            }
+        }
+        Ok(Self {
+            machine,
+            recording,
+            positions: (0..axes).map(|axis| known(axis).unwrap_or(vec![0.0; rows])).collect(),
+            temperatures: temperatures(machine.calibration, recording, number)?,
+            runs,
+        })
+    }
+
+    /// The axes of which the recording knows nothing, and which are taken to stand at zero.
+    fn standing(&self) -> Vec<String> {
+        let axes = self.machine.equations.axes.iter().zip(&self.recording.axes);
+        let unknown = axes.filter(|(_, channels)| position(channels).is_none());
+        unknown.map(|(axis, _)| axis.letter.clone()).collect()
+    }
+
+    /// The readings, and how many could not be used because a position is missing in their row.
+    fn points(&self, interpreter: &Interpreter, settings: usize) -> (Vec<Point>, usize) {
+        let mut states = self.states();
+        let (mut points, mut left_out) = (Vec::new(), 0);
+        for row in 0..self.recording.time.len() {
+            let position: Vec<f64> = self.positions.iter().map(|column| cell(column, row)).collect();
+            let values = states.next(row, &position, self);
+            let nominal = interpreter.nominal(&position);
+            let readings = readings(self.recording, row, nominal);
+            if readings.is_empty() {
+                continue;
+            }
+            let travel: Vec<f64> =
+                self.machine.equations.travels.iter().map(|travel| cell(&position, travel.axis)).collect();
+            let levers = interpreter.levers(&position, &travel);
+            let run = self.recording.run.get(row).copied().unwrap_or(1);
+            let setting = settings + self.runs.iter().position(|known| *known == run).unwrap_or(0);
+            let held_out = self.recording.holdout.as_ref().is_some_and(|runs| runs.contains(&run));
+            for (direction, deviation) in readings {
+                let shares = self.shares(&values, &levers, direction);
+                if deviation.is_finite() && shares.iter().all(|share| share.is_finite()) {
+                    points.push(Point { setting, direction, deviation, held_out, shares });
+                } else {
+                    left_out += 1;
+                }
+            }
+        }
+        (points, left_out)
+    }
+
+    /// What each coefficient displaces a point by along a direction.
+    fn shares(&self, values: &[f64], levers: &[[f64; 3]], direction: [f64; 3]) -> Vec<f64> {
+        let coefficients = self.machine.coefficients.iter().zip(values);
+        let share = |(coefficient, value): (&Coefficient, &f64)| {
+            let gain = levers.get(coefficient.motion).map_or(0.0, |lever| dot(*lever, direction));
+            gain * value * coefficient.value
+        };
+        coefficients.map(share).collect()
+    }
+
+    fn states(&self) -> States<'_> {
+        let terms: Vec<Option<Term<'_>>> =
+            self.machine.coefficients.iter().map(|known| known.unit_term.runtime().ok()).collect();
+        States {
+            memories: vec![TermState::default(); terms.len()],
+            terms,
+            trackers: vec![DirectionTracker::new(HYSTERESIS); self.positions.len()],
+            sensors: SensorReadings::new(&self.machine.calibration.sensors),
+            time: 0.0,
+        }
+    }
+}
+
+/// The state of the machine from row to row.
+struct States<'s> {
+    terms: Vec<Option<Term<'s>>>,
+    memories: Vec<TermState>,
+    trackers: Vec<DirectionTracker>,
+    sensors: SensorReadings<'s>,
+    time: f64,
+}
+
+impl States<'_> {
+    /// Goes on to a row and gives the value of each coefficient's term with the coefficient 1.
+    fn next(&mut self, row: usize, position: &[f64], course: &Course<'_>) -> Vec<f64> {
+        let direction: Vec<Direction> =
+            self.trackers.iter_mut().zip(position).map(|(tracker, at)| tracker.update(*at)).collect();
+        let inputs = &course.temperatures;
+        let input = |sensor: usize| {
+            inputs.get(sensor).and_then(Option::as_ref).map_or(f64::NAN, |column| cell(column, row))
+        };
+        let temperature = self.sensors.update(input);
+        let time = cell(&course.recording.time, row);
+        let sample = Sample {
+            position,
+            travel: &[],
+            direction: &direction,
+            velocity: &[],
+            temperature,
+            time_step: time - self.time,
+        };
+        self.time = time;
+        let terms = self.terms.iter().zip(&mut self.memories);
+        let value = |(term, memory): (&Option<Term<'_>>, &mut TermState)| {
+            term.as_ref().map_or(0.0, |term| {
+                term.advance(&sample, memory);
+                term.value(&sample, memory)
+            })
+        };
+        terms.map(value).collect()
+    }
+}
+
+/// What stands for the position of an axis: programmed, or else the drive's own.
+fn position(channels: &AxisChannels) -> Option<&Vec<f64>> {
+    channels.command.as_ref().or(channels.actual.as_ref()).or(channels.measured.as_ref())
+}
+
+/// The readings of a row: a direction and the deviation along it, mm. Cells without a sample are no readings.
+fn readings(recording: &Recording, row: usize, nominal: [f64; 3]) -> Vec<([f64; 3], f64)> {
+    if recording.instrument == Instrument::Probe {
+        let normal = recording.normal.as_ref().map_or([f64::NAN; 3], |normal| {
+            [0, 1, 2].map(|part| normal.get(part).map_or(f64::NAN, |column| cell(column, row)))
+        });
+        let deviation = recording.deviation.as_ref().map_or(f64::NAN, |column| cell(column, row));
+        // A normal is a unit vector or is missing as a whole.
+        let normal = if dot(normal, normal).is_finite() { normal } else { [f64::NAN; 3] };
+        return if deviation.is_finite() { vec![(normal, deviation)] } else { Vec::new() };
+    }
+    let mut found = Vec::new();
+    for (part, column) in recording.measured.iter().enumerate() {
+        let Some(measured) = column.as_ref().map(|column| cell(column, row)) else { continue };
+        if measured.is_finite() {
+            let direction = [0, 1, 2].map(|other| if other == part { 1.0 } else { 0.0 });
+            found.push((direction, measured - nominal.get(part).copied().unwrap_or(f64::NAN)));
+        }
+    }
+    found
+}
+
+/// The channel of every sensor that is an input of a term, gaps held from the sample before.
+fn temperatures(
+    calibration: &Calibration,
+    recording: &Recording,
+    number: usize,
+) -> Result<Vec<Option<Vec<f64>>>, UpdateError> {
+    let mut columns = vec![None; calibration.sensors.len()];
+    for (index, sensor) in calibration.sensors.inputs() {
+        let name = &sensor.name.value;
+        let channel = recording.temperatures.iter().find(|channel| channel.name == *name);
+        let first = channel.and_then(|channel| channel.values.iter().find(|value| value.is_finite()));
+        let (Some(channel), Some(first)) = (channel, first) else {
+            return Err(UpdateError::NoTemperature { recording: number, sensor: name.clone() });
+        };
+        let mut last = *first;
+        let held = channel.values.iter().map(|value| {
+            last = if value.is_finite() { *value } else { last };
+            last
+        });
+        if let Some(column) = columns.get_mut(index) {
+            *column = Some(held.collect());
+        }
+    }
+    Ok(columns)
+}
+
+fn cell(column: &[f64], row: usize) -> f64 {
+    column.get(row).copied().unwrap_or(f64::NAN)
+}
+
+fn dot(left: [f64; 3], right: [f64; 3]) -> f64 {
+    left.iter().zip(right).map(|(left, right)| left * right).sum()
+}

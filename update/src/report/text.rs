@@ -1,0 +1,230 @@
+//! The report for a terminal. In: an update. Out: text of at most 100 columns, but for names that are longer.
+
+use textwrap::{Options, WordSeparator, WordSplitter, fill};
+
+use crate::Method;
+use crate::residuals::Residual;
+use crate::update::{Change, Part, Relation, Update};
+
+/// The widest line.
+const WIDTH: usize = 100;
+
+/// How many changes are listed; JSON has all of them.
+const CHANGES: usize = 40;
+
+/// How many others of a relation are named.
+const OTHERS: usize = 6;
+
+/// The update as text for a person.
+pub fn text(update: &Update) -> String {
+    let mut text = format!("Update of {} by {}\n\n", plain(&update.machine), update.options.method.name());
+    text += &update.parts.iter().map(part).collect::<String>();
+    text += &wrapped(&datum(update), "", "");
+    text += &wrapped(&system(update), "", "");
+    text += &figures("What is left, um (absolute values)", &update.residuals);
+    text += &figures("What is left at the held-out points, um", &update.held_out);
+    text += &wrapped(&unseen(update), "", "");
+    text += &changes(update);
+    text += &relations(&update.relations);
+    text += &fixed(update);
+    text
+}
+
+fn part(part: &Part) -> String {
+    let mut facts = vec![format!("{} readings", part.points)];
+    if part.held_out > 0 {
+        facts.push(format!("{} held out", part.held_out));
+    }
+    if part.left_out > 0 {
+        facts.push(format!("{} left out, since their rows lack a position or a normal", part.left_out));
+    }
+    if !part.standing.is_empty() {
+        facts.push(format!("{} taken to stand at zero", part.standing.join(", ")));
+    }
+    wrapped(&format!("{}: {}.", part.file, facts.join("; ")), "", "   ")
+}
+
+fn datum(update: &Update) -> String {
+    let zero = match update.datum.as_slice() {
+        [] => "The zero of no part is free: its place is taken for the machine's.".to_owned(),
+        free => format!(
+            "The zero of every setting-up is free in {} ({} zeros).",
+            free.join(" and "),
+            update.zeros
+        ),
+    };
+    let compensated = match update.options.compensated {
+        true => " The parts were made with this calibration's compensation.",
+        false => "",
+    };
+    zero + compensated
+}
+
+fn system(update: &Update) -> String {
+    let rank = format!(
+        "{} readings, {} coefficients, rank {} (singular values up to {:.2e} count as zero",
+        update.points, update.unknowns, update.rank, update.tolerance
+    );
+    let counted: Vec<f64> = update.singular_values.iter().copied().take(update.rank).collect();
+    let range = match (counted.first(), counted.last()) {
+        (Some(greatest), Some(least)) => {
+            format!("; those that count run from {greatest:.3e} to {least:.3e}).")
+        }
+        _ => ").".to_owned(),
+    };
+    rank + &range
+}
+
+fn figures(heading: &str, residuals: &[Residual]) -> String {
+    if residuals.is_empty() {
+        return String::new();
+    }
+    let row = |residual: &Residual| {
+        let (one, other) = (residual.before, residual.after);
+        let sizes = [one.max, one.mean, one.std, other.max, other.mean, other.std];
+        let sizes: String = sizes.iter().map(|size| format!("{:>9.2}", size * 1e3)).collect();
+        format!("{:<10}{:>7}{sizes}\n", residual.direction, residual.points)
+    };
+    let titles = ["max", "mean", "std", "max", "mean", "std"].map(|title| format!("{title:>9}")).concat();
+    format!(
+        "\n{heading}\n{:<10}{:>7}{:>27}{:>27}\n{:17}{titles}\n{}",
+        "direction",
+        "points",
+        "before",
+        "after",
+        "",
+        residuals.iter().map(row).collect::<String>()
+    )
+}
+
+fn unseen(update: &Update) -> String {
+    let [before, after] = update.leave_one_out;
+    let one_out = match (before, after) {
+        (Some(before), Some(after)) => format!(
+            "A reading that the model has not seen (leave one out): {:.2} um rms before, {:.2} um after.",
+            before * 1e3,
+            after * 1e3
+        ),
+        _ => "Some readings stand alone for a part of the model: nothing tests it there.".to_owned(),
+    };
+    let noise = match update.noise {
+        Some(noise) => format!(" Noise of a reading, from what is left: {:.2} um.", noise * 1e3),
+        None => " No reading is left over: the noise is not known, and nothing tells how good the fit is."
+            .to_owned(),
+    };
+    let expected = update.expected_change.map_or(String::new(), |expected| {
+        format!(" The readings let expect relative changes of {:.3} (standard deviation).", expected)
+    });
+    one_out + &noise + &expected
+}
+
+fn changes(update: &Update) -> String {
+    let stand = update.unknowns - update.changes.len();
+    if update.changes.is_empty() {
+        return "\nNo change pays: every coefficient stands.\n".to_owned();
+    }
+    let longest = update.changes.iter().map(|change| change.name.chars().count()).max().unwrap_or(0).max(11);
+    let title = format!(
+        "\n{:<longest$} {:>13} {:>13} {:>11} {:>10} {:>9}  unit\n",
+        "coefficient", "before", "after", "uncertainty", "change", "moves um"
+    );
+    let mut text = title;
+    text.extend(update.changes.iter().take(CHANGES).map(|change| row(change, longest)));
+    let more = update.changes.len().saturating_sub(CHANGES);
+    if more > 0 {
+        text += &format!("{more} smaller changes: --format json lists them.\n");
+    }
+    if stand > 0 {
+        text += &format!("The other {stand} coefficients stand as they were.\n");
+    }
+    if update.changes.iter().any(|change| !change.determined) && update.options.method != Method::Select {
+        text += &wrapped(
+            "* not determined by itself: see below. Its uncertainty is that of the part that the points show, or, of \
+             ridge, also of what they do not.",
+            "",
+            "  ",
+        );
+    }
+    text
+}
+
+fn row(change: &Change, longest: usize) -> String {
+    let uncertainty = change.uncertainty.map_or("-".to_owned(), |size| format!("{size:.2e}"));
+    let mark = if change.determined { "" } else { " *" };
+    let row = format!(
+        "{:<longest$} {:>13.5e} {:>13.5e} {uncertainty:>11} {:>9.2} % {:>7.2}  {}{mark}\n",
+        change.name,
+        change.before,
+        change.after,
+        change.change * 1e2,
+        change.effect * 1e3,
+        change.unit
+    );
+    match change.alternatives.as_slice() {
+        [] => row,
+        others => row + &wrapped(&format!("would do as well: {}", named(others)), "    ", "      "),
+    }
+}
+
+fn relations(relations: &[Relation]) -> String {
+    let (unseen, alike): (Vec<&Relation>, Vec<&Relation>) =
+        relations.iter().partition(|relation| relation.others.is_empty());
+    let mut text = String::new();
+    if !alike.is_empty() {
+        text += "\nCannot be told apart from these points\n";
+        for relation in alike {
+            let with = if relation.others.len() > 1 { "a sum of " } else { "" };
+            let line = format!("{} and {with}{}", relation.name, named(&relation.others));
+            text += &wrapped(&line, "   ", "      ");
+        }
+    }
+    if !unseen.is_empty() {
+        let names: Vec<String> = unseen.iter().map(|relation| relation.name.clone()).collect();
+        text += "\nNot seen from these points at all\n";
+        text += &wrapped(&names.join(", "), "   ", "   ");
+    }
+    text
+}
+
+fn named(names: &[String]) -> String {
+    let more = names.len().saturating_sub(OTHERS);
+    let named: Vec<&str> = names.iter().take(OTHERS).map(String::as_str).collect();
+    match more {
+        0 => named.join(", "),
+        _ => format!("{} and {more} more", named.join(", ")),
+    }
+}
+
+/// What was not moved, by reason.
+fn fixed(update: &Update) -> String {
+    let mut reasons: Vec<&str> = Vec::new();
+    for fixed in &update.fixed {
+        if !reasons.contains(&fixed.reason) {
+            reasons.push(fixed.reason);
+        }
+    }
+    if reasons.is_empty() {
+        return String::new();
+    }
+    let line = |reason: &&str| {
+        let all = update.fixed.iter().filter(|fixed| fixed.reason == *reason);
+        let names: Vec<String> = all.map(|fixed| fixed.name.clone()).collect();
+        wrapped(&format!("{}: {reason}", names.join(", ")), "   ", "      ")
+    };
+    format!("\nNot moved\n{}", reasons.iter().map(line).collect::<String>())
+}
+
+fn wrapped(text: &str, first: &str, others: &str) -> String {
+    let options = Options::new(WIDTH)
+        .initial_indent(first)
+        .subsequent_indent(others)
+        .word_separator(WordSeparator::AsciiSpace)
+        .word_splitter(WordSplitter::NoHyphenation)
+        .break_words(false);
+    fill(&plain(text), options) + "\n"
+}
+
+/// The text without the characters that would move a terminal's cursor, which file names may hold.
+fn plain(text: &str) -> String {
+    text.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect()
+}

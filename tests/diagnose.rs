@@ -115,8 +115,9 @@ mod shipped_recording {
         assert!((left / after - 1.0).abs() < 0.02, "{left} is left, {after} is said to be");
         let (_, predicted) = simulated(&[KNOWN, &recording], &folder.join("known"));
         let left = left_of_a_circle(&measured, &predicted, [275.0, 140.0]);
+        // Centre and radius are fitted to what is not held out; those of all rows leave less, but not much.
         let before = diagnosis["before"]["rms"].as_f64().unwrap();
-        assert!((left / before - 1.0).abs() < 0.02, "{left} was left, {before} is said to have been");
+        assert!(left < before && before < 1.05 * left, "{left} was left, {before} is said to have been");
         let points = text(&root().join("calibrations/postech-points.csv"));
         let compensated = done(abbe(&["compensate", improved], &points));
         let published = done(abbe(&["compensate", KNOWN], &points));

@@ -52,7 +52,7 @@ fn travel(courses: &[Course], axis: usize, observed: f64) -> Travel {
         .collect();
     steps.sort_by(f64::total_cmp);
     let step = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
-    let turned = |axis: &AxisStates| axis.direction.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    let turned = |axis: &AxisStates| axis.since_reversal.iter().filter(|since| **since == 0.0).count();
     let reversals = crate::number(axes().map(turned).sum());
     let between = if reversals > 0.0 { observed / reversals } else { 0.0 };
     Travel { low, high, step, moves: axes().any(|axis| axis.moves) && high > low, between }
@@ -202,7 +202,7 @@ pub(crate) fn richer(shape: &Shape, travels: &[Travel]) -> Vec<Shape> {
         Shape::Coupling { axis, degree, scale } => {
             (degree + 1..=HIGHEST_COUPLING).map(|degree| Shape::Coupling { axis, degree, scale }).collect()
         }
-        Shape::Backlash { axis, wind_up } if wind_up == 0.0 => wind_ups(axis, &travels[axis]),
+        Shape::Backlash { axis, wind_up: 0.0 } => wind_ups(axis, &travels[axis]),
         _ => Vec::new(),
     }
 }

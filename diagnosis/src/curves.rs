@@ -81,6 +81,9 @@ pub(crate) fn active(fitted: &Fitted) -> Option<(f64, f64)> {
     sorted.sort_by(f64::total_cmp);
     let median = *sorted.get(sorted.len() / 2)?;
     let height = fitted.coefficients.iter().map(|value| (value - median).abs()).fold(0.0, f64::max);
+    if height == 0.0 {
+        return None;
+    }
     let moved = |value: &f64| (value - median).abs() > ACTIVE * height;
     let places = fitted
         .coefficients
@@ -166,3 +169,6 @@ pub(crate) fn cost(study: &Study<'_>, fit: &Fit, always: usize, tries: Tries) ->
         .map(|fitted| price(study, &fitted.effect, fit.samples, tries.candidates, tries.waves));
     fit.samples * (fit.remaining / fit.samples).ln() + prices.sum::<f64>()
 }
+
+#[cfg(test)]
+mod tests;

@@ -210,10 +210,15 @@ impl<'c> Frame<'c> {
                 runs.iter().map(|known| if *known == run { 1.0 } else { 0.0 }).collect()
             }),
             Setting::Radius => radial(&|_| -1.0),
-            Setting::Eccentricity { direction } => {
+            Setting::Eccentricity { direction } | Setting::RunEccentricity { direction, .. } => {
                 let Kind::Radius { center, radius } = channel.kind else { return None };
                 let spokes = self.spokes(ballbar(scene, model, center, radius).0);
-                radial(&|row| -spokes[row][direction])
+                let runs = &study.scenes[scene].recording.run[self.rows.clone()];
+                let counts = |row: usize| match setting {
+                    Setting::RunEccentricity { run, .. } => runs[row] == run,
+                    _ => true,
+                };
+                radial(&|row| if counts(row) { -spokes[row][direction] } else { 0.0 })
             }
             Setting::Cosine => {
                 let travelled = |d: usize, row: usize| self.nominal[d][row] - self.start[d];
@@ -255,10 +260,8 @@ impl<'c> Frame<'c> {
         let mut sum = vec![0.0; self.len()];
         for fitted in model {
             let setting = fitted.effect.setting_of(scene);
-            if let (
-                Some(setting @ (Setting::Offset { .. } | Setting::RunOffset { .. } | Setting::Cosine)),
-                [coefficient],
-            ) = (setting, fitted.coefficients.as_slice())
+            if let (Some(setting), [coefficient]) = (setting, fitted.coefficients.as_slice())
+                && (setting.of_a_run() || matches!(setting, Setting::Offset { .. } | Setting::Cosine))
                 && let Some(column) = self.setting(study, scene, number, setting, model)
             {
                 for (sum, value) in sum.iter_mut().zip(column) {

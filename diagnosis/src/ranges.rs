@@ -35,8 +35,9 @@ pub(crate) fn range(study: &Study<'_>, travels: &[Travel], shape: &Shape) -> (f6
     }
 }
 
-/// What a shape has become whose parameter has run to the end of its range: a spike that does not fade before the axis turns
-/// again is a step, and play that is taken up between two rows is taken up at once.
+/// What stands for a shape whose parameter has run to the end of its range, beyond which it is not looked for: a step for a spike
+/// that fades over so much of the way to the next reversal, and play that is taken up at once for what is taken up between
+/// two rows. Each is the simpler of two names that the recording hardly tells apart.
 pub(crate) fn limit(study: &Study<'_>, travels: &[Travel], shape: &Shape) -> Option<Shape> {
     let (least, most) = range(study, travels, shape);
     match *shape {
@@ -88,3 +89,6 @@ pub(crate) fn shortest_step(study: &Study<'_>) -> f64 {
     let steps = study.scenes.iter().map(|scene| typical_step(&scene.recording.time));
     steps.fold(f64::INFINITY, f64::min)
 }
+
+#[cfg(test)]
+mod tests;

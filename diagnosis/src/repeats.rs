@@ -8,7 +8,7 @@ use crate::design::{Design, Regressor};
 use crate::diagnosis::Repeatability;
 use crate::fit;
 use crate::model::{Effect, Model};
-use crate::study::{Scene, Study};
+use crate::study::{Kind, Scene, Study};
 use crate::terms::Setting;
 
 /// How many times the noise the zeros of runs must scatter to be called so.
@@ -19,20 +19,54 @@ const TURNS: usize = 3;
 /// How far the zeros of the runs of one recording scatter.
 pub(crate) struct Scatter {
     pub(crate) scene: usize,
-    /// For each outside channel, for each run: its zero against the first run's.
+    /// For each zero, for each run: its value against the first run's.
     pub(crate) zeros: Vec<Vec<f64>>,
     pub(crate) runs: Vec<i64>,
     pub(crate) between: f64,
     pub(crate) within: f64,
 }
 
-/// A zero of every channel for every run but the first that is fitted.
+/// A zero of every channel for every run but the first that is fitted; of a ballbar the centre, which a part or a ball that was
+/// displaced takes along.
 pub(crate) fn run_zeros(scene: usize, known: &Scene<'_>, runs: &[i64]) -> Vec<Effect> {
-    let channels = (0..known.channels.len()).filter(|channel| known.channels[*channel].kind.outside());
-    channels
-        .flat_map(|channel| runs.iter().skip(1).map(move |run| (channel, *run)))
-        .map(|(channel, run)| Effect::setting(scene, Setting::RunOffset { channel, run }))
-        .collect()
+    let later = || runs.iter().skip(1);
+    let zeros =
+        zeros_of(known).flat_map(|zero| later().map(move |run| Effect::setting(scene, zero.of(*run))));
+    zeros.collect()
+}
+
+/// What a run may have of its own.
+#[derive(Clone, Copy)]
+enum Zero {
+    Offset { channel: usize },
+    Center { channel: usize, direction: usize },
+}
+
+impl Zero {
+    fn of(self, run: i64) -> Setting {
+        match self {
+            Self::Offset { channel } => Setting::RunOffset { channel, run },
+            Self::Center { direction, .. } => Setting::RunEccentricity { direction, run },
+        }
+    }
+
+    fn channel(self) -> usize {
+        match self {
+            Self::Offset { channel } | Self::Center { channel, .. } => channel,
+        }
+    }
+}
+
+/// The zeros of a recording's outside channels.
+fn zeros_of<'k>(known: &'k Scene<'_>) -> impl Iterator<Item = Zero> + 'k {
+    let channels = known.channels.iter().enumerate().filter(|(_, channel)| channel.kind.outside());
+    channels.flat_map(|(number, channel)| match channel.kind {
+        Kind::Radius { .. } => {
+            let leaning = (0..3).filter(|direction| known.leans[*direction]);
+            leaning.map(|direction| Zero::Center { channel: number, direction }).collect()
+        }
+        _ => vec![Zero::Offset { channel: number }],
+    })
 }
 
 /// Looks for recordings whose runs do not repeat under a model.
@@ -92,10 +126,8 @@ fn keep_loops(model: &Model, mut free: Model) -> Model {
 }
 
 fn measure(study: &Study<'_>, scene: usize, free: &Model, after: &Appraisal, runs: Vec<i64>) -> Scatter {
-    let channels = (0..study.scenes[scene].channels.len())
-        .filter(|channel| study.scenes[scene].channels[*channel].kind.outside());
-    let zero = |channel: usize, run: i64| -> f64 {
-        let wanted = Some(Setting::RunOffset { channel, run });
+    let value = |zero: Zero, run: i64| -> f64 {
+        let wanted = Some(zero.of(run));
         free.iter()
             .filter(|fitted| fitted.effect.setting_of(scene) == wanted)
             .flat_map(|fitted| &fitted.coefficients)
@@ -103,9 +135,9 @@ fn measure(study: &Study<'_>, scene: usize, free: &Model, after: &Appraisal, run
     };
     let mut zeros = Vec::new();
     let (mut between, mut within) = (0.0_f64, 0.0_f64);
-    for channel in channels {
-        let of_runs: Vec<f64> = runs.iter().map(|run| zero(channel, *run)).collect();
-        let noise = after.noises[scene][channel];
+    for zero in zeros_of(&study.scenes[scene]) {
+        let of_runs: Vec<f64> = runs.iter().map(|run| value(zero, *run)).collect();
+        let noise = after.noises[scene][zero.channel()];
         let spread = deviation(&of_runs);
         let size = noise.size();
         if spread * within.max(f64::MIN_POSITIVE) >= between * size {

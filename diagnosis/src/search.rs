@@ -59,6 +59,10 @@ pub(crate) struct Choice<'d> {
     design: &'d Design,
     /// Columns of settings that are always fitted.
     always: Vec<usize>,
+    /// The products beside free zeros alone.
+    zeroed: Swept,
+    /// Whether each regressor is a rotation of a body that should not turn, in rad for a coefficient of 1.
+    rotations: Vec<bool>,
     /// Regressors that may be chosen.
     open: Vec<usize>,
     prices: Vec<f64>,
@@ -92,7 +96,10 @@ impl<'d> Choice<'d> {
         let tries = crate::number(open.len().max(2));
         let price = |effect: &Effect| price(study, effect, samples, tries, waves);
         let prices = design.regressors.iter().map(|regressor| price(&regressor.effect)).collect();
-        Self { design, always: (0..fixed).collect(), open, prices, samples, products, resolution }
+        let zeroed = zeroed(design, &products, always);
+        let rotations = design.regressors.iter().map(|regressor| rotates(study, &regressor.effect)).collect();
+        let always = (0..fixed).collect();
+        Self { design, always, zeroed, rotations, open, prices, samples, products, resolution }
     }
 
     /// The best set found, by numbers of regressors.
@@ -254,6 +261,17 @@ impl<'d> Choice<'d> {
     fn impossible(&self, set: &Set, regressor: usize) -> bool {
         let effect = &self.design.regressors[regressor].effect;
         positive(&effect.shape) && set.swept.coefficient(self.design.first[regressor]) <= 0.0
+            || self.outgrows(set, regressor)
+    }
+
+    /// Whether an effect is far larger than all there is to explain, so that it only makes up for another one as large; or a
+    /// rotation that is no small error any more.
+    fn outgrows(&self, set: &Set, regressor: usize) -> bool {
+        let columns: Vec<usize> = self.design.columns(regressor).collect();
+        let coefficients: Vec<f64> = columns.iter().map(|column| set.swept.coefficient(*column)).collect();
+        let turn: f64 = coefficients.iter().map(|coefficient| coefficient.abs()).sum();
+        self.rotations[regressor] && turn > LARGEST_TURN
+            || self.zeroed.energy(&columns, &coefficients) > LARGE * LARGE * self.zeroed.remaining()
     }
 
     /// Tries every other effect in the place of each, until nothing becomes cheaper.
@@ -272,6 +290,43 @@ impl<'d> Choice<'d> {
         }
         set
     }
+}
+
+/// How many times as large as all there is to explain an effect may be.
+const LARGE: f64 = 5.0;
+/// Rad: the axes of machines stand and run truer than this by far, and first-order equations end here.
+const LARGEST_TURN: f64 = 0.02;
+
+/// Whether an effect turns a body, other than the angle of a rotary axis, by its coefficient.
+fn rotates(study: &Study<'_>, effect: &Effect) -> bool {
+    let turns = |motion: usize| study.equations.motions[motion].angular && !study.own.contains(&Some(motion));
+    let by_coefficient = !matches!(
+        effect.shape,
+        Shape::Lag { .. }
+            | Shape::Acceleration { .. }
+            | Shape::Expansion { .. }
+            | Shape::Growth { .. }
+            | Shape::Compliance { .. }
+            | Shape::Instrument(_)
+    );
+    by_coefficient && effect.motion().is_some_and(turns)
+}
+
+/// The products with the zeros of the channels swept in, which effects may shift as they like.
+fn zeroed(design: &Design, products: &DMatrix<f64>, always: usize) -> Swept {
+    let mut swept = Swept::new(products);
+    let is_zero = |number: &usize| {
+        matches!(
+            design.regressors[*number].effect.shape,
+            Shape::Instrument(Setting::Offset { .. } | Setting::Radius | Setting::RunOffset { .. })
+        )
+    };
+    for number in (0..always).filter(is_zero) {
+        design.columns(number).for_each(|column| {
+            swept.take(column);
+        });
+    }
+    swept
 }
 
 fn same(a: &[usize], b: &[usize]) -> bool {

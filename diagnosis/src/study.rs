@@ -373,7 +373,7 @@ const BLOCK_ROWS: usize = 8;
 /// One block in so many is held out where the recording names no runs for it.
 const HELD_OUT_EVERY: usize = 4;
 
-/// Runs cut into blocks; those of held-out runs, or else every fourth block, are held out.
+/// Runs cut into blocks; those of held-out runs, or else one of every four blocks, are held out.
 fn blocks(recording: &Recording) -> Vec<Block> {
     let runs = runs(&recording.run);
     let pieces = BLOCKS.div_ceil(runs.len().max(1)).max(2);
@@ -388,8 +388,11 @@ fn blocks(recording: &Recording) -> Vec<Block> {
         }));
     }
     if recording.holdout.is_none() && blocks.len() >= HELD_OUT_EVERY {
-        for block in blocks.iter_mut().skip(HELD_OUT_EVERY / 2).step_by(HELD_OUT_EVERY) {
-            block.held_out = true;
+        for (group, blocks) in blocks.chunks_mut(HELD_OUT_EVERY).enumerate() {
+            // Another one each time: a path that comes round as the blocks do would hold out the same quadrant for ever.
+            if let Some(block) = blocks.get_mut((HELD_OUT_EVERY / 2 + group) % HELD_OUT_EVERY) {
+                block.held_out = true;
+            }
         }
     }
     blocks

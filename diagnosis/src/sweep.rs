@@ -160,6 +160,19 @@ impl Swept {
         }
     }
 
+    /// The squared length of a sum of columns, none of them in, with these coefficients: as far as the swept ones leave it.
+    pub(crate) fn energy(&self, columns: &[usize], coefficients: &[f64]) -> f64 {
+        let scaled: Vec<(usize, f64)> = columns
+            .iter()
+            .zip(coefficients)
+            .map(|(column, c)| (*column, c * self.lengths[*column]))
+            .collect();
+        let products = scaled
+            .iter()
+            .flat_map(|(a, left)| scaled.iter().map(move |(b, right)| left * right * self.matrix[(*a, *b)]));
+        products.sum()
+    }
+
     /// The correlation of two columns, as far as the swept ones leave them.
     pub(crate) fn likeness(&self, a: usize, b: usize) -> f64 {
         let sizes = self.independence(a) * self.independence(b);

@@ -65,8 +65,24 @@ fn crowded(model: &Model, always: usize) -> Option<Vec<usize>> {
                 && frequency(effect).is_some_and(|frequency| (frequency / around - 1.0).abs() < NEAR)
         };
         let members: Vec<usize> = (always..model.len()).filter(near).collect();
-        (members.len() >= LINES).then_some(members)
+        (members.len() >= LINES).then(|| with_neighbours(model, always, members))
     })
+}
+
+/// The members of a band, and what stands as near to one of them as they to one another.
+fn with_neighbours(model: &Model, always: usize, mut members: Vec<usize>) -> Vec<usize> {
+    let near = |a: usize, b: usize| {
+        let pair = (frequency(&model[a].effect), frequency(&model[b].effect));
+        let close = matches!(pair, (Some(a), Some(b)) if (a / b - 1.0).abs() < NEAR);
+        close && model[a].effect.motion() == model[b].effect.motion()
+    };
+    while let Some(next) = (always..model.len())
+        .find(|other| !members.contains(other) && members.iter().any(|known| near(*other, *known)))
+    {
+        members.push(next);
+    }
+    members.sort_unstable();
+    members
 }
 
 /// A channel that moves smoothly.
@@ -218,3 +234,6 @@ pub(crate) fn suspect(study: &Study<'_>, found: &Found) -> Option<Suspect> {
     let fitted = Fitted { effect: others[best].clone(), coefficients };
     (share > COMES_NEAR).then_some(Suspect { fitted, share })
 }
+
+#[cfg(test)]
+mod tests;

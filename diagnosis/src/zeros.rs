@@ -4,13 +4,17 @@
 //! on themselves; and residuals in which every run has its own zero where runs do not repeat. Nothing of the machine is fitted
 //! here.
 
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DVector};
+
 use crate::appraisal::Appraisal;
 use crate::course::Course;
 use crate::design::{Design, Regressor};
 use crate::fit;
 use crate::model::{Model, Place};
 use crate::observations;
-use crate::study::Study;
+use crate::study::{Kind, Scene, Study};
 use crate::terms::{Setting, Shape};
 
 /// Fits the settings that are always free of every recording of which no row is fitted.
@@ -44,18 +48,53 @@ pub(crate) fn residuals(study: &Study<'_>, model: &Model) -> Vec<Vec<Vec<f64>>> 
     each.map(|(scene, known)| {
         let course = Course::new(study, scene, model);
         let mut residuals = observations::residuals(study, scene, model, &course);
-        let loose = model
-            .iter()
-            .any(|fitted| matches!(fitted.effect.setting_of(scene), Some(Setting::RunOffset { .. })));
+        let loose = model.iter().any(|fitted| fitted.effect.setting_of(scene).is_some_and(Setting::of_a_run));
         if loose {
             for block in known.blocks.iter().filter(|block| block.held_out) {
-                residuals.iter_mut().for_each(|residual| center(&mut residual[block.rows.clone()]));
+                for (channel, residual) in known.channels.iter().zip(&mut residuals) {
+                    let residual = &mut residual[block.rows.clone()];
+                    match channel.kind {
+                        Kind::Radius { center, .. } => recenter(study, known, &block.rows, center, residual),
+                        _ => center(residual),
+                    }
+                }
             }
         }
         residuals
     })
     .collect()
 }
+
+/// Takes out what a ballbar's centre of its own explains.
+fn recenter(
+    study: &Study<'_>,
+    known: &Scene<'_>,
+    rows: &Range<usize>,
+    center: [f64; 3],
+    residual: &mut [f64],
+) {
+    let programmed: Vec<&[f64]> =
+        known.given.programmed.iter().map(|position| &position[rows.clone()]).collect();
+    let nominal = study.interpreter.nominal_columns(&programmed);
+    let leaning: Vec<usize> = (0..3).filter(|direction| known.leans[*direction]).collect();
+    let spokes = DMatrix::from_fn(residual.len(), leaning.len(), |row, column| {
+        let spoke = [0, 1, 2].map(|d| nominal[d][row] - center[d]);
+        let length = spoke.iter().map(|part| part * part).sum::<f64>().sqrt();
+        if residual[row].is_finite() { spoke[leaning[column]] / length } else { 0.0 }
+    });
+    let seen = DVector::from_fn(
+        residual.len(),
+        |row, _| if residual[row].is_finite() { residual[row] } else { 0.0 },
+    );
+    // Too short an arc to tell a centre from: nothing is taken out.
+    if let Ok(shift) = spokes.clone().svd(true, true).solve(&seen, ARC) {
+        let explained = spokes * shift;
+        residual.iter_mut().zip(explained.iter()).for_each(|(left, explained)| *left -= explained);
+    }
+}
+
+/// The share of the longest direction below which an arc says nothing of the other.
+const ARC: f64 = 1e-6;
 
 /// Takes the mean out.
 pub(crate) fn center(values: &mut [f64]) {

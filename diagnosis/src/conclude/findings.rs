@@ -130,7 +130,7 @@ fn setting(found: &Found, number: usize, alternatives: Vec<Alternative>) -> Opti
     };
     let plain = |unit: &str| estimate(value, (value - half, value + half), unit);
     let parameter = match setting {
-        Setting::Offset { .. } | Setting::RunOffset { .. } => return None,
+        Setting::Offset { .. } | Setting::RunOffset { .. } | Setting::RunEccentricity { .. } => return None,
         Setting::Eccentricity { direction } => Parameter::fitted(["x", "y", "z"][*direction], plain("mm")),
         Setting::Radius => Parameter::fitted("offset", plain("mm")),
         Setting::Clock => Parameter::fitted("offset", plain("s")),

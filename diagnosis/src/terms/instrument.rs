@@ -16,13 +16,20 @@ pub(crate) enum Setting {
     Offset { channel: usize },
     /// The zero of one channel in one run, where runs do not repeat.
     RunOffset { channel: usize, run: i64 },
+    /// The centre of a ballbar in one run against that of all, in one direction, mm, where runs do not repeat.
+    RunEccentricity { direction: usize, run: i64 },
 }
 
 impl Setting {
+    /// Whether it is of one run alone.
+    pub(crate) fn of_a_run(self) -> bool {
+        matches!(self, Self::RunOffset { .. } | Self::RunEccentricity { .. })
+    }
+
     /// The setting's name in reports.
     pub(crate) fn name(self) -> &'static str {
         match self {
-            Self::Eccentricity { .. } => "eccentricity",
+            Self::Eccentricity { .. } | Self::RunEccentricity { .. } => "eccentricity",
             Self::Radius => "radius",
             Self::Cosine => "cosine",
             Self::Clock => "clock",

@@ -78,7 +78,7 @@ fn emps_yields_to_pulses_in_the_documented_direction() {
     assert!(yields > 0.0 && yields < whole, "{yields} mm, {whole} mm from the control law");
     // The drive's voltage is the answer of the loop to its following error, hence of the other sign.
     assert!(answers < 0.0, "the drive pushes against the following error: {answers} mm");
-    // Half of the time one volt out of five is in, so that pulses alone leave 2.5 V / (kp kv) about their mean.
+    // The pulses are 5 V half of the time: left alone they would make 2.5 V / (kp kv) about their mean.
     assert!(held_out(&found) < 2.5 * whole, "{} mm are left", held_out(&found));
     only(
         &found,
@@ -121,7 +121,7 @@ fn target_drive_reverses_as_its_owner_reports() {
     let range = straightened.iter().copied().fold(f64::MIN, f64::max)
         - straightened.iter().copied().fold(f64::MAX, f64::min);
     assert!((range - MEAN_RANGE).abs() < REPEATABILITY, "{range} mm, the owner has {MEAN_RANGE} mm");
-    // R of ISO 230-2 is four standard deviations of the worst station and its change from forwards to backwards.
+    // The owner's R lies below his B, so it is that of one direction: four standard deviations at the worst station.
     assert!(held_out(&found) < REPEATABILITY / 4.0, "{} mm are left", held_out(&found));
     let distances = [
         off("lost motion, of the mean reversal 25.37 um", backlash, "lost_motion", MEAN_REVERSAL),

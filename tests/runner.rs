@@ -25,6 +25,7 @@ mod macro_errors;
 mod oracle;
 mod published_table;
 mod random;
+mod real_recordings;
 mod round_trips;
 mod shipped;
 mod simulate;

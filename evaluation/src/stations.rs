@@ -1,0 +1,236 @@
+//! Stations: where the axes stood on straight lines, and from which side they came.
+//!
+//! In: a course. Out: the straight lines of its path, each with the readings at rest and the direction of every approach. A
+//! run is taken apart into places; a place where the axes stood long enough is a station, the others are passed in motion.
+//! The first place of a run has no approach: nothing tells how the axis came there.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use crate::circles::PathTrace;
+use crate::course::{Course, cell, dot, range};
+
+/// How long an axis stands at a station at least, s: rows that follow each other faster, each with another position, were read
+/// in motion. A reading at rest waits for the axis to settle.
+const REST: f64 = 0.5;
+
+/// How many tolerances a programmed place may lie beside its line: the direction comes from its first two places.
+const BESIDE: f64 = 5.0;
+
+/// Stands that are closer than this share of the length of their line are at one target: a step counter in place of a program
+/// differs from stand to stand. Each deviation counts from its own command.
+const SAME_TARGET: f64 = 1e-4;
+
+/// The most lines that are told apart.
+const MOST_LINES: usize = 500;
+
+/// A line that is passed in motion is told of where it is longer than this share of the range of its axis.
+const WORTH_TELLING: f64 = 0.2;
+
+/// The lines of a recording.
+#[derive(Default)]
+pub(crate) struct Travelled {
+    /// The lines with stations, in order.
+    pub(crate) lines: Vec<Line>,
+    /// The axes that moved alone and stopped nowhere, with the time between rows, s.
+    pub(crate) in_motion: Vec<(usize, f64)>,
+    /// Whether there were more lines than are told apart.
+    pub(crate) overfull: bool,
+}
+
+/// A straight line in the positions of the axes.
+pub(crate) struct Line {
+    /// The axes that move along it.
+    pub(crate) axes: Vec<usize>,
+    /// How each axis of the machine moves for each mm or rad along it; the first of them in its positive sense.
+    pub(crate) direction: Vec<f64>,
+    /// The place of the line nearest to all zeros.
+    pub(crate) foot: Vec<f64>,
+    /// The readings at rest, in order of time.
+    pub(crate) approaches: Vec<Approach>,
+}
+
+/// A stand at a station after an approach along the line.
+pub(crate) struct Approach {
+    /// Where on the line.
+    pub(crate) at: f64,
+    /// Whether it came in the positive direction.
+    pub(crate) up: bool,
+    /// The rows of the later half of the stand: what is read there.
+    pub(crate) rows: Range<usize>,
+    /// Whether the stand has one row only.
+    pub(crate) single: bool,
+}
+
+/// A place, and the rows in which the program stays there.
+struct Stop {
+    position: Vec<f64>,
+    rows: Range<usize>,
+    rested: bool,
+}
+
+/// The straight lines of a recording; runs that are circles have none.
+pub(crate) fn travelled(course: &Course<'_>, circles: &[PathTrace]) -> Travelled {
+    let mut travelled = Travelled::default();
+    let mut in_motion = BTreeSet::new();
+    for block in course.blocks() {
+        if circles.iter().any(|trace| trace.rows.iter().any(|row| block.contains(row))) {
+            continue;
+        }
+        let stops = stops(course, block);
+        for piece in pieces(course, &stops) {
+            travelled.take(course, &stops, piece, &mut in_motion);
+        }
+    }
+    let with_stations: BTreeSet<&Vec<usize>> = travelled.lines.iter().map(|line| &line.axes).collect();
+    in_motion.retain(|axis| !with_stations.contains(&vec![*axis]));
+    let step = typical_step(&course.recording.time);
+    travelled.in_motion = in_motion.into_iter().map(|axis| (axis, step)).collect();
+    travelled
+}
+
+impl Travelled {
+    /// Takes what one straight piece shows.
+    fn take(&mut self, course: &Course<'_>, stops: &[Stop], piece: Piece, in_motion: &mut BTreeSet<usize>) {
+        let Some(members) = stops.get(piece.stops.clone()) else { return };
+        let approaches = approaches(members, &piece);
+        if approaches.is_empty() {
+            in_motion.extend(alone_in_motion(course, members, &piece));
+            return;
+        }
+        let known = self.lines.iter_mut().find(|line| line.holds(course, members, &piece));
+        if let Some(line) = known {
+            line.approaches.extend(approaches);
+        } else if self.lines.len() < MOST_LINES {
+            let foot = members.first().map(|stop| foot(&stop.position, &piece.direction)).unwrap_or_default();
+            self.lines.push(Line { axes: piece.axes, direction: piece.direction, foot, approaches });
+        } else {
+            self.overfull = true;
+        }
+    }
+}
+
+impl Line {
+    /// Whether a piece lies on this line.
+    fn holds(&self, course: &Course<'_>, members: &[Stop], piece: &Piece) -> bool {
+        self.axes == piece.axes
+            && [members.first(), members.last()]
+                .into_iter()
+                .flatten()
+                .all(|stop| beside(course, &foot(&stop.position, &self.direction), &self.foot))
+    }
+
+    /// How far apart two targets are at least.
+    pub(crate) fn tolerance(&self) -> f64 {
+        let places: Vec<f64> = self.approaches.iter().map(|approach| approach.at).collect();
+        (SAME_TARGET * range(&places)).max(f64::MIN_POSITIVE)
+    }
+}
+
+/// The places of a run, one after another.
+fn stops(course: &Course<'_>, block: Range<usize>) -> Vec<Stop> {
+    let mut stops: Vec<Stop> = Vec::new();
+    for row in block.filter(|row| course.complete(*row)) {
+        let position = course.position(row);
+        match stops.last_mut().filter(|stop| same(course, &stop.position, &position)) {
+            Some(stop) => stop.rows.end = row + 1,
+            None => stops.push(Stop { position, rows: row..row + 1, rested: false }),
+        }
+    }
+    let time = |row: usize| cell(&course.recording.time, row);
+    let starts: Vec<f64> = stops.iter().map(|stop| time(stop.rows.start)).collect();
+    for (number, stop) in stops.iter_mut().enumerate() {
+        let own = time(stop.rows.start);
+        let stood = time(stop.rows.end - 1) - own;
+        let lasted =
+            match (starts.get(number + 1), number.checked_sub(1).and_then(|before| starts.get(before))) {
+                (Some(next), _) => next - own,
+                // The last one of a run: what the rows show, or what they suggest.
+                (None, Some(before)) if stop.rows.len() == 1 => own - before,
+                (None, _) => stood,
+            };
+        stop.rested = lasted >= REST;
+    }
+    stops
+}
+
+fn same(course: &Course<'_>, one: &[f64], other: &[f64]) -> bool {
+    let pairs = one.iter().zip(other).zip(&course.tolerance);
+    pairs.into_iter().all(|((one, other), tolerance)| (one - other).abs() <= *tolerance)
+}
+
+/// Whether two feet are of one line. The first two places give the direction of a diagonal only as well as they are rounded,
+/// and every axis has its part of that.
+fn beside(course: &Course<'_>, one: &[f64], other: &[f64]) -> bool {
+    let widest = course.tolerance.iter().copied().fold(0.0, f64::max);
+    one.iter().zip(other).all(|(one, other)| (one - other).abs() <= BESIDE * widest)
+}
+
+/// A straight piece of a path.
+struct Piece {
+    /// Its places, by their numbers.
+    stops: Range<usize>,
+    axes: Vec<usize>,
+    direction: Vec<f64>,
+}
+
+/// The longest straight pieces, one after another; the corner between two belongs to both.
+fn pieces(course: &Course<'_>, stops: &[Stop]) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    let mut start = 0;
+    while let (Some(first), Some(second)) = (stops.get(start), stops.get(start + 1)) {
+        let (axes, direction) = direction(course, &first.position, &second.position);
+        let own = foot(&first.position, &direction);
+        let mut end = start + 2;
+        while stops.get(end).is_some_and(|next| beside(course, &foot(&next.position, &direction), &own)) {
+            end += 1;
+        }
+        pieces.push(Piece { stops: start..end, axes, direction });
+        start = end - 1;
+    }
+    pieces
+}
+
+/// The axes that move between two places, and the unit vector along which they do.
+fn direction(course: &Course<'_>, from: &[f64], to: &[f64]) -> (Vec<usize>, Vec<f64>) {
+    let steps = from.iter().zip(to).zip(&course.tolerance);
+    let step: Vec<f64> = steps
+        .map(|((from, to), tolerance)| if (to - from).abs() > *tolerance { to - from } else { 0.0 })
+        .collect();
+    let length = dot(&step, &step).sqrt();
+    let sign = step.iter().find(|part| **part != 0.0).map_or(1.0, |part| part.signum());
+    let axes = (0..step.len()).filter(|axis| cell(&step, *axis) != 0.0).collect();
+    (axes, step.iter().map(|part| sign * part / length).collect())
+}
+
+fn foot(position: &[f64], direction: &[f64]) -> Vec<f64> {
+    let along = dot(position, direction);
+    position.iter().zip(direction).map(|(position, direction)| position - along * direction).collect()
+}
+
+/// The stands on a piece, but for the first place, whose approach is not along it.
+fn approaches(members: &[Stop], piece: &Piece) -> Vec<Approach> {
+    let pairs = members.iter().zip(members.iter().skip(1));
+    let approach = |(before, stop): (&Stop, &Stop)| {
+        let (from, at) = (dot(&before.position, &piece.direction), dot(&stop.position, &piece.direction));
+        let rows = &stop.rows;
+        let rows = rows.start + rows.len() / 2..rows.end;
+        stop.rested.then(|| Approach { at, up: at > from, rows, single: stop.rows.len() == 1 })
+    };
+    pairs.filter_map(approach).collect()
+}
+
+/// The axis that moves alone and stops nowhere, where that is a good part of its way.
+fn alone_in_motion(course: &Course<'_>, members: &[Stop], piece: &Piece) -> Option<usize> {
+    let [axis] = piece.axes.as_slice() else { return None };
+    let places: Vec<f64> = members.iter().map(|stop| cell(&stop.position, *axis)).collect();
+    let whole = course.positions.get(*axis).map_or(0.0, |column| range(column));
+    (range(&places) > WORTH_TELLING * whole).then_some(*axis)
+}
+
+/// The median step between rows, s.
+fn typical_step(time: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = time.iter().zip(time.iter().skip(1)).map(|(one, next)| next - one).collect();
+    steps.sort_by(f64::total_cmp);
+    cell(&steps, steps.len() / 2)
+}

@@ -12,9 +12,9 @@ use model_dsl::program::Interpreter;
 use crate::Inputs;
 use crate::figure::Sensor;
 
-/// Two programmed positions of an axis that are closer than this share of its range in the recording are one: the rounding of
-/// tables.
-const ROUNDING: f64 = 2e-6;
+/// Two programmed positions of an axis that are closer than this share of its range in the recording are one place: tables are
+/// rounded, and a step counter in place of a program flickers. Each deviation counts from its own command all the same.
+const SAME_PLACE: f64 = 1e-4;
 
 /// The least tolerance of a programmed position, mm or rad.
 const LEAST: f64 = 1e-9;
@@ -49,7 +49,7 @@ impl<'c> Course<'c> {
         }
         let positions: Vec<Vec<f64>> =
             axes.map(|axis| command(axis).cloned().unwrap_or_else(|| vec![0.0; rows])).collect();
-        let tolerance = positions.iter().map(|column| (ROUNDING * range(column)).max(LEAST)).collect();
+        let tolerance = positions.iter().map(|column| (SAME_PLACE * range(column)).max(LEAST)).collect();
         let defaults = equations.constants.iter().map(|constant| constant.default);
         let absolute = calibration.is_some() || defaults.clone().all(|default| default.is_some());
         let defaults: Vec<f64> = defaults.map(Option::unwrap_or_default).collect();

@@ -14,11 +14,7 @@ use crate::course::{Course, cell, dot, range};
 /// in motion. A reading at rest waits for the axis to settle.
 const REST: f64 = 0.5;
 
-/// How many tolerances a programmed place may lie beside its line: the direction comes from its first two places.
-const BESIDE: f64 = 5.0;
-
-/// Stands that are closer than this share of the length of their line are at one target: a step counter in place of a program
-/// differs from stand to stand. Each deviation counts from its own command.
+/// Stands that are closer than this share of the length of their line are at one target.
 const SAME_TARGET: f64 = 1e-4;
 
 /// The most lines that are told apart.
@@ -150,6 +146,8 @@ fn stops(course: &Course<'_>, block: Range<usize>) -> Vec<Stop> {
                 (None, _) => stood,
             };
         stop.rested = lasted >= REST;
+        // The way into a place may have begun within its tolerance.
+        stop.position = course.position(stop.rows.end - 1);
     }
     stops
 }
@@ -163,7 +161,7 @@ fn same(course: &Course<'_>, one: &[f64], other: &[f64]) -> bool {
 /// and every axis has its part of that.
 fn beside(course: &Course<'_>, one: &[f64], other: &[f64]) -> bool {
     let widest = course.tolerance.iter().copied().fold(0.0, f64::max);
-    one.iter().zip(other).all(|(one, other)| (one - other).abs() <= BESIDE * widest)
+    one.iter().zip(other).all(|(one, other)| (one - other).abs() <= widest)
 }
 
 /// A straight piece of a path.

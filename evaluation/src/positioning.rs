@@ -385,5 +385,11 @@ fn notes(line: &Line, targets: &[TargetFigures], unit: Unit) -> Vec<String> {
             "Stations were read once each: the recording does not show that the axes stood while they were read.".to_owned(),
         );
     }
+    if line.assumed() {
+        notes.push(
+            "The overrun at the ends is not in the recording: the first place of a run, and a place read twice where the motion turns, are taken to be approached as the cycle of ISO 230-2 has it."
+                .to_owned(),
+        );
+    }
     notes
 }

@@ -2,7 +2,10 @@
 //!
 //! In: a course. Out: the straight lines of its path, each with the readings at rest and the direction of every approach. A
 //! run is taken apart into places; a place where the axes stood long enough is a station, the others are passed in motion.
-//! The first place of a run has no approach: nothing tells how the axis came there.
+//! The direction of an approach is that of the motion before it. Recordings of stations alone lack the overrun at the ends
+//! of a cycle: [`cycle`] finds what stands for it.
+
+mod cycle;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -46,6 +49,13 @@ pub(crate) struct Line {
     pub(crate) approaches: Vec<Approach>,
 }
 
+impl Line {
+    /// Whether an overrun that the recording lacks was taken for granted.
+    pub(crate) fn assumed(&self) -> bool {
+        self.approaches.iter().any(|approach| approach.assumed)
+    }
+}
+
 /// A stand at a station after an approach along the line.
 pub(crate) struct Approach {
     /// Where on the line.
@@ -56,6 +66,8 @@ pub(crate) struct Approach {
     pub(crate) rows: Range<usize>,
     /// Whether the stand has one row only.
     pub(crate) single: bool,
+    /// Whether the way there is not in the recording, but what a cycle has.
+    pub(crate) assumed: bool,
 }
 
 /// A place, and the rows in which the program stays there.
@@ -63,17 +75,23 @@ struct Stop {
     position: Vec<f64>,
     rows: Range<usize>,
     rested: bool,
+    /// Whether its rows are two stands, with an overrun between them that was not recorded.
+    twice: bool,
+    /// Whether it is the first of a run and was approached in the direction of the way on, by an overrun that was not recorded.
+    entered: bool,
 }
 
 /// The straight lines of a recording; runs that are circles have none.
 pub(crate) fn travelled(course: &Course<'_>, circles: &[PathTrace]) -> Travelled {
     let mut travelled = Travelled::default();
     let mut in_motion = BTreeSet::new();
-    for block in course.blocks() {
-        if circles.iter().any(|trace| trace.rows.iter().any(|row| block.contains(row))) {
-            continue;
-        }
-        let stops = stops(course, block);
+    let straight = |block: &Range<usize>| {
+        !circles.iter().any(|trace| trace.rows.first().is_some_and(|row| block.contains(row)))
+    };
+    let mut runs: Vec<Vec<Stop>> =
+        course.blocks().into_iter().filter(straight).map(|block| stops(course, block)).collect();
+    cycle::complete(course, &mut runs);
+    for stops in runs {
         for piece in pieces(course, &stops) {
             travelled.take(course, &stops, piece, &mut in_motion);
         }
@@ -130,7 +148,9 @@ fn stops(course: &Course<'_>, block: Range<usize>) -> Vec<Stop> {
         let position = course.position(row);
         match stops.last_mut().filter(|stop| same(course, &stop.position, &position)) {
             Some(stop) => stop.rows.end = row + 1,
-            None => stops.push(Stop { position, rows: row..row + 1, rested: false }),
+            None => {
+                stops.push(Stop { position, rows: row..row + 1, rested: false, twice: false, entered: false })
+            }
         }
     }
     let time = |row: usize| cell(&course.recording.time, row);
@@ -206,16 +226,34 @@ fn foot(position: &[f64], direction: &[f64]) -> Vec<f64> {
     position.iter().zip(direction).map(|(position, direction)| position - along * direction).collect()
 }
 
-/// The stands on a piece, but for the first place, whose approach is not along it.
+/// The stands on a piece; that at its first place only where the way there is known.
 fn approaches(members: &[Stop], piece: &Piece) -> Vec<Approach> {
-    let pairs = members.iter().zip(members.iter().skip(1));
-    let approach = |(before, stop): (&Stop, &Stop)| {
-        let (from, at) = (dot(&before.position, &piece.direction), dot(&stop.position, &piece.direction));
-        let rows = &stop.rows;
-        let rows = rows.start + rows.len() / 2..rows.end;
-        stop.rested.then(|| Approach { at, up: at > from, rows, single: stop.rows.len() == 1 })
-    };
-    pairs.filter_map(approach).collect()
+    let at = |stop: &Stop| dot(&stop.position, &piece.direction);
+    let mut approaches = Vec::new();
+    for (number, stop) in members.iter().enumerate().filter(|(_, stop)| stop.rested) {
+        let (before, after) =
+            (number.checked_sub(1).and_then(|number| members.get(number)), members.get(number + 1));
+        let Range { start, end } = stop.rows;
+        let middle = if stop.twice { start + (end - start) / 2 } else { end };
+        if let Some(before) = before {
+            approaches.push(Approach::new(at(stop), at(stop) > at(before), start..middle, false));
+        }
+        if let Some(after) = after.filter(|_| stop.twice) {
+            approaches.push(Approach::new(at(stop), at(after) > at(stop), middle..end, true));
+        }
+        if let Some(after) = after.filter(|_| before.is_none() && stop.entered && piece.stops.start == 0) {
+            approaches.push(Approach::new(at(stop), at(after) > at(stop), start..end, true));
+        }
+    }
+    approaches
+}
+
+impl Approach {
+    /// The later half of a stand's rows counts.
+    fn new(at: f64, up: bool, stand: Range<usize>, assumed: bool) -> Self {
+        let rows = stand.start + stand.len() / 2..stand.end;
+        Self { at, up, rows, single: stand.len() == 1, assumed }
+    }
 }
 
 /// The axis that moves alone and stops nowhere, where that is a good part of its way.

@@ -83,7 +83,7 @@ fn targets(line: &Positioning) -> String {
     let ((fine, scale), (coarse, places)) = (line.unit.fine(), line.unit.coarse());
     let titles = ["n up", "down", "mean up", "down", "both", "B", "s up", "down", "R up", "down", "R"];
     let widths = [6, 6, 9, 8, 8, 8, 7, 7, 8, 8, 8];
-    let head: String = titles.iter().zip(widths).map(|(title, width)| format!("{title:>width$}")).collect();
+    let head: String = titles.iter().zip(widths).map(|(title, width)| right(title, width)).collect();
     let mut text = format!("{:>12}{head}\n", format!("target {coarse}"));
     let row = |target: &TargetFigures| {
         let counts = [target.up, target.down].map(|side| side.map_or(0, |side| side.readings).to_string());
@@ -100,7 +100,7 @@ fn targets(line: &Positioning) -> String {
             target.repeatability(),
         ];
         let numbers = numbers.map(|number| number.map_or("-".to_owned(), |number| short(number * scale)));
-        let cells = counts.iter().chain(&numbers).zip(widths).map(|(cell, width)| format!("{cell:>width$}"));
+        let cells = counts.iter().chain(&numbers).zip(widths).map(|(cell, width)| right(cell, width));
         format!("{:>12.4}{}\n", target.position * places, cells.collect::<String>())
     };
     text.extend(line.targets.iter().take(ROWS).map(row));
@@ -168,11 +168,11 @@ fn circle(circle: &Circle) -> String {
     }
     let titles = ["run", "sense", "readings", "G", "G LS", "F max", "F min", "radius", "centre", ""];
     let widths = [6, 7, 10, 9, 9, 9, 9, 9, 10, 10];
-    let head: String = titles.iter().zip(widths).map(|(title, width)| format!("{title:>width$}")).collect();
+    let head: String = titles.iter().zip(widths).map(|(title, width)| right(title, width)).collect();
     text += &format!("{head}\n");
     let row = |trace: &Trace| {
         let first = [trace.run.to_string(), trace.sense.name().to_owned(), trace.points.len().to_string()];
-        let start: String = first.iter().zip(widths).map(|(cell, width)| format!("{cell:>width$}")).collect();
+        let start: String = first.iter().zip(widths).map(|(cell, width)| right(cell, width)).collect();
         match &trace.figures {
             Err(reason) => format!("{start}   {reason}\n"),
             Ok(own) => {
@@ -182,7 +182,7 @@ fn circle(circle: &Circle) -> String {
                 let center = [0, 1].map(|part| own.center.and_then(|center| center.get(part).copied()));
                 let cells = numbers.chain(center).zip(widths.into_iter().skip(3)).map(|(number, width)| {
                     let cell = number.map_or("-".to_owned(), |number| short(number * 1e3));
-                    format!("{cell:>width$}")
+                    right(&cell, width)
                 });
                 format!("{start}{}\n", cells.collect::<String>())
             }
@@ -201,6 +201,11 @@ fn listed(places: &[String]) -> String {
         0 => some.join(", "),
         more => format!("{} and {more} more", some.join(", ")),
     }
+}
+
+/// A cell of a table: to the right, and never against the one before it.
+fn right(cell: &str, width: usize) -> String {
+    format!(" {cell:>less$}", less = width - 1)
 }
 
 /// Two decimals, without a sign for what rounds to nothing.

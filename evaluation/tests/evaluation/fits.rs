@@ -69,15 +69,12 @@ fn the_zone_is_the_narrowest_that_a_search_finds() {
         let mut draw = || source.normal();
         let [a, b, c] = [draw(), draw(), draw()].map(|part| 0.01 * part);
         let spread: Vec<f64> = (0..60).map(|_| 0.004 * draw()).collect();
-        let mut number = 0;
         let mut all = points(60, |_| 100.0);
-        for point in &mut all {
+        for ((point, spread), number) in all.iter_mut().zip(spread).zip(0_u32..) {
             let angle = TAU * f64::from(number) / 60.0;
-            let more = a * (2.0 * angle).cos() + b * (3.0 * angle).sin() + c * angle.sin().signum();
-            let index = usize::try_from(number).unwrap();
-            let radial = more + spread[index];
+            let lobes = a * (2.0 * angle).cos() + b * (3.0 * angle).sin() + c * angle.sin().signum();
+            let radial = lobes + spread;
             *point = [point[0] + radial * angle.cos(), point[1] + radial * angle.sin()];
-            number += 1;
         }
         let round = least_squares(&all).unwrap();
         let zone = minimum_zone(&all, round.center);

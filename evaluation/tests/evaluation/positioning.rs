@@ -1,6 +1,6 @@
 //! Positioning of machines with known errors.
 
-use diagnosis::recording::{Instrument, Line};
+use diagnosis::recording::{Instrument, Line, Recording};
 use evaluation::{Kind, Unit, Zero};
 
 use crate::bench::{Bench, Program, figure, near, reason, value};
@@ -208,25 +208,28 @@ fn a_rotary_axis_is_evaluated_in_angles() {
     near(value(&line.figures, "M"), 0.0, 1e-9);
 }
 
+/// What is done to a recording.
+type Change = fn(&mut Recording);
+
 #[test]
 fn what_cannot_be_given_says_why() {
     let bench = Bench::new("FXYZ", "");
     let program = Program::stations(&targets(5, 25.0), 4.0, 5, |at| vec![at, 0.0, 0.0]);
     let recording = bench.positions(&program, 0.0, 1);
-    let because = |change: &dyn Fn(&mut diagnosis::recording::Recording)| {
+    let because = |change: Change| {
         let mut changed = recording.clone();
         change(&mut changed);
         let evaluation = bench.evaluate(&changed);
         assert!(!evaluation.gives_any(), "{evaluation:?}");
         evaluation.not_given[0].because.clone()
     };
-    let cases: [(&str, &dyn Fn(&mut diagnosis::recording::Recording)); 6] = [
-        ("`command.<axis>`", &|one| one.axes.iter_mut().for_each(|axis| axis.command = None)),
-        ("in motion", &|one| one.time.iter_mut().for_each(|time| *time /= 100.0)),
-        ("`measured.x` is missing", &|one| one.measured[0] = None),
-        ("nothing was read", &|one| one.measured[0].as_mut().unwrap().fill(f64::NAN)),
-        ("points of a surface", &|one| one.instrument = Instrument::Probe),
-        ("reads across", &|one| one.instrument = Instrument::Straightness(Line::default())),
+    let cases: [(&str, Change); 6] = [
+        ("`command.<axis>`", |one| one.axes.iter_mut().for_each(|axis| axis.command = None)),
+        ("in motion", |one| one.time.iter_mut().for_each(|time| *time /= 100.0)),
+        ("`measured.x` is missing", |one| one.measured[0] = None),
+        ("nothing was read", |one| one.measured[0].as_mut().unwrap().fill(f64::NAN)),
+        ("points of a surface", |one| one.instrument = Instrument::Probe),
+        ("reads across", |one| one.instrument = Instrument::Straightness(Line::default())),
     ];
     for (part, change) in cases {
         let said = because(change);
@@ -237,7 +240,7 @@ fn what_cannot_be_given_says_why() {
 #[test]
 fn nothing_at_all_is_no_reason_to_stop() {
     let bench = Bench::new("FXYZ", "");
-    let empty = diagnosis::recording::Recording::default();
+    let empty = Recording::default();
     assert!(!bench.evaluate(&empty).gives_any());
     let program = Program::stations(&[0.0], 4.0, 1, |at| vec![at, 0.0, 0.0]);
     let mut recording = bench.positions(&program, 0.0, 1);
@@ -252,4 +255,46 @@ fn nothing_at_all_is_no_reason_to_stop() {
         .flatten()
         .for_each(|cell| *cell = 1e300);
     assert!(!bench.evaluate(&recording).gives_any());
+}
+
+/// The rows of a cycle without those of the overrun, as an instrument writes them that is triggered at stations.
+fn stations_only(program: &Program, recording: &Recording, ends: [f64; 2]) -> Recording {
+    let rows: Vec<usize> =
+        (0..program.time.len()).filter(|row| !ends.contains(&program.positions[0][*row])).collect();
+    let take = |column: &Vec<f64>| rows.iter().map(|row| column[*row]).collect::<Vec<f64>>();
+    let mut only = recording.clone();
+    only.time = take(&only.time);
+    only.run = rows.iter().map(|row| recording.run[*row]).collect();
+    only.axes.iter_mut().for_each(|axis| axis.command = axis.command.as_ref().map(take));
+    only.measured = only.measured.map(|column| column.as_ref().map(take));
+    only
+}
+
+#[test]
+fn an_overrun_that_was_not_recorded_is_seen_from_what_was() {
+    let bench = Bench::new("FX", SCALE_AND_PLAY);
+    let program = Program::stations(&targets(6, 40.0), 4.0, 5, |at| vec![at]);
+    let mut recording = stations_only(&program, &bench.positions(&program, 0.0, 1), [-4.0, 204.0]);
+    for one_way in [false, true] {
+        if one_way {
+            // Every way a run of its own, up and down.
+            recording.run = (0..60).map(|row| row / 6 + 1).collect();
+        }
+        let line = bench.evaluate(&recording).positioning.remove(0);
+        for (symbol, closed) in CLOSED {
+            near(value(&line.figures, symbol), closed, 1e-6);
+        }
+        let rests = figure(&line.figures, "A").rests;
+        assert_eq!((rests.targets, rests.runs), (Some(6), [5, 5]));
+        assert!(line.notes.iter().any(|note| note.contains("overrun")), "{:?}", line.notes);
+    }
+    // Where all runs go one way nothing tells how their first place was approached.
+    let up = Program::stations(&targets(6, 40.0), 4.0, 5, |at| vec![at]);
+    let mut upwards = Program::default();
+    for row in (0..up.time.len()).filter(|row| (1..7).contains(&(row % 15))) {
+        upwards.row(4.0, up.run[row], &[up.positions[0][row]]);
+    }
+    let line = bench.evaluate(&bench.positions(&upwards, 0.0, 1)).positioning.remove(0);
+    assert_eq!(line.targets.len(), 5);
+    near(value(&line.figures, "E_up"), 16.0, 1e-6);
 }

@@ -1,0 +1,82 @@
+//! Cycles of which only the stations were recorded.
+//!
+//! In: the places of every run. Out: the same, with marks where an overrun must have been that the recording lacks.
+//!
+//! An instrument that is triggered at stations writes no row at the overrun: the station at the end of the travel is read
+//! twice, once from each side, and its two readings follow each other. Where a run turns only at such places, its stations
+//! are all that was recorded, and its first place was approached by an overrun too. Where a run turns at a place that was read
+//! once, that place is the overrun itself, and nothing is taken for granted. Runs that go one way only are looked at beside
+//! their neighbours: the last place of one and the first of the next are then the station that was read twice.
+
+use super::{REST, Stop};
+use crate::course::{Course, cell, dot};
+
+/// The least cosine between a motion and the way back for a turn on one line.
+const BACK: f64 = 0.999;
+
+/// Marks what an overrun that was not recorded stands behind.
+pub(super) fn complete(course: &Course<'_>, runs: &mut [Vec<Stop>]) {
+    let kinds: Vec<Option<bool>> = runs.iter_mut().map(|run| mark_turns(course, run)).collect();
+    let neighbours: Vec<bool> =
+        runs.iter().zip(runs.iter().skip(1)).map(|(one, next)| turns_between(course, one, next)).collect();
+    for (number, (run, kind)) in runs.iter_mut().zip(kinds).enumerate() {
+        let beside = |other: Option<usize>| other.and_then(|other| neighbours.get(other)) == Some(&true);
+        let entered = kind.unwrap_or_else(|| beside(number.checked_sub(1)) || beside(Some(number)));
+        if let Some(first) = run.first_mut() {
+            first.entered = entered;
+        }
+    }
+}
+
+/// Marks the turns of a run that were read twice. Out: whether all of them were; nothing where there is no turn.
+fn mark_turns(course: &Course<'_>, run: &mut [Stop]) -> Option<bool> {
+    let turns: Vec<usize> =
+        (1..run.len().saturating_sub(1)).filter(|number| turns_at(run, *number)).collect();
+    let mut rows: Vec<usize> = run.iter().map(|stop| stop.rows.len()).collect();
+    rows.sort_unstable();
+    let usual = rows.get(rows.len() / 2).copied()?;
+    let twice = |number: &usize| {
+        run.get(*number).is_some_and(|stop| stop.rows.len() == 2 * usual && left(course, stop))
+    };
+    if turns.is_empty() {
+        return None;
+    }
+    let all = turns.iter().all(twice);
+    for number in turns.into_iter().filter(|_| all) {
+        if let Some(stop) = run.get_mut(number) {
+            stop.twice = true;
+        }
+    }
+    Some(all)
+}
+
+/// Whether there is time for an overrun between the two halves of a stand: rows in motion that fall together have none.
+fn left(course: &Course<'_>, stop: &Stop) -> bool {
+    let middle = stop.rows.start + stop.rows.len() / 2;
+    let time = |row: usize| cell(&course.recording.time, row);
+    middle.checked_sub(1).is_some_and(|before| time(middle) - time(before) >= REST)
+}
+
+/// Whether the motion goes back at a place.
+fn turns_at(run: &[Stop], number: usize) -> bool {
+    let (before, at, after) =
+        (number.checked_sub(1).and_then(|before| run.get(before)), run.get(number), run.get(number + 1));
+    let (Some(before), Some(at), Some(after)) = (before, at, after) else { return false };
+    opposed(&step(before, at), &step(at, after))
+}
+
+/// Whether a run begins where the one before it ended, and goes back.
+fn turns_between(course: &Course<'_>, one: &[Stop], next: &[Stop]) -> bool {
+    let ([.., before, last], [first, after, ..]) = (one, next) else { return false };
+    (last.rested && first.rested)
+        && super::same(course, &last.position, &first.position)
+        && opposed(&step(before, last), &step(first, after))
+}
+
+fn step(from: &Stop, to: &Stop) -> Vec<f64> {
+    to.position.iter().zip(&from.position).map(|(to, from)| to - from).collect()
+}
+
+fn opposed(one: &[f64], other: &[f64]) -> bool {
+    dot(one, other) < -BACK * dot(one, one).sqrt() * dot(other, other).sqrt()
+}

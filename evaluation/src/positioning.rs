@@ -151,7 +151,7 @@ fn positioning(course: &Course<'_>, line: &Line) -> Result<Positioning, String> 
     let kind = kind(course, line)?;
     let unit = if kind == Kind::Rotary { Unit::Angle } else { Unit::Length };
     let reader = Reader::of(course, line, kind)?;
-    let mut readings = targets(line, &reader, kind);
+    let mut readings = targets(course, line, &reader, kind);
     if readings.is_empty() {
         return Err("nothing was read at its stations".to_owned());
     }
@@ -336,13 +336,17 @@ fn tip_direction(course: &Course<'_>, line: &Line) -> Result<[f64; 3], String> {
 }
 
 /// The readings of each target, by position: the mean over the later half of each stand.
-fn targets(line: &Line, reader: &Reader<'_>, kind: Kind) -> Vec<Target> {
+fn targets(course: &Course<'_>, line: &Line, reader: &Reader<'_>, kind: Kind) -> Vec<Target> {
     let mut read: Vec<(&Approach, f64)> = line
         .approaches
         .iter()
         .filter_map(|approach| {
-            let values =
-                approach.rows.clone().map(|row| reader.at(row, kind)).filter(|value| value.is_finite());
+            let values = approach
+                .rows
+                .clone()
+                .filter(|row| course.complete(*row))
+                .map(|row| reader.at(row, kind))
+                .filter(|value| value.is_finite());
             let values: Vec<f64> = values.collect();
             let mean = values.iter().sum::<f64>() / crate::number(values.len());
             mean.is_finite().then_some((approach, mean))

@@ -75,9 +75,7 @@ struct Stop {
     position: Vec<f64>,
     rows: Range<usize>,
     rested: bool,
-    /// Whether its rows are two stands, with an overrun between them that was not recorded.
-    twice: bool,
-    /// Whether it is the first of a run and was approached in the direction of the way on, by an overrun that was not recorded.
+    /// Whether it was approached in the direction of the way on, by an overrun that was not recorded.
     entered: bool,
 }
 
@@ -107,7 +105,7 @@ impl Travelled {
     /// Takes what one straight piece shows.
     fn take(&mut self, course: &Course<'_>, stops: &[Stop], piece: Piece, in_motion: &mut BTreeSet<usize>) {
         let Some(members) = stops.get(piece.stops.clone()) else { return };
-        let approaches = approaches(members, &piece);
+        let approaches = approaches(course, members, &piece);
         if approaches.is_empty() {
             in_motion.extend(alone_in_motion(course, members, &piece));
             return;
@@ -144,16 +142,19 @@ impl Line {
 /// The places of a run, one after another.
 fn stops(course: &Course<'_>, block: Range<usize>) -> Vec<Stop> {
     let mut stops: Vec<Stop> = Vec::new();
+    let time = |row: usize| cell(&course.recording.time, row);
     for row in block.filter(|row| course.complete(*row)) {
         let position = course.position(row);
-        match stops.last_mut().filter(|stop| same(course, &stop.position, &position)) {
+        // Where commands are missing for so long, the axes may have left and come back.
+        let stays = |stop: &&mut Stop| {
+            let unknown = stop.rows.end < row && time(row) - time(stop.rows.end - 1) >= REST;
+            !unknown && same(course, &stop.position, &position)
+        };
+        match stops.last_mut().filter(stays) {
             Some(stop) => stop.rows.end = row + 1,
-            None => {
-                stops.push(Stop { position, rows: row..row + 1, rested: false, twice: false, entered: false })
-            }
+            None => stops.push(Stop { position, rows: row..row + 1, rested: false, entered: false }),
         }
     }
-    let time = |row: usize| cell(&course.recording.time, row);
     let starts: Vec<f64> = stops.iter().map(|stop| time(stop.rows.start)).collect();
     for (number, stop) in stops.iter_mut().enumerate() {
         let own = time(stop.rows.start);
@@ -198,6 +199,10 @@ fn pieces(course: &Course<'_>, stops: &[Stop]) -> Vec<Piece> {
     let mut start = 0;
     while let (Some(first), Some(second)) = (stops.get(start), stops.get(start + 1)) {
         let (axes, direction) = direction(course, &first.position, &second.position);
+        if axes.is_empty() {
+            start += 1;
+            continue;
+        }
         let own = foot(&first.position, &direction);
         let mut end = start + 2;
         while stops.get(end).is_some_and(|next| beside(course, &foot(&next.position, &direction), &own)) {
@@ -226,34 +231,28 @@ fn foot(position: &[f64], direction: &[f64]) -> Vec<f64> {
     position.iter().zip(direction).map(|(position, direction)| position - along * direction).collect()
 }
 
-/// The stands on a piece; that at its first place only where the way there is known.
-fn approaches(members: &[Stop], piece: &Piece) -> Vec<Approach> {
+/// The stands on a piece, where the way there is known: along the line from another place, or by an overrun that is not in the
+/// recording, which leaves the way on.
+fn approaches(course: &Course<'_>, members: &[Stop], piece: &Piece) -> Vec<Approach> {
     let at = |stop: &Stop| dot(&stop.position, &piece.direction);
-    let mut approaches = Vec::new();
-    for (number, stop) in members.iter().enumerate().filter(|(_, stop)| stop.rested) {
-        let (before, after) =
-            (number.checked_sub(1).and_then(|number| members.get(number)), members.get(number + 1));
-        let Range { start, end } = stop.rows;
-        let middle = if stop.twice { start + (end - start) / 2 } else { end };
-        if let Some(before) = before {
-            approaches.push(Approach::new(at(stop), at(stop) > at(before), start..middle, false));
-        }
-        if let Some(after) = after.filter(|_| stop.twice) {
-            approaches.push(Approach::new(at(stop), at(after) > at(stop), middle..end, true));
-        }
-        if let Some(after) = after.filter(|_| before.is_none() && stop.entered && piece.stops.start == 0) {
-            approaches.push(Approach::new(at(stop), at(after) > at(stop), start..end, true));
-        }
-    }
-    approaches
-}
-
-impl Approach {
-    /// The later half of a stand's rows counts.
-    fn new(at: f64, up: bool, stand: Range<usize>, assumed: bool) -> Self {
-        let rows = stand.start + stand.len() / 2..stand.end;
-        Self { at, up, rows, single: stand.len() == 1, assumed }
-    }
+    let approach = |(number, stop): (usize, &Stop)| {
+        let near = |number: usize| members.get(number);
+        let (before, after) = (number.checked_sub(1).and_then(near), near(number + 1));
+        let moved = before.filter(|before| !same(course, &before.position, &stop.position));
+        let first = before.is_none() && piece.stops.start == 0;
+        let (up, assumed) = match (moved, after) {
+            (Some(before), _) => (at(stop) > at(before), false),
+            (None, Some(after)) if stop.entered && (first || before.is_some()) => {
+                (at(after) > at(stop), true)
+            }
+            _ => return None,
+        };
+        let rows = &stop.rows;
+        let single = rows.len() == 1;
+        // The later half of a stand counts.
+        Some(Approach { at: at(stop), up, rows: rows.start + rows.len() / 2..rows.end, single, assumed })
+    };
+    members.iter().enumerate().filter(|(_, stop)| stop.rested).filter_map(approach).collect()
 }
 
 /// The axis that moves alone and stops nowhere, where that is a good part of its way.

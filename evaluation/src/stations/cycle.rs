@@ -1,6 +1,7 @@
 //! Cycles of which only the stations were recorded.
 //!
-//! In: the places of every run. Out: the same, with marks where an overrun must have been that the recording lacks.
+//! In: the places of every run. Out: the same, places that were read twice taken apart, with marks where an overrun must have
+//! been that the recording lacks.
 //!
 //! An instrument that is triggered at stations writes no row at the overrun: the station at the end of the travel is read
 //! twice, once from each side, and its two readings follow each other. Where a run turns only at such places, its stations
@@ -14,7 +15,7 @@ use crate::course::{Course, cell, dot};
 /// The least cosine between a motion and the way back for a turn on one line.
 const BACK: f64 = 0.999;
 
-/// Marks what an overrun that was not recorded stands behind.
+/// Marks what was approached by an overrun that was not recorded, and takes places apart that were read from both sides of it.
 pub(super) fn complete(course: &Course<'_>, runs: &mut [Vec<Stop>]) {
     let kinds: Vec<Option<bool>> = runs.iter_mut().map(|run| mark_turns(course, run)).collect();
     let neighbours: Vec<bool> =
@@ -28,26 +29,54 @@ pub(super) fn complete(course: &Course<'_>, runs: &mut [Vec<Stop>]) {
     }
 }
 
-/// Marks the turns of a run that were read twice. Out: whether all of them were; nothing where there is no turn.
-fn mark_turns(course: &Course<'_>, run: &mut [Stop]) -> Option<bool> {
-    let turns: Vec<usize> =
-        (1..run.len().saturating_sub(1)).filter(|number| turns_at(run, *number)).collect();
+/// Takes the turns of a run that were read twice apart. Out: whether all turns were; nothing where there is none.
+fn mark_turns(course: &Course<'_>, run: &mut Vec<Stop>) -> Option<bool> {
     let mut rows: Vec<usize> = run.iter().map(|stop| stop.rows.len()).collect();
     rows.sort_unstable();
     let usual = rows.get(rows.len() / 2).copied()?;
+    // Stands at one place that are told apart already: the commands between them are missing.
+    let pairs: Vec<usize> =
+        (2..run.len().saturating_sub(1)).filter(|number| pair(course, run, *number)).collect();
+    let turns: Vec<usize> =
+        (1..run.len().saturating_sub(1)).filter(|number| turns_at(run, *number)).collect();
     let twice = |number: &usize| {
         run.get(*number).is_some_and(|stop| stop.rows.len() == 2 * usual && left(course, stop))
     };
-    if turns.is_empty() {
+    if turns.is_empty() && pairs.is_empty() {
         return None;
     }
-    let all = turns.iter().all(twice);
-    for number in turns.into_iter().filter(|_| all) {
+    if !turns.iter().all(twice) {
+        return Some(false);
+    }
+    for number in pairs {
         if let Some(stop) = run.get_mut(number) {
-            stop.twice = true;
+            stop.entered = true;
         }
     }
-    Some(all)
+    for number in turns.into_iter().rev() {
+        let Some(stop) = run.get_mut(number) else { continue };
+        let middle = stop.rows.start + stop.rows.len() / 2;
+        let again = Stop {
+            position: stop.position.clone(),
+            rows: middle..stop.rows.end,
+            rested: stop.rested,
+            entered: true,
+        };
+        stop.rows.end = middle;
+        run.insert(number + 1, again);
+    }
+    Some(true)
+}
+
+/// Whether a stand is at the place of the one before it, and the motion goes back from there.
+fn pair(course: &Course<'_>, run: &[Stop], number: usize) -> bool {
+    let [before, first, second, after] =
+        [number.wrapping_sub(2), number.wrapping_sub(1), number, number + 1].map(|number| run.get(number));
+    let (Some(before), Some(first), Some(second), Some(after)) = (before, first, second, after) else {
+        return false;
+    };
+    super::same(course, &first.position, &second.position)
+        && opposed(&step(before, first), &step(second, after))
 }
 
 /// Whether there is time for an overrun between the two halves of a stand: rows in motion that fall together have none.

@@ -298,3 +298,23 @@ fn an_overrun_that_was_not_recorded_is_seen_from_what_was() {
     assert_eq!(line.targets.len(), 5);
     near(value(&line.figures, "E_up"), 16.0, 1e-6);
 }
+
+#[test]
+fn commands_that_are_missing_while_the_axis_turns_hide_no_approach() {
+    let bench = Bench::new("FX", SCALE_AND_PLAY);
+    let once = Program::stations(&targets(6, 40.0), 4.0, 5, |at| vec![at]);
+    let mut dwelling = Program::default();
+    for row in 0..once.time.len() {
+        (0..7).for_each(|_| dwelling.row(0.6, once.run[row], &[once.positions[0][row]]));
+    }
+    let mut recording = bench.positions(&dwelling, 0.0, 1);
+    // The overrun is driven, and its commands are not in the recording.
+    for cell in recording.axes[0].command.as_mut().unwrap() {
+        *cell = if [-4.0, 204.0].contains(cell) { f64::NAN } else { *cell };
+    }
+    let line = bench.evaluate(&recording).positioning.remove(0);
+    for (symbol, closed) in CLOSED {
+        near(value(&line.figures, symbol), closed, 1e-6);
+    }
+    assert_eq!(figure(&line.figures, "A").rests.runs, [5, 5]);
+}

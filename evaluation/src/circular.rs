@@ -14,21 +14,23 @@
 //! These are the definitions as the literature of the standard (editions of 1996 to 2022) has them; the newer editions say
 //! *error* for *deviation*.
 
+mod figures;
+mod reader;
+
 use std::f64::consts::TAU;
 
 use diagnosis::recording::Instrument;
 
+use crate::NotGiven;
 use crate::circles::PathTrace;
-use crate::course::{Course, cell};
-use crate::figure::{Figure, Given, Rests, Sensor, Unit};
+use crate::course::Course;
+use crate::figure::{Figure, Sensor};
 use crate::fit::{Place, from, least_squares, minimum_zone};
-use crate::{NotGiven, number};
+use figures::figures;
+use reader::Reader;
 
 /// The widest gap between readings of a full circle, rad: 15 degrees.
 const WIDEST_GAP: f64 = TAU / 24.0;
-
-/// How far the nominal path may lie from a ballbar's nominal length, as a share of it.
-const BAR: f64 = 0.01;
 
 /// How far the feeds of one circle may lie apart, as a share.
 const SAME_FEED: f64 = 0.02;
@@ -183,74 +185,6 @@ fn alike(one: &PathTrace, other: &PathTrace) -> bool {
         && (one.feed - other.feed).abs() <= SAME_FEED * one.feed
 }
 
-/// What gives the actual path.
-enum Reader<'r> {
-    /// Radial deviations of a ballbar.
-    Radial { deviation: &'r [f64], radius: f64 },
-    /// The tool tip in the plane.
-    Tip { columns: [Vec<f64>; 2], sensor: Sensor },
-}
-
-impl<'r> Reader<'r> {
-    fn of(course: &'r Course<'_>, trace: &PathTrace) -> Result<Self, String> {
-        match &course.recording.instrument {
-            Instrument::Ballbar { radius, .. } => {
-                let off = (trace.circle.radius - radius).abs();
-                if off > BAR * radius {
-                    let own = trace.circle.radius;
-                    return Err(format!(
-                        "the path has a radius of {own:.3} mm and the bar one of {radius:.3} mm: it does not lie in the plane"
-                    ));
-                }
-                let deviation = course.recording.deviation.as_deref();
-                let deviation = deviation.ok_or_else(|| "the channel `deviation` is missing".to_owned())?;
-                Ok(Self::Radial { deviation, radius: *radius })
-            }
-            Instrument::Position => {
-                let (columns, sensor) = course.seen(trace.directions)?;
-                Ok(Self::Tip { columns, sensor })
-            }
-            _ => Err("a circle is read by the instruments `ballbar` and `position`".to_owned()),
-        }
-    }
-
-    fn sensor(&self) -> Sensor {
-        match self {
-            Self::Radial { .. } => Sensor::Instrument,
-            Self::Tip { sensor, .. } => *sensor,
-        }
-    }
-
-    fn radius(&self, trace: &PathTrace) -> f64 {
-        match self {
-            Self::Radial { radius, .. } => *radius,
-            Self::Tip { .. } => trace.circle.radius,
-        }
-    }
-
-    /// Whether the centre about which the readings stand is the nominal one.
-    fn centered(&self, course: &Course<'_>) -> bool {
-        match self {
-            Self::Radial { .. } => true,
-            Self::Tip { sensor, .. } => *sensor == Sensor::Feedback || course.absolute,
-        }
-    }
-
-    /// The actual path relative to the nominal centre; NaN where nothing was read.
-    fn place(&self, trace: &PathTrace, row: usize, angle: f64) -> Place {
-        match self {
-            Self::Radial { deviation, radius } => {
-                let distance = radius + cell(deviation, row);
-                [distance * angle.cos(), distance * angle.sin()]
-            }
-            Self::Tip { columns: [one, other], .. } => {
-                let [x, y] = trace.circle.center;
-                [cell(one, row) - x, cell(other, row) - y]
-            }
-        }
-    }
-}
-
 fn circle(course: &Course<'_>, reader: &Reader<'_>, group: &[PathTrace]) -> Circle {
     let traces: Vec<Trace> = group.iter().map(|own| trace(course, reader, own)).collect();
     let first = group.first();
@@ -376,135 +310,4 @@ fn pair(one: &Trace, other: &Trace, radius: f64) -> Option<Pair> {
         circular_least_squares: far - near,
         radius: round.radius - radius,
     })
-}
-
-/// The source of all figures here.
-const SOURCE: &str = "ISO 230-4";
-
-fn figures(traces: &[Trace], pairs: &[Pair]) -> Vec<Figure> {
-    let of = |sense: Sense| traces.iter().filter(move |trace| trace.sense == sense).collect::<Vec<&Trace>>();
-    let (ccw, cw) = (of(Sense::Counterclockwise), of(Sense::Clockwise));
-    let all: Vec<&Trace> = traces.iter().collect();
-    let circular = |figures: &TraceFigures| figures.circular;
-    let squares = |figures: &TraceFigures| figures.circular_least_squares;
-    vec![
-        one_way(
-            "G_CCW",
-            "circular deviation, counterclockwise",
-            &ccw,
-            "counterclockwise",
-            f64::max,
-            circular,
-        ),
-        one_way("G_CW", "circular deviation, clockwise", &cw, "clockwise", f64::max, circular),
-        both_ways("G_b", "bidirectional circular deviation", pairs, traces, |pair| pair.circular),
-        one_way(
-            "G_CCW_LS",
-            "circular deviation by least squares, counterclockwise",
-            &ccw,
-            "counterclockwise",
-            f64::max,
-            squares,
-        ),
-        one_way(
-            "G_CW_LS",
-            "circular deviation by least squares, clockwise",
-            &cw,
-            "clockwise",
-            f64::max,
-            squares,
-        ),
-        both_ways("G_b_LS", "bidirectional circular deviation by least squares", pairs, traces, |pair| {
-            pair.circular_least_squares
-        }),
-        one_way("F_max", "greatest radial deviation", &all, "", f64::max, |figures| figures.radial[0]),
-        one_way("F_min", "least radial deviation", &all, "", f64::min, |figures| figures.radial[1]),
-        set_up_figure(
-            "F_max_set_up",
-            "greatest radial deviation about the centre as set up",
-            traces,
-            f64::max,
-            0,
-        ),
-        set_up_figure(
-            "F_min_set_up",
-            "least radial deviation about the centre as set up",
-            traces,
-            f64::min,
-            1,
-        ),
-        both_ways("D", "mean bidirectional radial deviation", pairs, traces, |pair| pair.radius),
-    ]
-}
-
-/// The greatest or least of some traces; where one of them has no figures, of the others.
-fn one_way(
-    symbol: &'static str,
-    name: &'static str,
-    traces: &[&Trace],
-    sense: &str,
-    choose: fn(f64, f64) -> f64,
-    value: impl Fn(&TraceFigures) -> f64,
-) -> Figure {
-    let good: Vec<(&TraceFigures, usize)> =
-        traces.iter().filter_map(|trace| Some((trace.figures.as_ref().ok()?, trace.points.len()))).collect();
-    let rests =
-        Rests { targets: None, readings: good.iter().map(|(_, count)| count).sum(), runs: [good.len(); 2] };
-    let value = good.iter().map(|(figures, _)| value(figures)).reduce(choose);
-    let value = value.ok_or_else(|| no_trace(traces, sense));
-    Figure { symbol, name, source: SOURCE, value: Given::from(value), unit: Unit::Length, rests }
-}
-
-/// The greatest or least of all traces about the centre as set up.
-fn set_up_figure(
-    symbol: &'static str,
-    name: &'static str,
-    traces: &[Trace],
-    choose: fn(f64, f64) -> f64,
-    part: usize,
-) -> Figure {
-    let good: Vec<(f64, usize)> = traces
-        .iter()
-        .filter_map(|trace| Some((*trace.set_up.as_ref().ok()?.get(part)?, trace.points.len())))
-        .collect();
-    let rests =
-        Rests { targets: None, readings: good.iter().map(|(_, count)| count).sum(), runs: [good.len(); 2] };
-    let reason = || traces.iter().find_map(|trace| trace.set_up.clone().err()).unwrap_or_default();
-    let value = good.iter().map(|(value, _)| *value).reduce(choose).ok_or_else(reason);
-    Figure { symbol, name, source: SOURCE, value: Given::from(value), unit: Unit::Length, rests }
-}
-
-fn no_trace(traces: &[&Trace], sense: &str) -> String {
-    match traces.first().map(|trace| &trace.figures) {
-        Some(Err(reason)) => reason.clone(),
-        _ => format!("the circle was not driven {sense}"),
-    }
-}
-
-/// What both senses give together: of several pairs the one of the greatest size; D is the mean of all.
-fn both_ways(
-    symbol: &'static str,
-    name: &'static str,
-    pairs: &[Pair],
-    traces: &[Trace],
-    value: impl Fn(&Pair) -> f64,
-) -> Figure {
-    let values: Vec<f64> = pairs.iter().map(value).collect();
-    let rests = Rests {
-        targets: None,
-        readings: pairs.iter().map(|pair| pair.readings).sum(),
-        runs: [2 * values.len(); 2],
-    };
-    let value = if values.is_empty() {
-        let only = traces.iter().find(|trace| trace.figures.is_ok());
-        Err(match only {
-            Some(trace) => format!("full circles were driven {} only", trace.sense.name()),
-            None => no_trace(&traces.iter().collect::<Vec<&Trace>>(), ""),
-        })
-    } else if symbol == "D" {
-        Ok(values.iter().sum::<f64>() / number(values.len()))
-    } else {
-        Ok(values.iter().copied().fold(f64::NEG_INFINITY, f64::max))
-    };
-    Figure { symbol, name, source: SOURCE, value: Given::from(value), unit: Unit::Length, rests }
 }

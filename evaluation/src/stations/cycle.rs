@@ -9,6 +9,8 @@
 //! once, that place is the overrun itself, and nothing is taken for granted. Runs that go one way only are looked at beside
 //! their neighbours: the last place of one and the first of the next are then the station that was read twice.
 
+use std::ops::Range;
+
 use super::{REST, Stop};
 use crate::course::{Course, cell, dot};
 
@@ -34,27 +36,20 @@ fn mark_turns(course: &Course<'_>, run: &mut Vec<Stop>) -> Option<bool> {
     let mut rows: Vec<usize> = run.iter().map(|stop| stop.rows.len()).collect();
     rows.sort_unstable();
     let usual = rows.get(rows.len() / 2).copied()?;
-    // Stands at one place that are told apart already: the commands between them are missing.
-    let pairs: Vec<usize> =
-        (2..run.len().saturating_sub(1)).filter(|number| pair(course, run, *number)).collect();
-    let turns: Vec<usize> =
-        (1..run.len().saturating_sub(1)).filter(|number| turns_at(run, *number)).collect();
-    let twice = |number: &usize| {
-        run.get(*number).is_some_and(|stop| stop.rows.len() == 2 * usual && left(course, stop))
-    };
-    if turns.is_empty() && pairs.is_empty() {
+    let turns = turns(course, run);
+    if turns.is_empty() {
         return None;
     }
+    // Stands at one place between which commands are missing may be one stand: they are no evidence.
+    let twice = |turn: &Range<usize>| {
+        let stop = run.get(turn.start).filter(|_| turn.len() == 1);
+        stop.is_some_and(|stop| stop.rows.len() == 2 * usual && left(course, stop))
+    };
     if !turns.iter().all(twice) {
         return Some(false);
     }
-    for number in pairs {
-        if let Some(stop) = run.get_mut(number) {
-            stop.entered = true;
-        }
-    }
-    for number in turns.into_iter().rev() {
-        let Some(stop) = run.get_mut(number) else { continue };
+    for turn in turns.into_iter().rev() {
+        let Some(stop) = run.get_mut(turn.start) else { continue };
         let middle = stop.rows.start + stop.rows.len() / 2;
         let again = Stop {
             position: stop.position.clone(),
@@ -63,20 +58,9 @@ fn mark_turns(course: &Course<'_>, run: &mut Vec<Stop>) -> Option<bool> {
             entered: true,
         };
         stop.rows.end = middle;
-        run.insert(number + 1, again);
+        run.insert(turn.end, again);
     }
     Some(true)
-}
-
-/// Whether a stand is at the place of the one before it, and the motion goes back from there.
-fn pair(course: &Course<'_>, run: &[Stop], number: usize) -> bool {
-    let [before, first, second, after] =
-        [number.wrapping_sub(2), number.wrapping_sub(1), number, number + 1].map(|number| run.get(number));
-    let (Some(before), Some(first), Some(second), Some(after)) = (before, first, second, after) else {
-        return false;
-    };
-    super::same(course, &first.position, &second.position)
-        && opposed(&step(before, first), &step(second, after))
 }
 
 /// Whether there is time for an overrun between the two halves of a stand: rows in motion that fall together have none.
@@ -86,12 +70,25 @@ fn left(course: &Course<'_>, stop: &Stop) -> bool {
     middle.checked_sub(1).is_some_and(|before| time(middle) - time(before) >= REST)
 }
 
-/// Whether the motion goes back at a place.
-fn turns_at(run: &[Stop], number: usize) -> bool {
-    let (before, at, after) =
-        (number.checked_sub(1).and_then(|before| run.get(before)), run.get(number), run.get(number + 1));
-    let (Some(before), Some(at), Some(after)) = (before, at, after) else { return false };
-    opposed(&step(before, at), &step(at, after))
+/// The stands at which the motion goes back, those at one place together.
+fn turns(course: &Course<'_>, run: &[Stop]) -> Vec<Range<usize>> {
+    let mut places: Vec<Range<usize>> = Vec::new();
+    for (number, stop) in run.iter().enumerate() {
+        let last = places.last_mut().filter(|place| {
+            run.get(place.start).is_some_and(|first| super::same(course, &first.position, &stop.position))
+        });
+        match last {
+            Some(place) => place.end = number + 1,
+            None => places.push(number..number + 1),
+        }
+    }
+    let at = |place: &Range<usize>| run.get(place.start);
+    let turns = places.windows(3).filter(|three| {
+        let [before, turn, after] = three else { return false };
+        let (Some(before), Some(turn), Some(after)) = (at(before), at(turn), at(after)) else { return false };
+        opposed(&step(before, turn), &step(turn, after))
+    });
+    turns.filter_map(|three| three.get(1).cloned()).collect()
 }
 
 /// Whether a run begins where the one before it ended, and goes back.

@@ -29,6 +29,8 @@ pub(crate) enum Command {
     Simulate(Simulate),
     /// Change the coefficients of a calibration to what measured parts show.
     Update(Update),
+    /// Give the standard figures of positioning and of circles from a recording (ISO 230-2, ISO 230-4).
+    Evaluate(Evaluate),
     /// Write a commented machine file to start from.
     New(New),
 }
@@ -148,6 +150,15 @@ pub(crate) struct Update {
 }
 
 #[derive(Args)]
+pub(crate) struct Evaluate {
+    /// A recording: stations approached from both sides, or circles.
+    pub(crate) recording: PathBuf,
+    /// How to write the figures.
+    #[arg(long, value_enum, default_value_t = EvaluationFormat::Text)]
+    pub(crate) format: EvaluationFormat,
+}
+
+#[derive(Args)]
 pub(crate) struct New {
     /// A topology word: axes that carry the part, F for the bed, axes that carry the tool.
     pub(crate) topology: String,
@@ -200,6 +211,14 @@ pub(crate) enum UpdateFormat {
     /// For a person at a terminal.
     Text,
     /// The schema abbe-update/1.
+    Json,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum EvaluationFormat {
+    /// For a person at a terminal.
+    Text,
+    /// The schema abbe-evaluation/1.
     Json,
 }
 

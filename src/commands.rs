@@ -4,6 +4,7 @@ pub(crate) mod check;
 pub(crate) mod compensate;
 pub(crate) mod derive;
 pub(crate) mod diagnose;
+pub(crate) mod evaluate;
 pub(crate) mod expand;
 pub(crate) mod new;
 pub(crate) mod simulate;

@@ -17,6 +17,7 @@ mod compensation;
 mod concealed;
 mod counts;
 mod diagnose;
+mod evaluate;
 mod experiments;
 mod generated;
 mod laws;

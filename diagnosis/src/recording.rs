@@ -41,6 +41,7 @@ mod words;
 
 pub use channel::{Channel, ChannelKind};
 pub use data::{DataError, Place};
+pub use direction::own_direction;
 pub use header::{Extra, Header, calibration_of, machine_of, read_header};
 
 /// One recording, in mm, rad, s, degC and the units of its loads. All columns have one entry a row.

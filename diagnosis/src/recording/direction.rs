@@ -72,7 +72,7 @@ pub(super) fn dot(left: [f64; 3], right: [f64; 3]) -> f64 {
 
 /// The direction in which the tool moves relative to the part, or about which it turns, while the axis runs in its
 /// positive sense; all other axes at zero.
-pub(super) fn own_direction(equations: &Equations, axis: usize) -> Option<[f64; 3]> {
+pub fn own_direction(equations: &Equations, axis: usize) -> Option<[f64; 3]> {
     let letter = &equations.axes.get(axis)?.letter;
     let mut links = equations.links.iter();
     let link = links.find(|link| link.kind.letter().is_some_and(|own| own.to_string() == *letter))?;

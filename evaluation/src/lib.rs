@@ -1,0 +1,149 @@
+//! Evaluation: the field's standard figures, from a recording.
+//!
+//! In: the equations of a machine and a recording of it ([`diagnosis::recording`]). Out: an [`Evaluation`]: positioning of
+//! linear and rotary axes and of diagonals from stations approached from both sides (ISO 230-2), and circular, bidirectional
+//! circular and radial deviations (ISO 230-4); each figure with what it rests on, or why the recording cannot give it.
+//!
+//! It exists because these figures are what machines are bought, accepted and compared by. It models nothing: no error motion
+//! and no term is fitted, and a calibration serves for the machine's constants only.
+//!
+//! ```text
+//! recording -> course: commands, nominal tip -> stations: straight lines, approaches -> positioning -> iso230_2: figures
+//!                                            -> circles: traces -> circular: figures (fit: centre and zone)
+//! ```
+//!
+//! Everything is in mm, rad and s.
+
+mod circles;
+mod circular;
+mod course;
+mod diagonals;
+mod figure;
+pub mod fit;
+pub mod iso230_2;
+mod positioning;
+pub mod report;
+mod stations;
+
+use diagnosis::recording::{Instrument, Recording};
+use model_dsl::calibration::Calibration;
+use model_dsl::equations::Equations;
+
+pub use circular::{Circle, Pair, Point, Sense, Trace, TraceFigures};
+pub use diagonals::Diagonals;
+pub use figure::{Figure, Given, Rests, Sensor, Unit};
+pub use positioning::{Kind, Positioning, Zero};
+
+use course::Course;
+
+/// What an evaluation starts from.
+#[derive(Clone, Copy, Debug)]
+pub struct Inputs<'a> {
+    /// The error equations of the machine.
+    pub equations: &'a Equations,
+    /// The calibration, for the machine's constants. Without it the zero of measured positions is not known.
+    pub calibration: Option<&'a Calibration>,
+    /// The recording.
+    pub recording: &'a Recording,
+}
+
+/// The figures of one recording.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Evaluation {
+    /// The recording file, for people.
+    pub file: String,
+    /// The recording's title.
+    pub title: Option<String>,
+    /// The machine's name.
+    pub machine: String,
+    /// The instrument, as recording files call it.
+    pub instrument: &'static str,
+    /// Positioning along each straight line with stations, in order of the recording.
+    pub positioning: Vec<Positioning>,
+    /// What the diagonals give together, where there are any.
+    pub diagonals: Option<Diagonals>,
+    /// The circles, one for each centre, radius and feed.
+    pub circles: Vec<Circle>,
+    /// What the recording cannot give at all.
+    pub not_given: Vec<NotGiven>,
+}
+
+/// A group of figures that a recording cannot give.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NotGiven {
+    /// What: `positioning of X`.
+    pub what: String,
+    /// Why.
+    pub because: String,
+}
+
+impl NotGiven {
+    fn new(what: impl Into<String>, because: impl Into<String>) -> Self {
+        Self { what: what.into(), because: because.into() }
+    }
+}
+
+impl Evaluation {
+    /// All figures, of lines, diagonals and circles.
+    pub fn figures(&self) -> impl Iterator<Item = &Figure> {
+        let lines = self.positioning.iter().flat_map(|line| &line.figures);
+        let diagonals = self.diagonals.iter().flat_map(|diagonals| &diagonals.figures);
+        lines.chain(diagonals).chain(self.circles.iter().flat_map(|circle| &circle.figures))
+    }
+
+    /// Whether any figure could be given.
+    pub fn gives_any(&self) -> bool {
+        self.figures().any(|figure| figure.value.number().is_some())
+    }
+}
+
+/// Evaluates a recording. Runs that the recording holds out for a diagnosis are evaluated with the others: nothing is fitted
+/// to any of them.
+pub fn evaluate(inputs: &Inputs<'_>) -> Evaluation {
+    let mut evaluation = Evaluation {
+        file: inputs.recording.file.clone(),
+        title: inputs.recording.title.clone(),
+        machine: inputs.equations.machine.clone(),
+        instrument: instrument(&inputs.recording.instrument),
+        ..Evaluation::default()
+    };
+    let course = match Course::of(inputs) {
+        Ok(course) => course,
+        Err(because) => {
+            evaluation.not_given.push(NotGiven::new("all figures", because));
+            return evaluation;
+        }
+    };
+    let traces = circles::traces(&course);
+    let travelled = stations::travelled(&course, &traces);
+    (evaluation.circles, evaluation.not_given) = circular::evaluate(&course, traces);
+    let (lines, mut without) = positioning::evaluate(&course, travelled);
+    evaluation.diagonals = diagonals::evaluate(&lines);
+    evaluation.positioning = lines;
+    evaluation.not_given.append(&mut without);
+    if evaluation.circles.is_empty() && evaluation.positioning.is_empty() && evaluation.not_given.is_empty() {
+        evaluation.not_given.push(NotGiven::new(
+            "all figures",
+            "the path has neither stations on a straight line nor circles of two slides",
+        ));
+    }
+    evaluation
+}
+
+/// The name of an instrument in recording files.
+fn instrument(instrument: &Instrument) -> &'static str {
+    match instrument {
+        Instrument::Position => "position",
+        Instrument::Ballbar { .. } => "ballbar",
+        Instrument::Linear(_) => "linear",
+        Instrument::Straightness(_) => "straightness",
+        Instrument::Angular { .. } => "angular",
+        Instrument::Probe => "probe",
+    }
+}
+
+/// A count as a number.
+#[expect(clippy::cast_precision_loss, reason = "counts of readings are far below 2^52")]
+fn number(count: usize) -> f64 {
+    count as f64
+}

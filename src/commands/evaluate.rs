@@ -1,0 +1,24 @@
+//! `abbe evaluate`: the field's standard figures. In: a recording. Out: its figures, or why it cannot give them, as text or
+//! JSON.
+
+use evaluation::{Inputs, report};
+
+use crate::arguments::{Evaluate, EvaluationFormat};
+use crate::failure::Failure;
+use crate::output::print;
+use crate::recorded;
+
+/// Runs the command. Status 1 where the recording gives no figure at all; the report says why.
+pub(crate) fn run(arguments: &Evaluate) -> Result<(), Failure> {
+    let recorded = recorded::read(&arguments.recording)?;
+    let evaluation = evaluation::evaluate(&Inputs {
+        equations: &recorded.equations,
+        calibration: recorded.calibration.as_ref().map(|known| &known.calibration),
+        recording: &recorded.recording,
+    });
+    print(&match arguments.format {
+        EvaluationFormat::Text => report::text(&evaluation),
+        EvaluationFormat::Json => report::json(&evaluation),
+    })?;
+    if evaluation.gives_any() { Ok(()) } else { Err(Failure::No(String::new())) }
+}

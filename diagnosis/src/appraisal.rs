@@ -58,6 +58,11 @@ impl Appraisal {
         self.residuals.push(residuals);
     }
 
+    /// White noise of the same sizes.
+    pub(crate) fn as_white(&self) -> Vec<Vec<Noise>> {
+        self.noises.iter().map(|channels| channels.iter().map(Noise::as_white).collect()).collect()
+    }
+
     /// Takes the marks of outliers over into the study.
     pub(crate) fn mark(&self, study: &mut Study<'_>) {
         for (scene, marks) in study.scenes.iter_mut().zip(&self.outliers) {

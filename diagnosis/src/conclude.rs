@@ -103,12 +103,7 @@ fn bare_model(study: &mut Study<'_>) -> Model {
     let model: Model = effects.into_iter().map(|effect| Fitted { effect, coefficients: vec![0.0] }).collect();
     let appraisal = Appraisal::new(study, &model);
     appraisal.mark(study);
-    let noises: Vec<Vec<_>> = appraisal
-        .noises
-        .iter()
-        .map(|channels| channels.iter().map(|noise| noise.as_white()).collect())
-        .collect();
-    let mut model = fit::refine(study, model, &noises, &[]).model;
+    let mut model = fit::refine(study, model, &appraisal.as_white(), &[]).model;
     zeros::free_held_out(study, &mut model);
     model
 }

@@ -98,6 +98,20 @@ pub(crate) fn active(fitted: &Fitted) -> Option<(f64, f64)> {
     Some((*from, *to))
 }
 
+/// Whether a shape is a table that bends as another one does, which beside it would only smooth its corners.
+pub(crate) fn holds(table: &Shape, other: &Shape) -> bool {
+    let Shape::Table { axis: along, nodes, .. } = table else { return false };
+    let spacing = nodes.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    match other {
+        Shape::Polynomial { axis, .. } => axis == along,
+        Shape::Cyclic { axis, period } => axis == along && *period > SMOOTHED * spacing,
+        _ => false,
+    }
+}
+
+/// Waves longer than so many steps from node to node may be what a table leaves at its corners.
+const SMOOTHED: f64 = 1.5;
+
 /// The axis along which an effect is a smooth curve.
 fn smooth(effect: &Effect, travels: &[Travel]) -> Option<usize> {
     match effect.shape {

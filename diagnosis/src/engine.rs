@@ -53,8 +53,9 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     if same_effects(&curved.model, &fit.model) {
         fit = curved;
     } else {
-        // Beside a curve, what stood in for its bends may look different.
+        // Beside a curve, what stood in for its bends may look different. What it leaves at its corners is no new wave.
         search.model = curved.model;
+        search.places.clear();
         search.go_round(study, progress);
         fit = search.fit(study);
     }
@@ -122,7 +123,7 @@ impl Search {
         let residuals = all_residuals(study, &self.model, &self.noises, &self.courses);
         let (peaks, waves) =
             waves::peaks(study, &self.model, &self.courses, &residuals, &self.travels, &self.places);
-        self.tries.waves = waves;
+        self.tries.waves = self.tries.waves.max(waves);
         let others = other_peaks(study, &self.model, &self.noises, &self.travels);
         // One course of states at a time is enough for the memory.
         drop((std::mem::take(&mut self.courses), residuals));
@@ -133,7 +134,8 @@ impl Search {
         let (products, samples) = design.fitted();
         let resolution = Resolution::new(study, &self.travels);
         let choice =
-            Choice::new(study, &design, products.clone(), samples, self.always, waves, resolution).best();
+            Choice::new(study, &design, products.clone(), samples, self.always, self.tries.waves, resolution)
+                .best();
         fit::linear(&design, &products, self.always, &choice)
     }
 
@@ -185,12 +187,7 @@ pub(crate) fn beside(study: &Study<'_>, found: &Found, feature: &Feature) -> Opt
     let effect = table(study, found, feature)?;
     let mut model = found.fit.model.clone();
     model.push(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
-    let noises: Vec<Vec<Noise>> = found
-        .appraisal
-        .noises
-        .iter()
-        .map(|channels| channels.iter().map(Noise::as_white).collect())
-        .collect();
+    let noises = found.appraisal.as_white();
     Some(Appraisal::new(study, &fit::refine(study, model, &noises, &found.travels).model))
 }
 
@@ -218,12 +215,7 @@ fn table(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Effect> 
         })
         .collect();
     let model = &found.fit.model;
-    let noises: Vec<Vec<Noise>> = found
-        .appraisal
-        .noises
-        .iter()
-        .map(|channels| channels.iter().map(Noise::as_white).collect())
-        .collect();
+    let noises = found.appraisal.as_white();
     let mut regressors: Vec<Regressor> =
         model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
     regressors.extend(tables.iter().cloned().map(Regressor::of));

@@ -8,6 +8,7 @@
 use nalgebra::DMatrix;
 
 use crate::candidates::simplicity;
+use crate::curves::holds;
 use crate::design::Design;
 use crate::model::Effect;
 use crate::ranges::Resolution;
@@ -190,8 +191,9 @@ impl<'d> Choice<'d> {
         let effect = &self.design.regressors[regressor].effect;
         let against = |chosen: &usize| {
             let known = &self.design.regressors[*chosen].effect;
+            let (a, b) = (&known.shape, &effect.shape);
             rivals(known, effect)
-                || known.place == effect.place && self.resolution.blurs(&known.shape, &effect.shape)
+                || known.place == effect.place && (self.resolution.blurs(a, b) || holds(a, b) || holds(b, a))
         };
         if set.chosen.iter().any(against) {
             return false;

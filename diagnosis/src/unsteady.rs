@@ -163,7 +163,7 @@ fn differences(time: &[f64], residual: &[f64], step: f64, lag: usize) -> Option<
 /// Fits a model again to samples each for itself. As noise, what moves smoothly is a walk whose steps are known to a hair, and
 /// weighted so, steps would count and not how far the machine is off. Stretches over which it keeps its direction count once.
 pub(crate) fn fit_plainly(study: &Study<'_>, found: &mut Found, moving: &mut Moving) {
-    let noises = as_white(&found.appraisal);
+    let noises = found.appraisal.as_white();
     found.fit = fit::refine(study, found.fit.model.clone(), &noises, &found.travels);
     let step = typical_step(&study.scenes[moving.scene].recording.time);
     let alike = (2.0 * moving.time / step).max(1.0);
@@ -185,10 +185,6 @@ fn apart(residual: &[f64], time_constant: f64) -> Noise {
     Noise { white, wander: (square - white * white).max(0.0).sqrt(), time_constant }
 }
 
-fn as_white(appraisal: &Appraisal) -> Vec<Vec<Noise>> {
-    appraisal.noises.iter().map(|channels| channels.iter().map(Noise::as_white).collect()).collect()
-}
-
 /// A term that takes this share of what remains, alone, comes near to it.
 const COMES_NEAR: f64 = 0.4;
 
@@ -203,7 +199,7 @@ pub(crate) struct Suspect {
 /// The plain term that would take most of what remains, were the noise white.
 pub(crate) fn suspect(study: &Study<'_>, found: &Found) -> Option<Suspect> {
     let model = &found.fit.model;
-    let noises = as_white(&found.appraisal);
+    let noises = found.appraisal.as_white();
     let plain = |effect: &Effect| {
         matches!(effect.place, Place::Motion { .. }) && effect.shape.columns() <= 2 && !effect.shape.is_wave()
     };

@@ -103,10 +103,12 @@ fn runs_far_apart_leave_the_neighbours_of_a_faint_vibration_open() {
 
 #[test]
 fn a_power_that_was_not_worth_its_price_stays_in_the_intervals_of_the_others() {
-    let errors = "{EXX: [{polynomial: {axis: X, per: mm, unit: um, coefficients: [0, 0.01, 2.2e-5]}}]}";
+    let errors = "{EXX: [{polynomial: {axis: X, per: mm, unit: um, coefficients: [0, 0.01, 2.6e-5]}}]}";
     let shape = Shape::Polynomial { axis: 0, degree: 1, center: 150.0, scale: 150.0 };
     let [share, without] = held(errors, &shape, 2, 1.0, "coefficients", 1, 1e-5);
-    assert!(share > 0.88, "{share}");
+    // The bend is 3.3 of its deviations, and is leant to from 1.4 on: in 97 of 100 recordings, of which 95 of 100 hold the
+    // truth; 0.83 is chance once in a hundred times.
+    assert!(share > 0.83, "{share}");
     assert!(without < 0.5, "the truth lies outside of the plain interval: {without}");
 }
 

@@ -336,7 +336,7 @@ fn what_is_in_the_model_is_not_suspected_again() {
     let mut found = found(&study);
     let play = machine(bench.motion("EXX"), Shape::Backlash { axis: 0, wind_up: 0.0 }, &[0.0]);
     found.fit.model.push(play);
-    let noises = as_white(&found.appraisal);
+    let noises = found.appraisal.as_white();
     found.fit = fit::refine(&study, found.fit.model.clone(), &noises, &found.travels);
     found.appraisal = Appraisal::new(&study, &found.fit.model);
     assert!(suspect(&study, &found).is_none());

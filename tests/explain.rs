@@ -184,10 +184,12 @@ pub(crate) fn complete(kind: &str, part: &str) -> String {
     };
     let keys: BTreeSet<&str> =
         part.lines().filter_map(|line| line.split_once(':')).map(|(key, _)| key).collect();
-    let shaped = ["circle", "still"].iter().any(|shape| keys.contains(shape)) && !keys.contains("line");
-    let needed = |line: &&&str| {
-        let key = line.split(':').next().unwrap();
-        !keys.contains(key) && !(shaped && key == "line")
+    // A part with a shape or a chain of its own needs none of the usual.
+    let given = |others: &[&str]| others.iter().any(|key| keys.contains(key));
+    let needed = |line: &&&str| match line.split(':').next().unwrap() {
+        "line" => !given(&["line", "circle", "diamond", "grid", "spiral", "still"]),
+        "topology" => !given(&["topology", "chain"]),
+        key => !keys.contains(key),
     };
     let mut text: String = rest.iter().filter(needed).map(|line| format!("{line}\n")).collect();
     text.push_str(part);
@@ -267,6 +269,19 @@ fn said(code: &str, folder: &Path, example: &Example, text: &str) -> String {
         (kind, more) => panic!("no command for {kind}, {more}"),
     };
     run.err
+}
+
+/// What the program says of a file of a form on standard error.
+pub(crate) fn told(form: &str, text: &str) -> String {
+    let folder = bench("told");
+    let example = Example {
+        kind: form.to_owned(),
+        part: false,
+        more: String::new(),
+        wrong: String::new(),
+        mended: String::new(),
+    };
+    said("", &folder, &example, text)
 }
 
 #[test]

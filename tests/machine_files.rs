@@ -16,7 +16,7 @@ use crate::shipped::root;
 const ELSEWHERE: [&str; 1] = ["E0003"];
 
 /// The case folders in order of their names.
-fn cases() -> Vec<PathBuf> {
+pub(crate) fn cases() -> Vec<PathBuf> {
     let entries = fs::read_dir(root().join("tests/cases/machine")).unwrap();
     let mut cases: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
     cases.sort();
@@ -24,7 +24,7 @@ fn cases() -> Vec<PathBuf> {
 }
 
 /// The findings of a case, and the place of each as line and column.
-fn findings(case: &Path) -> (SourceFile, Diagnostics) {
+pub(crate) fn findings(case: &Path) -> (SourceFile, Diagnostics) {
     let text = fs::read_to_string(case.join("machine.yaml")).unwrap();
     let source = SourceFile::new("machine.yaml", text);
     let mut diagnostics = Diagnostics::new();

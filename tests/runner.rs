@@ -28,6 +28,7 @@ mod oracle;
 mod published_table;
 mod random;
 mod round_trips;
+mod schemas;
 mod shipped;
 mod simulate;
 mod snapshots;

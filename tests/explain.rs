@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use model_dsl::calibration::TERM_NAMES;
 
 use crate::cli::abbe;
+use crate::machine_files::codes as codes_in;
 use crate::shipped::root;
 use crate::tidy::rust_files;
 
@@ -37,11 +38,8 @@ fn listed() -> BTreeMap<String, String> {
     codes.into_iter().collect()
 }
 
-/// Everything between quotes that has the form of a code, in the code of the program.
+/// The codes in the code of the program.
 fn emitted() -> BTreeSet<String> {
-    let is_code = |word: &&str| {
-        word.len() == 5 && word.starts_with(['E', 'W']) && word[1..].bytes().all(|byte| byte.is_ascii_digit())
-    };
     let mut codes = BTreeSet::new();
     for folder in ["model-dsl/src", "simulation/src", "diagnosis/src", "update/src", "src"] {
         for path in rust_files(&root().join(folder)) {
@@ -51,9 +49,7 @@ fn emitted() -> BTreeSet<String> {
             if path.components().any(|part| part.as_os_str() == "tests") || path.ends_with("tests.rs") {
                 continue;
             }
-            let lines = text.lines().filter(|line| !line.trim_start().starts_with("//"));
-            let quoted = lines.flat_map(|line| line.split('"').skip(1).step_by(2));
-            codes.extend(quoted.filter(is_code).map(str::to_owned));
+            codes.extend(codes_in(text));
         }
     }
     codes

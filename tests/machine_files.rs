@@ -105,7 +105,7 @@ fn sources(path: &Path) -> Vec<PathBuf> {
 }
 
 /// Everything between quotes that has the form of a code, in a line of code.
-fn codes(text: &str) -> Vec<String> {
+pub(crate) fn codes(text: &str) -> Vec<String> {
     let lines = text.lines().filter(|line| !line.trim_start().starts_with("//"));
     let quoted = lines.flat_map(|line| line.split('"').skip(1).step_by(2));
     let is_code = |word: &&str| {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 
 /// Compiles a machine tool's kinematic chain into its error equations and compensation code.
 #[derive(Parser)]
@@ -33,6 +34,12 @@ pub(crate) enum Command {
     Evaluate(Evaluate),
     /// Write a commented machine file to start from.
     New(New),
+    /// Explain a diagnostic code or a term, with an example; alone: list them.
+    Explain(Explain),
+    /// Print the completions of a shell for this command line.
+    Completions(Completions),
+    /// Print the manual page, or write the pages of all commands into a folder.
+    Man(Man),
 }
 
 #[derive(Args)]
@@ -162,6 +169,27 @@ pub(crate) struct Evaluate {
 pub(crate) struct New {
     /// A topology word: axes that carry the part, F for the bed, axes that carry the tool.
     pub(crate) topology: String,
+}
+
+#[derive(Args)]
+pub(crate) struct Explain {
+    /// A code such as E0307, or a term such as backlash.
+    #[arg(value_name = "CODE|TERM")]
+    pub(crate) name: Option<String>,
+}
+
+#[derive(Args)]
+pub(crate) struct Completions {
+    /// The shell.
+    #[arg(value_enum)]
+    pub(crate) shell: Shell,
+}
+
+#[derive(Args)]
+pub(crate) struct Man {
+    /// The folder for abbe.1, abbe-derive.1, ...; it is made where it is missing.
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -2,10 +2,13 @@
 
 pub(crate) mod check;
 pub(crate) mod compensate;
+pub(crate) mod completions;
 pub(crate) mod derive;
 pub(crate) mod diagnose;
 pub(crate) mod evaluate;
 pub(crate) mod expand;
+pub(crate) mod explain;
+pub(crate) mod man;
 pub(crate) mod new;
 pub(crate) mod simulate;
 pub(crate) mod update;

@@ -7,6 +7,7 @@
 mod arguments;
 mod calibrated;
 mod commands;
+mod explain;
 mod failure;
 mod load;
 mod output;
@@ -43,5 +44,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Update(command) => commands::update::run(command),
         Command::Evaluate(command) => commands::evaluate::run(command),
         Command::New(command) => commands::new::run(command),
+        Command::Explain(command) => commands::explain::run(command),
+        Command::Completions(command) => commands::completions::run(command),
+        Command::Man(command) => commands::man::run(command),
     }
 }

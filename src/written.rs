@@ -46,7 +46,7 @@ pub(crate) fn calibration(target: &Path, text: &str, equations: &Equations) -> R
 }
 
 /// Writes a file that gets its name only when it is complete and on the disk; what stood there before is replaced.
-fn whole(target: &Path, text: &str) -> Result<(), Failure> {
+pub(crate) fn whole(target: &Path, text: &str) -> Result<(), Failure> {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     let part = target.with_file_name(format!(".{name}.{}.part", std::process::id()));
     let written = write_to_disk(&part, text).and_then(|()| fs::rename(&part, target));

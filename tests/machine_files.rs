@@ -16,7 +16,7 @@ use crate::shipped::root;
 const ELSEWHERE: [&str; 1] = ["E0003"];
 
 /// The case folders in order of their names.
-fn cases() -> Vec<PathBuf> {
+pub(crate) fn cases() -> Vec<PathBuf> {
     let entries = fs::read_dir(root().join("tests/cases/machine")).unwrap();
     let mut cases: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
     cases.sort();
@@ -24,7 +24,7 @@ fn cases() -> Vec<PathBuf> {
 }
 
 /// The findings of a case, and the place of each as line and column.
-fn findings(case: &Path) -> (SourceFile, Diagnostics) {
+pub(crate) fn findings(case: &Path) -> (SourceFile, Diagnostics) {
     let text = fs::read_to_string(case.join("machine.yaml")).unwrap();
     let source = SourceFile::new("machine.yaml", text);
     let mut diagnostics = Diagnostics::new();
@@ -105,7 +105,7 @@ fn sources(path: &Path) -> Vec<PathBuf> {
 }
 
 /// Everything between quotes that has the form of a code, in a line of code.
-fn codes(text: &str) -> Vec<String> {
+pub(crate) fn codes(text: &str) -> Vec<String> {
     let lines = text.lines().filter(|line| !line.trim_start().starts_with("//"));
     let quoted = lines.flat_map(|line| line.split('"').skip(1).step_by(2));
     let is_code = |word: &&str| {

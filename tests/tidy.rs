@@ -9,7 +9,7 @@ use crate::shipped::root;
 const SKIPPED: [&str; 3] = ["target", ".git", "corpus"];
 
 /// All Rust files under a folder, in order.
-fn rust_files(folder: &Path) -> Vec<PathBuf> {
+pub(crate) fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut entries: Vec<PathBuf> =
         fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();

@@ -47,6 +47,8 @@ use model_dsl::equations::Equations;
 use diagnosis::Diagnosis;
 use recording::Recording;
 
+pub use terms::meaning;
+
 /// What a diagnosis starts from.
 #[derive(Clone, Debug)]
 pub struct Inputs<'a> {

@@ -15,6 +15,7 @@ mod instrument;
 mod known;
 mod lag;
 mod load;
+mod meaning;
 mod polynomial;
 mod reversal_spike;
 mod table;
@@ -22,16 +23,13 @@ mod vibration;
 
 pub(crate) use instrument::Setting;
 pub(crate) use known::known;
+pub use meaning::meaning;
 pub(crate) use polynomial::in_position as polynomial_in_position;
 
 use crate::states::Rows;
 
 /// The temperature at which scales are true where nothing else is said: ISO 1, degC.
 pub(crate) const REFERENCE_TEMPERATURE: f64 = 20.0;
-
-/// What a constant is, physically.
-const CONSTANT_MEANING: &str = "An alignment: an axis that is not square to the others, or a body that stands at an angle. \
-    It does not change while the machine runs.";
 
 /// What a term is, apart from its linear coefficients. Positions are in mm or rad, times in s.
 #[derive(Clone, PartialEq, Debug)]
@@ -112,7 +110,7 @@ impl Shape {
     /// What it is, physically.
     pub(crate) fn meaning(&self) -> &'static str {
         match self {
-            Self::Constant => CONSTANT_MEANING,
+            Self::Constant => meaning::CONSTANT,
             Self::Polynomial { .. } => polynomial::MEANING,
             Self::SensorPolynomial { .. } | Self::Growth { .. } => growth::MEANING,
             Self::Table { .. } => table::MEANING,

@@ -1,0 +1,25 @@
+//! `abbe explain`: what a diagnostic or a term means. In: its name, or none. Out: its page, or the list of all.
+
+use crate::arguments::Explain;
+use crate::explain;
+use crate::failure::Failure;
+use crate::output;
+
+/// Runs the command.
+pub(crate) fn run(command: &Explain) -> Result<(), Failure> {
+    let Some(name) = &command.name else { return output::print(&explain::overview()) };
+    match explain::page(name) {
+        Ok(page) => output::print(&page),
+        Err(near) => Err(Failure::Wrong(unknown(name, &near))),
+    }
+}
+
+fn unknown(name: &str, near: &[&str]) -> String {
+    let named: Vec<String> = near.iter().map(|name| format!("`{name}`")).collect();
+    let help = match named.as_slice() {
+        [] => "`abbe explain` alone lists all codes and terms".to_owned(),
+        [one] => format!("did you mean {one}?"),
+        [others @ .., last] => format!("did you mean {} or {last}?", others.join(", ")),
+    };
+    format!("error: `{}` is no diagnostic and no term\nhelp: {help}", name.escape_debug())
+}

@@ -1,0 +1,86 @@
+//! What a code of a diagnostic and a term of the vocabulary mean. In: a name. Out: a page for a person, or the names that
+//! are near to it.
+//!
+//! The texts stand in files beside this one, in the form that [`entry`] reads: one source for the command and for the tables
+//! of the reference, which are compared with it.
+
+mod entry;
+mod page;
+
+use model_dsl::suggest::nearest;
+
+use entry::Entry;
+
+/// The diagnostics, one file for each family of codes.
+const CODES: [&str; 8] = [
+    include_str!("explain/codes/E00.txt"),
+    include_str!("explain/codes/E01.txt"),
+    include_str!("explain/codes/W02.txt"),
+    include_str!("explain/codes/E03.txt"),
+    include_str!("explain/codes/E04.txt"),
+    include_str!("explain/codes/E05.txt"),
+    include_str!("explain/codes/E06.txt"),
+    include_str!("explain/codes/E07.txt"),
+];
+
+/// The terms of calibration files, then the settings of instruments.
+const TERMS: &str = include_str!("explain/terms.txt");
+
+/// How many near names are told.
+const NEAR: usize = 3;
+
+fn codes() -> Vec<Entry<'static>> {
+    CODES.iter().flat_map(|file| entry::read(file)).collect()
+}
+
+fn terms() -> Vec<Entry<'static>> {
+    entry::read(TERMS)
+}
+
+/// All codes and terms, a line each.
+pub(crate) fn overview() -> String {
+    page::overview(&codes(), &terms())
+}
+
+/// The page of a code or a term; letter case and `_` for `-` do not matter.
+///
+/// # Errors
+///
+/// The nearest names, at most three, where there is no page of this one.
+pub(crate) fn page(name: &str) -> Result<String, Vec<&'static str>> {
+    let name = name.trim().replace('_', "-");
+    let is = |entry: &Entry<'_>| entry.name.eq_ignore_ascii_case(&name);
+    if let Some(code) = codes().iter().find(|entry| is(entry)) {
+        return Ok(page::code(code));
+    }
+    if let Some(term) = terms().iter().find(|entry| is(entry)) {
+        return Ok(page::term(term));
+    }
+    Err(near(&name))
+}
+
+/// The names nearest to one that is none, the nearest first.
+fn near(name: &str) -> Vec<&'static str> {
+    let mut names: Vec<&'static str> = terms().iter().chain(&codes()).map(|entry| entry.name).collect();
+    let mut found = Vec::new();
+    while found.len() < NEAR
+        && let Some(one) = nearest(name, names.iter().copied())
+    {
+        names.retain(|other| *other != one);
+        found.push(one);
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_names_are_told_nearest_first() {
+        assert_eq!(near("baklash"), ["backlash"]);
+        assert_eq!(near("E0801").first(), Some(&"E0001"));
+        assert_eq!(near("E0801").len(), NEAR);
+        assert!(near("banana").is_empty());
+    }
+}

@@ -1,0 +1,112 @@
+//! How an explanation looks. In: entries. Out: text of at most 100 columns.
+
+use std::fmt::Write;
+
+use textwrap::{Options, fill};
+
+use super::entry::Entry;
+
+const WIDTH: usize = 100;
+
+/// Everything there is to explain, a line each.
+pub(super) fn overview(codes: &[Entry<'_>], terms: &[Entry<'_>]) -> String {
+    let mut text = String::from("Terms\n-----\n\n");
+    for term in terms {
+        line(&mut text, term.name, 16, term.part("value").unwrap_or_default());
+    }
+    text.push_str("\nDiagnostics\n-----------\n\n");
+    for code in codes {
+        line(&mut text, code.name, 7, code.title);
+    }
+    text.push_str("\n`abbe explain NAME` tells more of each.\n");
+    text
+}
+
+fn line(text: &mut String, name: &str, column: usize, words: &str) {
+    let indent = " ".repeat(column);
+    let name = format!("{name:<column$}");
+    put(text, &fill(words, Options::new(WIDTH).initial_indent(&name).subsequent_indent(&indent)));
+}
+
+/// The page of a diagnostic.
+pub(super) fn code(entry: &Entry<'_>) -> String {
+    let mut text = format!("{}: {}\n\n", entry.name, entry.title);
+    put(&mut text, &fill(entry.part("").unwrap_or_default(), WIDTH));
+    if let Some(kind) = entry.part("example").and_then(example) {
+        section(&mut text, &format!("This gives it, {kind}"));
+        block(&mut text, &entry.example('+'));
+    }
+    section(&mut text, "Mended");
+    put(&mut text, &fill(entry.part("mend").unwrap_or_default(), WIDTH));
+    let mended = entry.example('-');
+    if !mended.is_empty() {
+        text.push('\n');
+        block(&mut text, &mended);
+    }
+    text
+}
+
+/// What an example is, in words; nothing where the entry has none.
+fn example(kind: &str) -> Option<String> {
+    let (kind, more) =
+        kind.split_once(", ").map_or((kind, String::new()), |(kind, more)| (kind, format!(", {more}")));
+    if kind == "none" {
+        return None;
+    }
+    let words = match kind.split_once(' ') {
+        Some((kind, _)) => format!("as part of a {}{more}", file(kind)),
+        None => format!("as a whole {}{more}", file(kind)),
+    };
+    Some(words)
+}
+
+fn file(kind: &str) -> &str {
+    match kind {
+        "machine" => "machine file",
+        "calibration" => "calibration file",
+        "recording" => "recording file",
+        "path" => "path file",
+        "equations" => "equation file for the machine excello-921",
+        other => other,
+    }
+}
+
+/// The page of a term.
+pub(super) fn term(entry: &Entry<'_>) -> String {
+    let kind =
+        if entry.title.is_empty() { "a term of an error motion" } else { "a setting of an instrument" };
+    let mut text = format!("{}: {kind}\n\n", entry.name);
+    let what = diagnosis::meaning(entry.name).or(entry.part("is")).unwrap_or_default();
+    put(&mut text, &fill(what, WIDTH));
+    let parts = [
+        ("Its value", "value"),
+        ("In a recording", "shows"),
+        ("What else looks so", "also"),
+        ("How to measure it", "measure"),
+        ("How to remove it", "remove"),
+    ];
+    for (title, name) in parts {
+        section(&mut text, title);
+        put(&mut text, &fill(entry.part(name).unwrap_or_default(), WIDTH));
+    }
+    let form =
+        if entry.part("form").is_some() { "In a calibration file, under `errors`" } else { "In a path file" };
+    section(&mut text, form);
+    block(&mut text, &entry.example('-'));
+    text
+}
+
+fn section(text: &mut String, title: &str) {
+    put(text, &format!("\n{title}\n{}\n", "-".repeat(title.len())));
+}
+
+fn block(text: &mut String, lines: &[&str]) {
+    for line in lines {
+        put(text, &format!("    {line}"));
+    }
+}
+
+fn put(text: &mut String, line: &str) {
+    // A string takes every line.
+    let _ = writeln!(text, "{line}");
+}

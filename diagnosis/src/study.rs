@@ -376,6 +376,7 @@ const HELD_OUT_EVERY: usize = 4;
 /// Runs cut into blocks; those of held-out runs, or else one of every four blocks, are held out.
 fn blocks(recording: &Recording) -> Vec<Block> {
     let runs = runs(&recording.run);
+    let several = runs.len() > 1;
     let pieces = BLOCKS.div_ceil(runs.len().max(1)).max(2);
     let mut blocks = Vec::new();
     for (rows, run) in runs {
@@ -388,9 +389,11 @@ fn blocks(recording: &Recording) -> Vec<Block> {
         }));
     }
     if recording.holdout.is_none() && blocks.len() >= HELD_OUT_EVERY {
+        // Where runs have whole groups of blocks, another one each time: what comes round with every run would hold out the
+        // same quadrant for ever.
+        let turn = usize::from(pieces.is_multiple_of(HELD_OUT_EVERY) && several);
         for (group, blocks) in blocks.chunks_mut(HELD_OUT_EVERY).enumerate() {
-            // Another one each time: a path that comes round as the blocks do would hold out the same quadrant for ever.
-            if let Some(block) = blocks.get_mut((HELD_OUT_EVERY / 2 + group) % HELD_OUT_EVERY) {
+            if let Some(block) = blocks.get_mut((HELD_OUT_EVERY / 2 + turn * group) % HELD_OUT_EVERY) {
                 block.held_out = true;
             }
         }

@@ -3,60 +3,16 @@
 //! In: the study. Out: effects, from the machine itself: each error motion, with each term whose state was recorded.
 //! Terms with a parameter that is not linear stand on a grid; periods and frequencies are searched for elsewhere.
 
-use crate::course::Course;
 use crate::model::{Effect, Place, Side};
 use crate::ranges::shortest_step;
-use crate::states::AxisStates;
 use crate::study::{Kind, Study};
 use crate::terms::{REFERENCE_TEMPERATURE, Setting, Shape};
+use crate::travel::Travel;
 
 /// The highest power of a polynomial along an axis.
 const HIGHEST_POWER: usize = 3;
 /// The highest power of a coupling.
 const HIGHEST_COUPLING: usize = 2;
-
-/// What each axis did over all recordings: mm or rad.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Travel {
-    pub(crate) low: f64,
-    pub(crate) high: f64,
-    /// The typical step between rows while it moves.
-    pub(crate) step: f64,
-    pub(crate) moves: bool,
-    /// The mean time from reversal to reversal, s; 0 where there is none.
-    pub(crate) between: f64,
-}
-
-impl Travel {
-    /// The range of positions.
-    pub(crate) fn range(&self) -> f64 {
-        self.high - self.low
-    }
-}
-
-/// The travel of every axis.
-pub(crate) fn travels(study: &Study<'_>, courses: &[Course]) -> Vec<Travel> {
-    let observed: f64 = study.scenes.iter().map(|scene| scene.observed).sum();
-    (0..study.equations.axes.len()).map(|axis| travel(courses, axis, observed)).collect()
-}
-
-fn travel(courses: &[Course], axis: usize, observed: f64) -> Travel {
-    let axes = || courses.iter().map(|course| &course.shown.axes[axis]);
-    let positions =
-        axes().flat_map(|axis| axis.position.iter().copied()).filter(|position| position.is_finite());
-    let (low, high) =
-        positions.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), q| (low.min(q), high.max(q)));
-    let mut steps: Vec<f64> = axes()
-        .flat_map(|axis| axis.position.windows(2).map(|pair| (pair[1] - pair[0]).abs()))
-        .filter(|step| *step > 1e-9 * (high - low))
-        .collect();
-    steps.sort_by(f64::total_cmp);
-    let step = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
-    let turned = |axis: &AxisStates| axis.since_reversal.iter().filter(|since| **since == 0.0).count();
-    let reversals = crate::number(axes().map(turned).sum());
-    let between = if reversals > 0.0 { observed / reversals } else { 0.0 };
-    Travel { low, high, step, moves: axes().any(|axis| axis.moves) && high > low, between }
-}
 
 /// Settings of the instruments that are fitted whatever else is.
 pub(crate) fn always(study: &Study<'_>) -> Vec<Effect> {

@@ -6,7 +6,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::candidates::{self, Travel};
+use crate::candidates;
 use crate::design::{Design, Regressor};
 use crate::fit::Fit;
 use crate::model::{Effect, Fitted};
@@ -14,6 +14,7 @@ use crate::noise::Noise;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
+use crate::travel::Travel;
 
 /// The half width of a 95 % interval in standard deviations.
 pub(crate) const WIDTH_95: f64 = 1.959_964;

@@ -6,10 +6,12 @@
 use model_dsl::program::Column;
 
 use crate::model::{Fitted, Model, Place, Side};
-use crate::observations::STRETCH;
 use crate::states::{Rows, States};
 use crate::study::{Kind, Study};
 use crate::terms::{Memory, Setting, Shape};
+
+/// How many rows are worked on at a time.
+pub(crate) const STRETCH: usize = 256;
 
 /// The states of one recording under a model: those that the instrument shows, and those of the drives.
 pub(crate) struct Course {

@@ -3,7 +3,6 @@
 //! In: a fitted model. Out: the same, or one in which a `table` of an error motion stands for the polynomial and the long
 //! waves of that motion, where it says the same with less.
 
-use crate::candidates::Travel;
 use crate::fit::{self, Fit};
 use crate::judge::Tries;
 use crate::model::{Effect, Fitted, Model, Place};
@@ -11,6 +10,7 @@ use crate::noise::Noise;
 use crate::search::price;
 use crate::study::Study;
 use crate::terms::Shape;
+use crate::travel::Travel;
 
 /// How many nodes are tried.
 const NODES: [usize; 3] = [8, 12, 20];
@@ -97,20 +97,6 @@ pub(crate) fn active(fitted: &Fitted) -> Option<(f64, f64)> {
     let to = nodes.get((last + 1).min(nodes.len() - 1))?;
     Some((*from, *to))
 }
-
-/// Whether a shape is a table that bends as another one does, which beside it would only smooth its corners.
-pub(crate) fn holds(table: &Shape, other: &Shape) -> bool {
-    let Shape::Table { axis: along, nodes, .. } = table else { return false };
-    let spacing = nodes.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
-    match other {
-        Shape::Polynomial { axis, .. } => axis == along,
-        Shape::Cyclic { axis, period } => axis == along && *period > SMOOTHED * spacing,
-        _ => false,
-    }
-}
-
-/// Waves longer than so many steps from node to node may be what a table leaves at its corners.
-const SMOOTHED: f64 = 1.5;
 
 /// The axis along which an effect is a smooth curve.
 fn smooth(effect: &Effect, travels: &[Travel]) -> Option<usize> {

@@ -9,10 +9,10 @@ use std::panic::resume_unwind;
 
 use nalgebra::DMatrix;
 
-use crate::course::{Course, Terms};
+use crate::course::{Course, STRETCH, Terms};
 use crate::model::{Effect, Model, Place, Side};
 use crate::noise::{Noise, Step, Whitening, whiten};
-use crate::observations::{Frame, STRETCH, acts};
+use crate::observations::{Frame, acts};
 use crate::states::Rows;
 use crate::study::{Channel, Kind, Study};
 use crate::terms::{Memory, Shape};

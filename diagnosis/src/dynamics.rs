@@ -5,7 +5,7 @@
 //! outright, through the true dynamics, from several time constants, wherever the model holds something that a loop
 //! could be mistaken for.
 
-use crate::candidates::{Travel, geometric};
+use crate::candidates::geometric;
 use crate::curves::cost;
 use crate::fit::{self, Fit};
 use crate::judge::Tries;
@@ -14,6 +14,7 @@ use crate::noise::Noise;
 use crate::ranges::shortest_step;
 use crate::study::Study;
 use crate::terms::{Setting, Shape};
+use crate::travel::Travel;
 
 /// Tries loops on all moving axes in the place of what they could be mistaken for.
 pub(crate) fn try_loops(

@@ -5,7 +5,7 @@
 //! chosen early has to stay. At the end the judge drops what does not stand up.
 
 use crate::appraisal::Appraisal;
-use crate::candidates::{self, Travel};
+use crate::candidates;
 use crate::course::Course;
 use crate::curves;
 use crate::design::{Design, Regressor};
@@ -22,6 +22,7 @@ use crate::search::{Choice, rivals};
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
+use crate::travel::{self, Travel};
 use crate::unsteady::{self, Band};
 use crate::waves::{self, WavePlace, Weighted};
 
@@ -86,7 +87,7 @@ impl Search {
         let model: Model =
             always.into_iter().map(|effect| Fitted { effect, coefficients: vec![0.0] }).collect();
         let courses = courses(study, &model);
-        let travels = candidates::travels(study, &courses);
+        let travels = travel::travels(study, &courses);
         let noises = first_noises(study, &model, &courses);
         let pool = candidates::candidates(study, &travels);
         let pool = kinship::groups(study, &courses, &noises, pool);

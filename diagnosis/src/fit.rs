@@ -4,7 +4,6 @@
 
 use nalgebra::DMatrix;
 
-use crate::candidates::Travel;
 use crate::design::{Design, Regressor};
 use crate::model::{Effect, Fitted, Model};
 use crate::noise::Noise;
@@ -12,6 +11,7 @@ use crate::ranges::range;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
+use crate::travel::Travel;
 
 /// A fitted model and how certain it is.
 #[derive(Clone, Debug)]

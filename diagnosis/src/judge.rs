@@ -4,7 +4,6 @@
 //! give, that does not come back in the held-out data as it was fitted, or that rests on a few stretches only.
 
 use crate::appraisal::Appraisal;
-use crate::candidates::Travel;
 use crate::design::{Design, Products, Regressor};
 use crate::fit::{self, Fit};
 use crate::model::{Fitted, Model};
@@ -12,6 +11,7 @@ use crate::noise::Noise;
 use crate::search::{price, untold_price};
 use crate::study::Study;
 use crate::sweep::Swept;
+use crate::travel::Travel;
 use crate::zeros;
 
 /// How much was tried before this model was chosen.

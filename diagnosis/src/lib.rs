@@ -35,6 +35,7 @@ mod sweep;
 mod terms;
 #[cfg(test)]
 mod testing;
+mod travel;
 mod unsteady;
 mod waves;
 mod way;

@@ -7,9 +7,9 @@
 use std::ops::Range;
 
 use crate::appraisal::Appraisal;
-use crate::candidates::Travel;
 use crate::course::Course;
 use crate::study::Study;
+use crate::travel::Travel;
 
 /// Something that comes back at one place of an axis.
 #[derive(Clone, Debug)]

@@ -8,13 +8,10 @@ use std::ops::Range;
 
 use model_dsl::program::Column;
 
-use crate::course::{Course, Terms, inputs, weighted_sum};
+use crate::course::{Course, STRETCH, Terms, inputs, weighted_sum};
 use crate::model::{Effect, Model, Place, Side};
 use crate::study::{Channel, Kind, Study};
 use crate::terms::Setting;
-
-/// How many rows are worked on at a time.
-pub(crate) const STRETCH: usize = 256;
 
 /// Everything about a stretch of rows that the channels share.
 pub(crate) struct Frame<'c> {

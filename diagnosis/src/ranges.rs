@@ -1,12 +1,12 @@
-//! Ranges: where a parameter that is not linear can be told from a recording at all.
+//! Ranges: where a parameter that is not linear can be told from a recording at all, and which shapes cannot stand together.
 //!
 //! In: a term and what the axes did. Out: the least and the greatest value of its nonlinear parameter. Beyond it a wave is a
 //! slope, a decay is a step and a settling is a jump: the fit would follow whatever the noise does there and give it a name.
 
-use crate::candidates::Travel;
 use crate::noise::typical_step;
 use crate::study::Study;
 use crate::terms::Shape;
+use crate::travel::Travel;
 
 /// The fewest cycles of a vibration in the time that was observed.
 pub(crate) const CYCLES: f64 = 6.0;
@@ -83,6 +83,20 @@ impl Resolution {
         }
     }
 }
+
+/// Whether a shape is a table that bends as another one does, which beside it would only smooth its corners.
+pub(crate) fn holds(table: &Shape, other: &Shape) -> bool {
+    let Shape::Table { axis: along, nodes, .. } = table else { return false };
+    let spacing = nodes.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    match other {
+        Shape::Polynomial { axis, .. } => axis == along,
+        Shape::Cyclic { axis, period } => axis == along && *period > SMOOTHED * spacing,
+        _ => false,
+    }
+}
+
+/// Waves longer than so many steps from node to node may be what a table leaves at its corners.
+const SMOOTHED: f64 = 1.5;
 
 /// The shortest typical step of time of all recordings.
 pub(crate) fn shortest_step(study: &Study<'_>) -> f64 {

@@ -8,10 +8,9 @@
 use nalgebra::DMatrix;
 
 use crate::candidates::simplicity;
-use crate::curves::holds;
 use crate::design::Design;
 use crate::model::Effect;
-use crate::ranges::Resolution;
+use crate::ranges::{Resolution, holds};
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::{Setting, Shape};

@@ -7,7 +7,6 @@
 
 use realfft::RealFftPlanner;
 
-use crate::candidates::Travel;
 use crate::course::Course;
 use crate::kinship;
 use crate::model::{Effect, Model, Place, Side};
@@ -16,6 +15,7 @@ use crate::observations::{Frame, each_frame, residuals};
 use crate::ranges::{CYCLES, shortest_step};
 use crate::study::Study;
 use crate::terms::Shape;
+use crate::travel::Travel;
 
 /// A wave that might be there.
 #[derive(Clone, Debug)]

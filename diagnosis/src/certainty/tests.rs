@@ -39,7 +39,7 @@ fn held(
             Fitted { coefficients: vec![0.0; effect.shape.columns()], effect },
         ];
         let courses = engine::courses(&study, &model);
-        let travels = candidates::travels(&study, &courses);
+        let travels = crate::travel::travels(&study, &courses);
         let noises = vec![vec![Noise::white(1e-3)]];
         let fit = fit::refine(&study, model, &noises, &travels);
         let certainty = certainties(&study, &fit, &noises, &travels).remove(1);

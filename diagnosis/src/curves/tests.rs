@@ -1,7 +1,6 @@
 //! Curves: nodes where something was observed, and a stage whose curve no polynomial follows.
 
 use super::*;
-use crate::candidates;
 use crate::engine;
 use crate::model::Side;
 use crate::recording::Recording;
@@ -58,7 +57,7 @@ fn nodes(places: &[f64]) -> Vec<Vec<f64>> {
 
 fn of_recording(bench: &Bench, recording: &Recording) -> Vec<Vec<f64>> {
     let study = Study::new(bench.equations(), None, &[recording]);
-    let travels = candidates::travels(&study, &engine::courses(&study, &Model::new()));
+    let travels = crate::travel::travels(&study, &engine::courses(&study, &Model::new()));
     let nodes = |shape: Shape| match shape {
         Shape::Table { axis: 0, nodes, directed: false } => nodes,
         other => panic!("{other:?}"),
@@ -166,7 +165,7 @@ fn tried(bench: &Bench, recording: &Recording, degrees: &[usize]) -> (Model, [f6
         let shape = Shape::Polynomial { axis: 0, degree: *degree, center: 160.0, scale: 160.0 };
         model.push(Fitted { effect: Effect { place, shape }, coefficients: vec![0.0; degree + 1] });
     }
-    let travels = candidates::travels(&study, &engine::courses(&study, &model));
+    let travels = crate::travel::travels(&study, &engine::courses(&study, &model));
     let noises = vec![vec![Noise::white(NOISE)]];
     let tries = Tries { candidates: 40.0, waves: 40.0 };
     let before = fit::refine(&study, model, &noises, &travels);

@@ -3,11 +3,11 @@
 use std::f64::consts::TAU;
 
 use super::*;
-use crate::candidates::travels;
 use crate::engine;
 use crate::model::Model;
 use crate::recording::Recording;
 use crate::testing::{Bench, programmed};
+use crate::travel::travels;
 
 /// The step between rows, s, and the way between them, mm.
 const STEP: f64 = 0.1;

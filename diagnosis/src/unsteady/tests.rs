@@ -13,6 +13,7 @@ use crate::model::Side;
 use crate::recording::Recording;
 use crate::terms::Setting;
 use crate::testing::{Bench, line, noisy, normals, path, position};
+use crate::travel;
 
 /// The seeds every kind of noise is tried with.
 const SEEDS: std::ops::Range<u64> = 0..20;
@@ -257,7 +258,7 @@ fn stage(errors: &str, leftover: impl Fn(f64) -> f64) -> (Bench, Recording) {
 fn found(study: &Study<'_>) -> Found {
     let model = vec![zero(0)];
     let courses = engine::courses(study, &model);
-    let travels = candidates::travels(study, &courses);
+    let travels = travel::travels(study, &courses);
     let noises = vec![vec![Noise::white(1e-3); study.scenes[0].channels.len()]];
     let pool = kinship::groups(study, &courses, &noises, candidates::candidates(study, &travels));
     let fit = fit::refine(study, model, &noises, &travels);

@@ -117,16 +117,38 @@ fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     found
 }
 
-/// The files of these forms that are shipped.
+/// Folders that hold nothing that is shipped: tests with their faulty files, and what is built.
+const NOT_SHIPPED: [&str; 3] = ["tests", "target", "fuzz"];
+
+/// Files of no form: what a recording conceals, for people.
+const OF_NO_FORM: &str = "truth.yaml";
+
+/// The files of these forms that are shipped: all YAML files that there are, wherever they stand.
 fn shipped_files() -> Vec<(PathBuf, String, &'static str)> {
-    let folders = ["machines", "calibrations", "recordings", "docs/cases", "examples"];
-    let all = folders.iter().flat_map(|folder| files(&root().join(folder), ".yaml"));
-    let read = all.filter_map(|path| {
+    let read = shipped_yaml(&root()).into_iter().filter(|path| !path.ends_with(OF_NO_FORM)).map(|path| {
         let text = fs::read_to_string(&path).unwrap();
-        let form = form(&text)?;
-        Some((path, text, form))
+        let form = form(&text).unwrap_or_else(|| panic!("{} is of none of the four forms", path.display()));
+        (path, text, form)
     });
     read.collect()
+}
+
+/// The YAML files under a folder but for folders that are not shipped, in order.
+fn shipped_yaml(folder: &Path) -> Vec<PathBuf> {
+    let mut entries: Vec<PathBuf> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    entries.sort();
+    let mut found = Vec::new();
+    for path in entries {
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let shipped = !name.starts_with('.') && !NOT_SHIPPED.contains(&name.as_str());
+        match path.is_dir() {
+            true if shipped => found.extend(shipped_yaml(&path)),
+            false if name.ends_with(".yaml") || name.ends_with(".yml") => found.push(path),
+            _ => {}
+        }
+    }
+    found
 }
 
 #[test]

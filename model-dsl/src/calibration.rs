@@ -93,6 +93,8 @@ pub struct CalibratedMotion {
     pub terms: Vec<Spanned<CalibratedTerm>>,
     /// The ramps over which the correction of reversals is spread, for those of its terms that have one.
     pub ramps: Vec<Ramp>,
+    /// The places of those of its terms that act inside the position loop of the motion's axis, in rising order.
+    pub inside_loop: Vec<usize>,
 }
 
 /// How a correction follows a reversal: gradually, since no drive makes its move at once.
@@ -109,7 +111,8 @@ pub struct Ramp {
 
 impl PartialEq for CalibratedMotion {
     fn eq(&self, other: &Self) -> bool {
-        (self.motion, &self.terms, &self.ramps) == (other.motion, &other.terms, &other.ramps)
+        (self.motion, &self.terms, &self.ramps, &self.inside_loop)
+            == (other.motion, &other.terms, &other.ramps, &other.inside_loop)
     }
 }
 
@@ -117,6 +120,14 @@ impl CalibratedMotion {
     /// The ramp of the term at this place, s; 0 where its correction is made at once.
     pub fn ramp(&self, place: usize) -> f64 {
         self.ramps.iter().find(|ramp| ramp.term == place).map_or(0.0, |ramp| ramp.time)
+    }
+
+    /// Whether the term at this place acts inside the position loop of the motion's axis: friction and loads on the drive,
+    /// which its own feedback sees and the loop answers as it answers its command. What then remains at the axis is the
+    /// term's value behind the loop that the motion's `lag` makes. A compensation adds its correction to the command, which
+    /// goes the same way, so that the runtime takes the term as it stands.
+    pub fn is_inside_loop(&self, place: usize) -> bool {
+        self.inside_loop.contains(&place)
     }
 }
 

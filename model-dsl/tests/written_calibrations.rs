@@ -183,7 +183,7 @@ fn term() -> impl Strategy<Value = (usize, CalibratedTerm)> {
                 }
                 4 => CalibratedTerm::ReversalSpike { axis, height: a, decay: p },
                 5 => CalibratedTerm::Cyclic { axis, period: p, amplitude: a, phase: b },
-                6 => CalibratedTerm::Lag { axis, gain: p },
+                6 => CalibratedTerm::Lag { axis, gain: p, frequency: if b < 0.0 { 0.0 } else { q } },
                 7 => CalibratedTerm::Acceleration { axis, gain: p },
                 8 => CalibratedTerm::Expansion { axis, sensor, coefficient: b, reference: c },
                 9 => {
@@ -371,7 +371,7 @@ fn what_the_machine_lacks_is_refused_when_it_is_read() {
         let calibration = Calibration::new("mill", vec![0.0, 0.0]).with(&[(motion, term)]);
         codes(&write(&calibration, &names()), &names())
     };
-    let lag = |axis, gain| CalibratedTerm::Lag { axis, gain };
+    let lag = |axis, gain| CalibratedTerm::Lag { axis, gain, frequency: 0.0 };
     let growth =
         |reference| CalibratedTerm::Growth { sensor: 7, coefficient: 1.0, reference, time_constant: 0.0 };
     assert_eq!(written(0, lag(0, 1.0)), [""; 0]);

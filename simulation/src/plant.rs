@@ -28,6 +28,7 @@ use nalgebra::{Rotation3, Vector3};
 use crate::commands::Commands;
 use body::Body;
 use piece::{Memory, Piece};
+use servo::Before;
 
 /// How far an axis must move back before that is a real motion, mm or rad: far below what any drive resolves.
 pub const DEADBAND: f64 = 1e-9;
@@ -69,6 +70,8 @@ struct PlantTerm {
     piece: Piece,
     /// The axis whose drive sees it.
     drive: Option<usize>,
+    /// The axis whose position loop answers it.
+    inside: Option<usize>,
 }
 
 /// The state of the machine at one sample: mm, rad, s, degC, units of the loads.
@@ -217,6 +220,7 @@ impl Plant {
 
     fn take_terms(&mut self, machine: &Machine, calibration: &Calibration) -> Result<(), PlantError> {
         let mut slowness = vec![0.0; self.names.axes.len()];
+        let mut inertia = slowness.clone();
         for listed in &calibration.motions {
             let motion = listed.motion;
             let Some(name) = self.names.motions.get(motion) else {
@@ -225,18 +229,22 @@ impl Plant {
             let own = own_axis(machine, &self.names, &name.name);
             for (place, term) in listed.terms.iter().enumerate() {
                 let mut piece = Piece::of(&term.value, &mut self.loads)?;
-                if let Piece::Lag { axis, gain } = piece
+                if let Piece::Lag { axis, loop_of } = piece
                     && own == Some(axis)
-                    && let Some(slowness) = slowness.get_mut(axis)
+                    && let (Some(slowness), Some(inertia)) = (slowness.get_mut(axis), inertia.get_mut(axis))
                 {
-                    *slowness += 1.0 / gain;
+                    let (slow, inert) = loop_of.slowness_and_inertia();
+                    *slowness += slow;
+                    *inertia += inert;
                     piece = Piece::Loop;
                 }
-                self.terms.push(PlantTerm { motion, place, name: term.value.name(), piece, drive: None });
+                let inside = own.filter(|_| listed.is_inside_loop(place));
+                let name = term.value.name();
+                self.terms.push(PlantTerm { motion, place, name, piece, drive: inside, inside });
             }
         }
-        for (servo, slowness) in self.servos.iter_mut().zip(slowness) {
-            *servo = (slowness != 0.0).then(|| Servo::First { gain: 1.0 / slowness });
+        for ((servo, slowness), inertia) in self.servos.iter_mut().zip(slowness).zip(inertia) {
+            *servo = (slowness != 0.0).then(|| Servo::of(slowness, inertia));
         }
         Ok(())
     }
@@ -363,7 +371,7 @@ impl Plant {
         let inputs = self.inputs(commands)?;
         let loads = self.load_columns(commands)?;
         let mut readings = SensorReadings::new(&self.sensors);
-        let mut memories = vec![Memory::default(); self.terms.len()];
+        let mut memories = vec![(Memory::default(), Before::default()); self.terms.len()];
         let mut positions = vec![0.0; self.names.axes.len()];
         let mut motions = vec![0.0; self.names.motions.len()];
         let mut drive = positions.clone();
@@ -383,10 +391,20 @@ impl Plant {
         Ok(())
     }
 
-    fn evaluate(&self, state: &State<'_>, memories: &mut [Memory], motions: &mut [f64], drive: &mut [f64]) {
+    fn evaluate(
+        &self,
+        state: &State<'_>,
+        memories: &mut [(Memory, Before)],
+        motions: &mut [f64],
+        drive: &mut [f64],
+    ) {
         motions.fill(0.0);
-        for (term, memory) in self.terms.iter().zip(memories) {
+        for (term, (memory, before)) in self.terms.iter().zip(memories) {
             let value = term.piece.value(state, memory);
+            let value = match term.inside.and_then(|axis| self.servo(axis)) {
+                Some(servo) => servo.answer(before, state.time, value),
+                None => value,
+            };
             if let Some(motion) = motions.get_mut(term.motion) {
                 *motion += value;
             }

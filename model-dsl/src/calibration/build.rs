@@ -38,6 +38,17 @@ impl Calibration {
         extended
     }
 
+    /// The calibration with one more term of an error motion, which the position loop of the motion's axis answers.
+    #[must_use]
+    pub fn with_inside_loop(&self, motion: usize, term: CalibratedTerm) -> Self {
+        let mut extended = self.clone();
+        extended.add(motion, term);
+        if let Some(listed) = extended.motions.iter_mut().find(|listed| listed.motion == motion) {
+            listed.inside_loop.extend(listed.terms.len().checked_sub(1));
+        }
+        extended
+    }
+
     fn add(&mut self, motion: usize, term: CalibratedTerm) {
         if let Some(sensor) = term.sensor() {
             self.sensors.mark_used(sensor);
@@ -50,6 +61,7 @@ impl Calibration {
                 span: Span::default(),
                 terms: vec![term],
                 ramps: Vec::new(),
+                inside_loop: Vec::new(),
             }),
         }
     }

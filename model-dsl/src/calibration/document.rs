@@ -185,8 +185,10 @@ fn read_motions(
         let items = read_terms(motion, value, names, sensors, diagnostics);
         let ramped = items.iter().enumerate().filter(|(_, item)| item.ramp > 0.0);
         let ramps = ramped.map(|(term, item)| Ramp { term, time: item.ramp }).collect();
+        let answered = items.iter().enumerate().filter(|(_, item)| item.inside_loop);
+        let inside_loop = answered.map(|(term, _)| term).collect();
         let terms = items.into_iter().map(|item| item.term).collect();
-        motions.push(CalibratedMotion { motion, span: name.span, terms, ramps });
+        motions.push(CalibratedMotion { motion, span: name.span, terms, ramps, inside_loop });
     }
     motions
 }

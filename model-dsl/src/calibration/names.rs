@@ -50,6 +50,20 @@ impl MachineNames {
         })
     }
 
+    /// The axis whose own motion, actual minus commanded, an error motion is: X for EXX, C for ECC.
+    pub fn own_axis(&self, motion: &MotionName) -> Option<usize> {
+        let axis = self.axis(motion.axis.as_deref()?)?;
+        // ISO 841: U, V and W lie along X, Y and Z.
+        let along = match self.axes.get(axis)?.letter.chars().next()? {
+            'U' => 'X',
+            'V' => 'Y',
+            'W' => 'Z',
+            letter => letter,
+        };
+        let own = motion.name.chars().nth(1) == Some(along) && alignment_name(&motion.name).is_none();
+        own.then_some(axis)
+    }
+
     /// The kind of position that the axis of this index has.
     pub(super) fn axis_dimension(&self, axis: usize) -> Dimension {
         match self.axes.get(axis) {

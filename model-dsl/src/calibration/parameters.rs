@@ -70,6 +70,31 @@ impl<'n> Parameters<'_, 'n, '_> {
         }
     }
 
+    /// Whether the position loop of the motion's axis answers the term; left out, it does not.
+    pub(super) fn inside_loop(&mut self) -> Option<bool> {
+        let Some(node) = self.fields.get("inside_loop") else { return Some(false) };
+        let inside = match node.text() {
+            Some("true") => true,
+            Some("false") => false,
+            _ => {
+                let message = format!("{} is `true` or `false`", self.words("inside_loop"));
+                let help = "write `inside_loop: true` where the axis's own position loop answers the term";
+                self.report(Diagnostic::error("E0427", node.span, message).help(help));
+                return None;
+            }
+        };
+        let own = self.context.names.own_axis(self.context.motion);
+        if inside && own.is_none() {
+            let motion = &self.context.motion.name;
+            let message =
+                format!("{motion} is not the motion of an axis along itself, which a position loop holds");
+            let help = "only EXX of X, ECC of C and the like lie inside a loop; take `inside_loop` out";
+            self.report(Diagnostic::error("E0427", node.span, message).help(help));
+            return None;
+        }
+        Some(inside)
+    }
+
     fn greater(
         &mut self,
         node: &Node,

@@ -17,6 +17,8 @@ pub(super) struct Item {
     pub(super) term: Spanned<CalibratedTerm>,
     /// The time over which its correction follows a reversal, s; 0: at once.
     pub(super) ramp: f64,
+    /// Whether the axis's position loop answers it.
+    pub(super) inside_loop: bool,
 }
 
 /// Reads an item of a motion's list: a mapping of exactly one term's name to its parameters.
@@ -38,16 +40,10 @@ pub(super) fn read_item(item: &Node, context: &mut Context<'_>) -> Option<Item> 
             return None;
         }
     };
-    let (term, ramp) = read_named(name, parameters, context)?;
-    Some(Item { term: Spanned::new(term, name.span), ramp })
+    read_named(name, parameters, context)
 }
 
-/// The term, and the ramp of its correction in s.
-fn read_named(
-    name: &Spanned<String>,
-    node: &Node,
-    context: &mut Context<'_>,
-) -> Option<(CalibratedTerm, f64)> {
+fn read_named(name: &Spanned<String>, node: &Node, context: &mut Context<'_>) -> Option<Item> {
     let Some(known) = parameters_of(&name.value) else {
         context.diagnostics.push(unknown_term(name));
         return None;
@@ -57,6 +53,7 @@ fn read_named(
     let fields = Fields::open(node, name.span, wording, known, context.diagnostics)?;
     let mut term = Parameters { fields, what: &what, context };
     let ramp = if known.contains(&"ramp") { term.not_negative("ramp", Dimension::TIME) } else { Some(0.0) };
+    let inside_loop = if known.contains(&"inside_loop") { term.inside_loop() } else { Some(false) };
     let read = match name.value.as_str() {
         "constant" => read_constant(&mut term),
         "polynomial" => read_polynomial(&mut term),
@@ -74,7 +71,7 @@ fn read_named(
         "compliance" => read_compliance(&mut term),
         _ => None,
     };
-    Some((read?, ramp?))
+    Some(Item { term: Spanned::new(read?, name.span), ramp: ramp?, inside_loop: inside_loop? })
 }
 
 /// The parameters that a term may have, the one that is its own first; nothing for an unknown term.
@@ -83,16 +80,17 @@ fn parameters_of(term: &str) -> Option<&'static [&'static str]> {
         "constant" => &["value"],
         "polynomial" => &["axis", "sensor", "per", "unit", "coefficients"],
         "table" => &["axis", "start", "step", "at", "per", "unit", "values", "forward", "reverse"],
-        "backlash" => &["lost_motion", "wind_up", "ramp", "axis"],
+        "backlash" => &["lost_motion", "wind_up", "ramp", "inside_loop", "axis"],
         "reversal-spike" => &["height", "decay", "axis"],
         "cyclic" => &["period", "amplitude", "phase", "axis"],
-        "lag" | "acceleration" => &["gain", "axis"],
+        "lag" => &["gain", "frequency", "axis"],
+        "acceleration" => &["gain", "axis"],
         "expansion" => &["sensor", "coefficient", "reference", "axis"],
         "growth" => &["sensor", "coefficient", "reference", "time_constant"],
         "drift" => &["amplitude", "time_constant"],
         "vibration" => &["frequency", "amplitude", "phase"],
         "coupling" => &["axis", "per", "unit", "coefficients"],
-        "compliance" => &["load", "coefficient"],
+        "compliance" => &["load", "coefficient", "inside_loop"],
         _ => return None,
     };
     Some(known)
@@ -117,7 +115,7 @@ fn read_constant(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
 pub(super) fn read_plain(node: &Node, context: &mut Context<'_>) -> Option<Item> {
     let (kind, name) = (context.motion.dimension(), &context.motion.name);
     let value = quantity::read(node, kind, name, context.diagnostics)?;
-    Some(Item { term: value.map(|value| CalibratedTerm::Constant { value }), ramp: 0.0 })
+    Some(Item { term: value.map(|value| CalibratedTerm::Constant { value }), ramp: 0.0, inside_loop: false })
 }
 
 fn read_backlash(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
@@ -154,7 +152,11 @@ fn read_lag(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
     let axis = term.axis();
     let kind = gain_kind(term, axis);
     let gain = term.positive("gain", kind);
-    Some(CalibratedTerm::Lag { axis: axis?, gain: gain? })
+    let frequency = match term.fields.get("frequency") {
+        Some(_) => term.positive("frequency", Dimension::FREQUENCY),
+        None => Some(0.0),
+    };
+    Some(CalibratedTerm::Lag { axis: axis?, gain: gain?, frequency: frequency? })
 }
 
 fn read_acceleration(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {

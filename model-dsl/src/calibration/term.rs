@@ -76,12 +76,16 @@ pub enum CalibratedTerm {
         /// f, rad.
         phase: f64,
     },
-    /// The lag of a position loop, `-v/K` in steady state.
+    /// The lag of a position loop, `-v/K` in steady state. With a natural frequency w the loop is of second order,
+    /// `q'' = w^2 (q_cmd - q) - (w^2/K) q'`, and rings where its damping `w/(2 K)` is below 1; without, it is
+    /// `q' = K (q_cmd - q)`.
     Lag {
         /// The axis.
         axis: usize,
         /// K, 1/s, greater than zero.
         gain: f64,
+        /// w/(2 pi), Hz, not negative; 0: a loop of first order.
+        frequency: f64,
     },
     /// `-a/K`.
     Acceleration {
@@ -288,7 +292,7 @@ impl CalibratedTerm {
             &Self::Cyclic { axis, period, amplitude, phase } => {
                 Term::Cyclic { axis, period, amplitude, phase }
             }
-            &Self::Lag { axis, gain } => Term::Lag { axis, gain },
+            &Self::Lag { axis, gain, frequency: _ } => Term::Lag { axis, gain },
             &Self::Expansion { axis, sensor, coefficient, reference } => {
                 Term::Expansion { axis, sensor, coefficient, reference }
             }

@@ -76,6 +76,9 @@ fn motion(listed: &CalibratedMotion, calibration: &Calibration, names: &MachineN
                 if ramp > 0.0 {
                     parameters.push(("ramp", Item::One(quantity(ramp, "s"))));
                 }
+                if listed.is_inside_loop(place) {
+                    parameters.push(("inside_loop", Item::One("true".to_owned())));
+                }
                 term(one.value.name(), &parameters)
             });
             format!("  {name}:\n{}", lines.collect::<String>())

@@ -44,9 +44,11 @@ pub(super) fn parameters(term: &CalibratedTerm, context: &Context<'_>) -> Parame
                 vec![("period", period), ("amplitude", value(*amplitude)), ("phase", angle(*phase))];
             context.on_axis(*axis, parameters)
         }
-        CalibratedTerm::Lag { axis, gain } => {
+        CalibratedTerm::Lag { axis, gain, frequency } => {
             let unit = ratio(context.axis_unit(*axis), motion, "s");
-            context.on_axis(*axis, vec![("gain", one(quantity(*gain, &unit)))])
+            let frequency = (*frequency != 0.0).then(|| ("frequency", one(quantity(*frequency, "Hz"))));
+            let parameters = vec![("gain", one(quantity(*gain, &unit)))];
+            context.on_axis(*axis, parameters.into_iter().chain(frequency).collect())
         }
         CalibratedTerm::Acceleration { axis, gain } => {
             let unit = ratio(context.axis_unit(*axis), motion, "s^2");

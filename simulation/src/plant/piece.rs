@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use model_dsl::calibration::{CalibratedTerm, SeriesInput};
 
 use super::curve::PiecewiseLinear;
-use super::servo::first_order;
+use super::servo::{Before, Servo, first_order};
 use super::{PlantError, State};
 
 /// One term.
@@ -42,7 +42,7 @@ pub(super) enum Piece {
     /// A lag that is not the axis's own: what a loop that follows the axis adds.
     Lag {
         axis: usize,
-        gain: f64,
+        loop_of: Servo,
     },
     Acceleration {
         axis: usize,
@@ -90,6 +90,8 @@ pub(super) struct Memory {
     input: f64,
     /// The time of the sample before, s.
     time: f64,
+    /// The loop of a lag.
+    answered: Before,
 }
 
 impl Piece {
@@ -112,7 +114,11 @@ impl Piece {
             &CalibratedTerm::Cyclic { axis, period, amplitude, phase } => {
                 Self::Cyclic { axis, period, amplitude, phase }
             }
-            &CalibratedTerm::Lag { axis, gain } => Self::Lag { axis, gain },
+            &CalibratedTerm::Lag { axis, gain, frequency } => {
+                let root = TAU * frequency;
+                let inertia = if frequency > 0.0 { 1.0 / (root * root) } else { 0.0 };
+                Self::Lag { axis, loop_of: Servo::of(1.0 / gain, inertia) }
+            }
             &CalibratedTerm::Acceleration { axis, gain } => Self::Acceleration { axis, gain },
             &CalibratedTerm::Expansion { axis, sensor, coefficient, reference } => {
                 Self::Expansion { axis, sensor, coefficient, reference }
@@ -161,9 +167,9 @@ impl Piece {
             &Self::Cyclic { axis, period, amplitude, phase } => {
                 amplitude * (TAU * state.position(axis) / period + phase).sin()
             }
-            &Self::Lag { axis, gain } => {
+            &Self::Lag { axis, loop_of } => {
                 let position = state.position(axis);
-                filtered(state.time, position, 1.0 / gain, memory) - position
+                loop_of.answer(&mut memory.answered, state.time, position) - position
             }
             &Self::Acceleration { axis, gain } => -state.acceleration(axis) / gain,
             &Self::Expansion { axis, sensor, coefficient, reference } => {
@@ -207,7 +213,7 @@ fn take_up(state: &State<'_>, axis: usize, wind_up: f64, memory: &mut Memory) ->
         None => state.direction(axis),
         Some(before) => (before + 2.0 * (position - memory.input) / wind_up).clamp(-1.0, 1.0),
     };
-    *memory = Memory { value: Some(moved), input: position, time: state.time };
+    *memory = Memory { value: Some(moved), input: position, time: state.time, ..*memory };
     moved
 }
 
@@ -220,6 +226,6 @@ fn filtered(time: f64, input: f64, time_constant: f64, memory: &mut Memory) -> f
         None => input,
         Some(before) => first_order(before, memory.input, input, (time - memory.time) / time_constant),
     };
-    *memory = Memory { value: Some(output), input, time };
+    *memory = Memory { value: Some(output), input, time, ..*memory };
     output
 }

@@ -27,25 +27,50 @@ struct Stand {
     velocity: f64,
 }
 
+/// What a loop remembers from sample to sample: time and command of the sample before, and where it stood.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Before(Option<(f64, f64, Stand)>);
+
 impl Servo {
+    /// The loop with a steady lag of `slowness` times the velocity, s, and the squared reciprocal `inertia` of its natural
+    /// frequency, s^2; of first order where that is 0.
+    pub(super) fn of(slowness: f64, inertia: f64) -> Self {
+        if inertia > 0.0 {
+            let frequency = 1.0 / inertia.sqrt();
+            Self::Second { frequency, damping: 0.5 * slowness * frequency }
+        } else {
+            Self::First { gain: 1.0 / slowness }
+        }
+    }
+
+    /// The steady lag over the velocity, s, and the squared reciprocal of the natural frequency, s^2.
+    pub(super) fn slowness_and_inertia(self) -> (f64, f64) {
+        match self {
+            Self::First { gain } => (1.0 / gain, 0.0),
+            Self::Second { frequency, damping } => (2.0 * damping / frequency, 1.0 / (frequency * frequency)),
+        }
+    }
+
     /// The positions that answer the commands, in the unit of the commands.
     ///
     /// Where a command or a time is missing (NaN) the position is missing too, and the loop goes on from the last command.
     pub fn follow(self, time: &[f64], commands: &[f64]) -> Vec<f64> {
-        let mut before: Option<(f64, f64, Stand)> = None;
+        let mut before = Before::default();
         let samples = time.iter().zip(commands);
-        let positions = samples.map(|(&time, &command)| {
-            if !command.is_finite() || !time.is_finite() {
-                return f64::NAN;
-            }
-            let stand = match before {
-                None => Stand { position: command, velocity: 0.0 },
-                Some((start, from, stand)) => self.step(stand, from, command, time - start),
-            };
-            before = Some((time, command, stand));
-            stand.position
-        });
-        positions.collect()
+        samples.map(|(&time, &command)| self.answer(&mut before, time, command)).collect()
+    }
+
+    /// What the loop makes of the next sample of its command.
+    pub(super) fn answer(self, before: &mut Before, time: f64, command: f64) -> f64 {
+        if !command.is_finite() || !time.is_finite() {
+            return f64::NAN;
+        }
+        let stand = match before.0 {
+            None => Stand { position: command, velocity: 0.0 },
+            Some((start, from, stand)) => self.step(stand, from, command, time - start),
+        };
+        before.0 = Some((time, command, stand));
+        stand.position
     }
 
     fn step(self, stand: Stand, from: f64, to: f64, step: f64) -> Stand {

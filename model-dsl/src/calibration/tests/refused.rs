@@ -146,6 +146,13 @@ fn kinds_are_checked() {
     );
     refused("EXX: [{backlash: {lost_motion: 1 um, ramp: 2 mm}}]", &[("E0307", "mm")]);
     refused("EXX: [{lag: {gain: 16 1/s, ramp: 2 ms}}]", &[("E0412", "ramp")]);
+    refused("EXX: [{lag: {gain: 16 1/s, frequency: 0 Hz}}]", &[("E0419", "0 Hz")]);
+    refused("EXX: [{backlash: {lost_motion: 1 um, inside_loop: maybe}}]", &[("E0427", "maybe")]);
+    refused("EZS: [{backlash: {axis: Y, lost_motion: 1 um, inside_loop: true}}]", &[("E0427", "true")]);
+    refused(
+        "EXX: [{cyclic: {period: 1 mm, amplitude: 1 um, phase: 0 deg, inside_loop: true}}]",
+        &[("E0412", "inside_loop")],
+    );
     refused("EXX: [{lag: {gain: 16 s}}]", &[("E0307", "s")]);
     refused("EXX: [{acceleration: {gain: 16 1/s}}]", &[("E0307", "1/s")]);
     let growth = "EXX: [{growth: {sensor: a, coefficient: 11 um/m/K, reference: 20 mm}}]";

@@ -147,7 +147,7 @@ fn every_other_term_is_read() {
             "EXX: [{cyclic: {period: 5 mm, amplitude: 1 um, phase: 1 rad}}]",
             CalibratedTerm::Cyclic { axis: 0, period: 5.0, amplitude: 1e-3, phase: 1.0 },
         ),
-        ("EXX: [{lag: {gain: 16.28 1/s}}]", CalibratedTerm::Lag { axis: 0, gain: 16.28 }),
+        ("EXX: [{lag: {gain: 16.28 1/s}}]", CalibratedTerm::Lag { axis: 0, gain: 16.28, frequency: 0.0 }),
         ("EXX: [{acceleration: {gain: 400 1/s^2}}]", CalibratedTerm::Acceleration { axis: 0, gain: 400.0 }),
         (
             "EXX: [{drift: {amplitude: 2 um, time_constant: 10 min}}]",
@@ -178,7 +178,10 @@ fn every_other_term_is_read() {
             "EZS: [{compliance: {load: drive, coefficient: 2 um/%}}]",
             CalibratedTerm::Compliance { load: "drive".to_owned(), coefficient: 0.002 },
         ),
-        ("EZS: [{lag: {axis: Y, gain: 10 1/s}}]", CalibratedTerm::Lag { axis: 1, gain: 10.0 }),
+        (
+            "EZS: [{lag: {axis: Y, gain: 10 1/s}}]",
+            CalibratedTerm::Lag { axis: 1, gain: 10.0, frequency: 0.0 },
+        ),
     ];
     for (errors, expected) in cases {
         let found = term(errors);

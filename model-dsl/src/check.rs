@@ -167,6 +167,11 @@ impl Comparison {
     pub fn agrees(&self) -> bool {
         self.nominal.agrees() && !self.findings.iter().any(|finding| finding.verdict.disagrees())
     }
+
+    /// Every term that contradicts the derivation, in a line each: place, verdict, name, both sides.
+    pub fn contradictions(&self) -> Vec<String> {
+        report::contradictions(self)
+    }
 }
 
 /// An equation file, compared with a machine.

@@ -4,6 +4,8 @@
 //! where (order, signs, brackets, how a name is split into letter and subscript) is decided once, while the
 //! tree is built; a writer only spells it, so that no two formats can say different things.
 
+mod chain;
+mod example;
 mod html;
 mod json;
 mod latex;
@@ -11,6 +13,8 @@ mod letter;
 mod mathml;
 mod maxima;
 mod number;
+mod published;
+mod reach;
 mod sheet;
 mod text;
 mod tree;
@@ -23,6 +27,9 @@ mod tests;
 use crate::algebra::Polynomial;
 use crate::equations::{Equations, Names};
 
+pub use example::{Example, example};
+pub use published::Published;
+
 /// In which form equations are printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Format {
@@ -31,7 +38,7 @@ pub enum Format {
     Text,
     /// A LaTeX document that needs amsmath, geometry and longtable.
     Latex,
-    /// One self-contained HTML page with MathML.
+    /// One self-contained HTML page with MathML and a drawing of the chain.
     Html,
     /// JSON of schema `abbe-equations/1`.
     Json,
@@ -45,10 +52,23 @@ pub fn print(equations: &Equations, format: Format, names: Names) -> String {
     match format {
         Format::Text => text::page(&sheet()),
         Format::Latex => latex::page(&sheet()),
-        Format::Html => html::page(&sheet()),
+        Format::Html => page(equations, names, &[]),
         Format::Maxima => maxima::batch(&sheet()),
         Format::Json => json::object(equations),
     }
+}
+
+/// The page for a browser, with what was published about the machine beside what is derived.
+pub fn page(equations: &Equations, names: Names, published: &[Published]) -> String {
+    html::page(&sheet::Sheet::new(equations, names), equations, names, published)
+}
+
+/// The drawing of the chain that stands on the page, as an SVG file of its own.
+pub fn drawing(equations: &Equations, names: Names) -> String {
+    // On the page the drawing stands in a figure, which its rules name.
+    let style = chain::STYLE.replace(".chain svg {", "svg {").replace(".chain ", "");
+    let paper = "svg { background: var(--paper); }\n";
+    chain::drawing(equations, names).file(&format!("{}{paper}{style}", pages::svg::COLOURS))
 }
 
 /// The error of each direction as one line of plain text: `dPx = dxx - dxz + ...`.

@@ -1,11 +1,14 @@
 //! `abbe derive`: the error equations of a machine in one of five notations.
 
+use model_dsl::check;
+use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations;
-use model_dsl::notation;
+use model_dsl::notation::{self, Published};
 
 use crate::arguments::{Derive, Format, Names};
 use crate::failure::Failure;
-use crate::{load, output};
+use crate::load::{self, Loaded};
+use crate::output;
 
 /// Runs the command.
 pub(crate) fn run(command: &Derive) -> Result<(), Failure> {
@@ -21,5 +24,19 @@ pub(crate) fn run(command: &Derive) -> Result<(), Failure> {
         Names::Iso => equations::Names::Iso,
         Names::Symbols => equations::Names::Symbols,
     };
-    output::print(&notation::print(&loaded.compiled.equations, format, names))
+    let equations = &loaded.compiled.equations;
+    output::print(&match format {
+        notation::Format::Html => notation::page(equations, names, &published(&loaded)),
+        format => notation::print(equations, format, names),
+    })
+}
+
+/// How the machine stands to the equations that were published about it.
+fn published(loaded: &Loaded) -> Vec<Published> {
+    let Loaded { compiled, published, .. } = loaded;
+    let compared = published.iter().filter_map(|file| {
+        let report = check::check(&compiled.machine, &compiled.equations, file, &mut Diagnostics::new());
+        report.map(|report| Published::new(file, report))
+    });
+    compared.collect()
 }

@@ -8,7 +8,8 @@ use crate::notation::infix;
 pub(super) fn text(report: &Report) -> String {
     let verb = if report.agrees() { "agrees" } else { "disagrees" };
     let mut text = format!("{} {verb} with machine {}\n", report.file, report.machine);
-    let contradictions: String = report.equations.iter().map(contradictions).collect();
+    let contradictions = report.equations.iter().flat_map(contradictions);
+    let contradictions: String = contradictions.map(|line| format!("  {line}\n")).collect();
     if !contradictions.is_empty() {
         text.push_str(&format!("\nDisagreement\n{contradictions}"));
     }
@@ -26,12 +27,12 @@ fn place(equation: &Comparison) -> String {
 }
 
 /// Every term of one equation that contradicts the derivation, in a line each.
-fn contradictions(equation: &Comparison) -> String {
+pub(super) fn contradictions(equation: &Comparison) -> Vec<String> {
     let place = place(equation);
-    let mut lines = String::new();
+    let mut lines = Vec::new();
     if !equation.nominal.agrees() {
         let both = both(&equation.nominal.derived, &equation.nominal.printed);
-        lines.push_str(&format!("  {place}: nominal part differs: {both}\n"));
+        lines.push(format!("{place}: nominal part differs: {both}"));
     }
     let mut found: Vec<&Finding> = equation.findings.iter().filter(|one| one.verdict.disagrees()).collect();
     found.sort_by_key(|finding| finding.verdict);
@@ -48,7 +49,7 @@ fn contradictions(equation: &Comparison) -> String {
             }
             _ => both(&finding.derived, &finding.printed),
         };
-        lines.push_str(&format!("  {place}: {}: {}: {both}\n", finding.verdict.words(), name(finding)));
+        lines.push(format!("{place}: {}: {}: {both}", finding.verdict.words(), name(finding)));
     }
     lines
 }

@@ -1,56 +1,73 @@
-//! The page for a browser. In: a sheet. Out: one HTML file with its style inside: no script, nothing fetched.
+//! The page for a browser. In: a sheet, the equations behind it and what was published. Out: one HTML file with its style
+//! inside: no script, nothing fetched.
 
-use super::mathml::{arm, equation, escape, letter, part};
+mod worked;
+
+use pages::text::escape;
+
+use super::mathml::{arm, equation, letter, part};
+use super::published::{self, Published};
+use super::reach::{self, Cancelled};
 use super::sheet::{MotionEntry, Sheet, SheetRow};
+use super::{chain, example};
+use crate::algebra::Axis;
+use crate::equations::{Equations, Names};
 
 const STYLE: &str = "\
-:root { color-scheme: light dark; --ink: #1b1b1b; --paper: #fdfdfb; --line: #c9c9c2; --band: #f1f1ec; --quiet: #5a5a55; }
-@media (prefers-color-scheme: dark) {
-  :root { --ink: #e8e6e1; --paper: #17181a; --line: #45474b; --band: #202225; --quiet: #a5a39d; }
-}
-* { box-sizing: border-box; }
-body { margin: 0 auto; padding: 2rem 1.25rem 4rem; max-width: 70rem; color: var(--ink); background: var(--paper);
-  font: 1rem/1.55 system-ui, sans-serif; }
-h1 { font-size: 1.6rem; line-height: 1.25; margin: 0 0 .25rem; }
-h2 { font-size: 1.15rem; margin: 2.25rem 0 .5rem; padding-bottom: .2rem; border-bottom: 1px solid var(--line); }
-p, li { max-width: 46rem; }
-.source { color: var(--quiet); margin-top: 0; }
-.wide { overflow-x: auto; }
+.source { margin-top: 0; }
+.word { font-size: 2.6rem; line-height: 1.1; letter-spacing: .12em; font-weight: 600; margin: .6rem 0 0; }
+.word span { color: var(--quiet); font-weight: 400; }
+.motions { font-size: .92rem; }
+.motions th { white-space: nowrap; }
+.motions td:nth-child(3) { min-width: 8rem; }
+@media print { .motions { font-size: .58rem; } .motions td:nth-child(3) { min-width: 0; } }
 math { font-size: 1.08em; font-family: 'STIX Two Math', 'Cambria Math', 'Latin Modern Math', math, serif; }
 math[display=block] { width: max-content; margin: .6rem 0; }
+@media print { math { font-size: .85em; } }
 mtable.equation mtd { padding: .18em .2em; text-align: left; }
 mtable.equation mtd:first-child { text-align: right; }
 mtable.lines mtd { padding: .05em 0; text-align: left; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: .2rem 1rem; margin: .8rem 0 0; }
 dt { color: var(--quiet); }
 dd { margin: 0; }
-table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
-th, td { text-align: left; vertical-align: top; padding: .35rem .7rem .35rem 0; border-bottom: 1px solid var(--line); }
-thead th { position: sticky; top: 0; background: var(--band); }
-thead th:first-child, tbody td:first-child { padding-left: .5rem; }
-.none { color: var(--quiet); }
-@media print { body { max-width: none; } thead th { position: static; } }
 ";
 
+const SYMBOLS: &str = "A slide is a double arrow, its full head where the programmed position grows; a rotary axis an arc, \
+    its head where the programmed angle grows; a spindle a broken circle, since it turns freely; a weld a body that does not \
+    move against the one before it. Beside each stands its frame: right-handed, parallel to that of the bed while rotary axes \
+    stand at zero; X to the right, Z upwards, Y into the page. The numbers on a connection are the offset of the frame above \
+    it, in the frame below. Error motions stand at the link where they enter: what moves it, what turns it, how it is aligned.";
+
 /// The whole page.
-pub(super) fn page(sheet: &Sheet) -> String {
-    let heading = escape(&sheet.heading());
+pub(super) fn page(sheet: &Sheet, equations: &Equations, names: Names, published: &[Published]) -> String {
     let source = sheet.source.as_ref();
     let source = source.map(|text| format!("<p class=\"source\">Source: {}</p>\n", escape(text)));
     let rows: String = sheet.rows.iter().map(direction).collect();
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{heading}</title>\n\
-         <style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{heading}</h1>\n{}\
-         <h2>The chain</h2>\n<p>{}</p>\n{rows}\
+    let title = sheet.heading();
+    let body = format!(
+        "<h1>{}</h1>\n{}<h2>The chain</h2>\n{}{rows}\
          <h2>Error motions and their lever arms</h2>\n{}\
-         <h2>Positions and constants</h2>\n{}\
-         <h2>Conventions in force</h2>\n{}</body>\n</html>\n",
+         <h2>Positions and constants</h2>\n{}{}\
+         <h2>Conventions in force</h2>\n{}{}",
+        escape(&title),
         source.unwrap_or_default(),
-        escape(&sheet.chain.join(" ")),
-        motions(sheet),
+        the_chain(sheet, equations, names),
+        motions(sheet, equations),
         quantities(sheet),
+        agreement(published),
         conventions(sheet),
+        example(equations).map(|example| worked::section(sheet, equations, &example)).unwrap_or_default(),
+    );
+    pages::shell::page(&title, &format!("{STYLE}{}", chain::STYLE), &body)
+}
+
+fn the_chain(sheet: &Sheet, equations: &Equations, names: Names) -> String {
+    let word = chain::word(equations).replace('F', "<span>F</span>");
+    format!(
+        "<p class=\"word\">{word}</p>\n<p class=\"source\">The axes from the part to the tool; F is the bed.</p>\n\
+         <p>{}</p>\n<figure class=\"chain\">\n{}<figcaption>{SYMBOLS}</figcaption>\n</figure>\n",
+        escape(&sheet.chain.join(" ")),
+        chain::drawing(equations, names).inline(),
     )
 }
 
@@ -67,40 +84,58 @@ fn direction(row: &SheetRow) -> String {
     )
 }
 
-fn motions(sheet: &Sheet) -> String {
+fn motions(sheet: &Sheet, equations: &Equations) -> String {
     let arms: String = sheet.rows.iter().map(|row| format!("<th>Arm in {}</th>", row.direction)).collect();
-    let rows: String = sheet.motions.iter().map(motion).collect();
+    let entries = sheet.motions.iter().zip(reach::cancelled(equations)).enumerate();
+    let rows: String = entries
+        .map(|(number, (entry, cancelled))| motion(entry, &reach::reached(equations, number), &cancelled))
+        .collect();
     format!(
-        "<div class=\"wide\"><table>\n<thead><tr><th>Symbol</th><th>ISO 230-1</th><th>Meaning</th><th>Unit</th>\
-         {arms}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n"
+        "<div class=\"wide\"><table class=\"motions\">\n<thead><tr><th>Symbol</th><th>ISO 230-1</th><th>Meaning</th>\
+         <th>Unit</th><th>Reaches</th><th>Compensable</th>{arms}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n\
+         <p>Compensable is what slides cancel by moving the tip; the rest is told and left, and rotary axes do not \
+         correct. This is the geometry: which terms of a motion a controller can know in time is told by the calibration \
+         (E0425).</p>\n"
     )
 }
 
-fn motion(motion: &MotionEntry) -> String {
+fn motion(motion: &MotionEntry, reached: &[Axis], cancelled: &[Cancelled; 3]) -> String {
     let against = if motion.against_iso { " (counted against the ISO sense)" } else { "" };
     let cell = |found: &Option<super::tree::Expression>| match found {
         Some(found) => format!("<td>{}</td>", arm(found)),
         None => "<td class=\"none\">none</td>".to_owned(),
     };
     let arms: String = motion.arms.iter().map(cell).collect();
+    let directions: Vec<String> = reached.iter().map(|axis| axis.to_string()).collect();
     format!(
-        "<tr><td>{}</td><td>{}</td><td>{}{against}</td><td>{}</td>{arms}</tr>\n",
+        "<tr><td>{}</td><td>{}</td><td>{}{against}</td><td>{}</td><td>{}</td><td>{}</td>{arms}</tr>\n",
         letter(&motion.letter),
         escape(&motion.iso),
         escape(&motion.meaning),
-        motion.unit
+        motion.unit,
+        directions.join(", "),
+        reach::words(reached, cancelled),
     )
 }
 
 fn quantities(sheet: &Sheet) -> String {
     let row = |entry: &super::sheet::QuantityEntry| {
-        format!("<tr><td>{}</td><td>{}</td></tr>\n", letter(&entry.letter), escape(&entry.meaning))
+        let (letter, meaning) = (letter(&entry.letter), escape(&entry.meaning));
+        format!("<tr><td>{letter}</td><td>{meaning}</td><td>{}</td></tr>\n", escape(&entry.value))
     };
     let rows: String = sheet.quantities.iter().map(row).collect();
     format!(
-        "<div class=\"wide\"><table>\n<thead><tr><th>Symbol</th><th>Meaning</th></tr></thead>\n<tbody>\n{rows}\
-         </tbody>\n</table></div>\n"
+        "<div class=\"wide\"><table>\n<thead><tr><th>Symbol</th><th>Meaning</th><th>Value</th></tr></thead>\n\
+         <tbody>\n{rows}</tbody>\n</table></div>\n"
     )
+}
+
+fn agreement(published: &[Published]) -> String {
+    if published.is_empty() {
+        return String::new();
+    }
+    let sections: String = published.iter().map(published::section).collect();
+    format!("<h2>Agreement with published equations</h2>\n{sections}")
 }
 
 fn conventions(sheet: &Sheet) -> String {

@@ -2,18 +2,22 @@
 //!
 //! An equation is a table of lines, since browsers do not break formulas themselves.
 
+use std::collections::BTreeMap;
+
+use pages::text::escape;
+
 use super::letter::{Base, Letter};
 use super::number::Number;
 use super::sheet::Statement;
 use super::text::Plain;
 use super::tree::{Expression, Function};
 use super::wrap;
-use super::writer::{Signs, Writer, pieces};
+use super::writer::{Signs, Writer, line, pieces};
 
 /// The widest line of an equation, measured in characters of plain text.
 const EQUATION_WIDTH: usize = 84;
 /// The widest line of a lever arm in a table.
-const ARM_WIDTH: usize = 34;
+const ARM_WIDTH: usize = 24;
 
 struct MathMl;
 
@@ -65,6 +69,77 @@ impl Writer for MathMl {
     }
 }
 
+/// The same with numbers in the place of names.
+struct Filled<'v> {
+    /// By the name in plain text, as it is to be read, sign included.
+    values: &'v BTreeMap<String, String>,
+}
+
+impl Writer for Filled<'_> {
+    fn signs(&self) -> &'static Signs {
+        &Signs {
+            plus: "<mo form=\"infix\">+</mo>",
+            minus: "<mo form=\"infix\">−</mo>",
+            leading_minus: "<mo form=\"prefix\">−</mo>",
+            times: "<mo>×</mo>",
+            open: "<mo stretchy=\"false\">(</mo>",
+            close: "<mo stretchy=\"false\">)</mo>",
+        }
+    }
+
+    fn letter(&self, letter: &Letter) -> String {
+        match self.values.get(&letter.plain) {
+            Some(value) => in_a_sum(value),
+            None => MathMl.letter(letter),
+        }
+    }
+
+    fn number(&self, number: &Number) -> String {
+        MathMl.number(number)
+    }
+
+    fn power(&self, base: &str, exponent: u32) -> String {
+        MathMl.power(base, exponent)
+    }
+
+    fn function(&self, function: Function, argument: &str) -> String {
+        MathMl.function(function, argument)
+    }
+}
+
+/// A number as it stands in a sum or product: in brackets where it is negative.
+fn in_a_sum(value: &str) -> String {
+    let Signs { leading_minus, open, close, .. } = MathMl.signs();
+    match value.strip_prefix('-') {
+        Some(digits) => format!("{open}{leading_minus}<mn>{}</mn>{close}", escape(digits)),
+        None => format!("<mn>{}</mn>", escape(value)),
+    }
+}
+
+/// One error motion worked through: `dPx = (z - Zt) e = (200 - 70) mm x 10 urad = +1.3 um`.
+pub(super) fn worked(
+    (error, arm, motion): (&Letter, &Expression, &Letter),
+    values: &BTreeMap<String, String>,
+    (value, result): (&str, &str),
+) -> String {
+    let Signs { open, close, leading_minus, .. } = MathMl.signs();
+    let (symbols, numbers) = (line(&MathMl, arm), line(&Filled { values }, arm));
+    let unit = |unit: &str| format!("<mspace width=\"0.2em\"/><mi mathvariant=\"normal\">{unit}</mi>");
+    let result = match result.strip_prefix('-') {
+        Some(digits) => format!("{leading_minus}<mn>{digits}</mn>"),
+        None => format!("<mo form=\"prefix\">+</mo><mn>{result}</mn>"),
+    };
+    format!(
+        "<math display=\"block\">{}<mo>=</mo>{open}{symbols}{close}{}<mo>=</mo>{open}{numbers}{close}{}\
+         <mo>×</mo><mn>{value}</mn>{}<mo>=</mo>{result}{}</math>\n",
+        MathMl.letter(error),
+        MathMl.letter(motion),
+        unit("mm"),
+        unit("µrad"),
+        unit("µm")
+    )
+}
+
 /// A letter in running text.
 pub(super) fn letter(letter: &Letter) -> String {
     format!("<math>{}</math>", MathMl.letter(letter))
@@ -109,15 +184,9 @@ pub(super) fn equation(statement: &Statement) -> String {
 fn lines(expression: &Expression, width: usize) -> Vec<String> {
     let written = pieces(&MathMl, expression);
     let plain = pieces(&Plain, expression);
-    let line = |line: &wrap::Line| {
+    let set = |line: &wrap::Line| {
         let indent = if line.inside { "<mspace width=\"2em\"/>" } else { "" };
         format!("{indent}{}", wrap::join(&written, line))
     };
-    wrap::lines(&plain, width).iter().map(line).collect()
-}
-
-/// Text in HTML.
-pub(super) fn escape(text: &str) -> String {
-    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-    text.replace('"', "&quot;")
+    wrap::lines(&plain, width).iter().map(set).collect()
 }

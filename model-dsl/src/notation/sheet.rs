@@ -53,6 +53,8 @@ pub(super) struct QuantityEntry {
     pub(super) letter: Letter,
     /// In words, unit included.
     pub(super) meaning: String,
+    /// Where its value comes from: a file, a program.
+    pub(super) value: String,
 }
 
 /// A page of equations.
@@ -158,18 +160,26 @@ fn motions(equations: &Equations, names: Names) -> Vec<MotionEntry> {
 }
 
 fn quantities(equations: &Equations) -> Vec<QuantityEntry> {
-    let entry = |name: &str, meaning: String| QuantityEntry { letter: Letter::named(name), meaning };
+    let entry = |name: &str, meaning: String, value: String| QuantityEntry {
+        letter: Letter::named(name),
+        meaning,
+        value,
+    };
     let positions = equations.axes.iter().map(|axis| {
         let unit = if axis.rotary { "rad" } else { "mm" };
-        entry(&axis.variable, format!("position of axis {} ({unit})", axis.letter))
+        let meaning = format!("position of axis {} ({unit})", axis.letter);
+        entry(&axis.variable, meaning, "programmed".to_owned())
     });
     let travels = equations.travels.iter().map(|travel| {
         let letter = equations.axes.get(travel.axis).map_or("", |axis| &axis.letter);
-        entry(&travel.name, format!("travel of {letter} from where its alignment was measured (mm)"))
+        let meaning = format!("travel of {letter} from where its alignment was measured (mm)");
+        entry(&travel.name, meaning, format!("the position of {letter} where no other is given"))
     });
     let constants = equations.constants.iter().map(|constant| {
         let meaning = constant.meaning.as_deref().unwrap_or("constant of the machine");
-        entry(&constant.name, format!("{meaning} (mm)"))
+        let value = constant.default.map(|own| format!("{own} mm unless a calibration has another"));
+        let value = value.unwrap_or_else(|| "from the calibration".to_owned());
+        entry(&constant.name, format!("{meaning} (mm)"), value)
     });
     positions.chain(travels).chain(constants).collect()
 }

@@ -1,0 +1,129 @@
+//! Where error motions are felt and whether the slides can cancel them. In: equations. Out: for each error motion the
+//! directions that it reaches, and for each direction whether some command moves the tip along it.
+//!
+//! Compensation adds what the slides can add: the columns of the Jacobian, one for each slide that corrects. What no
+//! slide reaches is reported and left, and rotary axes do not correct (NOTATION.md, "The compensated command").
+
+use abbe_runtime::Kinematics as _;
+
+use crate::algebra::Axis;
+use crate::equations::Equations;
+use crate::program::Interpreter;
+
+/// Angles of rotary axes at which the machine is looked at, rad: none of them special.
+const ANGLES: [f64; 4] = [0.3, 1.1, 2.3, 4.1];
+/// What rounding may leave of a lever arm, as a share of the whole of it.
+const ROUNDING: f64 = 1e-9;
+
+/// Whether commands can cancel what an error motion does in a direction of the part's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Cancelled {
+    /// Wherever the axes stand.
+    Yes,
+    /// To an extent that depends on where rotary axes stand.
+    InPart,
+    /// Nowhere.
+    No,
+}
+
+/// The machine where its rotary axes stand somewhere.
+struct State {
+    /// What the slides reach: [`basis`].
+    basis: Vec<[f64; 3]>,
+    /// The lever arm of each error motion.
+    levers: Vec<[f64; 3]>,
+}
+
+/// For each error motion what the slides can do about it in X, Y, Z of the part's frame.
+pub(super) fn cancelled(equations: &Equations) -> Vec<[Cancelled; 3]> {
+    let lengths = |first: f64| std::iter::successors(Some(first), |last| Some(last * 1.3 + 7.0));
+    let constants: Vec<f64> = lengths(31.0).take(equations.constants.len()).collect();
+    let travels: Vec<f64> = lengths(53.0).take(equations.travels.len()).collect();
+    let machine = Interpreter::new(equations, &constants);
+    let states: Vec<State> = ANGLES
+        .iter()
+        .map(|angle| {
+            let turns = std::iter::successors(Some(*angle), |angle| Some(angle + 0.7));
+            let axes = equations.axes.iter().zip(turns.zip(lengths(71.0)));
+            let positions: Vec<f64> =
+                axes.map(|(axis, (turn, length))| if axis.rotary { turn } else { length }).collect();
+            State { basis: basis(&machine, &positions), levers: machine.levers(&positions, &travels) }
+        })
+        .collect();
+    (0..equations.motions.len()).map(|motion| verdicts(&states, motion)).collect()
+}
+
+/// The verdict on one error motion: what the slides leave of its lever arm, state by state.
+fn verdicts(states: &[State], motion: usize) -> [Cancelled; 3] {
+    let pair = |state: &State| {
+        let arm = state.levers.get(motion)?;
+        Some((*arm, outside(*arm, &state.basis)))
+    };
+    let pairs: Vec<([f64; 3], [f64; 3])> = states.iter().filter_map(pair).collect();
+    Axis::ALL.map(|axis| {
+        let row = axis.index();
+        let vanishes = |part: &dyn Fn(&[f64; 3], &[f64; 3]) -> f64| {
+            pairs.iter().all(|(arm, rest)| part(arm, rest).abs() <= ROUNDING * dot(arm, arm).sqrt())
+        };
+        if vanishes(&|_, rest| rest[row]) {
+            Cancelled::Yes
+        } else if vanishes(&|arm, rest| arm[row] - rest[row]) {
+            Cancelled::No
+        } else {
+            Cancelled::InPart
+        }
+    })
+}
+
+/// Directions of length 1, square to each other, that together reach what the slides reach.
+fn basis(machine: &Interpreter, positions: &[f64]) -> Vec<[f64; 3]> {
+    let mut columns = vec![[0.0; 3]; machine.axes()];
+    machine.directions(positions, &mut columns);
+    columns.into_iter().fold(Vec::new(), |mut basis, column| {
+        let rest = outside(column, &basis);
+        let length = dot(&rest, &rest).sqrt();
+        if length > ROUNDING {
+            basis.push(rest.map(|value| value / length));
+        }
+        basis
+    })
+}
+
+/// What is left of a vector without its parts along a basis.
+fn outside(vector: [f64; 3], basis: &[[f64; 3]]) -> [f64; 3] {
+    basis.iter().fold(vector, |rest, known| {
+        let along = dot(&rest, known);
+        std::array::from_fn(|row| rest[row] - along * known[row])
+    })
+}
+
+fn dot(left: &[f64; 3], right: &[f64; 3]) -> f64 {
+    left.iter().zip(right).map(|(left, right)| left * right).sum()
+}
+
+/// The directions that a motion reaches, by its number in [`Equations::motions`].
+pub(super) fn reached(equations: &Equations, motion: usize) -> Vec<Axis> {
+    let rows = equations.rows.iter().filter(|row| row.terms.iter().any(|term| term.motion == motion));
+    rows.map(|row| row.direction).collect()
+}
+
+/// Whether what reaches these directions can be compensated, in words: `yes`, `no`, `X; not Y`.
+pub(super) fn words(reached: &[Axis], cancelled: &[Cancelled; 3]) -> String {
+    let those = |wanted: Cancelled| {
+        let found = reached.iter().filter(|axis| cancelled[axis.index()] == wanted);
+        found.map(Axis::to_string).collect::<Vec<_>>().join(", ")
+    };
+    let (yes, part, no) = (those(Cancelled::Yes), those(Cancelled::InPart), those(Cancelled::No));
+    match (yes.is_empty(), part.is_empty(), no.is_empty()) {
+        (false, true, true) => "yes".to_owned(),
+        (true, true, _) => "no".to_owned(),
+        _ => {
+            let kinds = [(yes, ""), (part, " in part"), (no, "")];
+            let told = kinds.into_iter().enumerate().filter(|(_, (axes, _))| !axes.is_empty());
+            let told: Vec<String> = told
+                .map(|(kind, (axes, after))| format!("{}{axes}{after}", if kind == 2 { "not " } else { "" }))
+                .collect();
+            told.join("; ")
+        }
+    }
+}

@@ -26,9 +26,6 @@ const COULOMB: f64 = 20.39;
 const MASS: f64 = 95.1;
 /// EMPS: the force that the drive gives for each metre of following error, N/m.
 const STIFFNESS: f64 = GTAU * KV * KP;
-/// EMPS: velocities of the strokes, m/s, and the largest acceleration of the reference, m/s^2 (second differences of the file).
-const STROKES: [f64; 3] = [0.042, 0.083, 0.125];
-const LARGEST_ACCELERATION: f64 = 0.842;
 
 /// The target drive's X stage: mean reversal error, range of the mean deviations, repeatability, mm, as the owner reports
 /// them by ISO 230-2; and his ratio of the laser to the axis.
@@ -46,57 +43,61 @@ const PINION_TURN: f64 = 400.0 * 360.0 * 8.101_446_73e-5;
 #[test]
 fn emps_follows_its_documented_position_loop() {
     let Some(found) = diagnosis("emps", &["emps/recording.yaml"]) else { return };
-    let gain = number(finding(&found, "EXX", "lag", "drive"), "gain");
-    assert!(
-        within(gain, effective_gain(), 0.05),
-        "{gain} 1/s, {} 1/s from the control law",
-        effective_gain()
-    );
-    assert!(gain > slowest_stroke() && gain < KP, "{gain} 1/s is not between what friction leaves and kp");
-    // What the control law says beyond a velocity over a gain: Coulomb friction and the force for the mass.
-    let beyond = 1e3 * (COULOMB + MASS * LARGEST_ACCELERATION) / STIFFNESS;
-    assert!(
-        held_out(&found) < beyond,
-        "{} mm are left, friction and mass make {beyond} mm",
-        held_out(&found)
-    );
-    only(&found, &[("EXX", "lag"), ("EXX", "backlash"), ("EXX", "acceleration"), ("EXX", "reversal-spike")]);
-    let lag = finding(&found, "EXX", "lag", "drive");
-    let distances = [off("gain, of 156.5 1/s by the control law", lag, "gain", effective_gain())];
+    let distances = documented_loop(&found);
+    only(&found, &[("EXX", "lag"), ("EXX", "backlash")]);
+    not_a_cause(&found, "drive");
     figures("emps", "recording", "emps", &found, &distances);
 }
 
 #[test]
-fn emps_yields_to_pulses_in_the_documented_direction() {
+fn emps_yields_to_pulses_as_its_control_law_says() {
     let Some(found) = diagnosis("emps-pulses", &["emps-pulses/recording.yaml"]) else { return };
-    let gain = number(finding(&found, "EXX", "lag", "drive"), "gain");
-    assert!(gain > slowest_stroke() && gain < KP, "{gain} 1/s is not between what friction leaves and kp");
-    let (pulses, drive) = (compliance(&found, "pulses"), compliance(&found, "drive"));
-    let (yields, answers) = (number(pulses, "coefficient"), number(drive, "coefficient"));
-    // A pulse of one volt of drive is as much as a following error of 1/(kp kv) at standstill, and pushes forwards.
+    let mut distances = documented_loop(&found);
+    // A pulse of one volt on the drive is as much as a following error of 1/(kp kv) at standstill, and pushes forwards.
     let whole = 1e3 / (KP * KV);
-    assert!(yields > 0.0 && yields < whole, "{yields} mm, {whole} mm from the control law");
-    // The drive's voltage is the answer of the loop to its following error, hence of the other sign.
-    assert!(answers < 0.0, "the drive pushes against the following error: {answers} mm");
-    // The pulses are 5 V half of the time: left alone they would make 2.5 V / (kp kv) about their mean.
-    assert!(held_out(&found) < 2.5 * whole, "{} mm are left", held_out(&found));
-    only(
-        &found,
-        &[
-            ("EXX", "lag"),
-            ("EXX", "compliance"),
-            ("EXX", "backlash"),
-            ("EXX", "acceleration"),
-            ("EXX", "reversal-spike"),
-        ],
-    );
-    let lag = finding(&found, "EXX", "lag", "drive");
-    let distances = [
-        off("gain, of kp = 160.2 1/s, as the drive's voltage is among the terms", lag, "gain", KP),
-        off("drive, of -25.64 um/V by the control law", drive, "coefficient", -whole),
-        off("pulses, of 25.64 um/V by the control law", pulses, "coefficient", whole),
-    ];
+    let pulses = compliance(&found, "pulses");
+    let yields = number(pulses, "coefficient");
+    assert!(within(yields, whole, 0.05), "{yields} mm, {whole} mm from the control law");
+    distances.push(off("pulses, of 25.64 um/V by the control law", pulses, "coefficient", whole));
+    only(&found, &[("EXX", "lag"), ("EXX", "compliance"), ("EXX", "backlash")]);
+    // The drive's voltage is the answer of the loop to its following error.
+    not_a_cause(&found, "drive");
     figures("emps-pulses", "recording", "emps-pulses", &found, &distances);
+}
+
+/// The loop and the friction of the documented control law, m q'' + F q' + C sgn q' = gtau kv (kp (q_cmd - q) - q').
+fn documented_loop(found: &Value) -> Vec<Distance> {
+    let (lag, friction) = (finding(found, "EXX", "lag", "drive"), finding(found, "EXX", "backlash", "drive"));
+    let natural = (STIFFNESS / MASS).sqrt() / std::f64::consts::TAU;
+    let lost = 2e3 * COULOMB / STIFFNESS;
+    let cases = [
+        (lag, "gain", effective_gain(), 0.01),
+        (lag, "frequency", natural, 0.1),
+        (friction, "lost_motion", lost, 0.1),
+    ];
+    for (finding, name, documented, share) in cases {
+        let value = number(finding, name);
+        assert!(within(value, documented, share), "{name} is {value}, {documented} by the control law");
+    }
+    // The law with the documented numbers leaves a few micrometres itself; friction alone would leave its whole share.
+    let friction_alone = 1e3 * COULOMB / STIFFNESS;
+    assert!(held_out(found) < 0.5 * friction_alone, "{} mm are left", held_out(found));
+    vec![
+        off("gain, of 156.5 1/s by the control law", lag, "gain", effective_gain()),
+        off("natural frequency, of 19.1 Hz by the control law", lag, "frequency", natural),
+        off("lost motion, of 29.7 um by Coulomb friction", friction, "lost_motion", lost),
+    ]
+}
+
+/// A load is said to be the loop's answer.
+fn not_a_cause(found: &Value, load: &str) {
+    let sentence = format!("What the load {load} does");
+    let said = found["undecided"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .any(|line| line.as_str().unwrap().starts_with(&sentence));
+    assert!(said, "{:#}", found["undecided"]);
 }
 
 #[test]
@@ -292,10 +293,4 @@ fn within(value: f64, documented: f64, share: f64) -> bool {
 /// EMPS: velocity over following error, Coulomb friction apart.
 fn effective_gain() -> f64 {
     1.0 / (1.0 / KP + VISCOUS / STIFFNESS)
-}
-
-/// EMPS: velocity over following error in the slowest stroke, Coulomb friction and all.
-fn slowest_stroke() -> f64 {
-    let slowest = STROKES.into_iter().fold(f64::MAX, f64::min);
-    slowest / (slowest / effective_gain() + COULOMB / STIFFNESS)
 }

@@ -89,7 +89,9 @@ fn same_place(effect: &Effect, others: &[Kin]) -> Vec<Effect> {
 
 /// All candidates, and the effects of the model at all other motions where they could be.
 fn others(study: &Study<'_>, found: &Found) -> Vec<Kin> {
-    let moved = found.fit.model[found.always..].iter().flat_map(|fitted| elsewhere(study, &fitted.effect));
+    let kept = || found.fit.model[found.always..].iter().map(|fitted| &fitted.effect);
+    let turned = kept().flat_map(|effect| other_guise(study, effect));
+    let moved = kept().flat_map(|effect| elsewhere(study, effect)).chain(turned);
     let moved = moved.map(|effect| Kin { effect, equals: Vec::new() });
     found.pool.iter().cloned().chain(moved).collect()
 }
@@ -110,6 +112,52 @@ fn elsewhere(study: &Study<'_>, effect: &Effect) -> Vec<Effect> {
         .map(|(motion, _)| Effect { place: Place::Motion { motion, side }, shape: effect.shape.clone() })
         .collect()
 }
+
+/// A wave in time as waves along the axes that it may be, and a wave along an axis as one in time: at a constant speed they are
+/// the same.
+fn other_guise(study: &Study<'_>, effect: &Effect) -> Vec<Effect> {
+    let shapes: Vec<(usize, Shape)> = match effect.shape {
+        Shape::Vibration { frequency } => {
+            let axes = (0..study.own.len()).filter_map(|axis| Some((axis, speed(study, axis)?)));
+            axes.map(|(axis, speed)| (axis, Shape::Cyclic { axis, period: speed / frequency })).collect()
+        }
+        Shape::Cyclic { axis, period } => speed(study, axis)
+            .map(|speed| (axis, Shape::Vibration { frequency: speed / period }))
+            .into_iter()
+            .collect(),
+        _ => Vec::new(),
+    };
+    let at_home = |axis: usize| {
+        effect.motion().is_some_and(|motion| study.equations.motions[motion].axis == Some(axis))
+    };
+    let here = shapes.into_iter().filter(|(axis, _)| at_home(*axis));
+    here.map(|(_, shape)| Effect { place: effect.place, shape }).collect()
+}
+
+/// The speed of an axis while it moves, mm/s or rad/s: the way over the time of the strides in which it moves at more than half
+/// of its greatest speed. `None` where it stands.
+fn speed(study: &Study<'_>, axis: usize) -> Option<f64> {
+    let steps = || {
+        study.scenes.iter().flat_map(|scene| {
+            let (run, rows) = (&scene.recording.run, scene.recording.run.len());
+            let far = (rows / STRIDES).max(1);
+            let (time, programmed) = (&scene.given.time, &scene.given.programmed[axis]);
+            (0..rows.saturating_sub(far))
+                .step_by(far)
+                .map(move |row| (row, row + far))
+                .filter(|(from, to)| run[*from] == run[*to])
+                .map(|(from, to)| (time[to] - time[from], (programmed[to] - programmed[from]).abs()))
+                .filter(|(time, way)| *time > 0.0 && way.is_finite())
+        })
+    };
+    let fastest = steps().map(|(time, way)| way / time).fold(0.0, f64::max);
+    let moving = steps().filter(|(time, way)| *way > 0.5 * fastest * time);
+    let (time, way) = moving.fold((0.0, 0.0), |(all, far), (time, way)| (all + time, far + way));
+    (time > 0.0 && way > 0.0).then(|| way / time)
+}
+
+/// In so many strides a recording is walked through: single rows may be read unevenly.
+const STRIDES: usize = 400;
 
 /// The design of the model and of everything that could stand in for it, the present model's response restored.
 fn joint(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], others: &[Kin]) -> Design {
@@ -136,7 +184,7 @@ pub(crate) fn separate_by(study: &Study<'_>, this: &Effect, other: &Effect) -> S
         (Shape::Instrument(_), _) | (_, Shape::Instrument(_)) => {
             "set the instrument up anew, elsewhere, and repeat: what stays is the machine's".to_owned()
         }
-        (Shape::Lag { axis: a }, Shape::Lag { axis: b }) if a != b => {
+        (Shape::Lag { axis: a, .. }, Shape::Lag { axis: b, .. }) if a != b => {
             format!("a straight line along {} alone", letter(*a))
         }
         _ => by_lever(study, this, other).unwrap_or_else(|| by_state(study, this, other)),
@@ -226,7 +274,7 @@ pub(crate) fn state(study: &Study<'_>, effect: &Effect) -> String {
         Shape::Coupling { axis, .. } => format!("the position of {}", of(*axis)),
         Shape::Backlash { axis, .. } => format!("the direction of {}", of(*axis)),
         Shape::ReversalSpike { axis, .. } => format!("the time since {} turned", of(*axis)),
-        Shape::Lag { axis } => format!("the velocity of {}", of(*axis)),
+        Shape::Lag { axis, .. } => format!("the velocity of {}", of(*axis)),
         Shape::Acceleration { axis } => format!("the acceleration of {}", of(*axis)),
         Shape::Expansion { sensor, .. }
         | Shape::Growth { sensor, .. }

@@ -3,6 +3,7 @@
 //! In: the study. Out: effects, from the machine itself: each error motion, with each term whose state was recorded.
 //! Terms with a parameter that is not linear stand on a grid; periods and frequencies are searched for elsewhere.
 
+use crate::answers::answers;
 use crate::model::{Effect, Place, Side};
 use crate::ranges::shortest_step;
 use crate::study::{Kind, Study};
@@ -37,16 +38,19 @@ pub(crate) fn always(study: &Study<'_>) -> Vec<Effect> {
 pub(crate) fn candidates(study: &Study<'_>, travels: &[Travel]) -> Vec<Effect> {
     let grids = Grids::new(study);
     let outside = study.scenes.iter().flat_map(|scene| &scene.channels).any(|channel| channel.kind.outside());
+    let answers = answers(study);
+    let answered = |axis: Option<usize>, shape: &Shape| {
+        let Shape::Compliance { load } = *shape else { return false };
+        answers.iter().any(|answer| Some(answer.axis) == axis && answer.load == load)
+    };
     let mut effects = settings(study);
     for (motion, known) in study.equations.motions.iter().enumerate() {
         for shape in shapes(study, motion, travels, &grids) {
             let own = known.axis.is_some_and(|axis| study.own[axis] == Some(motion));
             let drive = own && known.axis.is_some_and(|axis| study.has_drive(axis));
-            if drive || (own && shape.name() == "lag") {
-                effects.push(Effect {
-                    place: Place::Motion { motion, side: Side::Drive },
-                    shape: shape.clone(),
-                });
+            if (drive && !answered(known.axis, &shape)) || (own && shape.name() == "lag") {
+                let side = at_drive(known.axis, &shape);
+                effects.push(Effect { place: Place::Motion { motion, side }, shape: shape.clone() });
             }
             if outside && shape.name() != "lag" {
                 effects.push(Effect { place: Place::Motion { motion, side: Side::After }, shape });
@@ -54,6 +58,14 @@ pub(crate) fn candidates(study: &Study<'_>, travels: &[Travel]) -> Vec<Effect> {
         }
     }
     effects
+}
+
+/// Where a term acts on the drive's side. A load has to move the drive against its position loop, and never acts at once.
+fn at_drive(axis: Option<usize>, shape: &Shape) -> Side {
+    match (axis, shape) {
+        (Some(axis), Shape::Compliance { .. }) => Side::Loop { axis },
+        _ => Side::Drive,
+    }
 }
 
 fn settings(study: &Study<'_>) -> Vec<Effect> {
@@ -134,7 +146,7 @@ fn shapes(study: &Study<'_>, motion: usize, travels: &[Travel], grids: &Grids) -
 fn along(study: &Study<'_>, motion: usize, axis: usize, travel: &Travel, grids: &Grids) -> Vec<Shape> {
     let mut shapes = Vec::new();
     if study.own[axis] == Some(motion) {
-        shapes.push(Shape::Lag { axis });
+        shapes.push(Shape::Lag { axis, inertia: 0.0 });
     }
     let (center, scale) = ((travel.low + travel.high) / 2.0, travel.range() / 2.0);
     shapes.push(Shape::Backlash { axis, wind_up: 0.0 });

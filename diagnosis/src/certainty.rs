@@ -76,6 +76,10 @@ const FALL_95: f64 = WIDTH_95 * WIDTH_95;
 /// The interval of the nonlinear parameter of an effect.
 fn interval(study: &Study<'_>, fit: &Fit, noises: &[Vec<Noise>], number: usize) -> Option<(f64, f64)> {
     let shape = &fit.model[number].effect.shape;
+    // The inertia of a loop acts on the states, not on columns of its own.
+    if shape.nonlinear_in_coefficient() {
+        return None;
+    }
     let value = shape.nonlinear()?.value;
     let covariance = &fit.covariances[number];
     let deviation = covariance[(covariance.nrows() - 1, covariance.nrows() - 1)].sqrt();

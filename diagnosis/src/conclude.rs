@@ -16,19 +16,20 @@ use crate::engine::{self, Found};
 use crate::fit;
 use crate::local::{self, Feature};
 use crate::model::{Fitted, Model};
+use crate::pictures;
 use crate::repeats;
 use crate::rest;
 use crate::study::{Scene, Study};
 use crate::unsteady;
 use crate::zeros;
 use crate::{Inputs, Progress};
-use decidable::{astray, too_little, undecided};
+use decidable::{astray, misplaced, too_little, undecided};
 use findings::report;
 use summary::summary;
 use units::Units;
 
-/// Finds what the model leaves out.
-pub(crate) fn diagnose(inputs: &Inputs<'_>, progress: &mut dyn FnMut(Progress)) -> Diagnosis {
+/// Finds what the model leaves out; with the numbers behind plots of it where `drawn` is set.
+pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMut(Progress)) -> Diagnosis {
     let recordings: Vec<_> = inputs.recordings.iter().copied().chain(inputs.holdout).collect();
     let mut study = Study::new(inputs.equations, inputs.calibration, &recordings);
     rest::tell(&mut study);
@@ -42,7 +43,7 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, progress: &mut dyn FnMut(Progress)) 
         undecided: undecided(&study),
         ..Diagnosis::default()
     };
-    if let Some(reason) = too_little(&study) {
+    if let Some(reason) = too_little(&study).or_else(|| misplaced(&study)) {
         return undecidable(diagnosis, &study, reason);
     }
     let units = Units::new(&study);
@@ -51,6 +52,7 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, progress: &mut dyn FnMut(Progress)) 
         return undecidable(diagnosis, &study, reason);
     }
     diagnosis.before = units.residual(&study, &bare);
+    let before = drawn.then(|| pictures::Before::new(&study, &bare));
     let mut step = |done: f64| progress(Progress { step: "looking for left-out physics", done: 0.9 * done });
     let always = candidates::always(&study);
     let mut found = engine::find(&mut study, always, &mut step);
@@ -63,6 +65,11 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, progress: &mut dyn FnMut(Progress)) 
         }
         found = engine::find(&mut study, always, &mut step);
     }
+    let held_out = |model: &Model| held_out(&study, &units, model);
+    unsteady::weigh_drives_plainly(&study, &mut found, held_out);
+    if found.claims() && held_out(&found.fit.model) > diagnosis.before.holdout_rms {
+        withdraw(&study, &mut found);
+    }
     let feature = explain_locally(&mut study, &mut found);
     let mut moving = if feature.is_none() { unsteady::moving(&study, &found.appraisal) } else { None };
     if let Some(moving) = &mut moving {
@@ -73,7 +80,9 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, progress: &mut dyn FnMut(Progress)) 
     diagnosis.after = units.residual(&study, &found.fit.model);
     let quiet = feature.as_ref().and_then(|feature| engine::beside(&study, &found, feature));
     diagnosis.noise = units.noise(&study, quiet.as_ref().unwrap_or(&found.appraisal));
-    report(&study, &found, &units, &mut diagnosis);
+    let numbers = report(&study, &found, &units, &mut diagnosis);
+    let counts = |kind| units.counts(&study, kind);
+    diagnosis.pictures = before.map(|before| before.draw(&study, &found, (&counts, units.unit.0), &numbers));
     diagnosis.unexplained = match feature {
         Some(feature) => Some(unexplained::feature(&study, &found, &feature, &units)),
         None => unexplained::unsteady(&study, &found, moving, &units),
@@ -97,6 +106,21 @@ fn verdict(diagnosis: &Diagnosis) -> Verdict {
     }
 }
 
+/// What a model leaves of held-out rows, the zeros of recordings that are held out as a whole left free; `None` where nothing is
+/// held out.
+fn held_out(study: &Study<'_>, units: &Units, model: &Model) -> Option<f64> {
+    let mut model = model.clone();
+    zeros::free_held_out(study, &mut model);
+    units.residual(study, &model).holdout_rms
+}
+
+/// Takes all effects of the machine back: what makes held-out rows lie farther is no explanation, however well it fitted.
+fn withdraw(study: &Study<'_>, found: &mut Found) {
+    let settings: Model = found.fit.model[..found.always].to_vec();
+    found.fit = fit::refine(study, settings, &found.appraisal.as_white(), &found.travels);
+    found.appraisal = Appraisal::new(study, &found.fit.model);
+}
+
 /// The settings of the instruments alone, fitted.
 fn bare_model(study: &mut Study<'_>) -> Model {
     let effects = candidates::always(study);
@@ -112,7 +136,7 @@ fn bare_model(study: &mut Study<'_>) -> Model {
 fn explain_locally(study: &mut Study<'_>, found: &mut Found) -> Option<Feature> {
     for _ in 0..TABLES {
         let courses = engine::courses(study, &found.fit.model);
-        let feature = local::strongest(study, &found.appraisal, &courses, &found.travels)?;
+        let feature = local::strongest(study, &found.appraisal, &found.fit.model, &courses, &found.travels)?;
         if feature.extent(&found.travels[feature.axis]) < BROAD {
             return Some(feature);
         }

@@ -5,8 +5,9 @@
 
 use model_dsl::program::Column;
 
-use crate::model::{Fitted, Model, Place, Side};
-use crate::states::{Rows, States};
+use crate::model::{Fitted, Model, Place};
+use crate::position_loop::PositionLoop;
+use crate::states::{Driven, Rows, States};
 use crate::study::{Kind, Study};
 use crate::terms::{Memory, Setting, Shape};
 
@@ -28,15 +29,23 @@ pub(crate) struct Course {
 pub(crate) struct KnownError {
     pub(crate) tip: [Vec<f64>; 3],
     pub(crate) turn: Option<[Vec<f64>; 3]>,
+    /// What of each error motion the drive's own feedback shows; `None` where there is nothing.
+    pub(crate) drive: Vec<Option<Vec<f64>>>,
 }
 
 impl Course {
     /// The course of a recording under a model.
     pub(crate) fn new(study: &Study<'_>, scene: usize, model: &[Fitted]) -> Self {
         let known = &study.scenes[scene];
-        let lags = if known.at_rest { vec![0.0; study.equations.axes.len()] } else { lags(study, model) };
+        let driven: Vec<Driven> = if known.at_rest {
+            vec![Driven::default(); study.equations.axes.len()]
+        } else {
+            let loops = loops(study, model).into_iter().enumerate();
+            let zero = |axis: usize| feedback_zero(study, scene, model, axis);
+            loops.map(|(axis, position_loop)| Driven { position_loop, zero: zero(axis) }).collect()
+        };
         let clock = clock(scene, model);
-        let states = |clock: f64| States::new(known.recording, &known.given, &lags, clock);
+        let states = |clock: f64| States::new(known.recording, &known.given, &driven, clock);
         let shown = states(clock);
         let drives = (clock != 0.0).then(|| states(0.0));
         let known = KnownError::new(study, scene, &shown);
@@ -59,13 +68,20 @@ impl KnownError {
         let turning = channels.iter().any(|channel| matches!(channel.kind, Kind::Turn(_) | Kind::Stage(_)));
         let rows = states.given.time.len();
         let none = || [0, 1, 2].map(|_| Vec::with_capacity(rows));
-        let mut known = Self { tip: none(), turn: turning.then(none) };
+        let motions = study.equations.motions.len();
+        let mut known = Self { tip: none(), turn: turning.then(none), drive: vec![None; motions] };
+        let mut drives = Terms::of(study.known.iter().filter(answered));
         let mut terms = Terms::of(study.known.iter());
         let mut from = 0;
         while from < rows {
             let end = (from + STRETCH).min(rows);
             let view = states.rows(from..end);
-            let motions = terms.motions(&view, study.equations.motions.len(), false);
+            for (all, part) in known.drive.iter_mut().zip(drives.motions(&view, motions, true)) {
+                if let Some(part) = part {
+                    all.get_or_insert_with(|| Vec::with_capacity(rows)).extend(part);
+                }
+            }
+            let motions = terms.motions(&view, motions, false);
             let (positions, travels) = inputs(study, &view);
             append(
                 &mut known.tip,
@@ -80,6 +96,11 @@ impl KnownError {
         }
         known
     }
+}
+
+/// Whether a term that is known acts inside a position loop. A lag is in the states.
+fn answered(known: &&Fitted) -> bool {
+    known.effect.side().is_some_and(|side| side.answered_by().is_some())
 }
 
 /// Appends the sum of arms times motions in a stretch of rows.
@@ -97,15 +118,29 @@ pub(crate) fn inputs<'s>(study: &Study<'_>, view: &Rows<'s>) -> (Vec<&'s [f64]>,
     (positions, travels)
 }
 
-/// The time constant of each axis's position loop: those of the calibration and of the model add.
-fn lags(study: &Study<'_>, model: &[Fitted]) -> Vec<f64> {
-    let mut lags = vec![0.0; study.equations.axes.len()];
+/// The position loop of each axis: lags and inertias of the calibration and of the model add.
+fn loops(study: &Study<'_>, model: &[Fitted]) -> Vec<PositionLoop> {
+    let mut loops = vec![PositionLoop::default(); study.equations.axes.len()];
     for fitted in study.known.iter().chain(model) {
-        if let (Shape::Lag { axis }, [lag]) = (&fitted.effect.shape, fitted.coefficients.as_slice()) {
-            lags[*axis] += lag;
+        if let (Shape::Lag { axis, inertia }, [lag]) = (&fitted.effect.shape, fitted.coefficients.as_slice())
+        {
+            loops[*axis].time_constant += lag;
+            loops[*axis].inertia += inertia;
         }
     }
-    lags.iter().map(|lag| lag.max(0.0)).collect()
+    for one in &mut loops {
+        one.time_constant = one.time_constant.max(0.0);
+    }
+    loops
+}
+
+/// The zero of the drive's own feedback of an axis in a recording.
+fn feedback_zero(study: &Study<'_>, scene: usize, model: &[Fitted], axis: usize) -> f64 {
+    let mut channels = study.scenes[scene].channels.iter();
+    let Some(channel) = channels.position(|channel| channel.kind == Kind::Drive(axis)) else { return 0.0 };
+    let zero = Some(Setting::Offset { channel });
+    let zeros = model.iter().filter(|fitted| fitted.effect.setting_of(scene) == zero);
+    zeros.filter_map(|fitted| fitted.coefficients.first()).sum()
 }
 
 fn clock(scene: usize, model: &[Fitted]) -> f64 {
@@ -134,10 +169,10 @@ impl<'m> Terms<'m> {
         let mut sums: Vec<Option<Vec<f64>>> = vec![None; motions];
         for (fitted, memory) in &mut self.fitted {
             if let Place::Motion { motion, side } = fitted.effect.place
-                && (!drive || side == Side::Drive)
+                && (!drive || side.at_drive())
             {
                 let sum = sums[motion].get_or_insert_with(|| vec![0.0; rows.len()]);
-                fitted.effect.shape.add(&fitted.coefficients, rows, memory, sum);
+                fitted.effect.shape.add(&fitted.coefficients, side.answered_by(), rows, memory, sum);
             }
         }
         sums

@@ -335,7 +335,7 @@ impl<'r> ChannelRun<'r> {
             let count = regressor.columns();
             match (regressor.effect.place, &regressor.effect.shape) {
                 (Place::Motion { motion, side }, _) => {
-                    let gains = if side == Side::Drive { drive.as_ref().unwrap_or(&after) } else { &after };
+                    let gains = if side.at_drive() { drive.as_ref().unwrap_or(&after) } else { &after };
                     if let Some(gain) = &gains[motion] {
                         for (k, term) in self.shapes.columns(number).iter().enumerate() {
                             let mut target = columns.column_mut(next + k);
@@ -370,15 +370,34 @@ impl<'r> ChannelRun<'r> {
 
 /// The terms of all regressors, each different one worked out once.
 struct Shapes {
-    different: Vec<(Shape, Memory, Vec<Vec<f64>>)>,
+    different: Vec<Different>,
     /// Of each regressor: the number of its shape, or of the two that its slope is taken from.
     of: Vec<Use>,
     slopes: Vec<Vec<Vec<f64>>>,
 }
 
+/// A term, behind the position loop that answers it where one does.
+struct Different {
+    shape: Shape,
+    answered_by: Option<usize>,
+    memory: Memory,
+    columns: Vec<Vec<f64>>,
+}
+
 enum Use {
     Shape(usize),
-    Slope { low: usize, high: usize, step: f64, coefficients: Vec<f64>, place: usize },
+    /// How the position changes with the inertia of the axis's loop.
+    Inertia {
+        axis: usize,
+        place: usize,
+    },
+    Slope {
+        low: usize,
+        high: usize,
+        step: f64,
+        coefficients: Vec<f64>,
+        place: usize,
+    },
 }
 
 /// The relative step by which slopes are taken.
@@ -389,51 +408,60 @@ impl Shapes {
         let mut shapes = Self { different: Vec::new(), of: Vec::new(), slopes: Vec::new() };
         for regressor in regressors {
             let shape = &regressor.effect.shape;
+            let answered_by = regressor.effect.side().and_then(Side::answered_by);
+            let place = shapes.slopes.len();
             let usage = match (&regressor.slope, shape.nonlinear()) {
+                (Some(_), Some(_)) if let Shape::Lag { axis, .. } = *shape => Use::Inertia { axis, place },
                 (Some(coefficients), Some(parameter)) => {
                     let step = parameter.value * SLOPE_STEP;
-                    let low = shapes.number(shape.with_nonlinear(parameter.value - step));
-                    let high = shapes.number(shape.with_nonlinear(parameter.value + step));
-                    shapes.slopes.push(vec![Vec::new()]);
-                    let place = shapes.slopes.len() - 1;
+                    let low = shapes.number(shape.with_nonlinear(parameter.value - step), answered_by);
+                    let high = shapes.number(shape.with_nonlinear(parameter.value + step), answered_by);
                     Use::Slope { low, high, step: 2.0 * step, coefficients: coefficients.clone(), place }
                 }
-                _ => Use::Shape(shapes.number(shape.clone())),
+                _ => Use::Shape(shapes.number(shape.clone(), answered_by)),
             };
+            if !matches!(usage, Use::Shape(_)) {
+                shapes.slopes.push(vec![Vec::new()]);
+            }
             shapes.of.push(usage);
         }
         shapes
     }
 
-    fn number(&mut self, shape: Shape) -> usize {
-        if let Some(known) = self.different.iter().position(|(known, ..)| *known == shape) {
+    fn number(&mut self, shape: Shape, answered_by: Option<usize>) -> usize {
+        let same = |known: &Different| known.shape == shape && known.answered_by == answered_by;
+        if let Some(known) = self.different.iter().position(same) {
             return known;
         }
         let columns = vec![Vec::new(); shape.columns()];
-        self.different.push((shape, Memory::default(), columns));
+        self.different.push(Different { shape, answered_by, memory: Memory::default(), columns });
         self.different.len() - 1
     }
 
     fn fill(&mut self, view: &Rows<'_>) {
-        for (shape, memory, columns) in &mut self.different {
-            shape.fill(view, memory, columns);
+        for known in &mut self.different {
+            known.shape.fill_behind(known.answered_by, view, &mut known.memory, &mut known.columns);
         }
         for usage in &self.of {
-            if let Use::Slope { low, high, step, coefficients, place } = usage {
-                let sum = |number: usize, row: usize| -> f64 {
-                    let columns = self.different[number].2.iter().zip(coefficients);
-                    columns.map(|(column, coefficient)| column[row] * coefficient).sum()
-                };
-                self.slopes[*place][0] =
-                    (0..view.len()).map(|row| (sum(*high, row) - sum(*low, row)) / step).collect();
+            match usage {
+                Use::Shape(_) => {}
+                Use::Inertia { axis, place } => self.slopes[*place][0] = view.axis(*axis).inertia_slope(),
+                Use::Slope { low, high, step, coefficients, place } => {
+                    let sum = |number: usize, row: usize| -> f64 {
+                        let columns = self.different[number].columns.iter().zip(coefficients);
+                        columns.map(|(column, coefficient)| column[row] * coefficient).sum()
+                    };
+                    self.slopes[*place][0] =
+                        (0..view.len()).map(|row| (sum(*high, row) - sum(*low, row)) / step).collect();
+                }
             }
         }
     }
 
     fn columns(&self, regressor: usize) -> &[Vec<f64>] {
         match &self.of[regressor] {
-            Use::Shape(number) => &self.different[*number].2,
-            Use::Slope { place, .. } => &self.slopes[*place],
+            Use::Shape(number) => &self.different[*number].columns,
+            Use::Inertia { place, .. } | Use::Slope { place, .. } => &self.slopes[*place],
         }
     }
 }

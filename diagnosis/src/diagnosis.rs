@@ -2,6 +2,8 @@
 
 use model_dsl::calibration::CalibratedTerm;
 
+use crate::pictures::Pictures;
+
 /// What was found.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnosis {
@@ -30,6 +32,8 @@ pub struct Diagnosis {
     pub repeatability: Option<Repeatability>,
     /// What cannot be decided from these recordings: whole sentences, each with its reason.
     pub undecided: Vec<String>,
+    /// What can be drawn of it, where that was asked for.
+    pub pictures: Option<Pictures>,
 }
 
 /// One recording in a few figures.
@@ -152,6 +156,8 @@ pub struct Parameter {
 pub enum ParameterValue {
     /// The name of an axis, a sensor or a load.
     Name(String),
+    /// Numbers that are not fitted, such as the nodes of a table, with their unit.
+    Places(Vec<f64>, &'static str),
     /// A number that is not fitted, such as a reference temperature, with its unit.
     Given(f64, String),
     /// A fitted number.
@@ -184,6 +190,8 @@ pub struct Location {
     pub detail: String,
     /// The interval to which it is confined.
     pub interval: Option<Interval>,
+    /// Whether it acts inside the position loop of the axis, which answers it: friction of the drive, a load on it.
+    pub inside_loop: bool,
 }
 
 /// A stretch of a state.
@@ -219,6 +227,8 @@ pub struct Evidence {
     pub without: f64,
     /// The unit of both.
     pub unit: &'static str,
+    /// The letter of the axis on whose drive's own feedback it is counted; `None`: on what the diagnosis counts throughout.
+    pub drive: Option<String>,
 }
 
 /// Another name for what the recordings show.

@@ -3,7 +3,7 @@
 //! In: a chosen model. Out: the same, or one with loops on other axes too where that is truly better. Equal lags on the axes
 //! of a circle only shrink it, to second order, and act at starts; no linear regressor shows that. So loops are tried
 //! outright, through the true dynamics, from several time constants, wherever the model holds something that a loop
-//! could be mistaken for.
+//! could be mistaken for. So are loops that ring, and friction inside a loop, which only the right loop brings out.
 
 use crate::candidates::geometric;
 use crate::curves::cost;
@@ -29,7 +29,7 @@ pub(crate) fn try_loops(
         .filter(|axis| travels[*axis].moves && study.own[*axis].is_some())
         // The drive's own feedback shows its loop to the linear choice.
         .filter(|axis| !study.has_drive(*axis))
-        .filter(|axis| !model.iter().any(|fitted| fitted.effect.shape == Shape::Lag { axis: *axis }))
+        .filter(|axis| !model.iter().any(|fitted| lag_of(&fitted.effect.shape) == Some(*axis)))
         .collect();
     let suspicious = model[always..].iter().any(|fitted| mistakable(&fitted.effect));
     if lacking.is_empty() || !suspicious {
@@ -59,6 +59,115 @@ pub(crate) fn try_loops(
     chosen
 }
 
+/// Tries what a loop of first order, and what acts at once, cannot say: loops that ring, and friction on the drive, which the
+/// loop answers.
+pub(crate) fn try_drives(
+    study: &Study<'_>,
+    model: Model,
+    always: usize,
+    noises: &[Vec<Noise>],
+    travels: &[Travel],
+    tries: Tries,
+) -> Model {
+    if !model[always..].iter().any(|fitted| lag_of(&fitted.effect.shape).is_some()) {
+        return model;
+    }
+    let now = fit::refine(study, model, noises, travels);
+    let mut best = (cost(study, &now, always, tries), now.model);
+    for axis in 0..study.own.len() {
+        let Some(held) = best.1[always..].iter().find(|fitted| lag_of(&fitted.effect.shape) == Some(axis))
+        else {
+            continue;
+        };
+        let loops = loops(held);
+        let before = best.1.clone();
+        let plain = without_imitations(&before, always);
+        for start in [&before, &plain] {
+            for inside in [start.clone(), with_friction(study, start, always, axis)] {
+                for shape in &loops {
+                    let trial = with_loop(inside.clone(), axis, shape);
+                    if trial == before {
+                        continue;
+                    }
+                    let fit = fit::refine(study, trial, noises, travels);
+                    let cost = cost(study, &fit, always, tries);
+                    if cost < best.0 {
+                        best = (cost, fit.model);
+                    }
+                }
+            }
+        }
+    }
+    best.1
+}
+
+/// Whether [`try_drives`] may find something: a loop of first order beside what would imitate its ringing, or friction beside
+/// any loop.
+pub(crate) fn may_answer(model: &Model, always: usize) -> bool {
+    let effects = || model[always..].iter().map(|fitted| &fitted.effect);
+    let friction = |effect: &Effect| {
+        effect.side() == Some(Side::Drive) && matches!(effect.shape, Shape::Backlash { .. })
+    };
+    effects().any(|effect| lag_of(&effect.shape).is_some())
+        && effects().any(|effect| imitates_ringing(effect) || friction(effect))
+}
+
+/// Dampings from which a loop of second order is tried: one that rings for long, and some that hardly do.
+const DAMPINGS: [f64; 4] = [0.15, 0.3, 0.6, 1.2];
+
+/// A loop as it stands; one of first order also with each of the dampings.
+fn loops(lag: &Fitted) -> Vec<Shape> {
+    let mut shapes = vec![lag.effect.shape.clone()];
+    if let Shape::Lag { axis, inertia: 0.0 } = lag.effect.shape {
+        let time_constant: f64 = lag.coefficients.iter().sum();
+        let roots = DAMPINGS.map(|damping| 0.5 * time_constant / damping);
+        shapes.extend(roots.map(|root| Shape::Lag { axis, inertia: root * root }));
+    }
+    shapes
+}
+
+fn with_loop(mut model: Model, axis: usize, shape: &Shape) -> Model {
+    for fitted in model.iter_mut().filter(|fitted| lag_of(&fitted.effect.shape) == Some(axis)) {
+        fitted.effect.shape = shape.clone();
+    }
+    model
+}
+
+/// A model in which friction of an axis that seemed to act at once, or to build up as the loop lets it, lies inside the loop.
+fn with_friction(study: &Study<'_>, model: &Model, always: usize, axis: usize) -> Model {
+    let mut model = model.clone();
+    for fitted in &mut model[always..] {
+        if let (Place::Motion { motion, side: Side::Drive }, Shape::Backlash { axis: of, .. }) =
+            (fitted.effect.place, &fitted.effect.shape)
+            && *of == axis
+            && study.own[axis] == Some(motion)
+        {
+            fitted.effect.place = Place::Motion { motion, side: Side::Loop { axis } };
+            fitted.effect.shape = Shape::Backlash { axis, wind_up: 0.0 };
+        }
+    }
+    model
+}
+
+fn without_imitations(model: &Model, always: usize) -> Model {
+    let stays = |(number, fitted): &(usize, &Fitted)| *number < always || !imitates_ringing(&fitted.effect);
+    model.iter().enumerate().filter(stays).map(|(_, fitted)| fitted.clone()).collect()
+}
+
+/// Whether an effect, beside a lag of first order, may be what a loop makes that rings at every change of speed.
+fn imitates_ringing(effect: &Effect) -> bool {
+    let waves = matches!(effect.shape, Shape::Vibration { .. } | Shape::Drift { .. });
+    waves || matches!(effect.shape, Shape::Acceleration { .. } | Shape::ReversalSpike { .. })
+}
+
+/// The axis of whose loop a shape is the lag.
+fn lag_of(shape: &Shape) -> Option<usize> {
+    match *shape {
+        Shape::Lag { axis, .. } => Some(axis),
+        _ => None,
+    }
+}
+
 /// Whether a loop could be mistaken for this effect.
 fn mistakable(effect: &Effect) -> bool {
     matches!(
@@ -81,12 +190,9 @@ fn with_loops(
     let mut model = kept.clone();
     for (axis, own) in study.own.iter().enumerate() {
         let Some(motion) = own.filter(|_| travels[axis].moves) else { continue };
-        let shape = Shape::Lag { axis };
-        let lag: f64 = known
-            .iter()
-            .filter(|fitted| fitted.effect.shape == shape)
-            .flat_map(|fitted| &fitted.coefficients)
-            .sum();
+        let shape = Shape::Lag { axis, inertia: 0.0 };
+        let lags = known.iter().filter(|fitted| lag_of(&fitted.effect.shape) == Some(axis));
+        let lag: f64 = lags.flat_map(|fitted| &fitted.coefficients).sum();
         let effect = Effect { place: Place::Motion { motion, side: Side::Drive }, shape };
         model.push(Fitted { effect, coefficients: vec![lag + time_constant] });
     }

@@ -44,6 +44,13 @@ pub(crate) struct Found {
     pub(crate) tries: Tries,
 }
 
+impl Found {
+    /// Whether the model holds more than the settings that are fitted whatever else is.
+    pub(crate) fn claims(&self) -> bool {
+        self.fit.model.len() > self.always
+    }
+}
+
 /// Looks for the model. `always` are the settings that are fitted whatever else is.
 pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dyn FnMut(f64)) -> Found {
     let mut search = Search::new(study, always);
@@ -105,7 +112,12 @@ impl Search {
             let mut settled = same_effects(&self.model, &next);
             if settled || round + 1 == ROUNDS {
                 next = dynamics::try_loops(study, next, self.always, &self.noises, &self.travels, self.tries);
+                next =
+                    dynamics::try_drives(study, next, self.always, &self.noises, &self.travels, self.tries);
                 settled = same_effects(&self.model, &next);
+            } else if dynamics::may_answer(&next, self.always) {
+                next =
+                    dynamics::try_drives(study, next, self.always, &self.noises, &self.travels, self.tries);
             }
             self.model = next;
             self.courses = courses(study, &self.model);
@@ -292,7 +304,11 @@ fn regressors(
     let mut effects: Vec<Effect> = model.iter().map(|fitted| fitted.effect.clone()).collect();
     let chosen = &model[always..];
     let candidates = pool.iter().map(|kin| kin.effect.clone());
-    effects.extend(candidates.filter(|effect| !chosen.iter().any(|known| known.effect == *effect)));
+    let stands = |effect: &Effect, known: &Effect| {
+        let lags = |shape: &Shape| matches!(shape, Shape::Lag { .. });
+        known == effect || (known.place == effect.place && lags(&known.shape) && lags(&effect.shape))
+    };
+    effects.extend(candidates.filter(|effect| !chosen.iter().any(|known| stands(effect, &known.effect))));
     let simplicity = |peak: &waves::Peak| candidates::simplicity(study, &peak.effect);
     peaks.sort_by(|a, b| b.gain.total_cmp(&a.gain).then(simplicity(a).total_cmp(&simplicity(b))));
     let mut added: Vec<Effect> = Vec::new();
@@ -306,7 +322,10 @@ fn regressors(
 }
 
 fn same_effects(a: &Model, b: &Model) -> bool {
-    let kind = |a: &Fitted, b: &Fitted| a.effect == b.effect || rivals(&a.effect, &b.effect);
+    let inert = |fitted: &Fitted| matches!(fitted.effect.shape, Shape::Lag { inertia, .. } if inertia > 0.0);
+    let answered = |fitted: &Fitted| fitted.effect.side().and_then(Side::answered_by);
+    let alike = |a: &Fitted, b: &Fitted| inert(a) == inert(b) && answered(a) == answered(b);
+    let kind = |a: &Fitted, b: &Fitted| a.effect == b.effect || (rivals(&a.effect, &b.effect) && alike(a, b));
     a.len() == b.len() && a.iter().all(|member| b.iter().any(|other| kind(member, other)))
 }
 

@@ -4,6 +4,7 @@
 //! located, named, fitted, tested on held-out data, and written as terms that the compiler takes.
 
 mod alternatives;
+mod answers;
 mod appraisal;
 mod candidates;
 mod certainty;
@@ -23,6 +24,8 @@ mod noise;
 mod observations;
 mod outliers;
 mod parameters;
+pub mod pictures;
+mod position_loop;
 mod ranges;
 pub mod recording;
 mod repeats;
@@ -76,7 +79,12 @@ pub struct Progress {
 ///
 /// It never fails: what cannot be decided from the recordings is said in [`Diagnosis::undecided`].
 pub fn diagnose(inputs: &Inputs<'_>, progress: &mut dyn FnMut(Progress)) -> Diagnosis {
-    conclude::diagnose(inputs, progress)
+    conclude::diagnose(inputs, false, progress)
+}
+
+/// The same, with [`Diagnosis::pictures`]: what a page draws. It takes more time and memory.
+pub fn diagnose_with_pictures(inputs: &Inputs<'_>, progress: &mut dyn FnMut(Progress)) -> Diagnosis {
+    conclude::diagnose(inputs, true, progress)
 }
 
 /// A count as a number.

@@ -8,8 +8,10 @@ use std::ops::Range;
 
 use crate::appraisal::Appraisal;
 use crate::course::Course;
+use crate::model::Model;
 use crate::study::Study;
 use crate::travel::Travel;
+use crate::unsteady;
 
 /// Something that comes back at one place of an axis.
 #[derive(Clone, Debug)]
@@ -55,6 +57,7 @@ const MOST_PLACES: usize = 64;
 pub(crate) fn strongest(
     study: &Study<'_>,
     appraisal: &Appraisal,
+    model: &Model,
     courses: &[Course],
     travels: &[Travel],
 ) -> Option<Feature> {
@@ -62,6 +65,9 @@ pub(crate) fn strongest(
     for (scene, known) in study.scenes.iter().enumerate() {
         let angular = |channel: usize| known.channels[channel].kind.angular(study.equations);
         for (channel, observed) in known.channels.iter().enumerate() {
+            if unsteady::answers_motion(study, appraisal, model, scene, channel) {
+                continue;
+            }
             let alike = (0..known.channels.len()).filter(|other| angular(*other) == angular(channel));
             let loudest = alike.map(|other| appraisal.noises[scene][other].size()).fold(0.0, f64::max);
             for (axis, travel) in travels.iter().enumerate().filter(|(_, travel)| travel.moves) {

@@ -21,10 +21,31 @@ pub(crate) enum Place {
 /// On which side of the drive's own feedback an effect comes in.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Side {
+    /// Inside the position loop of an axis, which answers it as it answers its command; the drive's feedback shows what
+    /// remains.
+    Loop {
+        /// The number of the axis.
+        axis: usize,
+    },
     /// The drive's feedback shows it too.
     Drive,
     /// Only an instrument outside shows it.
     After,
+}
+
+impl Side {
+    /// Whether the drive's own feedback shows it.
+    pub(crate) fn at_drive(self) -> bool {
+        self != Self::After
+    }
+
+    /// The axis whose position loop answers it.
+    pub(crate) fn answered_by(self) -> Option<usize> {
+        match self {
+            Self::Loop { axis } => Some(axis),
+            Self::Drive | Self::After => None,
+        }
+    }
 }
 
 /// An effect with its coefficients, in mm, rad, s and degC.
@@ -58,6 +79,16 @@ impl Effect {
         match self.place {
             Place::Motion { motion, .. } => Some(motion),
             Place::Instrument { .. } => None,
+        }
+    }
+
+    /// Whether two act in the same motion and show, or do not show, in the drive's own feedback.
+    pub(crate) fn same_place(&self, other: &Self) -> bool {
+        match (self.place, other.place) {
+            (Place::Motion { motion: a, side: one }, Place::Motion { motion: b, side: two }) => {
+                a == b && one.at_drive() == two.at_drive()
+            }
+            (a, b) => a == b,
         }
     }
 

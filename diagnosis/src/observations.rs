@@ -130,10 +130,14 @@ impl<'c> Frame<'c> {
     fn drive(&self, study: &Study<'_>, axis: usize) -> Vec<f64> {
         let states = self.course.states(Kind::Drive(axis)).rows(self.rows.clone());
         let position = states.axis(axis).position;
-        match study.own[axis].and_then(|own| self.drive_motions[own].as_ref()) {
-            Some(motion) => position.iter().zip(motion).map(|(position, motion)| position + motion).collect(),
-            None => position.to_vec(),
+        let mut shown = position.to_vec();
+        if let Some(own) = study.own[axis] {
+            let known = self.course.known.drive[own].as_ref().map(|known| &known[self.rows.clone()]);
+            for motion in known.into_iter().chain(self.drive_motions[own].as_deref()) {
+                shown.iter_mut().zip(motion).for_each(|(shown, motion)| *shown += motion);
+            }
         }
+        shown
     }
 
     /// How a channel sees each error motion: `None` where it does not. `side` tells on which side effects come in.
@@ -170,7 +174,7 @@ impl<'c> Frame<'c> {
                 along(&self.turns, &|_| about)
             }
             Kind::Drive(axis) => {
-                let own = study.own[axis].filter(|_| side == Side::Drive);
+                let own = study.own[axis].filter(|_| side.at_drive());
                 (0..self.levers.len()).map(|motion| (Some(motion) == own).then(|| vec![1.0; rows])).collect()
             }
         }

@@ -129,10 +129,22 @@ impl<'f> Described<'f> {
                 let list = self.powers(axis_unit(study, *axis)).into_iter().skip(1).collect();
                 vec![axis_name(study, *axis), Parameter::list("coefficients", list)]
             }
-            Shape::Table { axis, .. } => {
+            Shape::Table { axis, nodes, directed } => {
+                let (axis_factor, axis_unit) = axis_unit(study, *axis);
+                let places = nodes.iter().map(|node| node * axis_factor).collect();
+                let at = Parameter { name: "at", value: ParameterValue::Places(places, axis_unit) };
                 let values = 0..self.fitted.coefficients.len();
-                let list = values.map(|number| self.linear(number, factor, unit.to_owned())).collect();
-                vec![axis_name(study, *axis), Parameter::list("values", list)]
+                let mut list: Vec<Estimate> =
+                    values.map(|number| self.linear(number, factor, unit.to_owned())).collect();
+                let mut parameters = vec![axis_name(study, *axis), at];
+                if *directed {
+                    let reverse = list.split_off(nodes.len().min(list.len()));
+                    parameters.push(Parameter::list("forward", list));
+                    parameters.push(Parameter::list("reverse", reverse));
+                } else {
+                    parameters.push(Parameter::list("values", list));
+                }
+                parameters
             }
             Shape::Backlash { axis, wind_up } => {
                 let (axis_factor, axis_unit) = axis_unit(study, *axis);
@@ -154,7 +166,13 @@ impl<'f> Described<'f> {
                 let frequency = Parameter::fitted("frequency", self.nonlinear(1.0, "Hz"));
                 [vec![frequency], self.wave()].concat()
             }
-            Shape::Lag { .. } => vec![Parameter::fitted("gain", self.reciprocal("1/s"))],
+            Shape::Lag { inertia, .. } => {
+                let mut parameters = vec![Parameter::fitted("gain", self.reciprocal("1/s"))];
+                if *inertia > 0.0 {
+                    parameters.push(Parameter::fitted("frequency", self.frequency()));
+                }
+                parameters
+            }
             Shape::Acceleration { .. } => vec![Parameter::fitted("gain", self.reciprocal("1/s^2"))],
             Shape::Expansion { axis, sensor, reference } => {
                 let (axis_factor, axis_unit) = axis_unit(study, *axis);
@@ -243,6 +261,13 @@ impl<'f> Described<'f> {
         Estimate { value: 1.0 / value, ci95: ends, unit: unit.to_owned() }
     }
 
+    /// The natural frequency of a loop; its ends are those of the inertia turned over.
+    fn frequency(&self) -> Estimate {
+        let inertia = self.nonlinear(1.0, "s^2");
+        let ends = (natural(inertia.ci95.1), natural(inertia.ci95.0.max(1e-3 * inertia.value)));
+        Estimate { value: natural(inertia.value), ci95: ends, unit: "Hz".to_owned() }
+    }
+
     /// The term as calibration files have it, in mm, rad, s and degC; a sensor under its number in the study.
     pub(crate) fn calibrated(&self) -> CalibratedTerm {
         let first = self.coefficient(0);
@@ -281,7 +306,9 @@ impl<'f> Described<'f> {
             Shape::Cyclic { axis, period } => {
                 CalibratedTerm::Cyclic { axis: *axis, period: *period, amplitude, phase }
             }
-            Shape::Lag { axis } => CalibratedTerm::Lag { axis: *axis, gain: 1.0 / first },
+            Shape::Lag { axis, inertia } => {
+                CalibratedTerm::Lag { axis: *axis, gain: 1.0 / first, frequency: natural(*inertia) }
+            }
             Shape::Acceleration { axis } => CalibratedTerm::Acceleration { axis: *axis, gain: 1.0 / first },
             Shape::Expansion { axis, sensor, reference } => CalibratedTerm::Expansion {
                 axis: *axis,
@@ -316,6 +343,11 @@ impl<'f> Described<'f> {
             CurveValues::Both(values.clone())
         }
     }
+}
+
+/// The natural frequency of a loop with the inertia 1/w^2, Hz; 0 for a loop of first order.
+fn natural(inertia: f64) -> f64 {
+    if inertia > 0.0 { 1.0 / (std::f64::consts::TAU * inertia.sqrt()) } else { 0.0 }
 }
 
 /// `mm/K`, `rad/mm^2`, `1/mm` for mm/mm^2; empty for mm/mm.

@@ -336,7 +336,7 @@ fn same(a: &[usize], b: &[usize]) -> bool {
 
 /// Whether two effects are the same piece of physics in different forms, of which only one can be right.
 pub(crate) fn rivals(a: &Effect, b: &Effect) -> bool {
-    if a.place != b.place || a.shape.name() != b.shape.name() {
+    if !a.same_place(b) || a.shape.name() != b.shape.name() {
         return false;
     }
     match (&a.shape, &b.shape) {

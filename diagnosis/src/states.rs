@@ -8,6 +8,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::noise::typical_step;
+use crate::position_loop::{PositionLoop, Stand};
 use crate::recording::{AxisChannels, Recording};
 use crate::way::{CORNER, Way};
 
@@ -39,6 +40,14 @@ impl Given {
     }
 }
 
+/// How an axis is driven.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Driven {
+    pub(crate) position_loop: PositionLoop,
+    /// What the drive's own feedback shows beyond where the axis is: its zero.
+    pub(crate) zero: f64,
+}
+
 /// The states of all rows of one recording.
 #[derive(Clone, Debug)]
 pub(crate) struct States {
@@ -55,8 +64,12 @@ pub(crate) struct AxisStates {
     pub(crate) direction: Shared,
     /// Infinite before the first reversal.
     pub(crate) since_reversal: Shared,
+    /// Its position loop.
+    pub(crate) position_loop: PositionLoop,
     /// How the position changes with the time constant of the loop.
     pub(crate) lag_slope: Shared,
+    /// How it changes with the inertia of the loop, where that has one.
+    pub(crate) inertia_slope: Option<Shared>,
     /// How the position changes with the offset of the instrument's clock.
     pub(crate) clock_slope: Shared,
     /// Whether the axis moves at all.
@@ -87,6 +100,14 @@ pub(crate) struct AxisRows<'s> {
     pub(crate) direction: &'s [f64],
     pub(crate) since_reversal: &'s [f64],
     pub(crate) lag_slope: &'s [f64],
+    inertia_slope: Option<&'s [f64]>,
+}
+
+impl AxisRows<'_> {
+    /// How the position changes with the inertia of the loop; 0 for a loop of first order.
+    pub(crate) fn inertia_slope(&self) -> Vec<f64> {
+        self.inertia_slope.map_or_else(|| vec![0.0; self.position.len()], <[f64]>::to_vec)
+    }
 }
 
 impl<'s> Rows<'s> {
@@ -104,8 +125,14 @@ impl<'s> Rows<'s> {
             acceleration: &axis.acceleration[rows.clone()],
             direction: &axis.direction[rows.clone()],
             since_reversal: &axis.since_reversal[rows.clone()],
-            lag_slope: &axis.lag_slope[rows],
+            lag_slope: &axis.lag_slope[rows.clone()],
+            inertia_slope: axis.inertia_slope.as_ref().map(|slope| &slope[rows]),
         }
+    }
+
+    /// The position loop of an axis.
+    pub(crate) fn position_loop(&self, axis: usize) -> PositionLoop {
+        self.states.axes[axis].position_loop
     }
 
     /// A sensor by number, degC.
@@ -120,15 +147,15 @@ impl<'s> Rows<'s> {
 }
 
 impl States {
-    /// The states of a recording behind loops of these time constants, shown by a clock with this offset.
-    pub(crate) fn new(recording: &Recording, given: &Given, lags: &[f64], clock: f64) -> Self {
+    /// The states of a recording behind these loops, shown by a clock with this offset.
+    pub(crate) fn new(recording: &Recording, given: &Given, loops: &[Driven], clock: f64) -> Self {
         let mut standing: Option<Standing> = None;
-        let mut axes = Vec::with_capacity(lags.len());
-        for ((axis, programmed), lag) in recording.axes.iter().zip(given.programmed.iter()).zip(lags) {
+        let mut axes = Vec::with_capacity(loops.len());
+        for ((axis, programmed), known) in recording.axes.iter().zip(given.programmed.iter()).zip(loops) {
             axes.push(if stands(programmed) {
                 standing.get_or_insert_with(|| Standing::new(programmed.len())).at(programmed)
             } else {
-                axis_states(&given.time, &recording.run, axis, programmed, *lag, clock)
+                axis_states(&given.time, &recording.run, axis, programmed, *known, clock)
             });
         }
         Self { given: given.clone(), axes }
@@ -157,7 +184,9 @@ impl Standing {
             acceleration: self.zero.clone(),
             direction: self.forward.clone(),
             since_reversal: self.never.clone(),
+            position_loop: PositionLoop::default(),
             lag_slope: self.zero.clone(),
+            inertia_slope: None,
             clock_slope: self.zero.clone(),
             moves: false,
         }
@@ -175,13 +204,14 @@ fn axis_states(
     run: &[i64],
     axis: &AxisChannels,
     programmed: &Shared,
-    lag: f64,
+    driven: Driven,
     clock: f64,
 ) -> AxisStates {
     let resolution = resolution(axis, programmed);
     let way = Way::new(time, programmed, derivative(time, run, programmed));
-    if lag > 0.0 {
-        behind_loop(time, run, &way, lag, clock, resolution)
+    if driven.position_loop.acts() {
+        let start = start(time, axis, &way, driven);
+        behind_loop(time, run, &way, driven, start, clock, resolution)
     } else {
         as_programmed(time, run, &way, programmed, clock, resolution)
     }
@@ -220,36 +250,70 @@ fn as_programmed(
         acceleration,
         direction: direction.into(),
         since_reversal: since_reversal.into(),
+        position_loop: PositionLoop::default(),
         lag_slope: slope.clone(),
+        inertia_slope: None,
         clock_slope: slope,
         moves,
     }
 }
 
-/// The relative step by which the slope with the time constant is taken.
-const LAG_STEP: f64 = 1e-4;
+/// The relative step by which the slopes with time constant and inertia are taken.
+const LOOP_STEP: f64 = 1e-4;
+
+/// Where an axis stands in the first row, as its drive's own feedback says, where a recording does not begin at rest: it is then
+/// further from its command than friction leaves it. The speed is that of the rows within the loop's time.
+fn start(time: &[f64], axis: &AxisChannels, way: &Way<'_>, driven: Driven) -> Option<Stand> {
+    let actual = axis.actual.as_ref()?;
+    let first = *actual.first().filter(|first| first.is_finite())?;
+    let early =
+        time.iter().zip(actual).take_while(|(at, _)| **at - time[0] <= driven.position_loop.time_constant);
+    let (mut moved, mut squares) = (0.0, 0.0);
+    for (at, position) in early.filter(|(_, position)| position.is_finite()) {
+        moved += (at - time[0]) * (position - first);
+        squares += (at - time[0]) * (at - time[0]);
+    }
+    let velocity = if squares > 0.0 { moved / squares } else { 0.0 };
+    let position = first - driven.zero;
+    let lag = driven.position_loop.time_constant * way.fastest();
+    ((position - way.first()).abs() > AWAY * lag).then_some(Stand { position, velocity })
+}
+
+/// The share of the lag at the highest speed beyond which an axis does not begin at rest.
+const AWAY: f64 = 0.05;
 
 fn behind_loop(
     time: &[f64],
     run: &[i64],
     way: &Way<'_>,
-    lag: f64,
+    driven: Driven,
+    start: Option<Stand>,
     clock: f64,
     resolution: f64,
 ) -> AxisStates {
-    let (position, command) = way.behind_loop(lag, clock);
-    let (mut lag_slope, _) = way.behind_loop(lag * (1.0 + LAG_STEP), clock);
-    lag_slope.iter_mut().zip(&position).for_each(|(far, near)| *far = (*far - near) / (lag * LAG_STEP));
-    let mut velocity = command;
-    velocity.iter_mut().zip(&position).for_each(|(command, q)| *command = (*command - q) / lag);
+    let stands = way.behind_loop(driven.position_loop, start, clock);
+    let slope = |changed: PositionLoop, change: f64| -> Shared {
+        let changed = way.behind_loop(changed, start, clock);
+        changed.iter().zip(&stands).map(|(far, near)| (far.position - near.position) / change).collect()
+    };
+    let PositionLoop { time_constant, inertia } = driven.position_loop;
+    let slower = time_constant * LOOP_STEP;
+    let lag_slope = slope(PositionLoop { time_constant: time_constant + slower, inertia }, slower);
+    let heavier = inertia * LOOP_STEP;
+    let inertia_slope =
+        (inertia > 0.0).then(|| slope(PositionLoop { time_constant, inertia: inertia + heavier }, heavier));
+    let velocity: Vec<f64> = stands.iter().map(|stand| stand.velocity).collect();
+    let position: Shared = stands.iter().map(|stand| stand.position).collect();
     let acceleration = derivative(time, run, &velocity);
     let (direction, since_reversal, moves) = directions(time, &position, resolution);
     AxisStates {
-        position: position.into(),
+        position,
         acceleration: acceleration.into(),
         direction: direction.into(),
         since_reversal: since_reversal.into(),
-        lag_slope: lag_slope.into(),
+        position_loop: driven.position_loop,
+        lag_slope,
+        inertia_slope,
         clock_slope: velocity.iter().map(|velocity| -velocity).collect(),
         moves,
     }
@@ -308,6 +372,29 @@ fn directions(time: &[f64], position: &[f64], resolution: f64) -> (Vec<f64>, Vec
 
 #[cfg(test)]
 mod tests;
+
+/// Rows in which it is not known from which side an axis came to its place: it stands where it stood in the row before, and leaves
+/// the other way than it came. The cycle of ISO 230-2 goes beyond its last target and comes back in between; a path without an
+/// overrun does not.
+pub(crate) fn unseen_turns(position: &[f64]) -> Vec<bool> {
+    let known = || position.iter().copied().filter(|position| position.is_finite());
+    let range = known().fold(f64::NEG_INFINITY, f64::max) - known().fold(f64::INFINITY, f64::min);
+    let mut unseen = vec![false; position.len()];
+    let mut came = 0.0;
+    let mut first = 0;
+    for row in 1..position.len() {
+        let step = position[row] - position[row - 1];
+        // A missing position is no step: nothing is known of it. A millionth of the travel is rounding.
+        if step.is_nan() || step.abs() <= 1e-6 * range {
+            continue;
+        }
+        if came * step < 0.0 {
+            unseen[first + 1..row].fill(true);
+        }
+        (came, first) = (step, row);
+    }
+    unseen
+}
 
 /// Rows behind a corner of the path that lies between two rows: where the axis was on the way is not recorded, so that no
 /// loop and no clock can be judged by them.

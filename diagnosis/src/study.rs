@@ -13,7 +13,7 @@ use model_dsl::program::Interpreter;
 use crate::model::{Effect, Fitted, Place, Side};
 use crate::noise;
 use crate::recording::{Instrument, Recording};
-use crate::states::{Given, Shared, behind_corners};
+use crate::states::{Given, Shared, behind_corners, unseen_turns};
 use crate::terms;
 
 /// A machine, what is known of it, and what was recorded.
@@ -116,11 +116,11 @@ impl<'a> Study<'a> {
         let sensors = sensor_names(calibration, recordings);
         let loads = load_names(recordings);
         let own = own_motions(equations);
-        let known = known(calibration, &loads);
+        let known = known(calibration, &loads, &own);
         let interpreter = Interpreter::new(equations, &constants);
         let scenes = recordings
             .iter()
-            .map(|recording| Scene::new(recording, calibration, &sensors, &loads, &interpreter))
+            .map(|recording| Scene::new(recording, equations, calibration, &sensors, &loads, &interpreter))
             .collect();
         Self { equations, interpreter, sensors, loads, scenes, known, own }
     }
@@ -173,14 +173,26 @@ fn own_motions(equations: &Equations) -> Vec<Option<usize>> {
     equations.axes.iter().enumerate().map(own).collect()
 }
 
-fn known(calibration: Option<&Calibration>, loads: &[(String, String)]) -> Vec<Fitted> {
+fn known(
+    calibration: Option<&Calibration>,
+    loads: &[(String, String)],
+    own: &[Option<usize>],
+) -> Vec<Fitted> {
     let load = |name: &str| loads.iter().position(|(known, _)| known == name);
     let listed = calibration.into_iter().flat_map(|calibration| &calibration.motions);
     listed
-        .flat_map(|motion| motion.terms.iter().map(|term| (motion.motion, &term.value)))
-        .filter_map(|(motion, term)| {
+        .flat_map(|listed| {
+            listed.terms.iter().enumerate().map(move |(place, term)| (listed, place, &term.value))
+        })
+        .filter_map(|(listed, place, term)| {
             let (shape, coefficients) = terms::known(term, load)?;
-            let side = if shape.name() == "lag" { Side::Drive } else { Side::After };
+            let motion = listed.motion;
+            let axis = own.iter().position(|own| *own == Some(motion));
+            let side = match axis.filter(|_| listed.is_inside_loop(place)) {
+                Some(axis) => Side::Loop { axis },
+                None if shape.name() == "lag" => Side::Drive,
+                None => Side::After,
+            };
             Some(Fitted { effect: Effect { place: Place::Motion { motion, side }, shape }, coefficients })
         })
         .collect()
@@ -189,6 +201,7 @@ fn known(calibration: Option<&Calibration>, loads: &[(String, String)]) -> Vec<F
 impl<'a> Scene<'a> {
     fn new(
         recording: &'a Recording,
+        equations: &Equations,
         calibration: Option<&Calibration>,
         sensors: &[String],
         loads: &[(String, String)],
@@ -204,7 +217,7 @@ impl<'a> Scene<'a> {
             leans: leans(recording, &given.programmed, interpreter),
             recording,
             given,
-            channels: channels(recording),
+            channels: channels(recording, equations),
             blocks: blocks(recording),
         }
     }
@@ -241,17 +254,22 @@ impl<'a> Scene<'a> {
 }
 
 fn corners(recording: &Recording, programmed: &[Shared]) -> Vec<bool> {
-    let mut corners = vec![false; recording.time.len()];
-    for position in programmed {
-        for (corner, here) in
-            corners.iter_mut().zip(behind_corners(&recording.time, &recording.run, position))
-        {
-            *corner |= here;
+    let rows = recording.time.len();
+    let any = |each: &dyn Fn(&[f64]) -> Vec<bool>, most: usize| {
+        let mut marked = vec![false; rows];
+        for position in programmed {
+            marked.iter_mut().zip(each(position)).for_each(|(mark, here)| *mark |= here);
         }
+        // A path of such rows only is one that was recorded so; nothing would be left.
+        if marked.iter().filter(|mark| **mark).count() > rows / most { vec![false; rows] } else { marked }
+    };
+    let mut corners =
+        any(&|position| behind_corners(&recording.time, &recording.run, position), MOST_CORNERS);
+    if noise::typical_step(&recording.time) > SPARSE {
+        let turns = any(&unseen_turns, MOST_TURNS);
+        corners.iter_mut().zip(turns).for_each(|(corner, turn)| *corner |= turn);
     }
-    // A path of corners only is one that was recorded so; nothing would be left.
-    let share = corners.iter().filter(|corner| **corner).count() * MANY;
-    if share > corners.len() { vec![false; corners.len()] } else { corners }
+    corners
 }
 
 /// The time of all steps that are no gaps.
@@ -263,8 +281,9 @@ fn observed(time: &[f64]) -> f64 {
 /// A step of time so many times as long as the typical one is a gap.
 const GAP: f64 = 20.0;
 
-/// One row in so many may lie behind a corner.
-const MANY: usize = 20;
+/// One row in so many may lie behind a corner, and one in so many where an axis may have turned unseen.
+const MOST_CORNERS: usize = 20;
+const MOST_TURNS: usize = 3;
 
 /// A ballbar that leans less than this share of its length into a direction shows nothing of it.
 const LEANS: f64 = 0.02;
@@ -327,7 +346,7 @@ fn temperatures(
     columns
 }
 
-fn channels(recording: &Recording) -> Vec<Channel> {
+fn channels(recording: &Recording, equations: &Equations) -> Vec<Channel> {
     let rows = recording.time.len();
     let mut channels = Vec::new();
     let mut add = |name: String, kind: Kind, values: &[f64]| {
@@ -350,14 +369,15 @@ fn channels(recording: &Recording) -> Vec<Channel> {
         add("deviation".to_owned(), kind, values);
     }
     for (axis, known) in recording.axes.iter().enumerate() {
+        let letter = equations.axes.get(axis).map(|axis| axis.letter.to_lowercase()).unwrap_or_default();
         // What an axis was measured by cannot be its position as well.
         if let Some(values) = &known.measured
             && (known.command.is_some() || known.actual.is_some())
         {
-            add(format!("measured, axis {axis}"), Kind::Stage(axis), values);
+            add(format!("measured.{letter}"), Kind::Stage(axis), values);
         }
         if let (Some(values), Some(_)) = (&known.actual, &known.command) {
-            add(format!("actual, axis {axis}"), Kind::Drive(axis), values);
+            add(format!("actual.{letter}"), Kind::Drive(axis), values);
         }
     }
     channels

@@ -26,6 +26,7 @@ pub(crate) use known::known;
 pub use meaning::meaning;
 pub(crate) use polynomial::in_position as polynomial_in_position;
 
+use crate::position_loop::Follower;
 use crate::states::Rows;
 
 /// The temperature at which scales are true where nothing else is said: ISO 1, degC.
@@ -48,8 +49,9 @@ pub(crate) enum Shape {
     ReversalSpike { axis: usize, decay: f64 },
     /// sin(2 pi q / period) and cos(2 pi q / period).
     Cyclic { axis: usize, period: f64 },
-    /// The change of the position behind the position loop with its time constant 1/K, which is the coefficient.
-    Lag { axis: usize },
+    /// The change of the position behind the position loop with its time constant 1/K, which is the coefficient; of second
+    /// order where it has an inertia 1/w^2, s^2.
+    Lag { axis: usize, inertia: f64 },
     /// -a.
     Acceleration { axis: usize },
     /// (T - reference) q.
@@ -74,12 +76,14 @@ pub(crate) struct Memory {
     value: Option<f64>,
     last: f64,
     last_input: f64,
+    /// The position loop that answers the shape.
+    follower: Follower,
 }
 
 /// The one parameter of a shape that is not linear.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Nonlinear {
-    /// Its name in calibration files; that of the lag's is the time constant 1/K.
+    /// Its name in calibration files; that of a lag is its inertia, of which they have the frequency.
     pub(crate) name: &'static str,
     /// Its value.
     pub(crate) value: f64,
@@ -147,6 +151,7 @@ impl Shape {
             Self::Cyclic { period, .. } => ("period", period),
             Self::Growth { time_constant, .. } if time_constant > 0.0 => ("time_constant", time_constant),
             Self::Drift { time_constant } => ("time_constant", time_constant),
+            Self::Lag { inertia, .. } if inertia > 0.0 => ("frequency", inertia),
             Self::Vibration { frequency } => ("frequency", frequency),
             _ => return None,
         };
@@ -162,6 +167,7 @@ impl Shape {
             | Self::Cyclic { period: parameter, .. }
             | Self::Growth { time_constant: parameter, .. }
             | Self::Drift { time_constant: parameter }
+            | Self::Lag { inertia: parameter, .. }
             | Self::Vibration { frequency: parameter } => *parameter = value,
             _ => {}
         }
@@ -186,7 +192,7 @@ impl Shape {
             | Self::Backlash { axis, .. }
             | Self::ReversalSpike { axis, .. }
             | Self::Cyclic { axis, .. }
-            | Self::Lag { axis }
+            | Self::Lag { axis, .. }
             | Self::Acceleration { axis }
             | Self::Expansion { axis, .. }
             | Self::Coupling { axis, .. } => Some(axis),
@@ -214,7 +220,7 @@ impl Shape {
                 one(out, |out| reversal_spike::fill(rows, *axis, *decay, out))
             }
             Self::Cyclic { axis, period } => cyclic::fill(rows, *axis, *period, out),
-            Self::Lag { axis } => one(out, |out| lag::fill(rows, *axis, out)),
+            Self::Lag { axis, .. } => one(out, |out| lag::fill(rows, *axis, out)),
             Self::Acceleration { axis } => one(out, |out| acceleration::fill(rows, *axis, out)),
             Self::Expansion { axis, sensor, reference } => {
                 one(out, |out| expansion::fill(rows, *axis, *sensor, *reference, out));
@@ -230,8 +236,32 @@ impl Shape {
         }
     }
 
-    /// Adds the value of the term with these coefficients to `sum`.
-    pub(crate) fn add(&self, coefficients: &[f64], rows: &Rows<'_>, memory: &mut Memory, sum: &mut [f64]) {
+    /// Fills its one column behind the position loop of an axis that answers it, or all as they are where none does.
+    pub(crate) fn fill_behind(
+        &self,
+        answered_by: Option<usize>,
+        rows: &Rows<'_>,
+        memory: &mut Memory,
+        out: &mut [Vec<f64>],
+    ) {
+        self.fill(rows, memory, out);
+        let position_loop = answered_by.map(|axis| rows.position_loop(axis));
+        if let (Some(position_loop), [column]) = (position_loop.filter(|known| known.acts()), out) {
+            for (time, value) in rows.time.iter().zip(column) {
+                *value = position_loop.follow(&mut memory.follower, *time, *value).position;
+            }
+        }
+    }
+
+    /// Adds the value of the term with these coefficients to `sum`, behind the loop that answers it where one does.
+    pub(crate) fn add(
+        &self,
+        coefficients: &[f64],
+        answered_by: Option<usize>,
+        rows: &Rows<'_>,
+        memory: &mut Memory,
+        sum: &mut [f64],
+    ) {
         match self {
             Self::Table { axis, nodes, directed } => {
                 table::add(rows, *axis, nodes, *directed, coefficients, sum);
@@ -240,7 +270,7 @@ impl Shape {
             Self::Lag { .. } => {}
             _ => {
                 let mut columns = vec![Vec::with_capacity(rows.len()); self.columns()];
-                self.fill(rows, memory, &mut columns);
+                self.fill_behind(answered_by, rows, memory, &mut columns);
                 for (column, coefficient) in columns.iter().zip(coefficients) {
                     for (sum, value) in sum.iter_mut().zip(column) {
                         *sum += coefficient * value;

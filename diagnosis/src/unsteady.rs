@@ -11,7 +11,7 @@ use crate::engine::Found;
 use crate::fit;
 use crate::model::{Effect, Fitted, Model, Place};
 use crate::noise::{self, Noise, typical_step};
-use crate::study::Study;
+use crate::study::{Kind, Study};
 use crate::sweep::Swept;
 use crate::terms::Shape;
 use crate::zeros;
@@ -112,11 +112,7 @@ pub(crate) fn moving(study: &Study<'_>, appraisal: &Appraisal) -> Option<Moving>
     for (scene, known) in study.scenes.iter().enumerate() {
         let step = typical_step(&known.recording.time);
         for channel in 0..known.channels.len() {
-            let residual: Vec<f64> = appraisal.residuals[scene][channel]
-                .iter()
-                .zip(&appraisal.outliers[scene][channel])
-                .map(|(value, outlier)| if *outlier { f64::NAN } else { *value })
-                .collect();
+            let residual = accepted(appraisal, scene, channel);
             if let Some((lag, rms)) = keeps_on(&known.recording.time, &residual, step)
                 && found.is_none_or(|found| found.rms < rms)
             {
@@ -125,6 +121,30 @@ pub(crate) fn moving(study: &Study<'_>, appraisal: &Appraisal) -> Option<Moving>
         }
     }
     found
+}
+
+/// Whether what is left of a channel is the drive's own feedback behind a loop that was found, and moves smoothly: that is the
+/// loop's answer to something. Strokes that are all alike bring it back at the same places, and no place has made it.
+pub(crate) fn answers_motion(
+    study: &Study<'_>,
+    appraisal: &Appraisal,
+    model: &Model,
+    scene: usize,
+    channel: usize,
+) -> bool {
+    let Kind::Drive(axis) = study.scenes[scene].channels[channel].kind else { return false };
+    let time = &study.scenes[scene].recording.time;
+    looped(model, axis) && keeps_on(time, &accepted(appraisal, scene, channel), typical_step(time)).is_some()
+}
+
+fn looped(model: &Model, axis: usize) -> bool {
+    model.iter().any(|fitted| matches!(fitted.effect.shape, Shape::Lag { axis: of, .. } if of == axis))
+}
+
+/// What is left of a channel, without its outliers.
+fn accepted(appraisal: &Appraisal, scene: usize, channel: usize) -> Vec<f64> {
+    let residual = appraisal.residuals[scene][channel].iter().zip(&appraisal.outliers[scene][channel]);
+    residual.map(|(value, outlier)| if *outlier { f64::NAN } else { *value }).collect()
 }
 
 /// The shortest time over which a residual goes far and keeps its direction, and its standard deviation.
@@ -174,6 +194,51 @@ pub(crate) fn fit_plainly(study: &Study<'_>, found: &mut Found, moving: &mut Mov
         *noise = apart(residual, moving.time);
     }
     moving.rms = found.appraisal.noises[moving.scene][moving.channel].size();
+}
+
+/// The same effects fitted to samples each for itself, where the drive's own feedback shows a loop and its held-out rows then
+/// lie nearer. An encoder does not wander: what wanders behind a loop is what the model of the loop still lacks, and weighted
+/// as a walk it would draw the loop to itself. `held_out` tells what a model leaves of rows that are not fitted.
+pub(crate) fn weigh_drives_plainly(
+    study: &Study<'_>,
+    found: &mut Found,
+    held_out: impl Fn(&Model) -> Option<f64>,
+) {
+    let Some((scene, channel)) = wandering_drive(study, found) else { return };
+    let noises = found.appraisal.as_white();
+    let fit = fit::refine(study, found.fit.model.clone(), &noises, &found.travels);
+    let nearer =
+        held_out(&fit.model).zip(held_out(&found.fit.model)).is_some_and(|(new, old)| new < NEARER * old);
+    if !nearer {
+        return;
+    }
+    found.fit = fit;
+    found.appraisal = Appraisal::new(study, &found.fit.model);
+    let noise = found.appraisal.noises[scene][channel];
+    let step = typical_step(&study.scenes[scene].recording.time);
+    let share = (noise.wander / noise.size().max(f64::MIN_POSITIVE)).powi(2);
+    let alike = 1.0 + 2.0 * share * noise.time_constant / step;
+    found.fit.covariances.iter_mut().for_each(|covariance| *covariance *= alike);
+}
+
+/// Held-out rows lie nearer when their rms falls below this share.
+const NEARER: f64 = 0.8;
+
+/// The drive's feedback of an axis whose loop was found, where more of its noise wanders than not.
+fn wandering_drive(study: &Study<'_>, found: &Found) -> Option<(usize, usize)> {
+    let channels = study.scenes.iter().enumerate().flat_map(|(scene, known)| {
+        known.channels.iter().enumerate().map(move |(number, channel)| (scene, number, channel.kind))
+    });
+    let wanders = |scene: usize, channel: usize| {
+        let noise = &found.appraisal.noises[scene][channel];
+        noise.wander > noise.white
+    };
+    channels
+        .filter(|(scene, number, kind)| {
+            matches!(kind, Kind::Drive(axis) if looped(&found.fit.model, *axis)) && wanders(*scene, *number)
+        })
+        .map(|(scene, number, _)| (scene, number))
+        .next()
 }
 
 /// The noise of a channel as what is new from sample to sample, and what moves.

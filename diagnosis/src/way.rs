@@ -4,6 +4,8 @@
 //! at the rows, or a clock's offset before them. Without a loop the way is a smooth curve through the rows, straight at
 //! corners; behind a loop it is the loop's own solution for a command that is straight between rows.
 
+use crate::position_loop::{Follower, PositionLoop, Stand};
+
 /// The way of one axis.
 pub(crate) struct Way<'w> {
     time: &'w [f64],
@@ -12,6 +14,7 @@ pub(crate) struct Way<'w> {
     slopes: Vec<f64>,
     /// Whether the path turns sharply at a row.
     corners: Vec<bool>,
+    fastest: f64,
 }
 
 /// The change of speed, as a share of the highest, from which on a path turns sharply.
@@ -32,7 +35,17 @@ impl<'w> Way<'w> {
             }
         };
         let corners = (0..time.len()).map(corner).collect();
-        Self { time, command, slopes, corners }
+        Self { time, command, slopes, corners, fastest }
+    }
+
+    /// The highest programmed speed.
+    pub(crate) fn fastest(&self) -> f64 {
+        self.fastest
+    }
+
+    /// Where it begins; NaN where that is not known.
+    pub(crate) fn first(&self) -> f64 {
+        self.command.first().copied().unwrap_or(f64::NAN)
     }
 
     /// The position a clock's offset before each row.
@@ -43,29 +56,32 @@ impl<'w> Way<'w> {
         self.each_earlier(clock, |from, share| self.between(from, share))
     }
 
-    /// The position behind a loop, and the command that it follows there, a clock's offset before each row.
-    pub(crate) fn behind_loop(&self, lag: f64, clock: f64) -> (Vec<f64>, Vec<f64>) {
-        let followed = self.follow(lag);
+    /// Where the axis stands behind a loop, a clock's offset before each row.
+    pub(crate) fn behind_loop(
+        &self,
+        position_loop: PositionLoop,
+        start: Option<Stand>,
+        clock: f64,
+    ) -> Vec<Stand> {
+        let mut follower = Follower::from(start);
+        let rows = self.time.iter().zip(self.command);
+        let followed: Vec<Stand> =
+            rows.map(|(time, command)| position_loop.follow(&mut follower, *time, *command)).collect();
         if clock == 0.0 {
-            return (followed, self.command.to_vec());
+            return followed;
         }
-        let position = self.each_earlier(clock, |from, share| {
+        self.each_earlier(clock, |from, share| {
             if share == 0.0 {
                 return followed[from];
             }
-            let (step, slope) = self.chord(from);
-            let error = followed[from] - self.command[from] + slope * lag;
-            self.command[from] + slope * (share * step - lag) + error * (-share * step / lag).exp()
-        });
-        let command = self.each_earlier(clock, |from, share| {
-            if share == 0.0 { self.command[from] } else { self.straight(from, share) }
-        });
-        (position, command)
+            let (step, _) = self.chord(from);
+            position_loop.step(followed[from], self.command[from], self.straight(from, share), share * step)
+        })
     }
 
     /// For each row the step in which the wanted instant lies: its first row, and the share of the step; before the first
     /// row and behind the last the axis rests.
-    fn each_earlier(&self, clock: f64, value: impl Fn(usize, f64) -> f64) -> Vec<f64> {
+    fn each_earlier<T>(&self, clock: f64, value: impl Fn(usize, f64) -> T) -> Vec<T> {
         let time = self.time;
         let mut from = 0;
         (0..time.len())
@@ -106,28 +122,5 @@ impl<'w> Way<'w> {
         let (first, last) = (self.slopes[from] - slope, self.slopes[from + 1] - slope);
         let rest = 1.0 - share;
         self.straight(from, share) + step * share * rest * (first * rest - last * share)
-    }
-
-    /// The first-order position loop with time constant `lag`, started at rest.
-    fn follow(&self, lag: f64) -> Vec<f64> {
-        let mut followed = Vec::with_capacity(self.command.len());
-        let mut last: Option<(f64, f64, f64)> = None;
-        for (time, command) in self.time.iter().zip(self.command) {
-            let position = match last {
-                _ if command.is_nan() => f64::NAN,
-                None => *command,
-                Some((before, from, position)) => {
-                    let step = time - before;
-                    let slope = (command - from) / step;
-                    let error = position - from + slope * lag;
-                    command - slope * lag + error * (-step / lag).exp()
-                }
-            };
-            if position.is_finite() {
-                last = Some((*time, *command, position));
-            }
-            followed.push(position);
-        }
-        followed
     }
 }

@@ -23,6 +23,7 @@ pub(crate) fn location(study: &Study<'_>, fitted: &Fitted, others: &[Effect]) ->
         state: state_word(&effect.shape),
         detail: detail(study, effect),
         interval: interval(study, fitted),
+        inside_loop: effect.side().is_some_and(|side| side.answered_by().is_some()),
     }
 }
 
@@ -35,7 +36,7 @@ fn side(study: &Study<'_>, effect: &Effect) -> &'static str {
         (None, _) => "structure",
         (Some(_), _) if matches!(effect.shape, Shape::Lag { .. }) => "drive",
         (Some(axis), _) if !study.has_drive(axis) => "unknown",
-        (Some(_), Some(Side::Drive)) => "drive",
+        (Some(_), Some(Side::Drive | Side::Loop { .. })) => "drive",
         (Some(_), _) => "transmission",
     }
 }
@@ -57,6 +58,14 @@ fn state_word(shape: &Shape) -> &'static str {
 }
 
 fn detail(study: &Study<'_>, effect: &Effect) -> String {
+    let shown = bare_detail(study, effect);
+    match effect.side().and_then(Side::answered_by) {
+        Some(_) => format!("{shown}, as far as the position loop lets it"),
+        None => shown,
+    }
+}
+
+fn bare_detail(study: &Study<'_>, effect: &Effect) -> String {
     let name = |axis: usize| study.equations.axes[axis].letter.to_lowercase();
     match &effect.shape {
         Shape::Constant => format!("follows {}", state(study, effect)),
@@ -72,9 +81,17 @@ fn detail(study: &Study<'_>, effect: &Effect) -> String {
         }
         Shape::Backlash { axis, .. } => format!("jumps at every reversal of {}", name(*axis)),
         Shape::ReversalSpike { axis, decay } => {
-            format!("a spike at every reversal of {}, gone within {:.3} s", name(*axis), 3.0 * decay)
+            format!("a spike at every reversal of {}, gone within {}", name(*axis), seconds(3.0 * decay))
         }
-        Shape::Lag { axis } => format!("follows the velocity of {}, behind its position loop", name(*axis)),
+        Shape::Lag { axis, inertia } if *inertia > 0.0 => {
+            format!(
+                "follows the velocity of {}, behind its position loop, which is of second order",
+                name(*axis)
+            )
+        }
+        Shape::Lag { axis, .. } => {
+            format!("follows the velocity of {}, behind its position loop", name(*axis))
+        }
         Shape::Acceleration { axis } => format!("follows the acceleration of {}", name(*axis)),
         Shape::Expansion { axis, sensor, .. } => {
             format!("grows with {} and with the temperature of {}", name(*axis), study.sensors[*sensor])
@@ -85,11 +102,23 @@ fn detail(study: &Study<'_>, effect: &Effect) -> String {
         Shape::Growth { sensor, .. } | Shape::SensorPolynomial { sensor, .. } => {
             format!("follows the temperature of {}", study.sensors[*sensor])
         }
-        Shape::Drift { time_constant } => format!("settles with time, within {:.0} s", 3.0 * time_constant),
+        Shape::Drift { time_constant } => {
+            format!("settles with time, within {}", seconds(3.0 * time_constant))
+        }
         Shape::Vibration { frequency } => format!("oscillates at {frequency:.3} Hz"),
         Shape::Coupling { axis, .. } => format!("changes with where {} stands", name(*axis)),
         Shape::Compliance { load } => format!("follows the load {}", study.loads[*load].0),
         Shape::Instrument(setting) => setting.name().to_owned(),
+    }
+}
+
+/// A time in words, with about three digits.
+pub(crate) fn seconds(time: f64) -> String {
+    match time {
+        short if short < 0.1 => format!("{:.1} ms", 1e3 * short),
+        short if short < 1.0 => format!("{short:.3} s"),
+        middle if middle < 100.0 => format!("{middle:.1} s"),
+        long => format!("{long:.0} s"),
     }
 }
 

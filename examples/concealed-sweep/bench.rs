@@ -113,7 +113,9 @@ impl Bench {
             let gain = draw.ratio(20.0, 90.0);
             for axis in self.slides() {
                 let gain = gain * draw.between(0.97, 1.03);
-                terms.extend(self.own(axis).map(|own| (own, CalibratedTerm::Lag { axis, gain })));
+                terms.extend(
+                    self.own(axis).map(|own| (own, CalibratedTerm::Lag { axis, gain, frequency: 0.0 })),
+                );
             }
         }
         if let Some(name) = sensor.filter(|_| draw.chance(0.25)) {

@@ -180,7 +180,7 @@ pub(crate) fn draw(
                 CalibratedTerm::Cyclic { axis, period, amplitude: 1e-3, phase },
             )
         }
-        "lag" => (own, CalibratedTerm::Lag { axis, gain: draw.ratio(20.0, 150.0) }),
+        "lag" => (own, CalibratedTerm::Lag { axis, gain: draw.ratio(20.0, 150.0), frequency: 0.0 }),
         "acceleration" => (own, CalibratedTerm::Acceleration { axis, gain: draw.ratio(300.0, 5000.0) }),
         "expansion" => {
             let sensor = sensor(draw)?;

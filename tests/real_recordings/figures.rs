@@ -131,6 +131,7 @@ fn parameter_rows(finding: &Value) -> Vec<(String, String)> {
         let key = key.replace('_', " ");
         match (value.as_str(), value.as_array()) {
             (Some(word), _) => rows.push((key, word.to_owned())),
+            (_, Some(items)) if key == "at" => rows.push((key, places(items))),
             (_, Some(items)) => rows.extend(
                 items.iter().enumerate().map(|(place, item)| (format!("{key} {}", place + 1), fitted(item))),
             ),
@@ -138,6 +139,13 @@ fn parameter_rows(finding: &Value) -> Vec<(String, String)> {
         }
     }
     rows
+}
+
+/// Where the nodes of a table stand.
+fn places(nodes: &[Value]) -> String {
+    let of = |node: &Value| node["value"].as_f64().unwrap().to_string();
+    let unit = nodes.first().map(|node| text_of(&node["unit"])).unwrap_or_default();
+    format!("{} {unit}", nodes.iter().map(of).collect::<Vec<_>>().join(", "))
 }
 
 /// A fitted number with its interval, to two digits of its half width.

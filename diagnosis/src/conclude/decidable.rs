@@ -3,7 +3,9 @@
 //! In: a study, and what the instruments' settings alone leave. Out: sentences about what its recordings cannot tell, and
 //! the reason why nothing can be claimed from them, where that is so.
 
+use crate::answers::answers;
 use crate::model::Model;
+use crate::recording::Instrument;
 use crate::study::Study;
 use crate::zeros;
 
@@ -42,7 +44,8 @@ pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
     if corners > 0 {
         sentences.push(format!(
             "What happens at corners of the path cannot be decided in {corners} rows, which are left out, because the path \
-             turned between two rows."
+             turned between two rows, or an axis may have: it stood at one place twice, and it is not recorded from which \
+             side it came the second time."
         ));
     }
     if study.scenes.iter().all(|scene| scene.run_numbers().len() < 2) {
@@ -50,6 +53,14 @@ pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
             "Whether runs repeat cannot be decided from this recording, because there is one run.".to_owned(),
         );
     }
+    sentences.extend(answers(study).iter().map(|answer| {
+        let (name, axis) = (&study.loads[answer.load].0, &study.equations.axes[answer.axis].letter);
+        format!(
+            "What the load {name} does to the drive of {axis} cannot be decided from this recording, because it is what the \
+             position loop of {axis} puts out: following error and velocity give {:.1} % of it. It answers the error.",
+            (1000.0 * answer.share).floor() / 10.0
+        )
+    }));
     sentences
 }
 
@@ -104,6 +115,34 @@ pub(super) fn astray(study: &Study<'_>, bare: &Model) -> Option<String> {
     }
     None
 }
+
+/// Why a ballbar cannot have stood where its set-up says, where that is so: the programmed path keeps another distance from its
+/// centre than the bar is long, by more than bars can read.
+pub(super) fn misplaced(study: &Study<'_>) -> Option<String> {
+    for scene in &study.scenes {
+        let Instrument::Ballbar { center, radius } = scene.recording.instrument else { continue };
+        let positions: Vec<&[f64]> = scene.given.programmed.iter().map(|position| &position[..]).collect();
+        let tip = study.interpreter.nominal_columns(&positions);
+        let distance = |row: usize| (0..3).map(|d| (tip[d][row] - center[d]).powi(2)).sum::<f64>().sqrt();
+        let mut distances: Vec<f64> = (0..scene.rows()).map(distance).filter(|far| far.is_finite()).collect();
+        distances.sort_by(f64::total_cmp);
+        let Some(median) = distances.get(distances.len() / 2) else { continue };
+        if (median - radius).abs() > BAR_READS + BAR_READS_OF_LENGTH * radius {
+            let center = center.map(|value| format!("{value:.3}")).join(", ");
+            return Some(format!(
+                "the ballbar of {} is {radius:.3} mm long, and the programmed path is {median:.3} mm from its centre ({center}) \
+                 mm; look at the centre, which is that of the nominal tip with the tool's offset, at the radius, and at the \
+                 machine's constants",
+                scene.recording.file
+            ));
+        }
+    }
+    None
+}
+
+/// How much longer or shorter than its nominal length a ballbar reads, mm, and as a share of its length.
+const BAR_READS: f64 = 1.0;
+const BAR_READS_OF_LENGTH: f64 = 0.01;
 
 /// How far off, mm and rad, and as a share of the travel, is too far for an error of a machine.
 const FAR_OFF: (f64, f64) = (0.5, 0.01);

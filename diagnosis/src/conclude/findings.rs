@@ -9,7 +9,7 @@ use crate::certainty::{self, WIDTH_95};
 use crate::diagnosis::{Alternative, Diagnosis, Evidence, Finding, Parameter, Residual, SettingFinding};
 use crate::engine::Found;
 use crate::judge;
-use crate::model::Effect;
+use crate::model::{Effect, Model, Side};
 use crate::parameters::Described;
 use crate::study::Study;
 use crate::sweep::Swept;
@@ -20,8 +20,13 @@ use crate::zeros;
 /// How many names are told for one finding at most.
 const NAMES: usize = 4;
 
-/// Fills findings and settings.
-pub(super) fn report(study: &Study<'_>, found: &Found, units: &Units, diagnosis: &mut Diagnosis) {
+/// Fills findings and settings; the numbers of the model's effects that are the findings, in their order.
+pub(super) fn report(
+    study: &Study<'_>,
+    found: &Found,
+    units: &Units,
+    diagnosis: &mut Diagnosis,
+) -> Vec<usize> {
     let names = alternatives::find(study, found);
     let design = judge::design(study, &found.fit.model, &found.appraisal.noises);
     let (products, _) = design.fitted();
@@ -29,7 +34,6 @@ pub(super) fn report(study: &Study<'_>, found: &Found, units: &Units, diagnosis:
     for column in 0..design.width {
         swept.take(column);
     }
-    let with = held_rms(&diagnosis.after);
     let shares = shares(study, found, units);
     let certainties = certainty::certainties(study, &found.fit, &found.appraisal.noises, &found.travels);
     for (number, fitted) in found.fit.model.iter().enumerate() {
@@ -44,7 +48,6 @@ pub(super) fn report(study: &Study<'_>, found: &Found, units: &Units, diagnosis:
         };
         let mut reduced = judge::without(&design, &swept, &found.fit.model, number);
         zeros::free_held_out(study, &mut reduced);
-        let without = held_rms(&units.residual(study, &reduced));
         let known = &study.equations.motions[motion];
         let calibrated = described.calibrated();
         diagnosis.findings.push(Finding {
@@ -55,7 +58,7 @@ pub(super) fn report(study: &Study<'_>, found: &Found, units: &Units, diagnosis:
             parameters: described.parameters(),
             share: shares[number],
             location: words::location(study, fitted, names),
-            evidence: Evidence { with, without, unit: units.unit.1 },
+            evidence: evidence(study, units, &fitted.effect, (&found.fit.model, &reduced)),
             alternatives,
             explanation: fitted.effect.shape.meaning().to_owned(),
             compensable: calibrated.compensable(),
@@ -65,6 +68,26 @@ pub(super) fn report(study: &Study<'_>, found: &Found, units: &Units, diagnosis:
     }
     diagnosis.findings.sort_by(|a, b| b.share.total_cmp(&a.share));
     diagnosis.settings = joined(std::mem::take(&mut diagnosis.settings));
+    let model = found.fit.model.iter().enumerate();
+    let machine = model.filter(|(_, fitted)| fitted.effect.motion().is_some());
+    let mut numbers: Vec<usize> = machine.map(|(number, _)| number).collect();
+    numbers.sort_by(|a, b| shares[*b].total_cmp(&shares[*a]));
+    numbers
+}
+
+/// What an effect does to held-out data, from the model with it and the one without: to what counts throughout; where it acts in
+/// a drive beside instruments outside, to that drive's own feedback, which shows it finer.
+fn evidence(study: &Study<'_>, units: &Units, effect: &Effect, models: (&Model, &Model)) -> Evidence {
+    let own = |motion: usize| study.own.iter().position(|own| *own == Some(motion));
+    let at_drive = effect.side().is_some_and(Side::at_drive) && units.outside;
+    let axis = effect.motion().and_then(own).filter(|axis| at_drive && study.has_drive(*axis));
+    let size = |model: &Model| match axis {
+        Some(axis) => units.at_drive(study, model, axis),
+        None => units.residual(study, model),
+    };
+    let (with, without) = (size(models.0), size(models.1));
+    let drive = axis.map(|axis| study.equations.axes[axis].letter.clone());
+    Evidence { with: held_rms(&with), without: held_rms(&without), unit: with.unit, drive }
 }
 
 /// The part of each effect in what all effects of the machine do together to the data that were held out (to all data, where

@@ -13,6 +13,7 @@ use crate::local::Feature;
 use crate::parameters::{Described, axis_unit, motion_unit};
 use crate::study::Study;
 use crate::unsteady::{self, Band, Moving, Suspect};
+use crate::words;
 
 /// What stays at one place of an axis.
 pub(super) fn feature(study: &Study<'_>, found: &Found, feature: &Feature, units: &Units) -> Unexplained {
@@ -72,8 +73,8 @@ fn smoothly(study: &Study<'_>, found: &Found, moving: Moving, units: &Units) -> 
         rms: moving.rms * units.unit.0,
         unit: units.unit.1,
         detail: format!(
-            "keeps its direction for {:.2} s and more, as no sensor's noise does: something of the machine is still left out{near}",
-            moving.time
+            "keeps its direction for {} and more, as no sensor's noise does: something of the machine is still left out{near}",
+            words::seconds(moving.time)
         ),
         table_of: None,
     }

@@ -13,7 +13,7 @@ use crate::zeros;
 /// The unit in which residuals are told, and which channels count.
 pub(super) struct Units {
     pub(super) unit: (f64, &'static str),
-    outside: bool,
+    pub(super) outside: bool,
     angular: bool,
 }
 
@@ -37,25 +37,13 @@ impl Units {
 
     /// The size of what a model leaves.
     pub(super) fn residual(&self, study: &Study<'_>, model: &Model) -> Residual {
-        let (mut all, mut held) = ((0.0, 0.0), (0.0, 0.0));
-        for (scene, residuals) in zeros::residuals(study, model).into_iter().enumerate() {
-            let fitted = study.scenes[scene].fitted_rows();
-            for (channel, residual) in study.scenes[scene].channels.iter().zip(residuals) {
-                if !self.counts(study, channel.kind) {
-                    continue;
-                }
-                for ((value, outlier), fits) in residual.iter().zip(&channel.outliers).zip(&fitted) {
-                    if value.is_finite() && !outlier {
-                        all = (all.0 + value * value, all.1 + 1.0);
-                        if !fits {
-                            held = (held.0 + value * value, held.1 + 1.0);
-                        }
-                    }
-                }
-            }
-        }
-        let rms = |(squares, count): (f64, f64)| (squares / f64::max(count, 1.0)).sqrt() * self.unit.0;
-        Residual { rms: rms(all), holdout_rms: (held.1 > 0.0).then(|| rms(held)), unit: self.unit.1 }
+        let unit = self.unit;
+        size(study, model, unit, |kind| self.counts(study, kind))
+    }
+
+    /// The size of what a model leaves of the drive's own feedback of an axis.
+    pub(super) fn at_drive(&self, study: &Study<'_>, model: &Model, axis: usize) -> Residual {
+        size(study, model, axis_unit(study, axis), |kind| kind == Kind::Drive(axis))
     }
 
     /// The residuals of all counted channels on the held-out rows (on all rows where none are), the mean of each channel
@@ -98,4 +86,32 @@ impl Units {
         let time_constant = wandering.map(|noise| noise.time_constant).fold(0.0, f64::max);
         NoiseSummary { value: white.hypot(wander), unit: self.unit.1, white, wander, time_constant }
     }
+}
+
+/// The size of what a model leaves of the channels that count, in a unit.
+fn size(
+    study: &Study<'_>,
+    model: &Model,
+    (factor, unit): (f64, &'static str),
+    counts: impl Fn(Kind) -> bool,
+) -> Residual {
+    let (mut all, mut held) = ((0.0, 0.0), (0.0, 0.0));
+    for (scene, residuals) in zeros::residuals(study, model).into_iter().enumerate() {
+        let fitted = study.scenes[scene].fitted_rows();
+        for (channel, residual) in study.scenes[scene].channels.iter().zip(residuals) {
+            if !counts(channel.kind) {
+                continue;
+            }
+            for ((value, outlier), fits) in residual.iter().zip(&channel.outliers).zip(&fitted) {
+                if value.is_finite() && !outlier {
+                    all = (all.0 + value * value, all.1 + 1.0);
+                    if !fits {
+                        held = (held.0 + value * value, held.1 + 1.0);
+                    }
+                }
+            }
+        }
+    }
+    let rms = |(squares, count): (f64, f64)| (squares / f64::max(count, 1.0)).sqrt() * factor;
+    Residual { rms: rms(all), holdout_rms: (held.1 > 0.0).then(|| rms(held)), unit }
 }

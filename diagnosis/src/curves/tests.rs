@@ -181,12 +181,14 @@ fn about_mean(values: &[f64]) -> Vec<f64> {
     values.iter().map(|value| value - mean).collect()
 }
 
-/// The mean error that was read at a station in all runs but the last, and how often.
+/// The mean error that was read at a station in all runs but the last, and how often. Which way the stage came to the later
+/// readings at an end is not recorded; they are left out.
 fn mean_error(recording: &Recording, station: f64) -> (f64, f64) {
     let command = recording.axes[0].command.as_ref().unwrap();
     let measured = recording.measured[0].as_ref().unwrap();
     let here = |row: &usize| (command[*row] - station).abs() < 1e-6 && recording.run[*row] != i64::from(RUNS);
-    let rows: Vec<usize> = (0..command.len()).filter(here).collect();
+    let unseen = crate::states::unseen_turns(command);
+    let rows: Vec<usize> = (0..command.len()).filter(here).filter(|row| !unseen[*row]).collect();
     let sum: f64 = rows.iter().map(|row| measured[*row] - command[*row]).sum();
     (sum / crate::number(rows.len()), crate::number(rows.len()))
 }

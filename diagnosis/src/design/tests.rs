@@ -46,7 +46,7 @@ fn model(study: &Study<'_>, settings: &[(Setting, f64)]) -> Model {
             coefficients: vec![0.01],
         },
         Fitted {
-            effect: machine(study, "EXX", Side::Drive, Shape::Lag { axis: 0 }),
+            effect: machine(study, "EXX", Side::Drive, Shape::Lag { axis: 0, inertia: 0.0 }),
             coefficients: vec![0.03],
         },
         Fitted {
@@ -134,7 +134,7 @@ fn effects(study: &Study<'_>) -> Vec<Effect> {
         machine("EC0Y", Side::After, Shape::Constant),
         machine("EZZ", Side::After, Shape::Vibration { frequency: 0.4 }),
         machine("EXX", Side::Drive, Shape::Backlash { axis: 0, wind_up: 0.0 }),
-        machine("EXX", Side::Drive, Shape::Lag { axis: 0 }),
+        machine("EXX", Side::Drive, Shape::Lag { axis: 0, inertia: 0.0 }),
         Effect::setting(0, Setting::Offset { channel: 0 }),
         Effect::setting(0, Setting::RunOffset { channel: 0, run: 1 }),
     ]

@@ -7,6 +7,7 @@ use nalgebra::DMatrix;
 use super::*;
 use crate::model::{Effect, Place, Side};
 use crate::recording::{AngleUnit, Recording};
+use crate::states::Driven;
 use crate::states::States;
 use crate::terms::{Memory, known};
 use crate::testing::{Bench, normals, peak, programmed, uneven};
@@ -83,7 +84,7 @@ fn cases(study: &Study<'_>) -> Vec<Fitted> {
         fitted("EXX", Shape::ReversalSpike { axis: 0, decay: 0.2 }, &[0.01]),
         fitted("EXX", Shape::Cyclic { axis: 0, period: 9.0 }, &[0.003, -0.004]),
         fitted("EBX", Shape::Vibration { frequency: 2.2 }, &[-3e-5, 1e-5]),
-        fitted("EXX", Shape::Lag { axis: 0 }, &[0.03]),
+        fitted("EXX", Shape::Lag { axis: 0, inertia: 0.0 }, &[0.03]),
         fitted("EXX", Shape::Acceleration { axis: 0 }, &[0.002]),
         fitted("EXX", Shape::Expansion { axis: 0, sensor: 0, reference: 20.0 }, &[1.1e-5]),
         fitted("EZZ", Shape::Growth { sensor: 0, reference: 20.0, time_constant: 0.0 }, &[0.002]),
@@ -171,14 +172,15 @@ fn names_and_units_are_those_of_calibration_files() {
         &[("axis", "Y"), ("coefficients", "rad/mm"), ("coefficients", "rad/mm^2")],
         &[
             ("axis", "X"),
-            ("values", "mm"),
-            ("values", "mm"),
-            ("values", "mm"),
-            ("values", "mm"),
-            ("values", "mm"),
-            ("values", "mm"),
+            ("at", "mm"),
+            ("forward", "mm"),
+            ("forward", "mm"),
+            ("forward", "mm"),
+            ("reverse", "mm"),
+            ("reverse", "mm"),
+            ("reverse", "mm"),
         ],
-        &[("axis", "X"), ("values", "mm"), ("values", "mm"), ("values", "mm")],
+        &[("axis", "X"), ("at", "mm"), ("values", "mm"), ("values", "mm"), ("values", "mm")],
         &[("lost_motion", "mm")],
         &[("lost_motion", "mm"), ("wind_up", "mm")],
         &[("height", "mm"), ("decay", "s")],
@@ -199,6 +201,7 @@ fn names_and_units_are_those_of_calibration_files() {
             let words = match &parameter.value {
                 ParameterValue::Name(name) => vec![name.clone()],
                 ParameterValue::Given(_, unit) => vec![unit.clone()],
+                ParameterValue::Places(_, unit) => vec![(*unit).to_owned()],
                 ParameterValue::Fitted(estimate) => vec![estimate.unit.clone()],
                 ParameterValue::List(list) => list.iter().map(|estimate| estimate.unit.clone()).collect(),
             };
@@ -224,7 +227,7 @@ fn waves_have_an_amplitude_and_a_phase_and_loops_a_gain() {
     assert!(
         (amplitude * phase.cos() + 0.003).abs() < 1e-15 && (amplitude * phase.sin() - 0.004).abs() < 1e-15
     );
-    let lag = fitted(&study, "EXX", Shape::Lag { axis: 0 }, &[0.02]);
+    let lag = fitted(&study, "EXX", Shape::Lag { axis: 0, inertia: 0.0 }, &[0.02]);
     let told = estimates(
         &Described::new(&study, &lag, &Certainty::linear(DMatrix::from_element(1, 1, 1e-6))).parameters(),
     );
@@ -264,7 +267,7 @@ fn what_is_written_into_the_calibration_is_what_was_fitted() {
     let recording = recording(3);
     let study = Study::new(bench.equations(), None, &[&recording]);
     let scene = &study.scenes[0];
-    let states = States::new(&recording, &scene.given, &[0.0; 3], 0.0);
+    let states = States::new(&recording, &scene.given, &[Driven::default(); 3], 0.0);
     let rows = states.rows(0..recording.time.len());
     let value = |shape: &Shape, coefficients: &[f64]| {
         let mut columns = vec![Vec::new(); shape.columns()];

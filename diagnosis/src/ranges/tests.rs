@@ -116,7 +116,7 @@ fn a_settling_takes_some_rows_and_some_recordings() {
 
 #[test]
 fn what_has_no_parameter_but_linear_ones_has_no_range() {
-    for shape in [Shape::Constant, Shape::Lag { axis: 0 }, Shape::Acceleration { axis: 0 }] {
+    for shape in [Shape::Constant, Shape::Lag { axis: 0, inertia: 0.0 }, Shape::Acceleration { axis: 0 }] {
         assert_eq!(range_of(&[&strokes()], &shape), (f64::NEG_INFINITY, f64::INFINITY));
     }
 }

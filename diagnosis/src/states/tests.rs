@@ -4,9 +4,14 @@ use super::*;
 use crate::testing::{Bench, commands, distance, path, peak, programmed, scenario, uneven};
 use simulation::path::Shape;
 
+/// A loop of first order.
+fn behind(time_constant: f64) -> Driven {
+    Driven { position_loop: PositionLoop { time_constant, inertia: 0.0 }, zero: 0.0 }
+}
+
 fn states(time: &[f64], command: &[f64], lag: f64, clock: f64) -> States {
     let recording = programmed(time, &[command.to_vec()]);
-    States::new(&recording, &Given::new(&recording, Vec::new(), Vec::new()), &[lag], clock)
+    States::new(&recording, &Given::new(&recording, Vec::new(), Vec::new()), &[behind(lag)], clock)
 }
 
 fn axis(time: &[f64], command: &[f64], lag: f64) -> AxisStates {
@@ -161,7 +166,7 @@ fn states_are_those_of_the_exact_machine() {
     let states = States::new(
         &recording,
         &Given::new(&recording, Vec::new(), Vec::new()),
-        &[1.0 / 30.0, 1.0 / 45.0, 0.0],
+        &[behind(1.0 / 30.0), behind(1.0 / 45.0), behind(0.0)],
         0.0,
     );
     let mut worst = [0.0_f64; 2];
@@ -193,8 +198,12 @@ fn views_are_the_rows_themselves() {
     let recording = programmed(&time, std::slice::from_ref(&command));
     let warm: Vec<f64> = time.iter().map(|t| 20.0 + t).collect();
     let load: Vec<f64> = time.iter().map(|t| 3.0 * t).collect();
-    let states =
-        States::new(&recording, &Given::new(&recording, vec![warm.clone()], vec![load.clone()]), &[0.0], 0.0);
+    let states = States::new(
+        &recording,
+        &Given::new(&recording, vec![warm.clone()], vec![load.clone()]),
+        &[behind(0.0)],
+        0.0,
+    );
     let rows = states.rows(5..9);
     assert_eq!(rows.len(), 4);
     assert_eq!((rows.time, rows.axis(0).position), (&time[5..9], &command[5..9]));
@@ -211,4 +220,19 @@ fn the_drive_stands_in_where_nothing_was_programmed() {
     assert_eq!(*nominal_position(&channels(Some(vec![1.0]), Some(vec![2.0])), 1), [1.0]);
     assert_eq!(*nominal_position(&channels(None, Some(vec![2.0])), 1), [2.0]);
     assert_eq!(*nominal_position(&channels(None, None), 3), [0.0; 3]);
+}
+
+#[test]
+fn what_turned_between_two_rows_at_one_place_is_not_known() {
+    let turns = |position: &[f64]| -> Vec<usize> {
+        let unseen = unseen_turns(position);
+        (0..position.len()).filter(|row| unseen[*row]).collect()
+    };
+    // There and back, each end read twice; the second reading comes from nobody knows where.
+    assert_eq!(turns(&[0.0, 5.0, 9.0, 9.0, 5.0, 0.0, 0.0, 5.0]), [3, 6]);
+    // Read thrice, both of the later ones; an end that is read once, or left as it was reached, is no turn unseen.
+    assert_eq!(turns(&[0.0, 9.0, 9.0, 9.0, 0.0]), [2, 3]);
+    assert_eq!(turns(&[0.0, 5.0, 5.0, 9.0, 5.0, 0.0, 0.0]), [0; 0]);
+    // An overrun that was recorded tells the side.
+    assert_eq!(turns(&[0.0, 9.0, 11.0, 9.0, 0.0, -2.0, 0.0, 9.0]), [0; 0]);
 }

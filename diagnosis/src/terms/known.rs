@@ -30,7 +30,9 @@ pub(crate) fn known(
         CalibratedTerm::Cyclic { axis, period, amplitude, phase } => {
             (Shape::Cyclic { axis: *axis, period: *period }, wave(*amplitude, *phase))
         }
-        CalibratedTerm::Lag { axis, gain } => (Shape::Lag { axis: *axis }, vec![1.0 / gain]),
+        CalibratedTerm::Lag { axis, gain, frequency } => {
+            (Shape::Lag { axis: *axis, inertia: inertia(*frequency) }, vec![1.0 / gain])
+        }
         CalibratedTerm::Acceleration { axis, gain } => {
             (Shape::Acceleration { axis: *axis }, vec![1.0 / gain])
         }
@@ -56,6 +58,12 @@ pub(crate) fn known(
         }
     };
     Some(pair)
+}
+
+/// 1/w^2 of a loop's natural frequency in Hz; 0 for a loop of first order.
+fn inertia(frequency: f64) -> f64 {
+    let natural = std::f64::consts::TAU * frequency;
+    if frequency > 0.0 { 1.0 / (natural * natural) } else { 0.0 }
 }
 
 /// A sin(x + f) as coefficients of sin x and cos x.

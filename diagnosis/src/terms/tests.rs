@@ -6,6 +6,7 @@ use abbe_runtime::{Direction, Sample, TermState};
 use model_dsl::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, SeriesInput};
 
 use super::*;
+use crate::states::Driven;
 use crate::states::{Given, States};
 use crate::testing::{distance, normals, peak, programmed, uneven};
 
@@ -19,7 +20,7 @@ fn states() -> States {
     let recording = programmed(&time, &[x, y]);
     let warm = time.iter().map(|t| 21.0 + 3.0 * (1.0 - (-t / 4.0).exp())).collect();
     let load = time.iter().map(|t| 100.0 * (3.0 * t).sin()).collect();
-    States::new(&recording, &Given::new(&recording, vec![warm], vec![load]), &[0.0, 0.0], 0.0)
+    States::new(&recording, &Given::new(&recording, vec![warm], vec![load]), &[Driven::default(); 2], 0.0)
 }
 
 fn value(term: &CalibratedTerm, states: &States) -> Vec<f64> {
@@ -28,7 +29,7 @@ fn value(term: &CalibratedTerm, states: &States) -> Vec<f64> {
     assert_eq!(shape.columns(), coefficients.len());
     let rows = states.rows(0..states.given.time.len());
     let mut sum = vec![0.0; rows.len()];
-    shape.add(&coefficients, &rows, &mut Memory::default(), &mut sum);
+    shape.add(&coefficients, None, &rows, &mut Memory::default(), &mut sum);
     // Columns times coefficients say the same; but a loop is in the states, and its column is how they change.
     if !matches!(shape, Shape::Lag { .. }) {
         let mut columns = vec![vec![f64::NAN; 3]; shape.columns()];
@@ -116,7 +117,12 @@ fn a_filtered_temperature_is_that_of_the_runtime_in_fine_steps() {
         let time: Vec<f64> = (0..).map(|row| step * f64::from(row)).take_while(|t| *t < 12.0).collect();
         let recording = programmed(&time, std::slice::from_ref(&time));
         let warm = time.iter().map(|t| 21.0 + t.sin()).collect();
-        let states = States::new(&recording, &Given::new(&recording, vec![warm], Vec::new()), &[0.0], 0.0);
+        let states = States::new(
+            &recording,
+            &Given::new(&recording, vec![warm], Vec::new()),
+            &[Driven::default()],
+            0.0,
+        );
         distance(&value(&term, &states), &by_runtime(&term, &states))
     };
     // The runtime holds the temperature through a step: the difference is of the order of the step.
@@ -135,13 +141,20 @@ fn a_filtered_temperature_that_rises_evenly_is_the_closed_solution() {
     let term = CalibratedTerm::Growth { sensor: 0, coefficient: 1.0, reference: 20.0, time_constant: lag };
     let found = value(
         &term,
-        &States::new(&recording, &Given::new(&recording, vec![warm.clone()], Vec::new()), &[0.0], 0.0),
+        &States::new(
+            &recording,
+            &Given::new(&recording, vec![warm.clone()], Vec::new()),
+            &[Driven::default()],
+            0.0,
+        ),
     );
     assert!(distance(&found, &expected) < 1e-10);
     // A gap is bridged: the filter runs on through it.
     warm[40..70].fill(f64::NAN);
-    let found =
-        value(&term, &States::new(&recording, &Given::new(&recording, vec![warm], Vec::new()), &[0.0], 0.0));
+    let found = value(
+        &term,
+        &States::new(&recording, &Given::new(&recording, vec![warm], Vec::new()), &[Driven::default()], 0.0),
+    );
     assert!(found[40..70].iter().all(|value| value.is_nan()));
     assert!(distance(&found[70..], &expected[70..]) < 1e-10);
 }
@@ -188,7 +201,7 @@ fn terms_that_no_controller_has_are_their_formulas() {
 #[test]
 fn a_lag_is_a_time_constant_and_acts_through_the_states() {
     let states = states();
-    let term = CalibratedTerm::Lag { axis: 0, gain: 40.0 };
+    let term = CalibratedTerm::Lag { axis: 0, gain: 40.0, frequency: 0.0 };
     assert!(value(&term, &states).iter().all(|value| *value == 0.0));
     let (shape, coefficients) = known(&term, |_| None).unwrap();
     assert_eq!(coefficients, [1.0 / 40.0]);
@@ -233,7 +246,8 @@ fn memory_goes_on_from_stretch_to_stretch() {
 fn a_missing_position_is_a_missing_term() {
     let time: Vec<f64> = (0..6).map(f64::from).collect();
     let recording = programmed(&time, &[vec![0.0, 1.0, f64::NAN, 3.0, 2.0, 1.0]]);
-    let states = States::new(&recording, &Given::new(&recording, Vec::new(), Vec::new()), &[0.0], 0.0);
+    let states =
+        States::new(&recording, &Given::new(&recording, Vec::new(), Vec::new()), &[Driven::default()], 0.0);
     let terms = [
         CalibratedTerm::Polynomial { input: SeriesInput::Axis(0), coefficients: vec![1.0, 2.0] },
         table(CurveNodes::At(vec![0.0, 3.0]), CurveValues::Both(vec![0.0, 1.0])),
@@ -285,6 +299,7 @@ fn the_nonlinear_parameter_is_read_and_set() {
         Shape::Growth { sensor: 0, reference: 20.0, time_constant: 2.0 },
         Shape::Drift { time_constant: 2.0 },
         Shape::Vibration { frequency: 2.0 },
+        Shape::Lag { axis: 0, inertia: 2.0 },
     ];
     for shape in shapes {
         assert_eq!(shape.nonlinear().unwrap().value, 2.0);
@@ -294,6 +309,9 @@ fn the_nonlinear_parameter_is_read_and_set() {
     }
     let play = Shape::Backlash { axis: 0, wind_up: 0.0 };
     assert!(play.nonlinear().is_none(), "play that is taken up at once has no wind-up to fit");
-    let plain = [Shape::Constant, Shape::Lag { axis: 0 }];
-    assert!(plain.iter().all(|shape| shape.nonlinear().is_none() && shape.with_nonlinear(3.0) == *shape));
+    assert!(
+        Shape::Lag { axis: 0, inertia: 0.0 }.nonlinear().is_none(),
+        "a loop of first order has no inertia"
+    );
+    assert!(Shape::Constant.nonlinear().is_none() && Shape::Constant.with_nonlinear(3.0) == Shape::Constant);
 }

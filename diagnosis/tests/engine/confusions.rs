@@ -1,9 +1,11 @@
 //! What one recording cannot tell apart is told together; what two can, is not.
 
 use diagnosis::diagnosis::Verdict;
+use model_dsl::calibration::Calibration;
 use simulation::{Instrument, Path};
 
 use crate::common::*;
+use crate::recording::Instrument as Placed;
 use crate::testing::*;
 
 fn at_heights(heights: &[f64], directions: &str, seed: u64) -> simulation::Scenario {
@@ -194,4 +196,98 @@ fn a_slanted_beam_and_a_short_scale_are_told_together() {
     let scale = from_findings.iter().chain(&others).any(|name| name == "EXX polynomial");
     assert!(cosine && scale, "{from_findings:?} {:?}", diagnosis.settings);
     assert_eq!(diagnosis.verdict, Verdict::LeftOutPhysics);
+}
+
+#[test]
+fn a_loop_that_rings_and_friction_inside_it_are_told_with_their_numbers() {
+    let bench = Bench::of("FX");
+    let known = bench.calibration("{}");
+    let (gain, frequency, lost) = (48.0, 11.0, 0.024);
+    let truth = bench.calibration(
+        "{EXX: [{lag: {gain: 48 1/s, frequency: 11 Hz}}, {backlash: {lost_motion: 24 um, inside_loop: true}}]}",
+    );
+    let lines = Path { runs: 4, acceleration: Some(400.0), ..path(line(0, 0.0, 50.0), 30.0, 400.0) };
+    let mut scenario = noisy(lines, position("x"), 0.002, 11);
+    scenario.measurement.drives = vec![0];
+    scenario.measurement.drive_noise = simulation::noise::Noise::white(0.002);
+    let diagnosis = diagnosed(&bench, &known, &[&bench.record(&truth, &scenario)]);
+    assert_eq!(found(&diagnosis), ["EXX lag", "EXX backlash"]);
+    assert_eq!(diagnosis.verdict, Verdict::LeftOutPhysics);
+    let [lag, friction] = &diagnosis.findings[..] else { panic!("{:?}", found(&diagnosis)) };
+    assert!(friction.location.inside_loop && friction.location.side == "drive");
+    let cases = [(lag, "gain", gain), (lag, "frequency", frequency), (friction, "lost_motion", lost)];
+    for (finding, name, truth) in cases {
+        let number = &numbers(finding, name)[0];
+        assert!(off(number, truth) < FAR && (number.value / truth - 1.0).abs() < 0.01, "{name} {number:?}");
+    }
+    // Written back, it leaves nothing, in the drive's own feedback too.
+    let improved =
+        known.with(&[(0, lag.calibrated.clone())]).with_inside_loop(0, friction.calibrated.clone());
+    let again = diagnosed(&bench, &improved, &[&bench.record(&truth, &scenario)]);
+    assert_eq!((again.verdict, found(&again).len()), (Verdict::Adequate, 0), "{:?}", found(&again));
+}
+
+#[test]
+fn a_loop_of_first_order_is_not_said_to_ring() {
+    let bench = Bench::of("FX");
+    let known = bench.calibration("{}");
+    let truth = bench.calibration("{EXX: [{lag: {gain: 30 1/s}}]}");
+    let lines = Path { runs: 4, acceleration: Some(400.0), ..path(line(0, 0.0, 50.0), 30.0, 200.0) };
+    let mut scenario = noisy(lines, position("x"), 0.001, 12);
+    scenario.measurement.drives = vec![0];
+    scenario.measurement.drive_noise = simulation::noise::Noise::white(0.001);
+    let diagnosis = diagnosed(&bench, &known, &[&bench.record(&truth, &scenario)]);
+    assert_eq!(found(&diagnosis), ["EXX lag"]);
+    assert!(!diagnosis.findings[0].parameters.iter().any(|parameter| parameter.name == "frequency"));
+}
+
+#[test]
+fn play_is_found_at_stations_whose_overruns_were_not_recorded() {
+    let bench = Bench::of("FX");
+    let known = bench.calibration(STAGE);
+    let truth = together(&known, &bench.calibration("{EXX: [{backlash: {lost_motion: 6 um}}]}"));
+    let stations = simulation::path::Stations { count: 7, dwell: 4.0, readings: 1 };
+    let shape = simulation::path::Shape::Line {
+        strokes: vec![simulation::path::Stroke { axis: 0, from: 0.0, to: 300.0 }],
+        back: true,
+        overrun: 5.0,
+        stations: Some(stations),
+    };
+    for seed in [21, 22, 23] {
+        let lines = Path { runs: 5, ..path(shape.clone(), 30.0, 1.0) };
+        let recorded =
+            |of: &Calibration| bench.record(of, &noisy(lines.clone(), position("x"), 0.0003, seed));
+        let diagnosis = diagnosed(&bench, &known, &[&recorded(&truth)]);
+        assert_eq!(found(&diagnosis), ["EXX backlash"], "{seed}");
+        let lost = &numbers(&diagnosis.findings[0], "lost_motion")[0];
+        assert!(off(lost, 0.006) < FAR, "{seed}: {lost:?}");
+        // And where the play is known already, nothing is made up.
+        let again = diagnosed(&bench, &truth, &[&recorded(&truth)]);
+        assert_eq!(
+            (again.verdict, found(&again).len()),
+            (Verdict::Adequate, 0),
+            "{seed}: {:?}",
+            found(&again)
+        );
+    }
+}
+
+#[test]
+fn a_ballbar_with_its_centre_on_the_axes_and_not_on_the_tip_decides_nothing() {
+    let bench = Bench::of("XYFZ");
+    let known = bench.calibration("{}");
+    let bar = ballbar([0.0; 3]);
+    let mut recording = bench.record(&known, &noisy(path(circle(100.0), 25.0, 10.0), bar, 0.0005, 24));
+    let (Placed::Ballbar { center, radius }, length) = (recording.instrument.clone(), 120.0) else {
+        panic!()
+    };
+    assert_eq!(diagnosed(&bench, &known, &[&recording]).undecidable, None);
+    recording.instrument = Placed::Ballbar { center: [center[0], center[1], center[2] + length], radius };
+    let diagnosis = diagnosed(&bench, &known, &[&recording]);
+    let because = diagnosis.undecidable.unwrap();
+    assert!(
+        because.contains("100.000 mm long") && because.contains("156.205 mm from its centre"),
+        "{because}"
+    );
+    assert!(diagnosis.findings.is_empty());
 }

@@ -10,6 +10,7 @@
 mod common;
 mod confusions;
 mod each_term;
+mod pictures;
 #[path = "../../src/testing.rs"]
 mod testing;
 mod verdicts;

@@ -1,0 +1,104 @@
+//! Position loops: how an axis follows what it is told.
+//!
+//! In: a command that is straight between rows. Out: position and velocity at the rows, by the exact solution of the loop's
+//! equation, so that neither rows nor loop have to be slow. What pushes inside a loop, such as friction on the drive, is
+//! answered as a command of that size would be: q'' = w^2 (q_cmd + e - q) - (w^2/K) q'.
+
+/// The loop of an axis: `q' = K (q_cmd - q)`, or of second order with the natural frequency w.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub(crate) struct PositionLoop {
+    /// 1/K, s: what the axis stays behind by, over its velocity. 0: no loop.
+    pub(crate) time_constant: f64,
+    /// 1/w^2, s^2. 0: of first order.
+    pub(crate) inertia: f64,
+}
+
+/// Where an axis stands.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Stand {
+    pub(crate) position: f64,
+    pub(crate) velocity: f64,
+}
+
+/// What a loop remembers from row to row.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Follower {
+    /// Where it stands in the first row; at rest on its command where nothing is said.
+    start: Option<Stand>,
+    /// Time and command of the row before, and where it stood.
+    before: Option<(f64, f64, Stand)>,
+}
+
+impl Follower {
+    /// A loop that begins anywhere.
+    pub(crate) fn from(start: Option<Stand>) -> Self {
+        Self { start, before: None }
+    }
+}
+
+impl PositionLoop {
+    /// Whether there is one.
+    pub(crate) fn acts(self) -> bool {
+        self.time_constant > 0.0
+    }
+
+    /// Where the axis stands in the next row. In a row without a command nothing is known, and the loop goes on from the
+    /// row before.
+    pub(crate) fn follow(self, follower: &mut Follower, time: f64, command: f64) -> Stand {
+        if !command.is_finite() {
+            return Stand { position: f64::NAN, velocity: f64::NAN };
+        }
+        let stand = match follower.before {
+            None => follower.start.unwrap_or(Stand { position: command, velocity: 0.0 }),
+            Some((before, from, stand)) => self.step(stand, from, command, time - before),
+        };
+        follower.before = Some((time, command, stand));
+        stand
+    }
+
+    /// Where it stands after a time in which its command goes straight `from` one value `to` another.
+    pub(crate) fn step(self, stand: Stand, from: f64, to: f64, time: f64) -> Stand {
+        if !self.acts() || time <= 0.0 {
+            return if self.acts() { stand } else { Stand { position: to, velocity: 0.0 } };
+        }
+        let slope = (to - from) / time;
+        let behind = slope * self.time_constant;
+        // The distance from the steady motion fades by itself.
+        let (distance, speed) = (stand.position - from + behind, stand.velocity - slope);
+        let (distance, speed) = self.fade(distance, speed, time);
+        Stand { position: to - behind + distance, velocity: slope + speed }
+    }
+
+    /// The solution of `inertia y'' + time_constant y' + y = 0` after a time.
+    fn fade(self, y: f64, speed: f64, time: f64) -> (f64, f64) {
+        if self.inertia <= 0.0 {
+            let y = y * (-time / self.time_constant).exp();
+            return (y, -y / self.time_constant);
+        }
+        let fading = 0.5 * self.time_constant / self.inertia;
+        let stiffness = 1.0 / self.inertia;
+        let (even, odd) = modes(time, fading, stiffness - fading * fading);
+        (y * even + (speed + fading * y) * odd, speed * even - (fading * speed + stiffness * y) * odd)
+    }
+}
+
+/// `e^(-fading t)` times cos(r t) and sin(r t)/r, or cosh and sinh where the square of r is negative.
+fn modes(time: f64, fading: f64, square: f64) -> (f64, f64) {
+    let root = square.abs().sqrt();
+    if root * time < 1e-6 {
+        let decay = (-fading * time).exp();
+        (decay, decay * time)
+    } else if square > 0.0 {
+        let (sine, cosine) = (root * time).sin_cos();
+        let decay = (-fading * time).exp();
+        (decay * cosine, decay * sine / root)
+    } else {
+        // The slow mode by what the fast one leaves of it: their rates may differ by many powers of ten.
+        let slow = (-(fading * fading + square) / (fading + root) * time).exp();
+        let fast = (-(fading + root) * time).exp();
+        (0.5 * (slow + fast), 0.5 * (slow - fast) / root)
+    }
+}
+
+#[cfg(test)]
+mod tests;

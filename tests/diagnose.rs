@@ -238,6 +238,55 @@ fn every_format_says_the_same_each_time() {
     assert_eq!(done(abbe(&["diagnose", &recording], "")).out, plain, "text is the default");
 }
 
+/// The page of the shipped recording says what the JSON and the written calibration say.
+#[test]
+fn a_page_holds_every_finding_its_plots_the_change_and_its_command() {
+    let target = folder("page").join("improved.yaml");
+    let recording = format!("{SHIPPED}/recording.yaml");
+    let diagnose = |more: &[&str]| done(abbe(&[&["diagnose", recording.as_str()], more].concat(), "")).out;
+    let page = diagnose(&["--format", "html", "--write-calibration", target.to_str().unwrap()]);
+    let said: Value = serde_json::from_str(&diagnose(&["--format", "json"])).unwrap();
+    assert!(page.len() < 1_500_000, "{}", page.len());
+    for fetched in ["http", "<script", "src=", "href=", "url(", "NaN", "inf\""] {
+        assert!(!page.contains(fetched), "{fetched}");
+    }
+    let findings = said["findings"].as_array().unwrap();
+    assert!(!findings.is_empty());
+    for finding in findings {
+        let word = |key: &str| finding[key].as_str().unwrap();
+        let bar = format!(">{} of {} ({})</text>", word("term"), word("motion"), word("meaning"));
+        assert!(page.contains(&bar), "{bar}");
+    }
+    for title in [
+        "Distribution of the residual",
+        "Deviations, run 1, counter-clockwise",
+        "Residual, run 1, clockwise",
+        "Before, by position of X",
+        "After, by position of Y",
+        "Before and after, over time",
+        "Mean of each run",
+        "Before and after, by speed of X",
+        "Amplitudes by period along Y",
+        "Amplitudes by frequency",
+    ] {
+        assert!(page.contains(&format!("class=\"t\">{title}</text>")), "{title}");
+    }
+    assert!(page.contains("0:1 against the circle of radius") && page.contains("100\u{a0}mm"));
+    assert!(page.contains(&format!("abbe diagnose {recording} --format html")));
+    assert!(page.contains("Hollow marks: held out") && page.contains("after, held out ("));
+    // What the diff adds stands in the calibration that was written.
+    let written = text(&target);
+    let added: Vec<&str> =
+        page.split("<span class=\"added\">+").skip(1).map(|line| line.split('<').next().unwrap()).collect();
+    let terms = added
+        .iter()
+        .filter(|line| findings.iter().any(|finding| line.contains(finding["term"].as_str().unwrap())));
+    assert_eq!(terms.count(), findings.len(), "{added:?}");
+    for line in added.iter().filter(|line| !line.starts_with("++ ")) {
+        assert!(written.contains(line), "{line}");
+    }
+}
+
 #[test]
 fn what_a_diagnosis_is_read_from_is_never_written_over() {
     let folder = stage::recorded("refused");

@@ -1,14 +1,16 @@
 //! The report: a diagnosis in words.
 //!
 //! In: a [`Diagnosis`]. Out: the object `abbe-diagnosis/1` for programs ([`json`]), text for a terminal ([`text()`]), and a
-//! page for a browser ([`html`]). Text and page say the same: both write the sections that `sheet` puts together. Nothing
-//! is decided here; what was found stands in the diagnosis.
+//! page for a browser ([`html`]). Text and page say the same: both write the sections that `sheet` puts together; the page
+//! has plots besides. Nothing is decided here; what was found stands in the diagnosis.
 //!
 //! ```text
 //! diagnosis -> json
-//!          '-> sheet (verdict, findings, instruments, what remains, data) -> text, html
+//!          |-> sheet (verdict, findings, instruments, what remains, data) -> text (with a table of the findings), html
+//!          '-> plots -> html
 //! ```
 
+mod brief;
 mod data;
 mod figure;
 mod finding;
@@ -16,16 +18,21 @@ mod html;
 mod instrument;
 mod item;
 mod json;
+mod lines;
+mod markup;
 mod parameter;
 mod physics;
+mod plots;
 mod remains;
 mod sheet;
+mod style;
 mod text;
 mod verdict;
 
-pub use html::html;
+pub use html::{Origin, html};
 pub use json::json;
-pub use text::text;
+pub use lines::{WIDTH, paragraph, plain};
+pub use text::{Terminal, text, text_on};
 
 use crate::diagnosis::{Alternative, Diagnosis};
 

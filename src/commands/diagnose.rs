@@ -1,26 +1,27 @@
 //! `abbe diagnose`: what the model leaves out. In: recordings. Out: the diagnosis as text, JSON or a page, and the
 //! calibration with what was found.
 
-mod display;
 pub(super) mod files;
 mod improved;
+pub(super) mod origin;
 
 use std::path::PathBuf;
 
+use diagnosis::Inputs;
 use diagnosis::diagnosis::Diagnosis;
-use diagnosis::{Inputs, report};
+use diagnosis::report::{self, Origin};
 
 use crate::arguments::{Diagnose, ReportFormat};
 use crate::failure::Failure;
-use crate::output::print;
+use crate::output::{print, terminal};
+use crate::progress::Progress;
 use crate::recorded::{self, Recorded};
-use display::Display;
 use files::Files;
 
 /// Runs the command. Status 0 whatever is found.
 pub(crate) fn run(arguments: &Diagnose) -> Result<(), Failure> {
     let paths: Vec<PathBuf> = arguments.recordings.iter().chain(&arguments.holdout).cloned().collect();
-    let recorded = recorded::read_all(&paths)?;
+    let recorded = recorded::read_all(&paths, arguments.quiet)?;
     let inputs: Vec<(Files, &Recorded)> =
         recorded.iter().zip(&paths).map(|(recorded, path)| (Files::of(recorded, path), recorded)).collect();
     let Some((first_files, first)) = inputs.first() else { return Ok(()) };
@@ -33,11 +34,21 @@ pub(crate) fn run(arguments: &Diagnose) -> Result<(), Failure> {
     let target = arguments.write_calibration.as_ref();
     let written = target.map_or(Ok(()), |target| improved::write(target, first, first_files, &diagnosis));
     print(&match arguments.format {
-        ReportFormat::Text => report::text(&diagnosis),
+        ReportFormat::Text => report::text_on(&diagnosis, terminal()),
         ReportFormat::Json => report::json(&diagnosis),
-        ReportFormat::Html => report::html(&diagnosis),
+        ReportFormat::Html => page(arguments, first, first_files, &diagnosis),
     })?;
     written
+}
+
+/// The page, with the command that makes it and what the findings change in the calibration.
+fn page(arguments: &Diagnose, first: &Recorded, files: &Files, diagnosis: &Diagnosis) -> String {
+    let origin = Origin {
+        command: &origin::command(arguments),
+        program: concat!("abbe ", env!("CARGO_PKG_VERSION")),
+        change: &improved::change(first, files, diagnosis),
+    };
+    report::html(diagnosis, &origin)
 }
 
 /// The diagnosis of the recordings, the last of which is held out where the arguments say so.
@@ -50,9 +61,13 @@ fn diagnosed(arguments: &Diagnose, recorded: &[Recorded]) -> Result<Diagnosis, F
         recordings: fitted.iter().map(|recorded| &recorded.recording).collect(),
         holdout: held_out.first().map(|recorded| &recorded.recording),
     };
-    let mut display = Display::new(arguments.quiet);
-    let diagnosis = diagnosis::diagnose(&inputs, &mut |progress| display.show(&progress));
-    drop(display);
+    let progress = Progress::new(arguments.quiet, "reading the machine");
+    let mut show = |now: diagnosis::Progress| progress.part(now.step, now.done);
+    let diagnosis = match arguments.format {
+        ReportFormat::Html => diagnosis::diagnose_with_pictures(&inputs, &mut show),
+        ReportFormat::Text | ReportFormat::Json => diagnosis::diagnose(&inputs, &mut show),
+    };
+    drop(progress);
     if diagnosis.recordings.iter().all(|recording| recording.samples == 0) {
         return Err(Failure::No("error: the recordings hold no sample that could be used".to_owned()));
     }

@@ -3,7 +3,7 @@
 
 use super::figure::{change, percent};
 use super::item::Item;
-use super::physics::{first_power, friction, interval, left, removed, side, state, title};
+use super::physics::{ahead, first_power, friction, interval, left, pushed, removed, side, state, title};
 use super::{parameter, remains, told};
 use crate::diagnosis::{Alternative, Diagnosis, Evidence, Finding, Location};
 
@@ -45,13 +45,21 @@ fn place(location: &Location) -> String {
 
 fn what(finding: &Finding) -> String {
     let friction = friction(finding).filter(|_| !finding.explanation.contains("not play"));
-    let sentences = [finding.explanation.as_str(), friction.unwrap_or_default()];
+    let sentences = [
+        finding.explanation.as_str(),
+        friction.unwrap_or_default(),
+        ahead(finding).unwrap_or_default(),
+        pushed(finding).unwrap_or_default(),
+    ];
     sentences.join(" ").trim().to_owned()
 }
 
 fn evidence(evidence: &Evidence) -> String {
     match change(evidence.with, evidence.without, evidence.unit) {
-        Some((with, without)) => format!("held-out rms {without} without it, {with} with it"),
+        Some((with, without)) => {
+            let of = evidence.drive.as_ref().map(|axis| format!(" of the drive's feedback of {axis}"));
+            format!("held-out rms{} {without} without it, {with} with it", of.unwrap_or_default())
+        }
         None => "no data could be held out: it is fitted, not tested".to_owned(),
     }
 }

@@ -1,40 +1,87 @@
-//! The report as a page. In: a diagnosis. Out: one HTML file with its style inside: no script, nothing fetched.
+//! The report as a page. In: a diagnosis, and where it comes from. Out: one HTML file with its style inside: no script,
+//! nothing fetched. Findings in words stand first, plots of them next, then what is open.
 
 use super::item::{Fact, Item};
+use super::markup::escape;
+use super::plots;
 use super::sheet::{Body, Section, sheet};
 use crate::diagnosis::Diagnosis;
 
 const STYLE: &str = "\
-:root { color-scheme: light dark; --ink: #1b1b1b; --paper: #fdfdfb; --line: #c9c9c2; --band: #f1f1ec; --quiet: #5a5a55; }
-@media (prefers-color-scheme: dark) {
-  :root { --ink: #e8e6e1; --paper: #17181a; --line: #45474b; --band: #202225; --quiet: #a5a39d; }
-}
-* { box-sizing: border-box; }
-body { margin: 0 auto; padding: 2rem 1.25rem 4rem; max-width: 56rem; color: var(--ink); background: var(--paper);
-  font: 1rem/1.55 system-ui, sans-serif; overflow-wrap: break-word; }
-h1 { font-size: 1.6rem; line-height: 1.25; margin: 0 0 .5rem; }
-h2 { font-size: 1.15rem; margin: 2.25rem 0 .5rem; padding-bottom: .2rem; border-bottom: 1px solid var(--line); }
-h3 { font-size: 1rem; margin: 1.25rem 0 .4rem; }
 .verdict { margin: 0; padding: .7rem 1rem; background: var(--band); border-left: .25rem solid var(--line); font-size: 1.08rem; }
 dl { display: grid; grid-template-columns: 8rem 1fr; gap: .25rem 1rem; margin: 0; }
 dt { color: var(--quiet); }
 dd { margin: 0; grid-column: 2; font-variant-numeric: tabular-nums; }
+pre { padding: .6rem .8rem; background: var(--band); overflow-x: auto; white-space: pre-wrap; overflow-wrap: anywhere;
+  font: .88rem/1.45 ui-monospace, monospace; }
+pre .added { font-weight: 600; } pre .removed { text-decoration: line-through; } pre .same { color: var(--quiet); }
+.plots { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 27rem), 1fr)); gap: .5rem 1.5rem; }
+.plots figcaption { padding-left: .62rem; }
+.plots figure { margin: .5rem 0; min-width: 0; }
+@media print { .plots { grid-template-columns: 1fr 1fr; gap: 0 1rem; } }
 @media (max-width: 36rem) { dl { grid-template-columns: 1fr; } dd { grid-column: 1; } }
-@media print { body { max-width: none; } article { break-inside: avoid; } }
 ";
 
-/// The diagnosis as one self-contained page.
-pub fn html(diagnosis: &Diagnosis) -> String {
+/// Where a diagnosis comes from, and what it changes: what the page tells besides.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Origin<'t> {
+    /// The command that makes the page; empty where none does.
+    pub command: &'t str,
+    /// The program and its version.
+    pub program: &'t str,
+    /// The calibration without and with the findings, as a unified diff; empty where nothing changes.
+    pub change: &'t str,
+}
+
+/// The diagnosis as one self-contained page; with plots where it has [`Diagnosis::pictures`].
+pub fn html(diagnosis: &Diagnosis, origin: &Origin<'_>) -> String {
     let sheet = sheet(diagnosis);
-    let title = escape(&sheet.title);
-    let sections: String = sheet.sections.iter().map(section).collect();
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
-         <style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n\
-         <p class=\"verdict\" data-verdict=\"{}\">{}.</p>\n{sections}</main>\n</body>\n</html>\n",
+    let sections = |sections: &[Section]| sections.iter().map(section).collect::<String>();
+    let body = format!(
+        "<h1>{}</h1>\n<p class=\"verdict\" data-verdict=\"{}\">{}.</p>\n{}{}{}{}{}",
+        escape(&sheet.title),
         diagnosis.verdict.word(),
         escape(&sheet.verdict),
+        sections(&sheet.found),
+        plots::sections(diagnosis),
+        sections(&sheet.open),
+        change(origin),
+        command(origin),
+    );
+    pages::shell::page(&sheet.title, &format!("{}{STYLE}", pages::plot::RULES), &body)
+}
+
+/// What the findings change in the calibration.
+fn change(origin: &Origin<'_>) -> String {
+    if origin.change.is_empty() {
+        return String::new();
+    }
+    let line = |line: &str| {
+        let heading = line.starts_with("+++ ") || line.starts_with("--- ");
+        let class = match line.bytes().next() {
+            _ if heading => "same",
+            Some(b'+') => "added",
+            Some(b'-') => "removed",
+            _ => "same",
+        };
+        format!("<span class=\"{class}\">{}</span>\n", pages::text::escape(line))
+    };
+    let lines: String = origin.change.lines().map(line).collect();
+    format!(
+        "<section>\n<h2>The calibration with the findings</h2>\n<p>What <code>--write-calibration</code> adds to what was \
+         known; + is new, - is gone.</p>\n<pre>{lines}</pre>\n</section>\n"
+    )
+}
+
+/// How the page is made again.
+fn command(origin: &Origin<'_>) -> String {
+    if origin.command.is_empty() {
+        return String::new();
+    }
+    let [command, program] = [origin.command, origin.program].map(pages::text::escape);
+    format!(
+        "<section>\n<h2>How this page is made again</h2>\n<pre>{command}</pre>\n<p class=\"source\">{program}; the same \
+         recordings give the same page.</p>\n</section>\n"
     )
 }
 
@@ -57,10 +104,4 @@ fn item(item: &Item) -> String {
 fn fact(fact: &Fact) -> String {
     let lines: String = fact.lines.iter().map(|line| format!("<dd>{}</dd>\n", escape(line))).collect();
     format!("<dt>{}</dt>\n{lines}", escape(fact.label))
-}
-
-/// Text as it stands in a page; `+-` becomes its sign.
-fn escape(text: &str) -> String {
-    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
-    text.replace(" +- ", " \u{b1} ")
 }

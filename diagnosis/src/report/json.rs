@@ -162,8 +162,16 @@ impl Serialize for Parameters<'_> {
 enum Value<'d> {
     Name(&'d str),
     Given { value: f64, unit: &'d str },
+    Places(Vec<Place<'d>>),
     Fitted(EstimateJson<'d>),
     List(Vec<EstimateJson<'d>>),
+}
+
+/// A node of a table.
+#[derive(Serialize)]
+struct Place<'d> {
+    value: f64,
+    unit: &'d str,
 }
 
 #[derive(Serialize)]
@@ -178,6 +186,9 @@ impl<'d> From<&'d ParameterValue> for Value<'d> {
         match value {
             ParameterValue::Name(name) => Self::Name(name),
             ParameterValue::Given(value, unit) => Self::Given { value: *value, unit },
+            ParameterValue::Places(places, unit) => {
+                Self::Places(places.iter().map(|value| Place { value: *value, unit }).collect())
+            }
             ParameterValue::Fitted(fitted) => Self::Fitted(estimate(fitted)),
             ParameterValue::List(list) => Self::List(list.iter().map(estimate).collect()),
         }
@@ -218,7 +229,7 @@ fn residual(residual: &Residual) -> ResidualJson {
 
 fn finding(finding: &Finding) -> FindingJson<'_> {
     let location = &finding.location;
-    let &Evidence { with, without, unit } = &finding.evidence;
+    let &Evidence { with, without, unit, .. } = &finding.evidence;
     FindingJson {
         motion: &finding.motion,
         meaning: &finding.motion_meaning,
@@ -243,7 +254,10 @@ fn finding(finding: &Finding) -> FindingJson<'_> {
 /// What the finding does to the held-out data, as a sentence without its end.
 fn evidence(evidence: &Evidence) -> String {
     match change(evidence.with, evidence.without, evidence.unit) {
-        Some((with, without)) => format!("removing it raises the held-out rms from {with} to {without}"),
+        Some((with, without)) => {
+            let of = evidence.drive.as_ref().map(|axis| format!(" of the drive's feedback of {axis}"));
+            format!("removing it raises the held-out rms{} from {with} to {without}", of.unwrap_or_default())
+        }
         None => "no data could be held out".to_owned(),
     }
 }

@@ -13,6 +13,7 @@ fn one(parameter: &Parameter, first: usize) -> Vec<String> {
     let kind = kind(parameter.name);
     match &parameter.value {
         ParameterValue::Name(word) => vec![format!("{name} {word}")],
+        ParameterValue::Places(places, unit) => vec![format!("{name}: {}", stretch(places, unit))],
         ParameterValue::Given(value, unit) => vec![format!("{name} {} (given)", given(*value, unit, kind))],
         ParameterValue::Fitted(fitted) => vec![format!("{name} {}", fitted_number(fitted, kind))],
         ParameterValue::List(list) if parameter.name == "coefficients" => {
@@ -40,6 +41,13 @@ fn span(list: &[Estimate], kind: Kind) -> String {
     let widest = list.iter().map(|fitted| (fitted.ci95.1 - fitted.ci95.0).abs() / 2.0).fold(0.0, f64::max);
     let scale = Scale::of(&first.unit, kind, low.abs().max(high.abs()));
     format!("{} numbers, {}", list.len(), scale.between(low, high, widest))
+}
+
+/// Where the nodes of a table stand.
+fn stretch(places: &[f64], unit: &str) -> String {
+    let Some((first, last)) = places.first().zip(places.last()) else { return "none".to_owned() };
+    let given = |place: f64| given(place, unit, Kind::Travel);
+    format!("{} nodes, {} to {}", places.len(), given(*first), given(*last))
 }
 
 /// How a parameter's unit is read.

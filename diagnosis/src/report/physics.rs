@@ -1,7 +1,7 @@
 //! The words of the machine: sides, states, terms, and what compensation can do. In: names of the contract. Out: what a
 //! person at the machine says.
 
-use crate::diagnosis::{Finding, Interval, IntervalOf};
+use crate::diagnosis::{Finding, Interval, IntervalOf, ParameterValue};
 
 use super::figure::stretch;
 
@@ -59,6 +59,24 @@ pub(super) fn friction(finding: &Finding) -> Option<&'static str> {
     (turns && finding.location.side == "drive").then_some(
         "The drive's own feedback shows it, so this is friction in the following error, not play: there is nothing to \
          tighten behind the motor.",
+    )
+}
+
+/// What a lost motion below zero means; nothing for other findings.
+pub(super) fn ahead(finding: &Finding) -> Option<&'static str> {
+    let lost = finding.parameters.iter().find(|parameter| parameter.name == "lost_motion")?;
+    let ParameterValue::Fitted(estimate) = &lost.value else { return None };
+    (estimate.ci95.1 < 0.0).then_some(
+        "Here it is below zero: after a reversal the axis seems to run ahead, as no play makes it. Look at the sign of the \
+         sensor, and at a calibration that compensates more than there is.",
+    )
+}
+
+/// What a load does inside a position loop; nothing for other findings.
+pub(super) fn pushed(finding: &Finding) -> Option<&'static str> {
+    (finding.term == "compliance" && finding.location.inside_loop).then_some(
+        "It pushes the drive itself, whose position loop yields until it pushes back: the size is that of the loop's \
+         stiffness. Far more than a micrometre for each newton is a load in another unit than its column says.",
     )
 }
 

@@ -11,7 +11,10 @@ pub(super) struct Sheet {
     pub(super) title: String,
     /// The verdict, a sentence without its end.
     pub(super) verdict: String,
-    pub(super) sections: Vec<Section>,
+    /// What was found.
+    pub(super) found: Vec<Section>,
+    /// What is open, and what all this stands on.
+    pub(super) open: Vec<Section>,
 }
 
 /// A part of it under one heading.
@@ -35,11 +38,13 @@ pub(super) fn sheet(diagnosis: &Diagnosis) -> Sheet {
     let list = |heading, lines: Vec<String>| {
         (!lines.is_empty()).then_some(Section { heading, body: Body::List(lines) })
     };
-    let sections = [
+    let found = [
         items("What was left out", finding::items(diagnosis)),
         items("The instruments' own settings", instrument::items(diagnosis)),
         items("What no term explains", remains::unexplained(diagnosis)),
         items("Repeatability", remains::repeatability(diagnosis)),
+    ];
+    let open = [
         list("What to measure next", remains::next_measurements(diagnosis)),
         list("What these recordings cannot decide", diagnosis.undecided.clone()),
         items("Figures", if diagnosis.undecidable.is_some() { Vec::new() } else { data::figures(diagnosis) }),
@@ -48,6 +53,7 @@ pub(super) fn sheet(diagnosis: &Diagnosis) -> Sheet {
     Sheet {
         title: format!("Diagnosis of {}", diagnosis.machine),
         verdict: verdict::sentence(diagnosis),
-        sections: sections.into_iter().flatten().collect(),
+        found: found.into_iter().flatten().collect(),
+        open: open.into_iter().flatten().collect(),
     }
 }

@@ -64,8 +64,9 @@ pub(crate) fn backlash(side: &'static str) -> Finding {
             state: "direction",
             detail: "jumps at every reversal of y, both repeats".to_owned(),
             interval: None,
+            inside_loop: false,
         },
-        evidence: Evidence { with: 0.0006, without: 0.0051, unit: "mm" },
+        evidence: Evidence { with: 0.0006, without: 0.0051, unit: "mm", drive: None },
         alternatives: Vec::new(),
         explanation:
             "The axis stops short of each position by half of the lost motion, on the side it comes from."
@@ -101,7 +102,7 @@ pub(crate) fn expansion() -> Finding {
             state: "temperature",
             ..Location::default()
         },
-        evidence: Evidence { with: 0.0006, without: 0.0012, unit: "mm" },
+        evidence: Evidence { with: 0.0006, without: 0.0012, unit: "mm", drive: None },
         alternatives: names.map(other).to_vec(),
         explanation: "The scale of X grows with its temperature.".to_owned(),
         compensable: true,

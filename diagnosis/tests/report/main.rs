@@ -9,4 +9,5 @@
 mod cases;
 mod contract;
 mod page;
+mod terminal;
 mod words;

@@ -83,6 +83,14 @@ fn friction_is_not_called_play() {
 }
 
 #[test]
+fn a_lost_motion_below_zero_sends_to_the_sign_of_the_sensor() {
+    let ahead = |value: f64| {
+        with("lost_motion", value, (value - 0.001, value + 0.001), "mm").contains("sign of the sensor")
+    };
+    assert!(ahead(-0.006) && !ahead(0.006) && !ahead(-0.0005));
+}
+
+#[test]
 fn numbers_are_rounded_to_their_uncertainty_and_stand_in_units_that_people_use() {
     let cases = [
         ("lost_motion", 0.009_83, 0.000_31, "mm", "lost motion 9.83 +- 0.31 um"),

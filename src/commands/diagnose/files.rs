@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use model_dsl::diagnostic::Diagnostics;
+use model_dsl::source::SourceFile;
 use model_dsl::yaml;
 
 use crate::failure::Failure;
@@ -23,7 +24,12 @@ pub(in crate::commands) struct Files {
 
 impl Files {
     pub(in crate::commands) fn of(recorded: &Recorded, path: &Path) -> Self {
-        let root = yaml::read(&recorded.source, &mut Diagnostics::new());
+        Self::named_in(&recorded.source, path)
+    }
+
+    /// Those that a file names in the way of a recording.
+    pub(in crate::commands) fn named_in(source: &SourceFile, path: &Path) -> Self {
+        let root = yaml::read(source, &mut Diagnostics::new());
         let named = |key: &str| root.as_ref().and_then(|root| root.get(key)).and_then(|node| node.text());
         let file = |name: &str| beside(path, name);
         Self {

@@ -6,6 +6,7 @@ use std::path::Path;
 use diagnosis::diagnosis::{Diagnosis, Finding};
 use diagnosis::report;
 use model_dsl::calibration::{self, CalibratedTerm, Calibration, SeriesInput};
+use similar::TextDiff;
 
 use super::files::Files;
 use crate::commands::simulate::machine_name;
@@ -27,6 +28,20 @@ pub(super) fn write(
     written::calibration(target, &text, &recorded.equations)?;
     tell(target, diagnosis);
     Ok(())
+}
+
+/// What the findings change in the known calibration, both as they would be written beside the recording: a unified diff.
+/// Empty where there are none.
+pub(super) fn change(recorded: &Recorded, files: &Files, diagnosis: &Diagnosis) -> String {
+    if diagnosis.findings.is_empty() {
+        return String::new();
+    }
+    let names = recorded.equations.names();
+    let known = known(&files.recording, recorded, files);
+    let before = calibration::write(&known, &names);
+    let after = calibration::write(&improved(known, &diagnosis.findings), &names);
+    let difference = TextDiff::from_lines(&before, &after);
+    difference.unified_diff().context_radius(3).header("known", "with the findings").to_string()
 }
 
 /// What is known of the machine, its machine file named from the target's folder.
@@ -51,12 +66,16 @@ fn known(target: &Path, recorded: &Recorded, files: &Files) -> Calibration {
 
 /// The calibration with the findings, each reading the sensor of its name.
 fn improved(mut known: Calibration, findings: &[Finding]) -> Calibration {
-    let mut terms = Vec::new();
     for finding in findings {
         let sensor = finding.sensor.as_ref().map(|name| known.sensor(name));
-        terms.push((finding.motion_number, reading(finding.calibrated.clone(), sensor)));
+        let (motion, term) = (finding.motion_number, reading(finding.calibrated.clone(), sensor));
+        known = if finding.location.inside_loop {
+            known.with_inside_loop(motion, term)
+        } else {
+            known.with(&[(motion, term)])
+        };
     }
-    known.with(&terms)
+    known
 }
 
 /// The term with the number of its sensor in the calibration that it goes into.

@@ -31,7 +31,7 @@ impl Folder {
         );
         let path = self.0.join("r.yaml");
         fs::write(&path, text).unwrap();
-        let recorded = recorded::read(&path).unwrap_or_else(|failure| panic!("{}", words(&failure)));
+        let recorded = recorded::read(&path, true).unwrap_or_else(|failure| panic!("{}", words(&failure)));
         let files = Files::of(&recorded, &path);
         (recorded, files)
     }
@@ -201,7 +201,7 @@ fn what_could_not_be_read_is_not_written_and_leaves_what_stood_there() {
     let (recorded, files) = folder.recorded("FX", None);
     let target = folder.join("new.yaml");
     fs::write(&target, "kept").unwrap();
-    let broken = CalibratedTerm::Lag { axis: 0, gain: f64::NAN };
+    let broken = CalibratedTerm::Lag { axis: 0, gain: f64::NAN, frequency: 0.0 };
     let findings = vec![finding(&recorded, "EXX", broken, None)];
     assert!(write(&target, &recorded, &files, &diagnosis(findings)).is_err());
     assert_eq!(fs::read_to_string(&target).unwrap(), "kept");

@@ -1,0 +1,35 @@
+//! Contributions. In: a fitted model. Out: how much each finding adds to the readings.
+
+use super::Contribution;
+use crate::model::Model;
+use crate::study::{Kind, Study};
+use crate::zeros;
+
+/// For each of the effects with these numbers what the model leaves without it, minus what it leaves with it.
+pub(super) fn draw(
+    study: &Study<'_>,
+    model: &Model,
+    after: &[Vec<Vec<f64>>],
+    (counts, factor): (&dyn Fn(Kind) -> bool, f64),
+    findings: &[usize],
+) -> Vec<Contribution> {
+    let of = |number: &usize| {
+        let mut without = model.clone();
+        without.remove(*number);
+        let (mut squares, mut samples, mut max) = (0.0, 0.0, 0.0_f64);
+        for (scene, residuals) in zeros::residuals(study, &without).iter().enumerate() {
+            let channels = study.scenes[scene].channels.iter().zip(residuals).zip(&after[scene]);
+            for ((channel, without), with) in channels.filter(|((channel, _), _)| counts(channel.kind)) {
+                let rows = (0..without.len()).filter(|row| !channel.outliers[*row]);
+                let mut added: Vec<f64> =
+                    rows.map(|row| without[row] - with[row]).filter(|value| value.is_finite()).collect();
+                zeros::center(&mut added);
+                squares += added.iter().map(|value| value * value).sum::<f64>();
+                samples += crate::number(added.len());
+                max = added.iter().fold(max, |max, value| max.max(value.abs()));
+            }
+        }
+        Contribution { rms: (squares / f64::max(samples, 1.0)).sqrt() * factor, max: max * factor }
+    };
+    findings.iter().filter(|number| **number < model.len()).map(of).collect()
+}

@@ -57,8 +57,8 @@ pub(crate) fn evaluate(lines: &[Positioning]) -> Option<Diagonals> {
     Some(Diagonals { kind, names, figures })
 }
 
-/// The signs of the axes, in their order.
-fn name(line: &Positioning) -> String {
+/// The signs of the axes, in their order: `+X+Y-Z`.
+pub(crate) fn name(line: &Positioning) -> String {
     let sign = |part: &f64| if *part < 0.0 { "-" } else { "+" };
     line.direction.iter().zip(&line.axes).map(|(part, axis)| format!("{}{axis}", sign(part))).collect()
 }

@@ -1,24 +1,32 @@
-//! `abbe evaluate`: the field's standard figures. In: a recording. Out: its figures, or why it cannot give them, as text or
-//! JSON.
+//! `abbe evaluate`: the field's standard figures. In: a recording. Out: its figures, or why it cannot give them, as text, JSON
+//! or a page.
 
 use evaluation::{Inputs, report};
 
+use super::diagnose::origin::word;
 use crate::arguments::{Evaluate, EvaluationFormat};
 use crate::failure::Failure;
 use crate::output::print;
+use crate::progress::Progress;
 use crate::recorded;
 
 /// Runs the command. Status 1 where the recording gives no figure at all; the report says why.
 pub(crate) fn run(arguments: &Evaluate) -> Result<(), Failure> {
-    let recorded = recorded::read(&arguments.recording)?;
+    let recorded = recorded::read(&arguments.recording, arguments.quiet)?;
+    let progress = Progress::new(arguments.quiet, "evaluating");
     let evaluation = evaluation::evaluate(&Inputs {
         equations: &recorded.equations,
         calibration: recorded.calibration.as_ref().map(|known| &known.calibration),
         recording: &recorded.recording,
     });
+    drop(progress);
     print(&match arguments.format {
         EvaluationFormat::Text => report::text(&evaluation),
         EvaluationFormat::Json => report::json(&evaluation),
+        EvaluationFormat::Html => {
+            let recording = word(&arguments.recording);
+            report::html(&evaluation, &format!("abbe evaluate {recording} --format html > evaluation.html"))
+        }
     })?;
     if evaluation.gives_any() { Ok(()) } else { Err(Failure::No(String::new())) }
 }

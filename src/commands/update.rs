@@ -14,13 +14,14 @@ use crate::arguments::{Update as Arguments, UpdateFormat, UpdateMethod};
 use crate::calibrated::{self, Calibrated};
 use crate::failure::Failure;
 use crate::output::{print, rendered, warn};
+use crate::progress::Progress;
 use crate::recorded::{self, Recorded};
 use crate::written::{self, comment, folder};
 
 /// Runs the command.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let known = calibrated::read(&arguments.calibration)?;
-    let parts = recorded::read_all(&arguments.measurements)?;
+    let parts = recorded::read_all(&arguments.measurements, arguments.quiet)?;
     check_machine(arguments, &known, &parts)?;
     if let Some(target) = &arguments.output {
         check_target(target, arguments, &known, &parts)?;
@@ -30,7 +31,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         calibration: &known.calibration,
         recordings: parts.iter().map(|part| &part.recording).collect(),
     };
-    let updated = update::update(&inputs, &options(arguments)).map_err(|error| refused(&error, &parts))?;
+    let progress = Progress::new(arguments.quiet, "solving for the coefficients");
+    let updated = update::update(&inputs, &options(arguments));
+    drop(progress);
+    let updated = updated.map_err(|error| refused(&error, &parts))?;
     // The report is shown also where the file cannot be written, the file is written also where the reader is gone.
     let written =
         arguments.output.as_ref().map_or(Ok(()), |target| write(target, arguments, &known, &updated));

@@ -6,7 +6,7 @@ use evaluation::Kind;
 use crate::bench::{Bench, Program, near, reason, value};
 
 /// Four body diagonals of a cube of 100 mm, five cycles each.
-fn four(count: usize) -> Program {
+pub(crate) fn four(count: usize) -> Program {
     let mut program = Program::default();
     let corners = [[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0]];
     for signs in corners.iter().take(count) {

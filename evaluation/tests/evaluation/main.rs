@@ -11,5 +11,6 @@ mod bench;
 mod circles;
 mod diagonals;
 mod fits;
+mod page;
 mod positioning;
 mod printed;

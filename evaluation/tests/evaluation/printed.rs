@@ -4,13 +4,13 @@
 
 use diagnosis::recording::{AxisChannels, Instrument, Recording};
 use evaluation::iso230_2::{Target, TargetFigures, of_axis};
-use evaluation::{Figure, Unit};
+use evaluation::{Evaluation, Figure, Unit};
 
 use crate::bench::{Bench, Program, figure, near, value};
 
-const TARGETS: [f64; 5] = [15.0, 25.2, 35.4, 45.6, 55.8];
+pub(crate) const TARGETS: [f64; 5] = [15.0, 25.2, 35.4, 45.6, 55.8];
 
-const UP: [[f64; 5]; 5] = [
+pub(crate) const UP: [[f64; 5]; 5] = [
     [15.00335, 15.00233, 15.00172, 15.00213, 15.00172],
     [25.19974, 25.20015, 25.20096, 25.20056, 25.20056],
     [35.40102, 35.3996, 35.40225, 35.40306, 35.40449],
@@ -18,7 +18,7 @@ const UP: [[f64; 5]; 5] = [
     [55.80583, 55.80624, 55.80685, 55.80562, 55.80562],
 ];
 
-const DOWN: [[f64; 5]; 5] = [
+pub(crate) const DOWN: [[f64; 5]; 5] = [
     [15.00518, 15.00518, 15.00416, 15.00335, 15.00314],
     [25.19628, 25.19607, 25.19567, 25.19587, 25.19526],
     [35.39817, 35.39837, 35.3998, 35.39939, 35.4],
@@ -92,8 +92,8 @@ fn the_definitions_give_the_printed_figures_and_not_the_two_wrong_ones() {
     }
 }
 
-#[test]
-fn the_same_comes_of_a_recording() {
+/// The evaluation of a recording of the cycle.
+pub(crate) fn evaluated() -> Evaluation {
     let program = Program::stations(&TARGETS, 5.0, 5, |at| vec![at]);
     let command = program.positions[0].clone();
     let mut seen = [[0_usize; 2]; 5];
@@ -115,7 +115,12 @@ fn the_same_comes_of_a_recording() {
         run: program.run,
         ..Recording::default()
     };
-    let evaluation = Bench::new("FX", "").evaluate(&recording);
+    Bench::new("FX", "").evaluate(&recording)
+}
+
+#[test]
+fn the_same_comes_of_a_recording() {
+    let evaluation = evaluated();
     let [line] = evaluation.positioning.as_slice() else { panic!("{evaluation:?}") };
     agrees(&line.figures);
     let rests = figure(&line.figures, "A").rests;

@@ -1,13 +1,10 @@
 //! The report for a terminal. In: an update. Out: text of at most 100 columns, but for names that are longer.
 
-use textwrap::{Options, WordSeparator, WordSplitter, fill};
+use diagnosis::report::{WIDTH, paragraph, plain};
 
 use crate::Method;
 use crate::residuals::Residual;
 use crate::update::{Change, Part, Relation, Update};
-
-/// The widest line.
-const WIDTH: usize = 100;
 
 /// How many changes are listed; JSON has all of them.
 const CHANGES: usize = 40;
@@ -215,16 +212,5 @@ fn fixed(update: &Update) -> String {
 }
 
 fn wrapped(text: &str, first: &str, others: &str) -> String {
-    let options = Options::new(WIDTH)
-        .initial_indent(first)
-        .subsequent_indent(others)
-        .word_separator(WordSeparator::AsciiSpace)
-        .word_splitter(WordSplitter::NoHyphenation)
-        .break_words(false);
-    fill(&plain(text), options) + "\n"
-}
-
-/// The text without the characters that would move a terminal's cursor, which file names may hold.
-fn plain(text: &str) -> String {
-    text.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect()
+    paragraph(WIDTH, text, first, others)
 }

@@ -9,6 +9,9 @@ use clap_complete::Shell;
 #[derive(Parser)]
 #[command(name = "abbe", version, arg_required_else_help = true, max_term_width = 100)]
 pub(crate) struct Arguments {
+    /// Whether words for people are coloured. `auto`: where a terminal shows them, unless NO_COLOR is set.
+    #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = Color::Auto)]
+    pub(crate) color: Color,
     /// What to do.
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -104,6 +107,15 @@ pub(crate) struct Compensate {
     /// Leave terms out that no controller can compensate in real time, naming each on standard error.
     #[arg(long)]
     pub(crate) leave_out_uncompensable: bool,
+    /// Draw the predicted error over the workspace, as SVG: over the tables of the calibration, or the positions read.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) map: Option<PathBuf>,
+    /// Replace a map that is there already.
+    #[arg(long, requires = "map")]
+    pub(crate) force: bool,
+    /// Show no progress.
+    #[arg(long)]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Args)]
@@ -121,9 +133,15 @@ pub(crate) struct Simulate {
     /// The calibration that the recording names as known; what it lacks is concealed.
     #[arg(long)]
     pub(crate) known: Option<PathBuf>,
+    /// Draw the path and what is read over time, as SVG.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
     /// Replace files that are there already.
     #[arg(long)]
     pub(crate) force: bool,
+    /// Show no progress.
+    #[arg(long)]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Args)]
@@ -154,6 +172,9 @@ pub(crate) struct Update {
     /// How to write the report.
     #[arg(long, value_enum, default_value_t = UpdateFormat::Text)]
     pub(crate) format: UpdateFormat,
+    /// Show no progress.
+    #[arg(long)]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Args)]
@@ -163,6 +184,9 @@ pub(crate) struct Evaluate {
     /// How to write the figures.
     #[arg(long, value_enum, default_value_t = EvaluationFormat::Text)]
     pub(crate) format: EvaluationFormat,
+    /// Show no progress.
+    #[arg(long)]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Args)]
@@ -190,6 +214,17 @@ pub(crate) struct Man {
     /// The folder for abbe.1, abbe-derive.1, ...; it is made where it is missing.
     #[arg(long, value_name = "FOLDER")]
     pub(crate) output: Option<PathBuf>,
+}
+
+/// When words for people are coloured.
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Color {
+    /// Where a terminal shows them that knows colours.
+    Auto,
+    /// Also in files and pipes.
+    Always,
+    /// Nowhere.
+    Never,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -248,6 +283,8 @@ pub(crate) enum EvaluationFormat {
     Text,
     /// The schema abbe-evaluation/1.
     Json,
+    /// One self-contained page with the diagrams of the standards.
+    Html,
 }
 
 /// The directions X, Y, Z in which the zero of a part is free.

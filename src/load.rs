@@ -18,6 +18,8 @@ pub(crate) struct Loaded {
     pub(crate) origin: String,
     /// The compiled machine.
     pub(crate) compiled: Compiled,
+    /// The equations that were published about it, where the program has them.
+    pub(crate) published: Option<SourceFile>,
 }
 
 /// Reads a text file.
@@ -51,7 +53,9 @@ fn from_source(source: &SourceFile) -> Result<Loaded, Failure> {
     match compile(source, &mut diagnostics) {
         Some(compiled) => {
             show(source, &diagnostics);
-            Ok(Loaded { origin: source.name().to_owned(), compiled })
+            let published = shipped::published(source.text());
+            let published = published.map(|(name, text)| SourceFile::new(name, text));
+            Ok(Loaded { origin: source.name().to_owned(), compiled, published })
         }
         None => Err(Failure::Wrong(rendered(source, &diagnostics))),
     }
@@ -62,7 +66,7 @@ fn from_word(word: &str) -> Result<Loaded, Failure> {
     let mut diagnostics = Diagnostics::new();
     let compiled = compile_word(word, &mut diagnostics);
     let compiled = compiled.ok_or_else(|| Failure::Wrong(rendered(&source, &diagnostics)))?;
-    Ok(Loaded { origin: format!("the topology {word}"), compiled })
+    Ok(Loaded { origin: format!("the topology {word}"), compiled, published: None })
 }
 
 fn unknown(name: &str) -> String {

@@ -10,8 +10,10 @@ mod commands;
 mod explain;
 mod failure;
 mod load;
+mod map;
 mod output;
 mod positions;
+mod progress;
 mod recorded;
 mod shipped;
 mod written;
@@ -24,6 +26,7 @@ use failure::Failure;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    output::color(arguments.color);
     match run(&arguments) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

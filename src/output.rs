@@ -2,10 +2,38 @@
 
 use std::io::{self, IsTerminal, Write};
 
+use anstream::stream::RawStream;
+use anstream::{AutoStream, ColorChoice};
+use diagnosis::report::{Terminal, WIDTH};
 use model_dsl::diagnostic::{Diagnostics, render};
 use model_dsl::source::SourceFile;
 
+use crate::arguments::Color;
 use crate::failure::Failure;
+
+/// Decides for the whole program what is coloured.
+pub(crate) fn color(choice: Color) {
+    let choice = match choice {
+        Color::Auto => ColorChoice::Auto,
+        Color::Always => ColorChoice::AlwaysAnsi,
+        Color::Never => ColorChoice::Never,
+    };
+    choice.write_global();
+}
+
+/// Whether what goes to a stream is coloured: by the user's choice, and else where a terminal shows it that knows colours,
+/// NO_COLOR being unset.
+fn is_colored(stream: &impl RawStream) -> bool {
+    AutoStream::choice(stream) != ColorChoice::Never
+}
+
+/// What standard output is shown on: a terminal with its width, or a file or pipe.
+pub(crate) fn terminal() -> Terminal {
+    let out = io::stdout();
+    let width = out.is_terminal().then(|| terminal_size::terminal_size_of(&out)).flatten();
+    let columns = width.map_or(WIDTH, |(width, _)| usize::from(width.0));
+    Terminal { columns, color: is_colored(&out) }
+}
 
 /// Writes text to standard output.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
@@ -24,8 +52,7 @@ pub(crate) fn show(source: &SourceFile, diagnostics: &Diagnostics) {
 
 /// The diagnostics of a file as text, coloured where a person reads standard error.
 pub(crate) fn rendered(source: &SourceFile, diagnostics: &Diagnostics) -> String {
-    let color = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-    render(source, diagnostics, color)
+    render(source, diagnostics, is_colored(&io::stderr()))
 }
 
 /// Writes a line for people to standard error.

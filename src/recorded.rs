@@ -13,6 +13,7 @@ use crate::calibrated::{self, Calibrated};
 use crate::failure::Failure;
 use crate::load;
 use crate::output::{rendered, show, warn};
+use crate::progress::Progress;
 
 /// A recording and all that it names.
 pub(crate) struct Recorded {
@@ -36,8 +37,8 @@ struct Named {
 }
 
 /// Reads a recording file, its data, and the machine and the calibration that it names. All paths in the file are
-/// counted from its own folder.
-pub(crate) fn read(path: &Path) -> Result<Recorded, Failure> {
+/// counted from its own folder. `quiet` shows no progress.
+pub(crate) fn read(path: &Path, quiet: bool) -> Result<Recorded, Failure> {
     let source = load::read(path)?;
     let folder = path.parent();
     let mut diagnostics = Diagnostics::new();
@@ -51,16 +52,16 @@ pub(crate) fn read(path: &Path) -> Result<Recorded, Failure> {
     show(&source, &diagnostics);
     let calibration_path = header.calibration.as_ref().map(|name| in_folder(folder, &name.value));
     let calibration = read_calibration(&source, &header, calibration_path.as_deref(), &equations)?;
-    let recording = read_data(&header, folder, &source)?;
+    let recording = read_data(&header, folder, &source, quiet)?;
     let named = Named { machine: name.span, calibration: header.calibration.map(|name| name.span) };
     Ok(Recorded { source, equations, calibration, recording, calibration_path, named })
 }
 
 /// Reads several recordings of one machine with one calibration.
-pub(crate) fn read_all(paths: &[PathBuf]) -> Result<Vec<Recorded>, Failure> {
+pub(crate) fn read_all(paths: &[PathBuf], quiet: bool) -> Result<Vec<Recorded>, Failure> {
     let mut all: Vec<Recorded> = Vec::new();
     for path in paths {
-        let recorded = read(path)?;
+        let recorded = read(path, quiet)?;
         if let Some(first) = all.first() {
             first.check_same(&recorded)?;
         }
@@ -92,9 +93,18 @@ fn read_calibration(
     Err(one(source, mistake.help("name the machine file that the calibration names, or another calibration")))
 }
 
-fn read_data(header: &Header, folder: Option<&Path>, source: &SourceFile) -> Result<Recording, Failure> {
+fn read_data(
+    header: &Header,
+    folder: Option<&Path>,
+    source: &SourceFile,
+    quiet: bool,
+) -> Result<Recording, Failure> {
     let path = in_folder(folder, &header.data.value);
-    let mut recording = header.read_data(&path).map_err(|error| Failure::No(error.to_string()))?;
+    // The line of progress is gone before anything is said.
+    let progress = Progress::new(quiet, &format!("reading {}", path.display()));
+    let read = header.read_data(&path);
+    drop(progress);
+    let mut recording = read.map_err(|error| Failure::No(error.to_string()))?;
     for note in &recording.notes {
         warn(&format!("note: {note}"));
     }
@@ -219,12 +229,12 @@ mod tests {
     fn everything_is_found_from_the_recording_s_folder() {
         let text = recording("machine: stage.yaml\ncalibration: known.yaml");
         let folder = folder("found", &[("r.yaml", &text)]);
-        let recorded = read(&folder.join("r.yaml")).ok().unwrap();
+        let recorded = read(&folder.join("r.yaml"), true).ok().unwrap();
         assert_eq!(recorded.equations.machine, "stage");
         assert!(recorded.calibration.is_some());
         assert_eq!(recorded.recording.time, [0.0, 1.0]);
         assert_eq!(recorded.recording.file, folder.join("r.yaml").display().to_string());
-        let both = read_all(&[folder.join("r.yaml"), folder.join("r.yaml")]).ok().unwrap();
+        let both = read_all(&[folder.join("r.yaml"), folder.join("r.yaml")], true).ok().unwrap();
         assert_eq!(both.len(), 2);
     }
 
@@ -249,7 +259,7 @@ mod tests {
         ];
         for (name, text, code, part) in files {
             let folder = folder("marked", &[(name, &text)]);
-            let said = wrong(read(&folder.join(name)));
+            let said = wrong(read(&folder.join(name), true));
             assert!(said.contains(code) && said.contains(part), "{said}");
         }
     }
@@ -261,7 +271,7 @@ mod tests {
         let files = [("one.yaml", one.as_str()), ("two.yaml", two.as_str()), ("three.yaml", three.as_str())];
         let folder = folder("together", &files);
         for other in ["two.yaml", "three.yaml"] {
-            let said = wrong(read_all(&[folder.join("one.yaml"), folder.join(other)]));
+            let said = wrong(read_all(&[folder.join("one.yaml"), folder.join(other)], true));
             assert!(said.contains("E0625") && said.contains("one.yaml") && said.contains(other), "{said}");
         }
     }

@@ -45,6 +45,46 @@ pub(crate) fn calibration(target: &Path, text: &str, equations: &Equations) -> R
     }
 }
 
+/// Refuses a place for a picture that cannot be written to, is one of the files that the command reads or writes besides, or is
+/// there already, unless `force` replaces it: before any work is done. `option` is the option that named it.
+pub(crate) fn check_picture(
+    target: &Path,
+    option: &str,
+    others: &[PathBuf],
+    force: bool,
+) -> Result<(), Failure> {
+    let wrong = |what: &str, help: &str| {
+        Err(Failure::Wrong(format!("error: {} {what}\nhelp: {help}", target.display())))
+    };
+    let name = format!("{option} takes the name of a file such as picture.svg");
+    if target.file_name().is_none() || target.is_dir() {
+        return wrong("is a folder", &name);
+    }
+    // A folder that is still to be made holds no file of that name.
+    let place = |file: &Path| Some(folder(file).canonicalize().ok()?.join(file.file_name()?));
+    if others
+        .iter()
+        .any(|other| other == target || place(other).is_some_and(|other| place(target) == Some(other)))
+    {
+        return wrong("is one of the other files of this command", &name);
+    }
+    if target.exists() && !force {
+        return wrong("is there already", &format!("{option} takes another place, --force replaces it"));
+    }
+    Ok(())
+}
+
+/// Refuses a place whose folder is not there.
+pub(crate) fn check_folder(target: &Path, option: &str) -> Result<(), Failure> {
+    if folder(target).is_dir() {
+        return Ok(());
+    }
+    Err(Failure::Wrong(format!(
+        "error: {} cannot be written: there is no such folder\nhelp: {option} takes the name of a file in a folder that is there",
+        target.display()
+    )))
+}
+
 /// Writes a file that gets its name only when it is complete and on the disk; what stood there before is replaced.
 pub(crate) fn whole(target: &Path, text: &str) -> Result<(), Failure> {
     let name = target.file_name().unwrap_or_default().to_string_lossy();

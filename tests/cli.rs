@@ -15,9 +15,14 @@ pub(crate) struct Run {
     pub(crate) err: String,
 }
 
-/// Starts the program in the root of the repository, with all its streams in pipes.
+/// Starts the program in the root of the repository, with all its streams in pipes. What a user or a CI sets for colour is
+/// taken away.
 fn start(arguments: &[&str]) -> Child {
-    Command::new(env!("CARGO_BIN_EXE_abbe"))
+    let mut command = Command::new(env!("CARGO_BIN_EXE_abbe"));
+    for name in ["CI", "CLICOLOR", "CLICOLOR_FORCE", "NO_COLOR"] {
+        command.env_remove(name);
+    }
+    command
         .args(arguments)
         .current_dir(root())
         .stdin(Stdio::piped())

@@ -43,6 +43,7 @@ pub mod file;
 mod instrument;
 pub mod noise;
 pub mod path;
+pub mod picture;
 mod plant;
 mod simulate;
 mod surroundings;

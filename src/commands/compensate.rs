@@ -2,7 +2,7 @@
 //! standard output, row by row, in constant memory.
 
 use std::cell::RefCell;
-use std::io::{self, Read};
+use std::io::{self, IsTerminal, Read};
 use std::rc::Rc;
 
 use abbe_runtime::{Compensator, ErrorMotion, Limits, Outcome, TermState, Work, states_needed};
@@ -14,15 +14,26 @@ use model_dsl::program::Interpreter;
 use crate::arguments::Compensate;
 use crate::calibrated::{self, Calibrated};
 use crate::failure::Failure;
+use crate::map::Map;
 use crate::output::warn;
 use crate::positions::{Layout, State, Summary, Wanted, output_columns};
+use crate::progress::Progress;
+use crate::written;
 
 /// Decimal places of errors and positions: a picometre, so that rounding never shows.
 const PLACES: usize = 9;
 
+/// The progress is told every so many rows.
+const TOLD: u64 = 4096;
+
 /// Runs the command.
 pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
     let calibrated = calibrated::read(&command.calibration)?;
+    if let Some(target) = &command.map {
+        let machine = command.calibration.with_file_name(&calibrated.calibration.machine.value);
+        written::check_picture(target, "--map", &[command.calibration.clone(), machine], command.force)?;
+        written::check_folder(target, "--map")?;
+    }
     if !command.leave_out_uncompensable {
         calibrated.refuse_uncompensable()?;
     }
@@ -39,8 +50,14 @@ pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
     compensator.limits =
         Limits { compensation: calibrated.calibration.limits.compensation.map(|limit| limit.value) };
     let mut rows = Rows::open(&calibrated, command)?;
-    let done = rows.stream(&mut compensator);
-    rows.finish(done)
+    // Rows on a terminal are their own progress, and whoever types them needs none.
+    let seen = command.quiet || io::stdout().is_terminal() || io::stdin().is_terminal();
+    let progress = Progress::new(seen, "compensating");
+    let done = rows.stream(&mut compensator, &progress);
+    drop(progress);
+    let map = rows.finish(done)?;
+    let drawn = command.map.as_ref().zip(map);
+    drawn.map_or(Ok(()), |(target, map)| written::whole(target, &map.draw(&mut compensator)?))
 }
 
 /// The rows that come in.
@@ -74,6 +91,7 @@ struct Rows<'c> {
     skip_bad: bool,
     skipped: u64,
     summary: Option<Summary>,
+    map: Option<Map<'c>>,
 }
 
 impl<'c> Rows<'c> {
@@ -116,6 +134,7 @@ impl<'c> Rows<'c> {
             skip_bad: command.skip_bad,
             skipped: 0,
             summary: command.summary.then(Summary::default),
+            map: command.map.as_ref().map(|_| Map::new(equations, &calibrated.calibration)),
         };
         rows.write_header()?;
         Ok(rows)
@@ -136,15 +155,23 @@ impl<'c> Rows<'c> {
         units.map_or(Ok(()), |units| self.writer.borrow_mut().write_record(&units).map_err(closed))
     }
 
-    fn stream(&mut self, compensator: &mut Compensator<'_, Interpreter>) -> Result<(), Failure> {
+    fn stream(
+        &mut self,
+        compensator: &mut Compensator<'_, Interpreter>,
+        progress: &Progress,
+    ) -> Result<(), Failure> {
         let mut compensated = vec![0.0; self.equations.axes.len()];
         let mut row = ByteRecord::new();
         let mut text = String::new();
         while self.next(&mut row)? {
+            if self.row.is_multiple_of(TOLD) && progress.is_watched() {
+                progress.step(&format!("compensating: {} rows", self.row));
+            }
             match self.answer(&row, compensator, &mut compensated) {
                 Ok(outcome) => {
                     write_row(self, &row, &outcome.error, &compensated, &mut text)?;
                     self.summary.iter_mut().for_each(|summary| summary.take(&outcome));
+                    self.map.iter_mut().for_each(|map| map.take(&self.state.sample()));
                 }
                 Err(mistake) => self.bad(&row, &mistake)?,
             }
@@ -186,8 +213,8 @@ impl<'c> Rows<'c> {
         )))
     }
 
-    /// Flushes what stands complete, also before a failure is told.
-    fn finish(self, done: Result<(), Failure>) -> Result<(), Failure> {
+    /// Flushes what stands complete, also before a failure is told; gives what a map is drawn from.
+    fn finish(self, done: Result<(), Failure>) -> Result<Option<Map<'c>>, Failure> {
         self.writer
             .borrow_mut()
             .flush()
@@ -206,7 +233,7 @@ impl<'c> Rows<'c> {
         if self.skipped > 0 && self.skipped + 1 == self.row {
             return Err(Failure::No("error: standard input: no row could be compensated".to_owned()));
         }
-        Ok(())
+        Ok(self.map)
     }
 }
 

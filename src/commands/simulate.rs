@@ -9,15 +9,19 @@ use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
 use model_dsl::yaml;
 use simulation::file::{self, PathFile};
+use simulation::picture;
 use simulation::write::{self, Head};
 use simulation::{Plant, Simulated};
 
+use super::diagnose::files::Files;
 use crate::arguments::Simulate;
 use crate::calibrated::{self, Calibrated};
 use crate::failure::Failure;
 use crate::load;
 use crate::output::{rendered, show, warn};
+use crate::progress::Progress;
 use crate::recorded;
+use crate::written;
 
 /// Runs the command.
 pub(crate) fn run(command: &Simulate) -> Result<(), Failure> {
@@ -27,19 +31,47 @@ pub(crate) fn run(command: &Simulate) -> Result<(), Failure> {
     let output = Output::of(&command.output);
     output.check(command.force)?;
     let source = load::read(&command.path)?;
+    if let Some(plot) = &command.plot {
+        written::check_picture(
+            plot,
+            "--plot",
+            &others(command, &calibrated, &source, &output),
+            command.force,
+        )?;
+    }
     let simulated = match is_recording(&source) {
         true => replayed(command, &calibrated, &names)?,
         false => driven(command, &source, &calibrated, &names)?,
     };
     let folder = output.folder()?;
+    if let Some(plot) = &command.plot {
+        written::check_folder(plot, "--plot")?;
+    }
     let machine = machine_name(&calibrated.calibration.machine.value, &command.calibration, &folder);
     let calibration = known.map(|known| relative(&folder, &known));
-    let head = Head { machine, calibration, data: output.data.clone(), axes: names.axes };
-    write::files(&simulated, &head, &output.recording)
-        .map_err(|error| Failure::io(&format!("cannot write {}", output.recording.display()), &error))?;
+    let head = Head { machine, calibration, data: output.data.clone(), axes: names.axes.clone() };
+    let progress = Progress::new(command.quiet, "writing the recording");
+    let written = write::files(&simulated, &head, &output.recording);
+    drop(progress);
+    written.map_err(|error| Failure::io(&format!("cannot write {}", output.recording.display()), &error))?;
+    if let Some(plot) = &command.plot {
+        let progress = Progress::new(command.quiet, "drawing");
+        let drawing = picture::svg(&simulated, &plant(&calibrated, &names)?);
+        drop(progress);
+        written::whole(plot, &drawing)?;
+    }
     let rows = simulated.time.len();
     warn(&format!("{rows} rows: {} and {}", output.recording.display(), output.data_path().display()));
     Ok(())
+}
+
+/// All other files that the command reads and writes: a picture is none of them.
+fn others(command: &Simulate, calibrated: &Calibrated, source: &SourceFile, output: &Output) -> Vec<PathBuf> {
+    let machine = command.calibration.with_file_name(&calibrated.calibration.machine.value);
+    let read = [command.calibration.clone(), machine].into_iter().chain(command.known.clone());
+    // A path names no other file; a recording names its data.
+    let read = read.chain(Files::named_in(source, &command.path).all(None));
+    read.chain([output.recording.clone(), output.data_path()]).collect()
 }
 
 /// What the calibration predicts along the path.
@@ -54,7 +86,10 @@ fn driven(
     if let Some(seed) = command.seed {
         scenario.measurement.seed = seed;
     }
-    simulation::simulate(&plant, &scenario).map_err(|error| wrong(&error))
+    let progress = Progress::new(command.quiet, "driving the path");
+    let simulated = simulation::simulate(&plant, &scenario);
+    drop(progress);
+    simulated.map_err(|error| wrong(&error))
 }
 
 /// What the calibration predicts in place of the recording.
@@ -63,7 +98,7 @@ fn replayed(command: &Simulate, calibrated: &Calibrated, names: &MachineNames) -
         let help = "help: leave --seed out: what a calibration predicts for a recording has no noise";
         return Err(Failure::Wrong(format!("error: {} is a recording\n{help}", command.path.display())));
     }
-    let recorded = recorded::read(&command.path)?;
+    let recorded = recorded::read(&command.path, command.quiet)?;
     if recorded.equations.names() != *names {
         return Err(Failure::Wrong(format!(
             "error: {} is a recording of {}, {} a calibration of {}\nhelp: give both for the same machine",
@@ -73,7 +108,11 @@ fn replayed(command: &Simulate, calibrated: &Calibrated, names: &MachineNames) -
             names.machine
         )));
     }
-    replay::replayed(plant(calibrated, names)?, &recorded.recording).map_err(|reason| wrong(&reason))
+    let plant = plant(calibrated, names)?;
+    let progress = Progress::new(command.quiet, "driving the recording's path");
+    let simulated = replay::replayed(plant, &recorded.recording);
+    drop(progress);
+    simulated.map_err(|reason| wrong(&reason))
 }
 
 fn plant(calibrated: &Calibrated, names: &MachineNames) -> Result<Plant, Failure> {

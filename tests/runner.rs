@@ -11,6 +11,7 @@
 
 mod agreement;
 mod bounded;
+mod browser;
 mod cases_nist_update;
 mod cli;
 mod compensation;
@@ -21,11 +22,14 @@ mod evaluate;
 mod experiments;
 mod explain;
 mod generated;
+mod guide;
 mod laws;
 mod machine_files;
 mod macro_errors;
 mod manuals;
 mod oracle;
+mod page;
+mod pictures;
 mod published_table;
 mod random;
 mod real_recordings;
@@ -34,6 +38,7 @@ mod schemas;
 mod shipped;
 mod simulate;
 mod snapshots;
+mod terminal;
 mod tidy;
 mod yaml;
 

@@ -94,6 +94,26 @@ fn expression_bombs() {
     assert_eq!(refused(file(&"9".repeat(1_000_000))), ["E0118"]);
 }
 
+/// What a file of equations expands to, in one equation or in many.
+#[test]
+fn equation_bombs() {
+    let machine = model_dsl::compile_word("XYFZ", &mut Diagnostics::new()).unwrap();
+    let code = |text: String| {
+        let begun = Instant::now();
+        let source = SourceFile::new("equations.eqs", text);
+        let mut diagnostics = Diagnostics::new();
+        let report = model_dsl::check::check(&machine.machine, &machine.equations, &source, &mut diagnostics);
+        assert!(report.is_none() && begun.elapsed() < LONG, "took {:?}", begun.elapsed());
+        diagnostics.iter().map(|finding| finding.code).next_back()
+    };
+    assert_eq!(code(format!("dPx = x{}\n", "*sin(x)".repeat(20_000))), Some("E0503"));
+    assert_eq!(code(format!("dPx = x{}\n", "*(x + y + z)".repeat(60))), Some("E0503"));
+    assert_eq!(code(format!("dPx = {}x{}\n", "(".repeat(50_000), ")".repeat(50_000))), Some("E0503"));
+    let many: String = (0..2_000).map(|number| format!("[s{number}]\ndPx = (x + y + z + Xt)^12\n")).collect();
+    assert_eq!(code(many), Some("E0503"));
+    assert_eq!(code("# a page of a book\n".repeat(100_000)), Some("E0003"));
+}
+
 /// Each coordinate alone is small enough to read; together they must not keep the compiler busy for minutes.
 #[test]
 fn coordinates_that_expand() {

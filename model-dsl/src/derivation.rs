@@ -4,7 +4,9 @@
 //! file names in vain. Each link is a matrix from the frame before it to its own; the product
 //! along the tool's branch, seen from the inverse of the product along the part's branch,
 //! is the tool relative to the part (equation (3-15) of the Excello report, (A.11) of NISTIR 6722).
-//! Its origin gives the rows of the tool tip, its rotation the turns that an angular instrument sees.
+//! Its origin gives the rows of the tool tip, its rotation the turns that an angular instrument sees. Both are
+//! vectors, and are carried through the links one by one: the whole product, whose rotation grows
+//! threefold with every rotary axis, is nowhere written out.
 
 mod link_matrix;
 mod meaning;
@@ -18,8 +20,8 @@ pub use link_matrix::matrix as link_matrix;
 
 /// Derives the error equations of a machine; warnings go to `diagnostics`.
 pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
-    let relative = relative(machine);
-    let tip = relative.origin();
+    let (tip, turn) = relative(machine);
+    let tip = &tip;
     let kept = seen_motions(machine, tip);
     warn_unseen(machine, &kept, diagnostics);
     let rows = rows(machine, tip, &kept);
@@ -35,23 +37,27 @@ pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
         constants: constants(machine),
         motions: kept.iter().map(|number| motion(machine, *number)).collect(),
         rows,
-        turns: relative.turn().each_ref().map(|entry| terms(machine, entry, &kept)),
+        turns: turn.each_ref().map(|entry| terms(machine, entry, &kept)),
     }
 }
 
 /// The tool tip in the part's frame, to first order in the machine's motions by their numbers.
 pub fn relative_position(machine: &Machine) -> [FirstOrder; 3] {
-    relative(machine).origin().clone()
+    relative(machine).0
 }
 
-/// The frame of the tool tip in that of the part.
-fn relative(machine: &Machine) -> Htm {
-    let branch = |branch| {
-        machine
-            .branch(branch)
-            .fold(Htm::identity(), |product, (number, _)| product.then(&link_matrix(machine, number)))
-    };
-    branch(Branch::Workpiece).inverse().then(&branch(Branch::Tool))
+/// The tool tip in the frame of the part, and the small rotation of the tool by the errors, in its directions.
+fn relative(machine: &Machine) -> ([FirstOrder; 3], [FirstOrder; 3]) {
+    let links = |branch| machine.branch(branch).map(|(number, _)| link_matrix(machine, number));
+    let from_bed: Vec<Htm> = links(Branch::Tool).collect();
+    let inwards = from_bed.into_iter().rev().chain(links(Branch::Workpiece).map(|link| link.inverse()));
+    inwards.fold(Default::default(), |(tip, turn), link| (link.place(&tip), seen_from(&link, &turn)))
+}
+
+/// The rotation by the errors of a link and of what stands on it, in the frame before the link.
+fn seen_from(link: &Htm, turn: &[FirstOrder; 3]) -> [FirstOrder; 3] {
+    let (own, carried) = (link.turn(), link.turned(turn));
+    std::array::from_fn(|axis| &own[axis] + &carried[axis])
 }
 
 fn is_sensitive(machine: &Machine, direction: Axis) -> bool {

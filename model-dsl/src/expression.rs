@@ -13,6 +13,8 @@ const MOST_TERMS: usize = 20_000;
 const MOST_NESTING: usize = 100;
 /// The longest numerator or denominator: far beyond a double, and far from running away.
 const MOST_BITS: u64 = 4096;
+/// The most products of two monomials, and monomials added, that reading one expression may take.
+const MOST_WORK: usize = 20_000;
 /// The highest power that may be written.
 const MOST_POWER: u32 = 16;
 
@@ -32,12 +34,23 @@ pub fn parse(
     text: &str,
     resolve: &mut dyn FnMut(&str) -> Option<Symbol>,
 ) -> Result<Polynomial, ExpressionError> {
-    let mut parser = Parser { tokens: tokens(text)?, at: 0, end: text.len(), depth: 0, resolve };
-    let value = parser.sum()?;
-    match parser.peek() {
-        None => Ok(value),
-        Some(token) => Err(token.error(format!("`{}` is not expected here", token.text))),
-    }
+    let mut work = MOST_WORK;
+    parse_within(text, resolve, &mut work)
+}
+
+/// Reads one of several expressions, whose reading may take so much work together: products of two monomials, and monomials
+/// added. What this one takes is taken off; it may take no more than one that is read alone.
+pub fn parse_within(
+    text: &str,
+    resolve: &mut dyn FnMut(&str) -> Option<Symbol>,
+    work: &mut usize,
+) -> Result<Polynomial, ExpressionError> {
+    let allowed = MOST_WORK.min(*work);
+    let mut parser =
+        Parser { tokens: tokens(text)?, at: 0, end: text.len(), depth: 0, resolve, work: allowed };
+    let value = parser.whole();
+    *work -= allowed - parser.work;
+    value
 }
 
 #[derive(Clone, Copy)]
@@ -96,9 +109,19 @@ struct Parser<'a, 'r> {
     end: usize,
     depth: usize,
     resolve: &'r mut dyn FnMut(&str) -> Option<Symbol>,
+    /// How much may still be done.
+    work: usize,
 }
 
 impl<'a> Parser<'a, '_> {
+    fn whole(&mut self) -> Result<Polynomial, ExpressionError> {
+        let value = self.sum()?;
+        match self.peek() {
+            None => Ok(value),
+            Some(token) => Err(token.error(format!("`{}` is not expected here", token.text))),
+        }
+    }
+
     fn peek(&self) -> Option<Token<'a>> {
         self.tokens.get(self.at).copied()
     }
@@ -122,13 +145,13 @@ impl<'a> Parser<'a, '_> {
     fn sum(&mut self) -> Result<Polynomial, ExpressionError> {
         let mut sum = self.product()?;
         loop {
-            if self.take("+").is_some() {
-                sum = &sum + &self.product()?;
-            } else if self.take("-").is_some() {
-                sum = &sum - &self.product()?;
-            } else {
-                return Ok(sum);
-            }
+            let (token, part) = match (self.take("+"), self.take("-")) {
+                (Some(token), _) => (token, self.product()?),
+                (None, Some(token)) => (token, -&self.product()?),
+                (None, None) => return Ok(sum),
+            };
+            self.spend(part.size(), &token)?;
+            sum += &part;
         }
     }
 
@@ -137,7 +160,7 @@ impl<'a> Parser<'a, '_> {
         loop {
             if let Some(token) = self.take("*") {
                 let factor = self.signed()?;
-                product = bounded_product(&product, &factor, &token)?;
+                product = self.bounded_product(&product, &factor, &token)?;
             } else if let Some(token) = self.take("/") {
                 product = quotient(&product, &self.signed()?, &token)?;
             } else {
@@ -166,7 +189,7 @@ impl<'a> Parser<'a, '_> {
         };
         let mut product = Polynomial::one();
         for _ in 0..exponent {
-            product = bounded_product(&product, &base, &caret)?;
+            product = self.bounded_product(&product, &base, &caret)?;
         }
         Ok(product)
     }
@@ -226,22 +249,30 @@ impl<'a> Parser<'a, '_> {
         self.depth -= 1;
         value
     }
-}
 
-fn bounded_product(
-    left: &Polynomial,
-    right: &Polynomial,
-    token: &Token<'_>,
-) -> Result<Polynomial, ExpressionError> {
-    if left.size().saturating_mul(right.size()) > MOST_TERMS {
-        return Err(token.error("the product expands to too many terms"));
+    fn bounded_product(
+        &mut self,
+        left: &Polynomial,
+        right: &Polynomial,
+        token: &Token<'_>,
+    ) -> Result<Polynomial, ExpressionError> {
+        let size = left.size().saturating_mul(right.size());
+        if size > MOST_TERMS {
+            return Err(token.error("the product expands to too many terms"));
+        }
+        self.spend(size, token)?;
+        let product = left * right;
+        let bits = |value: &crate::algebra::Rational| value.numer().bits().max(value.denom().bits());
+        if product.terms().any(|(_, value)| bits(value) > MOST_BITS) {
+            return Err(token.error("the product holds a number that is too long"));
+        }
+        Ok(product)
     }
-    let product = left * right;
-    let bits = |value: &crate::algebra::Rational| value.numer().bits().max(value.denom().bits());
-    if product.terms().any(|(_, value)| bits(value) > MOST_BITS) {
-        return Err(token.error("the product holds a number that is too long"));
+
+    fn spend(&mut self, work: usize, token: &Token<'_>) -> Result<(), ExpressionError> {
+        self.work = self.work.checked_sub(work).ok_or_else(|| token.error("there is too much to expand"))?;
+        Ok(())
     }
-    Ok(product)
 }
 
 fn quotient(
@@ -309,5 +340,20 @@ mod tests {
         assert!(read(&"-".repeat(100_000)).is_err());
         assert!(read(&format!("{}x", "(x+Z1+Zt+c+1)^16*".repeat(8))).is_err());
         assert!(read(&format!("{}9{}", "(".repeat(50), ")^16".repeat(50))).is_err());
+    }
+
+    /// No step is large here, but there are many.
+    #[test]
+    fn work_is_bounded() {
+        let told = |text: String| read(&text).map_err(|error| error.message);
+        let too_much = Err("there is too much to expand".to_owned());
+        assert_eq!(told(format!("x{}", "*sin(c)".repeat(20_000))), too_much);
+        assert_eq!(told(format!("x{}", "*(x + Z1 + Zt)".repeat(200))), too_much);
+        assert_eq!(told(format!("x{}", " - x".repeat(200_000))), too_much);
+        let mut left = 3;
+        let mut read = |text: &str| {
+            parse_within(text, &mut |name| Some(Symbol::Constant(name.into())), &mut left).is_ok()
+        };
+        assert!(read("a*b + c") && !read("a*b + c"));
     }
 }

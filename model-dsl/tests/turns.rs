@@ -6,9 +6,11 @@
     reason = "a panic is the report of a test, also from a function that tests share"
 )]
 
-use model_dsl::algebra::Axis;
+use model_dsl::algebra::{Axis, Htm};
+use model_dsl::derivation::{link_matrix, relative_position};
 use model_dsl::diagnostic::{Diagnostics, render};
 use model_dsl::equations::Equations;
+use model_dsl::machine::Branch;
 use model_dsl::notation::infix;
 use model_dsl::source::SourceFile;
 use model_dsl::{compile, compile_word};
@@ -112,4 +114,40 @@ fn turns_speak_of_the_motions_of_the_rows_only() {
     let names: Vec<&str> = stage.motions.iter().map(|motion| motion.name.as_str()).collect();
     assert_eq!(names, ["EXX", "EBX"]);
     assert_eq!(stage.turns.each_ref().map(Vec::len), [0, 1, 0]);
+}
+
+/// The whole product of all links, from which both can be taken at once: another way to the same.
+#[test]
+fn the_whole_product_has_the_same_tip_and_the_same_turns() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../machines");
+    let mut seen = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let source = SourceFile::new("machine.yaml", std::fs::read_to_string(&path).unwrap());
+        let compiled = compile(&source, &mut Diagnostics::new()).unwrap();
+        let machine = &compiled.machine;
+        let branch = |branch| {
+            let links = machine.branch(branch).map(|(number, _)| link_matrix(machine, number));
+            links.fold(Htm::identity(), |product, link| product.then(&link))
+        };
+        let product = branch(Branch::Workpiece).inverse().then(&branch(Branch::Tool));
+        assert_eq!(relative_position(machine), *product.origin(), "{}", path.display());
+        for (direction, turn) in Axis::ALL.into_iter().zip(product.turn()) {
+            for (number, motion) in machine.motions.iter().enumerate() {
+                let kept = compiled.equations.motions.iter().position(|kept| kept.name == motion.name);
+                let Some(kept) = kept else { continue };
+                let factor = turn.error_part().find(|(own, _)| *own == number);
+                let factor = factor.map(|(_, factor)| factor.clone()).unwrap_or_default();
+                assert_eq!(
+                    compiled.equations.turn(direction, kept),
+                    factor,
+                    "{} {}",
+                    path.display(),
+                    motion.name
+                );
+                seen += usize::from(!factor.is_zero());
+            }
+        }
+    }
+    assert!(seen > 100, "{seen} turns only");
 }

@@ -134,6 +134,12 @@ impl Htm {
         })
     }
 
+    /// A small vector of the inner frame, all of it error, in the directions of the outer one.
+    pub fn turned(&self, small: &Vector) -> Vector {
+        let nominal = self.rotation.each_ref().map(|row| row.each_ref().map(undisturbed));
+        std::array::from_fn(|row| sum_of_three(|k| &nominal[row][k] * &small[k]))
+    }
+
     /// The position of the inner origin in the outer frame.
     pub fn origin(&self) -> &Vector {
         &self.translation

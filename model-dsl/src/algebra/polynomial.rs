@@ -5,7 +5,7 @@
 //! rewriting every squared sine as 1 - cos(q)^2 when a product is formed.
 
 use std::collections::BTreeMap;
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 
 use num_traits::{One, Zero};
 
@@ -151,13 +151,19 @@ fn squared_sine(monomial: &Monomial) -> Option<Symbol> {
         .map(|(symbol, _)| symbol.clone())
 }
 
+impl AddAssign<&Polynomial> for Polynomial {
+    fn add_assign(&mut self, other: &Self) {
+        for (monomial, value) in &other.0 {
+            self.accumulate(monomial.clone(), value.clone());
+        }
+    }
+}
+
 impl Add for &Polynomial {
     type Output = Polynomial;
     fn add(self, other: Self) -> Polynomial {
         let mut sum = self.clone();
-        for (monomial, value) in &other.0 {
-            sum.accumulate(monomial.clone(), value.clone());
-        }
+        sum += other;
         sum
     }
 }
@@ -192,6 +198,9 @@ impl Mul for &Polynomial {
 impl FromIterator<Polynomial> for Polynomial {
     /// The sum of polynomials.
     fn from_iter<I: IntoIterator<Item = Polynomial>>(parts: I) -> Self {
-        parts.into_iter().fold(Polynomial::zero(), |sum, part| &sum + &part)
+        parts.into_iter().fold(Polynomial::zero(), |mut sum, part| {
+            sum += &part;
+            sum
+        })
     }
 }

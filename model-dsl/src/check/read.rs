@@ -7,10 +7,16 @@ use super::vocabulary::Vocabulary;
 use crate::algebra::{Axis, Polynomial, Symbol};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::equations::Equations;
-use crate::expression::parse;
+use crate::expression::parse_within;
 use crate::machine::Machine;
 use crate::source::{SourceFile, Span, Spanned};
 use crate::suggest::nearest;
+
+/// Files larger than this many bytes are refused (E0003): what is printed in a book is a few pages.
+const MOST_BYTES: usize = 256 * 1024;
+
+/// How much work reading all expressions of a file may take: see [`parse_within`].
+const MOST_WORK: usize = 100_000;
 
 /// The most unknown names that are told of one expression.
 const MOST_UNKNOWN: usize = 20;
@@ -51,9 +57,16 @@ pub(super) fn sections(
     diagnostics: &mut Diagnostics,
 ) -> Option<Vec<Section>> {
     let mut found = Diagnostics::new();
+    if file.text().len() > MOST_BYTES {
+        let message = format!("the file is larger than {} KiB", MOST_BYTES / 1024);
+        let help = "write the equations of one machine, and what is compared alone";
+        diagnostics.push(Diagnostic::error("E0003", Span::default(), message).help(help));
+        return None;
+    }
+    let mut work = MOST_WORK;
     let read: Vec<Section> = syntax::read(file, &mut found)
         .iter()
-        .filter_map(|section| read_section(section, machine, equations, &mut found))
+        .filter_map(|section| read_section(section, machine, equations, &mut work, &mut found))
         .collect();
     if !found.has_errors() && read.iter().all(|section| section.equations.is_empty()) {
         found.push(
@@ -71,6 +84,7 @@ fn read_section(
     section: &syntax::Section,
     machine: &Machine,
     equations: &Equations,
+    work: &mut usize,
     diagnostics: &mut Diagnostics,
 ) -> Option<Section> {
     let kind = kind(section.name.as_ref(), machine, diagnostics)?;
@@ -81,7 +95,7 @@ fn read_section(
             Statement::Let(letter, value) => give(&mut vocabulary, letter, value, diagnostics),
             Statement::Equation(left, right) => {
                 let target = target(left, kind.link, equations, diagnostics);
-                let value = value(right, target.as_ref(), &vocabulary, diagnostics);
+                let value = value(right, target.as_ref(), &vocabulary, work, diagnostics);
                 if let (Some(target), Some(value)) = (target, value) {
                     add(&mut printed, Printed { left: left.clone(), target, value }, diagnostics);
                 }
@@ -249,12 +263,13 @@ fn value(
     right: &Spanned<String>,
     target: Option<&Target>,
     vocabulary: &Vocabulary<'_>,
+    work: &mut usize,
     diagnostics: &mut Diagnostics,
 ) -> Option<Polynomial> {
     let mut told: Vec<String> = Vec::new();
     loop {
         let mut unknown: Option<String> = None;
-        let parsed = parse(&right.value, &mut |name| {
+        let mut resolve = |name: &str| {
             if told.iter().any(|known| known == name) {
                 return Some(Symbol::Constant(name.into()));
             }
@@ -263,8 +278,8 @@ fn value(
                 unknown = Some(name.to_owned());
             }
             symbol
-        });
-        let error = match parsed {
+        };
+        let error = match parse_within(&right.value, &mut resolve, work) {
             Ok(value) => return told.is_empty().then(|| vocabulary.settle(&value)),
             Err(error) => error,
         };

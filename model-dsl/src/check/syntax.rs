@@ -3,6 +3,8 @@
 //!
 //! Comments are blanked in place, so that every byte keeps its offset.
 
+use std::collections::BTreeMap;
+
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::{SourceFile, Span, Spanned};
 
@@ -28,14 +30,14 @@ pub(super) struct Section {
 pub(super) fn read(file: &SourceFile, diagnostics: &mut Diagnostics) -> Vec<Section> {
     let text = blanked(file.text());
     let mut sections = vec![Section::default()];
+    let mut places: BTreeMap<String, usize> = BTreeMap::new();
     let mut current = 0;
     for span in statements(&text, diagnostics) {
         let part = trimmed(&text, span);
         if part.value.starts_with('[') {
             if let Some(name) = header(&part, diagnostics) {
-                let known = sections.iter().position(|section| section.name.as_ref() == Some(&name));
-                current = known.unwrap_or(sections.len());
-                if known.is_none() {
+                current = *places.entry(name.value.clone()).or_insert(sections.len());
+                if current == sections.len() {
                     sections.push(Section { name: Some(name), statements: Vec::new() });
                 }
             }

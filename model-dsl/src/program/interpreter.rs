@@ -3,8 +3,8 @@
 
 use std::borrow::Cow;
 
-use abbe_runtime::Kinematics;
 use abbe_runtime::math::sin_cos;
+use abbe_runtime::{Kinematics, Lanes, Real};
 
 use super::{Column, Input, Programs, Tape};
 use crate::equations::Equations;
@@ -90,16 +90,27 @@ impl Interpreter {
         triples(self.run_columns(&self.turns, positions, travels))
     }
 
-    fn run(&self, tape: &Tape, position: &[f64], travel: &[f64], motions: &[f64]) -> Vec<f64> {
-        let turn = |(angle, rotary): (&f64, &bool)| if *rotary { sin_cos(*angle) } else { (0.0, 1.0) };
-        let turns: Vec<(f64, f64)> = position.iter().zip(&self.rotary).map(turn).collect();
-        let or_nan = |values: &[f64], number: usize| values.get(number).copied().unwrap_or(f64::NAN);
+    /// The error of one row, or of several side by side; NaN for a slice of the wrong length.
+    fn error_in<T: Real>(&self, position: &[T], travel: &[T], motions: &[T]) -> [T; 3] {
+        let lengths = (position.len(), travel.len(), motions.len());
+        if lengths != (self.rotary.len(), self.travels.len(), self.motions) {
+            return [f64::NAN.into(); 3];
+        }
+        triple(&self.run(&self.error, position, travel, motions))
+    }
+
+    fn run<T: Real>(&self, tape: &Tape, position: &[T], travel: &[T], motions: &[T]) -> Vec<T> {
+        let turn = |(angle, rotary): (&T, &bool)| {
+            if *rotary { angle.sin_cos() } else { (T::from(0.0), T::from(1.0)) }
+        };
+        let turns: Vec<(T, T)> = position.iter().zip(&self.rotary).map(turn).collect();
+        let or_nan = |values: &[T], number: usize| values.get(number).copied().unwrap_or(f64::NAN.into());
         tape.run(|input| match input {
             Input::Position(axis) => or_nan(position, axis),
             Input::Travel(number) => or_nan(travel, number),
-            Input::Constant(number) => or_nan(&self.constants, number),
-            Input::Cos(axis) => turns.get(axis).map_or(f64::NAN, |(_, cosine)| *cosine),
-            Input::Sin(axis) => turns.get(axis).map_or(f64::NAN, |(sine, _)| *sine),
+            Input::Constant(number) => self.constants.get(number).copied().unwrap_or(f64::NAN).into(),
+            Input::Cos(axis) => turns.get(axis).map_or(f64::NAN.into(), |(_, cosine)| *cosine),
+            Input::Sin(axis) => turns.get(axis).map_or(f64::NAN.into(), |(sine, _)| *sine),
             Input::Motion(motion) => or_nan(motions, motion),
         })
     }
@@ -165,11 +176,11 @@ impl Kinematics for Interpreter {
     }
 
     fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
-        let lengths = (position.len(), travel.len(), motions.len());
-        if lengths != (self.rotary.len(), self.travels.len(), self.motions) {
-            return [f64::NAN; 3];
-        }
-        triple(&self.run(&self.error, position, travel, motions))
+        self.error_in(position, travel, motions)
+    }
+
+    fn error_lanes(&self, position: &[Lanes], travel: &[Lanes], motions: &[Lanes]) -> Option<[Lanes; 3]> {
+        Some(self.error_in(position, travel, motions))
     }
 
     fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {
@@ -180,10 +191,10 @@ impl Kinematics for Interpreter {
     }
 }
 
-fn triple(values: &[f64]) -> [f64; 3] {
+fn triple<T: Real>(values: &[T]) -> [T; 3] {
     match values {
         [x, y, z] => [*x, *y, *z],
-        _ => [f64::NAN; 3],
+        _ => [f64::NAN.into(); 3],
     }
 }
 

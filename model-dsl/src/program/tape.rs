@@ -1,6 +1,8 @@
 //! Programs laid out for running. In: a program. Out: its operations over one array of values,
 //! each value at a place of its own, so that running it looks nothing up.
 
+use abbe_runtime::Real;
+
 use super::column::Room;
 use super::{Column, Input, Program, Step, Value};
 
@@ -55,12 +57,12 @@ impl Tape {
         tape
     }
 
-    /// Runs the tape on the inputs that `given` supplies; one number for each result.
-    pub fn run(&self, given: impl Fn(Input) -> f64) -> Vec<f64> {
+    /// Runs the tape on the inputs that `given` supplies; one number, or one in each lane, for each result.
+    pub fn run<T: Real>(&self, given: impl Fn(Input) -> T) -> Vec<T> {
         let mut values = Vec::with_capacity(self.numbers.len() + self.inputs.len() + self.operations.len());
-        values.extend_from_slice(&self.numbers);
+        values.extend(self.numbers.iter().map(|number| T::from(*number)));
         values.extend(self.inputs.iter().map(|input| given(*input)));
-        let at = |values: &[f64], place: usize| values.get(place).copied().unwrap_or(f64::NAN);
+        let at = |values: &[T], place: usize| values.get(place).copied().unwrap_or(f64::NAN.into());
         for (operation, first, second) in &self.operations {
             let (a, b) = (at(&values, *first), at(&values, *second));
             values.push(match operation {

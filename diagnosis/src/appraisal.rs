@@ -5,12 +5,15 @@
 //! wandering sensor explains as well is then worth nothing.
 
 use crate::course::Course;
-use crate::design::in_parallel;
 use crate::model::Model;
 use crate::noise::{self, Noise};
 use crate::observations;
 use crate::outliers;
+use crate::parallel;
 use crate::study::Study;
+
+/// How often a likelihood is worked out until the noise of a channel is known, at least.
+const ESTIMATES: usize = 20;
 
 /// What a model leaves.
 pub(crate) struct Appraisal {
@@ -37,7 +40,8 @@ impl Appraisal {
     fn add(&mut self, study: &Study<'_>, scene: usize, residuals: Vec<Vec<f64>>) {
         let known = &study.scenes[scene];
         let fitted = known.fitted_rows();
-        let results = in_parallel(residuals.len(), &|channel: usize| {
+        let work = residuals.len() * known.rows() * ESTIMATES;
+        let results = parallel::counted(residuals.len(), work, |channel| {
             let residual = &residuals[channel];
             let marks = outliers::mark(residual);
             let counts = |row: usize| fitted[row] && residual[row].is_finite() && !marks[row];

@@ -11,6 +11,7 @@ use crate::design::{Design, Regressor};
 use crate::fit::Fit;
 use crate::model::{Effect, Fitted};
 use crate::noise::Noise;
+use crate::parallel;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
@@ -51,18 +52,15 @@ pub(crate) fn certainties(
     noises: &[Vec<Noise>],
     travels: &[Travel],
 ) -> Vec<Certainty> {
-    let numbers = 0..fit.model.len();
-    numbers
-        .map(|number| {
-            let mut certainty = Certainty::linear(fit.covariances[number].clone());
-            if let Some(interval) = interval(study, fit, noises, number) {
-                widen(&mut certainty.covariance, &fit.model[number].effect.shape, interval);
-                certainty.nonlinear = Some(interval);
-            }
-            certainty.richer = richer(study, fit, noises, travels, number).map(Box::new);
-            certainty
-        })
-        .collect()
+    parallel::counted(fit.model.len(), study.rows() * fit.model.len(), |number| {
+        let mut certainty = Certainty::linear(fit.covariances[number].clone());
+        if let Some(interval) = interval(study, fit, noises, number) {
+            widen(&mut certainty.covariance, &fit.model[number].effect.shape, interval);
+            certainty.nonlinear = Some(interval);
+        }
+        certainty.richer = richer(study, fit, noises, travels, number).map(Box::new);
+        certainty
+    })
 }
 
 /// Multiples of the linear standard deviation at which the sum of squares is looked at.

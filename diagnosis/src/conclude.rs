@@ -89,6 +89,7 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
     };
     diagnosis.repeatability = scattered.first().map(|scatter| repeats::describe(&study, scatter, units.unit));
     diagnosis.verdict = verdict(&diagnosis);
+    diagnosis.candidates = found.pool.len();
     diagnosis.recordings = study.scenes.iter().map(summary).collect();
     diagnosis
 }

@@ -3,9 +3,13 @@
 //! In: a scene and a model. Out: states as the instrument shows them and as the drives have them, the programmed positions,
 //! and the error that the calibration knows already, so that a model's own terms are all that is left to work out.
 
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
+
 use model_dsl::program::Column;
 
-use crate::model::{Fitted, Model, Place};
+use crate::model::{Fitted, Model};
+use crate::parallel;
 use crate::position_loop::PositionLoop;
 use crate::states::{Driven, Rows, States};
 use crate::study::{Kind, Study};
@@ -13,6 +17,8 @@ use crate::terms::{Memory, Setting, Shape};
 
 /// How many rows are worked on at a time.
 pub(crate) const STRETCH: usize = 256;
+/// How many rows are shared out among processors at a time.
+pub(crate) const BATCH: usize = 16 * STRETCH;
 
 /// The states of one recording under a model: those that the instrument shows, and those of the drives.
 pub(crate) struct Course {
@@ -33,21 +39,60 @@ pub(crate) struct KnownError {
     pub(crate) drive: Vec<Option<Vec<f64>>>,
 }
 
-impl Course {
-    /// The course of a recording under a model.
-    pub(crate) fn new(study: &Study<'_>, scene: usize, model: &[Fitted]) -> Self {
-        let known = &study.scenes[scene];
-        let driven: Vec<Driven> = if known.at_rest {
+/// The last course of a recording. Most models do not change where the axes were: they share it, and the memory that it takes.
+#[derive(Default)]
+pub(crate) struct LastCourse(Mutex<Option<(Ways, Arc<Course>)>>);
+
+/// What of a model changes the course of a recording: how every axis is driven, and the offset of the instrument's clock.
+#[derive(Clone, PartialEq)]
+struct Ways {
+    driven: Vec<Driven>,
+    clock: f64,
+}
+
+impl Ways {
+    fn new(study: &Study<'_>, scene: usize, model: &[Fitted]) -> Self {
+        let driven = if study.scenes[scene].at_rest {
             vec![Driven::default(); study.equations.axes.len()]
         } else {
             let loops = loops(study, model).into_iter().enumerate();
-            let zero = |axis: usize| feedback_zero(study, scene, model, axis);
-            loops.map(|(axis, position_loop)| Driven { position_loop, zero: zero(axis) }).collect()
+            // Only behind a loop does it matter where the feedback says that the axis begins.
+            let zero = |axis: usize, position_loop: PositionLoop| match position_loop.acts() {
+                true => feedback_zero(study, scene, model, axis),
+                false => 0.0,
+            };
+            loops
+                .map(|(axis, position_loop)| Driven { position_loop, zero: zero(axis, position_loop) })
+                .collect()
         };
-        let clock = clock(scene, model);
-        let states = |clock: f64| States::new(known.recording, &known.given, &driven, clock);
-        let shown = states(clock);
-        let drives = (clock != 0.0).then(|| states(0.0));
+        Self { driven, clock: clock(scene, model) }
+    }
+}
+
+impl Course {
+    /// The course of a recording under a model.
+    pub(crate) fn new(study: &Study<'_>, scene: usize, model: &[Fitted]) -> Arc<Self> {
+        let ways = Ways::new(study, scene, model);
+        let last = &study.scenes[scene].last_course.0;
+        // What a thread left that panicked is as good as any other course.
+        let mut known = last.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, course)) = known.as_ref().filter(|(known, _)| *known == ways) {
+            return Arc::clone(course);
+        }
+        // It goes before the next one comes.
+        *known = None;
+        drop(known);
+        let course = Arc::new(Self::of(study, scene, &ways));
+        let mut known = last.lock().unwrap_or_else(PoisonError::into_inner);
+        *known = Some((ways, Arc::clone(&course)));
+        course
+    }
+
+    fn of(study: &Study<'_>, scene: usize, ways: &Ways) -> Self {
+        let known = &study.scenes[scene];
+        let states = |clock: f64| States::new(known.recording, &known.given, &ways.driven, clock);
+        let shown = states(ways.clock);
+        let drives = (ways.clock != 0.0).then(|| states(0.0));
         let known = KnownError::new(study, scene, &shown);
         Self { shown, drives, known }
     }
@@ -72,30 +117,43 @@ impl KnownError {
         let mut known = Self { tip: none(), turn: turning.then(none), drive: vec![None; motions] };
         let mut drives = Terms::of(study.known.iter().filter(answered));
         let mut terms = Terms::of(study.known.iter());
-        let mut from = 0;
-        while from < rows {
-            let end = (from + STRETCH).min(rows);
-            let view = states.rows(from..end);
+        for batch in pieces(0..rows, BATCH) {
+            let view = states.rows(batch.clone());
             for (all, part) in known.drive.iter_mut().zip(drives.motions(&view, motions, true)) {
                 if let Some(part) = part {
                     all.get_or_insert_with(|| Vec::with_capacity(rows)).extend(part);
                 }
             }
             let motions = terms.motions(&view, motions, false);
-            let (positions, travels) = inputs(study, &view);
-            append(
-                &mut known.tip,
-                &study.interpreter.lever_values(&positions, &travels),
-                &motions,
-                end - from,
-            );
-            if let Some(turn) = &mut known.turn {
-                append(turn, &study.interpreter.turn_values(&positions, &travels), &motions, end - from);
+            let stretches: Vec<Range<usize>> = pieces(batch.clone(), STRETCH).collect();
+            let errors = parallel::counted(stretches.len(), batch.len() * motions.len(), |number| {
+                let rows = stretches[number].clone();
+                let motions = part(&motions, &(rows.start - batch.start..rows.end - batch.start));
+                let (positions, travels) = inputs(study, &states.rows(rows.clone()));
+                let tip = study.interpreter.lever_values(&positions, &travels);
+                let turn = turning.then(|| study.interpreter.turn_values(&positions, &travels));
+                let turn = turn.map(|turn| weighted_sum(&turn, &motions, rows.len()));
+                (weighted_sum(&tip, &motions, rows.len()), turn)
+            });
+            for (tip, turn) in errors {
+                append(&mut known.tip, tip);
+                if let (Some(all), Some(turn)) = (&mut known.turn, turn) {
+                    append(all, turn);
+                }
             }
-            from = end;
         }
         known
     }
+}
+
+/// Cuts rows into pieces of a size, the last of which may be shorter.
+pub(crate) fn pieces(rows: Range<usize>, size: usize) -> impl Iterator<Item = Range<usize>> {
+    rows.clone().step_by(size).map(move |from| from..(from + size).min(rows.end))
+}
+
+/// A stretch of the values of every error motion.
+pub(crate) fn part<'m>(motions: &'m [Option<Vec<f64>>], rows: &Range<usize>) -> Vec<Option<&'m [f64]>> {
+    motions.iter().map(|motion| motion.as_ref().map(|motion| &motion[rows.clone()])).collect()
 }
 
 /// Whether a term that is known acts inside a position loop. A lag is in the states.
@@ -103,9 +161,8 @@ fn answered(known: &&Fitted) -> bool {
     known.effect.side().is_some_and(|side| side.answered_by().is_some())
 }
 
-/// Appends the sum of arms times motions in a stretch of rows.
-fn append(sums: &mut [Vec<f64>; 3], arms: &[[Column<'_>; 3]], motions: &[Option<Vec<f64>>], rows: usize) {
-    for (sum, part) in sums.iter_mut().zip(weighted_sum(arms, motions, rows)) {
+fn append(sums: &mut [Vec<f64>; 3], parts: [Vec<f64>; 3]) {
+    for (sum, part) in sums.iter_mut().zip(parts) {
         sum.extend(part);
     }
 }
@@ -148,9 +205,10 @@ fn clock(scene: usize, model: &[Fitted]) -> f64 {
     clocks.filter_map(|fitted| fitted.coefficients.first()).sum()
 }
 
-/// Terms whose memory runs through the rows of one recording, each term once.
+/// Terms whose memory runs through the rows of one recording, each term once: the error motions in which there are any, with
+/// their terms.
 pub(crate) struct Terms<'m> {
-    fitted: Vec<(&'m Fitted, Memory)>,
+    motions: Vec<(usize, Vec<(&'m Fitted, Memory)>)>,
 }
 
 impl<'m> Terms<'m> {
@@ -160,29 +218,47 @@ impl<'m> Terms<'m> {
     }
 
     fn of(fitted: impl Iterator<Item = &'m Fitted>) -> Self {
-        let machine = fitted.filter(|fitted| fitted.effect.motion().is_some());
-        Self { fitted: machine.map(|fitted| (fitted, Memory::default())).collect() }
+        let mut motions: Vec<(usize, Vec<(&Fitted, Memory)>)> = Vec::new();
+        for fitted in fitted {
+            let Some(motion) = fitted.effect.motion() else { continue };
+            let term = (fitted, Memory::default());
+            match motions.iter_mut().find(|(known, _)| *known == motion) {
+                Some((_, terms)) => terms.push(term),
+                None => motions.push((motion, vec![term])),
+            }
+        }
+        Self { motions }
     }
 
-    /// The value of every error motion in the next stretch of rows; on the drives' side alone where `drive` is set.
+    /// The value of every error motion in the next rows; on the drives' side alone where `drive` is set.
     pub(crate) fn motions(&mut self, rows: &Rows<'_>, motions: usize, drive: bool) -> Vec<Option<Vec<f64>>> {
+        let work = rows.len() * self.motions.len();
+        let parts =
+            parallel::each(&mut self.motions, work, |(motion, terms)| (*motion, sum(terms, rows, drive)));
         let mut sums: Vec<Option<Vec<f64>>> = vec![None; motions];
-        for (fitted, memory) in &mut self.fitted {
-            if let Place::Motion { motion, side } = fitted.effect.place
-                && (!drive || side.at_drive())
-            {
-                let sum = sums[motion].get_or_insert_with(|| vec![0.0; rows.len()]);
-                fitted.effect.shape.add(&fitted.coefficients, side.answered_by(), rows, memory, sum);
-            }
+        for (motion, part) in parts {
+            sums[motion] = part;
         }
         sums
     }
 }
 
+/// The sum of terms of one error motion.
+fn sum(terms: &mut [(&Fitted, Memory)], rows: &Rows<'_>, drive: bool) -> Option<Vec<f64>> {
+    let mut sum: Option<Vec<f64>> = None;
+    for (fitted, memory) in terms {
+        if let Some(side) = fitted.effect.side().filter(|side| !drive || side.at_drive()) {
+            let sum = sum.get_or_insert_with(|| vec![0.0; rows.len()]);
+            fitted.effect.shape.add(&fitted.coefficients, side.answered_by(), rows, memory, sum);
+        }
+    }
+    sum
+}
+
 /// The sum of arms times motions, in three directions.
 pub(crate) fn weighted_sum(
     levers: &[[Column<'_>; 3]],
-    motions: &[Option<Vec<f64>>],
+    motions: &[Option<&[f64]>],
     rows: usize,
 ) -> [Vec<f64>; 3] {
     let mut error = [vec![0.0; rows], vec![0.0; rows], vec![0.0; rows]];
@@ -192,10 +268,10 @@ pub(crate) fn weighted_sum(
             match lever {
                 Column::Same(0.0) => {}
                 Column::Same(lever) => {
-                    error.iter_mut().zip(motion).for_each(|(error, motion)| *error += lever * motion)
+                    error.iter_mut().zip(*motion).for_each(|(error, motion)| *error += lever * motion)
                 }
                 Column::Rows(lever) => {
-                    for ((error, lever), motion) in error.iter_mut().zip(lever.iter()).zip(motion) {
+                    for ((error, lever), motion) in error.iter_mut().zip(lever.iter()).zip(*motion) {
                         *error += lever * motion;
                     }
                 }

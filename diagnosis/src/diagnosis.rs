@@ -32,6 +32,8 @@ pub struct Diagnosis {
     pub repeatability: Option<Repeatability>,
     /// What cannot be decided from these recordings: whole sentences, each with its reason.
     pub undecided: Vec<String>,
+    /// How many terms were tried that the recordings tell apart, waves aside.
+    pub candidates: usize,
     /// What can be drawn of it, where that was asked for.
     pub pictures: Option<Pictures>,
 }

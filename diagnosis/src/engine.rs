@@ -4,6 +4,8 @@
 //! noise, waves, design, choice, fit; every round starts the choice afresh with a better idea of the noise, so that nothing
 //! chosen early has to stay. At the end the judge drops what does not stand up.
 
+use std::sync::Arc;
+
 use crate::appraisal::Appraisal;
 use crate::candidates;
 use crate::course::Course;
@@ -81,7 +83,7 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
 struct Search {
     model: Model,
     noises: Vec<Vec<Noise>>,
-    courses: Vec<Course>,
+    courses: Vec<Arc<Course>>,
     travels: Vec<Travel>,
     pool: Vec<Kin>,
     places: Vec<WavePlace>,
@@ -263,7 +265,7 @@ fn other_peaks(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], travels:
     effects
 }
 
-pub(crate) fn courses(study: &Study<'_>, model: &Model) -> Vec<Course> {
+pub(crate) fn courses(study: &Study<'_>, model: &Model) -> Vec<Arc<Course>> {
     (0..study.scenes.len()).map(|scene| Course::new(study, scene, model)).collect()
 }
 
@@ -271,14 +273,14 @@ fn all_residuals(
     study: &Study<'_>,
     model: &Model,
     noises: &[Vec<Noise>],
-    courses: &[Course],
+    courses: &[Arc<Course>],
 ) -> Vec<Vec<Weighted>> {
     let each = courses.iter().enumerate();
     each.map(|(scene, course)| waves::weighted(study, scene, model, &noises[scene], course)).collect()
 }
 
 /// White noise of the size of the differences from row to row.
-fn first_noises(study: &Study<'_>, model: &Model, courses: &[Course]) -> Vec<Vec<Noise>> {
+fn first_noises(study: &Study<'_>, model: &Model, courses: &[Arc<Course>]) -> Vec<Vec<Noise>> {
     let each = courses.iter().enumerate();
     each.map(|(scene, course)| {
         let residuals = observations::residuals(study, scene, model, course);

@@ -8,6 +8,7 @@ use crate::design::{Design, Products, Regressor};
 use crate::fit::{self, Fit};
 use crate::model::{Fitted, Model};
 use crate::noise::Noise;
+use crate::parallel;
 use crate::search::{price, untold_price};
 use crate::study::Study;
 use crate::sweep::Swept;
@@ -68,8 +69,8 @@ fn weakest(
         swept.take(column);
     }
     let scale = (swept.remaining() / samples.max(1.0)).max(f64::MIN_POSITIVE);
-    let mut failing: Option<(f64, usize)> = None;
-    for number in always..fit.model.len() {
+    let whole = zeros::residuals(study, &fit.model);
+    let judged = |number: usize| {
         let columns: Vec<usize> = design.columns(number).collect();
         let worth = swept.worth(&columns) / scale;
         let told = columns.iter().filter(|column| swept.has(**column)).count();
@@ -79,28 +80,32 @@ fn weakest(
             || !returns(&design, &swept, number, scale)
             || !steady(&design, &swept, number)
             || noise_explains(study, &design, &swept, fit, appraisal, number, price)
-            || !pays(study, &design, &swept, fit, appraisal, number);
-        if fails && failing.is_none_or(|(least, _)| worth < least) {
-            failing = Some((worth, number));
-        }
-    }
-    failing.map(|(_, number)| number)
+            || !pays(study, &design, &swept, fit, (appraisal, &whole), number);
+        fails.then_some((worth, number))
+    };
+    let count = fit.model.len() - always;
+    let failing = parallel::counted(count, study.rows() * count, |number| judged(always + number));
+    let weakest =
+        failing.into_iter().flatten().reduce(|least, next| if next.0 < least.0 { next } else { least });
+    weakest.map(|(_, number)| number)
 }
 
 /// Whether the held-out samples, taken as they are, come nearer to the model through the effect than to the others fitted
-/// without it, and whether the effect is large enough anywhere to matter beside the noise of a sample.
+/// without it, and whether the effect is large enough anywhere to matter beside the noise of a sample. `left` is what the whole
+/// model leaves: its appraisal, and its residuals.
 fn pays(
     study: &Study<'_>,
     design: &Design,
     swept: &Swept,
     fit: &Fit,
-    appraisal: &Appraisal,
+    left: (&Appraisal, &[Vec<Vec<f64>>]),
     number: usize,
 ) -> bool {
+    let (appraisal, whole) = left;
     let mut bare = fit.model.clone();
     bare.remove(number);
     let others = without(design, swept, &fit.model, number);
-    let [bare, others, whole] = [&bare, &others, &fit.model].map(|model| zeros::residuals(study, model));
+    let [bare, others] = [&bare, &others].map(|model| zeros::residuals(study, model));
     let (mut gained, mut expected, mut peak) = (0.0, 0.0, 0.0_f64);
     for (scene, known) in study.scenes.iter().enumerate() {
         let fitted = known.fitted_rows();

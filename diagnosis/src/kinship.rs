@@ -4,13 +4,16 @@
 //! Only the simplest of a group is worth trying; the others are names for the same. Columns are compared by a few sums
 //! against random weights, so that one run through the rows tells for all pairs.
 
+use std::sync::Arc;
+
 use nalgebra::DMatrix;
 
 use crate::candidates::simplicity;
 use crate::course::Course;
-use crate::design::{ChannelRun, Regressor, in_parallel};
+use crate::design::{ChannelRun, Regressor};
 use crate::model::{Effect, Model};
 use crate::noise::Noise;
+use crate::parallel;
 use crate::study::Study;
 
 /// An effect, and others that the recordings show alike.
@@ -30,7 +33,7 @@ const VISIBLE: f64 = 1e-10;
 /// Groups effects by what the recordings show of them; effects that they do not show are left out.
 pub(crate) fn groups(
     study: &Study<'_>,
-    courses: &[Course],
+    courses: &[Arc<Course>],
     noises: &[Vec<Noise>],
     effects: Vec<Effect>,
 ) -> Vec<Kin> {
@@ -70,7 +73,7 @@ fn alike(a: &[[f64; SUMS]], b: &[[f64; SUMS]]) -> bool {
 /// The normalised random sums of every column; `None` where the recordings do not show it.
 fn column_sums(
     study: &Study<'_>,
-    courses: &[Course],
+    courses: &[Arc<Course>],
     noises: &[Vec<Noise>],
     effects: &[Effect],
 ) -> Vec<Option<[f64; SUMS]>> {
@@ -83,7 +86,7 @@ fn column_sums(
         .flat_map(|(scene, known)| (0..known.channels.len()).map(move |channel| (scene, channel)))
         .collect();
     let model = Model::new();
-    let results = in_parallel(jobs.len(), &|job: usize| {
+    let results = parallel::counted(jobs.len(), study.rows() * width, |job| {
         let (scene, channel) = jobs[job];
         let noise = noises[scene][channel];
         let mut run = ChannelRun::new(study, scene, channel, &model, noise, &regressors, width);

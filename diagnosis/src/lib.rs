@@ -23,6 +23,7 @@ mod model;
 mod noise;
 mod observations;
 mod outliers;
+mod parallel;
 mod parameters;
 pub mod pictures;
 mod position_loop;

@@ -5,6 +5,7 @@
 //! nothing.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::appraisal::Appraisal;
 use crate::course::Course;
@@ -58,7 +59,7 @@ pub(crate) fn strongest(
     study: &Study<'_>,
     appraisal: &Appraisal,
     model: &Model,
-    courses: &[Course],
+    courses: &[Arc<Course>],
     travels: &[Travel],
 ) -> Option<Feature> {
     let mut best: Option<Feature> = None;

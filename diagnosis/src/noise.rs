@@ -4,6 +4,8 @@
 //! Ornstein-Uhlenbeck process: exponentially correlated, up to a random walk), and the filter that makes such noise white.
 //! Generalised least squares is ordinary least squares behind that filter.
 
+use crate::parallel;
+
 /// The noise of one channel: mm or rad, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Noise {
@@ -40,6 +42,16 @@ pub(crate) struct Whitening {
     last: Option<f64>,
     /// The last step of time and its decay: most steps are equal.
     decay: (f64, f64),
+    /// The last row with a sample: with equal steps of time the filter soon does the same in every row.
+    settled: Option<Settled>,
+}
+
+/// A row with a sample: what the filter came with, what it did and what it went with.
+#[derive(Clone, Copy, Debug)]
+struct Settled {
+    before: f64,
+    step: Step,
+    after: f64,
 }
 
 /// What the filter does in one row: `state = decay * state`, `out = (in - state) / deviation`, `state += gain * (in - state)`.
@@ -54,7 +66,7 @@ pub(crate) struct Step {
 impl Whitening {
     /// The filter at the beginning of a recording.
     pub(crate) fn new(noise: Noise) -> Self {
-        Self { noise, variance: noise.wander * noise.wander, last: None, decay: (0.0, 1.0) }
+        Self { noise, variance: noise.wander * noise.wander, last: None, decay: (0.0, 1.0), settled: None }
     }
 
     /// The filter's next steps, for rows at these times.
@@ -63,9 +75,18 @@ impl Whitening {
     }
 
     fn step(&mut self, time: f64, valid: bool) -> Step {
-        let stationary = self.noise.wander * self.noise.wander;
         let decay = self.last.map_or(0.0, |last| self.decay(time - last));
         self.last = Some(time);
+        if let Some(known) = self.settled
+            && valid
+            && known.before == self.variance
+            && known.step.decay == decay
+        {
+            self.variance = known.after;
+            return known.step;
+        }
+        let before = self.variance;
+        let stationary = self.noise.wander * self.noise.wander;
         self.variance = decay * decay * self.variance + stationary * (1.0 - decay * decay);
         if !valid {
             return Step { decay, gain: 0.0, weight: 0.0 };
@@ -73,7 +94,9 @@ impl Whitening {
         let total = self.variance + self.noise.white * self.noise.white;
         let gain = self.variance / total;
         self.variance *= 1.0 - gain;
-        Step { decay, gain, weight: 1.0 / total.sqrt() }
+        let step = Step { decay, gain, weight: 1.0 / total.sqrt() };
+        self.settled = Some(Settled { before, step, after: self.variance });
+        step
     }
 
     fn decay(&mut self, step: f64) -> f64 {
@@ -87,20 +110,52 @@ impl Whitening {
     }
 }
 
-/// Whitens one column in place; `state` goes on from the stretch before, 0 at the beginning.
-pub(crate) fn whiten(steps: &[Step], state: &mut f64, column: &mut [f64]) {
-    let mut s = *state;
-    for (step, value) in steps.iter().zip(column) {
-        s *= step.decay;
-        if step.weight > 0.0 {
-            let new = *value - s;
-            s += step.gain * new;
-            *value = new * step.weight;
-        } else {
-            *value = 0.0;
+/// Whitens columns in place, which stand one behind the other; `states` go on from the rows before, 0 at the beginning.
+pub(crate) fn whiten(steps: &[Step], states: &mut [f64], columns: &mut [f64]) {
+    let rows = steps.len();
+    if rows == 0 {
+        return;
+    }
+    let mut fours = columns.chunks_exact_mut(4 * rows);
+    let mut states = states.chunks_exact_mut(4);
+    for (columns, states) in fours.by_ref().zip(states.by_ref()) {
+        whiten_four(steps, states, columns);
+    }
+    for (column, state) in fours.into_remainder().chunks_exact_mut(rows).zip(states.into_remainder()) {
+        for (step, value) in steps.iter().zip(column) {
+            *value = step.whitened(state, *value);
         }
     }
-    *state = s;
+}
+
+/// Four columns row by row: each filter waits for its own row before, and the others can go on meanwhile.
+fn whiten_four(steps: &[Step], states: &mut [f64], columns: &mut [f64]) {
+    let rows = steps.len();
+    let (first, rest) = columns.split_at_mut(rows);
+    let (second, rest) = rest.split_at_mut(rows);
+    let (third, fourth) = rest.split_at_mut(rows);
+    let [a, b, c, d] = states else { return };
+    for (row, step) in steps.iter().enumerate() {
+        first[row] = step.whitened(a, first[row]);
+        second[row] = step.whitened(b, second[row]);
+        third[row] = step.whitened(c, third[row]);
+        fourth[row] = step.whitened(d, fourth[row]);
+    }
+}
+
+impl Step {
+    /// A value of a column behind the filter, which has this state.
+    fn whitened(&self, state: &mut f64, value: f64) -> f64 {
+        let before = *state * self.decay;
+        if self.weight > 0.0 {
+            let new = value - before;
+            *state = before + self.gain * new;
+            new * self.weight
+        } else {
+            *state = before;
+            0.0
+        }
+    }
 }
 
 /// The transpose of [`whiten`] over a whole recording, in place: white numbers become weights of the samples.
@@ -155,17 +210,13 @@ pub(crate) fn estimate(time: &[f64], residual: &[f64], valid: &[bool], floor: f6
         deviance(time, residual, valid, unit(ratio, time_constant)).0 + 1e3 * outside
     };
     let white = deviance(time, residual, valid, unit(0.0, span));
-    let mut best = (white.0, None);
-    let starts = [1.5 * step, 10.0 * step, 0.03 * span, span];
-    for start in starts.into_iter().filter(|start| *start <= span) {
-        for ratio in [0.1, 1.0] {
-            let value = cost([f64::ln(ratio), start.ln()]);
-            if best.1.is_none_or(|(found, _)| value < found) {
-                best.1 = Some((value, [f64::ln(ratio), start.ln()]));
-            }
-        }
-    }
-    let (value, point) = match best.1 {
+    let starts = [1.5 * step, 10.0 * step, 0.03 * span, span].into_iter().filter(|start| *start <= span);
+    let points: Vec<[f64; 2]> =
+        starts.flat_map(|start| [0.1, 1.0].map(|ratio| [f64::ln(ratio), start.ln()])).collect();
+    let costs = parallel::counted(points.len(), points.len() * time.len(), |number| cost(points[number]));
+    let each = costs.into_iter().zip(points);
+    let best = each.reduce(|best, next| if next.0 < best.0 { next } else { best });
+    let (value, point) = match best {
         Some((_, start)) => minimise(cost, start),
         None => (f64::INFINITY, [0.0, 0.0]),
     };
@@ -193,8 +244,7 @@ const WORTH: f64 = 9.2;
 pub(crate) fn from_differences(residual: &[f64]) -> f64 {
     let mut steps: Vec<f64> =
         residual.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| step.is_finite()).collect();
-    steps.sort_by(f64::total_cmp);
-    let median = steps.get(steps.len() / 2).copied().unwrap_or_default();
+    let median = middle(&mut steps).unwrap_or_default();
     median / (0.6745 * std::f64::consts::SQRT_2)
 }
 
@@ -220,8 +270,13 @@ const LOOKED_AT: usize = 1000;
 /// The median step of time.
 pub(crate) fn typical_step(time: &[f64]) -> f64 {
     let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied().unwrap_or(1.0).max(f64::MIN_POSITIVE)
+    middle(&mut steps).unwrap_or(1.0).max(f64::MIN_POSITIVE)
+}
+
+/// The value that would stand in the middle if these were sorted, the upper one of two; they are left in another order.
+pub(crate) fn middle(values: &mut [f64]) -> Option<f64> {
+    let place = values.len() / 2;
+    (place < values.len()).then(|| *values.select_nth_unstable_by(place, f64::total_cmp).1)
 }
 
 /// The simplex search of Nelder and Mead in two dimensions.

@@ -4,14 +4,19 @@
 //! gain there: the lever arm in the observed direction. A regressor is gain times term. The position behind a loop is
 //! taken exactly; error motions act to first order, as in the compensation.
 
+mod passage;
+
 use std::ops::Range;
 
 use model_dsl::program::Column;
 
-use crate::course::{Course, STRETCH, Terms, inputs, weighted_sum};
+use crate::course::{BATCH, Course, inputs, part, pieces, weighted_sum};
 use crate::model::{Effect, Model, Place, Side};
+use crate::parallel;
 use crate::study::{Channel, Kind, Study};
 use crate::terms::Setting;
+
+pub(crate) use passage::{Moved, Passage};
 
 /// Everything about a stretch of rows that the channels share.
 pub(crate) struct Frame<'c> {
@@ -25,41 +30,36 @@ pub(crate) struct Frame<'c> {
     turns: Vec<[Column<'c>; 3]>,
     /// Errors of the tip, with the terms of the calibration and of the model; and of the drives alone.
     error: [Vec<f64>; 3],
-    motions: Vec<Option<Vec<f64>>>,
-    drive_motions: Vec<Option<Vec<f64>>>,
+    motions: Vec<Option<&'c [f64]>>,
+    drive_motions: Vec<Option<&'c [f64]>>,
 }
 
 impl<'c> Frame<'c> {
-    /// The frame of a stretch of rows. `terms` and `drive_terms` come from the stretch before.
-    pub(crate) fn new(
-        study: &Study<'_>,
-        course: &'c Course,
-        rows: Range<usize>,
-        terms: &mut Terms<'_>,
-        drive_terms: &mut Terms<'_>,
-    ) -> Self {
+    /// The frame of a stretch of the rows in which a model has `moved`.
+    pub(crate) fn new(study: &Study<'_>, course: &'c Course, moved: &'c Moved, rows: Range<usize>) -> Self {
         let view = course.shown.rows(rows.clone());
         let (positions, travels) = inputs(study, &view);
         let programmed: Vec<&'c [f64]> =
             course.shown.given.programmed.iter().map(|position| &position[rows.clone()]).collect();
         let interpreter = &study.interpreter;
         let levers = interpreter.lever_values(&positions, &travels);
-        let motions = terms.motions(&view, levers.len(), false);
-        let drive_rows = course.drives.as_ref().unwrap_or(&course.shown).rows(rows.clone());
-        let drive_motions = drive_terms.motions(&drive_rows, levers.len(), true);
+        let within = rows.start - moved.rows.start..rows.end - moved.rows.start;
+        let motions = part(&moved.motions, &within);
         let first: Vec<f64> =
             course.shown.given.programmed.iter().map(|position| first_known(position)).collect();
+        // Only a channel that shows rotations reads the turns.
+        let turning = course.known.turn.is_some();
         Self {
             error: plus(weighted_sum(&levers, &motions, rows.len()), &course.known.tip, &rows),
-            turns: interpreter.turn_values(&positions, &travels),
+            turns: if turning { interpreter.turn_values(&positions, &travels) } else { Vec::new() },
             nominal: interpreter.nominal_columns(&positions),
             reference: interpreter.nominal_columns(&programmed),
             start: interpreter.nominal(&first),
+            drive_motions: part(&moved.drive_motions, &within),
             rows,
             course,
             levers,
             motions,
-            drive_motions,
         }
     }
 
@@ -77,12 +77,13 @@ impl<'c> Frame<'c> {
         &self,
         study: &Study<'_>,
         scene: usize,
-        channel: &Channel,
+        channel: &Channel<'_>,
         model: &Model,
     ) -> Vec<f64> {
         let observed = &channel.values[self.rows.clone()];
         let tip = |d: usize, row: usize| self.nominal[d][row] + self.error[d][row];
-        let moved = |d: usize, row: usize| tip(d, row) - self.reference[d][row];
+        let moved_in = |d: usize, row: usize| tip(d, row) - self.reference[d][row];
+        let moved = |row: usize| [moved_in(0, row), moved_in(1, row), moved_in(2, row)];
         let predicted: Vec<f64> = match channel.kind {
             Kind::Tip(d) => (0..self.len()).map(|row| tip(d, row)).collect(),
             Kind::Radius { center, radius } => {
@@ -90,10 +91,10 @@ impl<'c> Frame<'c> {
                 let distance = |row: usize| length(self.spoke(center, row)) - radius;
                 (0..self.len()).map(distance).collect()
             }
-            Kind::Along(n) => (0..self.len()).map(|row| dot(n, [0, 1, 2].map(|d| moved(d, row)))).collect(),
+            Kind::Along(n) => (0..self.len()).map(|row| dot(n, moved(row))).collect(),
             Kind::Normal => {
                 let normal = |row| self.normal(study, scene, row);
-                (0..self.len()).map(|row| dot(normal(row), [0, 1, 2].map(|d| moved(d, row)))).collect()
+                (0..self.len()).map(|row| dot(normal(row), moved(row))).collect()
             }
             Kind::Turn(about) => self.turned(about),
             Kind::Stage(axis) => {
@@ -108,14 +109,29 @@ impl<'c> Frame<'c> {
         left.zip(corners).map(|(left, corner)| if *corner { f64::NAN } else { left }).collect()
     }
 
+    /// Observed minus predicted of a channel by number, the instrument's settings included.
+    pub(crate) fn left(
+        &self,
+        study: &Study<'_>,
+        scene: usize,
+        (number, channel): (usize, &Channel<'_>),
+        model: &Model,
+    ) -> Vec<f64> {
+        let settings = self.settings(study, scene, number, model);
+        let mut values = self.residual(study, scene, channel, model);
+        values.iter_mut().zip(settings).for_each(|(value, setting)| *value -= setting);
+        values
+    }
+
     /// From the centre to the tip.
     fn spoke(&self, center: [f64; 3], row: usize) -> [f64; 3] {
-        [0, 1, 2].map(|d| self.nominal[d][row] + self.error[d][row] - center[d])
+        let part = |d: usize| self.nominal[d][row] + self.error[d][row] - center[d];
+        [part(0), part(1), part(2)]
     }
 
     fn normal(&self, study: &Study<'_>, scene: usize, row: usize) -> [f64; 3] {
         let normals = study.scenes[scene].recording.normal.as_ref();
-        normals.map_or([f64::NAN; 3], |normals| [0, 1, 2].map(|d| normals[d][self.rows.start + row]))
+        normals.map_or([f64::NAN; 3], |normals| at(normals, self.rows.start + row))
     }
 
     /// The rotation of the tool relative to the part about a direction.
@@ -124,7 +140,7 @@ impl<'c> Frame<'c> {
         if let Some(known) = &self.course.known.turn {
             turn = plus(turn, known, &self.rows);
         }
-        (0..self.len()).map(|row| dot(about, [0, 1, 2].map(|d| turn[d][row]))).collect()
+        (0..self.len()).map(|row| dot(about, at(&turn, row))).collect()
     }
 
     fn drive(&self, study: &Study<'_>, axis: usize) -> Vec<f64> {
@@ -133,7 +149,7 @@ impl<'c> Frame<'c> {
         let mut shown = position.to_vec();
         if let Some(own) = study.own[axis] {
             let known = self.course.known.drive[own].as_ref().map(|known| &known[self.rows.clone()]);
-            for motion in known.into_iter().chain(self.drive_motions[own].as_deref()) {
+            for motion in known.into_iter().chain(self.drive_motions[own]) {
                 shown.iter_mut().zip(motion).for_each(|(shown, motion)| *shown += motion);
             }
         }
@@ -145,34 +161,31 @@ impl<'c> Frame<'c> {
         &self,
         study: &Study<'_>,
         scene: usize,
-        channel: &Channel,
+        channel: &Channel<'_>,
         model: &Model,
         side: Side,
     ) -> Vec<Option<Vec<f64>>> {
         let rows = self.len();
-        let projected = |parts: &[Column<'_>; 3], direction: &dyn Fn(usize) -> [f64; 3]| {
-            let unseen = parts.iter().all(|part| *part == Column::Same(0.0));
-            let value = |row: usize| dot(direction(row), [0, 1, 2].map(|d| parts[d].at(row)));
-            (!unseen).then(|| (0..rows).map(value).collect::<Vec<f64>>()).and_then(seen)
+        let along = |of: &[[Column<'_>; 3]], directions: &[[f64; 3]]| -> Vec<Option<Vec<f64>>> {
+            of.iter().map(|parts| projected(parts, directions)).collect()
         };
-        let along =
-            |of: &[[Column<'_>; 3]], direction: &dyn Fn(usize) -> [f64; 3]| -> Vec<Option<Vec<f64>>> {
-                of.iter().map(|parts| projected(parts, direction)).collect()
-            };
         match channel.kind {
-            Kind::Tip(d) => self.levers.iter().map(|parts| part(&parts[d], rows)).collect(),
+            Kind::Tip(d) => self.levers.iter().map(|parts| lever(&parts[d], rows)).collect(),
             Kind::Radius { center, radius } => {
                 let leans = study.scenes[scene].leans;
-                let directions = self.spokes(ballbar(scene, model, center, radius).0);
-                along(&self.levers, &|row| [0, 1, 2].map(|d| if leans[d] { directions[row][d] } else { 0.0 }))
+                let mut directions = self.spokes(ballbar(scene, model, center, radius).0);
+                for (d, _) in leans.iter().enumerate().filter(|(_, leans)| !**leans) {
+                    directions.iter_mut().for_each(|direction| direction[d] = 0.0);
+                }
+                along(&self.levers, &directions)
             }
-            Kind::Along(n) => along(&self.levers, &|_| n),
-            Kind::Normal => along(&self.levers, &|row| self.normal(study, scene, row)),
-            Kind::Turn(about) => along(&self.turns, &|_| about),
-            Kind::Stage(axis) => {
-                let about = stage_direction(study, axis, &self.turns);
-                along(&self.turns, &|_| about)
+            Kind::Along(n) => along(&self.levers, &vec![n; rows]),
+            Kind::Normal => {
+                let normals: Vec<[f64; 3]> = (0..rows).map(|row| self.normal(study, scene, row)).collect();
+                along(&self.levers, &normals)
             }
+            Kind::Turn(about) => along(&self.turns, &vec![about; rows]),
+            Kind::Stage(axis) => along(&self.turns, &vec![stage_direction(study, axis, &self.turns); rows]),
             Kind::Drive(axis) => {
                 let own = study.own[axis].filter(|_| side.at_drive());
                 (0..self.levers.len()).map(|motion| (Some(motion) == own).then(|| vec![1.0; rows])).collect()
@@ -185,7 +198,7 @@ impl<'c> Frame<'c> {
         let unit = |row| {
             let spoke = self.spoke(center, row);
             let size = length(spoke);
-            spoke.map(|part| part / size)
+            [spoke[0] / size, spoke[1] / size, spoke[2] / size]
         };
         (0..self.len()).map(unit).collect()
     }
@@ -223,8 +236,9 @@ impl<'c> Frame<'c> {
             }
             Setting::Cosine => {
                 let travelled = |d: usize, row: usize| self.nominal[d][row] - self.start[d];
+                let way = |row: usize| [travelled(0, row), travelled(1, row), travelled(2, row)];
                 let n = self.direction(channel.kind)?;
-                Some((0..self.len()).map(|row| -dot(n, [0, 1, 2].map(|d| travelled(d, row)))).collect())
+                Some((0..self.len()).map(|row| -dot(n, way(row))).collect())
             }
             Setting::Clock => self.clock(study, scene, channel, model),
         }
@@ -239,7 +253,13 @@ impl<'c> Frame<'c> {
     }
 
     /// What a second of delay does to a channel: minus the velocity that it sees.
-    fn clock(&self, study: &Study<'_>, scene: usize, channel: &Channel, model: &Model) -> Option<Vec<f64>> {
+    fn clock(
+        &self,
+        study: &Study<'_>,
+        scene: usize,
+        channel: &Channel<'_>,
+        model: &Model,
+    ) -> Option<Vec<f64>> {
         if !channel.kind.outside() {
             return None;
         }
@@ -288,8 +308,22 @@ fn ballbar(scene: usize, model: &Model, mut center: [f64; 3], mut radius: f64) -
     (center, radius)
 }
 
+/// What of lever arms lies in the direction of each row; `None` where that is nothing in all of them.
+fn projected(parts: &[Column<'_>; 3], directions: &[[f64; 3]]) -> Option<Vec<f64>> {
+    if parts.iter().all(|part| *part == Column::Same(0.0)) {
+        return None;
+    }
+    let [x, y, z] = parts;
+    let rows = directions.iter().enumerate();
+    seen(rows.map(|(row, direction)| dot(*direction, [x.at(row), y.at(row), z.at(row)])).collect())
+}
+
+fn at(columns: &[Vec<f64>; 3], row: usize) -> [f64; 3] {
+    [columns[0][row], columns[1][row], columns[2][row]]
+}
+
 /// One part of a lever arm in every row; `None` where it is zero everywhere.
-fn part(part: &Column<'_>, rows: usize) -> Option<Vec<f64>> {
+fn lever(part: &Column<'_>, rows: usize) -> Option<Vec<f64>> {
     match part {
         Column::Same(value) => (*value != 0.0).then(|| vec![*value; rows]),
         Column::Rows(values) => seen(values.to_vec()),
@@ -330,31 +364,37 @@ pub(crate) fn residuals(study: &Study<'_>, scene: usize, model: &Model, course: 
     let channels = &study.scenes[scene].channels;
     let rows = study.scenes[scene].rows();
     let mut residuals: Vec<Vec<f64>> = channels.iter().map(|_| Vec::with_capacity(rows)).collect();
-    each_frame(study, scene, model, course, |frame| {
-        for (number, (channel, residual)) in channels.iter().zip(&mut residuals).enumerate() {
-            let settings = frame.settings(study, scene, number, model);
-            let values = frame.residual(study, scene, channel, model);
-            residual.extend(values.iter().zip(settings).map(|(value, setting)| value - setting));
+    let of_frame = |frame: &Frame<'_>| -> Vec<Vec<f64>> {
+        let each = channels.iter().enumerate();
+        each.map(|(number, channel)| frame.left(study, scene, (number, channel), model)).collect()
+    };
+    each_frame(study, scene, model, course, of_frame, |_, parts| {
+        for (residual, part) in residuals.iter_mut().zip(parts) {
+            residual.extend(part);
         }
     });
     residuals
 }
 
-/// Runs through the rows of a scene in stretches.
-pub(crate) fn each_frame(
+/// Runs through the rows of a scene in stretches: `work` on all processors, `take` in the order of the rows.
+pub(crate) fn each_frame<T: Send>(
     study: &Study<'_>,
     scene: usize,
     model: &Model,
     course: &Course,
-    mut each: impl FnMut(&Frame<'_>),
+    work: impl Fn(&Frame<'_>) -> T + Sync,
+    mut take: impl FnMut(Range<usize>, T),
 ) {
-    let (mut terms, mut drive_terms) = (Terms::new(model), Terms::new(model));
-    let rows = study.scenes[scene].rows();
-    let mut from = 0;
-    while from < rows {
-        let end = (from + STRETCH).min(rows);
-        each(&Frame::new(study, course, from..end, &mut terms, &mut drive_terms));
-        from = end;
+    let mut passage = Passage::new(model);
+    for batch in pieces(0..study.scenes[scene].rows(), BATCH) {
+        let moved = passage.moved(study, course, batch);
+        let stretches = moved.stretches();
+        let results = parallel::counted(stretches.len(), moved.work(), |number| {
+            work(&Frame::new(study, course, &moved, stretches[number].clone()))
+        });
+        for (stretch, result) in stretches.into_iter().zip(results) {
+            take(stretch, result);
+        }
     }
 }
 

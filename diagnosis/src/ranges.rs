@@ -3,7 +3,6 @@
 //! In: a term and what the axes did. Out: the least and the greatest value of its nonlinear parameter. Beyond it a wave is a
 //! slope, a decay is a step and a settling is a jump: the fit would follow whatever the noise does there and give it a name.
 
-use crate::noise::typical_step;
 use crate::study::Study;
 use crate::terms::Shape;
 use crate::travel::Travel;
@@ -100,7 +99,7 @@ const SMOOTHED: f64 = 1.5;
 
 /// The shortest typical step of time of all recordings.
 pub(crate) fn shortest_step(study: &Study<'_>) -> f64 {
-    let steps = study.scenes.iter().map(|scene| typical_step(&scene.recording.time));
+    let steps = study.scenes.iter().map(|scene| scene.given.step);
     steps.fold(f64::INFINITY, f64::min)
 }
 

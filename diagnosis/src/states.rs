@@ -8,6 +8,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::noise::typical_step;
+use crate::parallel;
 use crate::position_loop::{PositionLoop, Stand};
 use crate::recording::{AxisChannels, Recording};
 use crate::way::{CORNER, Way};
@@ -20,6 +21,8 @@ pub(crate) type Shared = Arc<[f64]>;
 pub(crate) struct Given {
     /// s, from the first row.
     pub(crate) time: Shared,
+    /// The typical step of time between rows, s.
+    pub(crate) step: f64,
     /// The programmed position of each axis.
     pub(crate) programmed: Arc<[Shared]>,
     /// By the sensors of the study; NaN where the recording lacks one.
@@ -33,6 +36,7 @@ impl Given {
         let rows = recording.time.len();
         Self {
             time: recording.time.as_slice().into(),
+            step: typical_step(&recording.time),
             programmed: recording.axes.iter().map(|axis| nominal_position(axis, rows)).collect(),
             temperatures: temperatures.into(),
             loads: loads.into(),
@@ -41,7 +45,7 @@ impl Given {
 }
 
 /// How an axis is driven.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Driven {
     pub(crate) position_loop: PositionLoop,
     /// What the drive's own feedback shows beyond where the axis is: its zero.
@@ -149,15 +153,19 @@ impl<'s> Rows<'s> {
 impl States {
     /// The states of a recording behind these loops, shown by a clock with this offset.
     pub(crate) fn new(recording: &Recording, given: &Given, loops: &[Driven], clock: f64) -> Self {
-        let mut standing: Option<Standing> = None;
-        let mut axes = Vec::with_capacity(loops.len());
-        for ((axis, programmed), known) in recording.axes.iter().zip(given.programmed.iter()).zip(loops) {
-            axes.push(if stands(programmed) {
-                standing.get_or_insert_with(|| Standing::new(programmed.len())).at(programmed)
-            } else {
-                axis_states(&given.time, &recording.run, axis, programmed, *known, clock)
+        let still: Vec<bool> = given.programmed.iter().map(|programmed| stands(programmed)).collect();
+        let standing = still.contains(&true).then(|| Standing::new(given.time.len()));
+        let axes =
+            parallel::counted(loops.len().min(still.len()), given.time.len() * loops.len(), |number| {
+                let programmed = &given.programmed[number];
+                match standing.as_ref().filter(|_| still[number]) {
+                    Some(standing) => standing.at(programmed),
+                    None => {
+                        let axis = &recording.axes[number];
+                        axis_states(given, &recording.run, axis, programmed, loops[number], clock)
+                    }
+                }
             });
-        }
         Self { given: given.clone(), axes }
     }
 
@@ -200,20 +208,21 @@ pub(crate) fn nominal_position(axis: &AxisChannels, rows: usize) -> Shared {
 }
 
 fn axis_states(
-    time: &[f64],
+    given: &Given,
     run: &[i64],
     axis: &AxisChannels,
     programmed: &Shared,
     driven: Driven,
     clock: f64,
 ) -> AxisStates {
+    let time = &*given.time;
     let resolution = resolution(axis, programmed);
     let way = Way::new(time, programmed, derivative(time, run, programmed));
     if driven.position_loop.acts() {
         let start = start(time, axis, &way, driven);
         behind_loop(time, run, &way, driven, start, clock, resolution)
     } else {
-        as_programmed(time, run, &way, programmed, clock, resolution)
+        as_programmed(given, run, &way, programmed, clock, resolution)
     }
 }
 
@@ -230,16 +239,17 @@ fn resolution(axis: &AxisChannels, positions: &[f64]) -> f64 {
 
 /// Without a loop. A quick loop stays behind by its time constant times the speed on the way to a row, as a late clock does.
 fn as_programmed(
-    time: &[f64],
+    given: &Given,
     run: &[i64],
     way: &Way<'_>,
     programmed: &Shared,
     clock: f64,
     resolution: f64,
 ) -> AxisStates {
+    let time = &*given.time;
     let position = if clock == 0.0 { programmed.clone() } else { way.earlier(clock).into() };
     // A little earlier: what is seen then is the way just before, not the mean of the ways before and after.
-    let step = 1e-3 * typical_step(time);
+    let step = 1e-3 * given.step;
     let mut slope = way.earlier(clock + step);
     slope.iter_mut().zip(position.iter()).for_each(|(earlier, now)| *earlier = (*earlier - now) / step);
     let slope: Shared = slope.into();

@@ -10,6 +10,7 @@ use model_dsl::calibration::{Calibration, SensorReadings};
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
 
+use crate::course::LastCourse;
 use crate::model::{Effect, Fitted, Place, Side};
 use crate::noise;
 use crate::recording::{Instrument, Recording};
@@ -35,7 +36,7 @@ pub(crate) struct Study<'a> {
 pub(crate) struct Scene<'a> {
     pub(crate) recording: &'a Recording,
     pub(crate) given: Given,
-    pub(crate) channels: Vec<Channel>,
+    pub(crate) channels: Vec<Channel<'a>>,
     pub(crate) blocks: Vec<Block>,
     /// How long it was observed, s: gaps and pauses left out.
     pub(crate) observed: f64,
@@ -46,16 +47,18 @@ pub(crate) struct Scene<'a> {
     pub(crate) at_rest: bool,
     /// The directions in which the path leaves the plane of a ballbar's centre; the others a ballbar does not show.
     pub(crate) leans: [bool; 3],
+    /// The course that was worked out last.
+    pub(crate) last_course: LastCourse,
 }
 
 /// One observed quantity: a number with a direction in each row.
 #[derive(Clone, Debug)]
-pub(crate) struct Channel {
+pub(crate) struct Channel<'a> {
     /// The channel's name in the recording.
     pub(crate) name: String,
     pub(crate) kind: Kind,
     /// mm or rad; NaN where it is missing.
-    pub(crate) values: Vec<f64>,
+    pub(crate) values: &'a [f64],
     /// Samples that are left out as outliers.
     pub(crate) outliers: Vec<bool>,
     /// The standard deviation of the rounding of its values.
@@ -123,6 +126,11 @@ impl<'a> Study<'a> {
             .map(|recording| Scene::new(recording, equations, calibration, &sensors, &loads, &interpreter))
             .collect();
         Self { equations, interpreter, sensors, loads, scenes, known, own }
+    }
+
+    /// How many rows all recordings have together.
+    pub(crate) fn rows(&self) -> usize {
+        self.scenes.iter().map(Scene::rows).sum()
     }
 
     /// Whether the drive's own feedback of an axis was recorded anywhere.
@@ -212,8 +220,9 @@ impl<'a> Scene<'a> {
         let given = Given::new(recording, temperatures(recording, calibration, sensors), loads);
         Self {
             at_rest: false,
-            observed: observed(&recording.time),
-            corners: corners(recording, &given.programmed),
+            last_course: LastCourse::default(),
+            observed: observed(&given),
+            corners: corners(recording, &given),
             leans: leans(recording, &given.programmed, interpreter),
             recording,
             given,
@@ -229,7 +238,7 @@ impl<'a> Scene<'a> {
 
     /// Whether rows are so far apart that what a position loop does is over before the next.
     pub(crate) fn sparse(&self) -> bool {
-        noise::typical_step(&self.recording.time) > SPARSE
+        self.given.step > SPARSE
     }
 
     /// For each row whether it is fitted, and not held out.
@@ -253,11 +262,11 @@ impl<'a> Scene<'a> {
     }
 }
 
-fn corners(recording: &Recording, programmed: &[Shared]) -> Vec<bool> {
+fn corners(recording: &Recording, given: &Given) -> Vec<bool> {
     let rows = recording.time.len();
     let any = |each: &dyn Fn(&[f64]) -> Vec<bool>, most: usize| {
         let mut marked = vec![false; rows];
-        for position in programmed {
+        for position in &*given.programmed {
             marked.iter_mut().zip(each(position)).for_each(|(mark, here)| *mark |= here);
         }
         // A path of such rows only is one that was recorded so; nothing would be left.
@@ -265,7 +274,7 @@ fn corners(recording: &Recording, programmed: &[Shared]) -> Vec<bool> {
     };
     let mut corners =
         any(&|position| behind_corners(&recording.time, &recording.run, position), MOST_CORNERS);
-    if noise::typical_step(&recording.time) > SPARSE {
+    if given.step > SPARSE {
         let turns = any(&unseen_turns, MOST_TURNS);
         corners.iter_mut().zip(turns).for_each(|(corner, turn)| *corner |= turn);
     }
@@ -273,9 +282,9 @@ fn corners(recording: &Recording, programmed: &[Shared]) -> Vec<bool> {
 }
 
 /// The time of all steps that are no gaps.
-fn observed(time: &[f64]) -> f64 {
-    let longest = GAP * noise::typical_step(time);
-    time.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step <= longest).sum()
+fn observed(given: &Given) -> f64 {
+    let longest = GAP * given.step;
+    given.time.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step <= longest).sum()
 }
 
 /// A step of time so many times as long as the typical one is a gap.
@@ -346,12 +355,12 @@ fn temperatures(
     columns
 }
 
-fn channels(recording: &Recording, equations: &Equations) -> Vec<Channel> {
+fn channels<'a>(recording: &'a Recording, equations: &Equations) -> Vec<Channel<'a>> {
     let rows = recording.time.len();
     let mut channels = Vec::new();
-    let mut add = |name: String, kind: Kind, values: &[f64]| {
+    let mut add = |name: String, kind: Kind, values: &'a [f64]| {
         let rounding = noise::rounding(values);
-        channels.push(Channel { name, kind, values: values.to_vec(), outliers: vec![false; rows], rounding });
+        channels.push(Channel { name, kind, values, outliers: vec![false; rows], rounding });
     };
     for (direction, values) in recording.measured.iter().enumerate() {
         if let Some(values) = values {

@@ -3,7 +3,10 @@
 //! In: the states of every recording. Out: for each axis the range of its positions, its typical step from row to row, and
 //! how often it turned.
 
+use std::sync::Arc;
+
 use crate::course::Course;
+use crate::noise::middle;
 use crate::states::AxisStates;
 use crate::study::Study;
 
@@ -27,12 +30,12 @@ impl Travel {
 }
 
 /// The travel of every axis.
-pub(crate) fn travels(study: &Study<'_>, courses: &[Course]) -> Vec<Travel> {
+pub(crate) fn travels(study: &Study<'_>, courses: &[Arc<Course>]) -> Vec<Travel> {
     let observed: f64 = study.scenes.iter().map(|scene| scene.observed).sum();
     (0..study.equations.axes.len()).map(|axis| travel(courses, axis, observed)).collect()
 }
 
-fn travel(courses: &[Course], axis: usize, observed: f64) -> Travel {
+fn travel(courses: &[Arc<Course>], axis: usize, observed: f64) -> Travel {
     let axes = || courses.iter().map(|course| &course.shown.axes[axis]);
     let positions =
         axes().flat_map(|axis| axis.position.iter().copied()).filter(|position| position.is_finite());
@@ -42,8 +45,7 @@ fn travel(courses: &[Course], axis: usize, observed: f64) -> Travel {
         .flat_map(|axis| axis.position.windows(2).map(|pair| (pair[1] - pair[0]).abs()))
         .filter(|step| *step > 1e-9 * (high - low))
         .collect();
-    steps.sort_by(f64::total_cmp);
-    let step = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
+    let step = middle(&mut steps).unwrap_or(0.0);
     let turned = |axis: &AxisStates| axis.since_reversal.iter().filter(|since| **since == 0.0).count();
     let reversals = crate::number(axes().map(turned).sum());
     let between = if reversals > 0.0 { observed / reversals } else { 0.0 };

@@ -10,7 +10,7 @@ use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::fit;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::noise::{self, Noise, typical_step};
+use crate::noise::{self, Noise};
 use crate::study::{Kind, Study};
 use crate::sweep::Swept;
 use crate::terms::Shape;
@@ -110,7 +110,7 @@ const KEEPS: f64 = 0.8;
 pub(crate) fn moving(study: &Study<'_>, appraisal: &Appraisal) -> Option<Moving> {
     let mut found: Option<Moving> = None;
     for (scene, known) in study.scenes.iter().enumerate() {
-        let step = typical_step(&known.recording.time);
+        let step = known.given.step;
         for channel in 0..known.channels.len() {
             let residual = accepted(appraisal, scene, channel);
             if let Some((lag, rms)) = keeps_on(&known.recording.time, &residual, step)
@@ -133,8 +133,8 @@ pub(crate) fn answers_motion(
     channel: usize,
 ) -> bool {
     let Kind::Drive(axis) = study.scenes[scene].channels[channel].kind else { return false };
-    let time = &study.scenes[scene].recording.time;
-    looped(model, axis) && keeps_on(time, &accepted(appraisal, scene, channel), typical_step(time)).is_some()
+    let (time, step) = (&study.scenes[scene].recording.time, study.scenes[scene].given.step);
+    looped(model, axis) && keeps_on(time, &accepted(appraisal, scene, channel), step).is_some()
 }
 
 fn looped(model: &Model, axis: usize) -> bool {
@@ -185,7 +185,7 @@ fn differences(time: &[f64], residual: &[f64], step: f64, lag: usize) -> Option<
 pub(crate) fn fit_plainly(study: &Study<'_>, found: &mut Found, moving: &mut Moving) {
     let noises = found.appraisal.as_white();
     found.fit = fit::refine(study, found.fit.model.clone(), &noises, &found.travels);
-    let step = typical_step(&study.scenes[moving.scene].recording.time);
+    let step = study.scenes[moving.scene].given.step;
     let alike = (2.0 * moving.time / step).max(1.0);
     found.fit.covariances.iter_mut().for_each(|covariance| *covariance *= alike);
     found.appraisal = Appraisal::new(study, &found.fit.model);
@@ -215,7 +215,7 @@ pub(crate) fn weigh_drives_plainly(
     found.fit = fit;
     found.appraisal = Appraisal::new(study, &found.fit.model);
     let noise = found.appraisal.noises[scene][channel];
-    let step = typical_step(&study.scenes[scene].recording.time);
+    let step = study.scenes[scene].given.step;
     let share = (noise.wander / noise.size().max(f64::MIN_POSITIVE)).powi(2);
     let alike = 1.0 + 2.0 * share * noise.time_constant / step;
     found.fit.covariances.iter_mut().for_each(|covariance| *covariance *= alike);

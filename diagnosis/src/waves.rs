@@ -5,6 +5,9 @@
 //! noise, sorted into fine bins of position or time, and Fourier transformed at once: each bin of the spectrum is then
 //! what generalised least squares would gain from that wave.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use realfft::RealFftPlanner;
 
 use crate::course::Course;
@@ -12,6 +15,7 @@ use crate::kinship;
 use crate::model::{Effect, Model, Place, Side};
 use crate::noise::{Noise, Whitening, unwhiten, whiten};
 use crate::observations::{Frame, each_frame, residuals};
+use crate::parallel;
 use crate::ranges::{CYCLES, shortest_step};
 use crate::study::Study;
 use crate::terms::Shape;
@@ -54,7 +58,7 @@ impl WavePlace {
 /// The places where waves can be looked for.
 pub(crate) fn places(
     study: &Study<'_>,
-    courses: &[Course],
+    courses: &[Arc<Course>],
     noises: &[Vec<Noise>],
     travels: &[Travel],
 ) -> Vec<WavePlace> {
@@ -119,7 +123,7 @@ pub(crate) fn weighted(
                 .collect();
             let steps = Whitening::new(*noise).steps(&study.scenes[scene].recording.time, &valid);
             let mut white = raw;
-            whiten(&steps, &mut 0.0, &mut white);
+            whiten(&steps, &mut [0.0], &mut white);
             let mut weighted = white.clone();
             unwhiten(&steps, &mut weighted);
             let weight = mean_weight(&white, &weighted, &valid);
@@ -132,46 +136,74 @@ pub(crate) fn weighted(
 pub(crate) fn peaks(
     study: &Study<'_>,
     model: &Model,
-    courses: &[Course],
+    courses: &[Arc<Course>],
     residuals: &[Vec<Weighted>],
     travels: &[Travel],
     places: &[WavePlace],
 ) -> (Vec<Peak>, f64) {
-    let sources = sources(study, model, courses, residuals, places);
-    let mut peaks = Vec::new();
-    let mut tried = 0.0;
-    for source in &sources {
-        let own_axis = study.equations.motions[source.place.motion].axis;
-        if let Some(axis) = own_axis.filter(|_| source.place.cyclic) {
-            let positions: Vec<&[f64]> =
-                courses.iter().map(|course| &*course.shown.axes[axis].position).collect();
-            let travel = &travels[axis];
-            let shortest = 2.2 * travel.step;
-            if shortest < travel.range() / 2.0 {
-                tried += travel.range() / shortest;
-                let found = spectrum(&source.products, &positions, travel.low, travel.range(), shortest);
-                peaks.extend(best(&found, 2.0 / travel.range(), 3).into_iter().map(|(frequency, power)| {
-                    Peak {
-                        effect: effect(source, Shape::Cyclic { axis, period: 1.0 / frequency }),
-                        gain: power / source.strength,
-                    }
-                }));
-            }
-        }
-        let times: Vec<&[f64]> = courses.iter().map(|course| &*course.shown.given.time).collect();
-        let span = times.iter().filter_map(|time| time.last()).copied().fold(0.0, f64::max);
-        let step = shortest_step(study);
-        let observed = study.scenes.iter().map(|scene| scene.observed).fold(0.0, f64::max);
-        if source.place.vibration && span > 10.0 * step {
-            tried += span / (2.0 * step);
-            let found = spectrum(&source.products, &times, 0.0, span, 2.0 * step);
-            peaks.extend(best(&found, CYCLES / observed, 3).into_iter().map(|(frequency, power)| Peak {
-                effect: effect(source, Shape::Vibration { frequency }),
-                gain: power / source.strength,
-            }));
+    let (mut peaks, mut tried, mut count) = (Vec::new(), 0.0, 0_usize);
+    // A column for each row and place at a time is too much.
+    for places in places.chunks(PLACES) {
+        let sources = sources(study, model, courses, residuals, places);
+        count += sources.len();
+        let spectra = parallel::counted(sources.len(), study.rows() * sources.len(), |number| {
+            let source = &sources[number];
+            [along(study, source, courses, travels), in_time(study, source, courses)]
+        });
+        for looked_at in spectra.into_iter().flatten().flatten() {
+            tried += looked_at.tried;
+            peaks.extend(looked_at.peaks);
         }
     }
-    (peaks, tried / crate::number(sources.len().max(1)))
+    (peaks, tried / crate::number(count.max(1)))
+}
+
+/// At how many places waves are looked for at a time.
+const PLACES: usize = 8;
+/// How many waves of each kind are taken from one place.
+const OF_A_PLACE: usize = 3;
+
+/// The waves of one spectrum.
+struct LookedAt {
+    peaks: Vec<Peak>,
+    /// How many independent ones there were.
+    tried: f64,
+}
+
+/// Waves along the axis of a motion.
+fn along(
+    study: &Study<'_>,
+    source: &Source,
+    courses: &[Arc<Course>],
+    travels: &[Travel],
+) -> Option<LookedAt> {
+    let axis = study.equations.motions[source.place.motion].axis.filter(|_| source.place.cyclic)?;
+    let positions: Vec<&[f64]> = courses.iter().map(|course| &*course.shown.axes[axis].position).collect();
+    let (low, range) = (travels[axis].low, travels[axis].range());
+    let shortest = 2.2 * travels[axis].step;
+    (shortest < range / 2.0).then_some(())?;
+    let found = best(spectrum(&source.products, &positions, low, range, shortest), 2.0 / range, OF_A_PLACE);
+    let peak = |(frequency, power): (f64, f64)| Peak {
+        effect: effect(source, Shape::Cyclic { axis, period: 1.0 / frequency }),
+        gain: power / source.strength,
+    };
+    Some(LookedAt { peaks: found.into_iter().map(peak).collect(), tried: range / shortest })
+}
+
+/// Waves in time.
+fn in_time(study: &Study<'_>, source: &Source, courses: &[Arc<Course>]) -> Option<LookedAt> {
+    let times: Vec<&[f64]> = courses.iter().map(|course| &*course.shown.given.time).collect();
+    let span = times.iter().filter_map(|time| time.last()).copied().fold(0.0, f64::max);
+    let step = shortest_step(study);
+    (source.place.vibration && span > 10.0 * step).then_some(())?;
+    let observed = study.scenes.iter().map(|scene| scene.observed).fold(0.0, f64::max);
+    let found =
+        best(spectrum(&source.products, &times, 0.0, span, 2.0 * step), CYCLES / observed, OF_A_PLACE);
+    let peak = |(frequency, power): (f64, f64)| Peak {
+        effect: effect(source, Shape::Vibration { frequency }),
+        gain: power / source.strength,
+    };
+    Some(LookedAt { peaks: found.into_iter().map(peak).collect(), tried: span / (2.0 * step) })
 }
 
 fn effect(source: &Source, shape: Shape) -> Effect {
@@ -182,7 +214,7 @@ fn effect(source: &Source, shape: Shape) -> Effect {
 fn sources(
     study: &Study<'_>,
     model: &Model,
-    courses: &[Course],
+    courses: &[Arc<Course>],
     residuals: &[Vec<Weighted>],
     places: &[WavePlace],
 ) -> Vec<Source> {
@@ -192,9 +224,20 @@ fn sources(
         for source in &mut sources {
             source.products.push(Vec::with_capacity(study.scenes[scene].rows()));
         }
-        each_frame(study, scene, model, course, |frame| {
-            for side in [Side::After, Side::Drive] {
-                add_sources(study, scene, model, frame, side, &residuals[scene], &mut sources);
+        let sides: Vec<Side> = [Side::After, Side::Drive]
+            .into_iter()
+            .filter(|side| sources.iter().any(|source| source.place.side == *side))
+            .collect();
+        let gains = |frame: &Frame<'_>| -> Vec<(Side, Vec<Gains>)> {
+            let channels = &study.scenes[scene].channels;
+            let of = |side: Side| -> Vec<Gains> {
+                channels.iter().map(|channel| frame.gains(study, scene, channel, model, side)).collect()
+            };
+            sides.iter().map(|side| (*side, of(*side))).collect()
+        };
+        each_frame(study, scene, model, course, gains, |rows, gains| {
+            for (side, gains) in gains {
+                add_sources(&rows, side, &gains, &residuals[scene], &mut sources);
             }
         });
     }
@@ -203,40 +246,31 @@ fn sources(
     sources
 }
 
+/// How a channel sees each error motion in a stretch of rows.
+type Gains = Vec<Option<Vec<f64>>>;
+
+/// Adds a stretch of rows to the sources of a side; `gains` and `residuals` are those of the channels.
 fn add_sources(
-    study: &Study<'_>,
-    scene: usize,
-    model: &Model,
-    frame: &Frame<'_>,
+    rows: &Range<usize>,
     side: Side,
+    gains: &[Gains],
     residuals: &[Weighted],
     sources: &mut [Source],
 ) {
-    let mut here: Vec<&mut Source> = sources.iter_mut().filter(|source| source.place.side == side).collect();
-    if here.is_empty() {
-        return;
-    }
-    let rows = frame.first_row()..frame.first_row() + frame.len();
-    for source in &mut here {
-        if let Some(column) = source.products.last_mut() {
-            column.resize(rows.end, 0.0);
-        }
-    }
-    for (channel, residual) in study.scenes[scene].channels.iter().zip(residuals) {
-        let weight = residual.weight;
-        let gains = frame.gains(study, scene, channel, model, side);
-        for source in &mut here {
-            let (Some(gain), Some(target)) = (&gains[source.place.motion], source.products.last_mut()) else {
-                continue;
-            };
+    let work = rows.len() * sources.len() * gains.len();
+    parallel::each(sources, work, |source| {
+        let Some(target) = source.products.last_mut().filter(|_| source.place.side == side) else { return };
+        target.resize(rows.end, 0.0);
+        for (gains, residual) in gains.iter().zip(residuals) {
+            let Some(gain) = &gains[source.place.motion] else { continue };
             for (row, gain) in rows.clone().zip(gain) {
                 if residual.valid[row] && gain.is_finite() {
                     target[row] += gain * residual.weighted[row];
-                    source.strength += gain * gain * weight;
+                    source.strength += gain * gain * residual.weight;
                 }
             }
         }
-    }
+    });
 }
 
 /// The mean weight of a sample: that of the fast part of the noise.
@@ -249,7 +283,13 @@ fn mean_weight(white: &[f64], weighted: &[f64], valid: &[bool]) -> f64 {
 
 /// Squared magnitude of the Fourier sum of weights at places between `low` and `low + range`, from frequency 0 by equal
 /// steps up to that of the shortest period: pairs of frequency and power.
-fn spectrum(weights: &[Vec<f64>], places: &[&[f64]], low: f64, range: f64, shortest: f64) -> Vec<(f64, f64)> {
+fn spectrum(
+    weights: &[Vec<f64>],
+    places: &[&[f64]],
+    low: f64,
+    range: f64,
+    shortest: f64,
+) -> impl Iterator<Item = (f64, f64)> {
     // Three bins for the shortest period, and the range padded to twice its length.
     let size = transform_size(2.0 * range / shortest * 3.0);
     let bin = 2.0 * range / crate::number(size);
@@ -265,15 +305,14 @@ fn spectrum(weights: &[Vec<f64>], places: &[&[f64]], low: f64, range: f64, short
     let mut lines = transform.make_output_vec();
     if transform.process(&mut bins, &mut lines).is_err() {
         // It fails for lengths alone that are not its own.
-        return Vec::new();
+        lines.clear();
     }
     let step = 1.0 / (2.0 * range);
-    let frequencies = (0..lines.len()).map(|number| crate::number(number) * step);
+    let frequencies = (0..lines.len()).map(move |number| crate::number(number) * step);
     frequencies
         .zip(lines)
-        .take_while(|(frequency, _)| *frequency <= 1.0 / shortest)
+        .take_while(move |(frequency, _)| *frequency <= 1.0 / shortest)
         .map(|(frequency, line)| (frequency, line.norm_sqr()))
-        .collect()
 }
 
 /// The most bins of a transform.
@@ -287,14 +326,22 @@ fn transform_size(wanted: f64) -> usize {
 }
 
 /// The highest peaks above a frequency, measured against the spectrum around them, so that a slope is no peak.
-fn best(spectrum: &[(f64, f64)], above: f64, count: usize) -> Vec<(f64, f64)> {
-    let mut peaks: Vec<(f64, f64)> = spectrum
-        .windows(3)
-        .filter(|three| three[1].0 >= above && three[1].1 >= three[0].1 && three[1].1 > three[2].1)
-        .map(|three| (vertex(three), three[1].1))
-        .collect();
-    peaks.sort_by(|a, b| b.1.total_cmp(&a.1));
-    peaks.truncate(count);
+fn best(spectrum: impl Iterator<Item = (f64, f64)>, above: f64, count: usize) -> Vec<(f64, f64)> {
+    let mut peaks: Vec<(f64, f64)> = Vec::new();
+    let mut before: [Option<(f64, f64)>; 2] = [None, None];
+    for last in spectrum {
+        if let [Some(first), Some(middle)] = before
+            && middle.0 >= above
+            && middle.1 >= first.1
+            && middle.1 > last.1
+        {
+            // Of equal ones the first.
+            let place = peaks.partition_point(|peak| peak.1.total_cmp(&middle.1).is_ge());
+            peaks.insert(place, (vertex(&[first, middle, last]), middle.1));
+            peaks.truncate(count);
+        }
+        before = [before[1], Some(last)];
+    }
     peaks
 }
 

@@ -58,7 +58,7 @@ pub(super) fn report(
             parameters: described.parameters(),
             share: shares[number],
             location: words::location(study, fitted, names),
-            evidence: evidence(study, units, &fitted.effect, (&found.fit.model, &reduced)),
+            evidence: evidence(study, units, &fitted.effect, (&found.fit.model, diagnosis.after), &reduced),
             alternatives,
             explanation: fitted.effect.shape.meaning().to_owned(),
             compensable: calibrated.compensable(),
@@ -75,17 +75,22 @@ pub(super) fn report(
     numbers
 }
 
-/// What an effect does to held-out data, from the model with it and the one without: to what counts throughout; where it acts in
-/// a drive beside instruments outside, to that drive's own feedback, which shows it finer.
-fn evidence(study: &Study<'_>, units: &Units, effect: &Effect, models: (&Model, &Model)) -> Evidence {
+/// What an effect does to held-out data, from the model with it, with what that leaves, and the one without: to what counts
+/// throughout; where it acts in a drive beside instruments outside, to that drive's own feedback, which shows it finer.
+fn evidence(
+    study: &Study<'_>,
+    units: &Units,
+    effect: &Effect,
+    (whole, after): (&Model, Residual),
+    reduced: &Model,
+) -> Evidence {
     let own = |motion: usize| study.own.iter().position(|own| *own == Some(motion));
     let at_drive = effect.side().is_some_and(Side::at_drive) && units.outside;
     let axis = effect.motion().and_then(own).filter(|axis| at_drive && study.has_drive(*axis));
-    let size = |model: &Model| match axis {
-        Some(axis) => units.at_drive(study, model, axis),
-        None => units.residual(study, model),
+    let (with, without) = match axis {
+        Some(axis) => (units.at_drive(study, whole, axis), units.at_drive(study, reduced, axis)),
+        None => (after, units.residual(study, reduced)),
     };
-    let (with, without) = (size(models.0), size(models.1));
     let drive = axis.map(|axis| study.equations.axes[axis].letter.clone());
     Evidence { with: held_rms(&with), without: held_rms(&without), unit: with.unit, drive }
 }

@@ -5,10 +5,11 @@ use simulation::{Instrument as Reads, Normal};
 
 use super::*;
 use crate::fit;
-use crate::model::Fitted;
+use crate::model::{Fitted, Place, Side};
+use crate::noise::{Whitening, whiten};
 use crate::recording::Recording;
 use crate::study::Block;
-use crate::terms::Setting;
+use crate::terms::{Setting, Shape};
 use crate::testing::{Bench, ballbar, circle, distance, line, noisy, normals, path, peak, position, warming};
 
 const ERRORS: &str = "{EXX: [{polynomial: {axis: X, per: mm, unit: um, coefficients: [3, 0.05]}}], \
@@ -26,11 +27,11 @@ fn columns(study: &Study<'_>, channel: usize, model: &Model, regressors: &[Regre
     let noise = Noise { white: 1.0, wander: 0.0, time_constant: 1.0 };
     let course = Course::new(study, 0, model);
     let mut run = ChannelRun::new(study, 0, channel, model, noise, regressors, width);
-    let (mut terms, mut drive_terms) = (Terms::new(model), Terms::new(model));
     let rows = study.scenes[0].rows();
-    let frame = Frame::new(study, &course, 0..rows, &mut terms, &mut drive_terms);
+    let moved = Passage::new(model).moved(study, &course, 0..rows);
+    let frame = Frame::new(study, &course, &moved, 0..rows);
     let view = course.states(study.scenes[0].channels[channel].kind).rows(0..rows);
-    run.raw_columns(&frame, &view)
+    run.raw_columns(&[frame], &view)
 }
 
 fn machine(study: &Study<'_>, name: &str, side: Side, shape: Shape) -> Effect {
@@ -307,7 +308,7 @@ fn products_are_those_of_whitened_columns() {
         let steps = Whitening::new(COLORED).steps(&recording.time, &valid);
         for mut column in columns.column_iter_mut() {
             let mut values: Vec<f64> = column.iter().copied().collect();
-            whiten(&steps, &mut 0.0, &mut values);
+            whiten(&steps, &mut [0.0], &mut values);
             column.copy_from_slice(&values);
         }
         for (number, block) in study.scenes[0].blocks.iter().enumerate() {
@@ -370,10 +371,4 @@ fn a_rebased_design_gives_whole_coefficients() {
     let (here, there) = (solved([0.0; 4]), solved([0.02, -0.1, 0.03, 0.05]));
     assert!(distance(&here, &there) < 1e-9, "{here:?} {there:?}");
     assert!(peak(&here) > 1e-6);
-}
-
-#[test]
-fn jobs_keep_their_order() {
-    assert_eq!(in_parallel(23, &|number| number * number), (0..23).map(|n| n * n).collect::<Vec<_>>());
-    assert!(in_parallel(0, &|number| number).is_empty());
 }

@@ -42,7 +42,7 @@ fn kept(values: &[f64], valid: &[bool]) -> DVector<f64> {
 fn whitened(noise: Noise, time: &[f64], valid: &[bool], values: &[f64]) -> Vec<f64> {
     let steps = Whitening::new(noise).steps(time, valid);
     let mut column = values.to_vec();
-    whiten(&steps, &mut 0.0, &mut column);
+    whiten(&steps, &mut [0.0], &mut column);
     column
 }
 
@@ -73,7 +73,7 @@ fn whitening_goes_on_from_stretch_to_stretch() {
         let values = normals(12, time.len());
         let whole = whitened(noise, &time, &valid, &values);
         let mut filter = Whitening::new(noise);
-        let mut state = 0.0;
+        let mut state = [0.0];
         let mut pieces = Vec::new();
         for rows in [0..13, 13..14, 14..61, 61..90] {
             let steps = filter.steps(&time[rows.clone()], &valid[rows.clone()]);
@@ -83,6 +83,44 @@ fn whitening_goes_on_from_stretch_to_stretch() {
         }
         assert_eq!(pieces, whole);
     }
+}
+
+#[test]
+fn columns_whitened_together_are_those_whitened_alone() {
+    for (noise, time, valid) in cases() {
+        let steps = Whitening::new(noise).steps(&time, &valid);
+        for count in 1..11 {
+            let columns: Vec<f64> = (0..count).flat_map(|column| normals(20 + column, time.len())).collect();
+            let alone = columns.chunks(time.len()).flat_map(|column| whitened(noise, &time, &valid, column));
+            let (alone, mut states) = (alone.collect::<Vec<f64>>(), vec![0.0; columns.len() / time.len()]);
+            let mut together = columns.clone();
+            whiten(&steps, &mut states, &mut together);
+            assert_eq!(together, alone, "{noise:?}, {count} columns");
+        }
+    }
+}
+
+#[test]
+fn a_filter_that_has_settled_does_what_it_would_work_out() {
+    let noise = Noise { white: 0.7, wander: 1.3, time_constant: 5.0 };
+    let time: Vec<f64> = (0..400).map(|row| f64::from(row) * 0.25).collect();
+    let valid: Vec<bool> = (0..400).map(|row| row % 97 != 3).collect();
+    let mut filter = Whitening::new(noise);
+    let remembered = filter.steps(&time, &valid);
+    let mut forgetful = Whitening::new(noise);
+    let worked_out: Vec<Step> = time
+        .iter()
+        .zip(&valid)
+        .map(|(time, valid)| {
+            forgetful.settled = None;
+            forgetful.step(*time, *valid)
+        })
+        .collect();
+    let bits = |steps: &[Step]| -> Vec<[u64; 3]> {
+        steps.iter().map(|step| [step.decay, step.gain, step.weight].map(f64::to_bits)).collect()
+    };
+    assert_eq!(bits(&remembered), bits(&worked_out));
+    assert!(remembered.windows(2).filter(|pair| pair[0].gain == pair[1].gain).count() > 200);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use simulation::{Instrument as Reads, Normal};
 
 use super::*;
+use crate::course::STRETCH;
 use crate::model::Fitted;
 use crate::terms::Setting;
 use crate::terms::Shape;
@@ -239,8 +240,8 @@ fn stretches_make_no_difference() {
     let model = vec![Fitted { effect: wound, coefficients: vec![0.01] }];
     let course = Course::new(&study, 0, &model);
     let pieces = residuals(&study, 0, &model, &course);
-    let (mut terms, mut drive_terms) = (Terms::new(&model), Terms::new(&model));
-    let whole = Frame::new(&study, &course, 0..recording.time.len(), &mut terms, &mut drive_terms);
+    let moved = Passage::new(&model).moved(&study, &course, 0..recording.time.len());
+    let whole = Frame::new(&study, &course, &moved, 0..recording.time.len());
     for (number, channel) in study.scenes[0].channels.iter().enumerate() {
         assert!(distance(&whole.residual(&study, 0, channel, &model), &pieces[number]) < 1e-12);
     }

@@ -113,7 +113,11 @@ fn rows() {
         "data.csv:3:6: the row has 3 cells, the header 4: `1,1,2`",
         &["empty where nothing"],
     );
-    row("0,1,2,3,4\n", "data.csv:2:9: the row has 5 cells, the header 4", &["one cell for each column"]);
+    row(
+        "0,1,2,3,4\n",
+        "data.csv:2:9: the row has 5 cells, the header 4",
+        &["one cell for each column", "a decimal comma makes two of one"],
+    );
     row("0,1,1,2,5,3,5\n", "data.csv:2:9: the row has 7 cells", &["decimal commas"]);
     row(
         "0,1,2,\n1,1,2,nan\n",

@@ -5,6 +5,10 @@ use super::cell::BadCell;
 use super::clock::{Clock, NotLater};
 use super::error::DataError;
 
+/// No reading, position, temperature or load is larger, in mm, rad, degC or the load's unit: what is would leave nothing
+/// of the sums of squares that everything after this is made of.
+const LARGEST: f64 = 1e18;
+
 /// One row of a table, cell by cell.
 pub(super) trait Cells {
     /// What is wrong where it has not as many cells as the header.
@@ -93,7 +97,7 @@ impl<'h> Columns<'h> {
             let number = row.number(column.cell);
             let number = number.map_err(|bad| at_cell(row, column.cell, column.channel, bad))?;
             let value = column.channel.to_internal(number);
-            if value.is_infinite() {
+            if value.abs() > LARGEST {
                 let bad = BadCell {
                     message: format!("`{}` is too large a number", row.text(column.cell)),
                     help: "look at the unit of the channel".to_owned(),

@@ -163,13 +163,15 @@ impl Cells for Row<'_> {
             return None;
         }
         let message = format!("the row has {found} cells, the header {width}: `{}`", shown(self.line));
-        // With a comma in most numbers there are nearly two cells for each.
-        let commas = found > width + width / 2 && self.line.contains(&b',');
+        let commas = found > width && self.line.contains(&b',');
         let error = self.error(found.min(width), message);
-        Some(error.help(if commas {
-            "are there decimal commas? Write points in numbers, and commas between them"
-        } else {
-            "write one cell for each column, empty where nothing was measured"
+        Some(error.help(match commas {
+            // With a comma in most numbers there are nearly two cells for each.
+            true if found > width + width / 2 => {
+                "are there decimal commas? Write points in numbers, and commas between them"
+            }
+            true => "write one cell for each column, empty where nothing was measured; a decimal comma makes two of one",
+            false => "write one cell for each column, empty where nothing was measured",
         }))
     }
 

@@ -1,0 +1,112 @@
+//! Shapes: the terms of all regressors in some rows.
+//!
+//! In: regressors and the states of the machine. Out: the columns of each, before any lever arm. Regressors of different error
+//! motions often have the same term: each different one is worked out once.
+
+use super::Regressor;
+use crate::model::Side;
+use crate::parallel;
+use crate::states::Rows;
+use crate::terms::{Memory, Shape};
+
+/// The terms of all regressors, each different one worked out once.
+pub(super) struct Shapes {
+    different: Vec<Different>,
+    /// Of each regressor: the number of its shape, or of the two that its slope is taken from.
+    of: Vec<Use>,
+    slopes: Vec<Vec<Vec<f64>>>,
+}
+
+/// A term, behind the position loop that answers it where one does.
+struct Different {
+    shape: Shape,
+    answered_by: Option<usize>,
+    memory: Memory,
+    columns: Vec<Vec<f64>>,
+}
+
+enum Use {
+    Shape(usize),
+    /// How the position changes with the inertia of the axis's loop.
+    Inertia {
+        axis: usize,
+        place: usize,
+    },
+    Slope {
+        low: usize,
+        high: usize,
+        step: f64,
+        coefficients: Vec<f64>,
+        place: usize,
+    },
+}
+
+/// The relative step by which slopes are taken.
+const SLOPE_STEP: f64 = 1e-4;
+
+impl Shapes {
+    /// Nothing worked out yet.
+    pub(super) fn new(regressors: &[Regressor]) -> Self {
+        let mut shapes = Self { different: Vec::new(), of: Vec::new(), slopes: Vec::new() };
+        for regressor in regressors {
+            let shape = &regressor.effect.shape;
+            let answered_by = regressor.effect.side().and_then(Side::answered_by);
+            let place = shapes.slopes.len();
+            let usage = match (&regressor.slope, shape.nonlinear()) {
+                (Some(_), Some(_)) if let Shape::Lag { axis, .. } = *shape => Use::Inertia { axis, place },
+                (Some(coefficients), Some(parameter)) => {
+                    let step = parameter.value * SLOPE_STEP;
+                    let low = shapes.number(shape.with_nonlinear(parameter.value - step), answered_by);
+                    let high = shapes.number(shape.with_nonlinear(parameter.value + step), answered_by);
+                    Use::Slope { low, high, step: 2.0 * step, coefficients: coefficients.clone(), place }
+                }
+                _ => Use::Shape(shapes.number(shape.clone(), answered_by)),
+            };
+            if !matches!(usage, Use::Shape(_)) {
+                shapes.slopes.push(vec![Vec::new()]);
+            }
+            shapes.of.push(usage);
+        }
+        shapes
+    }
+
+    fn number(&mut self, shape: Shape, answered_by: Option<usize>) -> usize {
+        let same = |known: &Different| known.shape == shape && known.answered_by == answered_by;
+        if let Some(known) = self.different.iter().position(same) {
+            return known;
+        }
+        let columns = vec![Vec::new(); shape.columns()];
+        self.different.push(Different { shape, answered_by, memory: Memory::default(), columns });
+        self.different.len() - 1
+    }
+
+    /// Works out the next rows.
+    pub(super) fn fill(&mut self, view: &Rows<'_>) {
+        let work = view.len() * self.different.len();
+        parallel::each(&mut self.different, work, |known| {
+            known.shape.fill_behind(known.answered_by, view, &mut known.memory, &mut known.columns);
+        });
+        for usage in &self.of {
+            match usage {
+                Use::Shape(_) => {}
+                Use::Inertia { axis, place } => self.slopes[*place][0] = view.axis(*axis).inertia_slope(),
+                Use::Slope { low, high, step, coefficients, place } => {
+                    let sum = |number: usize, row: usize| -> f64 {
+                        let columns = self.different[number].columns.iter().zip(coefficients);
+                        columns.map(|(column, coefficient)| column[row] * coefficient).sum()
+                    };
+                    self.slopes[*place][0] =
+                        (0..view.len()).map(|row| (sum(*high, row) - sum(*low, row)) / step).collect();
+                }
+            }
+        }
+    }
+
+    /// The columns of a regressor in the rows that were filled last.
+    pub(super) fn columns(&self, regressor: usize) -> &[Vec<f64>] {
+        match &self.of[regressor] {
+            Use::Shape(number) => &self.different[*number].columns,
+            Use::Inertia { place, .. } | Use::Slope { place, .. } => &self.slopes[*place],
+        }
+    }
+}

@@ -49,8 +49,7 @@ fn written(link: &Link) -> String {
         writeln!(text, "      id: {}", link.id).unwrap();
     }
     if matches!(link.kind, Kind::Slide(_) | Kind::Rotary(_) | Kind::Spindle) {
-        let sign = if link.backwards { '-' } else { '+' };
-        writeln!(text, "      along: {sign}{}", &"XYZ"[link.along..=link.along]).unwrap();
+        writeln!(text, "      along: {}", direction(link)).unwrap();
     }
     if link.origin.iter().any(|sum| !sum.is_empty()) {
         let key = if matches!(link.kind, Kind::Tool | Kind::Part) { "offset" } else { "origin" };
@@ -64,6 +63,22 @@ fn written(link: &Link) -> String {
         text.push_str(&listed(errors, &link.id));
     }
     text
+}
+
+/// By its letter; as a vector where the link has an id of its own.
+fn direction(link: &Link) -> String {
+    let sign = if link.backwards { "-" } else { "+" };
+    let letter = &"XYZ"[link.along..=link.along];
+    let own_id = link.variable().is_some_and(|variable| !variable.eq_ignore_ascii_case(&link.id));
+    if !own_id {
+        return format!("{sign}{letter}");
+    }
+    let entries: [&str; 3] = std::array::from_fn(|axis| match (axis == link.along, link.backwards) {
+        (true, true) => "-1",
+        (true, false) => "1",
+        _ => "0",
+    });
+    format!("[{}]", entries.join(", "))
 }
 
 fn coordinate(sum: &[(f64, Option<String>)]) -> String {

@@ -10,7 +10,7 @@
 use std::path::Path;
 
 use model_dsl::calibration::{
-    AxisName, CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, MachineNames, MotionName,
+    AxisName, CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Limits, MachineNames, MotionName,
     SensorKind, SeriesInput, machine_of, read, write,
 };
 use model_dsl::diagnostic::{Diagnostics, render};
@@ -72,12 +72,11 @@ struct Said {
 
 fn said(calibration: &Calibration) -> Said {
     let name = |sensor: usize| calibration.sensors.iter().nth(sensor).unwrap().name.value.clone();
+    let Limits { compensation, rate, hold, fade } = calibration.limits;
+    let limits = [compensation, rate, hold, fade].map(|limit| limit.map(|limit| limit.value));
     let head = format!(
-        "{:?} {:?} {:?} {:?}",
-        calibration.machine.value,
-        calibration.source,
-        calibration.constants,
-        calibration.limits.compensation.map(|limit| limit.value)
+        "{:?} {:?} {:?} {limits:?}",
+        calibration.machine.value, calibration.source, calibration.constants
     );
     let term = |term: &CalibratedTerm| {
         let mut nameless = term.clone();
@@ -205,14 +204,18 @@ fn calibration() -> impl Strategy<Value = Calibration> {
     let derived = prop::collection::vec((any::<bool>(), prop::collection::vec(any::<Index>(), 1..4)), 3);
     let order = Just(vec![0_usize, 1, 2]).prop_shuffle();
     let terms = || prop::collection::vec(term(), 0..8);
-    let head = (prop::option::of(text()), prop::option::of(positive()), [number(), number()], text());
+    let limit = || prop::option::of(positive());
+    let limits = [limit(), limit(), limit(), limit()];
+    let head = (prop::option::of(text()), limits, [number(), number()], text());
     (derived, order, terms(), terms(), head, text()).prop_map(|(derived, order, first, then, head, name)| {
-        let (source, limit, constants, machine) = head;
+        let (source, limits, constants, machine) = head;
+        let [compensation, rate, hold, fade] =
+            limits.map(|limit| limit.map(|limit| Spanned::new(limit, Span::default())));
         let mut calibration = read_back(&sensors_alone(&derived, &order), &names());
         calibration.machine.value = machine;
         calibration.source = source;
         calibration.constants = constants.to_vec();
-        calibration.limits.compensation = limit.map(|limit| Spanned::new(limit, Span::default()));
+        calibration.limits = Limits { compensation, rate, hold, fade };
         let known = ["spindle", "d0", "d1", "d2", name.as_str()];
         let calibration = extended(calibration, first, &known);
         extended(calibration, then, &known)
@@ -295,7 +298,7 @@ calibration: 1
 machine: machines/mill.yaml
 source: table 1, second column
 constants: {Xt: 0 mm, Zt: 120.5 mm}
-limits: {compensation: 0.2 mm}
+limits: {compensation: 0.2 mm, rate: 2 mm/s, hold: 10 s, fade: 0.5 s}
 sensors:
   body: {mean: [T10, T21]}
   start: {initial: body}

@@ -1,4 +1,4 @@
-//! A controller in small: a few positions of a lathe, each compensated as in a servo cycle.
+//! A controller in small: a lathe that stands at a few positions for some servo cycles each, compensated and supervised.
 //!
 //! In: the equations that `build.rs` compiled from `lathe.yaml`, and a calibration written as constants.
 //! Out: a line for each position. But for printing, everything here would run on a controller: no
@@ -7,8 +7,8 @@
 use std::error::Error;
 
 use abbe_runtime::{
-    Compensator, DirectionTracker, ErrorMotion, Input, Limits, Sample, Table, Term, TermState, Values, Work,
-    states_needed,
+    AxisMemory, Compensator, DirectionTracker, ErrorMotion, Input, Limits, Memory, Sample, Supervisor, Table,
+    Term, TermState, Transition, Values, Work, states_needed,
 };
 use lathe::{Axes, Constants, Machine, Motions};
 
@@ -48,6 +48,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let work = Work { directions: &mut directions, motions: &mut values, travel: &mut [] };
     let mut compensator = Compensator::new(&machine, &motions, &mut states, work)?;
     compensator.limits = Limits { compensation: Some(0.1) };
+    // Nothing moves at once: the correction changes by 2 mm/s at most, and fades within 10 ms when it is switched.
+    let mut axes = [AxisMemory::default(); Axes::NAMES.len()];
+    let memory = Memory { axes: &mut axes, temperature: &mut [], silence: &mut [] };
+    let mut supervisor = Supervisor::new(compensator, memory)?;
+    supervisor.transition = Transition { rate: Some(2.0), fade: 0.010, ..Transition::default() };
 
     let mut trackers = [DirectionTracker::new(0.001); 2];
     for target in [[10.0, 0.0], [40.0, 150.0], [40.0, 300.0], [25.0, 300.0]] {
@@ -62,8 +67,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             time_step: 0.001,
         };
         let mut command = [0.0; 2];
-        let outcome = compensator.compensate(&sample, &mut command)?;
-        let [error_x, _, error_z] = outcome.error.map(|error| error * 1000.0);
+        let mut done = supervisor.cycle(&sample, &mut command);
+        while done.settling {
+            done = supervisor.cycle(&sample, &mut command);
+        }
+        let [error_x, _, error_z] = done.outcome?.error.map(|error| error * 1000.0);
         let [command_x, command_z] = command;
         println!(
             "wanted X{x:7.3} Z{z:7.3}  error {error_x:6.2} {error_z:6.2} um  commanded X{command_x:8.4} Z{command_z:8.4}"

@@ -148,16 +148,41 @@ fn check_constant(name: &Spanned<String>, names: &MachineNames, diagnostics: &mu
     });
 }
 
+/// A limit of zero forbids what it limits; only the time for which a reading is held may be zero.
 fn read_limits(node: &Node, name: Span, diagnostics: &mut Diagnostics) -> Limits {
-    let wording = keys("`limits`");
-    let compensation = Fields::open(node, name, wording, &["compensation"], diagnostics)
-        .and_then(|fields| fields.get("compensation"))
-        .and_then(|node| quantity::read(node, Dimension::LENGTH, "`compensation`", diagnostics));
-    if let Some(limit) = compensation.filter(|limit| limit.value <= 0.0) {
-        let mistake = Diagnostic::error("E0419", limit.span, "`compensation` must be greater than zero");
-        diagnostics.push(mistake.help("write the largest correction that may be applied, such as `0.2 mm`"));
+    let known = ["compensation", "rate", "hold", "fade"];
+    let Some(fields) = Fields::open(node, name, keys("`limits`"), &known, diagnostics) else {
+        return Limits::default();
+    };
+    let mut read = |key: &str, dimension: Dimension, example: &str| {
+        let words = format!("`{key}`");
+        let value = fields.get(key).and_then(|node| quantity::read(node, dimension, &words, diagnostics))?;
+        if value.value > 0.0 || key == "hold" && value.value == 0.0 {
+            return Some(value);
+        }
+        let least = if key == "hold" { "not be below zero" } else { "be greater than zero" };
+        let mistake = Diagnostic::error("E0419", value.span, format!("{words} must {least}"));
+        diagnostics.push(mistake.help(format!("write {example}")));
+        None
+    };
+    Limits {
+        compensation: read(
+            "compensation",
+            Dimension::LENGTH,
+            "the largest correction that may be applied, such as `0.2 mm`",
+        ),
+        rate: read(
+            "rate",
+            Dimension::LENGTH.per(Dimension::TIME),
+            "the fastest change of a correction that the drives take, such as `2 mm/s`",
+        ),
+        hold: read(
+            "hold",
+            Dimension::TIME,
+            "how long a silent sensor's last reading is trusted, such as `10 s`",
+        ),
+        fade: read("fade", Dimension::TIME, "the time in which a correction goes in or out, such as `1 s`"),
     }
-    Limits { compensation }
 }
 
 fn read_motions(

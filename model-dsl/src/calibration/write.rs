@@ -5,7 +5,7 @@ use super::sensors::{SensorKind, Sensors};
 use super::spelling::{Item, braces, brackets, quantity, sentence, term, word};
 use super::term::CalibratedTerm;
 use super::write_term::{Context, UNKNOWN, parameters};
-use super::{CalibratedMotion, Calibration};
+use super::{CalibratedMotion, Calibration, Limits};
 
 /// Writes a calibration: a term a line, in mm, rad, s and degC, so that no number is converted and [`super::read`] gives
 /// back every bit of it.
@@ -23,9 +23,7 @@ pub fn write(calibration: &Calibration, names: &MachineNames) -> String {
         text += &format!("source: {}\n", sentence(source));
     }
     text += &constants(calibration, names);
-    if let Some(limit) = &calibration.limits.compensation {
-        text += &format!("limits: {{compensation: {}}}\n", quantity(limit.value, "mm"));
-    }
+    text += &limits(&calibration.limits);
     text += &derived(&calibration.sensors);
     if !calibration.motions.is_empty() {
         text += "errors:\n";
@@ -38,6 +36,20 @@ fn constants(calibration: &Calibration, names: &MachineNames) -> String {
     let given = names.constants.iter().zip(&calibration.constants);
     let given: Vec<_> = given.map(|((name, _), value)| (word(name), quantity(*value, "mm"))).collect();
     if given.is_empty() { String::new() } else { format!("constants: {}\n", braces(given)) }
+}
+
+fn limits(limits: &Limits) -> String {
+    let given = [
+        ("compensation", limits.compensation, "mm"),
+        ("rate", limits.rate, "mm/s"),
+        ("hold", limits.hold, "s"),
+        ("fade", limits.fade, "s"),
+    ];
+    let given = given.into_iter();
+    let given: Vec<_> = given
+        .filter_map(|(key, limit, unit)| limit.map(|limit| (key.to_owned(), quantity(limit.value, unit))))
+        .collect();
+    if given.is_empty() { String::new() } else { format!("limits: {}\n", braces(given)) }
 }
 
 /// The derived sensors, each after those that it is derived from.

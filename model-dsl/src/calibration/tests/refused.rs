@@ -68,6 +68,9 @@ fn limits_are_checked() {
     refused_file(&file("{compensation: 0.2}"), &[("E0306", "0.2")]);
     refused_file(&file("{compensation: 0 mm}"), &[("E0419", "0 mm")]);
     refused_file(&file("{compensation: -1 mm}"), &[("E0419", "-1 mm")]);
+    refused_file(&file("{rate: 0 mm/s}"), &[("E0419", "0 mm/s")]);
+    refused_file(&file("{rate: 2 mm}"), &[("E0307", "mm")]);
+    refused_file(&file("{hold: -1 s, fade: 0 s}"), &[("E0419", "-1 s"), ("E0419", "0 s")]);
     refused_file(&file("{compensaton: 1 mm}"), &[("E0403", "compensaton")]);
 }
 

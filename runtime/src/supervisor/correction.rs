@@ -1,0 +1,133 @@
+//! The correction on its way to the one that is wanted.
+//!
+//! In: the correction wanted in each cycle, and whether it may be made. Out: the correction made, which follows it without
+//! a jump. It exists because every switch is the same problem: what is made and what is wanted differ from one cycle to
+//! the next, and the difference has to go away slowly.
+
+use super::Transition;
+use crate::math::sqrt;
+
+/// Less of an offset, or of a step, counts as none: sums of time steps round.
+const NOTHING: f64 = 1e-9;
+
+/// The correction of one axis, remembered from cycle to cycle. The default is that of a machine just started.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct AxisMemory {
+    /// Correction made in the last cycle: command less position, in mm or rad.
+    made: f64,
+    /// Correction wanted in this cycle.
+    wanted: f64,
+    /// Made less wanted at the last switch.
+    offset: f64,
+}
+
+impl AxisMemory {
+    /// The correction made in the last cycle: command less position, in mm or rad.
+    #[must_use]
+    pub const fn made(&self) -> f64 {
+        self.made
+    }
+}
+
+/// The correction of all axes.
+#[derive(Debug)]
+pub(super) struct Correction<'a> {
+    axes: &'a mut [AxisMemory],
+    /// Whether the correction of the last cycle was that of the compensator.
+    active: bool,
+    /// Whether the next cycle begins a transition.
+    switched: bool,
+    /// The part of the offset that is left, from 1 at a switch to 0.
+    left: f64,
+}
+
+impl<'a> Correction<'a> {
+    /// The correction that the memory holds, on its way to whatever is wanted first.
+    pub(super) fn new(axes: &'a mut [AxisMemory]) -> Self {
+        for axis in axes.iter_mut().filter(|axis| !axis.made.is_finite()) {
+            axis.made = 0.0;
+        }
+        Self { axes, active: false, switched: true, left: 0.0 }
+    }
+
+    /// Lets the next cycle begin a transition.
+    pub(super) const fn switch(&mut self) {
+        self.switched = true;
+    }
+
+    /// Length over all axes of the correction made.
+    pub(super) fn length(&self) -> f64 {
+        length(self.axes, |axis| axis.made)
+    }
+
+    /// Takes what is wanted now: the compensator's commands less the positions where its correction is active, and else
+    /// nothing.
+    pub(super) fn set_wanted(&mut self, positions: &[f64], commands: &[f64], active: bool) {
+        for ((axis, &position), &command) in self.axes.iter_mut().zip(positions).zip(commands) {
+            axis.wanted = if active { command - position } else { 0.0 };
+        }
+        self.switched |= active != self.active;
+        self.active = active;
+    }
+
+    /// Takes the correction made one step further, and tells whether it is still on its way.
+    pub(super) fn follow(&mut self, transition: &Transition, limit: Option<f64>, time_step: f64) -> bool {
+        if self.switched {
+            self.switched = false;
+            self.left = 1.0;
+            for axis in &mut *self.axes {
+                axis.offset = axis.made - axis.wanted;
+            }
+        }
+        let left = if transition.fade > 0.0 { self.left - time_step / transition.fade } else { 0.0 };
+        let fading = left > NOTHING;
+        self.left = if fading { left } else { 0.0 };
+        let within = if fading { self.within(limit) } else { 1.0 };
+        let left = self.left;
+        let next = |axis: &AxisMemory| within * (axis.wanted + left * axis.offset);
+        let change = length(self.axes, |axis| next(axis) - axis.made);
+        let part = part_of_change(change, transition.rate, time_step);
+        for axis in &mut *self.axes {
+            let next = next(axis);
+            axis.made = if part < 1.0 { axis.made + part * (next - axis.made) } else { next };
+        }
+        fading || part < 1.0
+    }
+
+    /// The factor that keeps a fading correction within the limit, or within what is made already where that is more.
+    fn within(&self, limit: Option<f64>) -> f64 {
+        let left = self.left;
+        let next = length(self.axes, |axis| axis.wanted + left * axis.offset);
+        let most = limit.map_or(f64::INFINITY, |limit| self.length().max(limit));
+        if next > most { most / next } else { 1.0 }
+    }
+
+    /// Writes the commands, where they are not those of the compensator already.
+    pub(super) fn write(&self, positions: &[f64], commands: &mut [f64], differs: bool) {
+        if differs {
+            for ((axis, &position), command) in self.axes.iter().zip(positions).zip(commands) {
+                *command = position + axis.made;
+            }
+        }
+    }
+}
+
+/// The part of a change that the rate lets pass in this cycle.
+fn part_of_change(change: f64, rate: Option<f64>, time_step: f64) -> f64 {
+    let Some(rate) = rate else { return 1.0 };
+    let most = rate * time_step;
+    if change <= most * (1.0 + NOTHING) {
+        return 1.0;
+    }
+    // A rate that is no number lets nothing pass.
+    let part = most / change;
+    if part > 0.0 { part } else { 0.0 }
+}
+
+/// Length over all axes of a number for each.
+fn length(axes: &[AxisMemory], of: impl Fn(&AxisMemory) -> f64) -> f64 {
+    sqrt(axes.iter().fold(0.0, |sum, axis| {
+        let part = of(axis);
+        sum + part * part
+    }))
+}

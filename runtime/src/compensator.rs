@@ -4,15 +4,18 @@
 //! command whose own error cancels. It exists because the error belongs to where the axes are, not to where they were
 //! asked to be: subtracting the error at the target leaves the difference of the two.
 
+mod batch;
 mod inverse;
 mod report;
 mod setup;
 
-use self::inverse::{Reach, tip};
+use self::inverse::{Reach, spread, tip};
 use self::setup::Needs;
-use crate::math::{add_scaled, dot, sqrt};
+use crate::math::{add_scaled, dot};
+use crate::sample::OneSample;
 use crate::{ErrorMotion, Kinematics, Sample, TermState};
 
+pub use self::batch::{Batch, BatchSizes, BatchWork};
 pub use self::report::{Convergence, Limits, Outcome, Refusal, SetupError, Work};
 pub use self::setup::states_needed;
 
@@ -60,6 +63,12 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
         })
     }
 
+    /// The number of axes of the machine.
+    #[must_use]
+    pub fn axes(&self) -> usize {
+        self.kinematics.axes()
+    }
+
     /// The least number of temperatures that a sample must hold.
     #[must_use]
     pub const fn sensors(&self) -> usize {
@@ -93,8 +102,7 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
     /// # Errors
     /// Every [`Refusal`] leaves the position of the sample in `out`, and nothing of a correction.
     pub fn compensate(&mut self, sample: &Sample<'_>, out: &mut [f64]) -> Result<Outcome, Refusal> {
-        same_length("out", self.kinematics.axes(), out.len())?;
-        self.check_position(sample)?;
+        self.check_lengths(sample, out)?;
         copy(sample.position, out);
         let error = self.begin(sample)?;
         if !self.enabled {
@@ -113,6 +121,12 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
         self.advance(sample);
         let error = self.error_at(sample);
         if error.iter().all(|part| part.is_finite()) { Ok(error) } else { Err(Refusal::NotFinite) }
+    }
+
+    /// Checks that there is a position, and room for a command, for each axis.
+    pub(crate) fn check_lengths(&self, sample: &Sample<'_>, out: &[f64]) -> Result<(), Refusal> {
+        same_length("out", self.kinematics.axes(), out.len())?;
+        self.check_position(sample)
     }
 
     /// Checks that there is a position for each axis.
@@ -144,6 +158,9 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
 
     /// Takes the memory of every term over to the sample.
     fn advance(&mut self, sample: &Sample<'_>) {
+        if !self.needs.memory {
+            return;
+        }
         let mut rest = &mut *self.states;
         for motion in self.motions {
             let Some((states, others)) = rest.split_at_mut_checked(motion.terms.len()) else { return };
@@ -154,24 +171,28 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
 
     /// The error in a state of the machine; memories are read only.
     fn error_at(&mut self, sample: &Sample<'_>) -> [f64; 3] {
-        self.sum_at(sample, |motion, states| motion.value(sample, states))
+        self.sum_at(sample, |motion, from, states| motion.read(from, states))
     }
 
     /// The part of the error in a state of the machine that is corrected in this cycle; memories are read only.
     fn corrected_at(&mut self, sample: &Sample<'_>) -> [f64; 3] {
-        self.sum_at(sample, |motion, states| motion.corrected(sample, states))
+        if !self.needs.ramp {
+            return self.error_at(sample);
+        }
+        self.sum_at(sample, |motion, from, states| motion.read_corrected(from, states))
     }
 
     /// The sum of lever arms times these values of the error motions.
-    fn sum_at(
+    fn sum_at<'s>(
         &mut self,
-        sample: &Sample<'_>,
-        of: impl Fn(&ErrorMotion<'_>, &[TermState]) -> f64,
+        sample: &'s Sample<'s>,
+        of: impl Fn(&ErrorMotion<'_>, &mut OneSample<'s>, &[TermState]) -> f64,
     ) -> [f64; 3] {
+        let mut from = OneSample::new(sample);
         let mut rest = &*self.states;
         for (motion, value) in self.motions.iter().zip(self.work.motions.iter_mut()) {
             let (states, others) = rest.split_at_checked(motion.terms.len()).unwrap_or_default();
-            *value = of(motion, states);
+            *value = of(motion, &mut from, states);
             rest = others;
         }
         let travel = if sample.travel.is_empty() {
@@ -248,14 +269,6 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
             _ => Ok(()),
         }
     }
-}
-
-/// The length over all axes of the motion in which each takes its share of the pull.
-fn spread(columns: &[[f64; 3]], pull: [f64; 3]) -> f64 {
-    sqrt(columns.iter().fold(0.0, |sum, &column| {
-        let share = dot(column, pull);
-        sum + share * share
-    }))
 }
 
 /// Copies as many numbers as both hold; unlike `copy_from_slice` it has no way to panic.

@@ -4,6 +4,8 @@
 //! which each axis can correct it. It exists so that generated code and the compiler's interpreter serve the same
 //! [`Compensator`](crate::Compensator).
 
+use crate::Lanes;
+
 /// The compiled equations of one machine: what the topology says, with the machine's constants already in it.
 ///
 /// Positions and travels are in mm for slides and in rad for rotary axes. Error motions are in mm for displacements and
@@ -23,6 +25,13 @@ pub trait Kinematics {
     ///
     /// A direction that is not sensitive is 0.0. A slice of the wrong length gives NaN in all three.
     fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3];
+
+    /// [`Kinematics::error`] in every lane at once, bit for bit; none: the machine answers row by row only.
+    ///
+    /// Generated code and the compiler's interpreter have it. A slice of the wrong length gives NaN in all lanes.
+    fn error_lanes(&self, _position: &[Lanes], _travel: &[Lanes], _motions: &[Lanes]) -> Option<[Lanes; 3]> {
+        None
+    }
 
     /// For each axis, the displacement of the tool tip relative to the part per mm of programmed motion.
     ///

@@ -28,6 +28,12 @@
 //! does not settle, where the correction is over the limit, where a number is not finite, the position passes
 //! unchanged and a [`Refusal`] says why.
 //!
+//! # Batches
+//!
+//! [`Compensator::compensate_batch`] takes many samples, a slice for each quantity, and gives for each row what
+//! [`Compensator::compensate`] gives, to the bit, rows side by side in [`Lanes`]. Maps, paths and files are for it; a servo
+//! cycle has one sample.
+//!
 //! # A single slide
 //!
 //! A slide X whose scale grows by 70 um/m and whose screw has 10 um of lost motion:
@@ -104,16 +110,25 @@ extern crate std;
 mod compensator;
 mod direction;
 mod kinematics;
+mod lanes;
 pub mod math;
 mod motion;
+mod real;
 mod sample;
+mod supervisor;
 mod table;
 mod term;
 
-pub use compensator::{Compensator, Convergence, Limits, Outcome, Refusal, SetupError, Work, states_needed};
+pub use compensator::{
+    Batch, BatchSizes, BatchWork, Compensator, Convergence, Limits, Outcome, Refusal, SetupError, Work,
+    states_needed,
+};
 pub use direction::{Direction, DirectionTracker};
 pub use kinematics::Kinematics;
+pub use lanes::Lanes;
 pub use motion::ErrorMotion;
+pub use real::Real;
 pub use sample::Sample;
+pub use supervisor::{AxisMemory, Cycle, Memory, State, Supervisor, Transition};
 pub use table::{Table, TableError, Values};
 pub use term::{Input, Term, TermState};

@@ -3,6 +3,8 @@
 //! In: numbers. Out: numbers, NaN where the argument is NaN. It exists because `core` has no sine: they come from libm,
 //! or from the standard library with the feature `std`.
 
+use crate::Real;
+
 /// Sine and cosine of an angle in rad, in this order.
 #[must_use]
 pub fn sin_cos(angle: f64) -> (f64, f64) {
@@ -37,19 +39,21 @@ pub fn exp_m1(value: f64) -> f64 {
 }
 
 /// Scalar product of two vectors.
+#[inline]
 #[must_use]
-pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub fn dot<T: Real>(a: [T; 3], b: [T; 3]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// `a + factor * b`, component by component.
+#[inline]
 #[must_use]
-pub fn add_scaled(a: [f64; 3], factor: f64, b: [f64; 3]) -> [f64; 3] {
+pub fn add_scaled<T: Real>(a: [T; 3], factor: T, b: [T; 3]) -> [T; 3] {
     [a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]]
 }
 
 /// Euclidean length of a vector.
 #[must_use]
-pub fn length(a: [f64; 3]) -> f64 {
-    sqrt(dot(a, a))
+pub fn length<T: Real>(a: [T; 3]) -> T {
+    dot(a, a).sqrt()
 }

@@ -3,7 +3,8 @@
 //! In: terms of a calibration and the state of the machine. Out: the value of EXX, EBZ, a squareness. It exists because
 //! the equations of a machine multiply lever arms with these values and know nothing of what makes them up.
 
-use crate::{Sample, Term, TermState};
+use crate::sample::{LaneSample, OneSample};
+use crate::{Lanes, Real, Sample, Term, TermState};
 
 /// One error motion of one link: the sum of its terms. Without terms it is zero.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -15,22 +16,47 @@ pub struct ErrorMotion<'a> {
 impl ErrorMotion<'_> {
     /// The value in a state of the machine, in mm or rad; `states` holds one state a term, or the value is NaN.
     #[must_use]
+    #[inline]
     pub fn value(&self, sample: &Sample<'_>, states: &[TermState]) -> f64 {
-        self.sum(states, |term, state| term.value(sample, state))
+        self.read(&mut OneSample::new(sample), states)
     }
 
     /// The part of the value that is corrected in this cycle, see [`Term::corrected`]; in mm or rad.
     #[must_use]
+    #[inline]
     pub fn corrected(&self, sample: &Sample<'_>, states: &[TermState]) -> f64 {
-        self.sum(states, |term, state| term.corrected(sample, state))
+        self.read_corrected(&mut OneSample::new(sample), states)
     }
 
-    /// The sum over the terms; NaN where there is not one state a term.
-    fn sum(&self, states: &[TermState], of: impl Fn(&Term<'_>, &TermState) -> f64) -> f64 {
-        if states.len() != self.terms.len() {
-            return f64::NAN;
+    /// [`value`](Self::value) in what is read.
+    #[inline]
+    pub(crate) fn read(&self, from: &mut OneSample<'_>, states: &[TermState]) -> f64 {
+        self.sum(states, |term, state| term.read(from, state.remembered()))
+    }
+
+    /// [`corrected`](Self::corrected) in what is read.
+    #[inline]
+    pub(crate) fn read_corrected(&self, from: &mut OneSample<'_>, states: &[TermState]) -> f64 {
+        self.sum(states, |term, state| term.read_corrected(from, state))
+    }
+
+    /// [`value`](Self::value) in every lane; `memories` holds what each term remembers, or the value is NaN.
+    pub(crate) fn read_lanes(&self, from: &mut LaneSample<'_>, memories: &[Lanes]) -> Lanes {
+        self.sum(memories, |term, memory| term.read(from, Some(memory)))
+    }
+
+    /// The sum over the terms; NaN where there is not one memory a term.
+    #[inline]
+    fn sum<M, T: Real>(&self, memories: &[M], mut of: impl FnMut(&Term<'_>, &M) -> T) -> T {
+        match (self.terms, memories) {
+            // Most motions have one term, for which setting up a loop would cost more than the sum.
+            ([term], [memory]) => T::from(0.0) + of(term, memory),
+            (terms, memories) if terms.len() == memories.len() => {
+                let both = terms.iter().zip(memories);
+                both.fold(T::from(0.0), |sum, (term, memory)| sum + of(term, memory))
+            }
+            _ => f64::NAN.into(),
         }
-        self.terms.iter().zip(states).fold(0.0, |sum, (term, state)| sum + of(term, state))
     }
 
     /// Takes the memory of every term over to the cycle of this sample: once a cycle, before the value is asked.

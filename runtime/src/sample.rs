@@ -3,7 +3,11 @@
 //! In: what the controller knows. Out: the argument of every term. It exists so that all terms read one state, the
 //! same that the inverse evaluates at other positions.
 
+mod readings;
+
 use crate::Direction;
+
+pub(crate) use self::readings::{LaneSample, OneSample, Readings, lanes};
 
 /// The state of the machine in one servo cycle, borrowed from the caller.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -23,19 +27,22 @@ pub struct Sample<'a> {
 }
 
 impl Sample<'_> {
-    /// Position of an axis; NaN where there is none.
+    /// Position of an axis; NaN where the slice is too short.
+    #[inline]
     pub(crate) fn position(&self, axis: usize) -> f64 {
-        number(self.position, axis)
+        self.position.get(axis).copied().unwrap_or(f64::NAN)
     }
 
-    /// Velocity of an axis; NaN where there is none.
+    /// Velocity of an axis; NaN where the slice is too short.
+    #[inline]
     pub(crate) fn velocity(&self, axis: usize) -> f64 {
-        number(self.velocity, axis)
+        self.velocity.get(axis).copied().unwrap_or(f64::NAN)
     }
 
-    /// Temperature of a sensor; NaN where there is none.
+    /// Temperature of a sensor; NaN where the slice is too short.
+    #[inline]
     pub(crate) fn temperature(&self, sensor: usize) -> f64 {
-        number(self.temperature, sensor)
+        self.temperature.get(sensor).copied().unwrap_or(f64::NAN)
     }
 
     /// Direction of an axis; none where the slice is too short.
@@ -50,9 +57,4 @@ impl Sample<'_> {
             .all(|slice| slice.iter().all(|value| value.is_finite()))
             && self.time_step.is_finite()
     }
-}
-
-/// The number at an index; NaN where there is none.
-fn number(slice: &[f64], index: usize) -> f64 {
-    slice.get(index).copied().unwrap_or(f64::NAN)
 }

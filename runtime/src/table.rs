@@ -3,9 +3,13 @@
 //! In: nodes and values, borrowed and checked once. Out: the value at a position, held constant outside the table. It
 //! exists because most published calibrations are tables, and the controller must read them in bounded time.
 
+mod place;
+
 use core::fmt;
 
-use crate::Direction;
+use crate::{Direction, Real};
+
+pub(crate) use self::place::{LanePlace, Place};
 
 /// The values of a table at its nodes: one curve, or one for each direction of motion.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -98,7 +102,9 @@ enum Nodes<'a> {
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Table<'a> {
     nodes: Nodes<'a>,
-    values: Values<'a>,
+    /// One for each direction, so that reading them has nothing to decide; one curve for both stands twice.
+    forward: &'a [f64],
+    reverse: &'a [f64],
 }
 
 impl<'a> Table<'a> {
@@ -115,7 +121,7 @@ impl<'a> Table<'a> {
             return Err(TableError::NotFinite);
         }
         check_values(values, None)?;
-        Ok(Self { nodes: Nodes::Uniform { start, step }, values })
+        Ok(Self::new(Nodes::Uniform { start, step }, values))
     }
 
     /// A table whose nodes lie at the positions `at` (mm or rad), strictly ascending; read by binary search.
@@ -130,21 +136,29 @@ impl<'a> Table<'a> {
         let below = at.iter().zip(at.iter().skip(1)).position(|(before, node)| node <= before);
         match below {
             Some(index) => Err(TableError::NotAscending { index: index.saturating_add(1) }),
-            None => Ok(Self { nodes: Nodes::At(at), values }),
+            None => Ok(Self::new(Nodes::At(at), values)),
+        }
+    }
+
+    const fn new(nodes: Nodes<'a>, values: Values<'a>) -> Self {
+        let (forward, reverse) = (values.curve(Direction::Positive), values.curve(Direction::Negative));
+        Self { nodes, forward, reverse }
+    }
+
+    /// The values while an axis moves in a direction.
+    #[inline]
+    const fn curve(&self, direction: Direction) -> &'a [f64] {
+        match direction {
+            Direction::Positive => self.forward,
+            Direction::Negative => self.reverse,
         }
     }
 
     /// The value at a position, on the curve of the given direction; NaN at NaN.
     #[must_use]
+    #[inline]
     pub fn value(&self, position: f64, direction: Direction) -> f64 {
-        if position.is_nan() {
-            return f64::NAN;
-        }
-        let values = self.values.curve(direction);
-        match self.nodes {
-            Nodes::Uniform { start, step } => read(values, (position - start) / step),
-            Nodes::At(at) => read_at(values, at, position),
-        }
+        self.read(0, position, direction, &mut None)
     }
 }
 
@@ -165,25 +179,11 @@ fn check_values(values: Values<'_>, expected: Option<usize>) -> Result<(), Table
     if finite { Ok(()) } else { Err(TableError::NotFinite) }
 }
 
-/// Reads a curve at a place counted in nodes: 1.5 is half way between the second and the third. Ends are held.
-fn read(values: &[f64], place: f64) -> f64 {
-    if place <= 0.0 {
-        return values.first().copied().unwrap_or(f64::NAN);
-    }
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the place is positive here; the cast cuts towards zero and saturates, and a place beyond the last node finds no pair of neighbours"
-    )]
-    let index = place as usize;
-    match (values.get(index), values.get(index.saturating_add(1))) {
-        (Some(&low), Some(&high)) => between(low, high, place - index as f64),
-        _ => values.last().copied().unwrap_or(f64::NAN),
-    }
-}
-
-/// Reads a curve over ascending nodes by binary search. Ends are held.
+/// Reads a curve over ascending nodes by binary search. Ends are held; NaN at NaN.
 fn read_at(values: &[f64], at: &[f64], position: f64) -> f64 {
+    if position.is_nan() {
+        return f64::NAN;
+    }
     let above = at.partition_point(|&node| node <= position);
     let Some(index) = above.checked_sub(1) else {
         return values.first().copied().unwrap_or(f64::NAN);
@@ -197,6 +197,7 @@ fn read_at(values: &[f64], at: &[f64], position: f64) -> f64 {
 }
 
 /// Linear interpolation; exactly `low` at 0.
-fn between(low: f64, high: f64, part: f64) -> f64 {
+#[inline]
+fn between<T: Real>(low: T, high: T, part: T) -> T {
     low + (high - low) * part
 }

@@ -9,8 +9,8 @@ mod memory;
 use core::f64::consts::TAU;
 
 use self::memory::{advance_filter, advance_play, follow, followed, take_up};
-use crate::math::sin;
-use crate::{Sample, Table};
+use crate::sample::{OneSample, Readings};
+use crate::{Real, Sample, Table};
 
 pub use self::memory::TermState;
 
@@ -115,32 +115,44 @@ impl Term<'_> {
     /// The memory is read and not advanced, so that an inverse may ask at as many positions as it needs. A term that has
     /// not been advanced yet answers as in its first cycle.
     #[must_use]
+    #[inline]
     pub fn value(&self, sample: &Sample<'_>, state: &TermState) -> f64 {
+        self.read(&mut OneSample::new(sample), state.remembered())
+    }
+
+    /// The value in what is read; `memory` is what the term remembers, none before its first cycle.
+    #[inline]
+    pub(crate) fn read<R: Readings>(&self, from: &mut R, memory: Option<&R::Number>) -> R::Number {
         match *self {
-            Self::Constant { value } => value,
-            Self::Polynomial { input, coefficients } => horner(coefficients, read(input, sample)),
+            Self::Constant { value } => value.into(),
+            Self::Polynomial { input: Input::Axis(axis), coefficients } => {
+                horner(coefficients, from.position(axis))
+            }
+            Self::Polynomial { input: Input::Sensor(sensor), coefficients } => {
+                horner(coefficients, from.temperature(sensor))
+            }
             Self::Coupling { axis, coefficients } => {
-                let position = sample.position(axis);
+                let position = from.position(axis);
                 position * horner(coefficients, position)
             }
-            Self::Table { axis, table } => sample
-                .direction(axis)
-                .map_or(f64::NAN, |direction| table.value(sample.position(axis), direction)),
+            Self::Table { axis, ref table } => from.table(table, axis),
             Self::Backlash { axis, lost_motion, wind_up, .. } => {
-                -0.5 * lost_motion * take_up(sample, axis, wind_up, state)
+                R::Number::from(-0.5 * lost_motion) * take_up(from, axis, wind_up, memory)
             }
             Self::Cyclic { axis, period, amplitude, phase } => {
-                amplitude * sin(TAU * (sample.position(axis) / period) + phase)
+                let turn = R::Number::from(TAU) * (from.position(axis) / period.into());
+                R::Number::from(amplitude) * (turn + phase.into()).sin_cos().0
             }
             Self::Expansion { axis, sensor, coefficient, reference } => {
-                coefficient * (sample.temperature(sensor) - reference) * sample.position(axis)
+                let warmer = from.temperature(sensor) - reference.into();
+                R::Number::from(coefficient) * warmer * from.position(axis)
             }
             Self::Growth { sensor, coefficient, reference, time_constant } => {
-                let now = sample.temperature(sensor);
-                let filtered = if time_constant > 0.0 { state.memory.unwrap_or(now) } else { now };
-                coefficient * (filtered - reference)
+                let now = from.temperature(sensor);
+                let filtered = if time_constant > 0.0 { memory.copied().unwrap_or(now) } else { now };
+                R::Number::from(coefficient) * (filtered - reference.into())
             }
-            Self::Lag { axis, gain } => -sample.velocity(axis) / gain,
+            Self::Lag { axis, gain } => -from.velocity(axis) / gain.into(),
         }
     }
 
@@ -150,12 +162,18 @@ impl Term<'_> {
     /// correction follows the take-up u by no more than `2 dt / r` a cycle, as CRADA Y1293-0207 spreads its
     /// compensation move over steps, and ends exactly on it; a reversal on the way turns it back from where it is.
     #[must_use]
+    #[inline]
     pub fn corrected(&self, sample: &Sample<'_>, state: &TermState) -> f64 {
+        self.read_corrected(&mut OneSample::new(sample), state)
+    }
+
+    /// [`corrected`](Self::corrected) in what is read.
+    pub(crate) fn read_corrected(&self, from: &mut OneSample<'_>, state: &TermState) -> f64 {
         match *self {
             Self::Backlash { axis, lost_motion, wind_up, ramp } if ramp > 0.0 => {
-                -0.5 * lost_motion * followed(state, take_up(sample, axis, wind_up, state))
+                -0.5 * lost_motion * followed(state, take_up(from, axis, wind_up, state.remembered()))
             }
-            _ => self.value(sample, state),
+            _ => self.read(from, state.remembered()),
         }
     }
 
@@ -169,7 +187,8 @@ impl Term<'_> {
                     advance_play(sample, axis, wind_up, state);
                 }
                 if ramp > 0.0 {
-                    follow(take_up(sample, axis, wind_up, state), sample.time_step, ramp, state);
+                    let now = take_up(&OneSample::new(sample), axis, wind_up, state.remembered());
+                    follow(now, sample.time_step, ramp, state);
                 }
             }
             Self::Growth { sensor, time_constant, .. } if time_constant > 0.0 => {
@@ -180,15 +199,7 @@ impl Term<'_> {
     }
 }
 
-/// What a polynomial reads from the sample.
-fn read(input: Input, sample: &Sample<'_>) -> f64 {
-    match input {
-        Input::Axis(axis) => sample.position(axis),
-        Input::Sensor(sensor) => sample.temperature(sensor),
-    }
-}
-
 /// The polynomial with the given coefficients from the constant upwards; NaN at NaN, even where it has no coefficient.
-fn horner(coefficients: &[f64], at: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0 * at, |sum, coefficient| sum * at + coefficient)
+fn horner<T: Real>(coefficients: &[f64], at: T) -> T {
+    coefficients.iter().rev().fold(T::from(0.0) * at, |sum, &coefficient| sum * at + coefficient.into())
 }

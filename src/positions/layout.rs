@@ -1,10 +1,14 @@
 //! Columns of a CSV file of positions. In: the header, and the row of units where there is
 //! one. Out: the place and the scale of every quantity that the machine needs.
 
+use std::collections::BTreeSet;
+
 use csv::ByteRecord;
 use model_dsl::equations::Equations;
 use model_dsl::quantity::{Dimension, parse_unit};
 use model_dsl::suggest::nearest;
+
+use super::state::quoted;
 
 /// What the machine and its calibration need from a row.
 pub(crate) struct Wanted<'a> {
@@ -116,9 +120,10 @@ impl Reader<'_> {
                 self.mistakes.push(format!("column `{name}` is one of the output's; rename it"));
             }
         }
-        for (at, name) in self.header.iter().enumerate() {
-            if !name.is_empty() && self.header.iter().take(at).any(|earlier| earlier == name) {
-                self.mistakes.push(format!("column `{name}` stands twice"));
+        let mut known = BTreeSet::new();
+        for name in self.header.iter().filter(|name| !name.is_empty()) {
+            if !known.insert(name) {
+                self.mistakes.push(format!("column `{}` stands twice", quoted(name)));
             }
         }
     }
@@ -194,12 +199,13 @@ impl Reader<'_> {
             }
             Ok(_) => {
                 self.mistakes.push(format!(
-                    "`{unit}` is not a unit for column `{name}`; write `{default}` or the like"
+                    "`{}` is not a unit for column `{name}`; write `{default}` or the like",
+                    quoted(unit)
                 ));
                 None
             }
             Err(_) => {
-                self.mistakes.push(format!("`{unit}` of column `{name}` is not a unit"));
+                self.mistakes.push(format!("`{}` of column `{name}` is not a unit", quoted(unit)));
                 None
             }
         }
@@ -209,7 +215,7 @@ impl Reader<'_> {
         let known = self.header.iter().any(|own| own == name);
         if !known {
             let near = nearest(name, self.header.iter().map(String::as_str));
-            let help = near.map(|near| format!("; is it `{near}`?")).unwrap_or_default();
+            let help = near.map(|near| format!("; is it `{}`?", quoted(near))).unwrap_or_default();
             self.mistakes.push(format!("there is no column `{name}`, {what}{help}"));
         }
         self.optional(name, default).unwrap_or(Column { index: 0, factor: 1.0, offset: 0.0 })

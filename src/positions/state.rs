@@ -14,6 +14,10 @@ pub(crate) struct State<'s> {
     timed: bool,
     sensors: SensorReadings<'s>,
     input_columns: Vec<Option<Column>>,
+    /// For each column that is read its number in this row, in mm, rad, s or degC.
+    numbers: Vec<f64>,
+    /// For each sensor its input in this row; NaN where it has none.
+    inputs: Vec<f64>,
     trackers: Vec<DirectionTracker>,
     previous: Option<(f64, Vec<f64>)>,
     position: Vec<f64>,
@@ -38,6 +42,8 @@ impl<'s> State<'s> {
             timed,
             sensors: SensorReadings::new(sensors),
             input_columns,
+            numbers: vec![f64::NAN; layout.width],
+            inputs: vec![f64::NAN; sensors.len()],
             trackers: hysteresis.iter().map(|threshold| DirectionTracker::new(*threshold)).collect(),
             previous: None,
             position: vec![0.0; axes],
@@ -50,11 +56,6 @@ impl<'s> State<'s> {
         }
     }
 
-    /// The columns of the file.
-    pub(crate) fn layout(&self) -> &Layout {
-        &self.layout
-    }
-
     /// Takes a row; the error names the column and the text that is wrong in it.
     pub(crate) fn take(&mut self, row: &ByteRecord) -> Result<(), String> {
         if row.len() != self.layout.width {
@@ -62,10 +63,11 @@ impl<'s> State<'s> {
             return Err(format!("{} cells under {} columns{hint}", row.len(), self.layout.width));
         }
         self.check(row)?;
-        self.read_positions(row)?;
+        self.read_positions();
         self.read_directions(row)?;
-        self.read_time(row)?;
-        self.read_temperatures(row)
+        self.read_time();
+        self.read_temperatures();
+        Ok(())
     }
 
     /// The state as the runtime reads it.
@@ -80,22 +82,23 @@ impl<'s> State<'s> {
         }
     }
 
-    /// Reads every number of the row once, so that a bad row leaves the state as it was.
-    fn check(&self, row: &ByteRecord) -> Result<(), String> {
+    /// Reads every number of the row before any is used, so that a bad row leaves the state as it was.
+    fn check(&mut self, row: &ByteRecord) -> Result<(), String> {
         let layout = &self.layout;
         let columns = layout.axes.iter().chain(&layout.sensors).chain(&layout.time);
-        let travels = layout.travels.iter().flatten();
-        columns.chain(travels).try_for_each(|column| self.number(row, *column).map(drop))?;
+        for column in columns.chain(layout.travels.iter().flatten()) {
+            self.numbers[column.index] = self.read(row, *column)?;
+        }
         for index in layout.directions.iter().flatten() {
             direction(text(row, *index), self.name(*index))?;
         }
         if let (Some(column), Some((before, from))) = (layout.time, &self.previous) {
-            let step = self.number(row, column)? - before;
+            let step = self.number(column) - before;
             if step < 0.0 {
                 return Err(format!("the time goes back by {} s", -step));
             }
             let mut axes = layout.axes.iter().zip(from);
-            let moves = axes.any(|(axis, from)| self.number(row, *axis).is_ok_and(|to| to != *from));
+            let moves = axes.any(|(axis, from)| self.number(*axis) != *from);
             if step == 0.0 && moves && self.timed {
                 return Err("the axes move while the time stands still".to_owned());
             }
@@ -103,19 +106,18 @@ impl<'s> State<'s> {
         Ok(())
     }
 
-    fn read_positions(&mut self, row: &ByteRecord) -> Result<(), String> {
+    fn read_positions(&mut self) {
         for (axis, column) in self.layout.axes.iter().enumerate() {
-            self.position[axis] = self.number(row, *column)?;
+            self.position[axis] = self.number(*column);
         }
         self.travel.clear();
         if self.layout.travels.iter().any(Option::is_some) {
             // The layout has all travels or none.
             for column in self.layout.travels.iter().flatten() {
-                let travel = self.number(row, *column)?;
+                let travel = self.number(*column);
                 self.travel.push(travel);
             }
         }
-        Ok(())
     }
 
     fn read_directions(&mut self, row: &ByteRecord) -> Result<(), String> {
@@ -128,9 +130,9 @@ impl<'s> State<'s> {
         Ok(())
     }
 
-    fn read_time(&mut self, row: &ByteRecord) -> Result<(), String> {
-        let Some(column) = self.layout.time else { return Ok(()) };
-        let now = self.number(row, column)?;
+    fn read_time(&mut self) {
+        let Some(column) = self.layout.time else { return };
+        let now = self.number(column);
         self.velocity.fill(0.0);
         if let Some((before, from)) = &self.previous {
             self.time_step = now - before;
@@ -139,36 +141,52 @@ impl<'s> State<'s> {
                 self.velocity.iter_mut().zip(moved).for_each(|(slot, moved)| *slot = moved / self.time_step);
             }
         }
-        self.previous = Some((now, self.position.clone()));
-        Ok(())
+        let mut from = self.previous.take().map(|(_, from)| from).unwrap_or_default();
+        from.clone_from(&self.position);
+        self.previous = Some((now, from));
     }
 
-    fn read_temperatures(&mut self, row: &ByteRecord) -> Result<(), String> {
-        let mut inputs = vec![f64::NAN; self.input_columns.len()];
-        for (slot, column) in inputs.iter_mut().zip(&self.input_columns) {
+    fn read_temperatures(&mut self) {
+        for (slot, column) in self.inputs.iter_mut().zip(&self.input_columns) {
             if let Some(column) = column {
-                *slot = self.number(row, *column)?;
+                *slot = self.numbers[column.index];
             }
         }
-        let all = self.sensors.update(|index| inputs.get(index).copied().unwrap_or(f64::NAN));
+        let all = self.sensors.update(|index| self.inputs.get(index).copied().unwrap_or(f64::NAN));
         self.temperature.copy_from_slice(all);
-        Ok(())
+    }
+
+    /// The number of a column in the row that was checked last.
+    fn number(&self, column: Column) -> f64 {
+        self.numbers[column.index]
     }
 
     fn name(&self, index: usize) -> &str {
         self.layout.header.get(index).map_or("", String::as_str)
     }
 
-    fn number(&self, row: &ByteRecord, column: Column) -> Result<f64, String> {
+    fn read(&self, row: &ByteRecord, column: Column) -> Result<f64, String> {
         let text = text(row, column.index);
         match text.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok((value + column.offset) * column.factor),
             _ => {
                 let hint = if text.contains(',') { "; write a decimal point" } else { "" };
-                Err(format!("column `{}`: `{text}` is not a number{hint}", self.name(column.index)))
+                let name = quoted(self.name(column.index));
+                Err(format!("column `{name}`: `{}` is not a number{hint}", quoted(text)))
             }
         }
     }
+}
+
+/// Text of the input for a message: as much of it as a person reads, and nothing that steers a terminal.
+pub(crate) fn quoted(text: &str) -> String {
+    const MOST: usize = 40;
+    let plain = |letter: char| if letter.is_control() { '\u{fffd}' } else { letter };
+    let mut quoted: String = text.chars().take(MOST).map(plain).collect();
+    if text.chars().nth(MOST).is_some() {
+        quoted.push('\u{2026}');
+    }
+    quoted
 }
 
 /// A cell as text; what is not UTF-8 is no number and no direction either.
@@ -181,6 +199,6 @@ fn direction(text: &str, name: &str) -> Result<Direction, String> {
     match text.trim() {
         "1" | "+1" => Ok(Direction::Positive),
         "-1" => Ok(Direction::Negative),
-        other => Err(format!("column `{name}`: `{other}` is not a direction, +1 or -1")),
+        other => Err(format!("column `{}`: `{}` is not a direction, +1 or -1", quoted(name), quoted(other))),
     }
 }

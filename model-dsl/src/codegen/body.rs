@@ -32,15 +32,25 @@ enum Binding {
     Atom,
 }
 
+/// What a function computes with.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Numbers {
+    /// Plain `f64`.
+    Plain,
+    /// Any `T` that is an `abbe_runtime::Real`: one row, or several side by side.
+    Any,
+}
+
 struct Printer<'p> {
     equations: &'p Equations,
     program: &'p Program,
+    numbers: Numbers,
     uses: Vec<usize>,
 }
 
 /// Writes a program as a function body.
-pub(super) fn body(equations: &Equations, program: &Program) -> Body {
-    let printer = Printer { equations, program, uses: program.uses() };
+pub(super) fn body(equations: &Equations, program: &Program, numbers: Numbers) -> Body {
+    let printer = Printer { equations, program, numbers, uses: program.uses() };
     let shared = (0..program.steps.len()).filter(|step| printer.is_shared(*step));
     let bindings = shared.map(|step| {
         let name = step_name(step);
@@ -51,7 +61,7 @@ pub(super) fn body(equations: &Equations, program: &Program) -> Body {
     let reads = reads(&inputs);
     Body {
         reads,
-        prelude: prelude(equations, &inputs, reads),
+        prelude: prelude(equations, &inputs, reads, numbers),
         bindings: bindings.collect(),
         results: program.results.iter().map(|result| printer.value(*result).0).collect(),
     }
@@ -64,9 +74,9 @@ impl Printer<'_> {
 
     fn value(&self, value: Value) -> (TokenStream, Binding) {
         match value {
-            Value::Zero => (quote! { 0.0 }, Binding::Atom),
+            Value::Zero => self.number(0.0),
             Value::Number(number) => {
-                number_literal(self.program.numbers.get(number).copied().unwrap_or(f64::NAN))
+                self.number(self.program.numbers.get(number).copied().unwrap_or(f64::NAN))
             }
             Value::Input(read) => (input(self.equations, read), Binding::Atom),
             Value::Step(step) if self.is_shared(step) => {
@@ -74,6 +84,14 @@ impl Printer<'_> {
                 (quote! { #name }, Binding::Atom)
             }
             Value::Step(step) => self.step(step),
+        }
+    }
+
+    fn number(&self, number: f64) -> (TokenStream, Binding) {
+        let (literal, binding) = number_literal(number);
+        match self.numbers {
+            Numbers::Plain => (literal, binding),
+            Numbers::Any => (quote! { T::from(#literal) }, Binding::Atom),
         }
     }
 
@@ -175,10 +193,14 @@ fn reads(inputs: &BTreeSet<Input>) -> Reads {
 }
 
 /// Brings the constants and the sines and cosines that a program reads into scope.
-fn prelude(equations: &Equations, inputs: &BTreeSet<Input>, reads: Reads) -> TokenStream {
+fn prelude(equations: &Equations, inputs: &BTreeSet<Input>, reads: Reads, numbers: Numbers) -> TokenStream {
     let mut tokens = TokenStream::new();
-    if reads.constants {
-        tokens.extend(quote! { let constants = &self.constants; });
+    match numbers {
+        _ if !reads.constants => {}
+        Numbers::Plain => tokens.extend(quote! { let constants = &self.constants; }),
+        Numbers::Any => tokens.extend(quote! {
+            let constants = Constants::from_array(self.constants.to_array().map(T::from));
+        }),
     }
     for (number, axis) in equations.axes.iter().enumerate() {
         let (sine, cosine) = (Input::Sin(number), Input::Cos(number));
@@ -193,7 +215,12 @@ fn prelude(equations: &Equations, inputs: &BTreeSet<Input>, reads: Reads) -> Tok
             }
         };
         let (sine, cosine, position) = (name(sine), name(cosine), field(&axis.variable));
-        tokens.extend(quote! { let (#sine, #cosine) = ::abbe_runtime::math::sin_cos(axes.#position); });
+        tokens.extend(match numbers {
+            Numbers::Plain => {
+                quote! { let (#sine, #cosine) = ::abbe_runtime::math::sin_cos(axes.#position); }
+            }
+            Numbers::Any => quote! { let (#sine, #cosine) = axes.#position.sin_cos(); },
+        });
     }
     tokens
 }

@@ -4,8 +4,9 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-use super::body::{Body, body};
+use super::body::{Body, Numbers, body};
 use super::docs;
+use super::structs::of_any;
 use crate::equations::Equations;
 use crate::program::Programs;
 
@@ -44,7 +45,7 @@ fn parameters(equations: &Equations, body: &Body) -> TokenStream {
 }
 
 fn nominal(equations: &Equations, programs: &Programs) -> TokenStream {
-    let body = body(equations, &programs.nominal);
+    let body = body(equations, &programs.nominal, Numbers::Plain);
     let about = docs::attributes(&format!(
         "The nominal position of the tool tip relative to the part: X, Y, Z of the part's frame \\[mm\\], 0 where not sensitive.\n\n{}\n\n{}.",
         docs::nominal_equations(equations),
@@ -62,20 +63,35 @@ fn nominal(equations: &Equations, programs: &Programs) -> TokenStream {
     }
 }
 
+/// The error for the records of doubles that a controller has, and in any numbers for the interface.
 fn error(equations: &Equations, programs: &Programs) -> TokenStream {
-    let body = body(equations, &programs.error);
+    let body = body(equations, &programs.error, Numbers::Any);
     let about = docs::attributes(&format!(
         "The error of the tool tip relative to the part to first order, actual minus commanded: X, Y, Z of the part's frame \\[mm\\], 0 where not sensitive.\n\n{}\n\n{}.",
         docs::error_equations(equations),
         programs.error.operations()
     ));
-    let parameters = parameters(equations, &body);
-    let motions = unused("motions", body.reads.motions);
+    let (axes, motions) = (unused("axes", body.reads.axes), unused("motions", body.reads.motions));
+    let of_axes = of_any(equations.axes.len());
+    let of_motions = of_any(equations.motions.len());
+    let (travels, plain, given) = match equations.travels.len() {
+        0 => Default::default(),
+        count => {
+            let (name, of_travels) = (unused("travels", body.reads.travels), of_any(count));
+            (quote! { , #name: &Travels #of_travels }, quote! { , travels: &Travels }, quote! { , travels })
+        }
+    };
     let Body { prelude, bindings, results, .. } = body;
     quote! {
         #about
         #[must_use]
-        pub fn error(&self, #parameters, #motions: &Motions) -> [f64; 3] {
+        pub fn error(&self, axes: &Axes #plain, motions: &Motions) -> [f64; 3] {
+            self.error_in(axes #given, motions)
+        }
+        /// [`Machine::error`] in one row or in several side by side, as [`abbe_runtime::Lanes`].
+        #[inline]
+        #[must_use]
+        pub fn error_in<T: ::abbe_runtime::Real>(&self, #axes: &Axes #of_axes #travels, #motions: &Motions #of_motions) -> [T; 3] {
             #prelude #bindings
             [#(#results),*]
         }
@@ -83,7 +99,7 @@ fn error(equations: &Equations, programs: &Programs) -> TokenStream {
 }
 
 fn levers(equations: &Equations, programs: &Programs) -> TokenStream {
-    let body = body(equations, &programs.levers);
+    let body = body(equations, &programs.levers, Numbers::Plain);
     let about = docs::attributes(&format!(
         "The lever arm of every error motion, in the order of [`Motions::NAMES`]: X, Y, Z of the part's frame, a pure number for a displacement, mm for an angle.\n\n{}.",
         programs.levers.operations()
@@ -103,7 +119,7 @@ fn levers(equations: &Equations, programs: &Programs) -> TokenStream {
 }
 
 fn directions(equations: &Equations, programs: &Programs) -> TokenStream {
-    let body = body(equations, &programs.directions);
+    let body = body(equations, &programs.directions, Numbers::Plain);
     let axes = unused("axes", body.reads.axes);
     let count = Literal::usize_unsuffixed(equations.axes.len());
     let Body { prelude, bindings, results, .. } = body;
@@ -124,22 +140,34 @@ fn kinematics(equations: &Equations) -> TokenStream {
     let motions = Literal::usize_unsuffixed(equations.motions.len());
     let travels: Vec<_> =
         equations.travels.iter().map(|travel| Literal::usize_unsuffixed(travel.axis)).collect();
-    let (check, argument) = if travels.is_empty() {
-        (quote! { let [] = *travel else { return [f64::NAN; 3] }; }, TokenStream::new())
-    } else {
-        let convert = quote! { let Ok(travel) = travel.try_into() else { return [f64::NAN; 3] }; };
-        (convert, quote! { , &Travels::from_array(travel) })
-    };
+    let (position, of_axes) = record("position", "Axes", equations.axes.len());
+    let (travel, of_travels) = record("travel", "Travels", travels.len());
+    let (values, of_motions) = record("motions", "Motions", equations.motions.len());
+    let of_travels = (!travels.is_empty()).then(|| quote! { &#of_travels, });
     quote! {
+        impl Machine {
+            /// [`Machine::error_in`] from slices, NaN where one has the wrong length.
+            fn error_from<T: ::abbe_runtime::Real>(&self, position: &[T], travel: &[T], motions: &[T]) -> [T; 3] {
+                #position
+                #values
+                #travel
+                self.error_in(&#of_axes, #of_travels &#of_motions)
+            }
+        }
         impl ::abbe_runtime::Kinematics for Machine {
             fn axes(&self) -> usize { #axes }
             fn travels(&self) -> &[usize] { &[#(#travels),*] }
             fn motions(&self) -> usize { #motions }
             fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
-                let Ok(position) = position.try_into() else { return [f64::NAN; 3] };
-                let Ok(motions) = motions.try_into() else { return [f64::NAN; 3] };
-                #check
-                Machine::error(self, &Axes::from_array(position) #argument, &Motions::from_array(motions))
+                self.error_from(position, travel, motions)
+            }
+            fn error_lanes(
+                &self,
+                position: &[::abbe_runtime::Lanes],
+                travel: &[::abbe_runtime::Lanes],
+                motions: &[::abbe_runtime::Lanes],
+            ) -> Option<[::abbe_runtime::Lanes; 3]> {
+                Some(self.error_from(position, travel, motions))
             }
             fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {
                 let filled = match position.try_into() {
@@ -153,5 +181,16 @@ fn kinematics(equations: &Equations) -> TokenStream {
                 }
             }
         }
+    }
+}
+
+/// The check of a slice that becomes a record of so many fields, and the record.
+fn record(slice: &str, record: &str, fields: usize) -> (TokenStream, TokenStream) {
+    let (slice, record) = (quote::format_ident!("{slice}"), quote::format_ident!("{record}"));
+    let otherwise = quote! { else { return [T::from(f64::NAN); 3] }; };
+    if fields == 0 {
+        (quote! { let [] = *#slice #otherwise }, quote! { #record {} })
+    } else {
+        (quote! { let Ok(#slice) = #slice.try_into() #otherwise }, quote! { #record::from_array(#slice) })
     }
 }

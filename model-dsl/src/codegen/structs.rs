@@ -28,7 +28,17 @@ pub(super) fn all(equations: &Equations) -> TokenStream {
     }
 }
 
-/// A record of doubles with its names and its conversions from and to an array.
+/// `<T>` after the name of a record with so many fields.
+pub(super) fn of_any(fields: usize) -> TokenStream {
+    if fields == 0 {
+        TokenStream::new()
+    } else {
+        quote! { <T> }
+    }
+}
+
+/// A record of numbers with its names and its conversions from and to an array. The numbers are doubles unless said
+/// otherwise; a record without fields has none.
 fn record(name: &str, about: &str, fields: &[(String, String)]) -> TokenStream {
     let ident = format_ident!("{name}");
     let count = Literal::usize_unsuffixed(fields.len());
@@ -36,23 +46,30 @@ fn record(name: &str, about: &str, fields: &[(String, String)]) -> TokenStream {
     let docs: Vec<_> = fields.iter().map(|(_, doc)| docs::attributes(doc)).collect();
     let about = docs::attributes(about);
     let names: Vec<_> = fields.iter().map(|(name, _)| name).collect();
+    let (default, bound, number) = match fields.len() {
+        0 => (quote! {}, quote! {}, quote! { f64 }),
+        _ => (quote! { <T = f64> }, quote! { <T: Copy> }, quote! { T }),
+    };
+    let argument = of_any(fields.len());
     quote! {
         #about
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
-        pub struct #ident {
-            #(#docs pub #idents: f64,)*
+        pub struct #ident #default {
+            #(#docs pub #idents: #number,)*
         }
         impl #ident {
             /// The names, in the order of the array.
             pub const NAMES: [&'static str; #count] = [#(#names),*];
+        }
+        impl #bound #ident #argument {
             /// The record from an array.
             #[must_use]
-            pub const fn from_array([#(#idents),*]: [f64; #count]) -> Self {
+            pub const fn from_array([#(#idents),*]: [#number; #count]) -> Self {
                 Self { #(#idents),* }
             }
             /// The record as an array.
             #[must_use]
-            pub const fn to_array(self) -> [f64; #count] {
+            pub const fn to_array(self) -> [#number; #count] {
                 [#(self.#idents),*]
             }
         }

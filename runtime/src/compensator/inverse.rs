@@ -5,73 +5,145 @@
 //! directions that a rotary table has turned, and directions that nothing reaches.
 
 use crate::math::{add_scaled, dot, length};
+use crate::{Lanes, Real};
 
 /// A direction that the slides reach only by moving ten thousand times as far as the tip counts as out of reach.
 const DEPENDENT: f64 = 1e-4;
+
+/// What rounding leaves of the square of a scalar product of two unit vectors at right angles: a few units in the last
+/// place of 1, squared.
+const ROUNDING: f64 = 64.0 * f64::EPSILON * f64::EPSILON;
 
 /// The pseudo-inverse of `A = J J^T`: `A^+ = sum of p p^T` over the vectors p, which are zero where nothing is reached.
 ///
 /// `J^+ = J^T A^+`, so that an axis with direction d moves by `d . (A^+ E)`.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Reach {
-    vectors: [[f64; 3]; 3],
+pub(super) struct Reach<T = f64> {
+    vectors: [[T; 3]; 3],
 }
 
-impl Reach {
-    /// The directions reached by axes that move the tip along these columns, by Gram-Schmidt: first an orthonormal basis
-    /// of what they span, then a basis conjugate under A. Columns that vanish or depend on others add nothing.
-    pub(super) fn new(columns: &[[f64; 3]]) -> Self {
-        let mut basis = [[0.0; 3]; 3];
-        for found in 0..basis.len() {
-            let next = farthest(columns, &basis);
-            let reach = length(next);
-            // Also ends at NaN, which no comparison lets through.
-            if reach.partial_cmp(&DEPENDENT).is_none_or(core::cmp::Ordering::is_le) {
-                break;
-            }
-            if let Some(place) = basis.get_mut(found) {
-                *place = add_scaled([0.0; 3], 1.0 / reach, next);
-            }
+impl<T: Real> Reach<T> {
+    /// Nothing is reached.
+    pub(super) fn nothing() -> Self {
+        Self { vectors: [zero(); 3] }
+    }
+
+    /// The directions reached by axes that move the tip along these columns.
+    pub(super) fn new(columns: &[[T; 3]]) -> Self {
+        let (straight, skew) = straight(columns);
+        if !skew.any_above(0.0) {
+            return Self { vectors: straight };
         }
-        Self { vectors: conjugate(columns, &basis) }
+        let general = conjugate(columns, &basis(columns));
+        let mut vectors = straight;
+        for (vector, general) in vectors.iter_mut().zip(general) {
+            *vector = above(skew, 0.0.into(), general, *vector);
+        }
+        Self { vectors }
     }
 
     /// `A^+ E`.
-    pub(super) fn apply(&self, error: [f64; 3]) -> [f64; 3] {
-        self.vectors.iter().fold([0.0; 3], |sum, &vector| add_scaled(sum, dot(vector, error), vector))
+    pub(super) fn apply(&self, error: [T; 3]) -> [T; 3] {
+        self.vectors.iter().fold(zero(), |sum, &vector| add_scaled(sum, dot(vector, error), vector))
+    }
+}
+
+/// The vector of length 0.
+fn zero<T: Real>() -> [T; 3] {
+    [T::from(0.0); 3]
+}
+
+/// `then` where a number is above a bound, and `otherwise` elsewhere.
+fn above<T: Real>(number: T, bound: T, then: [T; 3], otherwise: [T; 3]) -> [T; 3] {
+    let ([x, y, z], [u, v, w]) = (then, otherwise);
+    [number.above(bound, x, u), number.above(bound, y, v), number.above(bound, z, w)]
+}
+
+/// Puts the vector of one row into its lane.
+pub(super) fn set(lanes: &mut [Lanes; 3], lane: usize, vector: [f64; 3]) {
+    for (lanes, part) in lanes.iter_mut().zip(vector) {
+        lanes.set(lane, part);
     }
 }
 
 /// `A v = J J^T v`: what the tip does when each axis moves by its share of v.
-pub(super) fn tip(columns: &[[f64; 3]], v: [f64; 3]) -> [f64; 3] {
-    columns.iter().fold([0.0; 3], |sum, &column| add_scaled(sum, dot(column, v), column))
+pub(super) fn tip<T: Real>(columns: &[[T; 3]], v: [T; 3]) -> [T; 3] {
+    columns.iter().fold(zero(), |sum, &column| add_scaled(sum, dot(column, v), column))
+}
+
+/// The length over all axes of the motion in which each takes its share of v.
+pub(super) fn spread<T: Real>(columns: &[[T; 3]], v: [T; 3]) -> T {
+    let sum = columns.iter().fold(T::from(0.0), |sum, &column| {
+        let share = dot(column, v);
+        sum + share * share
+    });
+    sum.sqrt()
+}
+
+/// The vectors where A is diagonal, as it is for slides at right angles along the axes of the part, or turned with it
+/// through any angle when there are three alike; and 1 where it is not, by more than rounding, or 0.
+fn straight<T: Real>(columns: &[[T; 3]]) -> ([[T; 3]; 3], T) {
+    let (nothing, one) = (T::from(0.0), T::from(1.0));
+    let mut squares = zero();
+    let mut mixed = zero();
+    for &[x, y, z] in columns {
+        squares = add_scaled(squares, one, [x * x, y * y, z * z]);
+        mixed = add_scaled(mixed, one, [y * z, z * x, x * y]);
+    }
+    let [xx, yy, zz] = squares;
+    let mut skew = nothing;
+    for (mixed, bound) in mixed.into_iter().zip([yy * zz, zz * xx, xx * yy]) {
+        skew = (mixed * mixed).above(bound * ROUNDING.into(), one, skew);
+    }
+    let scale = |square: T| square.above((DEPENDENT * DEPENDENT).into(), one / square.sqrt(), nothing);
+    let [x, y, z] = squares.map(scale);
+    ([[x, nothing, nothing], [nothing, y, nothing], [nothing, nothing, z]], skew)
+}
+
+/// An orthonormal basis of what the columns span, by Gram-Schmidt. Columns that vanish or depend on others add nothing.
+fn basis<T: Real>(columns: &[[T; 3]]) -> [[T; 3]; 3] {
+    let mut basis = [zero(); 3];
+    for found in 0..basis.len() {
+        let next = farthest(columns, &basis);
+        let reach = length(next);
+        // Also ends at NaN, which no comparison lets through.
+        if !reach.any_above(DEPENDENT) {
+            break;
+        }
+        if let Some(place) = basis.get_mut(found) {
+            let unit = add_scaled(zero(), T::from(1.0) / reach, next);
+            *place = above(reach, DEPENDENT.into(), unit, zero());
+        }
+    }
+    basis
 }
 
 /// What is left of the column that the basis covers least.
-fn farthest(columns: &[[f64; 3]], basis: &[[f64; 3]; 3]) -> [f64; 3] {
-    columns.iter().fold([0.0; 3], |best, &column| {
+fn farthest<T: Real>(columns: &[[T; 3]], basis: &[[T; 3]; 3]) -> [T; 3] {
+    columns.iter().fold(zero(), |best, &column| {
         // Twice, since once leaves rounding errors of the size of what it took away.
         let rest = without(without(column, basis), basis);
-        if dot(rest, rest) > dot(best, best) { rest } else { best }
+        above(dot(rest, rest), dot(best, best), rest, best)
     })
 }
 
 /// A vector without its parts along an orthonormal basis.
-fn without(vector: [f64; 3], basis: &[[f64; 3]; 3]) -> [f64; 3] {
+fn without<T: Real>(vector: [T; 3], basis: &[[T; 3]; 3]) -> [T; 3] {
     basis.iter().fold(vector, |rest, &unit| add_scaled(rest, -dot(unit, rest), unit))
 }
 
 /// Vectors that span the same as the basis, with `p_i^T A p_j` 1 for i = j and 0 otherwise.
-fn conjugate(columns: &[[f64; 3]], basis: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    let mut vectors = [[0.0; 3]; 3];
+fn conjugate<T: Real>(columns: &[[T; 3]], basis: &[[T; 3]; 3]) -> [[T; 3]; 3] {
+    let mut vectors = [zero(); 3];
     for (place, &unit) in basis.iter().enumerate() {
         let image = tip(columns, unit);
         let rest = vectors.iter().fold(unit, |rest, &p| add_scaled(rest, -dot(p, image), p));
         let weight = dot(rest, tip(columns, rest));
         if let Some(vector) = vectors.get_mut(place)
-            && weight > 0.0
+            && weight.any_above(0.0)
         {
-            *vector = add_scaled([0.0; 3], 1.0 / crate::math::sqrt(weight), rest);
+            let scaled = add_scaled(zero(), T::from(1.0) / weight.sqrt(), rest);
+            *vector = above(weight, 0.0.into(), scaled, zero());
         }
     }
     vectors
@@ -103,6 +175,23 @@ mod tests {
         let pull = Reach::new(&columns).apply([5.0, 4.0, 9.0]);
         assert!((dot(columns[0], pull) - 2.0).abs() < 1e-12);
         assert!((dot(columns[1], pull) - 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn slides_at_right_angles_move_as_any_others() {
+        let (sine, cosine) = 0.7_f64.sin_cos();
+        let turned = [[cosine, 0.0, -sine], [0.0, 1.0, 0.0], [sine, 0.0, cosine]];
+        let lathe = [[0.0; 3], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]];
+        let doubled = [[2.0, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 1.0], [0.0, 1.5, 0.0]];
+        for columns in [&turned[..], &lathe, &doubled] {
+            assert!(!straight(columns).1.any_above(0.0), "{columns:?}");
+            let (reach, general) = (Reach::new(columns), conjugate(columns, &basis(columns)));
+            for error in [[1.0, 0.0, 0.0], [0.3, -0.2, 0.7], [0.0, 5.0, 1.0]] {
+                assert_close(reach.apply(error), Reach { vectors: general }.apply(error));
+            }
+        }
+        let skew = [[1.0, 0.0, 0.0], [1e-9, 1.0, 0.0]];
+        assert!(straight(&skew).1.any_above(0.0));
     }
 
     #[test]

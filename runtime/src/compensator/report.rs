@@ -40,7 +40,7 @@ pub struct Work<'a> {
 }
 
 /// What was found for one sample.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Outcome {
     /// Error of the tool tip relative to the part at the position of the sample, without compensation: mm, part frame.
     pub error: [f64; 3],

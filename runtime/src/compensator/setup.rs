@@ -15,6 +15,8 @@ pub(super) struct Needs {
     pub(super) velocity: bool,
     /// Whether the correction of a term is spread over time.
     pub(super) ramp: bool,
+    /// Whether a term remembers anything from cycle to cycle.
+    pub(super) memory: bool,
 }
 
 /// The number of term states that a set of error motions needs: one for each term.
@@ -70,6 +72,7 @@ fn check_terms(motions: &[ErrorMotion<'_>], axes: usize) -> Result<Needs, SetupE
             needs.sensors = needs.sensors.max(sensors);
             needs.velocity |= matches!(given, Term::Lag { .. });
             needs.ramp |= given.is_ramped();
+            needs.memory |= given.remembers();
         }
     }
     Ok(needs)

@@ -37,6 +37,15 @@ impl Term<'_> {
         matches!(*self, Self::Backlash { ramp, .. } if ramp > 0.0)
     }
 
+    /// Whether the term remembers anything from cycle to cycle: what [`Term::advance`] changes.
+    pub(crate) fn remembers(&self) -> bool {
+        match *self {
+            Self::Backlash { wind_up, ramp, .. } => wind_up > 0.0 || ramp > 0.0,
+            Self::Growth { time_constant, .. } => time_constant > 0.0,
+            _ => false,
+        }
+    }
+
     /// The name of the first parameter that is not finite or out of its range.
     pub(crate) fn bad_parameter(&self) -> Option<&'static str> {
         let checks = match *self {

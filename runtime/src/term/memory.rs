@@ -4,8 +4,9 @@
 //! exists because a play, a filter and a ramp depend on where the machine has been; the value of a term may then be asked
 //! at as many positions as the inverse needs, while its memory goes on once a cycle.
 
+use crate::Sample;
 use crate::math::exp_m1;
-use crate::{Direction, Sample};
+use crate::sample::Readings;
 
 /// What a term remembers from cycle to cycle: the take-up of a play, the filtered temperature of a growth, how far the
 /// correction of a reversal has come.
@@ -14,17 +15,30 @@ use crate::{Direction, Sample};
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct TermState {
     /// Take-up u within [-1, 1], or filtered temperature in degC; none before the first cycle.
-    pub(super) memory: Option<f64>,
+    memory: Option<f64>,
     /// Position of the axis in the cycle before, in mm or rad.
     last: f64,
     /// The take-up that is corrected, within [-1, 1], where a ramp spreads the correction; none before the first cycle.
     followed: Option<f64>,
 }
 
+impl TermState {
+    /// Take-up u within [-1, 1], or filtered temperature in degC; none before the first cycle.
+    #[inline]
+    pub(crate) const fn remembered(&self) -> Option<&f64> {
+        self.memory.as_ref()
+    }
+}
+
 /// The take-up of a play: the direction itself, or where there is a wind-up the u of the play operator.
-pub(super) fn take_up(sample: &Sample<'_>, axis: usize, wind_up: f64, state: &TermState) -> f64 {
-    let direction = sample.direction(axis).map_or(f64::NAN, Direction::sign);
-    if wind_up > 0.0 { state.memory.unwrap_or(direction) } else { direction }
+pub(super) fn take_up<R: Readings>(
+    from: &R,
+    axis: usize,
+    wind_up: f64,
+    memory: Option<&R::Number>,
+) -> R::Number {
+    let direction = from.sign(axis);
+    if wind_up > 0.0 { memory.copied().unwrap_or(direction) } else { direction }
 }
 
 /// The play operator: u follows the position by 2 dq / w and stops at -1 and +1. It starts taken up in the direction

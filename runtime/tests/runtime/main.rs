@@ -4,9 +4,12 @@
 
 #![expect(clippy::unwrap_used, reason = "in a test a panic is the report, in its helpers too")]
 
+mod batch;
 mod common;
 mod cycle;
+mod hostile;
 mod inverse;
 mod ramp;
+mod supervisor;
 mod tables;
 mod terms;

@@ -1,0 +1,211 @@
+//! The search for commands, side by side.
+//!
+//! In: a block of rows. Out: their commands and answers. It exists as the counterpart of `Compensator::search`: the same
+//! operations in the same order in every lane. A row is answered in the step that ends its own search; what its lane holds
+//! after that, nobody reads.
+
+use super::block::Block;
+use super::input::Batch;
+use super::{Answers, Open};
+use crate::compensator::inverse::{Reach, set, spread, tip};
+use crate::compensator::{Compensator, Outcome, Refusal};
+use crate::math::{add_scaled, dot};
+use crate::sample::{LaneSample, lanes};
+use crate::{Kinematics, Lanes};
+
+/// A step of the search.
+struct Step {
+    iterations: u32,
+    here: [Lanes; 3],
+    pull: [Lanes; 3],
+    distance: Lanes,
+}
+
+impl<K: Kinematics + ?Sized> Compensator<'_, K> {
+    /// Takes the errors at the positions as what remains: all of it, until a search takes some away.
+    pub(super) fn begin_lanes(&self, error: [Lanes; 3], open: &mut Open, answers: Answers<'_>) {
+        for (lane, (open, answer)) in open.iter_mut().zip(answers).enumerate().filter(|(_, (open, _))| **open)
+        {
+            let error = row(&error, lane);
+            *answer = if error.iter().all(|part| part.is_finite()) {
+                Ok(Outcome { error, remaining: error, iterations: 0 })
+            } else {
+                *open = false;
+                Err(Refusal::NotFinite)
+            };
+        }
+    }
+
+    /// Finds for each row in which directions its axes move the tip.
+    pub(super) fn reach_lanes(
+        &mut self,
+        batch: &Batch<'_>,
+        first: usize,
+        block: &mut Block<'_>,
+        open: &mut Open,
+        answers: Answers<'_>,
+    ) {
+        for (lane, (open, answer)) in open.iter_mut().zip(answers).enumerate().filter(|(_, (open, _))| **open)
+        {
+            block.row.take_position(batch, first.saturating_add(lane));
+            self.kinematics.directions(block.row.position, self.work.directions);
+            if !self.work.directions.iter().flatten().all(|part| part.is_finite()) {
+                (*open, *answer) = (false, Err(Refusal::NotFinite));
+                continue;
+            }
+            for (lanes, &column) in block.columns.iter_mut().zip(&*self.work.directions) {
+                let known = lanes.each_ref().map(|part| part.lane(lane).to_bits());
+                block.reach_known &= known == column.map(f64::to_bits);
+                set(lanes, lane, column);
+            }
+        }
+        if !block.reach_known {
+            block.reach = Reach::new(block.columns);
+            block.reach_known = true;
+        }
+    }
+
+    /// The fixed point in every lane, from the errors at the positions on.
+    pub(super) fn search_lanes(
+        &mut self,
+        first: usize,
+        block: &mut Block<'_>,
+        start: [Lanes; 3],
+        mut open: Open,
+        out: &mut [&mut [f64]],
+        answers: Answers<'_>,
+    ) {
+        let zero = [Lanes::from(0.0); 3];
+        let mut step = Step { iterations: 0, here: start, pull: zero, distance: f64::INFINITY.into() };
+        while open.contains(&true) {
+            if step.iterations >= self.convergence.iterations {
+                return give_up(&step, open, answers);
+            }
+            if step.iterations > 0 {
+                step.here = self.error_in_lanes(block);
+            }
+            step.iterations = step.iterations.saturating_add(1);
+            let next = block.reach.apply(step.here);
+            step.distance = spread(block.columns, add_scaled(next, Lanes::from(-1.0), step.pull));
+            step.pull = next;
+            block.correct(next);
+            self.settle(first, block, &step, &mut open, out, answers);
+        }
+    }
+
+    /// Answers the rows whose search ends with this step.
+    fn settle(
+        &self,
+        first: usize,
+        block: &Block<'_>,
+        step: &Step,
+        open: &mut Open,
+        out: &mut [&mut [f64]],
+        answers: Answers<'_>,
+    ) {
+        let settled = |distance: f64| distance <= self.convergence.tolerance;
+        let ends = |distance: f64| settled(distance) || !distance.is_finite();
+        if !open.iter().zip(step.distance.numbers()).any(|(open, distance)| *open && ends(distance)) {
+            return;
+        }
+        let correction = spread(block.columns, step.pull);
+        let remaining = add_scaled(step.here, Lanes::from(-1.0), tip(block.columns, step.pull));
+        for (lane, (open, answer)) in open.iter_mut().zip(answers).enumerate() {
+            let distance = step.distance.lane(lane);
+            if !*open || !ends(distance) {
+                continue;
+            }
+            *open = false;
+            if !settled(distance) {
+                let iterations = step.iterations;
+                *answer = Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
+                continue;
+            }
+            if let Err(refusal) = self.check_limit(correction.lane(lane)) {
+                *answer = Err(refusal);
+            } else if let Ok(outcome) = answer {
+                outcome.remaining = row(&remaining, lane);
+                outcome.iterations = step.iterations;
+                block.write(lane, first.saturating_add(lane), out);
+            }
+        }
+    }
+
+    /// The error at the commands.
+    pub(super) fn error_in_lanes(&mut self, block: &mut Block<'_>) -> [Lanes; 3] {
+        let mut at = LaneSample {
+            position: block.command,
+            velocity: block.velocity,
+            temperature: block.temperature,
+            direction: block.direction,
+            place: None,
+        };
+        let mut rest = &*block.memory;
+        for (motion, value) in self.motions.iter().zip(&mut *block.motions) {
+            let (memory, others) = rest.split_at_checked(motion.terms.len()).unwrap_or_default();
+            *value = motion.read_lanes(&mut at, memory);
+            rest = others;
+        }
+        if !block.travels_given {
+            for (travel, &axis) in block.travel.iter_mut().zip(self.kinematics.travels()) {
+                *travel = lanes(block.command, axis);
+            }
+        }
+        self.kinematics
+            .error_lanes(block.command, block.travel, block.motions)
+            .unwrap_or_else(|| self.error_lane_by_lane(block))
+    }
+
+    /// The error at the commands of a machine that answers row by row.
+    fn error_lane_by_lane(&mut self, block: &mut Block<'_>) -> [Lanes; 3] {
+        let mut error = [Lanes::default(); 3];
+        for lane in 0..Lanes::WIDTH {
+            extract(block.row_command, block.command, lane);
+            extract(self.work.travel, block.travel, lane);
+            extract(self.work.motions, block.motions, lane);
+            let row = self.kinematics.error(block.row_command, self.work.travel, self.work.motions);
+            set(&mut error, lane, row);
+        }
+        error
+    }
+}
+
+/// Refuses the rows whose search has taken all the steps that it may.
+fn give_up(step: &Step, open: Open, answers: Answers<'_>) {
+    for ((open, answer), distance) in open.into_iter().zip(answers).zip(step.distance.numbers()) {
+        if open {
+            *answer = Err(Refusal::NotConverging { iterations: step.iterations, distance });
+        }
+    }
+}
+
+/// The vector of one lane.
+fn row(vector: &[Lanes; 3], lane: usize) -> [f64; 3] {
+    vector.each_ref().map(|part| part.lane(lane))
+}
+
+/// The numbers of one lane.
+fn extract(numbers: &mut [f64], lanes: &[Lanes], lane: usize) {
+    for (number, lanes) in numbers.iter_mut().zip(lanes) {
+        *number = lanes.lane(lane);
+    }
+}
+
+impl Block<'_> {
+    /// Writes the positions less each axis's share of the pull to the commands.
+    fn correct(&mut self, pull: [Lanes; 3]) {
+        let columns = self.columns.iter();
+        for ((command, &target), &column) in self.command.iter_mut().zip(&*self.position).zip(columns) {
+            *command = target - dot(column, pull);
+        }
+    }
+
+    /// Writes the commands of a lane to its row.
+    fn write(&self, lane: usize, row: usize, out: &mut [&mut [f64]]) {
+        for (out, command) in out.iter_mut().zip(&*self.command) {
+            if let Some(out) = out.get_mut(row) {
+                *out = command.lane(lane);
+            }
+        }
+    }
+}

@@ -1,10 +1,12 @@
 //! Finding and compiling machines. In: a path, a shipped name or a topology word. Out: the
 //! compiled machine, its warnings shown; or every mistake, located.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use model_dsl::diagnostic::Diagnostics;
-use model_dsl::source::SourceFile;
+use model_dsl::diagnostic::{Diagnostic, Diagnostics};
+use model_dsl::source::{SourceFile, Span};
 use model_dsl::suggest::nearest;
 use model_dsl::{Compiled, compile, compile_word};
 
@@ -22,20 +24,39 @@ pub(crate) struct Loaded {
     pub(crate) published: Option<SourceFile>,
 }
 
+/// No byte beyond this one is read: a larger file is refused, and a device may have no end.
+const MOST_BYTES: u64 = 8 * 1024 * 1024;
+
 /// Reads a text file.
 pub(crate) fn read(path: &Path) -> Result<SourceFile, Failure> {
     let cannot = |why: String| Failure::Wrong(format!("error: cannot read {}: {why}", path.display()));
-    let bytes = std::fs::read(path).map_err(|error| cannot(error.to_string()))?;
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(|error| cannot(error.to_string()))?;
+    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(|error| cannot(error.to_string()))?;
+    if u64::try_from(bytes.len()).is_ok_and(|length| length > MOST_BYTES) {
+        return Err(too_large(path));
+    }
     let text = String::from_utf8(bytes).map_err(|error| {
         cannot(format!("it is not UTF-8 text (byte {})", error.utf8_error().valid_up_to()))
     })?;
     Ok(SourceFile::new(path.display().to_string(), text))
 }
 
+fn too_large(path: &Path) -> Failure {
+    let source = SourceFile::new(path.display().to_string(), "");
+    let message = format!("the file is larger than {} MiB", MOST_BYTES >> 20);
+    let mut diagnostics = Diagnostics::new();
+    diagnostics
+        .push(Diagnostic::error("E0003", Span::default(), message).help("split it, or thin out its tables"));
+    Failure::Wrong(rendered(&source, &diagnostics))
+}
+
 /// Compiles what the user named; paths are counted from `folder` where it is given.
 pub(crate) fn machine(name: &str, folder: Option<&Path>) -> Result<Loaded, Failure> {
     let path = folder.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
-    if path.is_file() {
+    // A pipe is a file too, as in `abbe derive <(...)`.
+    let there = std::fs::metadata(&path).ok();
+    if there.as_ref().is_some_and(|there| !there.is_dir()) {
         return from_source(&read(&path)?);
     }
     if let Some(text) = shipped::machine(name) {
@@ -45,7 +66,13 @@ pub(crate) fn machine(name: &str, folder: Option<&Path>) -> Result<Loaded, Failu
     if !name.is_empty() && name.len() <= 8 && name.bytes().all(|letter| letter.is_ascii_uppercase()) {
         return from_word(name);
     }
-    Err(Failure::Wrong(unknown(name)))
+    match there {
+        Some(_) => Err(Failure::Wrong(format!(
+            "error: {} is a folder\nhelp: write the path of a machine file in it",
+            path.display()
+        ))),
+        None => Err(Failure::Wrong(unknown(name))),
+    }
 }
 
 fn from_source(source: &SourceFile) -> Result<Loaded, Failure> {

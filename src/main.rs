@@ -7,6 +7,7 @@
 mod arguments;
 mod calibrated;
 mod commands;
+mod decimal;
 mod explain;
 mod failure;
 mod load;

@@ -8,7 +8,7 @@ mod drawing;
 mod field;
 mod space;
 
-use abbe_runtime::{Compensator, Kinematics, Sample};
+use abbe_runtime::{Compensator, Kinematics};
 use model_dsl::calibration::Calibration;
 use model_dsl::equations::Equations;
 
@@ -30,11 +30,10 @@ impl<'m> Map<'m> {
         Self { equations, space: Space::new(equations, calibration), temperature: Vec::new(), rows: 0 }
     }
 
-    /// Takes a row that was read.
-    pub(crate) fn take(&mut self, sample: &Sample<'_>) {
-        self.space.take(sample.position);
-        self.temperature.clear();
-        self.temperature.extend_from_slice(sample.temperature);
+    /// Takes a row that was read: the position of each axis and the temperature of each sensor.
+    pub(crate) fn take(&mut self, position: &[f64], temperature: Vec<f64>) {
+        self.space.take(position);
+        self.temperature = temperature;
         self.rows += 1;
     }
 

@@ -1,7 +1,9 @@
 //! Files that are written. In: a name and a text. Out: the file, whole or not at all; a calibration only where the compiler
 //! reads it again.
 
-use std::fs;
+mod staged;
+
+use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -13,6 +15,7 @@ use model_dsl::yaml;
 
 use crate::failure::Failure;
 use crate::output::rendered;
+use staged::Staged;
 
 /// The folder of a file.
 pub(crate) fn folder(file: &Path) -> PathBuf {
@@ -87,18 +90,19 @@ pub(crate) fn check_folder(target: &Path, option: &str) -> Result<(), Failure> {
 
 /// Writes a file that gets its name only when it is complete and on the disk; what stood there before is replaced.
 pub(crate) fn whole(target: &Path, text: &str) -> Result<(), Failure> {
-    let name = target.file_name().unwrap_or_default().to_string_lossy();
-    let part = target.with_file_name(format!(".{name}.{}.part", std::process::id()));
-    let written = write_to_disk(&part, text).and_then(|()| fs::rename(&part, target));
-    if written.is_err() {
-        // What is left of the attempt is of no use; that it cannot be removed is not the failure to tell of.
-        let _ = fs::remove_file(&part);
-    }
-    written.map_err(|error| Failure::io(&format!("cannot write {}", target.display()), &error))
+    let cannot = |error: io::Error| cannot_write(target, &error);
+    staged(target, |file| file.write_all(text.as_bytes()))?.keep().map_err(cannot)
 }
 
-fn write_to_disk(path: &Path, text: &str) -> io::Result<()> {
-    let mut file = fs::File::create(path)?;
-    file.write_all(text.as_bytes())?;
-    file.sync_all()
+/// Writes a file beside its place, so that it can get its name together with others.
+pub(crate) fn staged(
+    target: &Path,
+    fill: impl FnOnce(&mut File) -> io::Result<()>,
+) -> Result<Staged, Failure> {
+    Staged::write(target, fill).map_err(|error| cannot_write(target, &error))
+}
+
+/// Why a file could not be written.
+pub(crate) fn cannot_write(target: &Path, error: &io::Error) -> Failure {
+    Failure::io(&format!("cannot write {}", target.display()), error)
 }

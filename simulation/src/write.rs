@@ -1,13 +1,11 @@
 //! Recordings as files.
 //!
 //! In: a simulated recording and the names that its head mentions. Out: the text of `recording.yaml` and the table of
-//! `data.csv`; or both files in a folder, whole or not at all. Numbers have nine decimal places, trailing zeros left out:
-//! a picometre in mm, far below a micro-arcsecond in degrees.
+//! `data.csv`; whoever calls writes the files. Numbers have nine decimal places, trailing zeros left out: a picometre in mm,
+//! far below a micro-arcsecond in degrees.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
 
 use model_dsl::calibration::AxisName;
 
@@ -92,32 +90,6 @@ pub fn table(simulated: &Simulated, axes: &[AxisName], out: impl Write) -> io::R
         out.write_all(line.as_bytes())?;
     }
     out.flush()
-}
-
-/// Writes both files. They get their names only when both are complete; what stood there before is replaced.
-///
-/// # Errors
-///
-/// What the file system refuses; then neither file has changed, but for the data file where only the last step fails.
-pub fn files(simulated: &Simulated, head: &Head, recording_file: &Path) -> io::Result<()> {
-    let folder = recording_file.parent().unwrap_or_else(|| Path::new(""));
-    let data_file = folder.join(&head.data);
-    let half = |path: &Path| -> PathBuf {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        path.with_file_name(format!(".{name}.{}.part", std::process::id()))
-    };
-    let (half_data, half_recording) = (half(&data_file), half(recording_file));
-    let done = fs::File::create(&half_data)
-        .and_then(|file| table(simulated, &head.axes, file))
-        .and_then(|()| fs::write(&half_recording, recording(simulated, head)))
-        .and_then(|()| fs::rename(&half_data, &data_file))
-        .and_then(|()| fs::rename(&half_recording, recording_file));
-    if done.is_err() {
-        // What is left of the attempt is of no use; that it cannot be removed is not the failure to tell of.
-        let _ = fs::remove_file(&half_data);
-        let _ = fs::remove_file(&half_recording);
-    }
-    done
 }
 
 /// The columns after time and run, in order.

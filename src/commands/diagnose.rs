@@ -36,19 +36,24 @@ pub(crate) fn run(arguments: &Diagnose) -> Result<(), Failure> {
     print(&match arguments.format {
         ReportFormat::Text => report::text_on(&diagnosis, terminal()),
         ReportFormat::Json => report::json(&diagnosis),
-        ReportFormat::Html => page(arguments, first, first_files, &diagnosis),
+        ReportFormat::Html => page(arguments, first, first_files, &diagnosis)?,
     })?;
     written
 }
 
 /// The page, with the command that makes it and what the findings change in the calibration.
-fn page(arguments: &Diagnose, first: &Recorded, files: &Files, diagnosis: &Diagnosis) -> String {
+fn page(
+    arguments: &Diagnose,
+    first: &Recorded,
+    files: &Files,
+    diagnosis: &Diagnosis,
+) -> Result<String, Failure> {
     let origin = Origin {
         command: &origin::command(arguments),
         program: concat!("abbe ", env!("CARGO_PKG_VERSION")),
-        change: &improved::change(first, files, diagnosis),
+        change: &improved::change(first, files, diagnosis)?,
     };
-    report::html(diagnosis, &origin)
+    Ok(report::html(diagnosis, &origin))
 }
 
 /// The diagnosis of the recordings, the last of which is held out where the arguments say so.

@@ -2,6 +2,8 @@
 
 mod replay;
 
+use std::ffi::OsStr;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use model_dsl::calibration::MachineNames;
@@ -47,13 +49,13 @@ pub(crate) fn run(command: &Simulate) -> Result<(), Failure> {
     if let Some(plot) = &command.plot {
         written::check_folder(plot, "--plot")?;
     }
-    let machine = machine_name(&calibrated.calibration.machine.value, &command.calibration, &folder);
-    let calibration = known.map(|known| relative(&folder, &known));
+    let machine = machine_name(&calibrated.calibration.machine.value, &command.calibration, &folder)?;
+    let calibration = known.map(|known| relative(&folder, &known)).transpose()?;
     let head = Head { machine, calibration, data: output.data.clone(), axes: names.axes.clone() };
     let progress = Progress::new(command.quiet, "writing the recording");
-    let written = write::files(&simulated, &head, &output.recording);
+    let written = output.write(&simulated, &head);
     drop(progress);
-    written.map_err(|error| Failure::io(&format!("cannot write {}", output.recording.display()), &error))?;
+    written?;
     if let Some(plot) = &command.plot {
         let progress = Progress::new(command.quiet, "drawing");
         let drawing = picture::svg(&simulated, &plant(&calibrated, &names)?);
@@ -197,6 +199,15 @@ impl Output {
         }
     }
 
+    /// Writes both files; they get their names only when both are complete.
+    fn write(&self, simulated: &Simulated, head: &Head) -> Result<(), Failure> {
+        let (data_path, recording) = (self.data_path(), write::recording(simulated, head));
+        let data = written::staged(&data_path, |file| write::table(simulated, &head.axes, file))?;
+        let head = written::staged(&self.recording, |file| file.write_all(recording.as_bytes()))?;
+        data.keep().map_err(|error| written::cannot_write(&data_path, &error))?;
+        head.keep().map_err(|error| written::cannot_write(&self.recording, &error))
+    }
+
     /// The folder, made where it is missing.
     fn folder(&self) -> Result<PathBuf, Failure> {
         let folder = match self.recording.parent() {
@@ -210,22 +221,31 @@ impl Output {
 }
 
 /// The machine as the recording names it: a file's path from the recording's folder, or the name as it is.
-pub(super) fn machine_name(name: &str, calibration: &Path, folder: &Path) -> String {
+pub(super) fn machine_name(name: &str, calibration: &Path, folder: &Path) -> Result<String, Failure> {
     let file = calibration.parent().map_or_else(|| PathBuf::from(name), |parent| parent.join(name));
-    if file.is_file() { relative(folder, &file) } else { name.to_owned() }
+    if file.is_file() { relative(folder, &file) } else { Ok(name.to_owned()) }
 }
 
-/// The path of a file as seen from a folder; the whole path where they have nothing in common.
-fn relative(folder: &Path, file: &Path) -> String {
+/// The path of a file as seen from a folder; the whole path where they have nothing in common. Refused where it is no text,
+/// since no file could name it.
+fn relative(folder: &Path, file: &Path) -> Result<String, Failure> {
+    let text = |part: &OsStr| part.to_str().map(str::to_owned).ok_or_else(|| nameless(file));
     let (Ok(from), Ok(to)) = (folder.canonicalize(), file.canonicalize()) else {
-        return file.display().to_string();
+        return text(file.as_os_str());
     };
     let common = from.components().zip(to.components()).take_while(|(left, right)| left == right).count();
-    let up = from.components().skip(common).map(|_| "..".to_owned());
-    let down = to.components().skip(common).map(|part| part.as_os_str().to_string_lossy().into_owned());
+    let up = from.components().skip(common).map(|_| Ok("..".to_owned()));
+    let down = to.components().skip(common).map(|part| text(part.as_os_str()));
     match common {
         // Not even the drive is the same.
-        0 => to.display().to_string(),
-        _ => up.chain(down).collect::<Vec<_>>().join("/"),
+        0 => text(to.as_os_str()),
+        _ => Ok(up.chain(down).collect::<Result<Vec<_>, _>>()?.join("/")),
     }
+}
+
+fn nameless(file: &Path) -> Failure {
+    Failure::Wrong(format!(
+        "error: {} cannot be named in the new file: its path is not UTF-8 text\nhelp: write the new file beside it, or rename its folders",
+        file.display()
+    ))
 }

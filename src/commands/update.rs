@@ -138,7 +138,7 @@ fn refused(error: &UpdateError, parts: &[Recorded]) -> Failure {
 /// Writes the new calibration, its machine file named from its own folder.
 fn write(target: &Path, arguments: &Arguments, known: &Calibrated, updated: &Update) -> Result<(), Failure> {
     let mut new = updated.calibration.clone();
-    new.machine.value = machine_name(&new.machine.value, &arguments.calibration, &folder(target));
+    new.machine.value = machine_name(&new.machine.value, &arguments.calibration, &folder(target))?;
     let text = comments(arguments, updated) + &calibration::write(&new, &known.equations.names());
     written::calibration(target, &text, &known.equations)
 }

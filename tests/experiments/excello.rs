@@ -4,6 +4,8 @@
 //! from run to run of the size that it printed. Out: circularities as the ballbar's software computes them, without and
 //! with a compensation that knows the machine perfectly; what theory lets it gain at best; and what a diagnosis says.
 
+use std::fs;
+
 use model_dsl::calibration::{CalibratedTerm, Calibration};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -279,7 +281,8 @@ fn recorded(lathe: &Lathe, truth: &Calibration, fixture: f64, name: &str) -> Str
         axes: lathe.bench.names.axes.clone(),
     };
     let file = folder(name).join("recording.yaml");
-    write::files(&simulated, &head, &file).unwrap();
+    write::table(&simulated, &head.axes, fs::File::create(file.with_file_name(&head.data)).unwrap()).unwrap();
+    fs::write(&file, write::recording(&simulated, &head)).unwrap();
     file.to_str().unwrap().to_owned()
 }
 

@@ -23,7 +23,7 @@ pub(super) fn write(
     diagnosis: &Diagnosis,
 ) -> Result<(), Failure> {
     let names = recorded.equations.names();
-    let improved = improved(known(target, recorded, files), &diagnosis.findings);
+    let improved = improved(known(target, recorded, files)?, &diagnosis.findings);
     let text = comments(recorded, files, diagnosis) + &calibration::write(&improved, &names);
     written::calibration(target, &text, &recorded.equations)?;
     tell(target, diagnosis);
@@ -32,34 +32,34 @@ pub(super) fn write(
 
 /// What the findings change in the known calibration, both as they would be written beside the recording: a unified diff.
 /// Empty where there are none.
-pub(super) fn change(recorded: &Recorded, files: &Files, diagnosis: &Diagnosis) -> String {
+pub(super) fn change(recorded: &Recorded, files: &Files, diagnosis: &Diagnosis) -> Result<String, Failure> {
     if diagnosis.findings.is_empty() {
-        return String::new();
+        return Ok(String::new());
     }
     let names = recorded.equations.names();
-    let known = known(&files.recording, recorded, files);
+    let known = known(&files.recording, recorded, files)?;
     let before = calibration::write(&known, &names);
     let after = calibration::write(&improved(known, &diagnosis.findings), &names);
     let difference = TextDiff::from_lines(&before, &after);
-    difference.unified_diff().context_radius(3).header("known", "with the findings").to_string()
+    Ok(difference.unified_diff().context_radius(3).header("known", "with the findings").to_string())
 }
 
 /// What is known of the machine, its machine file named from the target's folder.
-fn known(target: &Path, recorded: &Recorded, files: &Files) -> Calibration {
+fn known(target: &Path, recorded: &Recorded, files: &Files) -> Result<Calibration, Failure> {
     let folder = folder(target);
     match (&recorded.calibration, &files.calibration) {
         (Some(known), Some(path)) => {
             let mut known = known.calibration.clone();
-            known.machine.value = machine_name(&known.machine.value, path, &folder);
-            known
+            known.machine.value = machine_name(&known.machine.value, path, &folder)?;
+            Ok(known)
         }
         _ => {
-            let machine = machine_name(&files.machine, &files.recording, &folder);
+            let machine = machine_name(&files.machine, &files.recording, &folder)?;
             let constants = recorded.equations.constants.iter();
-            Calibration::new(
+            Ok(Calibration::new(
                 machine,
                 constants.map(|constant| constant.default.unwrap_or_default()).collect(),
-            )
+            ))
         }
     }
 }

@@ -1,0 +1,155 @@
+//! Generated code of random machines. In: machines drawn with a fixed seed, compiled together by one call of the Rust
+//! compiler. Out: the numbers that their code gives, held against the interpreter, to the last bit, and against dual numbers,
+//! which share nothing with either.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use abbe_runtime::Kinematics;
+use model_dsl::equations::Equations;
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::TestRunner;
+
+use crate::agreement::{Case, compiled, levers_are_dual_numbers};
+use crate::oracle::Machine;
+use crate::random::{machines, state};
+use crate::shipped::root;
+use crate::yaml;
+
+/// Enough for every feature of the file to meet every other one; each takes the compiler a third of a second.
+const MACHINES: usize = 48;
+
+/// Points for each machine.
+const POINTS: u64 = 3;
+
+/// A machine with its equations, as drawn.
+struct Drawn {
+    machine: Machine,
+    text: String,
+    equations: Equations,
+}
+
+/// The same machines on every run.
+fn drawn() -> Vec<Drawn> {
+    let mut runner = TestRunner::deterministic();
+    let draw = |number: usize| {
+        let machine = machines().new_tree(&mut runner).unwrap().current();
+        let text = yaml::text(&machine, number.is_multiple_of(2));
+        let equations = compiled(&text);
+        Drawn { machine, text, equations }
+    };
+    (0..MACHINES).map(draw).collect()
+}
+
+/// A list of numbers that the compiler reads back to the last bit.
+fn list(numbers: &[f64]) -> String {
+    format!("&{numbers:?}")
+}
+
+/// One line of numbers for each machine and point: error, directions, nominal, lever arms, as bits.
+fn program(machines: &[Drawn]) -> String {
+    let mut text = String::from(
+        "//! Random machines.\nuse abbe_runtime::Kinematics;\n\
+         fn say<const N: usize>(machine: &dyn Kinematics, position: &[f64], travel: &[f64], motions: &[f64], nominal: [f64; 3], levers: [[f64; 3]; N]) {\n\
+             let mut directions = vec![[0.0; 3]; position.len()];\n\
+             machine.directions(position, &mut directions);\n\
+             let error = machine.error(position, travel, motions);\n\
+             let all = error.iter().chain(directions.iter().flatten()).chain(&nominal).chain(levers.iter().flatten());\n\
+             println!(\"{}\", all.map(|number| number.to_bits().to_string()).collect::<Vec<_>>().join(\" \"));\n\
+         }\n",
+    );
+    for number in 0..machines.len() {
+        let _ = writeln!(text, "mod m{number};");
+    }
+    text.push_str("fn main() {\n");
+    for (number, drawn) in machines.iter().enumerate() {
+        for seed in 0..POINTS {
+            let case = Case::new(&drawn.machine, &drawn.equations, state(&drawn.machine, seed));
+            let equations = &drawn.equations;
+            let constants = equations.constants.iter().map(|constant| case.state.constants[&*constant.name]);
+            let constants = constants.collect::<Vec<_>>();
+            let travels = if equations.travels.is_empty() {
+                String::new()
+            } else {
+                format!("&m{number}::Travels::from_array(*{}), ", list(&case.travel))
+            };
+            let _ = writeln!(
+                text,
+                "    {{ let machine = m{number}::Machine {{ constants: m{number}::Constants::from_array(*{}) }};\n\
+                 let axes = m{number}::Axes::from_array(*{});\n\
+                 say(&machine, {}, {}, {}, machine.nominal(&axes), machine.levers(&axes, {travels})); }}",
+                list(&constants),
+                list(&case.position),
+                list(&case.position),
+                list(&case.travel),
+                list(&case.errors(seed)),
+            );
+        }
+    }
+    text.push_str("}\n");
+    text
+}
+
+/// Compiles all machines into one program and gives what it prints.
+fn printed(machines: &[Drawn]) -> String {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("compiled");
+    let _ = fs::remove_dir_all(folder.join("src"));
+    fs::create_dir_all(folder.join("src")).unwrap();
+    let runtime = root().join("runtime").canonicalize().unwrap();
+    let manifest = format!(
+        "[package]\nname = \"compiled\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[dependencies]\n\
+         abbe-runtime = {{ path = {runtime:?}, features = [\"std\"] }}\n\n[profile.dev]\ndebug = false\n\n[workspace]\n"
+    );
+    fs::write(folder.join("Cargo.toml"), manifest).unwrap();
+    for (number, drawn) in machines.iter().enumerate() {
+        let tokens = model_dsl::codegen::tokens(&drawn.equations);
+        let code = model_dsl::codegen::file(&tokens, "machine.yaml").unwrap();
+        fs::write(folder.join(format!("src/m{number}.rs")), code).unwrap();
+    }
+    fs::write(folder.join("src/main.rs"), program(machines)).unwrap();
+    run(&folder)
+}
+
+fn run(folder: &Path) -> String {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(cargo)
+        .args(["run", "--offline", "--quiet"])
+        .current_dir(folder)
+        .env("CARGO_TARGET_DIR", folder.join("target"))
+        // Machines of which nobody reads all parts are no fault of the code.
+        .env("RUSTFLAGS", "--allow=dead_code")
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn random_machines_compiled() {
+    let machines = drawn();
+    let printed = printed(&machines);
+    let mut lines = printed.lines();
+    for Drawn { machine, text, equations } in &machines {
+        for seed in 0..POINTS {
+            let case = Case::new(machine, equations, state(machine, seed));
+            let numbers: Vec<f64> =
+                lines.next().unwrap().split(' ').map(|bits| f64::from_bits(bits.parse().unwrap())).collect();
+            let interpreter = &case.interpreter;
+            let mut directions = vec![[0.0; 3]; case.position.len()];
+            interpreter.directions(&case.position, &mut directions);
+            let error = interpreter.error(&case.position, &case.travel, &case.errors(seed));
+            let levers = interpreter.levers(&case.position, &case.travel);
+            let nominal = interpreter.nominal(&case.position);
+            let all = [error].into_iter().chain(directions).chain([nominal]).chain(levers).flatten();
+            assert_eq!(numbers, all.collect::<Vec<_>>(), "point {seed} of\n{text}");
+            let levers: Vec<[f64; 3]> = numbers[6 + 3 * case.position.len()..]
+                .chunks(3)
+                .map(|arm| [arm[0], arm[1], arm[2]])
+                .collect();
+            levers_are_dual_numbers(&case, &levers).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        }
+    }
+    assert_eq!(lines.next(), None);
+}

@@ -1,0 +1,109 @@
+//! Contestants: everything that answers one question about the states of a machine.
+//!
+//! In: a case and a group (which question). Out: the contestants, all of which agree. A pass asks one of them for every
+//! state; that is what is timed and counted. The calls are made inside the pass, so that no dynamic call is measured, and
+//! through functions that are not inlined, so that Rust has no advantage over C that is linked.
+
+use std::hint::black_box;
+
+use crate::case::{Case, STATES};
+use crate::{foreign, ours, product};
+
+/// What is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// The error from given error motions.
+    Equations,
+    /// The error from tables: the whole call of a cycle without a correction.
+    Error,
+    /// The compensated command.
+    Command,
+}
+
+impl Group {
+    /// All groups.
+    pub const ALL: [Self; 3] = [Self::Equations, Self::Error, Self::Command];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Equations => "equations",
+            Self::Error => "error",
+            Self::Command => "command",
+        }
+    }
+}
+
+/// The machines of the comparison.
+pub const MACHINES: [&str; 3] = ["excello-921", "xyfz-mill", "trunnion-5axis"];
+
+/// What answers.
+pub trait Contestant {
+    /// Its name.
+    fn name(&self) -> &'static str;
+    /// How far its answers may be from ours, mm: the second order, for who keeps it.
+    fn tolerance(&self) -> f64;
+    /// Its answer in a state, mm (and rad).
+    fn at(&mut self, state: usize) -> Vec<f64>;
+    /// Answers in every state, one after the other.
+    fn pass(&mut self);
+}
+
+/// A contestant that is a function of the number of a state.
+pub(crate) struct Answering<F> {
+    /// Its name.
+    pub(crate) name: &'static str,
+    /// How far its answers may be from ours, mm.
+    pub(crate) tolerance: f64,
+    /// The function.
+    pub(crate) answer: F,
+}
+
+/// Rounding: 1e-12 mm.
+pub(crate) const EXACT: f64 = 1e-12;
+
+impl<const N: usize, F: FnMut(usize) -> [f64; N]> Contestant for Answering<F> {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+    fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+    fn at(&mut self, state: usize) -> Vec<f64> {
+        (self.answer)(state).to_vec()
+    }
+    fn pass(&mut self) {
+        for state in 0..STATES {
+            black_box((self.answer)(black_box(state)));
+        }
+    }
+}
+
+/// All contestants of a group on a machine, ours first, after their answers have been compared in every state.
+///
+/// # Errors
+/// Names a contestant whose answer differs, and where.
+pub fn contestants(case: &'static Case, group: Group) -> Result<Vec<Box<dyn Contestant>>, String> {
+    let mut all = ours::contestants(case, group);
+    all.extend(foreign::contestants(case, group));
+    all.extend(product::contestants(case, group));
+    let (ours, others) = all.split_first_mut().ok_or("there is no contestant")?;
+    for other in others {
+        for state in 0..STATES {
+            let (own, its) = (ours.at(state), other.at(state));
+            let apart = own.iter().zip(&its).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            if own.len() != its.len()
+                || apart > other.tolerance()
+                || own.iter().chain(&its).any(|part| part.is_nan())
+            {
+                return Err(format!(
+                    "{}, {}, {}: state {state} gives {its:?}, ours {own:?}",
+                    case.name,
+                    group.name(),
+                    other.name()
+                ));
+            }
+        }
+    }
+    Ok(all)
+}

@@ -1,0 +1,137 @@
+//! Abbe's contestants: the generated equations, and the compensator around them.
+//!
+//! In: a case. Out: for the equations the generated function; for the other groups one whole call of the compensator,
+//! with its checks and its refusals, as a controller calls it.
+
+use abbe_runtime::{
+    Compensator, Direction, ErrorMotion, Kinematics, Sample, Table, Term, TermState, Values as Curves, Work,
+    states_needed,
+};
+
+use crate::case::{Case, Values};
+use crate::contest::{Answering, Contestant, EXACT, Group};
+use crate::machines::{excello_921, trunnion_5axis, xyfz_mill};
+
+/// The contestants of a machine.
+pub(crate) fn contestants(case: &'static Case, group: Group) -> Vec<Box<dyn Contestant>> {
+    macro_rules! of {
+        ($machine:ident, $axes:literal) => {{
+            let constants = $machine::Constants::from_array(array(&case.constants));
+            let machine: &'static _ = leak($machine::Machine { constants });
+            match group {
+                Group::Equations => {
+                    let states: Vec<_> = case
+                        .states
+                        .iter()
+                        .map(|state| {
+                            let axes = $machine::Axes::from_array(array(&state.position));
+                            (axes, $machine::Motions::from_array(array(&state.motions)))
+                        })
+                        .collect();
+                    #[inline(never)]
+                    fn call(
+                        machine: &$machine::Machine,
+                        axes: &$machine::Axes,
+                        motions: &$machine::Motions,
+                    ) -> [f64; 3] {
+                        machine.error(axes, motions)
+                    }
+                    vec![boxed(move |state| call(machine, &states[state].0, &states[state].1))]
+                }
+                Group::Error => vec![error(case, machine)],
+                Group::Command => vec![command::<_, $axes>(case, machine)],
+            }
+        }};
+    }
+    match case.name {
+        "excello-921" => of!(excello_921, 2),
+        "xyfz-mill" => of!(xyfz_mill, 3),
+        "trunnion-5axis" => of!(trunnion_5axis, 5),
+        _ => Vec::new(),
+    }
+}
+
+fn boxed<const N: usize>(answer: impl FnMut(usize) -> [f64; N] + 'static) -> Box<dyn Contestant> {
+    Box::new(Answering { name: "abbe", tolerance: EXACT, answer })
+}
+
+/// Numbers that live as long as the program, as a controller's do.
+pub(crate) fn leak<T>(value: T) -> &'static mut T {
+    Box::leak(Box::new(value))
+}
+
+/// As many numbers as asked for; NaN where there are not.
+pub(crate) fn array<const N: usize>(values: &[f64]) -> [f64; N] {
+    values.try_into().unwrap_or([f64::NAN; N])
+}
+
+fn error<K: Kinematics + 'static>(case: &'static Case, kinematics: &'static K) -> Box<dyn Contestant> {
+    #[inline(never)]
+    fn call<K: Kinematics>(compensator: &mut Compensator<'_, K>, sample: &Sample<'_>) -> [f64; 3] {
+        compensator.error(sample).unwrap_or([f64::NAN; 3])
+    }
+    let (mut compensator, samples) = (compensator(case, kinematics), samples(case));
+    boxed(move |state| call(&mut compensator, &samples[state]))
+}
+
+fn command<K: Kinematics + 'static, const N: usize>(
+    case: &'static Case,
+    kinematics: &'static K,
+) -> Box<dyn Contestant> {
+    #[inline(never)]
+    fn call<K: Kinematics>(
+        compensator: &mut Compensator<'_, K>,
+        sample: &Sample<'_>,
+        out: &mut [f64],
+    ) -> bool {
+        compensator.compensate(sample, out).is_ok()
+    }
+    let (mut compensator, samples) = (compensator(case, kinematics), samples(case));
+    boxed(move |state| {
+        let mut out = [0.0; N];
+        if call(&mut compensator, &samples[state], &mut out) { out } else { [f64::NAN; N] }
+    })
+}
+
+fn samples(case: &'static Case) -> Vec<Sample<'static>> {
+    let sample = |state: &'static crate::case::State| {
+        let direction = state.reversed.iter().map(|reversed| match reversed {
+            true => Direction::Negative,
+            false => Direction::Positive,
+        });
+        Sample {
+            position: &state.position,
+            travel: &[],
+            direction: leak(direction.collect::<Vec<_>>()),
+            velocity: &[],
+            temperature: &[],
+            time_step: 0.001,
+        }
+    };
+    case.states.iter().map(sample).collect()
+}
+
+#[expect(clippy::expect_used, reason = "a case that is set up wrong must end the measurement")]
+fn compensator<K: Kinematics>(case: &'static Case, kinematics: &'static K) -> Compensator<'static, K> {
+    let term = |values: &'static Values| match values {
+        Values::Number(value) => Term::Constant { value: *value },
+        Values::Table(table) => {
+            let curves = match &table.reverse {
+                Some(reverse) => Curves::Directed { forward: &table.forward, reverse },
+                None => Curves::Both(&table.forward),
+            };
+            let read = Table::uniform(table.start, table.step, curves).expect("a valid table");
+            Term::Table { axis: table.axis, table: read }
+        }
+    };
+    let motions: Vec<ErrorMotion<'static>> =
+        case.motions.iter().map(|values| ErrorMotion { terms: leak(vec![term(values)]) }).collect();
+    let motions = leak(motions);
+    let states = leak(vec![TermState::default(); states_needed(motions)]);
+    let work = Work {
+        directions: leak(vec![[0.0; 3]; kinematics.axes()]),
+        motions: leak(vec![0.0; kinematics.motions()]),
+        travel: &mut [],
+    };
+    Compensator::new(kinematics, motions, states, work).expect("a valid compensator")
+}

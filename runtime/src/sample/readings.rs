@@ -113,7 +113,9 @@ impl Readings for LaneSample<'_> {
 
     fn table(&mut self, table: &Table<'_>, axis: usize) -> Lanes {
         match self.direction.get(axis) {
-            Some(directions) => table.read_lanes(axis, lanes(self.position, axis), directions, &mut self.place),
+            Some(directions) => {
+                table.read_lanes(axis, lanes(self.position, axis), directions, &mut self.place)
+            }
             None => f64::NAN.into(),
         }
     }

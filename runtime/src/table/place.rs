@@ -71,15 +71,17 @@ impl Table<'_> {
         let mut curves = directions.iter().map(|direction| self.curve(*direction));
         match self.nodes {
             Nodes::Uniform { start, step } => {
-                let place = self.place(axis, start, step, known, |nodes| LanePlace::new(position, axis, nodes));
+                let place =
+                    self.place(axis, start, step, known, |nodes| LanePlace::new(position, axis, nodes));
                 if core::ptr::eq(self.forward, self.reverse) {
                     place.read(|| self.forward)
                 } else {
                     place.read(|| curves.next().unwrap_or_default())
                 }
             }
-            Nodes::At(at) => position
-                .map(|position| curves.next().map_or(f64::NAN, |curve| read_at(curve, at, position))),
+            Nodes::At(at) => {
+                position.map(|position| curves.next().map_or(f64::NAN, |curve| read_at(curve, at, position)))
+            }
         }
     }
 

@@ -189,11 +189,14 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
         of: impl Fn(&ErrorMotion<'_>, &mut OneSample<'s>, &[TermState]) -> f64,
     ) -> [f64; 3] {
         let mut from = OneSample::new(sample);
-        let mut rest = &*self.states;
+        let mut first = 0_usize;
         for (motion, value) in self.motions.iter().zip(self.work.motions.iter_mut()) {
-            let (states, others) = rest.split_at_checked(motion.terms.len()).unwrap_or_default();
-            *value = of(motion, &mut from, states);
-            rest = others;
+            let next = first.saturating_add(motion.terms.len());
+            *value = match motion.read_alone(&mut from) {
+                Some(value) => value,
+                None => of(motion, &mut from, self.states.get(first..next).unwrap_or_default()),
+            };
+            first = next;
         }
         let travel = if sample.travel.is_empty() {
             for (travel, &axis) in self.work.travel.iter_mut().zip(self.kinematics.travels()) {

@@ -3,7 +3,7 @@
 //! In: terms of a calibration and the state of the machine. Out: the value of EXX, EBZ, a squareness. It exists because
 //! the equations of a machine multiply lever arms with these values and know nothing of what makes them up.
 
-use crate::sample::{LaneSample, OneSample};
+use crate::sample::{LaneSample, OneSample, Readings};
 use crate::{Lanes, Real, Sample, Term, TermState};
 
 /// One error motion of one link: the sum of its terms. Without terms it is zero.
@@ -29,15 +29,24 @@ impl ErrorMotion<'_> {
     }
 
     /// [`value`](Self::value) in what is read.
-    #[inline]
     pub(crate) fn read(&self, from: &mut OneSample<'_>, states: &[TermState]) -> f64 {
         self.sum(states, |term, state| term.read(from, state.remembered()))
     }
 
     /// [`corrected`](Self::corrected) in what is read.
-    #[inline]
     pub(crate) fn read_corrected(&self, from: &mut OneSample<'_>, states: &[TermState]) -> f64 {
         self.sum(states, |term, state| term.read_corrected(from, state))
+    }
+
+    /// Both of these where one table or one number makes them, as in most motions: without a state, and without the way
+    /// through all other terms. None elsewhere.
+    #[inline]
+    pub(crate) fn read_alone(&self, from: &mut OneSample<'_>) -> Option<f64> {
+        match self.terms {
+            [Term::Table { axis, table }] => Some(0.0 + from.table(table, *axis)),
+            [Term::Constant { value }] => Some(0.0 + value),
+            _ => None,
+        }
     }
 
     /// [`value`](Self::value) in every lane; `memories` holds what each term remembers, or the value is NaN.

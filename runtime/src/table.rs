@@ -9,6 +9,7 @@ use core::fmt;
 
 use crate::{Direction, Real};
 
+use self::place::Even;
 pub(crate) use self::place::{LanePlace, Place};
 
 /// The values of a table at its nodes: one curve, or one for each direction of motion.
@@ -86,7 +87,7 @@ impl core::error::Error for TableError {}
 /// Where the nodes of a table lie.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Nodes<'a> {
-    Uniform { start: f64, step: f64 },
+    Even(Even),
     At(&'a [f64]),
 }
 
@@ -121,7 +122,8 @@ impl<'a> Table<'a> {
             return Err(TableError::NotFinite);
         }
         check_values(values, None)?;
-        Ok(Self::new(Nodes::Uniform { start, step }, values))
+        let last = values.curve(Direction::Positive).len().saturating_sub(1);
+        Ok(Self::new(Nodes::Even(Even { start, step, last }), values))
     }
 
     /// A table whose nodes lie at the positions `at` (mm or rad), strictly ascending; read by binary search.
@@ -158,7 +160,10 @@ impl<'a> Table<'a> {
     #[must_use]
     #[inline]
     pub fn value(&self, position: f64, direction: Direction) -> f64 {
-        self.read(0, position, direction, &mut None)
+        match self.nodes {
+            Nodes::Even(even) => Place::new(even, 0, position, direction).read(self.curve(direction)),
+            Nodes::At(at) => read_at(self.curve(direction), at, position),
+        }
     }
 }
 

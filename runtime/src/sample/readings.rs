@@ -67,10 +67,7 @@ impl Readings for OneSample<'_> {
 
     #[inline]
     fn table(&mut self, table: &Table<'_>, axis: usize) -> f64 {
-        match self.sample.direction(axis) {
-            Some(direction) => table.read(axis, self.position(axis), direction, &mut self.place),
-            None => f64::NAN,
-        }
+        table.read(axis, self.sample, &mut self.place)
     }
 }
 

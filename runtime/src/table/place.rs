@@ -5,7 +5,7 @@
 //! to an index are what keeps a processor from reading several side by side.
 
 use super::{Nodes, Table, between, read_at};
-use crate::{Direction, Lanes, Real};
+use crate::{Direction, Lanes, Real, Sample};
 
 /// 2^52: adding it to a number from 0 to 2^51 rounds that to a whole number, which stands in the last bits of the sum.
 const WHOLE: f64 = 4_503_599_627_370_496.0;
@@ -13,49 +13,53 @@ const WHOLE: f64 = 4_503_599_627_370_496.0;
 /// The bits of a sum with [`WHOLE`] that hold the whole number.
 const BITS: u64 = (1 << 52) - 1;
 
-/// Where a position of an axis lies between even nodes, or where several of its positions do.
+/// Even nodes: the first, the step to the next, and the index of the last.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Even {
+    pub(super) start: f64,
+    pub(super) step: f64,
+    pub(super) last: usize,
+}
+
+/// Where an axis lies between even nodes, in one row or in several, and the direction in which it moves there.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Located<I, T> {
+pub(crate) struct Located<I, T, D> {
     axis: usize,
-    nodes: Even,
+    even: Even,
     /// Indices of the nodes below and above; beyond the ends both are the end.
     below: I,
     above: I,
     /// The part of the way from one to the other, within [-1, 1].
     part: T,
+    direction: D,
 }
 
 /// Where one position lies.
-pub(crate) type Place = Located<usize, f64>;
+pub(crate) type Place = Located<usize, f64, Direction>;
 
 /// Where positions side by side lie.
-pub(crate) type LanePlace = Located<[usize; Lanes::WIDTH], Lanes>;
-
-/// Even nodes: start and step, to the bit, and the index of the last one.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-struct Even {
-    start: u64,
-    step: u64,
-    last: usize,
-}
+pub(crate) type LanePlace = Located<[usize; Lanes::WIDTH], Lanes, [Direction; Lanes::WIDTH]>;
 
 impl Table<'_> {
-    /// The value at a position of an axis, on the curve of a direction; NaN at NaN.
+    /// The value where an axis is in a sample, on the curve of its direction; NaN where the sample lacks the axis.
     ///
-    /// `known` is the place that another table found at the same positions, if any, and is then this table's.
+    /// `known` is the place that another table found in the same sample, if any, and is then this table's.
     #[inline]
-    pub(crate) fn read(
-        &self,
-        axis: usize,
-        position: f64,
-        direction: Direction,
-        known: &mut Option<Place>,
-    ) -> f64 {
-        let curve = self.curve(direction);
+    pub(crate) fn read(&self, axis: usize, sample: &Sample<'_>, known: &mut Option<Place>) -> f64 {
+        if let (Nodes::Even(even), Some(place)) = (self.nodes, &*known)
+            && place.is(axis, even)
+        {
+            return place.read(self.curve(place.direction));
+        }
+        self.read_anew(axis, sample, known)
+    }
+
+    /// [`read`](Self::read) where no place is known.
+    fn read_anew(&self, axis: usize, sample: &Sample<'_>, known: &mut Option<Place>) -> f64 {
+        let Some(direction) = sample.direction(axis) else { return f64::NAN };
+        let (position, curve) = (sample.position(axis), self.curve(direction));
         match self.nodes {
-            Nodes::Uniform { start, step } => {
-                self.place(axis, start, step, known, |nodes| Place::new(position, axis, nodes)).read(curve)
-            }
+            Nodes::Even(even) => known.insert(Place::new(even, axis, position, direction)).read(curve),
             Nodes::At(at) => read_at(curve, at, position),
         }
     }
@@ -65,14 +69,14 @@ impl Table<'_> {
         &self,
         axis: usize,
         position: Lanes,
-        directions: &[Direction; Lanes::WIDTH],
+        direction: &[Direction; Lanes::WIDTH],
         known: &mut Option<LanePlace>,
     ) -> Lanes {
-        let mut curves = directions.iter().map(|direction| self.curve(*direction));
+        let mut curves = direction.iter().map(|direction| self.curve(*direction));
         match self.nodes {
-            Nodes::Uniform { start, step } => {
-                let place =
-                    self.place(axis, start, step, known, |nodes| LanePlace::new(position, axis, nodes));
+            Nodes::Even(even) => {
+                known.take_if(|place| !place.is(axis, even));
+                let place = known.get_or_insert_with(|| LanePlace::new(even, axis, position, *direction));
                 if core::ptr::eq(self.forward, self.reverse) {
                     place.read(|| self.forward)
                 } else {
@@ -84,41 +88,37 @@ impl Table<'_> {
             }
         }
     }
+}
 
-    /// The place that is known, where it is one between this table's nodes, or a new one.
+impl<I, T, D> Located<I, T, D> {
+    /// Whether this is the place of an axis between these nodes.
     #[inline]
-    fn place<'k, I, T>(
-        &self,
-        axis: usize,
-        start: f64,
-        step: f64,
-        known: &'k mut Option<Located<I, T>>,
-        find: impl FnOnce(Even) -> Located<I, T>,
-    ) -> &'k Located<I, T> {
-        let last = self.forward.len().saturating_sub(1);
-        let nodes = Even { start: start.to_bits(), step: step.to_bits(), last };
-        known.take_if(|place| place.axis != axis || place.nodes != nodes);
-        known.get_or_insert_with(|| find(nodes))
+    fn is(&self, axis: usize, even: Even) -> bool {
+        // Bits compare faster than numbers; none of these is NaN.
+        let bits = |even: Even| (even.start.to_bits(), even.step.to_bits(), even.last);
+        self.axis == axis && bits(self.even) == bits(even)
     }
 }
 
 impl Place {
-    fn new(position: f64, axis: usize, nodes: Even) -> Self {
-        let [below, above, part] = nodes.locate(position);
-        Self { axis, nodes, below: whole(below), above: whole(above), part }
+    #[inline]
+    pub(super) fn new(even: Even, axis: usize, position: f64, direction: Direction) -> Self {
+        let [below, above, part] = even.locate(position);
+        Self { axis, even, below: whole(below), above: whole(above), part, direction }
     }
 
     /// Reads a curve.
     #[inline]
-    fn read(&self, curve: &[f64]) -> f64 {
+    pub(super) fn read(&self, curve: &[f64]) -> f64 {
         between(node(curve, self.below), node(curve, self.above), self.part)
     }
 }
 
 impl LanePlace {
-    fn new(position: Lanes, axis: usize, nodes: Even) -> Self {
-        let [below, above, part] = nodes.locate(position);
-        Self { axis, nodes, below: below.numbers().map(whole), above: above.numbers().map(whole), part }
+    fn new(even: Even, axis: usize, position: Lanes, direction: [Direction; Lanes::WIDTH]) -> Self {
+        let [below, above, part] = even.locate(position);
+        let [below, above] = [below, above].map(|lanes| lanes.numbers().map(whole));
+        Self { axis, even, below, above, part, direction }
     }
 
     /// Reads a curve in each lane.
@@ -139,7 +139,7 @@ impl Even {
     #[inline]
     fn locate<T: Real>(self, position: T) -> [T; 3] {
         let (zero, one, end) = (T::from(0.0), T::from(1.0), T::from(self.last as f64));
-        let count = (position - f64::from_bits(self.start).into()) / f64::from_bits(self.step).into();
+        let count = (position - self.start.into()) / self.step.into();
         // NaN counts as the first node here, and remains in the part.
         let inside = count.above(zero, count, zero);
         let inside = end.above(inside, inside, end);

@@ -1,7 +1,8 @@
 //! How many rows a second: one sample after the other, and in batches.
 //!
 //! In: shipped machines whose every error motion has a measured table, and random positions. Out: for each machine the
-//! rows compensated in a second either way, on one core, after both have given the same bits.
+//! rows compensated in a second either way, on one core, after both have given the same bits; and what share of the memory's
+//! bandwidth, as a copy has it, the slices of the batch take up.
 //!
 //! `cargo run --release -p abbe-generated --example batch [MACHINE [alone|batch]]`: with both words that one way is gone
 //! once and nothing is timed, for a profiler.
@@ -121,13 +122,22 @@ impl Rows {
             shortest_batch = shortest_batch.min(start.elapsed());
         }
         assert!(alone == batch, "{name}: a batch is not its rows");
-        let rate = |time: Duration| ROWS as f64 / time.as_secs_f64() * 1e-6;
+        let rate = |time: Duration| ROWS as f64 / time.as_secs_f64();
+        let moved = rate(shortest_batch) * self.bytes_of_a_row() as f64;
         println!(
-            "{name:18} alone {:7.3} million rows/s, batch {:7.3} million rows/s, {:5.2} times",
-            rate(shortest_alone),
-            rate(shortest_batch),
-            shortest_alone.as_secs_f64() / shortest_batch.as_secs_f64()
+            "{name:18} alone {:7.3} million rows/s, batch {:7.3} million rows/s, {:5.2} times; {:5.2} GB/s, {:4.1} % of a copy's",
+            rate(shortest_alone) * 1e-6,
+            rate(shortest_batch) * 1e-6,
+            shortest_alone.as_secs_f64() / shortest_batch.as_secs_f64(),
+            moved * 1e-9,
+            100.0 * moved / bandwidth(),
         );
+    }
+
+    /// What the slices of a batch hold of one row: what is read of it, and what is answered.
+    fn bytes_of_a_row(&self) -> usize {
+        let axis = size_of::<f64>() * 2 + size_of::<Direction>();
+        self.position.len() * axis + size_of::<f64>() + size_of::<Result<Outcome, Refusal>>()
     }
 
     /// One sample after the other.
@@ -172,6 +182,20 @@ impl Rows {
             .compensate_batch(black_box(&batch), work, &mut out, answers)
             .expect("all slices have the same length");
     }
+}
+
+/// Bytes read and written in a second by a copy of more than the caches hold: the fastest of several.
+fn bandwidth() -> f64 {
+    let from = vec![1.0_f64; 1 << 24];
+    let mut to = vec![0.0_f64; from.len()];
+    let mut shortest = Duration::MAX;
+    for _ in 0..5 {
+        let start = Instant::now();
+        to.copy_from_slice(black_box(&from));
+        black_box(&mut to);
+        shortest = shortest.min(start.elapsed());
+    }
+    2.0 * size_of_val(from.as_slice()) as f64 / shortest.as_secs_f64()
 }
 
 /// Random numbers from 0 to 1.

@@ -18,6 +18,7 @@ mod compensation;
 mod compiled;
 mod concealed;
 mod counts;
+mod dependencies;
 mod diagnose;
 mod evaluate;
 mod experiments;

@@ -1,4 +1,5 @@
-//! Slides that do not stand at right angles, some of them only where a rotary axis has turned them.
+//! Slides that do not stand at right angles, some of them only where a rotary axis has turned them, and one that turns as
+//! it goes.
 //!
 //! In: random angles and errors, several rows side by side. Out: the sums that the moved slides must make, written down
 //! here; and that a row side by side with others is answered as it is alone.
@@ -33,15 +34,45 @@ impl Kinematics for Turned {
     }
 }
 
-/// Targets in three columns; the commands, and the answers.
-type Rows = ([Vec<f64>; 3], Vec<Result<Outcome, Refusal>>);
+/// A single slide on a path that turns from X towards Y as it goes, by a rad for each mm.
+struct Bent;
 
-fn side_by_side(motions: &[ErrorMotion<'_>], targets: &[Vec<f64>; 3]) -> Rows {
+impl Kinematics for Bent {
+    fn axes(&self) -> usize {
+        1
+    }
+    fn travels(&self) -> &[usize] {
+        &[]
+    }
+    fn motions(&self) -> usize {
+        2
+    }
+    fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
+        Turned.error(position, travel, motions)
+    }
+    fn error_lanes(&self, position: &[Lanes], travel: &[Lanes], motions: &[Lanes]) -> Option<[Lanes; 3]> {
+        Turned.error_lanes(position, travel, motions)
+    }
+    fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {
+        let (sine, cosine) = position[0].sin_cos();
+        directions.fill([cosine, sine, 0.0]);
+    }
+}
+
+/// A column for each axis, of targets or commands.
+type Columns<const AXES: usize> = [Vec<f64>; AXES];
+
+/// The commands of all rows, and their answers.
+fn side_by_side<const AXES: usize>(
+    machine: &impl Kinematics,
+    motions: &[ErrorMotion<'_>],
+    targets: &Columns<AXES>,
+) -> (Columns<AXES>, Vec<Result<Outcome, Refusal>>) {
     let rows = targets[0].len();
     let (directions, time_step) = (vec![Direction::Positive; rows], vec![0.0; rows]);
-    let mut commands = [(); 3].map(|()| vec![f64::NAN; rows]);
+    let mut commands = [(); AXES].map(|()| vec![f64::NAN; rows]);
     let mut answers = vec![Err(Refusal::NotFinite); rows];
-    let (result, _) = with(&Turned, motions, |compensator| {
+    let (result, _) = with(machine, motions, |compensator| {
         let sizes = compensator.batch_sizes();
         let mut lanes = vec![Lanes::from(f64::NAN); sizes.lanes];
         let mut numbers = vec![f64::NAN; sizes.numbers];
@@ -50,7 +81,7 @@ fn side_by_side(motions: &[ErrorMotion<'_>], targets: &[Vec<f64>; 3]) -> Rows {
         let batch = Batch {
             position: &targets.each_ref().map(Vec::as_slice),
             travel: &[],
-            direction: &[&directions[..]; 3],
+            direction: &[&directions[..]; AXES],
             velocity: &[],
             temperature: &[],
             time_step: &time_step,
@@ -76,7 +107,7 @@ proptest! {
         let motions = [&ex_terms, &ey_terms].map(|terms| ErrorMotion { terms });
         let places = |step: f64| (0..angles.len()).map(|row| step * row as f64).collect::<Vec<f64>>();
         let targets = [places(3.0), places(-5.0), angles.clone()];
-        let ([u, v, c], answers) = side_by_side(&motions, &targets);
+        let ([u, v, c], answers) = side_by_side(&Turned, &motions, &targets);
         for (row, angle) in angles.iter().enumerate() {
             // u + v sin(c) = -ex and v cos(c) = -ey: what the slides move, against the error.
             let (du, dv) = (u[row] - targets[0][row], v[row] - targets[1][row]);
@@ -87,6 +118,23 @@ proptest! {
             let (answer, _) = with(&Turned, &motions, |one| one.compensate(&at(&target), &mut alone));
             prop_assert_eq!(&answers[row], &answer);
             prop_assert_eq!([u[row], v[row], c[row]].map(f64::to_bits), alone.map(f64::to_bits));
+        }
+    }
+
+    /// Each row has a direction of its own, and takes nothing of the block before.
+    #[test]
+    fn a_slide_makes_its_share_wherever_its_path_has_turned(
+        targets in prop::collection::vec(-3.0..3.0_f64, 9..30), ex in -0.05..0.05_f64, ey in -0.05..0.05_f64,
+    ) {
+        let (ex_terms, ey_terms) = ([Term::Constant { value: ex }], [Term::Constant { value: ey }]);
+        let motions = [&ex_terms, &ey_terms].map(|terms| ErrorMotion { terms });
+        let ([commands], answers) = side_by_side(&Bent, &motions, &[targets.clone()]);
+        for ((target, command), answer) in targets.iter().zip(commands).zip(answers) {
+            let share = target.cos() * ex + target.sin() * ey;
+            prop_assert!((command - (target - share)).abs() < 1e-9, "{} at {}", command, target);
+            let [x, y, _] = answer.unwrap().remaining;
+            prop_assert!((x - (ex - share * target.cos())).abs() < 1e-9);
+            prop_assert!((y - (ey - share * target.sin())).abs() < 1e-9);
         }
     }
 }

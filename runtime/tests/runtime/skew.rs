@@ -128,8 +128,9 @@ proptest! {
     ) {
         let (ex_terms, ey_terms) = ([Term::Constant { value: ex }], [Term::Constant { value: ey }]);
         let motions = [&ex_terms, &ey_terms].map(|terms| ErrorMotion { terms });
-        let ([commands], answers) = side_by_side(&Bent, &motions, &[targets.clone()]);
-        for ((target, command), answer) in targets.iter().zip(commands).zip(answers) {
+        let columns = [targets];
+            let ([commands], answers) = side_by_side(&Bent, &motions, &columns);
+        for ((target, command), answer) in columns[0].iter().zip(commands).zip(answers) {
             let share = target.cos() * ex + target.sin() * ey;
             prop_assert!((command - (target - share)).abs() < 1e-9, "{} at {}", command, target);
             let [x, y, _] = answer.unwrap().remaining;

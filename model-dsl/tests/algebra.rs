@@ -73,7 +73,7 @@ proptest! {
 
     #[test]
     fn a_number_is_what_has_no_symbol(a in polynomial(), number in -3_i64..=3) {
-        prop_assert_eq!(a.as_number().is_none(), a.symbols().len() > 0, "{:?}", a);
+        prop_assert_eq!(a.as_number().is_none(), !a.symbols().is_empty(), "{:?}", a);
         if let Some(value) = a.as_number() {
             prop_assert_eq!(&Polynomial::number(value), &a);
         }

@@ -72,6 +72,17 @@ proptest! {
     }
 
     #[test]
+    fn a_number_is_what_has_no_symbol(a in polynomial(), number in -3_i64..=3) {
+        prop_assert_eq!(a.as_number().is_none(), !a.symbols().is_empty(), "{:?}", a);
+        if let Some(value) = a.as_number() {
+            prop_assert_eq!(&Polynomial::number(value), &a);
+        }
+        prop_assert_eq!(a.is_one(), a == Polynomial::one());
+        prop_assert_eq!(Polynomial::integer(number).as_number(), Some(Rational::from_integer(number.into())));
+        prop_assert_eq!(Polynomial::integer(number).is_one(), number == 1);
+    }
+
+    #[test]
     fn no_square_of_a_sine_survives(a in polynomial(), b in polynomial()) {
         let product = &a * &b;
         for (monomial, _) in product.terms() {

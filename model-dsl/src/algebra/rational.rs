@@ -67,7 +67,8 @@ mod tests {
 
     #[test]
     fn what_is_not_a_number_or_is_absurd_is_refused() {
-        for text in ["", ".", "1,5", "x", "1e", "1e999999999", "--1", "0x1"] {
+        // Integers of any size may be written with underscores in Rust, and numbers of a file may not.
+        for text in ["", ".", "1,5", "x", "1e", "1e999999999", "--1", "0x1", "1_0", "1.5_0", "1.-5", "_1.5"] {
             assert_eq!(decimal(text), None, "{text}");
         }
     }

@@ -301,6 +301,7 @@ proptest! {
             let (found, expected) = (lanes.lane(lane), of(a[lane], b[lane]));
             found.to_bits() == expected.to_bits() || found.is_nan() && expected.is_nan()
         });
+        prop_assert_eq!(Lanes::from_fn(|lane| a[lane]).numbers().map(f64::to_bits), a.map(f64::to_bits));
         prop_assert!(same(x + y, |a, b| a + b));
         prop_assert!(same(x - y, |a, b| a - b));
         prop_assert!(same(x * y, |a, b| a * b));

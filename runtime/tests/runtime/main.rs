@@ -10,6 +10,7 @@ mod cycle;
 mod hostile;
 mod inverse;
 mod ramp;
+mod skew;
 mod supervisor;
 mod tables;
 mod terms;

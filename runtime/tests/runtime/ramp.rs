@@ -3,7 +3,7 @@
 //! In: directions, time steps and ramps, also random ones. Out: what the ramp allows a cycle, where it ends, and what a
 //! second reversal makes of it.
 
-use abbe_runtime::{Direction, ErrorMotion, Sample, SetupError, Term, TermState};
+use abbe_runtime::{Direction, ErrorMotion, Input, Sample, SetupError, Term, TermState};
 use proptest::prelude::*;
 
 use crate::common::{Slide, at, with};
@@ -64,6 +64,35 @@ fn the_prediction_does_not_wait_and_the_rest_is_told() {
     assert_close(&outcome.error, &[0.005, 0.0, 0.0]);
     assert_close(&outcome.remaining, &[0.0075, 0.0, 0.0]);
     assert_close(&[command], &[5.0025]);
+}
+
+#[test]
+fn a_motion_corrects_what_each_of_its_terms_corrects() {
+    let terms = [PLAY, Term::Constant { value: 0.02 }];
+    let motion = ErrorMotion { terms: &terms };
+    let mut states = [TermState::default(); 2];
+    motion.advance(&at(&[5.0]), &mut states);
+    let back = Sample { direction: BACK, time_step: 0.25, ..at(&[5.0]) };
+    motion.advance(&back, &mut states);
+    assert_close(&[motion.value(&back, &states), motion.corrected(&back, &states)], &[0.025, 0.0175]);
+}
+
+/// On an axis whose error changes with the position, what remains is what stands at the command and not at the target.
+#[test]
+fn the_rest_is_that_of_the_place_where_the_axis_goes() {
+    let scale = Term::Polynomial { input: Input::Axis(0), coefficients: &[0.0, 0.01] };
+    let terms = [PLAY, scale];
+    let motions = [ErrorMotion { terms: &terms }];
+    let ((outcome, command), _) = with(&Slide, &motions, |compensator| {
+        let mut command = [0.0];
+        compensator.compensate(&at(&[100.0]), &mut command).unwrap();
+        let back = Sample { direction: BACK, time_step: 0.25, ..at(&[100.0]) };
+        (compensator.compensate(&back, &mut command).unwrap(), command[0])
+    });
+    // Half of the take-up is followed: c + 0.01 c - 0.0025 = 100, while the slide stands at c + 0.01 c + 0.005.
+    assert!((command - 100.0025 / 1.01).abs() < 1e-9, "{command}");
+    assert!((outcome.remaining[0] - 0.0075).abs() < 1e-9, "{:?}", outcome.remaining);
+    assert!((command + 0.01 * command + 0.005 - 100.0 - outcome.remaining[0]).abs() < 1e-9);
 }
 
 #[test]

@@ -193,6 +193,26 @@ fn one_bad_position_passes_and_takes_nothing_from_the_other_axis() {
     });
 }
 
+/// A sensor returns with 90 degrees less, and has the old reading again one cycle later: what is wanted is then where the
+/// correction was, and the rest of the fade comes on top of it.
+#[test]
+fn a_fade_stays_within_the_limit_where_the_wanted_correction_turns() {
+    let greatest = |limit: Option<f64>| {
+        supervised(fading(1.0, 0.010), |supervisor| {
+            supervisor.compensator.limits.compensation = limit;
+            let full = (0..12).map(|_| rest(supervisor, 110.0).0.correction).last().unwrap();
+            assert!((0.18..0.2).contains(&full), "90 degrees make 180 um: {full}");
+            rest(supervisor, f64::NAN);
+            rest(supervisor, -70.0);
+            let made: Vec<f64> = (0..12).map(|_| rest(supervisor, 110.0).0.correction).collect();
+            assert!((made[11] - full).abs() < ROUNDING, "{made:?}");
+            made.into_iter().fold(0.0, f64::max)
+        })
+    };
+    assert!(greatest(None) > 0.4);
+    assert!((greatest(Some(0.2)) - 0.2).abs() < ROUNDING);
+}
+
 #[test]
 fn where_time_stands_still_so_does_the_correction() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
@@ -205,6 +225,19 @@ fn where_time_stands_still_so_does_the_correction() {
             assert!(close([out[0] - 100.0, out[1] - 300.0], full), "{bad}: {out:?}");
         });
     }
+}
+
+#[test]
+fn what_has_arrived_stays_arrived_while_time_stands_still() {
+    supervised(Transition { rate: Some(2.0), hold: 1.0, fade: 0.001 }, |supervisor| {
+        let (last, full) = (0..40).map(|_| rest(supervisor, 25.0)).last().unwrap();
+        assert!(!last.settling && length(full) > 0.010, "{last:?}");
+        let (position, mut out) = ([100.0, 300.0], [0.0; 2]);
+        let still = Sample { time_step: 0.0, ..sample(&position, &POSITIVE, &[25.0]) };
+        let cycle = supervisor.cycle(&still, &mut out);
+        assert!(!cycle.settling, "{cycle:?}");
+        assert_eq!([out[0] - 100.0, out[1] - 300.0], full);
+    });
 }
 
 #[test]

@@ -2,7 +2,9 @@
 //!
 //! In: parameters and states. Out: the values that section "terms" of the vocabulary asks for.
 
-use abbe_runtime::{Direction, ErrorMotion, Input, Sample, Table, Term, TermState, Values, states_needed};
+use abbe_runtime::{
+    Direction, ErrorMotion, Input, Sample, Table, Term, TermState, Values, math, states_needed,
+};
 
 use crate::common::at;
 
@@ -13,6 +15,27 @@ fn value(term: Term<'_>, sample: &Sample<'_>) -> f64 {
 
 fn assert_close(found: f64, expected: f64) {
     assert!((found - expected).abs() <= 1e-15 * (1.0 + expected.abs()), "{found} is not {expected}");
+}
+
+#[test]
+fn functions_have_the_values_of_the_textbooks() {
+    for (turn, sine, cosine) in [
+        (0.0, 0.0, 1.0),
+        (1.0 / 12.0, 0.5, 0.75_f64.sqrt()),
+        (0.25, 1.0, 0.0),
+        (-0.375, -0.5_f64.sqrt(), -0.5_f64.sqrt()),
+    ] {
+        let angle = core::f64::consts::TAU * turn;
+        assert_close(math::sin(angle), sine);
+        assert_close(math::sin_cos(angle).0, sine);
+        assert_close(math::sin_cos(angle).1, cosine);
+    }
+    assert_eq!(math::sqrt(2.25), 1.5);
+    assert!(math::sqrt(-1.0).is_nan());
+    // e - 1, and the value itself where exp(value) would round to 1.
+    assert_close(math::exp_m1(1.0), core::f64::consts::E - 1.0);
+    assert_eq!(math::exp_m1(1e-20), 1e-20);
+    assert_eq!(math::length([2.0, -3.0, 6.0]), 7.0);
 }
 
 #[test]

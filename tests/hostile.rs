@@ -115,7 +115,7 @@ fn recordings() {
 
 #[test]
 fn equation_files() {
-    target_holds("equations", 300);
+    target_holds("equations", 100);
 }
 
 #[test]

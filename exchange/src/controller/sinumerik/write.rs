@@ -1,0 +1,228 @@
+//! Archives for a SINUMERIK. In: a correction taken apart. Out: `$AA_ENC_COMP` of what each axis does to itself, and `$AN_CEC` of
+//! what axes do to each other, the largest first, as many tables as the control has.
+
+use std::fmt::Write;
+
+use super::super::decimal::decimal;
+use super::super::effects::{Effect, Effects, Factor, Product};
+use super::super::export::{File, Job, Sense, Written};
+use super::super::nodes::{Nodes, Spacing};
+use super::super::refused::Refused;
+use super::{Sinumerik, controller};
+
+/// What is smaller is left out, and counts as lost: mm.
+const LEAST: f64 = 1e-4;
+
+/// The most points of a table.
+const MOST: usize = 5000;
+
+/// One or two tables that belong together.
+enum Piece {
+    /// What an axis does, the same from both sides.
+    Both(Effect),
+    /// What an axis does, one table for each direction.
+    Directed(Effect),
+    /// What two axes do together.
+    Product(Product),
+}
+
+impl Piece {
+    fn tables(&self) -> usize {
+        match self {
+            Self::Both(_) => 1,
+            Self::Directed(_) | Self::Product(_) => 2,
+        }
+    }
+
+    fn size(&self) -> f64 {
+        match self {
+            Self::Both(effect) | Self::Directed(effect) => effect.largest(),
+            Self::Product(product) => product.largest,
+        }
+    }
+}
+
+/// The archives of both compensations.
+pub(in super::super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
+    let control = controller(job);
+    let effects = Effects::new(job.geometry, job.space)?;
+    let all = nodes(job)?;
+    let mut written = Written::default();
+    let mut screws = String::from("%_N_AX_EEC_INI\nCHANDATA(1)\n");
+    let mut pieces = Vec::new();
+    for (source, nodes) in all.iter().enumerate() {
+        for effect in effects.of(source, nodes)? {
+            if effect.target == source {
+                let base = effects.base.get(source).copied().unwrap_or_default();
+                write_screw(&mut screws, &control, &effect, base);
+                pieces.extend(own_rest(effect));
+            } else {
+                pieces.push(if effect.directed() < LEAST {
+                    Piece::Both(effect)
+                } else {
+                    Piece::Directed(effect)
+                });
+            }
+        }
+    }
+    screws.push_str("M17\n");
+    let about = "leadscrew error compensation of each axis, mean of both directions".to_owned();
+    written.files.push(File { name: "eec.ini".to_owned(), axis: None, text: screws, about });
+    written.loading = loading(&all);
+    pieces.extend(together(&effects, &all)?.into_iter().map(Piece::Product));
+    pieces.retain(|piece| piece.size() >= LEAST);
+    cross(job, &control, pieces, &mut written);
+    Ok(written)
+}
+
+/// The nodes of every axis.
+fn nodes(job: &Job<'_, '_>) -> Result<Vec<Vec<f64>>, Refused> {
+    let spacing = Spacing { points: job.options.points, most: MOST };
+    let axes = job.space.ranges.iter().enumerate();
+    axes.map(|(axis, range)| {
+        Nodes::new(job.geometry.equations, job.geometry.calibration, axis, *range).at_equal_steps(spacing)
+    })
+    .collect()
+}
+
+/// What the leadscrew table, which knows no direction, leaves of an axis's own effect.
+fn own_rest(effect: Effect) -> Option<Piece> {
+    let mean = effect.mean();
+    let less = |values: Vec<f64>| values.iter().zip(&mean).map(|(value, mean)| value - mean).collect();
+    let rest = Effect { forward: less(effect.forward), reverse: less(effect.reverse), ..effect };
+    (rest.largest() >= LEAST).then_some(Piece::Directed(rest))
+}
+
+fn together(effects: &Effects<'_, '_>, nodes: &[Vec<f64>]) -> Result<Vec<Product>, Refused> {
+    let mut products = Vec::new();
+    for (second, seconds) in nodes.iter().enumerate() {
+        for (first, firsts) in nodes.iter().enumerate().take(second) {
+            products.extend(effects.together([first, second], [firsts, seconds], LEAST)?);
+        }
+    }
+    Ok(products)
+}
+
+fn loading(nodes: &[Vec<f64>]) -> Vec<String> {
+    let most = nodes.iter().map(Vec::len).max().unwrap_or_default();
+    vec![
+        format!(
+            "MD38000 $MA_MM_ENC_COMP_MAX_POINTS at least {most}; then run eec.ini, MD32700 $MA_ENC_COMP_ENABLE = 1"
+        ),
+        "a value of ENC_COMP moves its axis the other way: these are errors, actual minus commanded"
+            .to_owned(),
+    ]
+}
+
+/// The cross tables that the control has room for; what they are is left out where the user does not say their sign.
+fn cross(job: &Job<'_, '_>, control: &Sinumerik, mut pieces: Vec<Piece>, written: &mut Written) {
+    pieces.sort_by(|one, other| other.size().total_cmp(&one.size()));
+    let Some(sense) = job.options.sense else {
+        if !pieces.is_empty() {
+            written.left_out.push(format!(
+                "{} pieces of cross compensation (CEC), the largest of {:.1} um: no public document says what a positive \
+                 value does; find out with an indicator, then say --value error or --value correction",
+                pieces.len(),
+                pieces.first().map_or(0.0, Piece::size) * 1000.0
+            ));
+        }
+        return;
+    };
+    let mut text = String::from("%_N_NC_CEC_INI\nCHANDATA(1)\n");
+    let (mut index, mut left) = (0, Vec::new());
+    for piece in &pieces {
+        if index + piece.tables() > job.options.tables {
+            left.push(piece.size());
+            continue;
+        }
+        write_piece(&mut text, control, piece, index, sense);
+        index += piece.tables();
+    }
+    text.push_str("M17\n");
+    if let Some(largest) = left.first() {
+        written.left_out.push(format!(
+            "{} pieces of cross compensation, the largest of {:.1} um: the control has {} tables (--tables)",
+            left.len(),
+            largest * 1000.0,
+            job.options.tables
+        ));
+    }
+    if index > 0 {
+        let about = format!("{index} tables of cross error compensation");
+        written.files.push(File { name: "cec.ini".to_owned(), axis: None, text, about });
+        written.loading.push(format!(
+            "MD18342 $MN_MM_CEC_MAX_POINTS of tables 0 to {}; then run cec.ini, SD41300 $SN_CEC_TABLE_ENABLE = 1 for each, \
+             MD32710 $MA_CEC_ENABLE = 1, MD32711 $MA_CEC_SCALING_SYSTEM_METRIC = 1",
+            index - 1
+        ));
+    }
+}
+
+fn write_screw(text: &mut String, control: &Sinumerik, effect: &Effect, base: f64) {
+    let (Some(name), Some(unit)) = (control.names.get(effect.source), control.units.get(effect.source))
+    else {
+        return;
+    };
+    for (point, correction) in effect.mean().iter().enumerate() {
+        let _ = writeln!(text, "$AA_ENC_COMP[0,{point},{name}]={}", decimal(-(correction + base), 6));
+    }
+    for (key, value) in ["STEP", "MIN", "MAX"].into_iter().zip(reach(&effect.nodes, *unit)) {
+        let _ = writeln!(text, "$AA_ENC_COMP_{key}[0,{name}]={value}");
+    }
+    let _ = writeln!(text, "$AA_ENC_COMP_IS_MODULO[0,{name}]=0");
+}
+
+fn write_piece(text: &mut String, control: &Sinumerik, piece: &Piece, index: usize, sense: Sense) {
+    let sign = sense.sign();
+    let mut table = |index, output, values: &[f64], sign: f64, factor: (usize, &[f64]), direction, by| {
+        let values: Vec<f64> = values.iter().map(|value| sign * value).collect();
+        write_table(text, control, index, [factor.0, output], factor.1, &values, direction, by);
+    };
+    match piece {
+        Piece::Both(effect) => {
+            table(index, effect.target, &effect.mean(), sign, (effect.source, &effect.nodes), 0, 0);
+        }
+        Piece::Directed(effect) => {
+            table(index, effect.target, &effect.forward, sign, (effect.source, &effect.nodes), 1, 0);
+            table(index + 1, effect.target, &effect.reverse, sign, (effect.source, &effect.nodes), -1, 0);
+        }
+        Piece::Product(product) => {
+            let [Factor { source, nodes, values }, other] = &product.factors;
+            table(index, product.target, values, sign, (*source, nodes), 0, index + 2);
+            table(index + 1, product.target, &other.values, 1.0, (other.source, &other.nodes), 0, 0);
+        }
+    }
+}
+
+#[expect(clippy::too_many_arguments, reason = "a table of the archive has as many entries")]
+fn write_table(
+    text: &mut String,
+    control: &Sinumerik,
+    index: usize,
+    [input, output]: [usize; 2],
+    nodes: &[f64],
+    values: &[f64],
+    direction: i8,
+    by: usize,
+) {
+    let name = |axis: usize| control.names.get(axis).map_or("", String::as_str);
+    let unit = control.units.get(input).copied().unwrap_or(1.0);
+    for (point, value) in values.iter().enumerate() {
+        let _ = writeln!(text, "$AN_CEC[{index},{point}]={}", decimal(*value, 9));
+    }
+    let _ = writeln!(text, "$AN_CEC_INPUT_AXIS[{index}]=({})", name(input));
+    let _ = writeln!(text, "$AN_CEC_OUTPUT_AXIS[{index}]=({})", name(output));
+    for (key, value) in ["STEP", "MIN", "MAX"].into_iter().zip(reach(nodes, unit)) {
+        let _ = writeln!(text, "$AN_CEC_{key}[{index}]={value}");
+    }
+    let _ = writeln!(text, "$AN_CEC_DIRECTION[{index}]={direction}");
+    let _ = writeln!(text, "$AN_CEC_MULT_BY_TABLE[{index}]={by}");
+    let _ = writeln!(text, "$AN_CEC_IS_MODULO[{index}]=0");
+}
+
+/// The step, the first and the last place, in the unit of the archive.
+fn reach(nodes: &[f64], unit: f64) -> [String; 3] {
+    let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else { return Default::default() };
+    let intervals = f64::from(u32::try_from(nodes.len().max(2) - 1).unwrap_or(u32::MAX));
+    [(last - first) / intervals, *first, *last].map(|length| decimal(length * unit, 6))
+}

@@ -9,8 +9,12 @@ use abbe_runtime::Direction;
 use nalgebra::DMatrix;
 
 use super::geometry::{Geometry, Pose};
+use super::nodes::Nodes;
 use super::refused::Refused;
 use super::space::Space;
+
+/// What is smaller needs no table of its own, and counts as lost: mm.
+pub(super) const LEAST: f64 = 1e-5;
 
 /// What a source axis alone adds to the command of a target axis, zero at the reference pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -121,6 +125,23 @@ impl<'g, 'c> Effects<'g, 'c> {
             reverse: column(&reverse, target),
         };
         Ok(self.correcting().map(effect).collect())
+    }
+
+    /// Where the values of tables over an axis are to stand: closer where an effect bends between the calibration's own nodes.
+    ///
+    /// # Errors
+    /// Where the correction cannot be computed.
+    pub fn nodes(&self, source: usize) -> Result<Nodes, Refused> {
+        let range = self.space.ranges.get(source).copied().unwrap_or_default();
+        let nodes = Nodes::new(self.geometry.equations, self.geometry.calibration, source, range);
+        let own = nodes.own();
+        let between: Vec<f64> = own.windows(2).map(|pair| f64::midpoint(pair[0], pair[1])).collect();
+        let (at, midway) = (self.of(source, own)?, self.of(source, &between)?);
+        let bends = at.iter().zip(&midway).any(|(at, midway)| {
+            let straight = at.forward.windows(2).map(|pair| f64::midpoint(pair[0], pair[1]));
+            straight.zip(&midway.forward).any(|(straight, value)| (straight - value).abs() > LEAST)
+        });
+        Ok(nodes.curved(bends))
     }
 
     /// What two axes do together to the commands of all that correct, as products, down to a least size in mm.

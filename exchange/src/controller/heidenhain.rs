@@ -12,20 +12,17 @@ use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::source::SourceFile;
 
 use super::decimal::decimal;
-use super::effects::{Effect, Effects};
+use super::effects::{Effect, Effects, LEAST};
 use super::export::{Controller, File, Job, Sense, Written};
 use super::geometry::Pose;
 use super::grid::Grid;
 use super::lines::{Line, lines};
 use super::lost::Target;
-use super::nodes::{Nodes, Spacing};
+use super::nodes::Spacing;
 use super::refused::Refused;
 
 /// The most entries of a table.
 const MOST: usize = 256;
-
-/// What is smaller gets no column of its own, and counts as lost: mm.
-const LEAST: f64 = 1e-4;
 
 /// The form of a file, for findings.
 const FORM: &str = "a table is `BEGIN AXIS_X.COM MM`, `NR AXISPOS BACKLASH X Y Z`, numbered rows, `[END]`";
@@ -172,9 +169,9 @@ pub(super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
     let control = controller(job)?;
     let effects = Effects::new(job.geometry, job.space)?;
     let mut written = Written::default();
-    for (source, range) in job.space.ranges.iter().enumerate() {
-        let nodes = Nodes::new(job.geometry.equations, job.geometry.calibration, source, *range);
-        let nodes = nodes.at_any_places(Spacing { points: job.options.points, most: MOST })?;
+    for source in 0..job.space.ranges.len() {
+        let nodes =
+            effects.nodes(source)?.at_any_places(Spacing { points: job.options.points, most: MOST })?;
         let mut columns = effects.of(source, &nodes)?;
         columns.retain(|effect| effect.target == source || effect.largest() >= LEAST);
         if columns.is_empty() {

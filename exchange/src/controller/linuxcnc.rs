@@ -16,7 +16,7 @@ use super::effects::{Effect, Effects};
 use super::export::{Controller, File, Job, Written};
 use super::geometry::Pose;
 use super::lost::Target;
-use super::nodes::{Nodes, Spacing};
+use super::nodes::Spacing;
 use super::refused::Refused;
 
 /// The most triplets that a joint takes.
@@ -253,11 +253,8 @@ pub(super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
     let effects = Effects::new(geometry, space)?;
     let mut written = Written::default();
     for axis in effects.correcting() {
-        let (Some(info), Some(range)) = (geometry.equations.axes.get(axis), space.ranges.get(axis)) else {
-            continue;
-        };
-        let nodes = Nodes::new(geometry.equations, geometry.calibration, axis, *range);
-        let nodes = nodes.at_any_places(Spacing { points: options.points, most: MOST })?;
+        let Some(info) = geometry.equations.axes.get(axis) else { continue };
+        let nodes = effects.nodes(axis)?.at_any_places(Spacing { points: options.points, most: MOST })?;
         let own = effects.of(axis, &nodes)?.into_iter().find(|effect| effect.target == axis);
         let (Some(own), Some(base)) = (own, effects.base.get(axis)) else { continue };
         let name = format!("{}.comp", info.letter.to_lowercase());

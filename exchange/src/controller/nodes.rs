@@ -52,6 +52,18 @@ impl Nodes {
         Self { own, curved, range, letter, unit: if rotary { 1_f64.to_degrees() } else { 1.0 } }
     }
 
+    /// The nodes of the calibration's tables, and the ends of the range.
+    pub(super) fn own(&self) -> &[f64] {
+        &self.own
+    }
+
+    /// The nodes of an axis on which something is curved that no term tells: an angle times a lever arm that grows with the
+    /// same position.
+    #[must_use]
+    pub(super) fn curved(self, curved: bool) -> Self {
+        Self { curved: self.curved || curved, ..self }
+    }
+
     /// Nodes at any places.
     ///
     /// # Errors

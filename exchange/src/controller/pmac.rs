@@ -12,11 +12,11 @@ use abbe_runtime::Direction;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
 
-use super::effects::{Effect, Effects};
+use super::effects::{Effect, Effects, LEAST};
 use super::export::{Controller, File, Job, Written};
 use super::geometry::Pose;
 use super::lost::Target;
-use super::nodes::{Nodes, Spacing};
+use super::nodes::Spacing;
 use super::refused::Refused;
 
 /// Entries are so many to a count.
@@ -25,11 +25,11 @@ const PARTS: f64 = 16.0;
 /// The most entries of a table.
 const MOST: usize = 10_000;
 
+/// A step is cut into so many parts at most to bring nodes and zero together.
+const FINEST: u32 = 20;
+
 /// The leadscrew tables that a controller has: one belongs to each motor.
 const TABLES: usize = 8;
-
-/// What is smaller gets no table of its own, and counts as lost: mm.
-const LEAST: f64 = 1e-4;
 
 /// A table that rolls over.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -152,7 +152,7 @@ pub(super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
         if pmac.motors.get(source).is_none_or(|motor| motor.counts.is_none()) {
             continue;
         }
-        let nodes = rolling_nodes(job, source, *range)?;
+        let nodes = rolling_nodes(job, &effects, source, *range)?;
         for effect in effects.of(source, &nodes)? {
             let own = effect.target == source;
             if own && effect.directed() > 0.0 {
@@ -184,7 +184,12 @@ pub(super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
 }
 
 /// Nodes at multiples of one step, zero among them, that cover the range: the control counts spacings from zero.
-fn rolling_nodes(job: &Job<'_, '_>, axis: usize, [low, high]: [f64; 2]) -> Result<Vec<f64>, Refused> {
+fn rolling_nodes(
+    job: &Job<'_, '_>,
+    effects: &Effects<'_, '_>,
+    axis: usize,
+    [low, high]: [f64; 2],
+) -> Result<Vec<f64>, Refused> {
     let letter = job.geometry.equations.axes.get(axis).map_or("", |info| info.letter.as_str());
     if !(low..=high).contains(&0.0) {
         let help =
@@ -194,13 +199,20 @@ fn rolling_nodes(job: &Job<'_, '_>, axis: usize, [low, high]: [f64; 2]) -> Resul
             help,
         ));
     }
-    let nodes = Nodes::new(job.geometry.equations, job.geometry.calibration, axis, [low, high]);
-    let even = nodes.at_equal_steps(Spacing { points: job.options.points, most: MOST })?;
+    let even = effects.nodes(axis)?.at_equal_steps(Spacing { points: job.options.points, most: MOST })?;
     let step = even.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+    let step = if job.options.points.is_some() { step } else { counted_from_zero(step, &even) };
     let whole = |place: f64| commands::index((place / step - 1e-9).ceil().max(0.0));
     let (below, above) = (whole(-low), whole(high));
     let at = |number: usize| f64::from(u32::try_from(number).unwrap_or(u32::MAX)) * step;
     Ok((1..=below).rev().map(|number| -at(number)).chain((0..=above).map(at)).collect())
+}
+
+/// A step that divides this one and on whose multiples all nodes lie, where one of a few does; else a fine one.
+fn counted_from_zero(step: f64, nodes: &[f64]) -> f64 {
+    let lies = |step: f64| nodes.iter().all(|place| ((place / step).round() * step - place).abs() < 1e-6);
+    let parts = (1..=FINEST).map(|parts| step / f64::from(parts));
+    parts.clone().find(|step| lies(*step)).or_else(|| parts.last()).unwrap_or(step)
 }
 
 /// The value of an own effect at zero.

@@ -8,8 +8,8 @@ use model_dsl::equations::Equations;
 use super::geometry::{Geometry, Pose};
 use super::refused::Refused;
 
-/// So many places all over the workspace, besides its corners.
-const PLACES: u32 = 1024;
+/// So many poses all over the workspace, besides its corners.
+const POSES: u32 = 2048;
 
 /// So many axes at most: two directions each make so many poses of a place.
 const MOST_DIRECTED: usize = 6;
@@ -63,7 +63,7 @@ impl Space {
         directed.truncate(MOST_DIRECTED);
         let axes = self.ranges.len();
         let corners = (0..1_u32 << axes.min(MOST_DIRECTED)).map(|corner| self.corner(corner));
-        let between = (1..=PLACES).map(|number| self.between(number));
+        let between = (1..=POSES >> directed.len()).map(|number| self.between(number));
         let places = corners.chain(between);
         let ways = 0..1_u32 << directed.len();
         places

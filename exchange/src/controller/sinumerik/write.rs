@@ -4,14 +4,11 @@
 use std::fmt::Write;
 
 use super::super::decimal::decimal;
-use super::super::effects::{Effect, Effects, Factor, Product};
+use super::super::effects::{Effect, Effects, Factor, LEAST, Product};
 use super::super::export::{File, Job, Sense, Written};
-use super::super::nodes::{Nodes, Spacing};
+use super::super::nodes::Spacing;
 use super::super::refused::Refused;
 use super::{Sinumerik, controller};
-
-/// What is smaller is left out, and counts as lost: mm.
-const LEAST: f64 = 1e-4;
 
 /// The most points of a table.
 const MOST: usize = 5000;
@@ -46,7 +43,7 @@ impl Piece {
 pub(in super::super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
     let control = controller(job);
     let effects = Effects::new(job.geometry, job.space)?;
-    let all = nodes(job)?;
+    let all = nodes(job, &effects)?;
     let mut written = Written::default();
     let mut screws = String::from("%_N_AX_EEC_INI\nCHANDATA(1)\n");
     let mut pieces = Vec::new();
@@ -76,13 +73,9 @@ pub(in super::super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
 }
 
 /// The nodes of every axis.
-fn nodes(job: &Job<'_, '_>) -> Result<Vec<Vec<f64>>, Refused> {
+fn nodes(job: &Job<'_, '_>, effects: &Effects<'_, '_>) -> Result<Vec<Vec<f64>>, Refused> {
     let spacing = Spacing { points: job.options.points, most: MOST };
-    let axes = job.space.ranges.iter().enumerate();
-    axes.map(|(axis, range)| {
-        Nodes::new(job.geometry.equations, job.geometry.calibration, axis, *range).at_equal_steps(spacing)
-    })
-    .collect()
+    (0..job.space.ranges.len()).map(|axis| effects.nodes(axis)?.at_equal_steps(spacing)).collect()
 }
 
 /// What the leadscrew table, which knows no direction, leaves of an axis's own effect.

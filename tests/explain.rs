@@ -41,7 +41,7 @@ fn listed() -> BTreeMap<String, String> {
 /// The codes in the code of the program.
 fn emitted() -> BTreeSet<String> {
     let mut codes = BTreeSet::new();
-    for folder in ["model-dsl/src", "simulation/src", "diagnosis/src", "update/src", "src"] {
+    for folder in ["model-dsl/src", "simulation/src", "diagnosis/src", "update/src", "exchange/src", "src"] {
         for path in rust_files(&root().join(folder)) {
             let text = fs::read_to_string(&path).unwrap();
             // What stands in tests is no finding of the program.
@@ -258,6 +258,10 @@ fn said(code: &str, folder: &Path, example: &Example, text: &str) -> String {
         ("recording", "given second") => abbe(&["diagnose", &first, path], ""),
         ("recording", "for an update") => abbe(&["update", &warm, path], ""),
         ("recording", _) => abbe(&["diagnose", path], ""),
+        ("file", _) => {
+            let ranges = ["X=0:500", "Y=0:300", "Z=0:200"].map(|range| ["--range", range]).concat();
+            abbe(&[&["export", "isg", &at("known.yaml"), "--check", path][..], &ranges].concat(), "")
+        }
         ("path", "with a slide U") => {
             abbe(&["simulate", &parallel, path, "--output", &output, "--force"], "")
         }

@@ -3,6 +3,13 @@
 //!
 //! A file is believed only when it has been read again: every format has a reader that does what the controller's maker
 //! documents of his own, and what is lost is measured with what that reader made of the file.
+//!
+//! | code | finding |
+//! | --- | --- |
+//! | E0801 | what should be a number is none |
+//! | E0802 | a line that has another form |
+//! | E0803 | a table that contradicts itself |
+//! | E0804 | a name that means no axis and no error motion |
 
 mod beyond;
 mod decimal;
@@ -14,10 +21,12 @@ mod geometry;
 mod grid;
 mod heidenhain;
 mod isg;
+mod job;
 mod lines;
 pub mod linuxcnc;
 mod lost;
 mod nodes;
+mod options;
 mod parameters;
 mod pmac;
 mod refused;
@@ -28,10 +37,12 @@ mod volumetric;
 
 pub use beyond::Beyond;
 pub use effects::{Effect, Effects, Factor, Product};
-pub use export::{Checked, Export, File, Format, Options, Sense, Unusable, check, export};
+pub use export::{Checked, Export, Unusable, check, export};
 pub use geometry::{Geometry, Pose};
+pub use job::File;
 pub use lost::{Lost, Size, Target};
 pub use nodes::{Nodes, Spacing};
+pub use options::{Format, Kind, Options, Sense, Unit};
 pub use refused::Refused;
 pub use report::text;
 pub use space::{Space, Wanted};

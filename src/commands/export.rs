@@ -3,8 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use exchange::controller::linuxcnc::{Kind, Unit};
 use exchange::controller::{self, Format, Geometry, Options, Refused, Sense, Space, Unusable, Wanted};
+use exchange::controller::{Kind, Unit};
 use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
 

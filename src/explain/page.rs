@@ -66,6 +66,7 @@ fn file(kind: &str) -> &str {
         "calibration" => "calibration file",
         "recording" => "recording file",
         "path" => "path file",
+        "volumetric" => "file for a volumetric compensation, ISG CSV",
         "equations" => "equation file for the machine excello-921",
         other => other,
     }

@@ -9,8 +9,9 @@ use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::source::SourceFile;
 
 use super::decimal::decimal;
-use super::export::{Controller, File, Job, Written};
+use super::geometry::Pose;
 use super::grid::Grid;
+use super::job::{Controller, File, Job, Written};
 use super::lines::{Line, lines};
 use super::lost::Target;
 use super::parameters;
@@ -42,7 +43,7 @@ impl Controller for Etalon {
 }
 
 impl Target for Etalon {
-    fn correction(&self, pose: &super::Pose) -> Result<Vec<f64>, Refused> {
+    fn correction(&self, pose: &Pose) -> Result<Vec<f64>, Refused> {
         self.0.correction(pose)
     }
 }
@@ -54,7 +55,7 @@ impl Etalon {
         let Some(motion) = parameters::motion_of(name.trim()) else {
             let message = format!("`{name}` is no error motion");
             return diagnostics
-                .push(Diagnostic::error("E1004", head.span, message).help("name it as EXX or C0Y"));
+                .push(Diagnostic::error("E0804", head.span, message).help("name it as EXX or C0Y"));
         };
         let axis = motion.chars().last();
         let axis = self.0.equations.axes.iter().position(|info| info.letter.chars().next() == axis);
@@ -101,7 +102,7 @@ fn gridpoints(
     let grid = axis.and_then(|axis| Grid::from_records(&[axis], &[places], &values));
     if grid.is_none() {
         let message = "a position stands twice, or the axis is none of the machine's";
-        diagnostics.push(Diagnostic::error("E1003", head.span, message).help(FORM));
+        diagnostics.push(Diagnostic::error("E0803", head.span, message).help(FORM));
     }
     grid
 }

@@ -5,85 +5,12 @@ use model_dsl::diagnostic::{Diagnostics, render};
 use model_dsl::source::SourceFile;
 
 use super::geometry::Geometry;
+use super::job::{Controller, File, Job, Written};
 use super::lost::{Lost, Target};
+use super::options::{Format, Options};
 use super::refused::Refused;
 use super::space::Space;
 use super::{etalon, heidenhain, isg, linuxcnc, pmac, sinumerik};
-
-/// Whose files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// LinuxCNC: `[JOINT_n] COMP_FILE`.
-    LinuxCnc,
-    /// ISG kernel and Beckhoff: volumetric compensation, ISG CSV.
-    Isg,
-    /// Etalon Exchange, variant Vendor, which the ISG kernel reads too.
-    Etalon,
-    /// Siemens SINUMERIK: `$AA_ENC_COMP` and `$AN_CEC`.
-    Sinumerik,
-    /// HEIDENHAIN: `.COM`, as a TNC 640 has it.
-    Heidenhain,
-    /// Delta Tau PMAC: `DEFINE COMP` and `DEFINE BLCOMP`.
-    Pmac,
-}
-
-/// What a controller does with a number of a table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sense {
-    /// It is the error, actual minus commanded: the controller moves the other way.
-    Error,
-    /// It is added to the command.
-    Correction,
-}
-
-impl Sense {
-    /// What a correction is multiplied by to be the number.
-    pub(super) fn sign(self) -> f64 {
-        match self {
-            Self::Error => -1.0,
-            Self::Correction => 1.0,
-        }
-    }
-}
-
-/// What the user says of the controller.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Options {
-    /// The number of points of a table, evenly spaced.
-    pub points: Option<usize>,
-    /// LinuxCNC: the type of its files.
-    pub kind: linuxcnc::Kind,
-    /// LinuxCNC: its unit of length.
-    pub unit: linuxcnc::Unit,
-    /// What a number is, where no public document says it.
-    pub sense: Option<Sense>,
-    /// The number of cross tables that the controller has.
-    pub tables: usize,
-    /// The controller's name of an axis, or its motor's number, by axis letter.
-    pub names: Vec<(String, String)>,
-    /// PMAC: counts of a motor for a mm, by axis letter.
-    pub counts: Vec<(String, f64)>,
-}
-
-impl Options {
-    /// The controller's name of an axis, where the user says one.
-    pub(super) fn name(&self, letter: &str) -> Option<&str> {
-        self.names.iter().find(|(said, _)| said == letter).map(|(_, name)| name.as_str())
-    }
-}
-
-/// One file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct File {
-    /// Its name.
-    pub name: String,
-    /// The axis whose it is alone, by number, where its text does not say it.
-    pub axis: Option<usize>,
-    /// What stands in it.
-    pub text: String,
-    /// What it is, in a few words.
-    pub about: String,
-}
 
 /// Files and what they are worth.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,36 +32,6 @@ pub struct Checked {
     pub findings: Vec<String>,
     /// What they lose.
     pub lost: Lost,
-}
-
-/// What the writers of all formats get.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Job<'j, 'c> {
-    pub(super) geometry: &'j Geometry<'c>,
-    pub(super) space: &'j Space,
-    pub(super) options: &'j Options,
-}
-
-/// What the writers of all formats give.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Written {
-    pub(super) files: Vec<File>,
-    pub(super) loading: Vec<String>,
-    pub(super) left_out: Vec<String>,
-}
-
-/// A controller that takes files.
-pub(super) trait Controller: Target {
-    /// Takes a file as the controller's maker documents it; `axis` is the axis whose it is, where its text does not say it.
-    fn load(&mut self, source: &SourceFile, axis: Option<usize>, diagnostics: &mut Diagnostics);
-
-    /// What it takes otherwise than somebody might think.
-    fn findings(&self) -> Vec<String> {
-        Vec::new()
-    }
-
-    /// The target that it is then.
-    fn target(&self) -> &dyn Target;
 }
 
 /// Writes the files of a format, reads them again, and measures what they lose.

@@ -13,12 +13,13 @@ use model_dsl::source::SourceFile;
 
 use super::decimal::decimal;
 use super::effects::{Effect, Effects, LEAST};
-use super::export::{Controller, File, Job, Sense, Written};
 use super::geometry::Pose;
 use super::grid::Grid;
+use super::job::{Controller, File, Job, Written};
 use super::lines::{Line, lines};
 use super::lost::Target;
 use super::nodes::Spacing;
+use super::options::Sense;
 use super::refused::Refused;
 
 /// The most entries of a table.
@@ -80,7 +81,7 @@ impl Controller for Heidenhain {
         let [begin, header, rows @ .., end] = all.as_slice() else {
             let message = "the table has no header and no end";
             return diagnostics.push(
-                Diagnostic::error("E1002", all.first().map_or(Default::default(), |line| line.span), message)
+                Diagnostic::error("E0802", all.first().map_or(Default::default(), |line| line.span), message)
                     .help(FORM),
             );
         };
@@ -128,13 +129,13 @@ impl Heidenhain {
         for (number, name) in targets.iter().enumerate() {
             let Some(target) = self.letters.iter().position(|letter| letter == name.text) else {
                 let message = format!("no axis of the machine is called `{}`", name.text);
-                diagnostics.push(Diagnostic::error("E1004", name.span, message).help(FORM));
+                diagnostics.push(Diagnostic::error("E0804", name.span, message).help(FORM));
                 return;
             };
             let reverse = if target == source { 2 } else { number + 3 };
             let Some((forward, reverse)) = grid(number + 3).zip(grid(reverse)) else {
                 let message = "a position stands twice";
-                diagnostics.push(Diagnostic::error("E1003", header.span, message).help(FORM));
+                diagnostics.push(Diagnostic::error("E0803", header.span, message).help(FORM));
                 return;
             };
             self.columns.push(Column { source, target, forward, reverse });

@@ -11,8 +11,9 @@ use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
 
 use super::decimal::decimal;
-use super::export::{Controller, File, Job, Written};
+use super::geometry::Pose;
 use super::grid::Grid;
+use super::job::{Controller, File, Job, Written};
 use super::lines::{Line, lines};
 use super::lost::Target;
 use super::parameters::{self, Parameter};
@@ -35,7 +36,7 @@ impl Controller for Isg {
 }
 
 impl Target for Isg {
-    fn correction(&self, pose: &super::Pose) -> Result<Vec<f64>, Refused> {
+    fn correction(&self, pose: &Pose) -> Result<Vec<f64>, Refused> {
         self.0.correction(pose)
     }
 }
@@ -116,7 +117,7 @@ fn take(model: &mut Volumetric, block: &[Line<'_>], diagnostics: &mut Diagnostic
             if !parameters::is_description(name.text) {
                 let message = format!("`{}` is no parameter", name.text);
                 let help = "error motions are named as EXX or C0Y, after the arguments X, Y, Z";
-                diagnostics.push(Diagnostic::error("E1004", name.span, message).help(help));
+                diagnostics.push(Diagnostic::error("E0804", name.span, message).help(help));
             }
             continue;
         };
@@ -126,7 +127,7 @@ fn take(model: &mut Volumetric, block: &[Line<'_>], diagnostics: &mut Diagnostic
             None => {
                 let help = "every combination of its arguments stands in one row, and only once";
                 let message = "the rows of this block are no full grid";
-                diagnostics.push(Diagnostic::error("E1003", header.span, message).help(help));
+                diagnostics.push(Diagnostic::error("E0803", header.span, message).help(help));
                 return;
             }
         }

@@ -39,7 +39,7 @@ impl<'s> Line<'s> {
         if number.is_none() {
             let message = format!("`{}` is not a number", self.text);
             diagnostics
-                .push(Diagnostic::error("E1001", self.span, message).help("write a number such as -0.0125"));
+                .push(Diagnostic::error("E0801", self.span, message).help("write a number such as -0.0125"));
         }
         number
     }
@@ -47,6 +47,6 @@ impl<'s> Line<'s> {
     /// A finding: the line has not the form of its file.
     pub(super) fn malformed(self, form: &str, diagnostics: &mut Diagnostics) {
         let message = format!("`{}` has no place here", self.text);
-        diagnostics.push(Diagnostic::error("E1002", self.span, message).help(form));
+        diagnostics.push(Diagnostic::error("E0802", self.span, message).help(form));
     }
 }

@@ -13,10 +13,11 @@ use model_dsl::source::{SourceFile, Span};
 
 use super::decimal::decimal;
 use super::effects::{Effect, Effects};
-use super::export::{Controller, File, Job, Written};
 use super::geometry::Pose;
+use super::job::{Controller, File, Job, Written};
 use super::lost::Target;
 use super::nodes::Spacing;
+use super::options::{Kind, Unit};
 use super::refused::Refused;
 
 /// The most triplets that a joint takes.
@@ -24,32 +25,6 @@ pub const MOST: usize = 256;
 
 /// The most bytes that the loader reads of a line at once.
 const LINE: usize = 254;
-
-/// What the second and third number of a triplet are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Kind {
-    /// `COMP_FILE_TYPE = 0`: where the joint really is, coming forward and in reverse.
-    Actual,
-    /// `COMP_FILE_TYPE = 1`: what is added to the command.
-    #[default]
-    Trim,
-}
-
-/// The machine's unit of length (`[TRAJ] LINEAR_UNITS`), in mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unit(pub f64);
-
-impl Unit {
-    /// The millimetre.
-    pub const MM: Self = Self(1.0);
-    /// The inch.
-    pub const INCH: Self = Self(25.4);
-
-    /// Numbers in inches need two decimals more for the same nanometre.
-    fn decimals(self) -> usize {
-        if self.0 > 1.0 { 8 } else { 6 }
-    }
-}
 
 /// The file of one joint. It holds numbers alone: a comment would end the table.
 pub fn write(own: &Effect, base: f64, kind: Kind, unit: Unit) -> String {
@@ -226,7 +201,7 @@ impl Controller for Joints {
         match axis.and_then(|axis| self.tables.get_mut(axis)) {
             Some(slot) => *slot = Some(read(source.text(), self.kind)),
             None => diagnostics.push(
-                Diagnostic::error("E1004", Span::default(), "the file does not say whose joint it is for")
+                Diagnostic::error("E0804", Span::default(), "the file does not say whose joint it is for")
                     .help("name the axis: --check X=x.comp"),
             ),
         }

@@ -6,9 +6,9 @@ use std::collections::BTreeSet;
 use abbe_runtime::Direction;
 use model_dsl::calibration::{CalibratedTerm, SeriesInput};
 
-use super::export::Job;
 use super::geometry::Pose;
 use super::grid::Grid;
+use super::job::Job;
 use super::nodes::{Nodes, Spacing};
 use super::refused::Refused;
 use super::volumetric::Volumetric;

@@ -91,22 +91,22 @@ fn a_table_that_contradicts_itself_is_shown() {
         (
             Format::Sinumerik,
             "$AA_ENC_COMP[0,0,X1]=0.1\n$AA_ENC_COMP[0,1,X1]=0.1\n$AA_ENC_COMP_STEP[0,X1]=6.73\n$AA_ENC_COMP_MIN[0,X1]=0\n$AA_ENC_COMP_MAX[0,X1]=8\n",
-            "E1003",
+            "E0803",
             "do not reach",
         ),
-        (Format::Sinumerik, "$AA_ENC_COMP[0,0,Q1]=0.1\n", "E1004", "`Q1`"),
-        (Format::Sinumerik, "hello\n", "E1002", "hello"),
-        (Format::Isg, "X EXX\n0 0.1\n0 0.2\n", "E1003", "no full grid"),
-        (Format::Isg, "X EXX\n0 nan\n", "E1001", "nan"),
-        (Format::Isg, "X EXQ\n0 0.1\n", "E1004", "EXQ"),
-        (Format::Etalon, "[EXX]\nGridpoints = {\n0 0.1\n", "E1002", "[EXX]"),
+        (Format::Sinumerik, "$AA_ENC_COMP[0,0,Q1]=0.1\n", "E0804", "`Q1`"),
+        (Format::Sinumerik, "hello\n", "E0802", "hello"),
+        (Format::Isg, "X EXX\n0 0.1\n0 0.2\n", "E0803", "no full grid"),
+        (Format::Isg, "X EXX\n0 nan\n", "E0801", "nan"),
+        (Format::Isg, "X EXQ\n0 0.1\n", "E0804", "EXQ"),
+        (Format::Etalon, "[EXX]\nGridpoints = {\n0 0.1\n", "E0802", "[EXX]"),
         (
             Format::Heidenhain,
             "BEGIN AXIS_X.COM MM\nNR AXISPOS BACKLASH X\n0 0.0 0.1 0.1\n",
-            "E1002",
+            "E0802",
             "0 0.0 0.1 0.1",
         ),
-        (Format::Pmac, "#1 DEFINE COMP 3,#1D,#1,3000\n1 2\n", "E1002", "DEFINE COMP"),
+        (Format::Pmac, "#1 DEFINE COMP 3,#1D,#1,3000\n1 2\n", "E0802", "DEFINE COMP"),
     ] {
         let options = Options { sense: Some(Sense::Error), ..options() };
         let files = [(SourceFile::new("file", text), None)];

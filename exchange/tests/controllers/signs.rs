@@ -1,8 +1,8 @@
 //! Signs, worked out by hand. X runs 100 um/m too far: at 100 mm it is 10 um beyond, so that its command must be 10 um less.
 //! Every format says that in its own way; a wrong sign would double the error.
 
-use exchange::controller::linuxcnc::{Kind, Unit};
 use exchange::controller::{Format, Options, Sense};
+use exchange::controller::{Kind, Unit};
 
 use crate::machine::{Machine, options, text};
 

@@ -8,7 +8,7 @@ use model_dsl::source::SourceFile;
 use super::super::effects::Effect;
 use super::super::lines::{Line, lines};
 use super::super::refused::Refused;
-use super::{PARTS, Pmac, Rolling, Screw, TABLES, at_zero};
+use super::tables::{PARTS, Pmac, Rolling, Screw, TABLES, index_signed, number};
 
 /// The form of a line, for findings.
 const FORM: &str = "a table is `#1 DEFINE COMP 100,#1D,#2,1000000` or `#1 DEFINE BLCOMP 100,1000000` and as many whole numbers";
@@ -40,6 +40,12 @@ pub(super) fn text(pmac: &Pmac, screws: &[Effect], backlash: &[Effect]) -> Resul
     }
     text.push_str("I51=1\n");
     Ok(text)
+}
+
+/// The value of an own effect at zero.
+fn at_zero(effect: &Effect, values: &[f64]) -> f64 {
+    let zero = effect.nodes.iter().position(|place| *place == 0.0);
+    zero.and_then(|zero| values.get(zero)).copied().unwrap_or_default()
 }
 
 fn less(values: &[f64], zero: f64) -> Vec<f64> {
@@ -107,7 +113,7 @@ pub(super) fn load(pmac: &mut Pmac, source: &SourceFile, diagnostics: &mut Diagn
     if pmac.screws.len() > TABLES {
         let message = format!("{} leadscrew tables; a controller has {TABLES}", pmac.screws.len());
         let place = all.first().map_or_else(Default::default, |line| line.span);
-        diagnostics.push(Diagnostic::error("E1003", place, message).help("one table belongs to each motor"));
+        diagnostics.push(Diagnostic::error("E0803", place, message).help("one table belongs to each motor"));
     }
 }
 
@@ -151,24 +157,4 @@ fn assign(pmac: &mut Pmac, text: &str) -> Option<()> {
     let slot = pmac.motors.iter_mut().find(|known| known.number == motor)?;
     slot.constant = value.trim().parse().ok().filter(|value: &f64| value.is_finite())?;
     Some(())
-}
-
-/// A whole number as one with a fraction: exact below 2^53, and entries are far below.
-#[expect(clippy::cast_precision_loss, reason = "entries are far below 2^53")]
-pub(super) fn number(whole: i64) -> f64 {
-    whole as f64
-}
-
-/// A number without a fraction as a whole one.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "rounded, and far below 2^63; beyond, Rust takes the nearest end"
-)]
-fn index_signed(whole: f64) -> i64 {
-    whole as i64
-}
-
-/// A number without a fraction as an index; 0 below zero.
-pub(super) fn index(whole: f64) -> usize {
-    usize::try_from(index_signed(whole)).unwrap_or_default()
 }

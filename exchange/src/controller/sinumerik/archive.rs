@@ -7,7 +7,7 @@ use model_dsl::source::{SourceFile, Span};
 
 use super::super::even::Even;
 use super::super::lines::{Line, lines};
-use super::{Cross, Sinumerik};
+use super::control::{Cross, Sinumerik};
 
 /// The form of a line, for findings.
 const FORM: &str = "a line is such as `$AA_ENC_COMP[0,3,X1]=0.012` or `$AN_CEC_STEP[0]=8.0`";
@@ -112,7 +112,7 @@ impl Raw<'_> {
         };
         let help =
             "points are counted from 0 without a gap, and STEP times their number less one is MAX - MIN";
-        diagnostics.push(Diagnostic::error("E1003", self.place.unwrap_or_default(), what).help(help));
+        diagnostics.push(Diagnostic::error("E0803", self.place.unwrap_or_default(), what).help(help));
         None
     }
 
@@ -124,7 +124,7 @@ impl Raw<'_> {
         let entry = self.entries.get(key).copied();
         if entry.is_none() {
             let message = format!("the table has no {key}");
-            diagnostics.push(Diagnostic::error("E1003", self.place.unwrap_or_default(), message).help(FORM));
+            diagnostics.push(Diagnostic::error("E0803", self.place.unwrap_or_default(), message).help(FORM));
         }
         entry
     }
@@ -164,7 +164,7 @@ fn axis(
     if axis.is_none() {
         let message = format!("no axis of the machine is called `{name}`");
         let help = format!("they are {}; --name X={name} says otherwise", control.names.join(", "));
-        diagnostics.push(Diagnostic::error("E1004", place.unwrap_or_default(), message).help(help));
+        diagnostics.push(Diagnostic::error("E0804", place.unwrap_or_default(), message).help(help));
     }
     axis
 }

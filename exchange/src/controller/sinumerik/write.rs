@@ -5,10 +5,11 @@ use std::fmt::Write;
 
 use super::super::decimal::decimal;
 use super::super::effects::{Effect, Effects, Factor, LEAST, Product};
-use super::super::export::{File, Job, Sense, Written};
+use super::super::job::{File, Job, Written};
 use super::super::nodes::Spacing;
+use super::super::options::Sense;
 use super::super::refused::Refused;
-use super::{Sinumerik, controller};
+use super::control::{Sinumerik, controller};
 
 /// The most points of a table.
 const MOST: usize = 5000;

@@ -81,6 +81,6 @@ fn rolling_nodes(
 /// A step that divides this one and on whose multiples all nodes lie, where one of a few does; else a fine one.
 fn counted_from_zero(step: f64, nodes: &[f64]) -> f64 {
     let lies = |step: f64| nodes.iter().all(|place| ((place / step).round() * step - place).abs() < 1e-6);
-    let parts = (1..=FINEST).map(|parts| step / f64::from(parts));
-    parts.clone().find(|step| lies(*step)).or_else(|| parts.last()).unwrap_or(step)
+    let mut parts = (1..=FINEST).map(|parts| step / f64::from(parts));
+    parts.clone().find(|step| lies(*step)).or_else(|| parts.next_back()).unwrap_or(step)
 }

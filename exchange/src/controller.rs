@@ -33,6 +33,7 @@ mod refused;
 mod report;
 mod sinumerik;
 mod space;
+mod taken;
 mod volumetric;
 
 pub use beyond::Beyond;
@@ -46,3 +47,4 @@ pub use options::{Format, Kind, Options, Sense, Unit};
 pub use refused::Refused;
 pub use report::text;
 pub use space::{Space, Wanted};
+pub use taken::{VolumetricForm, volumetric_terms};

@@ -23,7 +23,7 @@ const FORM: &str = "a section is `[EXX]` with `VALUE = 0.001`, or with `Gridpoin
 
 /// A controller that reads this form.
 #[derive(Debug)]
-pub(super) struct Etalon(Volumetric);
+pub(super) struct Etalon(pub(super) Volumetric);
 
 impl Controller for Etalon {
     fn load(&mut self, source: &SourceFile, _axis: Option<usize>, diagnostics: &mut Diagnostics) {

@@ -43,7 +43,7 @@ impl Target for Isg {
 
 /// A kernel that reads this form.
 #[derive(Debug)]
-pub(super) struct Isg(Volumetric);
+pub(super) struct Isg(pub(super) Volumetric);
 
 /// The kernel without errors.
 pub(super) fn controller(job: &Job<'_, '_>) -> Result<Isg, Refused> {

@@ -1,7 +1,10 @@
 //! What formats carry. Random machines whose errors a format holds in full lose nothing; what a format has no place for is lost,
 //! and is as large as a calculation beside it says.
 
-use exchange::controller::{Format, Lost, Options, Sense};
+use exchange::controller::{Format, Geometry, Lost, Options, Sense, VolumetricForm, volumetric_terms};
+use model_dsl::calibration::Calibration;
+use model_dsl::diagnostic::Diagnostics;
+use model_dsl::source::SourceFile;
 use proptest::prelude::*;
 
 use crate::machine::{Machine, options};
@@ -66,6 +69,19 @@ proptest! {
             let export = machine.export(format, &options()).unwrap();
             prop_assert!(export.left_out.is_empty(), "{:?}", export.left_out);
             prop_assert!(export.lost.lost.largest < second_order(&export.lost), "{word} {format:?}: {:?}", export.lost);
+            // What was written is taken back: the same errors everywhere, to the decimals of the file.
+            let form = if format == Format::Isg { VolumetricForm::Isg } else { VolumetricForm::Etalon };
+            let source = SourceFile::new("volumetric", export.files[0].text.clone());
+            let mut diagnostics = Diagnostics::new();
+            let empty = Calibration::new("m", machine.calibration.constants.clone());
+            let terms = volumetric_terms(&machine.equations, &empty, &source, form, &mut diagnostics).unwrap();
+            prop_assert!(diagnostics.is_empty());
+            let taken = empty.with(&terms);
+            let (ours, theirs) = (machine.geometry(), Geometry::new(&machine.equations, &taken));
+            for pose in machine.space().poses(&ours).into_iter().step_by(97) {
+                let [one, other] = [ours.error(&pose).unwrap(), theirs.error(&pose).unwrap()];
+                prop_assert!(one.iter().zip(other).all(|(one, other)| (one - other).abs() < 1e-8), "{one:?} {other:?}");
+            }
         }
     }
 

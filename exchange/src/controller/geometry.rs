@@ -109,7 +109,7 @@ impl<'c> Geometry<'c> {
     /// # Errors
     /// Where the calibration gives no finite number there.
     pub fn error(&self, pose: &Pose) -> Result<[f64; 3], Refused> {
-        self.asked(pose, |compensator, sample| compensator.error(sample))
+        asked(&self.machine, &self.terms, pose, |compensator, sample| compensator.error(sample))
     }
 
     /// What is to be added to the command of each axis so that the error at the pose vanishes, mm; 0 for rotary axes.
@@ -117,9 +117,7 @@ impl<'c> Geometry<'c> {
     /// # Errors
     /// Where the inverse refuses.
     pub fn correction(&self, pose: &Pose) -> Result<Vec<f64>, Refused> {
-        let mut command = pose.position.clone();
-        self.asked(pose, |compensator, sample| compensator.compensate(sample, &mut command))?;
-        Ok(command.iter().zip(&pose.position).map(|(command, target)| command - target).collect())
+        correction(&self.machine, &self.terms, pose)
     }
 
     /// The error that remains at a pose with a correction added to the commands: mm, part frame.
@@ -133,21 +131,33 @@ impl<'c> Geometry<'c> {
         let [to, from] = [&commanded, pose].map(|pose| self.machine.nominal(&pose.position));
         Ok(std::array::from_fn(|axis| error[axis] + to[axis] - from[axis]))
     }
+}
 
-    /// One question to a compensator that knows of no sample before.
-    fn asked<T>(
-        &self,
-        pose: &Pose,
-        ask: impl FnOnce(&mut Compensator<'_, Interpreter>, &Sample<'_>) -> Result<T, Refusal>,
-    ) -> Result<T, Refused> {
-        let motions: Vec<ErrorMotion<'_>> = self.terms.iter().map(|terms| ErrorMotion { terms }).collect();
-        let mut states = vec![TermState::default(); states_needed(&motions)];
-        let mut directions = vec![[0.0; 3]; self.machine.axes()];
-        let (mut values, mut travel) = (vec![0.0; motions.len()], vec![0.0; self.machine.travels().len()]);
-        let work = Work { directions: &mut directions, motions: &mut values, travel: &mut travel };
-        let mut compensator = Compensator::new(&self.machine, &motions, &mut states, work)?;
-        Ok(ask(&mut compensator, &sample(pose))?)
-    }
+/// One question to the compensator of a machine, which knows of no sample before.
+fn asked<T>(
+    machine: &Interpreter,
+    terms: &[Vec<Term<'_>>],
+    pose: &Pose,
+    ask: impl FnOnce(&mut Compensator<'_, Interpreter>, &Sample<'_>) -> Result<T, Refusal>,
+) -> Result<T, Refused> {
+    let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
+    let mut states = vec![TermState::default(); states_needed(&motions)];
+    let mut directions = vec![[0.0; 3]; machine.axes()];
+    let (mut values, mut travel) = (vec![0.0; motions.len()], vec![0.0; machine.travels().len()]);
+    let work = Work { directions: &mut directions, motions: &mut values, travel: &mut travel };
+    let mut compensator = Compensator::new(machine, &motions, &mut states, work)?;
+    Ok(ask(&mut compensator, &sample(pose))?)
+}
+
+/// What is to be added to the commands of a machine with these error motions, mm; 0 for rotary axes.
+pub(super) fn correction(
+    machine: &Interpreter,
+    terms: &[Vec<Term<'_>>],
+    pose: &Pose,
+) -> Result<Vec<f64>, Refused> {
+    let mut command = pose.position.clone();
+    asked(machine, terms, pose, |compensator, sample| compensator.compensate(sample, &mut command))?;
+    Ok(command.iter().zip(&pose.position).map(|(command, target)| command - target).collect())
 }
 
 fn sample(pose: &Pose) -> Sample<'_> {

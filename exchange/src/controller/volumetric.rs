@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use abbe_runtime::{Compensator, ErrorMotion, Kinematics, Sample, Term, TermState, Work};
+use abbe_runtime::Term;
 use model_dsl::compile;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::Equations;
@@ -17,7 +17,7 @@ use model_dsl::machine::Branch;
 use model_dsl::program::Interpreter;
 use model_dsl::source::SourceFile;
 
-use super::geometry::{Geometry, Pose};
+use super::geometry::{Geometry, Pose, correction};
 use super::grid::Grid;
 use super::lost::Target;
 use super::refused::Refused;
@@ -94,25 +94,9 @@ impl Volumetric {
 impl Target for Volumetric {
     fn correction(&self, pose: &Pose) -> Result<Vec<f64>, Refused> {
         let values = self.motions(&pose.position);
-        let terms: Vec<[Term<'_>; 1]> =
-            values.iter().map(|value| [Term::Constant { value: *value }]).collect();
-        let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
-        let mut states = vec![TermState::default(); motions.len()];
-        let mut directions = vec![[0.0; 3]; self.machine.axes()];
-        let (mut numbers, mut travel) = (vec![0.0; motions.len()], vec![0.0; self.machine.travels().len()]);
-        let work = Work { directions: &mut directions, motions: &mut numbers, travel: &mut travel };
-        let mut compensator = Compensator::new(&self.machine, &motions, &mut states, work)?;
-        let sample = Sample {
-            position: &pose.position,
-            travel: &[],
-            direction: &pose.direction,
-            velocity: &[],
-            temperature: &[],
-            time_step: 0.0,
-        };
-        let mut command = pose.position.clone();
-        compensator.compensate(&sample, &mut command)?;
-        Ok(command.iter().zip(&pose.position).map(|(command, target)| command - target).collect())
+        let terms: Vec<Vec<Term<'_>>> =
+            values.into_iter().map(|value| vec![Term::Constant { value }]).collect();
+        correction(&self.machine, &terms, pose)
     }
 }
 

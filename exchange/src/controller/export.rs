@@ -66,6 +66,7 @@ pub fn export(
             "this is a fault of Abbe",
         ));
     }
+    worth_it(&read.lost)?;
     Ok(Export { files, loading, left_out, lost: read.lost })
 }
 
@@ -117,6 +118,19 @@ pub fn check(
 
 fn sources(files: &[File]) -> Vec<(SourceFile, Option<usize>)> {
     files.iter().map(|file| (SourceFile::new(file.name.clone(), file.text.clone()), file.axis)).collect()
+}
+
+/// Refuses files that make the machine worse: on one whose part turns, a table of one axis may be right at one angle alone.
+fn worth_it(lost: &Lost) -> Result<(), Refused> {
+    if lost.with_files.rms <= lost.without.rms {
+        return Ok(());
+    }
+    let [with, without] = [lost.with_files.rms, lost.without.rms].map(|rms| rms * 1000.0);
+    let what = format!(
+        "with these files the error at the tool would be {with:.2} um rms, without them {without:.2} um"
+    );
+    let help = "the format does not carry what this machine needs: choose another, or with --at and --range the poses that matter";
+    Err(Refused::new(what, help))
 }
 
 /// Refuses corrections that the calibration's own limit refuses.

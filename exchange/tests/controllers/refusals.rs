@@ -56,6 +56,26 @@ fn a_correction_beyond_the_limit_is_refused() {
 }
 
 #[test]
+fn files_that_would_make_the_machine_worse_are_refused() {
+    // C moves X by 30 um times the cosine of its angle. A table of X over X holds what is right at 0 deg, and is twice as wrong at
+    // 180 deg: 30 um (cos C - 1), whose rms is the square root of three times that without.
+    let machine = Machine::new(
+        "abbe: 1\nname: m\ntopology: CFXYZ\n",
+        "errors:\n  EXC: [{cyclic: {axis: C, period: 360 deg, amplitude: 30 um, phase: 90 deg}}]\n",
+    );
+    let wanted = Wanted {
+        ranges: [("X", 100.0), ("Y", 100.0), ("Z", 100.0), ("C", std::f64::consts::TAU)]
+            .map(|(axis, end)| (axis.to_owned(), [0.0, end]))
+            .to_vec(),
+        reference: vec![("C".to_owned(), 0.0)],
+    };
+    let space = Space::new(&machine.equations, &machine.calibration, &wanted).unwrap();
+    let refused = exchange::controller::export(&machine.geometry(), &space, Format::LinuxCnc, &options());
+    let text = refused.unwrap_err().to_string();
+    assert!(text.contains("without them 21.") && text.contains("would be 36."), "{text}");
+}
+
+#[test]
 fn volumetric_compensation_is_for_three_slides() {
     let text = refusal(&scaled("ZFX"), Format::Isg, &options());
     assert!(text.contains("three slides X, Y, Z"), "{text}");

@@ -9,6 +9,7 @@
 
 mod archive;
 mod control;
+mod pieces;
 mod write;
 
 use model_dsl::diagnostic::Diagnostics;

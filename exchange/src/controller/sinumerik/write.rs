@@ -4,41 +4,15 @@
 use std::fmt::Write;
 
 use super::super::decimal::decimal;
-use super::super::effects::{Effect, Effects, Factor, LEAST, Product};
+use super::super::effects::{Effect, Effects, LEAST, Product};
 use super::super::job::{File, Job, Written};
 use super::super::nodes::Spacing;
-use super::super::options::Sense;
 use super::super::refused::Refused;
 use super::control::{Sinumerik, controller};
+use super::pieces::{Piece, Table};
 
 /// The most points of a table.
 const MOST: usize = 5000;
-
-/// One or two tables that belong together.
-enum Piece {
-    /// What an axis does, the same from both sides.
-    Both(Effect),
-    /// What an axis does, one table for each direction.
-    Directed(Effect),
-    /// What two axes do together.
-    Product(Product),
-}
-
-impl Piece {
-    fn tables(&self) -> usize {
-        match self {
-            Self::Both(_) => 1,
-            Self::Directed(_) | Self::Product(_) => 2,
-        }
-    }
-
-    fn size(&self) -> f64 {
-        match self {
-            Self::Both(effect) | Self::Directed(effect) => effect.largest(),
-            Self::Product(product) => product.largest,
-        }
-    }
-}
 
 /// The archives of both compensations.
 pub(in super::super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
@@ -53,13 +27,9 @@ pub(in super::super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
             if effect.target == source {
                 let base = effects.base.get(source).copied().unwrap_or_default();
                 write_screw(&mut screws, &control, &effect, base);
-                pieces.extend(own_rest(effect));
+                pieces.extend(Piece::own_rest(effect));
             } else {
-                pieces.push(if effect.directed() < LEAST {
-                    Piece::Both(effect)
-                } else {
-                    Piece::Directed(effect)
-                });
+                pieces.push(Piece::of(effect));
             }
         }
     }
@@ -77,14 +47,6 @@ pub(in super::super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
 fn nodes(job: &Job<'_, '_>, effects: &Effects<'_, '_>) -> Result<Vec<Vec<f64>>, Refused> {
     let spacing = Spacing { points: job.options.points, most: MOST };
     (0..job.space.ranges.len()).map(|axis| effects.nodes(axis)?.at_equal_steps(spacing)).collect()
-}
-
-/// What the leadscrew table, which knows no direction, leaves of an axis's own effect.
-fn own_rest(effect: Effect) -> Option<Piece> {
-    let mean = effect.mean();
-    let less = |values: Vec<f64>| values.iter().zip(&mean).map(|(value, mean)| value - mean).collect();
-    let rest = Effect { forward: less(effect.forward), reverse: less(effect.reverse), ..effect };
-    (rest.largest() >= LEAST).then_some(Piece::Directed(rest))
 }
 
 fn together(effects: &Effects<'_, '_>, nodes: &[Vec<f64>]) -> Result<Vec<Product>, Refused> {
@@ -125,12 +87,14 @@ fn cross(job: &Job<'_, '_>, control: &Sinumerik, mut pieces: Vec<Piece>, written
     let mut text = String::from("%_N_NC_CEC_INI\nCHANDATA(1)\n");
     let (mut index, mut left) = (0, Vec::new());
     for piece in &pieces {
-        if index + piece.tables() > job.options.tables {
+        if index + piece.count() > job.options.tables {
             left.push(piece.size());
             continue;
         }
-        write_piece(&mut text, control, piece, index, sense);
-        index += piece.tables();
+        for table in piece.tables(index, sense.sign()) {
+            write_table(&mut text, control, index, &table);
+            index += 1;
+        }
     }
     text.push_str("M17\n");
     if let Some(largest) = left.first() {
@@ -166,51 +130,19 @@ fn write_screw(text: &mut String, control: &Sinumerik, effect: &Effect, base: f6
     let _ = writeln!(text, "$AA_ENC_COMP_IS_MODULO[0,{name}]=0");
 }
 
-fn write_piece(text: &mut String, control: &Sinumerik, piece: &Piece, index: usize, sense: Sense) {
-    let sign = sense.sign();
-    let mut table = |index, output, values: &[f64], sign: f64, factor: (usize, &[f64]), direction, by| {
-        let values: Vec<f64> = values.iter().map(|value| sign * value).collect();
-        write_table(text, control, index, [factor.0, output], factor.1, &values, direction, by);
-    };
-    match piece {
-        Piece::Both(effect) => {
-            table(index, effect.target, &effect.mean(), sign, (effect.source, &effect.nodes), 0, 0);
-        }
-        Piece::Directed(effect) => {
-            table(index, effect.target, &effect.forward, sign, (effect.source, &effect.nodes), 1, 0);
-            table(index + 1, effect.target, &effect.reverse, sign, (effect.source, &effect.nodes), -1, 0);
-        }
-        Piece::Product(product) => {
-            let [Factor { source, nodes, values }, other] = &product.factors;
-            table(index, product.target, values, sign, (*source, nodes), 0, index + 2);
-            table(index + 1, product.target, &other.values, 1.0, (other.source, &other.nodes), 0, 0);
-        }
-    }
-}
-
-#[expect(clippy::too_many_arguments, reason = "a table of the archive has as many entries")]
-fn write_table(
-    text: &mut String,
-    control: &Sinumerik,
-    index: usize,
-    [input, output]: [usize; 2],
-    nodes: &[f64],
-    values: &[f64],
-    direction: i8,
-    by: usize,
-) {
+fn write_table(text: &mut String, control: &Sinumerik, index: usize, table: &Table<'_>) {
     let name = |axis: usize| control.names.get(axis).map_or("", String::as_str);
-    let unit = control.units.get(input).copied().unwrap_or(1.0);
-    for (point, value) in values.iter().enumerate() {
+    let unit = control.units.get(table.input).copied().unwrap_or(1.0);
+    for (point, value) in table.values.iter().enumerate() {
         let _ = writeln!(text, "$AN_CEC[{index},{point}]={}", decimal(*value, 9));
     }
-    let _ = writeln!(text, "$AN_CEC_INPUT_AXIS[{index}]=({})", name(input));
-    let _ = writeln!(text, "$AN_CEC_OUTPUT_AXIS[{index}]=({})", name(output));
-    for (key, value) in ["STEP", "MIN", "MAX"].into_iter().zip(reach(nodes, unit)) {
+    let _ = writeln!(text, "$AN_CEC_INPUT_AXIS[{index}]=({})", name(table.input));
+    let _ = writeln!(text, "$AN_CEC_OUTPUT_AXIS[{index}]=({})", name(table.output));
+    for (key, value) in ["STEP", "MIN", "MAX"].into_iter().zip(reach(table.nodes, unit)) {
         let _ = writeln!(text, "$AN_CEC_{key}[{index}]={value}");
     }
-    let _ = writeln!(text, "$AN_CEC_DIRECTION[{index}]={direction}");
-    let _ = writeln!(text, "$AN_CEC_MULT_BY_TABLE[{index}]={by}");
+    let _ = writeln!(text, "$AN_CEC_DIRECTION[{index}]={}", table.direction);
+    let _ = writeln!(text, "$AN_CEC_MULT_BY_TABLE[{index}]={}", table.by);
     let _ = writeln!(text, "$AN_CEC_IS_MODULO[{index}]=0");
 }
 

@@ -113,7 +113,6 @@ impl<'w> Way<'w> {
     fn straight(&self, from: usize, share: f64) -> f64 {
         self.command[from] + share * (self.command[from + 1] - self.command[from])
     }
-
 }
 
 impl Curve<'_> {

@@ -164,19 +164,10 @@ fn held(nodes: &[f64], places: &[f64]) -> bool {
 
 /// What a fit costs: its misfit and the price of its effects.
 pub(crate) fn cost(study: &Study<'_>, fit: &Fit, always: usize, tries: Tries) -> f64 {
-    cost_of(study, &fit.model[always..], fit.remaining, fit.samples, tries)
-}
-
-/// What chosen effects cost that leave such a sum of squares of so many samples.
-pub(crate) fn cost_of(
-    study: &Study<'_>,
-    chosen: &[Fitted],
-    remaining: f64,
-    samples: f64,
-    tries: Tries,
-) -> f64 {
-    let price = |fitted: &Fitted| price(study, &fitted.effect, samples, tries.candidates, tries.waves);
-    samples * (remaining / samples).ln() + chosen.iter().map(price).sum::<f64>()
+    let prices = fit.model[always..]
+        .iter()
+        .map(|fitted| price(study, &fitted.effect, fit.samples, tries.candidates, tries.waves));
+    fit.samples * (fit.remaining / fit.samples).ln() + prices.sum::<f64>()
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 //! could be mistaken for. So are loops that ring, and friction inside a loop, which only the right loop brings out.
 
 use crate::candidates::geometric;
-use crate::curves::{cost, cost_of};
+use crate::curves::cost;
 use crate::fit::{self, Fit};
 use crate::judge::Tries;
 use crate::model::{Effect, Fitted, Model, Place, Side};
@@ -49,12 +49,7 @@ pub(crate) fn try_loops(
     let step = shortest_step(study);
     for time_constant in geometric(0.5 * step, (40.0 * step).min(0.3), 2.0) {
         let trial = with_loops(study, &kept, &now.model, time_constant, travels);
-        // Loops may still be dropped.
-        let promising = |model: &Model, remaining: f64, samples: f64| {
-            let others = without_loops(model, always);
-            cost_of(study, &others[always..], remaining, samples, tries) < best
-        };
-        let Some(fit) = fit::refine_trial(study, trial, noises, travels, promising) else { continue };
+        let fit = fit::refine(study, trial, noises, travels);
         let fit = without_idle(study, fit, always, noises, travels);
         let cost = cost(study, &fit, always, tries);
         if cost < best {
@@ -87,11 +82,10 @@ pub(crate) fn try_drives(
         };
         let loops = loops(held, shortest_step(study));
         for trial in drives(study, &best.1, always, axis, &loops) {
-            let promising = |model: &Model, remaining: f64, samples: f64| {
-                cost_of(study, &model[always..], remaining, samples, tries) < best.0
-            };
-            if let Some(fit) = fit::refine_trial(study, trial, noises, travels, promising) {
-                best = (cost(study, &fit, always, tries), fit.model);
+            let fit = fit::refine(study, trial, noises, travels);
+            let cost = cost(study, &fit, always, tries);
+            if cost < best.0 {
+                best = (cost, fit.model);
             }
         }
     }
@@ -167,12 +161,6 @@ fn with_friction(study: &Study<'_>, model: &Model, always: usize, axis: usize) -
         }
     }
     model
-}
-
-fn without_loops(model: &Model, always: usize) -> Model {
-    let stays =
-        |(number, fitted): &(usize, &Fitted)| *number < always || lag_of(&fitted.effect.shape).is_none();
-    model.iter().enumerate().filter(stays).map(|(_, fitted)| fitted.clone()).collect()
 }
 
 fn without_imitations(model: &Model, always: usize) -> Model {

@@ -45,40 +45,9 @@ const DONE: f64 = 1e-7;
 
 /// Fits all parameters of a model, from where it stands, by Gauss-Newton steps that never make it worse.
 pub(crate) fn refine(study: &Study<'_>, model: Model, noises: &[Vec<Noise>], travels: &[Travel]) -> Fit {
-    refined(study, model, noises, travels, |_, _, _| true).fit()
-}
-
-/// The same for a model that is only tried: `None` as soon as it is not `promising` any more. That is asked with the effects, a
-/// sum of squares below which their fit will hardly come, and the samples; at the end with the sum of squares itself.
-pub(crate) fn refine_trial(
-    study: &Study<'_>,
-    model: Model,
-    noises: &[Vec<Noise>],
-    travels: &[Travel],
-    promising: impl Fn(&Model, f64, f64) -> bool,
-) -> Option<Fit> {
-    let trial = refined(study, model, noises, travels, &promising);
-    promising(&trial.model, trial.remaining, trial.samples).then(|| trial.fit())
-}
-
-/// The sum of squares is not expected to fall by more than so many times what the linearised model promises,
-const BEYOND_PROMISE: f64 = 3.0;
-/// and by so much more in twice the logarithm of the likelihood, so that two ways to one model are both gone to their ends.
-const BEYOND_ALL: f64 = 1.0;
-
-fn refined(
-    study: &Study<'_>,
-    model: Model,
-    noises: &[Vec<Noise>],
-    travels: &[Travel],
-    promising: impl Fn(&Model, f64, f64) -> bool,
-) -> Linearised {
     let mut best = Linearised::new(study, model, noises);
     let mut size = 1.0;
     for _ in 0..STEPS {
-        if !promising(&best.model, best.hoped(), best.samples) {
-            break;
-        }
         let next = Linearised::new(study, best.stepped(study, size, travels), noises);
         let fall = (best.remaining - next.remaining) / best.remaining;
         if fall >= 0.0 {
@@ -91,7 +60,7 @@ fn refined(
             break;
         }
     }
-    best
+    best.fit()
 }
 
 /// A model with its design, slopes included.
@@ -126,13 +95,6 @@ impl Linearised {
             swept.take(column);
         }
         Self { model, design, slopes, swept, remaining, samples }
-    }
-
-    /// A sum of squares below which further steps will hardly come.
-    fn hoped(&self) -> f64 {
-        let promised = self.remaining - self.swept.remaining();
-        let beyond = BEYOND_ALL * self.remaining / self.samples.max(1.0);
-        (self.remaining - BEYOND_PROMISE * promised - beyond).max(0.0)
     }
 
     /// The model after a step of this size (1: the whole step) towards the least squares.

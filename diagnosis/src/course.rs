@@ -24,7 +24,7 @@ pub(crate) const BATCH: usize = 16 * STRETCH;
 pub(crate) struct Course {
     /// Behind the loops, shifted by the instrument's clock.
     pub(crate) shown: States,
-    /// Behind the loops, on the drives' own clock; only where it differs.
+    /// Behind the loops, on the drives' own clock; only where it differs and a drive's own feedback was recorded.
     pub(crate) drives: Option<States>,
     /// What the calibration says of the tip and of its rotation in every row.
     pub(crate) known: KnownError,
@@ -92,7 +92,7 @@ impl Course {
         let known = &study.scenes[scene];
         let states = |clock: f64| States::new(known.recording, &known.given, &ways.driven, clock);
         let shown = states(ways.clock);
-        let drives = (ways.clock != 0.0).then(|| states(0.0));
+        let drives = (ways.clock != 0.0 && known.has_drives()).then(|| states(0.0));
         let known = KnownError::new(study, scene, &shown);
         Self { shown, drives, known }
     }

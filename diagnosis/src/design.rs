@@ -154,7 +154,7 @@ fn scene_products(
     let of =
         |channel: usize| ChannelRun::new(study, scene, channel, model, noises[channel], regressors, width);
     let mut runs: Vec<ChannelRun<'_>> = (0..known.channels.len()).map(of).collect();
-    let mut passage = Passage::new(model);
+    let mut passage = Passage::new(study, scene, model);
     let batch = run::batch(width);
     let blocks = known.blocks.iter().map(|block| {
         for rows in pieces(block.rows.clone(), batch) {

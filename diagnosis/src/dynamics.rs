@@ -11,6 +11,7 @@ use crate::fit::{self, Fit};
 use crate::judge::Tries;
 use crate::model::{Effect, Fitted, Model, Place, Side};
 use crate::noise::Noise;
+use crate::position_loop::PositionLoop;
 use crate::ranges::shortest_step;
 use crate::study::Study;
 use crate::terms::{Setting, Shape};
@@ -79,26 +80,33 @@ pub(crate) fn try_drives(
         else {
             continue;
         };
-        let loops = loops(held);
-        let before = best.1.clone();
-        let plain = without_imitations(&before, always);
-        for start in [&before, &plain] {
-            for inside in [start.clone(), with_friction(study, start, always, axis)] {
-                for shape in &loops {
-                    let trial = with_loop(inside.clone(), axis, shape);
-                    if trial == before {
-                        continue;
-                    }
-                    let fit = fit::refine(study, trial, noises, travels);
-                    let cost = cost(study, &fit, always, tries);
-                    if cost < best.0 {
-                        best = (cost, fit.model);
-                    }
-                }
+        let loops = loops(held, shortest_step(study));
+        for trial in drives(study, &best.1, always, axis, &loops) {
+            let fit = fit::refine(study, trial, noises, travels);
+            let cost = cost(study, &fit, always, tries);
+            if cost < best.0 {
+                best = (cost, fit.model);
             }
         }
     }
     best.1
+}
+
+/// Other models of how an axis is driven: with each of these loops, with and without what imitates its ringing, with friction
+/// where it is and inside the loop; each of them once.
+fn drives(study: &Study<'_>, model: &Model, always: usize, axis: usize, loops: &[Shape]) -> Vec<Model> {
+    let mut known = vec![model.clone()];
+    for start in [model, &without_imitations(model, always)] {
+        for inside in [start.clone(), with_friction(study, start, always, axis)] {
+            for shape in loops {
+                let trial = with_loop(inside.clone(), axis, shape);
+                if !known.contains(&trial) {
+                    known.push(trial);
+                }
+            }
+        }
+    }
+    known.split_off(1)
 }
 
 /// Whether [`try_drives`] may find something: a loop of first order beside what would imitate its ringing, or friction beside
@@ -115,13 +123,19 @@ pub(crate) fn may_answer(model: &Model, always: usize) -> bool {
 /// Dampings from which a loop of second order is tried: one that rings for long, and some that hardly do.
 const DAMPINGS: [f64; 4] = [0.15, 0.3, 0.6, 1.2];
 
-/// A loop as it stands; one of first order also with each of the dampings.
-fn loops(lag: &Fitted) -> Vec<Shape> {
+/// How many times in the step between rows the answer of a loop may fade by the factor e: beyond it, less than a hundredth is
+/// left in the next row, and a loop of second order says what one of first order says.
+const FADED: f64 = 5.0;
+
+/// A loop as it stands; one of first order also with each of the dampings whose answer lasts from row to row.
+fn loops(lag: &Fitted, step: f64) -> Vec<Shape> {
     let mut shapes = vec![lag.effect.shape.clone()];
     if let Shape::Lag { axis, inertia: 0.0 } = lag.effect.shape {
         let time_constant: f64 = lag.coefficients.iter().sum();
         let roots = DAMPINGS.map(|damping| 0.5 * time_constant / damping);
-        shapes.extend(roots.map(|root| Shape::Lag { axis, inertia: root * root }));
+        let swung = roots.map(|root| PositionLoop { time_constant, inertia: root * root });
+        let lasting = swung.into_iter().filter(|swung| swung.fading() * step < FADED);
+        shapes.extend(lasting.map(|swung| Shape::Lag { axis, inertia: swung.inertia }));
     }
     shapes
 }
@@ -222,3 +236,6 @@ fn without_idle(
         .collect();
     if model.len() < before { fit::refine(study, model, noises, travels) } else { fit }
 }
+
+#[cfg(test)]
+mod tests;

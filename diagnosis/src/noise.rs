@@ -4,7 +4,11 @@
 //! Ornstein-Uhlenbeck process: exponentially correlated, up to a random walk), and the filter that makes such noise white.
 //! Generalised least squares is ordinary least squares behind that filter.
 
-use crate::parallel;
+mod likelihood;
+mod simplex;
+
+use likelihood::deviances;
+use simplex::{TOGETHER, minimise};
 
 /// The noise of one channel: mm or rad, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -168,32 +172,6 @@ pub(crate) fn unwhiten(steps: &[Step], column: &mut [f64]) {
     }
 }
 
-/// Minus twice the logarithm of the likelihood of a residual, its scale concentrated out, and that scale (a variance).
-fn deviance(time: &[f64], residual: &[f64], valid: &[bool], noise: Noise) -> (f64, f64) {
-    let mut filter = Whitening::new(noise);
-    let (mut state, mut squares, mut logs, mut count) = (0.0, 0.0, 0.0, 0.0);
-    let mut product = 1.0;
-    for ((time, value), valid) in time.iter().zip(residual).zip(valid) {
-        let step = filter.step(*time, *valid);
-        state *= step.decay;
-        if *valid {
-            let new = value - state;
-            state += step.gain * new;
-            squares += new * new * step.weight * step.weight;
-            // One logarithm for many factors, as long as their product is far from both ends of the numbers.
-            product *= step.weight;
-            if !(1e-100..1e100).contains(&product) {
-                logs -= 2.0 * product.ln();
-                product = 1.0;
-            }
-            count += 1.0;
-        }
-    }
-    logs -= 2.0 * product.ln();
-    let scale = (squares / count).max(f64::MIN_POSITIVE);
-    (count * scale.ln() + logs + count, scale)
-}
-
 /// The noise of a channel with the greatest likelihood, and minus twice the logarithm of that.
 ///
 /// `floor` is the least standard deviation of the white part: that of the rounding of the data.
@@ -201,34 +179,54 @@ pub(crate) fn estimate(time: &[f64], residual: &[f64], valid: &[bool], floor: f6
     let step = typical_step(time);
     let span = (time.last().unwrap_or(&1.0) - time.first().unwrap_or(&0.0)).max(step);
     let unit = |ratio: f64, time_constant: f64| Noise { white: 1.0, wander: ratio, time_constant };
-    let cost = |point: [f64; 2]| {
-        // Between half a step and ten recordings, and a wandering from nothing to all there is.
-        let (ratio, time_constant) = (point[0].clamp(-12.0, 12.0).exp(), point[1].exp());
-        let outside = (point[1] - (0.3 * step).ln()).min(0.0).abs()
+    let at = |point: [f64; 2]| unit(point[0].clamp(-12.0, 12.0).exp(), point[1].exp());
+    // Between half a step and ten recordings, and a wandering from nothing to all there is.
+    let outside = |point: [f64; 2]| {
+        (point[1] - (0.3 * step).ln()).min(0.0).abs()
             + (point[1] - (10.0 * span).ln()).max(0.0)
-            + (point[0].abs() - 12.0).max(0.0);
-        deviance(time, residual, valid, unit(ratio, time_constant)).0 + 1e3 * outside
+            + (point[0].abs() - 12.0).max(0.0)
     };
-    let white = deviance(time, residual, valid, unit(0.0, span));
-    let starts = [1.5 * step, 10.0 * step, 0.03 * span, span].into_iter().filter(|start| *start <= span);
-    let points: Vec<[f64; 2]> =
-        starts.flat_map(|start| [0.1, 1.0].map(|ratio| [f64::ln(ratio), start.ln()])).collect();
-    let costs = parallel::counted(points.len(), points.len() * time.len(), |number| cost(points[number]));
-    let each = costs.into_iter().zip(points);
-    let best = each.reduce(|best, next| if next.0 < best.0 { next } else { best });
+    let costs = |points: [[f64; 2]; TOGETHER]| {
+        let found = deviances(time, residual, valid, points.map(at));
+        std::array::from_fn(|number| found[number].0 + 1e3 * outside(points[number]))
+    };
+    let alone = |noise: Noise| deviances(time, residual, valid, [noise])[0];
+    let white = alone(unit(0.0, span));
+    let best = starts(step, span, &costs);
     let (value, point) = match best {
-        Some((_, start)) => minimise(cost, start),
+        Some(start) => minimise(&costs, start),
         None => (f64::INFINITY, [0.0, 0.0]),
     };
     // Two more parameters must be worth more than chance.
     if value < white.0 - WORTH {
         let (ratio, time_constant) = (point[0].clamp(-12.0, 12.0).exp(), point[1].exp());
-        let scale = deviance(time, residual, valid, unit(ratio, time_constant)).1.sqrt();
+        let scale = alone(unit(ratio, time_constant)).1.sqrt();
         let wander = ratio * scale;
         let reach = wander * (1.0 - (-2.0 * span / time_constant).exp()).sqrt();
         return (Noise { white: scale.max(floor).max(ROUGH * reach), wander, time_constant }, value);
     }
     (Noise { white: white.1.sqrt().max(floor), wander: 0.0, time_constant: span }, white.0)
+}
+
+/// The best of some points to start from: short and long times, of which none is longer than the recording.
+fn starts(
+    step: f64,
+    span: f64,
+    costs: &impl Fn([[f64; 2]; TOGETHER]) -> [f64; TOGETHER],
+) -> Option<[f64; 2]> {
+    let times = [1.5 * step, 10.0 * step, 0.03 * span, span].into_iter().filter(|time| *time <= span);
+    let points: Vec<[f64; 2]> =
+        times.flat_map(|time| [0.1, 1.0].map(|ratio| [f64::ln(ratio), time.ln()])).collect();
+    let mut best: Option<(f64, [f64; 2])> = None;
+    for points in points.chunks(TOGETHER) {
+        let found = costs(std::array::from_fn(|number| points[number.min(points.len() - 1)]));
+        for (cost, point) in found.into_iter().zip(points) {
+            if best.is_none_or(|best| cost < best.0) {
+                best = Some((cost, *point));
+            }
+        }
+    }
+    best.map(|(_, point)| point)
 }
 
 /// The least white part, as a share of how far the wandering part gets. What wanders without any white part is no sensor but
@@ -277,40 +275,6 @@ pub(crate) fn typical_step(time: &[f64]) -> f64 {
 pub(crate) fn middle(values: &mut [f64]) -> Option<f64> {
     let place = values.len() / 2;
     (place < values.len()).then(|| *values.select_nth_unstable_by(place, f64::total_cmp).1)
-}
-
-/// The simplex search of Nelder and Mead in two dimensions.
-fn minimise(cost: impl Fn([f64; 2]) -> f64, start: [f64; 2]) -> (f64, [f64; 2]) {
-    let near = |point: [f64; 2]| (cost(point), point);
-    let mut simplex = [near(start), near([start[0] + 1.0, start[1]]), near([start[0], start[1] + 1.0])];
-    let along = |from: [f64; 2], to: [f64; 2], share: f64| {
-        [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])]
-    };
-    for _ in 0..80 {
-        simplex.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let [best, middle, worst] = simplex;
-        if (worst.0 - best.0).abs() < 1e-3 {
-            break;
-        }
-        let center = along(best.1, middle.1, 0.5);
-        let reflected = near(along(center, worst.1, -1.0));
-        simplex[2] = if reflected.0 < best.0 {
-            let further = near(along(center, worst.1, -2.0));
-            if further.0 < reflected.0 { further } else { reflected }
-        } else if reflected.0 < middle.0 {
-            reflected
-        } else {
-            let inside = near(along(center, worst.1, if reflected.0 < worst.0 { -0.5 } else { 0.5 }));
-            if inside.0 < worst.0.min(reflected.0) {
-                inside
-            } else {
-                simplex[1] = near(along(best.1, middle.1, 0.5));
-                near(along(best.1, worst.1, 0.5))
-            }
-        };
-    }
-    simplex.sort_by(|a, b| a.0.total_cmp(&b.0));
-    simplex[0]
 }
 
 #[cfg(test)]

@@ -385,7 +385,7 @@ pub(crate) fn each_frame<T: Send>(
     work: impl Fn(&Frame<'_>) -> T + Sync,
     mut take: impl FnMut(Range<usize>, T),
 ) {
-    let mut passage = Passage::new(model);
+    let mut passage = Passage::new(study, scene, model);
     for batch in pieces(0..study.scenes[scene].rows(), BATCH) {
         let moved = passage.moved(study, course, batch);
         let stretches = moved.stretches();

@@ -217,7 +217,7 @@ fn axis_states(
 ) -> AxisStates {
     let time = &*given.time;
     let resolution = resolution(axis, programmed);
-    let way = Way::new(time, programmed, derivative(time, run, programmed));
+    let way = Way::new(time, programmed);
     if driven.position_loop.acts() {
         let start = start(time, axis, &way, driven);
         behind_loop(time, run, &way, driven, start, clock, resolution)
@@ -247,10 +247,11 @@ fn as_programmed(
     resolution: f64,
 ) -> AxisStates {
     let time = &*given.time;
-    let position = if clock == 0.0 { programmed.clone() } else { way.earlier(clock).into() };
+    let curve = way.curve(derivative(time, run, programmed));
+    let position = if clock == 0.0 { programmed.clone() } else { curve.earlier(clock).into() };
     // A little earlier: what is seen then is the way just before, not the mean of the ways before and after.
     let step = 1e-3 * given.step;
-    let mut slope = way.earlier(clock + step);
+    let mut slope = curve.earlier(clock + step);
     slope.iter_mut().zip(position.iter()).for_each(|(earlier, now)| *earlier = (*earlier - now) / step);
     let slope: Shared = slope.into();
     let acceleration = derivative(time, run, &derivative(time, run, &position)).into();

@@ -236,6 +236,11 @@ impl<'a> Scene<'a> {
         self.recording.time.len()
     }
 
+    /// Whether a channel is a drive's own feedback.
+    pub(crate) fn has_drives(&self) -> bool {
+        self.channels.iter().any(|channel| !channel.kind.outside())
+    }
+
     /// Whether rows are so far apart that what a position loop does is over before the next.
     pub(crate) fn sparse(&self) -> bool {
         self.given.step > SPARSE

@@ -10,32 +10,43 @@ use crate::position_loop::{Follower, PositionLoop, Stand};
 pub(crate) struct Way<'w> {
     time: &'w [f64],
     command: &'w [f64],
+    fastest: f64,
+}
+
+/// The way as a smooth curve through the rows, for an axis without a loop.
+pub(crate) struct Curve<'w> {
+    way: &'w Way<'w>,
     /// The slope of the curve at each row.
     slopes: Vec<f64>,
     /// Whether the path turns sharply at a row.
     corners: Vec<bool>,
-    fastest: f64,
 }
 
 /// The change of speed, as a share of the highest, from which on a path turns sharply.
 pub(crate) const CORNER: f64 = 0.3;
 
 impl<'w> Way<'w> {
-    /// The way of a programmed axis; `slopes` are its derivatives at the rows.
-    pub(crate) fn new(time: &'w [f64], command: &'w [f64], slopes: Vec<f64>) -> Self {
-        let chord = |row: usize| (command[row] - command[row - 1]) / (time[row] - time[row - 1]);
-        let fastest =
-            (1..time.len()).map(|row| chord(row).abs()).filter(|v| v.is_finite()).fold(0.0, f64::max);
-        let corner = |row: usize| {
-            let inside = row > 0 && row + 1 < time.len();
-            // A gap is a corner: nothing is known of the way through it.
-            !inside || {
-                let change = (chord(row + 1) - chord(row)).abs();
-                change.is_nan() || change > CORNER * fastest
-            }
-        };
-        let corners = (0..time.len()).map(corner).collect();
-        Self { time, command, slopes, corners, fastest }
+    /// The way of a programmed axis.
+    pub(crate) fn new(time: &'w [f64], command: &'w [f64]) -> Self {
+        let mut way = Self { time, command, fastest: 0.0 };
+        let speeds = (1..time.len()).map(|row| way.chord(row - 1).1.abs());
+        way.fastest = speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max);
+        way
+    }
+
+    /// The curve through the rows; `slopes` are the derivatives of the way there.
+    pub(crate) fn curve(&'w self, slopes: Vec<f64>) -> Curve<'w> {
+        let corners = (0..self.time.len()).map(|row| self.turns_sharply(row)).collect();
+        Curve { way: self, slopes, corners }
+    }
+
+    fn turns_sharply(&self, row: usize) -> bool {
+        // Nothing is known of the way before the first row, behind the last and through a gap.
+        if row == 0 || row + 1 == self.time.len() {
+            return true;
+        }
+        let change = (self.chord(row).1 - self.chord(row - 1).1).abs();
+        change.is_nan() || change > CORNER * self.fastest
     }
 
     /// The highest programmed speed.
@@ -46,14 +57,6 @@ impl<'w> Way<'w> {
     /// Where it begins; NaN where that is not known.
     pub(crate) fn first(&self) -> f64 {
         self.command.first().copied().unwrap_or(f64::NAN)
-    }
-
-    /// The position a clock's offset before each row.
-    pub(crate) fn earlier(&self, clock: f64) -> Vec<f64> {
-        if clock == 0.0 {
-            return self.command.to_vec();
-        }
-        self.each_earlier(clock, |from, share| self.between(from, share))
     }
 
     /// Where the axis stands behind a loop, a clock's offset before each row.
@@ -101,6 +104,7 @@ impl<'w> Way<'w> {
             .collect()
     }
 
+    /// The time of the step that begins at a row, and the speed in it.
     fn chord(&self, from: usize) -> (f64, f64) {
         let step = self.time[from + 1] - self.time[from];
         (step, (self.command[from + 1] - self.command[from]) / step)
@@ -109,18 +113,28 @@ impl<'w> Way<'w> {
     fn straight(&self, from: usize, share: f64) -> f64 {
         self.command[from] + share * (self.command[from + 1] - self.command[from])
     }
+}
+
+impl Curve<'_> {
+    /// The position a clock's offset before each row.
+    pub(crate) fn earlier(&self, clock: f64) -> Vec<f64> {
+        if clock == 0.0 {
+            return self.way.command.to_vec();
+        }
+        self.way.each_earlier(clock, |from, share| self.between(from, share))
+    }
 
     /// The cubic with the slopes at both rows; a straight line where one of them is a corner.
     fn between(&self, from: usize, share: f64) -> f64 {
         if share == 0.0 {
-            return self.command[from];
+            return self.way.command[from];
         }
         if self.corners[from] || self.corners[from + 1] {
-            return self.straight(from, share);
+            return self.way.straight(from, share);
         }
-        let (step, slope) = self.chord(from);
+        let (step, slope) = self.way.chord(from);
         let (first, last) = (self.slopes[from] - slope, self.slopes[from + 1] - slope);
         let rest = 1.0 - share;
-        self.straight(from, share) + step * share * rest * (first * rest - last * share)
+        self.way.straight(from, share) + step * share * rest * (first * rest - last * share)
     }
 }

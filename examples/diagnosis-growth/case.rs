@@ -17,7 +17,12 @@ pub(crate) struct Case {
     pub(crate) channels: usize,
     /// Temperature sensors, each of which adds candidates to every error motion.
     pub(crate) sensors: usize,
+    /// What the noise is drawn from.
+    pub(crate) seed: u64,
 }
+
+/// The seed of a case that is not one of many.
+pub(crate) const SEED: u64 = 11;
 
 /// Runs of two circles each; the radius, mm, and the feed, mm/s.
 const RUNS: usize = 4;
@@ -27,7 +32,8 @@ const FEED: f64 = 1000.0 / 60.0;
 impl Case {
     /// Simulates it into a folder of its own; the recording file.
     pub(crate) fn recorded(&self, folder: &Path) -> PathBuf {
-        let folder = folder.join(format!("{}-{}-{}", self.rows, self.channels, self.sensors));
+        let Self { rows, channels, sensors, seed } = self;
+        let folder = folder.join(format!("{rows}-{channels}-{sensors}-{seed}"));
         let recording = folder.join("recording.yaml");
         if recording.exists() {
             return recording;
@@ -82,9 +88,10 @@ runs: {RUNS}
 pause: 2 s
 instrument: {{position: [{channels}]}}
 noise: {{white: 0.6 um, resolution: 0.1 um}}
-seed: 11
+seed: {}
 {temperatures}",
-            FEED * 60.0
+            FEED * 60.0,
+            self.seed
         )
     }
 }

@@ -6,7 +6,11 @@
 //!
 //! ```text
 //! cargo run --release --example diagnosis-growth -- [--rows 1000000] [--folder FOLDER] [--only rows|channels|candidates]
+//! cargo run --release --example diagnosis-growth -- --in-a-row 20 [--rows 1000000] [--folder FOLDER]
 //! ```
+//!
+//! The second diagnoses so many recordings of one size, which differ in their noise, one after the other in one process: the
+//! memory that each of them needs, and what is left of it behind each.
 //!
 //! One processor: `RAYON_NUM_THREADS=1` before it.
 
@@ -24,7 +28,7 @@ mod measure;
 
 use std::path::PathBuf;
 
-use case::Case;
+use case::{Case, SEED};
 use measure::{Figures, measured};
 
 /// What the command line asks for.
@@ -32,6 +36,7 @@ struct Options {
     rows: usize,
     folder: PathBuf,
     only: Option<String>,
+    in_a_row: Option<u64>,
 }
 
 /// Rows of the cases that have more channels or candidates.
@@ -39,13 +44,18 @@ const MIDDLE: usize = 100_000;
 
 fn main() {
     let mut arguments = std::env::args().skip(1);
-    if let (Some("--diagnose"), Some(recording)) = (arguments.next().as_deref(), arguments.next()) {
-        return measure::diagnose(recording.as_ref());
+    match arguments.next().as_deref() {
+        Some("--diagnose") => return arguments.for_each(|recording| measure::diagnose(recording.as_ref())),
+        Some("--diagnose-in-a-row") => return measure::diagnose_in_a_row(arguments),
+        _ => {}
     }
     let options = options().unwrap_or_else(|error| {
         eprintln!("{error}");
         std::process::exit(2);
     });
+    if let Some(count) = options.in_a_row {
+        return in_a_row(count, &options);
+    }
     let families =
         [("rows", by_rows(options.rows)), ("channels", by_channels()), ("candidates", by_sensors())];
     for (name, cases) in families {
@@ -58,12 +68,15 @@ fn main() {
 
 fn options() -> Result<Options, String> {
     let folder = std::env::temp_dir().join("abbe-diagnosis-growth");
-    let mut options = Options { rows: 1_000_000, folder, only: None };
+    let mut options = Options { rows: 1_000_000, folder, only: None, in_a_row: None };
     let mut arguments = std::env::args().skip(1);
     while let Some(key) = arguments.next() {
         let value = arguments.next().ok_or(format!("{key} needs a value"))?;
         match key.as_str() {
             "--rows" => options.rows = value.parse().map_err(|error| format!("{key} {value}: {error}"))?,
+            "--in-a-row" => {
+                options.in_a_row = Some(value.parse().map_err(|error| format!("{key} {value}: {error}"))?)
+            }
             "--folder" => options.folder = PathBuf::from(value),
             "--only" if ["rows", "channels", "candidates"].contains(&value.as_str()) => {
                 options.only = Some(value)
@@ -84,16 +97,29 @@ fn by_rows(most: usize) -> Vec<Case> {
     sizes
         .into_iter()
         .filter(|rows| *rows <= most)
-        .map(|rows| Case { rows, channels: 2, sensors: 0 })
+        .map(|rows| Case { rows, channels: 2, sensors: 0, seed: SEED })
         .collect()
 }
 
 fn by_channels() -> Vec<Case> {
-    (1..=3).map(|channels| Case { rows: MIDDLE, channels, sensors: 0 }).collect()
+    (1..=3).map(|channels| Case { rows: MIDDLE, channels, sensors: 0, seed: SEED }).collect()
 }
 
 fn by_sensors() -> Vec<Case> {
-    (0..=2).map(|sensors| Case { rows: MIDDLE, channels: 2, sensors }).collect()
+    (0..=2).map(|sensors| Case { rows: MIDDLE, channels: 2, sensors, seed: SEED }).collect()
+}
+
+/// Recordings of one size, one after the other in a process of their own.
+fn in_a_row(count: u64, options: &Options) {
+    let recorded = |seed: u64| {
+        let case = Case { rows: options.rows, channels: 2, sensors: 0, seed };
+        case.recorded(&options.folder)
+    };
+    let recordings: Vec<PathBuf> = (0..count).map(|number| recorded(SEED + number)).collect();
+    println!("\n{count} recordings of {} rows in one process\n", options.rows);
+    println!("| recording | wall, s | CPU, s | peak memory, MB | memory behind it, MB | findings |");
+    println!("| --: | --: | --: | --: | --: | --: |");
+    measure::in_a_row(&recordings);
 }
 
 fn table(cases: &[Case], folder: &std::path::Path) {

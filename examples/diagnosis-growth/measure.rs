@@ -1,7 +1,7 @@
 //! Measurements. In: a recording file. Out: the time and the memory that a process of its own needs to read and to diagnose it.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
@@ -42,8 +42,38 @@ fn count(number: f64) -> usize {
     number as usize
 }
 
+/// Diagnoses recordings one after the other in a process of its own, which says of each what it needed.
+pub(crate) fn in_a_row(recordings: &[PathBuf]) {
+    let program = std::env::current_exe().unwrap();
+    let status = Command::new(program).arg("--diagnose-in-a-row").args(recordings).status().unwrap();
+    assert!(status.success(), "{status}");
+}
+
+/// What that process does.
+pub(crate) fn diagnose_in_a_row(recordings: impl Iterator<Item = String>) {
+    for (number, recording) in recordings.enumerate() {
+        // From here on the greatest memory is counted anew.
+        fs::write("/proc/self/clear_refs", "5").unwrap();
+        let before = processor_time();
+        let (wall, _, findings) = diagnosed(recording.as_ref());
+        println!(
+            "| {} | {wall:.1} | {:.1} | {:.0} | {:.0} | {findings} |",
+            number + 1,
+            processor_time() - before,
+            memory("VmHWM:") / 1e6,
+            memory("VmRSS:") / 1e6
+        );
+    }
+}
+
 /// What the process of its own does: it reads, diagnoses and says what that needed.
 pub(crate) fn diagnose(path: &Path) {
+    let (wall, candidates, findings) = diagnosed(path);
+    println!("{wall} {} {} {candidates} {findings}", processor_time(), memory("VmHWM:"));
+}
+
+/// Reads and diagnoses a recording: how long that took, s, how many candidates there were, and how many findings.
+fn diagnosed(path: &Path) -> (f64, usize, usize) {
     let begun = Instant::now();
     let (machine, names) = machine();
     let mut diagnostics = Diagnostics::new();
@@ -58,8 +88,7 @@ pub(crate) fn diagnose(path: &Path) {
         holdout: None,
     };
     let diagnosis = diagnosis::diagnose(&inputs, &mut |_| {});
-    let wall = begun.elapsed().as_secs_f64();
-    println!("{wall} {} {} {} {}", processor_time(), peak(), diagnosis.candidates, diagnosis.findings.len());
+    (begun.elapsed().as_secs_f64(), diagnosis.candidates, diagnosis.findings.len())
 }
 
 /// The processor time of this process, s.
@@ -70,9 +99,9 @@ fn processor_time() -> f64 {
     fields.map(|ticks| ticks.parse::<f64>().unwrap()).sum::<f64>() / 100.0
 }
 
-/// The greatest memory of this process, bytes.
-fn peak() -> f64 {
+/// The memory of this process, bytes: the greatest (`VmHWM:`) or that of now (`VmRSS:`).
+fn memory(which: &str) -> f64 {
     let status = fs::read_to_string("/proc/self/status").unwrap();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap();
+    let line = status.lines().find_map(|line| line.strip_prefix(which)).unwrap();
     line.split_whitespace().next().unwrap().parse::<f64>().unwrap() * 1024.0
 }

@@ -132,7 +132,7 @@ impl<'r> ChannelRun<'r> {
     pub(crate) fn random_sums(&mut self, course: &Course, count: usize) -> DMatrix<f64> {
         let study = self.study;
         let weight = 1.0 / self.noise.white;
-        let mut passage = Passage::new(self.model);
+        let mut passage = Passage::new(study, self.scene, self.model);
         let mut sums = DMatrix::zeros(count + 2, self.width);
         let (mut plain, mut weights) = (vec![0.0; self.width], vec![0.0; count]);
         let mut samples = 0.0;

@@ -28,7 +28,7 @@ fn columns(study: &Study<'_>, channel: usize, model: &Model, regressors: &[Regre
     let course = Course::new(study, 0, model);
     let mut run = ChannelRun::new(study, 0, channel, model, noise, regressors, width);
     let rows = study.scenes[0].rows();
-    let moved = Passage::new(model).moved(study, &course, 0..rows);
+    let moved = Passage::new(study, 0, model).moved(study, &course, 0..rows);
     let frame = Frame::new(study, &course, &moved, 0..rows);
     let view = course.states(study.scenes[0].channels[channel].kind).rows(0..rows);
     run.raw_columns(&[frame], &view)

@@ -6,6 +6,10 @@ use simulation::noise::{Correlated, Noise as Drawn, Source, Walk};
 use super::*;
 use crate::testing::{normals, uneven};
 
+fn deviance(time: &[f64], values: &[f64], valid: &[bool], noise: Noise) -> (f64, f64) {
+    deviances(time, values, valid, [noise])[0]
+}
+
 /// The covariance of the samples that are there.
 fn covariance(noise: Noise, time: &[f64], valid: &[bool]) -> DMatrix<f64> {
     let known: Vec<f64> =
@@ -170,6 +174,34 @@ fn the_deviance_holds_where_a_product_of_weights_would_leave_the_numbers() {
     let expected = count * (squares / count).ln() + count * (1e-18_f64).ln() + count;
     let (deviance, _) = deviance(&time, &values, &vec![true; rows], noise);
     assert!((deviance - expected).abs() < 1e-6 * expected.abs(), "{deviance} {expected}");
+}
+
+#[test]
+fn likelihoods_worked_out_together_are_those_worked_out_alone() {
+    let noises = [
+        Noise::white(0.7),
+        Noise { white: 0.3, wander: 1.4, time_constant: 2.5 },
+        Noise { white: 1.0, wander: 40.0, time_constant: 900.0 },
+        Noise { white: 1e-3, wander: 1e-7, time_constant: 0.1 },
+    ];
+    let bits = |(deviance, scale): (f64, f64)| [deviance.to_bits(), scale.to_bits()];
+    let even: Vec<f64> = (0..300).map(|row| 0.25 * f64::from(row)).collect();
+    for time in [even, uneven(17, 300, 0.25)] {
+        let valid: Vec<bool> = (0..300).map(|row| row % 97 != 3 && !(200..220).contains(&row)).collect();
+        let values = normals(18, 300);
+        for (found, noise) in deviances(&time, &values, &valid, noises).into_iter().zip(noises) {
+            assert_eq!(bits(found), bits(deviance(&time, &values, &valid, noise)), "{noise:?}");
+            // And what the filter that whitens columns says of the same samples.
+            let white = whitened(noise, &time, &valid, &values);
+            let steps = Whitening::new(noise).steps(&time, &valid);
+            let count = crate::number(valid.iter().filter(|valid| **valid).count());
+            let scale = white.iter().map(|value| value * value).sum::<f64>() / count;
+            let logs: f64 =
+                steps.iter().filter(|step| step.weight > 0.0).map(|step| -2.0 * step.weight.ln()).sum();
+            assert!((found.1 / scale - 1.0).abs() < 1e-12, "{noise:?}");
+            assert!((found.0 - (count * scale.ln() + logs + count)).abs() < 1e-8, "{noise:?}");
+        }
+    }
 }
 
 fn drawn(noise: Drawn, time: &[f64], seed: u64) -> Vec<f64> {

@@ -12,10 +12,11 @@ use crate::study::Study;
 /// A model on its way through a recording: its terms, with what they remember of the rows before.
 pub(crate) struct Passage<'m> {
     terms: Terms<'m>,
-    drive_terms: Terms<'m>,
+    /// Once more, with memories on the drives' own clock, where a channel is a drive's own feedback.
+    drive_terms: Option<Terms<'m>>,
 }
 
-/// The error motions of a model in some rows: all, and those on the drives' side.
+/// The error motions of a model in some rows: all, and those on the drives' side; of these none where no channel shows them.
 pub(crate) struct Moved {
     pub(super) rows: Range<usize>,
     pub(super) motions: Vec<Option<Vec<f64>>>,
@@ -24,8 +25,9 @@ pub(crate) struct Moved {
 
 impl<'m> Passage<'m> {
     /// A model at the beginning of a recording.
-    pub(crate) fn new(model: &'m Model) -> Self {
-        Self { terms: Terms::new(model), drive_terms: Terms::new(model) }
+    pub(crate) fn new(study: &Study<'_>, scene: usize, model: &'m Model) -> Self {
+        let drive_terms = study.scenes[scene].has_drives().then(|| Terms::new(model));
+        Self { terms: Terms::new(model), drive_terms }
     }
 
     /// The error motions in the next rows.
@@ -33,7 +35,9 @@ impl<'m> Passage<'m> {
         let count = study.equations.motions.len();
         let motions = self.terms.motions(&course.shown.rows(rows.clone()), count, false);
         let drive_rows = course.drives.as_ref().unwrap_or(&course.shown).rows(rows.clone());
-        let drive_motions = self.drive_terms.motions(&drive_rows, count, true);
+        let drive_terms = self.drive_terms.as_mut();
+        let drive_motions =
+            drive_terms.map_or_else(|| vec![None; count], |terms| terms.motions(&drive_rows, count, true));
         Moved { rows, motions, drive_motions }
     }
 }

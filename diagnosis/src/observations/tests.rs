@@ -240,7 +240,7 @@ fn stretches_make_no_difference() {
     let model = vec![Fitted { effect: wound, coefficients: vec![0.01] }];
     let course = Course::new(&study, 0, &model);
     let pieces = residuals(&study, 0, &model, &course);
-    let moved = Passage::new(&model).moved(&study, &course, 0..recording.time.len());
+    let moved = Passage::new(&study, 0, &model).moved(&study, &course, 0..recording.time.len());
     let whole = Frame::new(&study, &course, &moved, 0..recording.time.len());
     for (number, channel) in study.scenes[0].channels.iter().enumerate() {
         assert!(distance(&whole.residual(&study, 0, channel, &model), &pieces[number]) < 1e-12);

@@ -1,0 +1,60 @@
+//! Which drives are tried.
+
+use super::*;
+use crate::recording::Recording;
+use crate::testing::{Bench, circle, noisy, path, position};
+
+/// A circle at 100 rows/s on the stages X and Y.
+fn circled(bench: &Bench) -> Recording {
+    let scenario = noisy(path(circle(40.0), 20.0, 100.0), position("xy"), 2e-4, 5);
+    bench.record(&bench.calibration("{}"), &scenario)
+}
+
+fn bench() -> Bench {
+    Bench::of("XFY")
+}
+
+fn own(bench: &Bench, name: &str, shape: Shape, coefficients: &[f64]) -> Fitted {
+    let place = Place::Motion { motion: bench.motion(name), side: Side::Drive };
+    Fitted { effect: Effect { place, shape }, coefficients: coefficients.to_vec() }
+}
+
+fn lag(bench: &Bench, time_constant: f64) -> Fitted {
+    own(bench, "EXX", Shape::Lag { axis: 0, inertia: 0.0 }, &[time_constant])
+}
+
+#[test]
+fn a_loop_is_tried_with_the_dampings_whose_ringing_lasts_to_the_next_row() {
+    let bench = bench();
+    let count = |time_constant: f64| loops(&lag(&bench, time_constant), 0.01).len() - 1;
+    // Its ringing fades at 2 d^2 / time constant, d the damping: of 0.6, 0.3 and 0.15 by e^5 in 10 ms at these.
+    assert_eq!(count(1e-2), 4);
+    assert_eq!(count(0.98 * 2.0 * 0.36 * 0.01 / 5.0), 2);
+    assert_eq!(count(1.02 * 2.0 * 0.09 * 0.01 / 5.0), 2);
+    assert_eq!(count(0.98 * 2.0 * 0.09 * 0.01 / 5.0), 1);
+    assert_eq!(count(0.98 * 2.0 * 0.0225 * 0.01 / 5.0), 0);
+}
+
+#[test]
+fn every_other_way_to_drive_an_axis_is_tried_once() {
+    let bench = bench();
+    let recording = circled(&bench);
+    let study = Study::new(bench.equations(), None, &[&recording]);
+    let lag = lag(&bench, 0.02);
+    let shapes = loops(&lag, 0.01);
+    let of = |model: &Model| drives(&study, model, 0, 0, &shapes);
+    let alone = vec![lag.clone()];
+    assert_eq!(of(&alone).len(), DAMPINGS.len());
+    // With something that imitates ringing: with it and without it.
+    let spike = own(&bench, "EXX", Shape::ReversalSpike { axis: 0, decay: 0.1 }, &[1e-3]);
+    assert_eq!(of(&vec![lag.clone(), spike.clone()]).len(), 2 * DAMPINGS.len() + 1);
+    // With friction: where it is and inside the loop.
+    let friction = own(&bench, "EXX", Shape::Backlash { axis: 0, wind_up: 0.0 }, &[1e-3]);
+    assert_eq!(of(&vec![lag.clone(), friction.clone()]).len(), 2 * DAMPINGS.len() + 1);
+    let all = vec![lag, spike, friction];
+    let trials = of(&all);
+    assert_eq!(trials.len(), 4 * DAMPINGS.len() + 3);
+    for (number, trial) in trials.iter().enumerate() {
+        assert!(*trial != all && !trials[..number].contains(trial), "{trial:?}");
+    }
+}

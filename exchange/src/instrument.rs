@@ -62,3 +62,6 @@ pub use reduce::{Reduced, Reversal, Tabulated};
 pub use setup::Setup;
 pub use squareness::Squareness;
 pub use uncertainty::Uncertainty;
+
+#[cfg(test)]
+mod tests;

@@ -157,7 +157,7 @@ fn bench(code: &str) -> PathBuf {
     let sorted = "1,0,1\n1,100,2\n2,0,1\n2,100,2\n";
     write("sorted.csv", &table("run,target,deviation", "#unit,,mm,um\n", sorted));
     write("laser.yaml", &complete("set-up", "measurements: [{motion: EXX, data: x.rtl}]"));
-    let tilting = "abbe: 1\nname: tilting\nsensitive: [X, Z]\nchain:\n  workpiece:\n    - {rotary: A, along: +A}\n  tool:\n    - {slide: X, along: +X}\n    - {tool: tip}\n";
+    let tilting = "abbe: 1\nname: tilting\nsensitive: [X, Z]\nchain:\n  workpiece:\n    - {rotary: A, along: +A}\n  tool:\n    - {slide: X, along: +X}\n    - {slide: Z, along: +Z}\n    - {tool: tip}\n";
     write("tilting.yaml", tilting);
     let parallel = "abbe: 1\nname: parallel\nchain:\n  tool:\n    - {slide: X, along: +X}\n    - {slide: U, along: +X}\n    - {tool: tip}\n";
     write("parallel.yaml", parallel);

@@ -93,13 +93,25 @@ impl Bench {
     /// What an instrument reads on a machine with these errors while an axis goes to and fro over the targets: for each run
     /// whether it went forward, and its readings by target, in the instrument's mm or arcsec.
     fn measured(&self, errors: &str, axis: char, instrument: &str, noise: &str) -> Vec<(bool, Vec<f64>)> {
+        self.measured_at("", errors, axis, instrument, noise)
+    }
+
+    /// The same where the other axes stand.
+    fn measured_at(
+        &self,
+        at: &str,
+        errors: &str,
+        axis: char,
+        instrument: &str,
+        noise: &str,
+    ) -> Vec<(bool, Vec<f64>)> {
         let truth = format!(
             "calibration: 1\nmachine: {}\n{}errors:\n{errors}",
             self.machine,
             constants(self.machine)
         );
         let path = format!(
-            "path: 1\nline: {{axis: {axis}, from: 0 mm, to: 400 mm, overrun: 2 mm, stations: {{count: 5, dwell: 4 s, readings: 1}}}}\nfeed: 2 m/min\nruns: {CYCLES}\nseed: 7\nnoise: {noise}\ninstrument: {instrument}\n"
+            "path: 1\n{at}line: {{axis: {axis}, from: 0 mm, to: 400 mm, overrun: 2 mm, stations: {{count: 5, dwell: 4 s, readings: 1}}}}\nfeed: 2 m/min\nruns: {CYCLES}\nseed: 7\nnoise: {noise}\ninstrument: {instrument}\n"
         );
         let (truth, path) = (self.write("true.yaml", &truth), self.write("path.yaml", &path));
         let output = self.folder.join("simulated").to_str().unwrap().to_owned();
@@ -286,6 +298,49 @@ fn true_errors_come_back_from_the_files_of_instruments() {
                 (value * 1e6 - truth).abs() < 1.5,
                 "{machine} {name}: {value} is not {truth} urad\n{report}"
             );
+        }
+    }
+}
+
+/// A laser off the carriage's frame reads pitch and yaw too; with both measured, and the place told, positioning comes out.
+#[test]
+fn pitch_and_yaw_are_taken_off_positioning_and_straightness() {
+    for machine in ["XYFZ", "FXYZ", "XYZF", "postech-mill"] {
+        let bench = Bench::new("levers", machine);
+        let rotations =
+            ["A", "B", "C"].map(|about| format!("  E{about}X: [{}]\n", curve('X', "arcsec", &ROTATION)));
+        let rotations = rotations.concat();
+        let errors = format!(
+            "  EXX: [{}]\n  EYX: [{}]\n{rotations}",
+            curve('X', "um", &POSITIONING),
+            curve('X', "um", &STRAIGHTNESS[0])
+        );
+        let mut setup = format!("setup: 1\nmachine: {machine}\n{}measurements:\n", constants(machine));
+        for (motion, instrument) in
+            [("EXX", "{linear: {axis: X}}"), ("EYX", "{straightness: {axis: X, direction: Y}}")]
+        {
+            let readings =
+                bench.measured_at("at: {Y: 90 mm, Z: -150 mm}\n", &errors, 'X', instrument, "0.2 um");
+            bench.write(&format!("{motion}.rtl"), &laser("Linear", &scaled(&readings, 1e3), None));
+            setup += &format!(
+                "  - {{motion: {motion}, data: {motion}.rtl, at: {{Y: 90 mm, Z: -150 mm}}, deviations: {{zero_at: 0 mm}}}}\n"
+            );
+        }
+        for about in ["A", "B", "C"] {
+            let instrument = format!("{{angular: {{axis: X, direction: {about}}}}}");
+            let readings = bench.measured(&rotations, 'X', &instrument, "0.02 arcsec");
+            bench.write(&format!("E{about}X.rta"), &laser("Angular", &readings, None));
+            setup += &format!(
+                "  - {{motion: E{about}X, data: E{about}X.rta, targets: {{unit: mm}}, deviations: {{unit: arcsec}}}}\n"
+            );
+        }
+        let (calibration, names, report) = bench.calibration(&setup);
+        assert!(report.contains("lever arms taken off: EBX of up to"), "{report}");
+        let from_first = |values: [f64; 5]| values.map(|value| value - values[0]);
+        for (motion, truth) in [("EXX", POSITIONING), ("EYX", STRAIGHTNESS[0])] {
+            for side in table(&calibration, &names, motion, 1e-3) {
+                near(&side, &from_first(truth), &format!("{machine} {motion}"));
+            }
         }
     }
 }

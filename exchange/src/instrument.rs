@@ -8,8 +8,8 @@
 //! ```
 //!
 //! An instrument's file does not say on which machine, at which place of the axis and in which sense it was written; the set-up
-//! does, and what neither says is asked for, never guessed. Nothing is smoothed, resampled or corrected for a lever arm unless it
-//! is asked for: a reading is that of the line on which it was taken.
+//! does, and what neither says is asked for, never guessed. Nothing is smoothed or resampled unless it is asked for, and lever arms
+//! are taken off only where the set-up says where a reading was taken.
 //!
 //! | code | finding |
 //! | --- | --- |
@@ -18,7 +18,7 @@
 //! | E0903 | an unknown key |
 //! | E0904 | a mapping, list or word is needed in place of what stands there |
 //! | E0905 | an error motion that the machine lacks, or that no file shows |
-//! | E0906 | an axis that the machine lacks, or that must be named |
+//! | E0906 | an axis or constant that the machine lacks, or an axis that must be named |
 //! | E0907 | a value that is not among those possible here |
 //! | E0908, E0909 | a unit of the wrong kind; one that nothing tells, or that is told twice |
 //! | E0910 | keys that exclude one another |
@@ -43,6 +43,7 @@
 mod calibrate;
 mod curve;
 pub mod file;
+mod lever;
 mod line;
 mod measured;
 mod placed;
@@ -56,6 +57,7 @@ mod view;
 
 pub use calibrate::{Findings, MeasuredMotion, Outcome, calibrate};
 pub use curve::{Curve, Mean};
+pub use lever::Levers;
 pub use line::Line;
 pub use measured::{Flagged, Measured, Reading, Run, Sense};
 pub use reduce::{Reduced, Reversal, Tabulated};

@@ -6,6 +6,7 @@ use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 
 use super::curve::Curve;
+use super::lever;
 use super::measured::Measured;
 use super::placed::Placed;
 use super::reduce::{Reduced, Reversal, Tabulated};
@@ -36,6 +37,8 @@ pub struct MeasuredMotion {
     pub axis: usize,
     /// The files, that with the edge turned over second.
     pub files: Vec<String>,
+    /// What each of them says of itself: machine, serial number, date and so on.
+    pub about: Vec<Vec<(String, String)>>,
     /// What each of them shows.
     pub parts: Vec<Reduced>,
     /// The motion: of the one file, or half the sum of both.
@@ -66,12 +69,12 @@ pub fn calibrate(
 ) -> Option<Outcome> {
     let view = View::new(equations, &setup.known.constants);
     findings.data.resize_with(files.len(), Diagnostics::new);
-    let mut reduced: Vec<Option<Reduced>> = Vec::new();
+    let mut placed: Vec<Option<Placed>> = Vec::new();
     for ((one, file), in_data) in setup.measurements.iter().zip(files).zip(&mut findings.data) {
-        let placed = Placed::new(file, one, &view, (&mut findings.setup, in_data));
-        reduced.push(placed.and_then(|placed| Reduced::new(&placed, one, &mut findings.setup)));
+        placed.push(Placed::new(file, one, &view, (&mut findings.setup, in_data)));
     }
-    let reduced: Vec<Reduced> = reduced.into_iter().collect::<Option<_>>()?;
+    let placed: Vec<Placed> = placed.into_iter().collect::<Option<_>>()?;
+    let reduced = reduced(&setup.measurements, placed, &view, &mut findings.setup)?;
     let all: Vec<Source<'_>> = setup
         .measurements
         .iter()
@@ -89,6 +92,33 @@ pub fn calibrate(
     }
     let calibration = filled(&setup.known, &motions, &squarenesses);
     Some(Outcome { machine: equations.machine.clone(), motions, squarenesses, calibration })
+}
+
+/// Reduces all measurements: rotations as they are, displacements without the rotations that act on them where that is asked for.
+fn reduced(
+    measurements: &[Measurement],
+    placed: Vec<Placed>,
+    view: &View<'_>,
+    diagnostics: &mut Diagnostics,
+) -> Option<Vec<Reduced>> {
+    let plain: Vec<Option<Reduced>> = measurements
+        .iter()
+        .zip(&placed)
+        .map(|(one, placed)| Reduced::new(placed, one, diagnostics))
+        .collect();
+    let plain: Vec<Reduced> = plain.into_iter().collect::<Option<_>>()?;
+    let rotations = measurements.iter().zip(&plain).filter(|(one, _)| view.is_angular(one.motion.value));
+    let angles: Vec<(usize, &Curve)> =
+        rotations.map(|(one, reduced)| (one.motion.value, &reduced.curve)).collect();
+    let without = measurements.iter().zip(placed).zip(&plain).map(|((one, mut placed), plain)| {
+        let Some(place) = &one.at else { return Some(plain.clone()) };
+        let (levers, shares) = lever::take_off(&mut placed, one, place, &angles, view);
+        let mut reduced = Reduced::new(&placed, one, diagnostics)?;
+        shares.add_to(&mut reduced.curve);
+        reduced.levers = Some(levers);
+        Some(reduced)
+    });
+    without.collect()
 }
 
 /// A measurement with its file and what that shows.
@@ -121,6 +151,7 @@ impl Source<'_> {
             motion: self.measurement.motion.value,
             axis: self.measurement.axis,
             files: parts.iter().map(|part| part.file.source.name().to_owned()).collect(),
+            about: parts.iter().map(|part| part.file.about.clone()).collect(),
             parts: parts.iter().map(|part| part.reduced.clone()).collect(),
             table: Tabulated::of(&curve, self.measurement, reversal.map(|reversal| reversal.mean)),
             curve,

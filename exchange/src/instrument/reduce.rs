@@ -5,6 +5,7 @@ use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::source::Span;
 
 use super::curve::{Averaged, Curve};
+use super::lever::Levers;
 use super::line::Line;
 use super::placed::{Placed, tidy};
 use super::setup::{Form, Measurement, Remove};
@@ -23,6 +24,8 @@ pub struct Reduced {
     pub runs: [usize; 2],
     /// Targets that one of the directions lacks: they are not in the curve.
     pub left_out: Vec<f64>,
+    /// What lever arms did, where the set-up says where it was measured.
+    pub levers: Option<Levers>,
 }
 
 /// What the directions differ by: forward minus reverse, mm or rad.
@@ -60,14 +63,8 @@ impl Reduced {
             reversal: Reversal::of(&averaged),
             runs: [side(true), side(false)],
             left_out: averaged.left_out,
+            levers: None,
         })
-    }
-
-    /// How wide the interval of 95 % is for the least certain mean; nothing where one is not known.
-    pub fn widest(&self) -> Option<f64> {
-        let means = self.curve.forward.iter().chain(&self.curve.reverse).flatten();
-        let expanded = means.map(|mean| Some(mean.uncertainty?.expanded()));
-        expanded.collect::<Option<Vec<f64>>>().map(|all| all.into_iter().fold(0.0, f64::max))
     }
 }
 

@@ -6,6 +6,7 @@ use model_dsl::equations::Equations;
 
 use super::calibrate::{MeasuredMotion, Outcome};
 use super::curve::Mean;
+use super::lever::Levers;
 use super::line::Line;
 use super::reduce::Reduced;
 use super::squareness::Squareness;
@@ -116,9 +117,15 @@ pub fn comments(outcome: &Outcome, equations: &Equations) -> Vec<String> {
         for part in one.parts.iter().filter_map(|part| part.line.as_ref()) {
             line += &format!("; line removed, slope {}", slope(part, one, &names));
         }
+        for levers in one.parts.iter().filter_map(|part| part.levers.as_ref()) {
+            line += &format!("; {}", leveled(levers, &names));
+        }
         line + "."
     };
-    let squarenesses = outcome.squarenesses.iter().map(|one| squared(one, &names).join("; ") + ".");
+    let squarenesses = outcome.squarenesses.iter().map(|one| {
+        let lines: Vec<String> = squared(one, &names).iter().map(|line| line.trim().to_owned()).collect();
+        lines.join("; ") + "."
+    });
     outcome.motions.iter().map(of_motion).chain(squarenesses).collect()
 }
 
@@ -135,7 +142,10 @@ fn widest(motion: &MeasuredMotion) -> Option<f64> {
 
 fn about(text: &mut String, motion: &MeasuredMotion, names: &Names<'_>) {
     put(text, &format!("{}: {}", names.motion(motion.motion), names.meaning(motion.motion)));
-    put(text, &format!("  {}", motion.files.join(" and, turned over, ")));
+    for (number, (file, said)) in motion.files.iter().zip(&motion.about).enumerate() {
+        let turned = if number == 0 { "" } else { ", turned over" };
+        put(text, &format!("  {}{turned}{}", plain(file), of_itself(said)));
+    }
     let axis = names.of_axis(motion.axis);
     let ends = motion.curve.positions.first().zip(motion.curve.positions.last());
     let ends = ends.map_or(String::new(), |(first, last)| {
@@ -163,6 +173,18 @@ fn about(text: &mut String, motion: &MeasuredMotion, names: &Names<'_>) {
             );
         }
     }
+}
+
+/// What a file says of itself, in brackets.
+fn of_itself(said: &[(String, String)]) -> String {
+    let entries: Vec<String> =
+        said.iter().map(|(key, value)| format!("{} {}", plain(key), plain(value))).collect();
+    if entries.is_empty() { String::new() } else { format!(" ({})", entries.join("; ")) }
+}
+
+/// Text of a file without what would move a terminal.
+fn plain(text: &str) -> String {
+    text.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect()
 }
 
 /// `5 runs forward, 5 back`.
@@ -230,6 +252,9 @@ fn figures(text: &mut String, motion: &MeasuredMotion, names: &Names<'_>) {
             put(text, &format!("  line removed{which}: slope {}", slope(line, motion, names)));
         }
     }
+    for levers in motion.parts.iter().filter_map(|part| part.levers.as_ref()) {
+        put(text, &format!("  {}", leveled(levers, names)));
+    }
     if let Some(lost) = motion.table.lost_motion {
         put(
             text,
@@ -249,6 +274,24 @@ fn figures(text: &mut String, motion: &MeasuredMotion, names: &Names<'_>) {
             ),
         );
     }
+}
+
+/// What lever arms did: which rotations were taken off, and which were not measured.
+fn leveled(levers: &Levers, names: &Names<'_>) -> String {
+    let taken = levers
+        .taken
+        .iter()
+        .map(|(motion, most)| format!("{} of up to {}", names.motion(*motion), MICRONS.with_unit(*most)));
+    let taken: Vec<String> = taken.collect();
+    let remaining: Vec<&str> = levers.remaining.iter().map(|motion| names.motion(*motion)).collect();
+    let mut text = match taken.as_slice() {
+        [] => "lever arms: nothing taken off".to_owned(),
+        taken => format!("lever arms taken off: {}", taken.join(", ")),
+    };
+    if !remaining.is_empty() {
+        text += &format!("; not measured, and still in it: {}", remaining.join(", "));
+    }
+    text
 }
 
 /// A slope: an angle for a displacement over a slide, else the units of both.

@@ -6,6 +6,7 @@
 
 mod counting;
 mod measurement;
+mod place;
 mod reference;
 mod words;
 
@@ -18,6 +19,7 @@ use model_dsl::yaml::{Node, NodeKind, Scalar};
 
 pub use counting::{Begin, Deviations, Order, Targets};
 pub use measurement::{Form, Measurement, Remove};
+pub use place::Place;
 pub use reference::Reference;
 use words::{FORM, first_key, keys, word};
 

@@ -11,11 +11,12 @@ use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
 use model_dsl::quantity::Dimension;
 
-use super::setup::Measurement;
+use super::setup::{Measurement, Place};
 
 /// A machine as instruments see it.
 pub(super) struct View<'e> {
     pub(super) equations: &'e Equations,
+    constants: Vec<f64>,
     interpreter: Interpreter,
 }
 
@@ -25,7 +26,7 @@ const CLEAR: f64 = 1e-9;
 impl<'e> View<'e> {
     /// The view with the machine's constants, mm.
     pub(super) fn new(equations: &'e Equations, constants: &[f64]) -> Self {
-        Self { equations, interpreter: Interpreter::new(equations, constants) }
+        Self { equations, constants: constants.to_vec(), interpreter: Interpreter::new(equations, constants) }
     }
 
     pub(super) fn axis_dimension(&self, axis: usize) -> Dimension {
@@ -34,8 +35,12 @@ impl<'e> View<'e> {
     }
 
     pub(super) fn motion_dimension(&self, motion: usize) -> Dimension {
-        let angular = self.equations.motions.get(motion).is_some_and(|motion| motion.angular);
-        if angular { Dimension::ANGLE } else { Dimension::LENGTH }
+        if self.is_angular(motion) { Dimension::ANGLE } else { Dimension::LENGTH }
+    }
+
+    /// Whether a motion is a rotation.
+    pub(super) fn is_angular(&self, motion: usize) -> bool {
+        self.equations.motions.get(motion).is_some_and(|motion| motion.angular)
     }
 
     /// The direction in which a motion is read, or about which: a unit vector of the part's frame. For an axis's own motion
@@ -94,6 +99,27 @@ impl<'e> View<'e> {
         };
         let (there, here) = (levers(Some(axis)), levers(None));
         [0, 1, 2].map(|d| at(&there, d) - at(&here, d))
+    }
+
+    /// The same machine with an instrument in place of its tool: other constants.
+    pub(super) fn at_place(&self, place: &Place) -> Self {
+        let mut constants = self.constants.clone();
+        for (number, value) in &place.constants {
+            if let Some(slot) = constants.get_mut(*number) {
+                *slot = *value;
+            }
+        }
+        Self::new(self.equations, &constants)
+    }
+
+    /// The lever arm of every motion while an axis is at a position and the others stand where the measurement was taken.
+    pub(super) fn levers(&self, axis: usize, position: f64, place: &Place) -> Vec<[f64; 3]> {
+        let stands =
+            |number: usize| place.axes.iter().find(|(known, _)| *known == number).map_or(0.0, |(_, at)| *at);
+        let at = |number: usize| if number == axis { position } else { stands(number) };
+        let positions: Vec<f64> = (0..self.equations.axes.len()).map(at).collect();
+        let travels: Vec<f64> = self.equations.travels.iter().map(|travel| at(travel.axis)).collect();
+        self.interpreter.levers(&positions, &travels)
     }
 
     /// All axes at zero but one, which is at 1 mm, and the travels that go with them.

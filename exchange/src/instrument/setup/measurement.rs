@@ -11,12 +11,14 @@ use model_dsl::suggest::nearest;
 use model_dsl::yaml::Node;
 
 use super::counting::{self, Deviations, Order, Targets};
+use super::place::{self, Place};
 use super::words::{choice, keys, word};
 
-const KEYS: [&str; 12] = [
+const KEYS: [&str; 13] = [
     "motion",
     "data",
     "axis",
+    "at",
     "targets",
     "deviations",
     "runs",
@@ -40,6 +42,8 @@ pub struct Measurement {
     pub data: Spanned<String>,
     /// The axis that moves: an index into [`Equations::axes`].
     pub axis: usize,
+    /// Where it was taken, where the set-up says it; then lever arms are taken off.
+    pub at: Option<Place>,
     /// How its targets count.
     pub targets: Targets,
     /// The column of a table that holds the targets, where it is named.
@@ -99,6 +103,7 @@ pub(super) fn read(node: &Node, equations: &Equations, diagnostics: &mut Diagnos
     let (motion, data) = (motion?, data?);
     let known = equations.motions.get(motion.value)?;
     let axis = read_axis(&fields, motion, known, equations, diagnostics)?;
+    let at = fields.get("at").and_then(|node| read_at(node, &fields, (axis, known), equations, diagnostics));
     let along = dimension(equations.axes.get(axis).is_some_and(|axis| axis.rotary));
     let of_motion = dimension(known.angular);
     let targets = fields
@@ -126,6 +131,7 @@ pub(super) fn read(node: &Node, equations: &Equations, diagnostics: &mut Diagnos
         motion,
         data: data.map(str::to_owned),
         axis,
+        at,
         targets,
         target_column,
         deviations,
@@ -138,6 +144,22 @@ pub(super) fn read(node: &Node, equations: &Equations, diagnostics: &mut Diagnos
         smooth: read_smooth(&fields, diagnostics),
         resample: read_resample(&fields, along, diagnostics),
     })
+}
+
+/// Reads where a displacement was measured; a rotation is the same everywhere (E0910).
+fn read_at(
+    node: &Node,
+    fields: &Fields<'_>,
+    (axis, known): (usize, &Motion),
+    equations: &Equations,
+    diagnostics: &mut Diagnostics,
+) -> Option<Place> {
+    if known.angular {
+        let message = format!("{} is a rotation, the same wherever it is measured", known.name);
+        let mistake = Diagnostic::error("E0910", fields.key_span("at"), message);
+        diagnostics.push(mistake.help("leave `at` out: it serves to take lever arms off displacements"));
+    }
+    place::read(node, axis, equations, diagnostics)
 }
 
 fn dimension(angular: bool) -> Dimension {

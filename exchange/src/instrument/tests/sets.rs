@@ -151,3 +151,34 @@ fn turning_the_square_over_takes_its_error_out() {
     assert!((one.squarenesses[0].angle + 40e-6).abs() < 1e-12, "{:?}", one.squarenesses);
     assert!((one.squarenesses[0].square.unwrap() - 5e-6).abs() < 1e-12, "{:?}", one.squarenesses);
 }
+
+/// Off the carriage's frame by 30 mm in Z and 10 mm in Y, all axes carrying the tool: EBX moves the reading of EXX by 30 mm times
+/// its angle, ECX by -10 mm times its own, which was not measured.
+#[test]
+fn lever_arms_are_taken_off_where_the_place_is_known() {
+    let targets = [0.0, 100.0, 200.0];
+    let (truth, angle) = ([0.0, 5.0, -2.0], [20.0, -40.0, 60.0]);
+    let read: Vec<f64> =
+        truth.iter().zip(angle).map(|(truth, angle)| truth + 30.0 * angle / 1000.0).collect();
+    let run = |values: &[f64]| -> Vec<(bool, Vec<f64>)> {
+        [(true, 0.1), (false, -0.1), (true, -0.1), (false, 0.1)]
+            .map(|(forward, more)| (forward, values.iter().map(|value| value + more).collect()))
+            .to_vec()
+    };
+    let files = [table(&targets, &run(&read)), table(&targets, &run(&angle)).replace("mm,um", "mm,urad")];
+    let set = |at: &str| format!("  - {{motion: EXX, data: a{at}}}\n  - {{motion: EBX, data: b}}");
+    let plain = outcome("FXYZ", &set(""), &files).0.unwrap();
+    assert_near(&values(&plain).1, &read.iter().map(|value| value / 1e3).collect::<Vec<_>>(), 1e-9);
+    assert_eq!(plain.motions[0].parts[0].levers, None);
+    let placed = outcome("FXYZ", &set(", at: {Y: 10 mm, Z: -50 mm, Zt: 80 mm}"), &files).0.unwrap();
+    assert_near(&values(&placed).1, &truth.map(|value| value / 1e3), 1e-9);
+    let machine = super::machine("FXYZ");
+    let named = |number: usize| machine.motions[number].name.as_str();
+    let levers = placed.motions[0].parts[0].levers.as_ref().unwrap();
+    assert_eq!(levers.taken.iter().map(|(motion, _)| named(*motion)).collect::<Vec<_>>(), ["EBX"]);
+    assert!((levers.taken[0].1 - 30.0 * 60.0e-6).abs() < 1e-12);
+    assert_eq!(levers.remaining.iter().map(|motion| named(*motion)).collect::<Vec<_>>(), ["ECX"]);
+    // Two readings 0.2 apart: 0.1 um of the reading, and 30 mm times 0.1 urad.
+    let mean = placed.motions[0].curve.forward.as_ref().unwrap()[0].uncertainty.unwrap();
+    assert!((mean.standard - 0.1e-3 * 1.0_f64.hypot(0.03)).abs() < 1e-9, "{mean:?}");
+}

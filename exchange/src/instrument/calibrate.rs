@@ -147,13 +147,15 @@ impl Source<'_> {
             None => (self.reduced.curve.clone(), None, self.reduced.reversal),
         };
         let parts: Vec<&Source<'_>> = std::iter::once(self).chain(over).collect();
+        let table = Tabulated::of(&curve, self.measurement, reversal.map(|reversal| reversal.mean));
+        table.check(self.measurement, diagnostics)?;
         Some(MeasuredMotion {
             motion: self.measurement.motion.value,
             axis: self.measurement.axis,
             files: parts.iter().map(|part| part.file.source.name().to_owned()).collect(),
             about: parts.iter().map(|part| part.file.about.clone()).collect(),
             parts: parts.iter().map(|part| part.reduced.clone()).collect(),
-            table: Tabulated::of(&curve, self.measurement, reversal.map(|reversal| reversal.mean)),
+            table,
             curve,
             reversal,
             edge,

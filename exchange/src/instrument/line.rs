@@ -25,13 +25,13 @@ impl Line {
         self.offset + self.slope * position
     }
 
-    /// Both uncertainties together; the one from the residual alone where that of the runs is not known.
+    /// Both uncertainties together, or the one that is known.
     ///
     /// The scatter of the means is in the residual too, so that together they are rather too large than too small.
     pub fn uncertainty(&self) -> Option<Uncertainty> {
-        match self.from_runs {
-            Some(runs) => together(&[(1.0, self.from_residual), (1.0, Some(runs))]),
-            None => self.from_residual,
+        match (self.from_residual, self.from_runs) {
+            (Some(residual), Some(runs)) => together(&[(1.0, Some(residual)), (1.0, Some(runs))]),
+            (one, other) => one.or(other),
         }
     }
 

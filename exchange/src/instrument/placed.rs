@@ -29,35 +29,25 @@ pub(super) struct Way {
 }
 
 impl Placed {
-    /// Places the readings of a file; `asked` is the set-up's file for findings, of which the warnings are the data's.
+    /// Places the readings of a file. Findings stand at places of the set-up; warnings of runs at those of the file.
     pub(super) fn new(
         measured: &Measured,
         one: &Measurement,
-        view: &View,
+        view: &View<'_>,
         (in_setup, in_data): (&mut Diagnostics, &mut Diagnostics),
     ) -> Option<Self> {
         let at = one.data.span;
         let (axis, motion) = (view.axis_dimension(one.axis), view.motion_dimension(one.motion.value));
         let target_unit = the_unit("targets", one.targets.unit, measured.target_unit, axis, at, in_setup);
         let unit = the_unit("deviations", one.deviations.unit, measured.deviation_unit, motion, at, in_setup);
-        let mut found = Diagnostics::new();
-        let senses = sense::senses(measured, one.runs, at, &mut found);
-        for finding in found {
-            let place = if finding.code == "W0903" { &mut *in_data } else { &mut *in_setup };
-            place.push(finding);
-        }
+        let senses = sense::senses(measured, one.runs, at, (in_setup, in_data));
         let (target_unit, unit, senses) = (target_unit?, unit?, senses?);
         let factor = view.sense(one, in_setup)?;
         let targets: Vec<f64> =
             measured.targets.iter().map(|target| target_unit.to_internal(*target)).collect();
         let positions = on_axis(&targets, one);
         let order = ascending(&positions);
-        let mut rank = vec![0; order.len()];
-        order.iter().enumerate().for_each(|(place, target)| {
-            if let Some(slot) = rank.get_mut(*target) {
-                *slot = place;
-            }
-        });
+        let rank = ranks(&order);
         let runs = measured.runs.iter().zip(senses).filter_map(|(run, sense)| {
             let sense = if one.targets.against { sense?.turned() } else { sense? };
             let readings = run.readings.iter().filter_map(|reading| {
@@ -66,14 +56,35 @@ impl Placed {
             Some(Way { forward: sense == Sense::Ascending, readings: readings.collect() })
         });
         let runs = runs.collect();
-        let positions: Vec<f64> = order.iter().filter_map(|target| positions.get(*target).copied()).collect();
-        if positions.iter().any(|position| !position.is_finite()) {
-            let mistake = Diagnostic::error("E0926", at, "the targets of the file lie beyond all numbers");
-            in_setup.push(mistake.help("is their unit right?"));
-            return None;
-        }
-        Some(Self { positions, runs })
+        let positions = order.iter().filter_map(|target| positions.get(*target).copied()).collect();
+        let placed = Self { positions, runs };
+        placed.check(at, in_setup)?;
+        Some(placed)
     }
+
+    /// Reports targets that a table cannot hold: beyond all numbers (E0926), or nearer to each other than its digits (E0928).
+    fn check(&self, at: Span, diagnostics: &mut Diagnostics) -> Option<()> {
+        let finite = self.positions.iter().all(|position| position.is_finite());
+        let apart = self.positions.windows(2).all(|pair| pair.first() < pair.last());
+        let mistake = match (finite, apart) {
+            (true, true) => return Some(()),
+            (false, _) => Diagnostic::error("E0926", at, "the targets of the file lie beyond all numbers"),
+            _ => Diagnostic::error("E0928", at, "two targets of the file lie at one place of the axis"),
+        };
+        diagnostics.push(mistake.help("is their unit right?"));
+        None
+    }
+}
+
+/// The place of each target in an order.
+fn ranks(order: &[usize]) -> Vec<usize> {
+    let mut ranks = vec![0; order.len()];
+    for (place, target) in order.iter().enumerate() {
+        if let Some(slot) = ranks.get_mut(*target) {
+            *slot = place;
+        }
+    }
+    ranks
 }
 
 /// The one unit that file or set-up gives; both may give the same.

@@ -137,6 +137,26 @@ pub struct Tabulated {
 }
 
 impl Tabulated {
+    /// Reports a step that is too small for the range (E0907), and numbers beyond all numbers (E0926).
+    pub(super) fn check(&self, one: &Measurement, diagnostics: &mut Diagnostics) -> Option<()> {
+        let (first, last) = ends(&self.nodes);
+        if let Some(step) = one.resample.filter(|step| (last - first) / step.value > MOST_NODES) {
+            let message = format!("the table would have more than {MOST_NODES} nodes");
+            let mistake = Diagnostic::error("E0907", step.span, message);
+            diagnostics.push(mistake.help("write a greater step; no machine needs so many"));
+            return None;
+        }
+        let reverse = self.reverse.iter().flatten();
+        let mut values = self.nodes.iter().chain(&self.forward).chain(reverse).chain(&self.lost_motion);
+        if values.all(|value| value.is_finite()) {
+            return Some(());
+        }
+        let message = "what the file shows lies beyond all numbers";
+        let mistake = Diagnostic::error("E0926", one.data.span, message);
+        diagnostics.push(mistake.help("are its units right?"));
+        None
+    }
+
     /// The table of a curve, smoothed and resampled only where the set-up asks for it.
     pub(super) fn of(curve: &Curve, one: &Measurement, reversal: Option<f64>) -> Self {
         let values = |side: &Option<Vec<super::curve::Mean>>| -> Option<Vec<f64>> {
@@ -160,7 +180,7 @@ impl Tabulated {
             table.smooth(width);
         }
         if let Some(step) = one.resample {
-            table.resample(step);
+            table.resample(step.value);
         }
         table.each(|values| values.iter_mut().for_each(|value| *value = tidy(*value)));
         table
@@ -185,7 +205,7 @@ impl Tabulated {
 
     fn resample(&mut self, step: f64) {
         let old = self.nodes.clone();
-        let Some(new) = stepped(&old, step) else { return };
+        let new = stepped(&old, step);
         let mut most = 0.0_f64;
         self.each(|values| {
             let there = |positions: &[f64], values: &[f64], at: f64| {
@@ -213,16 +233,17 @@ fn moving_mean(values: &[f64], width: usize) -> Vec<f64> {
 }
 
 /// More nodes than this make no table.
-const MOST_NODES: f64 = 100_000.0;
+const MOST_NODES: f64 = 10_000.0;
 
-/// Nodes in equal steps over the whole range, the last of them at its end; nothing where there would be too many.
-fn stepped(positions: &[f64], step: f64) -> Option<Vec<f64>> {
-    let (first, last) = (*positions.first()?, *positions.last()?);
-    if (last - first) / step > MOST_NODES {
-        return None;
-    }
-    let steps = std::iter::successors(Some(0.0), |number| Some(number + 1.0))
-        .map(|number| tidy(first + number * step));
-    let inner = steps.take_while(|node| *node < last - 1e-6 * step);
-    Some(inner.chain([last]).collect())
+/// Nodes in equal steps over the whole range, the last of them at its end.
+fn stepped(positions: &[f64], step: f64) -> Vec<f64> {
+    let (first, last) = ends(positions);
+    let steps = std::iter::successors(Some(0.0), |number| (*number < MOST_NODES).then_some(number + 1.0));
+    let steps = steps.map(|number| tidy(first + number * step));
+    steps.take_while(|node| *node < last - 1e-6 * step).chain([last]).collect()
+}
+
+fn ends(positions: &[f64]) -> (f64, f64) {
+    let at = |end: Option<&f64>| end.copied().unwrap_or(f64::NAN);
+    (at(positions.first()), at(positions.last()))
 }

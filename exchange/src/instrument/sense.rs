@@ -11,24 +11,24 @@ use super::setup::Order;
 
 /// The sense of each run of a file in its own counting, in order. `asked` is where the set-up speaks of the file.
 ///
-/// A warning W0903 tells runs that hold nothing but zeros against the flags, whose sense is none. Findings at places of the
-/// set-up: E0910 and E0916.
+/// Findings at places of the set-up: E0910 and E0916; in the data a warning W0903 for runs that hold nothing but zeros against the
+/// flags, which have no sense.
 pub(super) fn senses(
     measured: &Measured,
     order: Option<Spanned<Order>>,
     asked: Span,
-    diagnostics: &mut Diagnostics,
+    (in_setup, in_data): (&mut Diagnostics, &mut Diagnostics),
 ) -> Option<Vec<Option<Sense>>> {
     let told = measured.runs.iter().all(|run| run.told.is_some());
     match (told, order) {
         (true, Some(order)) => {
             let message = "the file has a column of directions, and the set-up says `runs` too";
-            diagnostics.push(Diagnostic::error("E0910", order.span, message).help("leave `runs` out"));
+            in_setup.push(Diagnostic::error("E0910", order.span, message).help("leave `runs` out"));
             None
         }
         (true, None) => Some(measured.runs.iter().map(|run| run.told).collect()),
-        (false, Some(order)) => by_order(measured, order, diagnostics),
-        (false, None) => by_list(measured, asked, diagnostics),
+        (false, Some(order)) => by_order(measured, order, in_setup),
+        (false, None) => by_list(measured, asked, (in_setup, in_data)),
     }
 }
 
@@ -61,33 +61,55 @@ fn of_number(run: &Run) -> Sense {
 }
 
 /// As the file lists its runs, where the list tells it and the flags agree.
-fn by_list(measured: &Measured, asked: Span, diagnostics: &mut Diagnostics) -> Option<Vec<Option<Sense>>> {
+fn by_list(
+    measured: &Measured,
+    asked: Span,
+    (in_setup, in_data): (&mut Diagnostics, &mut Diagnostics),
+) -> Option<Vec<Option<Sense>>> {
     let listed: Vec<Option<Sense>> = measured.runs.iter().map(|run| run.listed(&measured.targets)).collect();
-    let any = |sense: Sense| listed.contains(&Some(sense));
-    let (up, down) = (any(Sense::Ascending), any(Sense::Descending));
-    let turns = up && down;
-    let in_turns = || {
-        measured
-            .runs
-            .iter()
-            .zip(&listed)
-            .all(|(run, sense)| sense.is_none_or(|sense| sense == of_number(run)))
-    };
-    let doubt = match measured.flagged {
-        Some(Flagged::OneWay) if turns => return one_way(measured, &listed, asked, diagnostics),
-        Some(Flagged::BothWays) if !turns && measured.runs.len() > 1 => {
-            "the flags say that runs go both ways, and all are listed one way"
+    let both = listed.contains(&Some(Sense::Ascending)) && listed.contains(&Some(Sense::Descending));
+    if measured.flagged == Some(Flagged::OneWay) && both {
+        let kept = one_way(measured, &listed, in_data);
+        if kept.is_none() {
+            in_setup.push(undecided(
+                "the flags say that all runs go one way, and they are listed both ways",
+                asked,
+            ));
         }
-        _ if turns && listed.contains(&None) && in_turns() => {
-            // A run of one reading has no order of its own; the others go in turns.
-            return Some(measured.runs.iter().map(|run| Some(of_number(run))).collect());
+        return kept;
+    }
+    if both && in_turns(measured, &listed) {
+        // A run of one reading has no order of its own; the others go in turns.
+        return Some(measured.runs.iter().map(|run| Some(of_number(run))).collect());
+    }
+    match doubt(measured, &listed, both) {
+        None => Some(listed),
+        Some(doubt) => {
+            in_setup.push(undecided(doubt, asked));
+            None
         }
-        _ if listed.contains(&None) => "a run is listed in an order that does not tell which way it went",
-        None if !turns && measured.runs.len() > 1 => "all runs are listed one way: they may have been sorted",
-        _ => return Some(listed),
-    };
-    diagnostics.push(undecided(doubt, asked));
-    None
+    }
+}
+
+/// Whether odd runs ascend and even runs descend, as far as their lists tell.
+fn in_turns(measured: &Measured, listed: &[Option<Sense>]) -> bool {
+    let mut runs = measured.runs.iter().zip(listed);
+    runs.all(|(run, sense)| sense.is_none_or(|sense| sense == of_number(run)))
+}
+
+/// Why the list of the runs does not tell their senses; nothing where it does.
+fn doubt(measured: &Measured, listed: &[Option<Sense>], both: bool) -> Option<&'static str> {
+    let several = measured.runs.len() > 1;
+    match measured.flagged {
+        _ if listed.contains(&None) => {
+            Some("a run is listed in an order that does not tell which way it went")
+        }
+        Some(Flagged::BothWays) if !both && several => {
+            Some("the flags say that runs go both ways, and all are listed one way")
+        }
+        None if !both && several => Some("all runs are listed one way: they may have been sorted"),
+        _ => None,
+    }
 }
 
 fn undecided(doubt: &str, asked: Span) -> Diagnostic {
@@ -95,27 +117,25 @@ fn undecided(doubt: &str, asked: Span) -> Diagnostic {
     Diagnostic::error("E0916", asked, doubt).help(help)
 }
 
-/// A file of one direction whose other runs are filled with zeros, as some programs write it: those are no readings.
+/// A file of one direction whose other runs are filled with zeros, as some programs write it: those are no readings (W0903).
+/// Nothing where readings go both ways.
 fn one_way(
     measured: &Measured,
     listed: &[Option<Sense>],
-    asked: Span,
-    diagnostics: &mut Diagnostics,
+    in_data: &mut Diagnostics,
 ) -> Option<Vec<Option<Sense>>> {
     let empty = |run: &Run| run.readings.iter().all(|reading| reading.deviation == 0.0);
     let kept: Vec<Option<Sense>> =
         measured.runs.iter().zip(listed).map(|(run, sense)| sense.filter(|_| !empty(run))).collect();
     let has = |sense: Sense| kept.contains(&Some(sense));
     if has(Sense::Ascending) == has(Sense::Descending) {
-        diagnostics
-            .push(undecided("the flags say that all runs go one way, and they are listed both ways", asked));
         return None;
     }
     for run in measured.runs.iter().filter(|run| empty(run)) {
         let message =
             format!("run {} holds nothing but zeros, and the flags say that all runs go one way", run.number);
         let help = "it is left out, as the way back that was not measured; `runs: alternating` takes it for readings";
-        diagnostics.push(Diagnostic::warning("W0903", run.span, message).help(help));
+        in_data.push(Diagnostic::warning("W0903", run.span, message).help(help));
     }
     Some(kept)
 }

@@ -6,6 +6,7 @@
 //! square's own error. What a turn of the line displaces the tool by is in the lever arms of the machine's equations.
 
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
+use model_dsl::source::Span;
 
 use super::line::Line;
 use super::setup::{Measurement, Reference};
@@ -48,62 +49,91 @@ struct Pair {
 
 /// The squareness that a square gives, from all measurements against it. E0912 where they do not give one.
 pub(super) fn of(
-    reference: (&str, Option<&Reference>),
+    (name, known): (&str, Option<&Reference>),
     sides: &[Side<'_>],
     view: &View<'_>,
     diagnostics: &mut Diagnostics,
 ) -> Option<Squareness> {
-    let (name, known) = reference;
     let place = sides.first()?.measurement.reference.as_ref()?.span;
-    let mut refuse = |why: String, help: &str| -> Option<Squareness> {
-        diagnostics.push(Diagnostic::error("E0912", place, why).help(help));
-        None
-    };
-    let setting = |turned: bool| -> Vec<Side<'_>> {
-        sides.iter().filter(|side| side.measurement.turned == turned).copied().collect()
-    };
-    let (upright, turned) = (setting(false), setting(true));
-    let Some(pair) = Pair::of(&upright, view) else {
-        return refuse(
-            format!(
-                "the measurements against `{name}` are not the straightnesses of two axes towards each other"
-            ),
-            "a squareness takes two, such as EYX and EXY; leave `reference` out elsewhere",
-        );
-    };
-    let Some((motion, gain)) = alignment(&pair, &upright, view) else {
-        return refuse(
-            format!(
-                "the machine file has no alignment error between the axes measured against `{name}`, or two of them"
-            ),
-            "write the angle that was measured under `errors`, in the sense of the machine file",
-        );
-    };
-    let from =
-        [0, 1].map(|side| upright.get(side).map_or(0, |side: &Side<'_>| side.measurement.motion.value));
-    let plain = pair.difference();
+    let (turned, upright): (Vec<Side<'_>>, Vec<Side<'_>>) =
+        sides.iter().copied().partition(|side| side.measurement.turned);
+    let found = Pair::of(&upright, view).ok_or_else(|| not_a_pair(name, place));
+    let found = found.and_then(|pair| match alignment(&pair, &upright, view) {
+        Some(alignment) => Ok((pair, alignment)),
+        None => Err(no_alignment(name, place)),
+    });
+    let (pair, (motion, gain)) = found.map_err(|mistake| diagnostics.push(mistake)).ok()?;
     let over = Pair::of(&turned, view).filter(|other| other.about == pair.about);
-    let (angle, square, uncertainty) = match &over {
-        Some(over) => {
-            let both = [(0.5 / gain, pair.uncertainty), (0.5 / gain, over.uncertainty)];
-            ((plain + over.difference()) / 2.0, Some((over.difference() - plain) / 2.0), together(&both))
-        }
-        None => {
-            let square = known.and_then(|known| known.angle);
-            let own = known.and_then(|known| known.uncertainty).map(Uncertainty::given);
-            let parts = [(1.0 / gain, pair.uncertainty), (1.0 / gain, own.or(Some(Uncertainty::given(0.0))))];
-            (plain + square.unwrap_or(0.0), square, together(&parts))
-        }
+    if let Some(known) = known.filter(|known| over.is_some() && known.angle.is_some()) {
+        diagnostics.push(angle_and_turned(name, known.name.span, place));
+        return None;
+    }
+    let turns = match &over {
+        Some(over) => pair.with_turned(over),
+        None => pair.with_angle(known),
     };
+    let from = [0, 1].map(|side| upright.get(side).map_or(0, |side| side.measurement.motion.value));
     Some(Squareness {
         motion,
         reference: name.to_owned(),
-        angle: angle / gain,
-        uncertainty,
-        square,
+        angle: turns.angle / gain,
+        uncertainty: together(&[(1.0 / gain, turns.uncertainty)]),
+        square: turns.square,
         turned: over.is_some(),
         from,
     })
+}
+
+fn not_a_pair(name: &str, place: Span) -> Diagnostic {
+    let message = format!(
+        "the measurements against `{name}` are not the straightnesses of two axes towards each other"
+    );
+    let help = "a squareness takes two, such as EYX and EXY; leave `reference` out elsewhere";
+    Diagnostic::error("E0912", place, message).help(help)
+}
+
+fn no_alignment(name: &str, place: Span) -> Diagnostic {
+    let message = format!(
+        "the machine file has no alignment error between the axes measured against `{name}`, or two of them"
+    );
+    let help = "write the angle that was measured under `errors`, in the sense of the machine file";
+    Diagnostic::error("E0912", place, message).help(help)
+}
+
+fn angle_and_turned(name: &str, given: Span, place: Span) -> Diagnostic {
+    let message = format!("the error of `{name}` falls out, since it was turned over, and is given too");
+    let mistake = Diagnostic::error("E0912", given, message).also(place, "measured with it turned over");
+    mistake.help("leave `angle` out, and compare it with the one that the report tells")
+}
+
+/// How much more the second line of motion is turned than the first, and the square's error.
+struct Turns {
+    angle: f64,
+    uncertainty: Option<Uncertainty>,
+    square: Option<f64>,
+}
+
+impl Pair {
+    /// With what is known of the square; without it the square counts as perfect.
+    fn with_angle(&self, known: Option<&Reference>) -> Turns {
+        let square = known.and_then(|known| known.angle);
+        let own = known.and_then(|known| known.uncertainty).unwrap_or(0.0);
+        Turns {
+            angle: self.difference() + square.unwrap_or(0.0),
+            uncertainty: together(&[(1.0, self.uncertainty), (1.0, Some(Uncertainty::given(own)))]),
+            square,
+        }
+    }
+
+    /// With the square turned over for the other pair: its error is in both with opposite signs.
+    fn with_turned(&self, over: &Self) -> Turns {
+        let (one, other) = (self.difference(), over.difference());
+        Turns {
+            angle: f64::midpoint(one, other),
+            uncertainty: together(&[(0.5, self.uncertainty), (0.5, over.uncertainty)]),
+            square: Some((other - one) / 2.0),
+        }
+    }
 }
 
 impl Pair {

@@ -6,7 +6,7 @@ use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::{Equations, Motion};
 use model_dsl::fields::Fields;
 use model_dsl::quantity::{self, Dimension};
-use model_dsl::source::Spanned;
+use model_dsl::source::{Span, Spanned};
 use model_dsl::suggest::nearest;
 use model_dsl::yaml::Node;
 
@@ -65,7 +65,7 @@ pub struct Measurement {
     /// The number of targets in a moving mean, odd, 3 or more; none where nothing is smoothed.
     pub smooth: Option<usize>,
     /// The step of the table, mm or rad; none where its nodes are the targets.
-    pub resample: Option<f64>,
+    pub resample: Option<Spanned<f64>>,
 }
 
 /// What is taken off a curve.
@@ -127,6 +127,10 @@ pub(super) fn read(node: &Node, equations: &Equations, diagnostics: &mut Diagnos
     if let Some(edge) = edge_of(&fields).filter(|_| !straightness) {
         diagnostics.push(no_edge(edge, &known.name, &fields));
     }
+    let remove = remove.unwrap_or(usual);
+    if let Some(name) = reference.filter(|_| straightness && remove != Remove::Line) {
+        diagnostics.push(no_line(name.span, &known.name, &fields));
+    }
     Some(Measurement {
         motion,
         data: data.map(str::to_owned),
@@ -137,13 +141,21 @@ pub(super) fn read(node: &Node, equations: &Equations, diagnostics: &mut Diagnos
         deviations,
         deviation_column,
         runs,
-        remove: remove.unwrap_or(usual),
+        remove,
         reference: reference.map(|name| name.map(str::to_owned)),
         turned,
         reversal: reversal.unwrap_or(Form::Tables),
         smooth: read_smooth(&fields, diagnostics),
         resample: read_resample(&fields, along, diagnostics),
     })
+}
+
+/// The slope of a line that stays in a straightness must not make a squareness too (E0910).
+fn no_line(reference: Span, motion: &str, fields: &Fields<'_>) -> Diagnostic {
+    let message =
+        format!("a squareness is taken from the least-squares line of {motion}, which is not removed");
+    let mistake = Diagnostic::error("E0910", fields.key_span("remove"), message);
+    mistake.also(reference, "measured against a square").help("leave `remove` out, or `reference`")
 }
 
 /// Reads where a displacement was measured; a rotation is the same everywhere (E0910).
@@ -252,10 +264,14 @@ fn read_smooth(fields: &Fields<'_>, diagnostics: &mut Diagnostics) -> Option<usi
     found
 }
 
-fn read_resample(fields: &Fields<'_>, axis: Dimension, diagnostics: &mut Diagnostics) -> Option<f64> {
+fn read_resample(
+    fields: &Fields<'_>,
+    axis: Dimension,
+    diagnostics: &mut Diagnostics,
+) -> Option<Spanned<f64>> {
     let step = quantity::read(fields.get("resample")?, axis, "`resample`", diagnostics)?;
     if step.value > 0.0 {
-        return Some(step.value);
+        return Some(step);
     }
     let mistake = Diagnostic::error("E0907", step.span, "`resample` is a step greater than zero");
     diagnostics

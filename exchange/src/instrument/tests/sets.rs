@@ -141,8 +141,9 @@ fn turning_the_square_over_takes_its_error_out() {
     let one = |motion: &str, turned: bool| {
         format!("  - {{motion: {motion}, data: d, reference: square, turned: {turned}}}\n")
     };
-    let set =
+    let both =
         SQUARE.to_owned() + &one("EYX", false) + &one("EXY", false) + &one("EYX", true) + &one("EXY", true);
+    let set = both.replace("references: {square: {angle: 4 urad, uncertainty: 1 urad}}\n", "");
     // The square lies askew by 7 urad the first time and by -3 the second, and is off by 5: slopes by hand.
     let files =
         [straight(30.0 - 7.0), straight(10.0 + 7.0 + 5.0), straight(30.0 + 3.0), straight(10.0 - 3.0 - 5.0)];
@@ -150,6 +151,10 @@ fn turning_the_square_over_takes_its_error_out() {
     let one = one.unwrap_or_else(|| panic!("{found:?}"));
     assert!((one.squarenesses[0].angle + 40e-6).abs() < 1e-12, "{:?}", one.squarenesses);
     assert!((one.squarenesses[0].square.unwrap() - 5e-6).abs() < 1e-12, "{:?}", one.squarenesses);
+    // What its certificate says has no place beside that.
+    let (one, found, _) = outcome("FXYZ", &both, &files);
+    assert!(one.is_none());
+    assert_eq!(found, [("E0912", "square".to_owned())]);
 }
 
 /// Off the carriage's frame by 30 mm in Z and 10 mm in Y, all axes carrying the tool: EBX moves the reading of EXX by 30 mm times

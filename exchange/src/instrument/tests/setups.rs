@@ -59,6 +59,7 @@ fn a_faulty_set_up_is_marked_where_it_is_faulty() {
             "most_negative",
         ),
         ("  - {motion: EXX, data: d}\n  - {motion: EXX, data: e}", "E0911", "EXX"),
+        ("  - {motion: EYX, data: d, reference: s, remove: ends}", "E0910", "remove"),
         ("  - {motion: EYX, data: d, turned: true}", "E0912", "EYX"),
         ("  - {motion: EXX, data: d, turned: true}", "E0912", "turned"),
         ("  - {motion: EYX, data: d, reference: square}", "E0912", "square"),
@@ -110,6 +111,14 @@ fn what_neither_file_nor_set_up_tells_is_asked_for() {
         ("target,deviation\n#unit,mm,um\n0,1\n".to_owned(), "", "E0916", "d"),
         (table(&[0.0], &[(true, vec![0.0])]), "", "E0917", "d"),
         (up_and_down(), ", deviations: {zero_at: 21 mm}", "E0917", "21 mm"),
+        (up_and_down(), ", resample: 1 um", "E0907", "1 um"),
+        (up_and_down().replace("   20.000000", "10.0000000001"), "", "E0928", "d"),
+        (
+            up_and_down().replace("Linear", "Other").replace("   20.000000", "   1.7e308"),
+            ", targets: {unit: m}, deviations: {unit: um}",
+            "E0926",
+            "d",
+        ),
     ];
     for (file, extra, code, marked) in cases {
         let (one, found, _) =

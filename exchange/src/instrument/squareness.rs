@@ -57,12 +57,14 @@ pub(super) fn of(
     let place = sides.first()?.measurement.reference.as_ref()?.span;
     let (turned, upright): (Vec<Side<'_>>, Vec<Side<'_>>) =
         sides.iter().copied().partition(|side| side.measurement.turned);
-    let found = Pair::of(&upright, view).ok_or_else(|| not_a_pair(name, place));
-    let found = found.and_then(|pair| match alignment(&pair, &upright, view) {
-        Some(alignment) => Ok((pair, alignment)),
-        None => Err(no_alignment(name, place)),
-    });
-    let (pair, (motion, gain)) = found.map_err(|mistake| diagnostics.push(mistake)).ok()?;
+    let Some(pair) = Pair::of(&upright, view) else {
+        diagnostics.push(not_a_pair(name, place));
+        return None;
+    };
+    let Some((motion, gain)) = alignment(&pair, &upright, view) else {
+        diagnostics.push(no_alignment(name, place));
+        return None;
+    };
     let over = Pair::of(&turned, view).filter(|other| other.about == pair.about);
     if let Some(known) = known.filter(|known| over.is_some() && known.angle.is_some()) {
         diagnostics.push(angle_and_turned(name, known.name.span, place));

@@ -110,7 +110,7 @@ fn a_rotary_axis_is_calibrated_in_angles() {
     let text = "target,deviation\n#unit,deg,arcsec\n0,0\n90,36\n180,-36\n";
     let one = outcome("XYZFC", "  - {motion: ECC, data: d}", &[text.to_owned()]).0.unwrap();
     let (nodes, values, _) = values(&one);
-    assert_near(&nodes, &[0.0, 1.570_796_327, 3.141_592_654], 1e-9);
+    assert_near(&nodes, &[0.0, std::f64::consts::FRAC_PI_2, std::f64::consts::PI], 1e-9);
     assert_near(&values, &[0.0, 1.745_33e-4, -1.745_33e-4], 1e-9);
 }
 

@@ -158,6 +158,9 @@ pub(crate) struct Calibrate {
     /// Replace a file that is there already.
     #[arg(long)]
     pub(crate) force: bool,
+    /// How to write the report.
+    #[arg(long, value_enum, default_value_t = CalibrateFormat::Text)]
+    pub(crate) format: CalibrateFormat,
 }
 
 #[derive(Args)]
@@ -283,6 +286,14 @@ pub(crate) enum UpdateMethod {
     Ridge,
     /// As few coefficients as pay; all others stand.
     Select,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum CalibrateFormat {
+    /// For a person at a terminal.
+    Text,
+    /// The schema abbe-calibrate/1.
+    Json,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -455,3 +455,34 @@ fn the_shipped_example_gives_its_true_errors() {
     let lost: Vec<f64> = reverse.iter().zip(&forward).map(|(one, other)| one - other).collect();
     assert!(lost.iter().all(|lost| (lost - 8.0).abs() < 1.0), "{lost:?}");
 }
+
+/// What the report says for people, programs find too.
+#[test]
+fn the_report_is_there_as_json() {
+    let setup = root().join("recordings/xyfz-mill-laser/setup.yaml").to_str().unwrap().to_owned();
+    let run = abbe(&["calibrate", &setup, "--format", "json"], "");
+    assert_eq!((run.status, run.err.as_str()), (0, ""));
+    let all: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+    assert_eq!(all["schema"], "abbe-calibrate/1");
+    let text = abbe(&["calibrate", &setup], "").out;
+    for motion in all["motions"].as_array().unwrap() {
+        for target in motion["targets"].as_array().unwrap() {
+            let (position, forward) = (&target["position"], &target["forward"]);
+            let um = |value: &serde_json::Value| format!("{:.2}", 1e3 * value.as_f64().unwrap());
+            let [position, value, half] = [
+                format!("{:.3}", position.as_f64().unwrap()),
+                um(&forward["value"]),
+                um(&forward["uncertainty"]["half95"]),
+            ];
+            let row = text.lines().find(|row| {
+                let cells: Vec<&str> = row.split_whitespace().collect();
+                cells.first() == Some(&position.as_str())
+                    && cells.get(1) == Some(&value.as_str())
+                    && cells.get(2) == Some(&half.as_str())
+            });
+            assert!(row.is_some(), "{position} {value} {half}\n{text}");
+        }
+    }
+    assert_eq!(all["squarenesses"][0]["motion"], "EC0Y");
+    assert_eq!(all["squarenesses"][0]["square"], 4e-6);
+}

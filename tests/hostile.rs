@@ -130,7 +130,7 @@ fn positions() {
 
 #[test]
 fn files_of_instruments() {
-    target_holds("instrument", 1500);
+    target_holds("instrument", 60000);
 }
 
 /// A kind of file without a test here would be searched by hand alone.

@@ -54,7 +54,9 @@ fn reduced(source: &SourceFile, setup: &Setup, measured: &Measured, machine: &Co
     let Some(outcome) = outcome else {
         return assert!(findings.setup.has_errors(), "neither a calibration nor an error");
     };
-    report::text(&outcome, &machine.equations);
+    let shown = report::text(&outcome, &machine.equations);
+    assert!(!shown.contains('\u{1b}'), "a file's own escape sequence reaches the terminal");
+    report::json(&outcome, &machine.equations);
     let names = machine.equations.names();
     let text = calibration::write(&outcome.calibration, &names);
     let mut diagnostics = Diagnostics::new();

@@ -1,5 +1,5 @@
 //! `abbe calibrate`: instruments' files into a calibration. In: a set-up file and the files that it names. Out: what they show,
-//! with uncertainties, as text, and the calibration.
+//! with uncertainties, as text or JSON, and the calibration.
 
 mod files;
 
@@ -15,7 +15,7 @@ use model_dsl::source::SourceFile;
 use model_dsl::yaml;
 
 use super::simulate::machine_name;
-use crate::arguments::Calibrate;
+use crate::arguments::{Calibrate, CalibrateFormat};
 use crate::failure::Failure;
 use crate::load;
 use crate::output::{print, rendered, show};
@@ -33,7 +33,10 @@ pub(crate) fn run(arguments: &Calibrate) -> Result<(), Failure> {
     let outcome = read.outcome()?;
     // The report is shown also where the file cannot be written, the file is written also where the reader is gone.
     let written = arguments.output.as_ref().map_or(Ok(()), |target| read.write(target, path, &outcome));
-    print(&report::text(&outcome, &read.equations))?;
+    print(&match arguments.format {
+        CalibrateFormat::Text => report::text(&outcome, &read.equations),
+        CalibrateFormat::Json => report::json(&outcome, &read.equations),
+    })?;
     written
 }
 

@@ -1,4 +1,9 @@
-//! An outcome for people. In: an [`Outcome`]. Out: text, and the comments at the head of the calibration. It computes nothing.
+//! An outcome as it is shown. In: an [`Outcome`]. Out: text, JSON, and the comments at the head of the calibration. It computes
+//! nothing.
+
+mod json;
+
+pub use json::json;
 
 use std::fmt::Write as _;
 

@@ -130,7 +130,7 @@ fn positions() {
 
 #[test]
 fn files_of_instruments() {
-    target_holds("instrument", 60000);
+    target_holds("instrument", 3000);
 }
 
 /// A kind of file without a test here would be searched by hand alone.

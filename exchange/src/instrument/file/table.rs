@@ -42,7 +42,10 @@ pub(super) fn read(
 ) -> Option<Measured> {
     let mut rows = lines(source.text()).filter(|line| !line.text.trim().is_empty()).peekable();
     while rows.next_if(|line| line.text.starts_with('#')).is_some() {}
-    let header = rows.next()?;
+    let Some(header) = rows.next() else {
+        diagnostics.push(no_readings(Span::default()));
+        return None;
+    };
     let layout = read_header(header, columns, diagnostics)?;
     let units = rows.next_if(|line| line.text.starts_with("#unit"));
     let units = match units {
@@ -105,6 +108,11 @@ fn place(cells: &[Piece<'_>], wanted: &[&str], diagnostics: &mut Diagnostics) ->
         found = found.or(first.map(|(place, _)| place));
     }
     Some(found)
+}
+
+fn no_readings(span: Span) -> Diagnostic {
+    let mistake = Diagnostic::error("E0923", span, "the table has no readings");
+    mistake.help("write a row of names, and below it one row for each reading")
 }
 
 fn no_column(header: Piece<'_>, cells: &[Piece<'_>], wanted: &[&str], what: &str) -> Diagnostic {
@@ -239,8 +247,7 @@ impl Gathered {
 
     fn finish(self, header: Span, diagnostics: &mut Diagnostics) -> Option<(Vec<f64>, Vec<Run>)> {
         if self.runs.is_empty() {
-            let mistake = Diagnostic::error("E0923", header, "the table has no readings");
-            diagnostics.push(mistake.help("write one row for each reading below the header"));
+            diagnostics.push(no_readings(header));
             return None;
         }
         for run in self.runs.iter().filter(|run| run.readings.len() < self.targets.len()) {

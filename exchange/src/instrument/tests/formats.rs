@@ -176,6 +176,7 @@ fn a_broken_table_is_marked_where_it_is_broken() {
         ("run,target,deviation\n1.5,0,1\n", "E0926", "1.5"),
         ("direction,target,deviation\nup,0,1\n", "E0926", "up"),
         ("target,deviation\n", "E0923", "target,deviation"),
+        ("# nothing but a comment\n#unit,mm\n", "E0923", ""),
     ];
     for (text, code, marked) in cases {
         let (measured, found) = read(text);

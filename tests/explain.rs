@@ -151,9 +151,8 @@ fn bench(code: &str) -> PathBuf {
     write("first.yaml", &complete("recording", ""));
     write("data.csv", "t,n,xc,yc,xm,dev,T\n0,1,0,0,0,1,20\n1,1,1,0,1,2,20\n2,3,2,0,2,1,20\n3,3,1,1,1,0,20\n");
     let table = |head: &str, unit: &str, rows: &str| format!("{head}\n{unit}{rows}");
-    let rows = "0,1\n100,2\n200,4\n";
-    write("x.csv", &table("target,deviation", "#unit,mm,um\n", rows));
-    write("bare.csv", &table("target,deviation", "", rows));
+    write("x.csv", &table("target,deviation,angle", "#unit,mm,um,urad\n", "0,1,0\n100,2,3\n200,4,1\n"));
+    write("bare.csv", &table("target,deviation", "", "0,1\n100,2\n200,4\n"));
     let sorted = "1,0,1\n1,100,2\n2,0,1\n2,100,2\n";
     write("sorted.csv", &table("run,target,deviation", "#unit,,mm,um\n", sorted));
     write("laser.yaml", &complete("set-up", "measurements: [{motion: EXX, data: x.rtl}]"));

@@ -37,6 +37,7 @@
 //! | W0901 | a run that was broken off |
 //! | W0902 | a file that ends before its end |
 //! | W0903 | runs of zeros that are left out |
+//! | W0904 | a squareness with the zero of a rotation in it |
 //!
 //! E0913 and E0914 are those of who finds the machine and the files.
 

@@ -216,10 +216,32 @@ fn squarenesses(
             .filter_map(|source| Some(Side { measurement: source.measurement, line: source.reduced.line? }))
             .collect();
         let known = setup.references.iter().find(|reference| reference.name.value == square);
+        warn_of_rotations(all, &sides, view, diagnostics);
         let one = squareness::of((&square, known), &sides, view, diagnostics);
         found.extend(one.filter(|one| is_new(one, &sides, setup, &found, view, diagnostics)));
     }
     found
+}
+
+/// Warns of a squareness in which the zero of an angular instrument stands again (W0904).
+fn warn_of_rotations(all: &[Source<'_>], sides: &[Side<'_>], view: &View<'_>, diagnostics: &mut Diagnostics) {
+    let motions = all.iter().map(|source| source.measurement.motion.value);
+    let angles: Vec<usize> = motions.filter(|motion| view.is_angular(*motion)).collect();
+    let unplaced = all.iter().filter(|source| source.measurement.at.is_none());
+    for source in
+        unplaced.filter(|source| sides.iter().any(|side| std::ptr::eq(side.measurement, source.measurement)))
+    {
+        let (one, positions) = (source.measurement, &source.reduced.curve.positions);
+        let Some(rotation) = lever::turning(one, positions, &angles, view) else { continue };
+        let name = |motion: usize| view.equations.motions.get(motion).map_or("", |motion| &motion.name);
+        let message = format!(
+            "the zero of {} is in the slope of {}, and so in the squareness",
+            name(rotation),
+            name(one.motion.value)
+        );
+        let help = "say with `at` where the other axes stood: then it is taken off";
+        diagnostics.push(Diagnostic::warning("W0904", one.motion.span, message).help(help));
+    }
 }
 
 /// Whether an alignment error is given in no other way (E0911).

@@ -114,9 +114,7 @@ impl<'e> View<'e> {
 
     /// The lever arm of every motion while an axis is at a position and the others stand where the measurement was taken.
     pub(super) fn levers(&self, axis: usize, position: f64, place: &Place) -> Vec<[f64; 3]> {
-        let stands =
-            |number: usize| place.axes.iter().find(|(known, _)| *known == number).map_or(0.0, |(_, at)| *at);
-        let at = |number: usize| if number == axis { position } else { stands(number) };
+        let at = |number: usize| if number == axis { position } else { place.position(number) };
         let positions: Vec<f64> = (0..self.equations.axes.len()).map(at).collect();
         let travels: Vec<f64> = self.equations.travels.iter().map(|travel| at(travel.axis)).collect();
         self.interpreter.levers(&positions, &travels)

@@ -18,6 +18,13 @@ pub struct Place {
     pub constants: Vec<(usize, f64)>,
 }
 
+impl Place {
+    /// Where an axis stood: mm or rad.
+    pub(crate) fn position(&self, axis: usize) -> f64 {
+        self.axes.iter().find(|(known, _)| *known == axis).map_or(0.0, |(_, position)| *position)
+    }
+}
+
 /// Reads `at` of a measurement along `moving`.
 pub(super) fn read(
     node: &Node,

@@ -37,6 +37,8 @@ pub(crate) enum Command {
     Update(Update),
     /// Give the standard figures of positioning and of circles from a recording (ISO 230-2, ISO 230-4).
     Evaluate(Evaluate),
+    /// Write the files that a controller loads, and tell what they cannot carry.
+    Export(Export),
     /// Write a commented machine file to start from.
     New(New),
     /// Explain a diagnostic code or a term, with an example; alone: list them.
@@ -209,6 +211,55 @@ pub(crate) struct Evaluate {
 }
 
 #[derive(Args)]
+pub(crate) struct Export {
+    /// Whose files.
+    #[arg(value_enum)]
+    pub(crate) format: ExportFormat,
+    /// The calibration file of the machine.
+    pub(crate) calibration: PathBuf,
+    /// The folder for the files.
+    #[arg(long, value_name = "FOLDER", default_value = ".")]
+    pub(crate) output: PathBuf,
+    /// Replace files that are there already.
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Write nothing: tell what the controller takes from this file, and what it loses. For LinuxCNC with the axis, as
+    /// in X=x.comp; may be given several times.
+    #[arg(long, value_name = "[AXIS=]FILE", conflicts_with_all = ["output", "force"])]
+    pub(crate) check: Vec<String>,
+    /// How far an axis goes, mm or deg, as in X=0:500; by default as far as the calibration's tables.
+    #[arg(long, value_name = "AXIS=FROM:TO", value_parser = range)]
+    pub(crate) range: Vec<(String, [f64; 2])>,
+    /// Where an axis stands while the tables of others are made, mm or deg, as in Z=120; by default in the middle.
+    #[arg(long, value_name = "AXIS=PLACE", value_parser = place)]
+    pub(crate) at: Vec<(String, f64)>,
+    /// So many points in each table, evenly spaced; by default the calibration's own, and more where something is curved.
+    #[arg(long)]
+    pub(crate) points: Option<usize>,
+    /// What a number of a table is, where no public document of the controller says it (Sinumerik's CEC, HEIDENHAIN).
+    #[arg(long, value_enum)]
+    pub(crate) value: Option<ExportValue>,
+    /// Leave terms out that no controller can compensate in real time, naming each on standard error.
+    #[arg(long)]
+    pub(crate) leave_out_uncompensable: bool,
+    /// LinuxCNC: COMP_FILE_TYPE.
+    #[arg(long = "type", value_name = "TYPE", default_value_t = 1, value_parser = clap::value_parser!(u8).range(0..=1))]
+    pub(crate) kind: u8,
+    /// LinuxCNC: the machine's unit of length.
+    #[arg(long, value_enum, default_value_t = ExportUnit::Mm)]
+    pub(crate) unit: ExportUnit,
+    /// Sinumerik: the number of tables that CEC has.
+    #[arg(long, default_value_t = 8)]
+    pub(crate) tables: usize,
+    /// The controller's name of an axis, or its motor's number, as in X=MX1.
+    #[arg(long, value_name = "AXIS=NAME", value_parser = name)]
+    pub(crate) name: Vec<(String, String)>,
+    /// PMAC: counts of an axis's motor for a mm, as in X=10000.
+    #[arg(long, value_name = "AXIS=COUNTS", value_parser = place)]
+    pub(crate) counts: Vec<(String, f64)>,
+}
+
+#[derive(Args)]
 pub(crate) struct New {
     /// A topology word: axes that carry the part, F for the bed, axes that carry the tool.
     pub(crate) topology: String,
@@ -314,6 +365,38 @@ pub(crate) enum EvaluationFormat {
     Html,
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum ExportFormat {
+    /// LinuxCNC: screw compensation, COMP_FILE.
+    Linuxcnc,
+    /// ISG kernel and Beckhoff: volumetric compensation, ISG CSV.
+    Isg,
+    /// Etalon Exchange Format, variant Vendor.
+    Etalon,
+    /// Siemens SINUMERIK: ENC_COMP and CEC.
+    Sinumerik,
+    /// HEIDENHAIN: .COM tables.
+    Heidenhain,
+    /// Delta Tau PMAC: DEFINE COMP and DEFINE BLCOMP.
+    Pmac,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum ExportValue {
+    /// The error, actual minus commanded: a positive number moves the axis in its negative direction.
+    Error,
+    /// What is added to the command.
+    Correction,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum ExportUnit {
+    /// Millimetres.
+    Mm,
+    /// Inches.
+    In,
+}
+
 /// The directions X, Y, Z in which the zero of a part is free.
 #[derive(Clone, Copy)]
 pub(crate) struct Datum(pub(crate) [bool; 3]);
@@ -340,4 +423,30 @@ fn non_negative(text: &str) -> Result<f64, String> {
         Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
         _ => Err("not a number that is zero or more".to_owned()),
     }
+}
+
+/// `X=...`, in two parts.
+fn name(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((axis, value)) if !axis.is_empty() && !value.is_empty() => {
+            Ok((axis.to_owned(), value.to_owned()))
+        }
+        _ => Err("write an axis and its value, as in X=...".to_owned()),
+    }
+}
+
+fn place(text: &str) -> Result<(String, f64), String> {
+    let (axis, value) = name(text)?;
+    Ok((axis, number(&value)?))
+}
+
+fn range(text: &str) -> Result<(String, [f64; 2]), String> {
+    let (axis, value) = name(text)?;
+    let (from, to) = value.split_once(':').ok_or("write both ends, as in X=0:500")?;
+    Ok((axis, [number(from)?, number(to)?]))
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|number: &f64| number.is_finite());
+    number.ok_or_else(|| format!("`{text}` is not a number"))
 }

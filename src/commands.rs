@@ -9,6 +9,7 @@ pub(crate) mod diagnose;
 pub(crate) mod evaluate;
 pub(crate) mod expand;
 pub(crate) mod explain;
+pub(crate) mod export;
 pub(crate) mod man;
 pub(crate) mod new;
 pub(crate) mod simulate;

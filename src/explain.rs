@@ -12,7 +12,7 @@ use model_dsl::suggest::nearest;
 use entry::Entry;
 
 /// The diagnostics, one file for each family of codes.
-const CODES: [&str; 9] = [
+const CODES: [&str; 10] = [
     include_str!("explain/codes/E00.txt"),
     include_str!("explain/codes/E01.txt"),
     include_str!("explain/codes/W02.txt"),
@@ -21,6 +21,7 @@ const CODES: [&str; 9] = [
     include_str!("explain/codes/E05.txt"),
     include_str!("explain/codes/E06.txt"),
     include_str!("explain/codes/E07.txt"),
+    include_str!("explain/codes/E08.txt"),
     include_str!("explain/codes/E09.txt"),
 ];
 
@@ -80,8 +81,8 @@ mod tests {
     #[test]
     fn near_names_are_told_nearest_first() {
         assert_eq!(near("baklash"), ["backlash"]);
-        assert_eq!(near("E0801").first(), Some(&"E0001"));
-        assert_eq!(near("E0801").len(), NEAR);
+        assert_eq!(near("E0201").first(), Some(&"E0001"));
+        assert_eq!(near("E0201").len(), NEAR);
         assert!(near("banana").is_empty());
     }
 }

@@ -277,6 +277,10 @@ fn said(code: &str, folder: &Path, example: &Example, text: &str) -> String {
             fs::write(folder.join("x.rtl"), text).unwrap();
             abbe(&["calibrate", &at("laser.yaml")], "")
         }
+        ("file", _) => {
+            let ranges = ["X=0:500", "Y=0:300", "Z=0:200"].map(|range| ["--range", range]).concat();
+            abbe(&[&["export", "isg", &at("known.yaml"), "--check", path][..], &ranges].concat(), "")
+        }
         ("path", "with a slide U") => {
             abbe(&["simulate", &parallel, path, "--output", &output, "--force"], "")
         }

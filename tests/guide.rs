@@ -144,8 +144,13 @@ fn run(folder: &Path, block: &Block) -> Left {
 }
 
 /// Follows one chapter from its beginning.
-#[expect(clippy::print_stdout, reason = "a test that is skipped says so")]
 fn follow(chapter: &str) {
+    follow_page(chapter, &format!("docs/guide/{chapter}.md"));
+}
+
+/// Follows one page in a folder of its own.
+#[expect(clippy::print_stdout, reason = "a test that is skipped says so")]
+fn follow_page(chapter: &str, page: &str) {
     if Command::new("bash").args(["--norc", "-c", "true"]).status().is_err() {
         println!("skipped: there is no bash");
         return;
@@ -160,7 +165,7 @@ fn follow(chapter: &str) {
             fs::remove_dir_all(entry).unwrap();
         }
     }
-    let text = fs::read_to_string(root().join("docs/guide").join(format!("{chapter}.md"))).unwrap();
+    let text = fs::read_to_string(root().join(page)).unwrap();
     let (mut last, mut commands) = (None, 0);
     for block in blocks(&text) {
         match &block.wish {
@@ -232,6 +237,11 @@ fn evaluate() {
 #[test]
 fn signs() {
     follow("signs");
+}
+
+#[test]
+fn controllers() {
+    follow_page("controllers", "docs/controllers.md");
 }
 
 #[test]

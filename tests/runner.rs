@@ -24,6 +24,7 @@ mod diagnose;
 mod evaluate;
 mod experiments;
 mod explain;
+mod export;
 mod files;
 mod generated;
 mod guide;

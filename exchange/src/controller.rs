@@ -1,2 +1,50 @@
 //! Compensation tables of controllers. In: a calibrated machine. Out: files in the controller's own form, and what of the model
-//! they cannot carry.
+//! they cannot carry, as a length at the tool.
+//!
+//! A file is believed only when it has been read again: every format has a reader that does what the controller's maker
+//! documents of his own, and what is lost is measured with what that reader made of the file.
+//!
+//! | code | finding |
+//! | --- | --- |
+//! | E0801 | what should be a number is none |
+//! | E0802 | a line that has another form |
+//! | E0803 | a table that contradicts itself |
+//! | E0804 | a name that means no axis and no error motion |
+
+mod beyond;
+mod decimal;
+mod effects;
+mod etalon;
+mod even;
+mod export;
+mod geometry;
+mod grid;
+mod heidenhain;
+mod isg;
+mod job;
+mod lines;
+pub mod linuxcnc;
+mod lost;
+mod nodes;
+mod options;
+mod parameters;
+mod pmac;
+mod refused;
+mod report;
+mod sinumerik;
+mod space;
+mod taken;
+mod volumetric;
+
+pub use beyond::Beyond;
+pub use effects::{Effect, Effects, Factor, Product};
+pub use export::{Checked, Export, Unusable, check, export};
+pub use geometry::{Geometry, Pose};
+pub use job::File;
+pub use lost::{Lost, Size, Target};
+pub use nodes::{Nodes, Spacing};
+pub use options::{Format, Kind, Options, Sense, Unit};
+pub use refused::Refused;
+pub use report::text;
+pub use space::{Space, Wanted};
+pub use taken::{VolumetricForm, volumetric_terms};

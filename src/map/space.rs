@@ -1,7 +1,7 @@
 //! The workspace of a map. In: the tables of a calibration and the positions that were read. Out: for each axis from where to
 //! where the map reaches.
 
-use model_dsl::calibration::{CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues};
+use model_dsl::calibration::{CalibratedTerm, Calibration};
 use model_dsl::equations::Equations;
 
 /// A stretch of an axis, mm or rad; nothing yet where the ends are crossed.
@@ -56,7 +56,7 @@ impl Space {
             if let CalibratedTerm::Table { axis, curve } = &term.value
                 && let Some(slot) = tables.get_mut(*axis)
             {
-                *slot = ends(curve).into_iter().fold(*slot, Stretch::with);
+                *slot = curve.ends().into_iter().flatten().fold(*slot, Stretch::with);
             }
         }
         Self { read: vec![Stretch::NOTHING; tables.len()], tables }
@@ -96,26 +96,10 @@ impl Space {
     }
 }
 
-/// The first and the last node of a curve.
-fn ends(curve: &Curve) -> [f64; 2] {
-    match &curve.nodes {
-        CurveNodes::At(places) => {
-            [places.first(), places.last()].map(|place| place.copied().unwrap_or(f64::NAN))
-        }
-        CurveNodes::Uniform { start, step } => {
-            let values = match &curve.values {
-                CurveValues::Both(values) => values,
-                CurveValues::Directed { forward, .. } => forward,
-            };
-            // Every step is one value further.
-            let last = values.iter().skip(1).fold(*start, |place, _| place + step);
-            [*start, last]
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use model_dsl::calibration::{Curve, CurveNodes, CurveValues};
+
     use super::*;
 
     #[test]
@@ -123,10 +107,10 @@ mod tests {
         let values = CurveValues::Both(vec![0.0; 5]);
         let uniform =
             Curve { nodes: CurveNodes::Uniform { start: 100.0, step: -25.0 }, values: values.clone() };
-        assert_eq!(ends(&uniform), [100.0, 0.0]);
+        assert_eq!(uniform.ends(), Some([100.0, 0.0]));
         let at = Curve { nodes: CurveNodes::At(vec![1.0, 2.0, 4.0, 8.0, 16.0]), values };
-        assert_eq!(ends(&at), [1.0, 16.0]);
-        let reach = ends(&uniform).into_iter().fold(Stretch::NOTHING, Stretch::with);
+        assert_eq!(at.ends(), Some([1.0, 16.0]));
+        let reach = uniform.ends().into_iter().flatten().fold(Stretch::NOTHING, Stretch::with);
         assert_eq!((reach.low, reach.high, reach.middle()), (0.0, 100.0, 50.0));
     }
 }

@@ -210,6 +210,34 @@ impl Curve {
             CurveNodes::At(at) => Table::at(at, values),
         }
     }
+
+    /// The positions of its nodes, in the axis's mm or rad, in the order of the values.
+    pub fn positions(&self) -> Vec<f64> {
+        match &self.nodes {
+            CurveNodes::At(places) => places.clone(),
+            // Every step is one value further.
+            CurveNodes::Uniform { start, step } => {
+                let further = |place: &mut f64, _: &f64| Some(std::mem::replace(place, *place + step));
+                self.values.forward().iter().scan(*start, further).collect()
+            }
+        }
+    }
+
+    /// Its first and its last node; nothing where it has none.
+    pub fn ends(&self) -> Option<[f64; 2]> {
+        let positions = self.positions();
+        Some([*positions.first()?, *positions.last()?])
+    }
+}
+
+impl CurveValues {
+    /// The values while the axis moves in its positive direction.
+    pub fn forward(&self) -> &[f64] {
+        match self {
+            Self::Both(values) => values,
+            Self::Directed { forward, .. } => forward,
+        }
+    }
 }
 
 /// Why a term has no counterpart in the runtime.

@@ -1,0 +1,52 @@
+//! What the formats get and give. In: a geometry, its workspace, options. Out: files; a controller that takes files.
+
+use model_dsl::diagnostic::Diagnostics;
+use model_dsl::source::SourceFile;
+
+use super::geometry::Geometry;
+use super::lost::Target;
+use super::options::Options;
+use super::space::Space;
+
+/// One file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct File {
+    /// Its name.
+    pub name: String,
+    /// The axis whose it is alone, by number, where its text does not say it.
+    pub axis: Option<usize>,
+    /// What stands in it.
+    pub text: String,
+    /// What it is, in a few words.
+    pub about: String,
+}
+
+/// What the writers of all formats get.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Job<'j, 'c> {
+    pub(super) geometry: &'j Geometry<'c>,
+    pub(super) space: &'j Space,
+    pub(super) options: &'j Options,
+}
+
+/// What the writers of all formats give.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Written {
+    pub(super) files: Vec<File>,
+    pub(super) loading: Vec<String>,
+    pub(super) left_out: Vec<String>,
+}
+
+/// A controller that takes files.
+pub(super) trait Controller: Target {
+    /// Takes a file as the controller's maker documents it; `axis` is the axis whose it is, where its text does not say it.
+    fn load(&mut self, source: &SourceFile, axis: Option<usize>, diagnostics: &mut Diagnostics);
+
+    /// What it takes otherwise than somebody might think.
+    fn findings(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// The target that it is then.
+    fn target(&self) -> &dyn Target;
+}

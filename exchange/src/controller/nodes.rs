@@ -1,0 +1,179 @@
+//! Where the values of a table stand. In: what the calibration's terms over an axis are, and the range. Out: nodes at which
+//! straight lines between them say the same, or say it closely.
+
+use model_dsl::calibration::{CalibratedTerm, Calibration, SeriesInput};
+use model_dsl::equations::Equations;
+
+use super::refused::Refused;
+
+/// Intervals over an axis on which something is curved, where the user does not say how many.
+const CURVED: usize = 100;
+
+/// Nodes closer than this are one: mm or rad.
+const SAME: f64 = 1e-9;
+
+/// Positions are written with six decimals.
+const DECIMALS: f64 = 1e6;
+
+/// Where a table is to have its values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spacing {
+    /// The number that the user asks for, evenly spaced.
+    pub points: Option<usize>,
+    /// The most that the controller takes.
+    pub most: usize,
+}
+
+/// The nodes of one axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nodes {
+    /// The nodes of the calibration's tables, and the ends of the range.
+    own: Vec<f64>,
+    /// Whether anything over the axis is curved between them.
+    curved: bool,
+    range: [f64; 2],
+    letter: String,
+    /// What a file writes for one mm or rad: 1, or the degrees of a radian.
+    unit: f64,
+}
+
+impl Nodes {
+    /// What is known of an axis.
+    pub fn new(equations: &Equations, calibration: &Calibration, axis: usize, range: [f64; 2]) -> Self {
+        let terms = calibration.motions.iter().flat_map(|motion| &motion.terms).map(|term| &term.value);
+        let info = equations.axes.get(axis);
+        let mut own: Vec<f64> = terms.clone().flat_map(|term| nodes(term, axis)).chain(range).collect();
+        own.retain(|place| (range[0]..=range[1]).contains(place));
+        own.sort_by(f64::total_cmp);
+        own.dedup_by(|next, place| *next - *place < SAME);
+        let curved = info.is_some_and(|info| info.rotary) || terms.clone().any(|term| is_curved(term, axis));
+        let rotary = info.is_some_and(|info| info.rotary);
+        let letter = info.map_or_else(String::new, |info| info.letter.clone());
+        Self { own, curved, range, letter, unit: if rotary { 1_f64.to_degrees() } else { 1.0 } }
+    }
+
+    /// The nodes of the calibration's tables, and the ends of the range.
+    pub(super) fn own(&self) -> &[f64] {
+        &self.own
+    }
+
+    /// The nodes of an axis on which something is curved that no term tells: an angle times a lever arm that grows with the
+    /// same position.
+    #[must_use]
+    pub(super) fn curved(self, curved: bool) -> Self {
+        Self { curved: self.curved || curved, ..self }
+    }
+
+    /// Nodes at any places.
+    ///
+    /// # Errors
+    /// Where the controller takes fewer.
+    pub fn at_any_places(&self, spacing: Spacing) -> Result<Vec<f64>, Refused> {
+        let nodes = match spacing.points {
+            Some(points) => self.spread(intervals(points, &self.letter)?),
+            None if self.curved => {
+                let mut nodes = self.own.clone();
+                nodes.extend(self.spread(CURVED.min(spacing.most.saturating_sub(nodes.len() + 1).max(1))));
+                nodes.sort_by(f64::total_cmp);
+                nodes.dedup_by(|next, place| *next - *place < SAME);
+                nodes
+            }
+            None => self.own.clone(),
+        };
+        self.few_enough(nodes, spacing)
+    }
+
+    /// Nodes at equal steps, the step having no more decimals than are written.
+    ///
+    /// # Errors
+    /// Where the controller takes fewer, or no such step divides the range.
+    pub fn at_equal_steps(&self, spacing: Spacing) -> Result<Vec<f64>, Refused> {
+        let intervals = match spacing.points {
+            Some(points) => intervals(points, &self.letter)?,
+            None => self.own_intervals().or_else(|| self.round_intervals()).unwrap_or(CURVED),
+        };
+        let [low, high] = self.range;
+        if !self.is_round((high - low) / count(intervals)) {
+            let help = "give another number of points with --points, or rounder ends with --range";
+            let what = format!("{} points over {} have no step of six decimals", intervals + 1, self.letter);
+            return Err(Refused::new(what, help));
+        }
+        self.few_enough(self.spread(intervals), spacing)
+    }
+
+    /// The number of equal steps on which all own nodes lie; finer where something is curved.
+    fn own_intervals(&self) -> Option<usize> {
+        let [low, high] = self.range;
+        let step = self.own.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+        let whole = |length: f64| ((length / step).round() * step - length).abs() < 1e-6;
+        let even =
+            self.is_round(step) && whole(high - low) && self.own.iter().all(|place| whole(place - low));
+        let number = (1..=1_000_000).find(|number| count(*number) * step > high - low - 0.5 * step)?;
+        let finer = if self.curved { CURVED.div_ceil(number) } else { 1 };
+        even.then_some(number * finer)
+    }
+
+    /// The least number of intervals from the usual one on whose step is round.
+    fn round_intervals(&self) -> Option<usize> {
+        let [low, high] = self.range;
+        (CURVED..=2 * CURVED).find(|number| self.is_round((high - low) / count(*number)))
+    }
+
+    /// The range in equal intervals, its ends exact.
+    fn spread(&self, intervals: usize) -> Vec<f64> {
+        let [low, high] = self.range;
+        let share = |number: usize| count(number) / count(intervals);
+        (0..=intervals).map(|number| low * (1.0 - share(number)) + high * share(number)).collect()
+    }
+
+    /// Whether a step has no more decimals than are written, apart from its last bits.
+    fn is_round(&self, step: f64) -> bool {
+        let scaled = step * self.unit * DECIMALS;
+        (scaled - scaled.round()).abs() < 1e-4
+    }
+
+    fn few_enough(&self, nodes: Vec<f64>, spacing: Spacing) -> Result<Vec<f64>, Refused> {
+        if nodes.len() <= spacing.most {
+            return Ok(nodes);
+        }
+        let what = format!(
+            "the table of {} would have {} points, and the controller takes {}",
+            self.letter,
+            nodes.len(),
+            spacing.most
+        );
+        let help = format!("ask for fewer points, --points {}, and see what that loses", spacing.most);
+        Err(Refused::new(what, help))
+    }
+}
+
+fn intervals(points: usize, letter: &str) -> Result<usize, Refused> {
+    if points >= 2 {
+        return Ok(points - 1);
+    }
+    Err(Refused::new(format!("a table of {letter} needs two points"), "give --points 2 or more"))
+}
+
+/// A count as a number; exact, since none comes near 2^32.
+fn count(number: usize) -> f64 {
+    f64::from(u32::try_from(number).unwrap_or(u32::MAX))
+}
+
+fn nodes(term: &CalibratedTerm, axis: usize) -> Vec<f64> {
+    match term {
+        CalibratedTerm::Table { axis: over, curve } if *over == axis => curve.positions(),
+        _ => Vec::new(),
+    }
+}
+
+/// Whether a term is no straight line over an axis, tables apart.
+fn is_curved(term: &CalibratedTerm, axis: usize) -> bool {
+    match term {
+        CalibratedTerm::Polynomial { input: SeriesInput::Axis(over), coefficients } => {
+            *over == axis && coefficients.len() > 2
+        }
+        CalibratedTerm::Coupling { axis: over, coefficients } => *over == axis && coefficients.len() > 1,
+        CalibratedTerm::Cyclic { axis: over, .. } => *over == axis,
+        _ => false,
+    }
+}

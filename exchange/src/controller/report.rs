@@ -1,0 +1,74 @@
+//! The report of an export. In: what a format carries and loses. Out: text.
+
+use std::fmt::Write;
+
+use abbe_runtime::math::length;
+
+use super::beyond::Beyond;
+use super::geometry::Geometry;
+use super::lost::{Lost, Size};
+use super::space::Space;
+
+/// Errors at the tool over the workspace, and what no table holds.
+pub fn text(geometry: &Geometry<'_>, space: &Space, lost: &Lost) -> String {
+    let mut text = workspace(geometry, space);
+    let _ = writeln!(text, "error at the tool over it, {} poses (um)           rms  largest", lost.poses);
+    for (what, size) in [
+        ("  without compensation", lost.without),
+        ("  with these files", lost.with_files),
+        ("  with Abbe's own compensation", lost.with_abbe),
+        ("  lost by the files", lost.lost),
+    ] {
+        let _ = writeln!(text, "{what:<52}{}", size_text(size));
+    }
+    if length(lost.shift) >= 1e-4 {
+        let shift = lost.shift.map(|part| format!("{:.1}", part * 1000.0)).join(", ");
+        let _ = writeln!(text, "  besides, the files shift all positions by {shift} um in X, Y, Z");
+    }
+    if !geometry.beyond().is_empty() {
+        let _ = writeln!(text, "not in any table, and so not in these figures:");
+        for beyond in geometry.beyond() {
+            let _ = writeln!(text, "  {}", beyond_text(geometry, space, beyond));
+        }
+    }
+    text
+}
+
+fn workspace(geometry: &Geometry<'_>, space: &Space) -> String {
+    let axes = geometry.equations.axes.iter().zip(space.ranges.iter().zip(&space.reference));
+    let axes = axes.map(|(axis, ([low, high], at))| {
+        let (unit, name) = if axis.rotary { (1_f64.to_degrees(), "deg") } else { (1.0, "mm") };
+        let [low, high, at] = [low, high, at].map(|place| short(place * unit));
+        format!("{} {low} to {high} {name} (reference {at})", axis.letter)
+    });
+    format!("workspace: {}\n", axes.collect::<Vec<_>>().join(", "))
+}
+
+fn size_text(size: Size) -> String {
+    let um = |mm: f64| mm * 1000.0;
+    format!("{:>8.2} {:>8.2}", um(size.rms), um(size.largest))
+}
+
+/// A number with as few decimals as it needs, three at most.
+fn short(number: f64) -> String {
+    let text = format!("{number:.3}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// A term with its size at the tool.
+fn beyond_text(geometry: &Geometry<'_>, space: &Space, beyond: &Beyond) -> String {
+    let motion = geometry.equations.motions.get(beyond.motion).map_or("", |motion| motion.name.as_str());
+    let poses = space.poses(geometry);
+    let at_tool = poses.iter().map(|pose| {
+        let lever = geometry.levers(&pose.position).get(beyond.motion).map_or(0.0, |lever| length(*lever));
+        let times = beyond.times.and_then(|axis| pose.position.get(axis)).map_or(1.0, |place| place.abs());
+        lever * times
+    });
+    let most = at_tool.fold(0.0, f64::max);
+    match beyond.size {
+        Some(size) => {
+            format!("{motion} {}: up to {:.2} um {}", beyond.term, size * most * 1000.0, beyond.per)
+        }
+        None => format!("{motion} {}: it changes {}", beyond.term, beyond.per),
+    }
+}

@@ -1,0 +1,111 @@
+//! A volumetric file as a calibration. In: the file of a controller, and a machine. Out: its error motions as terms, counted as
+//! the machine file counts them.
+
+use model_dsl::calibration::{CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues};
+use model_dsl::diagnostic::{Diagnostic, Diagnostics};
+use model_dsl::equations::Equations;
+use model_dsl::source::{SourceFile, Span};
+
+use super::geometry::Geometry;
+use super::grid::Grid;
+use super::job::Controller;
+use super::refused::Refused;
+use super::space::Space;
+use super::volumetric::Volumetric;
+use super::{etalon, isg};
+
+/// What an error motion may depart from a sum of functions of one axis each: mm or rad; files have twelve decimals.
+const SAME: f64 = 1e-11;
+
+/// The length over which lever arms are compared to find their signs, mm.
+const FAR: f64 = 1000.0;
+
+/// Which form a volumetric file has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VolumetricForm {
+    /// ISG CSV.
+    Isg,
+    /// Etalon Exchange Format.
+    Etalon,
+}
+
+/// The terms that a volumetric file adds to a calibration, with the numbers of their error motions. `known` gives the values
+/// of the machine's constants. What is wrong in the file goes to `diagnostics`.
+///
+/// # Errors
+/// A machine that has not three slides X, Y, Z.
+pub fn volumetric_terms(
+    equations: &Equations,
+    known: &Calibration,
+    source: &SourceFile,
+    form: VolumetricForm,
+    diagnostics: &mut Diagnostics,
+) -> Result<Vec<(usize, CalibratedTerm)>, Refused> {
+    let geometry = Geometry::new(equations, known);
+    let model = Volumetric::new(&geometry)?;
+    let mut model = match form {
+        VolumetricForm::Isg => loaded(isg::Isg(model), source, diagnostics).0,
+        VolumetricForm::Etalon => loaded(etalon::Etalon(model), source, diagnostics).0,
+    };
+    let space = Space { ranges: vec![[0.0, FAR]; 3], reference: vec![0.0; 3] };
+    let mut terms = Vec::new();
+    for (name, mut grid) in std::mem::take(&mut model.parameters) {
+        let motion = equations.motions.iter().position(|motion| motion.name == name);
+        let Some((motion, sign)) =
+            motion.and_then(|motion| Some((motion, model.sign(&geometry, &space, motion)?)))
+        else {
+            if grid.values.iter().any(|value| *value != 0.0) {
+                let message = format!("{} has no error motion {name}", equations.machine);
+                let help =
+                    "an alignment error may go by another axis in the machine file: B0X for B0Z turned about";
+                diagnostics.push(Diagnostic::error("E0804", Span::default(), message).help(help));
+            }
+            continue;
+        };
+        grid.values.iter_mut().for_each(|value| *value *= sign);
+        match sum_of_curves(&grid) {
+            Some(curves) => terms.extend(curves.into_iter().map(|term| (motion, term))),
+            None => {
+                let message = format!("{name} is no sum of functions of one axis each");
+                let help = "terms of a calibration add; measure the axes apart, or keep this motion in the controller";
+                diagnostics.push(Diagnostic::error("E0803", Span::default(), message).help(help));
+            }
+        }
+    }
+    Ok(terms)
+}
+
+fn loaded<C: Controller>(mut controller: C, source: &SourceFile, diagnostics: &mut Diagnostics) -> C {
+    controller.load(source, None, diagnostics);
+    controller
+}
+
+/// A table for each argument, the first holding the value at the first nodes of all; nothing where they do not add up to the
+/// grid. A constant where there is no argument.
+fn sum_of_curves(grid: &Grid) -> Option<Vec<CalibratedTerm>> {
+    let first = *grid.values.first()?;
+    if grid.arguments.is_empty() {
+        return Some(vec![CalibratedTerm::Constant { value: first }]);
+    }
+    let sizes: Vec<usize> = grid.arguments.iter().map(|(_, nodes)| nodes.len()).collect();
+    let stride = |argument: usize| sizes.iter().skip(argument + 1).product::<usize>();
+    let along = |argument: usize| -> Option<Vec<f64>> {
+        (0..*sizes.get(argument)?)
+            .map(|node| grid.values.get(node * stride(argument)).map(|value| value - first))
+            .collect()
+    };
+    let curves: Vec<Vec<f64>> = (0..sizes.len()).map(along).collect::<Option<_>>()?;
+    for (record, value) in grid.values.iter().enumerate() {
+        let node = |argument: usize| record / stride(argument) % sizes[argument];
+        let sum: f64 = curves.iter().enumerate().map(|(argument, curve)| curve[node(argument)]).sum();
+        if (first + sum - value).abs() > SAME {
+            return None;
+        }
+    }
+    let tables = grid.arguments.iter().zip(curves).enumerate().map(|(number, ((axis, nodes), curve))| {
+        let base = if number == 0 { first } else { 0.0 };
+        let values = CurveValues::Both(curve.into_iter().map(|value| value + base).collect());
+        CalibratedTerm::Table { axis: *axis, curve: Curve { nodes: CurveNodes::At(nodes.clone()), values } }
+    });
+    Some(tables.collect())
+}

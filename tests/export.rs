@@ -1,0 +1,141 @@
+//! `abbe export` as its users meet it: files for every controller, what is told of them, and what is refused.
+
+use std::fs;
+use std::path::PathBuf;
+
+use crate::cli::{Run, abbe};
+use crate::shipped::root;
+
+/// A folder of the test's own.
+fn folder(test: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("export").join(test);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn postech() -> String {
+    root().join("calibrations/postech-mill.yaml").to_str().unwrap().to_owned()
+}
+
+fn exported(folder: &PathBuf, format: &str, more: &[&str]) -> Run {
+    let postech = postech();
+    abbe(&[&["export", format, &postech, "--output", folder.to_str().unwrap()], more].concat(), "")
+}
+
+/// The rms that a report tells in the line of this name, um.
+fn rms(report: &str, line: &str) -> f64 {
+    let told = report.lines().find(|told| told.trim_start().starts_with(line)).unwrap();
+    told.split_whitespace().rev().nth(1).unwrap().parse().unwrap()
+}
+
+#[test]
+fn every_format_writes_files_and_tells_what_they_lose() {
+    let counts = ["--counts", "X=10000", "--counts", "Y=10000", "--counts", "Z=10000"];
+    let formats: [(&str, &[&str], &[&str]); 6] = [
+        ("linuxcnc", &[], &["x.comp", "y.comp", "z.comp"]),
+        ("isg", &[], &["volumetric.csv"]),
+        ("etalon", &[], &["volumetric.txt"]),
+        ("sinumerik", &["--value", "error", "--tables", "60"], &["cec.ini", "eec.ini"]),
+        ("heidenhain", &["--value", "error"], &["AXIS_X.COM", "AXIS_Y.COM", "AXIS_Z.COM"]),
+        ("pmac", &counts, &["compensation.pmc"]),
+    ];
+    for (format, more, files) in formats {
+        let folder = folder(format);
+        let run = exported(&folder, format, more);
+        assert_eq!((run.status, run.err.as_str()), (0, ""), "{format}");
+        let mut there: Vec<String> = fs::read_dir(&folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        there.sort();
+        assert_eq!(there, files, "{format}");
+        let (without, with, own) =
+            (rms(&run.out, "without"), rms(&run.out, "with these"), rms(&run.out, "with Abbe's"));
+        assert!(own < 0.01 && with < without, "{format}: {}", run.out);
+        // The play of Y, 10 um, is what a file without directions loses: half of it.
+        if matches!(format, "isg" | "etalon") {
+            assert!((rms(&run.out, "lost") - 5.0).abs() < 0.1, "{format}: {}", run.out);
+        }
+        if format == "sinumerik" {
+            assert!(rms(&run.out, "lost") < 0.05, "{}", run.out);
+        }
+    }
+}
+
+#[test]
+fn a_file_that_is_there_is_replaced_only_when_asked() {
+    let folder = folder("there");
+    fs::write(folder.join("z.comp"), "mine\n").unwrap();
+    let run = exported(&folder, "linuxcnc", &[]);
+    assert_eq!(run.status, 2);
+    assert!(run.err.contains("z.comp is there already") && run.err.contains("--force"), "{}", run.err);
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "no file is written where one cannot be");
+    assert_eq!(exported(&folder, "linuxcnc", &["--force"]).status, 0);
+    assert_ne!(fs::read_to_string(folder.join("z.comp")).unwrap(), "mine\n");
+}
+
+#[test]
+fn files_that_are_there_are_read_as_the_controller_reads_them() {
+    let folder = folder("check");
+    let written = exported(&folder, "linuxcnc", &[]);
+    let check = |files: &[String]| {
+        let postech = postech();
+        let files: Vec<&str> = files.iter().flat_map(|file| ["--check", file.as_str()]).collect();
+        abbe(&[&["export", "linuxcnc", &postech][..], &files].concat(), "")
+    };
+    let named =
+        |axis: &str| format!("{}={}", axis.to_uppercase(), folder.join(format!("{axis}.comp")).display());
+    let all = ["x", "y", "z"].map(named);
+    let read = check(&all);
+    assert_eq!(read.status, 0, "{}", read.err);
+    assert_eq!(rms(&read.out, "with these"), rms(&written.out, "with these"));
+    // A comment at the top switches the table of X off, and what that costs is told.
+    let x = folder.join("x.comp");
+    let text = fs::read_to_string(&x).unwrap();
+    fs::write(&x, format!("# X\n{text}")).unwrap();
+    let commented = check(&all);
+    assert!(commented.out.contains("line 1 is no triplet"), "{}", commented.out);
+    assert_eq!(rms(&commented.out, "with these"), rms(&check(&all[1..]).out, "with these"));
+    let unnamed = check(&[x.to_str().unwrap().to_owned()]);
+    assert!(unnamed.status == 2 && unnamed.err.contains("E0804"), "{}", unnamed.err);
+}
+
+#[test]
+fn what_cannot_be_exported_is_refused_with_what_to_do() {
+    let folder = folder("refused");
+    let nowhere = folder.join("no").join("where");
+    for (format, more, says) in [
+        ("linuxcnc", &["--points", "300"][..], "the controller takes 256"),
+        ("linuxcnc", &["--at", "Q=3"], "no axis Q"),
+        ("linuxcnc", &["--range", "X=9:3"], "the range of X is none"),
+        ("linuxcnc", &["--output", nowhere.to_str().unwrap()], "no such folder"),
+        ("pmac", &[], "--counts X=10000"),
+        ("heidenhain", &[], "--value error"),
+        ("sinumerik", &["--name", "Q=AX1"], "no such axis"),
+    ] {
+        let run = match more.first() {
+            Some(&"--output") => abbe(&[&["export", format, &postech()], more].concat(), ""),
+            _ => exported(&folder, format, more),
+        };
+        assert_eq!(run.status, 2, "{format} {more:?}: {}", run.out);
+        assert!(run.err.contains(says), "{format} {more:?}: {}", run.err);
+    }
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
+}
+
+#[test]
+fn terms_that_no_controller_compensates_are_refused_by_name() {
+    let folder = folder("terms");
+    let calibration = folder.join("known.yaml");
+    let text = "calibration: 1\nmachine: FX\nerrors:\n  EXX: [{constant: {value: 3 um}}, {drift: {amplitude: 5 um, time_constant: 10 min}}]\n";
+    fs::write(&calibration, text).unwrap();
+    let calibration = calibration.to_str().unwrap();
+    let output = folder.to_str().unwrap();
+    let args = ["export", "linuxcnc", calibration, "--output", output, "--range", "X=0:100"];
+    let refused = abbe(&args, "");
+    assert!(refused.status == 2 && refused.err.contains("E0425"), "{}", refused.err);
+    let without = abbe(&[&args[..], &["--leave-out-uncompensable"]].concat(), "");
+    assert_eq!(without.status, 0, "{}", without.err);
+    assert!(without.out.contains("EXX drift: up to 5.00 um in the end"), "{}", without.out);
+}

@@ -31,6 +31,8 @@ pub(crate) enum Command {
     Diagnose(Diagnose),
     /// Write the recording that a calibration predicts: an exact machine, its instrument and their noise.
     Simulate(Simulate),
+    /// Make a calibration from instruments' files: lasers, levels, straightedges.
+    Calibrate(Calibrate),
     /// Change the coefficients of a calibration to what measured parts show.
     Update(Update),
     /// Give the standard figures of positioning and of circles from a recording (ISO 230-2, ISO 230-4).
@@ -144,6 +146,23 @@ pub(crate) struct Simulate {
     /// Show no progress.
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct Calibrate {
+    /// The set-up file, which names the machine and for each measurement its file. Given files of instruments instead, the
+    /// command says what a set-up of them must hold.
+    #[arg(required = true, value_name = "SETUP")]
+    pub(crate) files: Vec<PathBuf>,
+    /// The calibration file to write.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Replace a file that is there already.
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// How to write the report.
+    #[arg(long, value_enum, default_value_t = CalibrateFormat::Text)]
+    pub(crate) format: CalibrateFormat,
 }
 
 #[derive(Args)]
@@ -318,6 +337,14 @@ pub(crate) enum UpdateMethod {
     Ridge,
     /// As few coefficients as pay; all others stand.
     Select,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum CalibrateFormat {
+    /// For a person at a terminal.
+    Text,
+    /// The schema abbe-calibrate/1.
+    Json,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

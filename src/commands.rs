@@ -1,5 +1,6 @@
 //! The commands, one file each. In: arguments. Out: output, or why there is none.
 
+pub(crate) mod calibrate;
 pub(crate) mod check;
 pub(crate) mod compensate;
 pub(crate) mod completions;

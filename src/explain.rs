@@ -12,7 +12,7 @@ use model_dsl::suggest::nearest;
 use entry::Entry;
 
 /// The diagnostics, one file for each family of codes.
-const CODES: [&str; 9] = [
+const CODES: [&str; 10] = [
     include_str!("explain/codes/E00.txt"),
     include_str!("explain/codes/E01.txt"),
     include_str!("explain/codes/W02.txt"),
@@ -22,6 +22,7 @@ const CODES: [&str; 9] = [
     include_str!("explain/codes/E06.txt"),
     include_str!("explain/codes/E07.txt"),
     include_str!("explain/codes/E08.txt"),
+    include_str!("explain/codes/E09.txt"),
 ];
 
 /// The terms of calibration files, then the settings of instruments.

@@ -29,17 +29,32 @@ const MOST_BYTES: u64 = 8 * 1024 * 1024;
 
 /// Reads a text file.
 pub(crate) fn read(path: &Path) -> Result<SourceFile, Failure> {
-    let cannot = |why: String| Failure::Wrong(format!("error: cannot read {}: {why}", path.display()));
-    let mut bytes = Vec::new();
-    let file = File::open(path).map_err(|error| cannot(error.to_string()))?;
-    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(|error| cannot(error.to_string()))?;
+    let text = String::from_utf8(bytes(path)?).map_err(|error| {
+        cannot(path, &format!("it is not UTF-8 text (byte {})", error.utf8_error().valid_up_to()))
+    })?;
+    Ok(SourceFile::new(path.display().to_string(), text))
+}
+
+/// Reads a file that need not be text.
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+    let bytes = head(path)?;
     if u64::try_from(bytes.len()).is_ok_and(|length| length > MOST_BYTES) {
         return Err(too_large(path));
     }
-    let text = String::from_utf8(bytes).map_err(|error| {
-        cannot(format!("it is not UTF-8 text (byte {})", error.utf8_error().valid_up_to()))
-    })?;
-    Ok(SourceFile::new(path.display().to_string(), text))
+    Ok(bytes)
+}
+
+/// Reads a file up to one byte more than the most that are taken.
+pub(crate) fn head(path: &Path) -> Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(|error| cannot(path, &error.to_string()))?;
+    let read = file.take(MOST_BYTES + 1).read_to_end(&mut bytes);
+    read.map_err(|error| cannot(path, &error.to_string()))?;
+    Ok(bytes)
+}
+
+fn cannot(path: &Path, why: &str) -> Failure {
+    Failure::Wrong(format!("error: cannot read {}: {why}", path.display()))
 }
 
 fn too_large(path: &Path) -> Failure {

@@ -45,6 +45,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Compensate(command) => commands::compensate::run(command),
         Command::Diagnose(command) => commands::diagnose::run(command),
         Command::Simulate(command) => commands::simulate::run(command),
+        Command::Calibrate(command) => commands::calibrate::run(command),
         Command::Update(command) => commands::update::run(command),
         Command::Evaluate(command) => commands::evaluate::run(command),
         Command::Export(command) => commands::export::run(command),

@@ -127,7 +127,7 @@ fn one(source: &SourceFile, diagnostic: Diagnostic) -> Failure {
 }
 
 /// What a recording names cannot be used, for a reason that was found in another file.
-fn unusable(
+pub(crate) fn unusable(
     source: &SourceFile,
     code: &'static str,
     what: &str,

@@ -56,10 +56,20 @@ pub(crate) fn check_picture(
     others: &[PathBuf],
     force: bool,
 ) -> Result<(), Failure> {
+    check_new(target, (option, "picture.svg"), others, force)
+}
+
+/// The same for a file of any kind; the option comes with an example of a name.
+pub(crate) fn check_new(
+    target: &Path,
+    (option, example): (&str, &str),
+    others: &[PathBuf],
+    force: bool,
+) -> Result<(), Failure> {
     let wrong = |what: &str, help: &str| {
         Err(Failure::Wrong(format!("error: {} {what}\nhelp: {help}", target.display())))
     };
-    let name = format!("{option} takes the name of a file such as picture.svg");
+    let name = format!("{option} takes the name of a file such as {example}");
     if target.file_name().is_none() || target.is_dir() {
         return wrong("is a folder", &name);
     }

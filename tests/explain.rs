@@ -15,8 +15,8 @@ use crate::tidy::rust_files;
 /// Settings of instruments that a diagnosis tells.
 const SETTINGS: [&str; 5] = ["eccentricity", "radius", "cosine", "clock", "offset"];
 
-/// Codes whose example would be too long for a page.
-const WITHOUT_EXAMPLE: [&str; 2] = ["E0003", "E0115"];
+/// Codes whose example would be too long for a page, or is no text.
+const WITHOUT_EXAMPLE: [&str; 3] = ["E0003", "E0115", "E0921"];
 
 fn page(name: &str) -> String {
     let run = abbe(&["explain", name], "");
@@ -150,6 +150,14 @@ fn bench(code: &str) -> PathBuf {
     write("warm.yaml", &complete("calibration", warm));
     write("first.yaml", &complete("recording", ""));
     write("data.csv", "t,n,xc,yc,xm,dev,T\n0,1,0,0,0,1,20\n1,1,1,0,1,2,20\n2,3,2,0,2,1,20\n3,3,1,1,1,0,20\n");
+    let table = |head: &str, unit: &str, rows: &str| format!("{head}\n{unit}{rows}");
+    write("x.csv", &table("target,deviation,angle", "#unit,mm,um,urad\n", "0,1,0\n100,2,3\n200,4,1\n"));
+    write("bare.csv", &table("target,deviation", "", "0,1\n100,2\n200,4\n"));
+    let sorted = "1,0,1\n1,100,2\n2,0,1\n2,100,2\n";
+    write("sorted.csv", &table("run,target,deviation", "#unit,,mm,um\n", sorted));
+    write("laser.yaml", &complete("set-up", "measurements: [{motion: EXX, data: x.rtl}]"));
+    let tilting = "abbe: 1\nname: tilting\nsensitive: [X, Z]\nchain:\n  workpiece:\n    - {rotary: A, along: +A}\n  tool:\n    - {slide: X, along: +X}\n    - {slide: Z, along: +Z}\n    - {tool: tip}\n";
+    write("tilting.yaml", tilting);
     let parallel = "abbe: 1\nname: parallel\nchain:\n  tool:\n    - {slide: X, along: +X}\n    - {slide: U, along: +X}\n    - {tool: tip}\n";
     write("parallel.yaml", parallel);
     write("parallel-known.yaml", "calibration: 1\nmachine: parallel.yaml\n");
@@ -175,6 +183,12 @@ pub(crate) fn complete(kind: &str, part: &str) -> String {
             "rate: 20 Hz",
             "instrument: position",
             "temperatures: {motor: {start: 20 degC}}",
+        ],
+        "set-up" => &[
+            "setup: 1",
+            "machine: XYFZ",
+            "constants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}",
+            "measurements: [{motion: EXX, data: x.csv}]",
         ],
         _ => &[],
     };
@@ -258,6 +272,11 @@ fn said(code: &str, folder: &Path, example: &Example, text: &str) -> String {
         ("recording", "given second") => abbe(&["diagnose", &first, path], ""),
         ("recording", "for an update") => abbe(&["update", &warm, path], ""),
         ("recording", _) => abbe(&["diagnose", path], ""),
+        ("set-up", _) => abbe(&["calibrate", path], ""),
+        ("measurement", _) => {
+            fs::write(folder.join("x.rtl"), text).unwrap();
+            abbe(&["calibrate", &at("laser.yaml")], "")
+        }
         ("file", _) => {
             let ranges = ["X=0:500", "Y=0:300", "Z=0:200"].map(|range| ["--range", range]).concat();
             abbe(&[&["export", "isg", &at("known.yaml"), "--check", path][..], &ranges].concat(), "")

@@ -128,6 +128,11 @@ fn positions() {
     target_holds("positions", 3000);
 }
 
+#[test]
+fn files_of_instruments() {
+    target_holds("instrument", 3000);
+}
+
 /// A kind of file without a test here would be searched by hand alone.
 #[test]
 fn every_target_is_tested() {

@@ -12,6 +12,7 @@
 mod agreement;
 mod bounded;
 mod browser;
+mod calibrate;
 mod cases_nist_update;
 mod cli;
 mod compensation;

@@ -1,4 +1,4 @@
-//! The JSON Schemas of the four YAML forms, in `schemas/`: an editor checks with them what a reader will accept.
+//! The JSON Schemas of the five YAML forms, in `schemas/`: an editor checks with them what a reader will accept.
 //!
 //! In: every file of these forms that there is. Out: where a schema says other than the reader. The validator is a crate
 //! that knows nothing of the readers, and the readers know nothing of the schemas.
@@ -20,8 +20,13 @@ use crate::machine_files::{cases, findings};
 use crate::shipped::root;
 
 /// The forms by the key that a file of each begins with, and the schemas' names.
-const FORMS: [(&str, &str); 4] =
-    [("abbe", "machine"), ("calibration", "calibration"), ("recording", "recording"), ("path", "path")];
+const FORMS: [(&str, &str); 5] = [
+    ("abbe", "machine"),
+    ("calibration", "calibration"),
+    ("recording", "recording"),
+    ("path", "path"),
+    ("setup", "set-up"),
+];
 
 /// Codes of mistakes in the form of a file, which a schema sees too. All others depend on more than the form: on the
 /// machine, on another value, on the file as a whole.
@@ -37,8 +42,15 @@ const OF_FORM: [&str; 58] = [
 /// More of them: of path files.
 const OF_FORM_OF_PATHS: [&str; 6] = ["E0703", "E0704", "E0705", "E0706", "E0707", "E0716"];
 
+/// And of set-up files.
+const OF_FORM_OF_SET_UPS: [&str; 7] = ["E0901", "E0902", "E0903", "E0904", "E0907", "E0908", "E0910"];
+
 fn of_form(code: &str) -> bool {
-    OF_FORM.contains(&code) || OF_FORM_OF_PATHS.contains(&code)
+    all_of_form().any(|known| known == code)
+}
+
+fn all_of_form() -> impl Iterator<Item = &'static str> {
+    OF_FORM.into_iter().chain(OF_FORM_OF_PATHS).chain(OF_FORM_OF_SET_UPS)
 }
 
 fn schema(name: &str) -> Value {
@@ -127,7 +139,7 @@ const OF_NO_FORM: &str = "truth.yaml";
 fn shipped_files() -> Vec<(PathBuf, String, &'static str)> {
     let read = shipped_yaml(&root()).into_iter().filter(|path| !path.ends_with(OF_NO_FORM)).map(|path| {
         let text = fs::read_to_string(&path).unwrap();
-        let form = form(&text).unwrap_or_else(|| panic!("{} is of none of the four forms", path.display()));
+        let form = form(&text).unwrap_or_else(|| panic!("{} is of none of the forms", path.display()));
         (path, text, form)
     });
     read.collect()
@@ -191,7 +203,7 @@ fn what_the_documents_show_is_valid() {
             }
         }
     }
-    assert_eq!(seen.len(), 4, "an example of every form: {seen:?}");
+    assert_eq!(seen.len(), FORMS.len(), "an example of every form: {seen:?}");
 }
 
 #[test]
@@ -261,8 +273,7 @@ fn examples_of_mistakes_in_form_are_refused_and_all_mended_ones_are_valid() {
             refused.insert(code);
         }
     }
-    let all: BTreeSet<String> =
-        OF_FORM.iter().chain(&OF_FORM_OF_PATHS).map(|code| (*code).to_owned()).collect();
+    let all: BTreeSet<String> = all_of_form().map(str::to_owned).collect();
     assert_eq!(refused, all);
 }
 
@@ -281,13 +292,23 @@ fn mappings() -> Vec<(&'static str, String, String)> {
     }
     let motion = "chain: {tool: [{slide: X, along: +X, errors: {EXX: {unheardof: 1}}}, {tool: tip}]}";
     add("machine", motion, "/definitions/motion/anyOf/2");
-    add("calibration", "unheardof: 1", "");
-    add("calibration", "limits: {unheardof: 1}", "/properties/limits");
-    add("calibration", "sensors: {body: {unheardof: 1}}", "/properties/sensors/additionalProperties");
-    add("calibration", "errors: {EXX: [{unheardof: {a: 1}}]}", "/definitions/term");
-    for term in model_dsl::calibration::TERM_NAMES {
-        let part = format!("errors: {{EXX: [{{{term}: {{unheardof: 1}}}}]}}");
-        add("calibration", &part, &format!("/definitions/term/properties/{term}"));
+    // A set-up has the head of a calibration.
+    for form in ["calibration", "set-up"] {
+        add(form, "unheardof: 1", "");
+        add(form, "limits: {unheardof: 1}", "/properties/limits");
+        add(form, "sensors: {body: {unheardof: 1}}", "/properties/sensors/additionalProperties");
+        add(form, "errors: {EXX: [{unheardof: {a: 1}}]}", "/definitions/term");
+        for term in model_dsl::calibration::TERM_NAMES {
+            let part = format!("errors: {{EXX: [{{{term}: {{unheardof: 1}}}}]}}");
+            add(form, &part, &format!("/definitions/term/properties/{term}"));
+        }
+    }
+    add("set-up", "references: {a: {unheardof: 1}}", "/properties/references/additionalProperties");
+    let measurement = "/properties/measurements/items";
+    add("set-up", "measurements: [{unheardof: 1}]", measurement);
+    for key in ["targets", "deviations"] {
+        let part = format!("measurements: [{{motion: EXX, data: x.csv, {key}: {{unheardof: 1}}}}]");
+        add("set-up", &part, &format!("{measurement}/properties/{key}"));
     }
     add("recording", "unheardof: 1", "");
     for channel in ["time", "run", "deviation"] {

@@ -7,6 +7,7 @@
 
 pub mod calibration;
 pub mod equations;
+pub mod instrument;
 pub mod machine;
 pub mod mutate;
 pub mod path;
@@ -18,11 +19,12 @@ mod text;
 pub type Run = fn(&[u8]);
 
 /// Every kind of file with its function.
-pub const TARGETS: [(&str, Run); 6] = [
+pub const TARGETS: [(&str, Run); 7] = [
     ("machine", machine::run),
     ("calibration", calibration::run),
     ("recording", recording::run),
     ("equations", equations::run),
     ("path", path::run),
     ("positions", positions::run),
+    ("instrument", instrument::run),
 ];

@@ -66,6 +66,8 @@ fn file(kind: &str) -> &str {
         "calibration" => "calibration file",
         "recording" => "recording file",
         "path" => "path file",
+        "set-up" => "set-up file",
+        "measurement" => "measurement as a laser's program writes it",
         "volumetric" => "file for a volumetric compensation, ISG CSV",
         "equations" => "equation file for the machine excello-921",
         other => other,

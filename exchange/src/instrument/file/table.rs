@@ -1,0 +1,275 @@
+//! Plain tables (CSV). In: a header row, a row `#unit,...` where there is one, and a row for each reading. Out: runs of
+//! readings over targets.
+
+use std::collections::BTreeMap;
+
+use model_dsl::diagnostic::{Diagnostic, Diagnostics};
+use model_dsl::quantity::{Unit, parse_unit};
+use model_dsl::source::{SourceFile, Span};
+use model_dsl::suggest::nearest;
+
+use super::super::measured::{Measured, Reading, Run, Sense};
+use super::cell::{Piece, lines, shown};
+
+/// Which columns of a table are meant.
+#[derive(Clone, Debug, Default)]
+pub struct Columns<'s> {
+    /// The column of the targets; else `target`, `position` or one of `targets_like`.
+    pub target: Option<&'s str>,
+    /// The column of the deviations; else `deviation` or one of `deviations_like`.
+    pub deviation: Option<&'s str>,
+    /// Names by which the set-up knows the targets: the axis's letter.
+    pub targets_like: Vec<String>,
+    /// Names by which the set-up knows the deviations: the error motion.
+    pub deviations_like: Vec<String>,
+}
+
+/// Where the columns stand.
+struct Layout {
+    separator: char,
+    width: usize,
+    target: usize,
+    deviation: usize,
+    run: Option<usize>,
+    direction: Option<usize>,
+}
+
+/// Reads the whole table.
+pub(super) fn read(
+    source: SourceFile,
+    columns: &Columns<'_>,
+    diagnostics: &mut Diagnostics,
+) -> Option<Measured> {
+    let mut rows = lines(source.text()).filter(|line| !line.text.trim().is_empty()).peekable();
+    while rows.next_if(|line| line.text.starts_with('#')).is_some() {}
+    let Some(header) = rows.next() else {
+        diagnostics.push(no_readings(Span::default()));
+        return None;
+    };
+    let layout = read_header(header, columns, diagnostics)?;
+    let units = rows.next_if(|line| line.text.starts_with("#unit"));
+    let units = match units {
+        Some(line) => read_units(line, &layout, diagnostics)?,
+        None => (None, None),
+    };
+    let mut gathered = Gathered::default();
+    for line in rows.filter(|line| !line.text.starts_with('#')) {
+        gathered.take(line, &layout, diagnostics)?;
+    }
+    let (targets, runs) = gathered.finish(header.span, diagnostics)?;
+    Some(Measured {
+        targets,
+        runs,
+        target_unit: units.0,
+        deviation_unit: units.1,
+        flagged: None,
+        about: Vec::new(),
+        source,
+    })
+}
+
+fn read_header(header: Piece<'_>, columns: &Columns<'_>, diagnostics: &mut Diagnostics) -> Option<Layout> {
+    let separator = [';', '\t'].into_iter().find(|one| header.text.contains(*one)).unwrap_or(',');
+    let cells: Vec<Piece<'_>> = header.split(separator).map(cell).collect();
+    let axis: Vec<&str> = columns.targets_like.iter().map(String::as_str).collect();
+    let motion: Vec<&str> = columns.deviations_like.iter().map(String::as_str).collect();
+    let target = [&["target", "position"], axis.as_slice()].concat();
+    let deviation = [&["deviation"], motion.as_slice()].concat();
+    let lower = axis.first().map(|letter| format!("dir_{}", letter.to_ascii_lowercase()));
+    let direction: Vec<&str> = ["direction"].into_iter().chain(lower.as_deref()).collect();
+    let mut find = |given: Option<&str>, usual: &[&str], what: &str| {
+        let wanted = given.map_or_else(|| usual.to_vec(), |name| vec![name]);
+        let found = place(&cells, &wanted, diagnostics)?;
+        if found.is_none() && !what.is_empty() {
+            diagnostics.push(no_column(header, &cells, &wanted, what));
+        }
+        Some(found)
+    };
+    let target = find(columns.target, &target, "targets");
+    let deviation = find(columns.deviation, &deviation, "deviations");
+    let run = find(None, &["run"], "")?;
+    let direction = find(None, &direction, "")?;
+    Some(Layout { separator, width: cells.len(), target: target??, deviation: deviation??, run, direction })
+}
+
+/// The column of one of some names, letter case aside; nothing at all where two columns have it.
+fn place(cells: &[Piece<'_>], wanted: &[&str], diagnostics: &mut Diagnostics) -> Option<Option<usize>> {
+    let mut found = None;
+    for name in wanted {
+        let mut alike = cells.iter().enumerate().filter(|(_, cell)| cell.text.eq_ignore_ascii_case(name));
+        let first = alike.next();
+        if let (Some((_, first)), Some((_, again))) = (first, alike.next()) {
+            let message = format!("column `{}` stands twice", shown(again.text));
+            let mistake =
+                Diagnostic::error("E0929", again.span, message).also(first.span, "the first of them");
+            diagnostics.push(mistake.help("give each column its own name"));
+            return None;
+        }
+        found = found.or(first.map(|(place, _)| place));
+    }
+    Some(found)
+}
+
+fn no_readings(span: Span) -> Diagnostic {
+    let mistake = Diagnostic::error("E0923", span, "the table has no readings");
+    mistake.help("write a row of names, and below it one row for each reading")
+}
+
+fn no_column(header: Piece<'_>, cells: &[Piece<'_>], wanted: &[&str], what: &str) -> Diagnostic {
+    let message = format!("the table has no column of {what}: `{}`", wanted.join("` or `"));
+    let mistake = Diagnostic::error("E0929", header.trimmed().span, message);
+    let near = wanted.iter().find_map(|name| nearest(name, cells.iter().map(|cell| cell.text)));
+    match near {
+        Some(near) => {
+            mistake.help(format!("is it `{}`? Name it so, or name the column in the set-up", shown(near)))
+        }
+        None => mistake.help(format!(
+            "begin with a row of names, or name the column in the set-up: `{what}: {{column: ...}}`"
+        )),
+    }
+}
+
+/// A cell without white space and quotes around it.
+fn cell(piece: Piece<'_>) -> Piece<'_> {
+    let cell = piece.trimmed();
+    let inner = cell.text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+    inner.map_or(cell, |inner| Piece::new(inner, cell.span.start + 1).trimmed())
+}
+
+/// The units of targets and deviations, in a row `#unit,` with one cell more than the header.
+fn read_units(
+    line: Piece<'_>,
+    layout: &Layout,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Option<Unit>, Option<Unit>)> {
+    let cells: Vec<Piece<'_>> = line.split(layout.separator).map(cell).collect();
+    if cells.len() != layout.width + 1 {
+        let message = format!(
+            "the row of units has {} units for {} columns",
+            cells.len().saturating_sub(1),
+            layout.width
+        );
+        let help = "write `#unit` and then one unit for each column, empty where it has none";
+        diagnostics.push(Diagnostic::error("E0924", line.trimmed().span, message).help(help));
+        return None;
+    }
+    let mut unit = |place: usize| match cells.get(place + 1).filter(|cell| !cell.text.is_empty()) {
+        None => Some(None),
+        Some(cell) => match parse_unit(cell.text) {
+            Ok(unit) => Some(Some(unit)),
+            Err(error) => {
+                diagnostics.push(error.diagnostic(cell.span));
+                None
+            }
+        },
+    };
+    let (target, deviation) = (unit(layout.target), unit(layout.deviation));
+    Some((target?, deviation?))
+}
+
+/// Rows gathered to runs.
+#[derive(Default)]
+struct Gathered {
+    targets: Vec<f64>,
+    /// The index of each target, by its bits.
+    places: BTreeMap<u64, usize>,
+    runs: Vec<Run>,
+    numbers: BTreeMap<(u32, Option<bool>), usize>,
+    seen: BTreeMap<(usize, usize), Span>,
+}
+
+impl Gathered {
+    fn take(&mut self, line: Piece<'_>, layout: &Layout, diagnostics: &mut Diagnostics) -> Option<()> {
+        let cells: Vec<Piece<'_>> = line.split(layout.separator).map(cell).collect();
+        if cells.len() != layout.width {
+            let message = format!("the row has {} cells, the header {}", cells.len(), layout.width);
+            let help = "write one cell for each column, empty where nothing was measured; a decimal comma makes two of one";
+            diagnostics.push(Diagnostic::error("E0924", line.trimmed().span, message).help(help));
+            return None;
+        }
+        let at = |place: Option<usize>| place.and_then(|place| cells.get(place));
+        let number = match at(layout.run) {
+            Some(cell) => cell.ordinal("the run", diagnostics)?,
+            None => 1,
+        };
+        let told = match at(layout.direction) {
+            Some(cell) => Some(read_sense(*cell, diagnostics)?),
+            None => None,
+        };
+        let target = at(Some(layout.target))?.number("the target", diagnostics)?;
+        let deviation = at(Some(layout.deviation))?;
+        let missing = deviation.text.is_empty()
+            || ["nan", "null"].iter().any(|word| deviation.text.eq_ignore_ascii_case(word));
+        // A place that was not read is a place all the same.
+        let index = self.target(target);
+        if missing {
+            return Some(());
+        }
+        let deviation = deviation.number("the deviation", diagnostics)?;
+        self.add(number, told, Reading { target: index, deviation }, line.trimmed().span, diagnostics)
+    }
+
+    fn target(&mut self, target: f64) -> usize {
+        // Zero has two signs and is one place.
+        let target = if target == 0.0 { 0.0 } else { target };
+        let next = self.targets.len();
+        let index = *self.places.entry(target.to_bits()).or_insert(next);
+        if index == next {
+            self.targets.push(target);
+        }
+        index
+    }
+
+    fn add(
+        &mut self,
+        number: u32,
+        told: Option<Sense>,
+        reading: Reading,
+        span: Span,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<()> {
+        let key = (number, told.map(|sense| sense == Sense::Ascending));
+        let next = self.runs.len();
+        let place = *self.numbers.entry(key).or_insert(next);
+        if place == next {
+            self.runs.push(Run { number, told, readings: Vec::new(), span });
+        }
+        if let Some(first) = self.seen.insert((place, reading.target), span) {
+            let message = format!("run {number} has a second reading at this target");
+            let mistake = Diagnostic::error("E0927", span, message).also(first, "the first of them");
+            let help = "number the repeats in a column `run`, and tell the way through the targets in a column `direction` where one run goes both ways";
+            diagnostics.push(mistake.help(help));
+            return None;
+        }
+        self.runs.get_mut(place)?.readings.push(reading);
+        Some(())
+    }
+
+    fn finish(self, header: Span, diagnostics: &mut Diagnostics) -> Option<(Vec<f64>, Vec<Run>)> {
+        if self.runs.is_empty() {
+            diagnostics.push(no_readings(header));
+            return None;
+        }
+        for run in self.runs.iter().filter(|run| run.readings.len() < self.targets.len()) {
+            let message =
+                format!("run {} has {} of {} readings", run.number, run.readings.len(), self.targets.len());
+            let help = "targets that it lacks have fewer readings; measure it again where that matters";
+            diagnostics.push(Diagnostic::warning("W0901", run.span, message).help(help));
+        }
+        Some((self.targets, self.runs))
+    }
+}
+
+/// `+1`, `1`, `+` while the targets ascend, `-1`, `-` while they descend.
+fn read_sense(cell: Piece<'_>, diagnostics: &mut Diagnostics) -> Option<Sense> {
+    match cell.text {
+        "1" | "+1" | "+" | "1.0" => Some(Sense::Ascending),
+        "-1" | "-" | "-1.0" => Some(Sense::Descending),
+        other => {
+            let message = format!("a direction is +1 or -1, found `{}`", shown(other));
+            let help = "write +1 where the targets ascend, -1 where they descend";
+            diagnostics.push(Diagnostic::error("E0926", cell.span, message).help(help));
+            None
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! The files that the command was given. In: their names. Out: the set-up among them; or, where they are files of instruments, a
+//! set-up of them to fill in.
+
+use std::path::{Path, PathBuf};
+
+use exchange::instrument::file;
+
+use crate::failure::Failure;
+use crate::load;
+
+/// The set-up, which is given alone.
+pub(super) fn setup_among(files: &[PathBuf]) -> Result<&Path, Failure> {
+    let mut data = Vec::new();
+    for path in files {
+        if is_of_an_instrument(path)? {
+            data.push(path);
+        }
+    }
+    match (files, data.as_slice()) {
+        ([setup], []) => Ok(setup),
+        (_, []) => Err(Failure::Wrong(
+            "error: one set-up makes one calibration\nhelp: name all files under its `measurements`"
+                .to_owned(),
+        )),
+        (_, data) => Err(Failure::Wrong(to_fill_in(data))),
+    }
+}
+
+/// Whether a file is what an instrument wrote, by its name or its first words.
+fn is_of_an_instrument(path: &Path) -> Result<bool, Failure> {
+    const NAMES: [&str; 6] = ["csv", "rtl", "rta", "rtx", "rts", "txt"];
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    if NAMES.iter().any(|name| ending.eq_ignore_ascii_case(name)) {
+        return Ok(true);
+    }
+    Ok(file::is_sectioned(&load::head(path)?))
+}
+
+/// What a set-up of these files must say.
+fn to_fill_in(data: &[&PathBuf]) -> String {
+    let mut text = String::from(
+        "error: an instrument's file does not say which motion of which machine it shows, from where and in which sense\nhelp: write a set-up file and give that; for example\n\n    setup: 1\n    machine: XYFZ\n    constants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}\n    measurements:\n",
+    );
+    for path in data {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+        text += &format!(
+            "      - {{motion: EXX, data: {name}, targets: {{origin: 0 mm, sign: +1}}, deviations: {{sign: +1}}}}\n"
+        );
+    }
+    text
+}

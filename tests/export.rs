@@ -1,7 +1,7 @@
 //! `abbe export` as its users meet it: files for every controller, what is told of them, and what is refused.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::cli::{Run, abbe};
 use crate::shipped::root;
@@ -18,7 +18,7 @@ fn postech() -> String {
     root().join("calibrations/postech-mill.yaml").to_str().unwrap().to_owned()
 }
 
-fn exported(folder: &PathBuf, format: &str, more: &[&str]) -> Run {
+fn exported(folder: &Path, format: &str, more: &[&str]) -> Run {
     let postech = postech();
     abbe(&[&["export", format, &postech, "--output", folder.to_str().unwrap()], more].concat(), "")
 }
@@ -138,4 +138,39 @@ fn terms_that_no_controller_compensates_are_refused_by_name() {
     let without = abbe(&[&args[..], &["--leave-out-uncompensable"]].concat(), "");
     assert_eq!(without.status, 0, "{}", without.err);
     assert!(without.out.contains("EXX drift: up to 5.00 um in the end"), "{}", without.out);
+}
+
+#[test]
+fn a_volumetric_file_comes_back_as_a_calibration() {
+    let folder = folder("back");
+    let at = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let head = "machine: xyfz-mill\nconstants: {Xt: 20 mm, Yt: 0 mm, Zt: 120 mm}\n";
+    let errors = "errors:\n  EXX: [{table: {axis: X, start: 0 mm, step: 100 mm, unit: um, values: [0, 4, 7, 13, 9, 2]}}]\n  EAY: [{polynomial: {axis: Y, unit: urad, per: mm, coefficients: [3, 0.2]}}]\n  EYZ: [{table: {axis: Z, start: -200 mm, step: 50 mm, unit: um, values: [5, 1, 0, 2, 3]}}]\n  EC0Y: 40 urad\n";
+    fs::write(at("known.yaml"), format!("calibration: 1\n{head}{errors}")).unwrap();
+    let ranges = ["--range", "Y=0:300"];
+    for (format, file) in [("isg", "volumetric.csv"), ("etalon", "volumetric.txt")] {
+        let (known, output) = (at("known.yaml"), at(""));
+        let run =
+            abbe(&[&["export", format, &known, "--output", &output, "--force"], &ranges[..]].concat(), "");
+        assert_eq!(run.status, 0, "{}", run.err);
+        fs::write(at("set-up.yaml"), format!("setup: 1\n{head}volumetric: {file}\n")).unwrap();
+        let run = abbe(&["calibrate", &at("set-up.yaml"), "--output", &at("back.yaml"), "--force"], "");
+        assert_eq!(run.status, 0, "{}", run.err);
+        let points = "x,y,z\n12.5,40,-130\n333,250,-10\n500,0,-200\n";
+        let [one, other] = ["known.yaml", "back.yaml"].map(|name| abbe(&["compensate", &at(name)], points));
+        let numbers = |text: &str| -> Vec<f64> {
+            let cells = text.lines().skip(1).flat_map(|line| line.split(','));
+            cells.map(|cell| cell.parse().unwrap()).collect()
+        };
+        let (one, other) = (numbers(&one.out), numbers(&other.out));
+        assert_eq!((one.len(), other.len()), (27, 27), "{format}");
+        assert!(
+            one.iter().zip(&other).all(|(one, other)| (one - other).abs() < 1e-8),
+            "{format}: {one:?} {other:?}"
+        );
+    }
+    let twice = format!("setup: 1\n{head}errors: {{EXX: 3 um}}\nvolumetric: volumetric.csv\n");
+    fs::write(at("set-up.yaml"), twice).unwrap();
+    let run = abbe(&["calibrate", &at("set-up.yaml")], "");
+    assert!(run.status == 2 && run.err.contains("E0911"), "{}", run.err);
 }

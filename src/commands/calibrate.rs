@@ -2,6 +2,7 @@
 //! with uncertainties, as text or JSON, and the calibration.
 
 mod files;
+mod volumetric;
 
 use std::path::{Path, PathBuf};
 
@@ -60,7 +61,11 @@ impl Read {
             .map_err(|failure| unusable(&source, "E0913", "machine", &name, failure))?;
         let equations = loaded.compiled.equations;
         let setup = setup::read(&root, &equations, &mut diagnostics);
-        let setup = setup.filter(|_| !diagnostics.has_errors()).ok_or_else(|| wrong(&diagnostics))?;
+        let mut setup = setup.filter(|_| !diagnostics.has_errors()).ok_or_else(|| wrong(&diagnostics))?;
+        volumetric::take(&mut setup, &source, path, &equations, &mut diagnostics)?;
+        if diagnostics.has_errors() {
+            return Err(wrong(&diagnostics));
+        }
         show(&source, &diagnostics);
         let data_paths: Vec<PathBuf> =
             setup.measurements.iter().map(|one| path.with_file_name(&one.data.value)).collect();
@@ -73,7 +78,8 @@ impl Read {
     /// All files that were read.
     fn others(&self, path: &Path) -> Vec<PathBuf> {
         let machine = path.with_file_name(&self.setup.known.machine.value);
-        self.data_paths.iter().cloned().chain([path.to_owned(), machine]).collect()
+        let volumetric = self.setup.volumetric.iter().map(|name| path.with_file_name(&name.value));
+        self.data_paths.iter().cloned().chain(volumetric).chain([path.to_owned(), machine]).collect()
     }
 
     fn outcome(&self) -> Result<Outcome, Failure> {

@@ -10,7 +10,7 @@ mod place;
 mod reference;
 mod words;
 
-use model_dsl::calibration::{self, Calibration};
+use model_dsl::calibration::{self, CalibratedTerm, Calibration};
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::fields::{self, Fields};
@@ -23,8 +23,18 @@ pub use place::Place;
 pub use reference::Reference;
 use words::{FORM, first_key, keys, word};
 
-const KEYS: [&str; 9] =
-    ["setup", "machine", "source", "constants", "limits", "sensors", "errors", "references", "measurements"];
+const KEYS: [&str; 10] = [
+    "setup",
+    "machine",
+    "source",
+    "constants",
+    "limits",
+    "sensors",
+    "errors",
+    "volumetric",
+    "references",
+    "measurements",
+];
 
 /// The keys that a set-up has in common with a calibration file.
 const OF_CALIBRATION: [&str; 6] = ["machine", "source", "constants", "limits", "sensors", "errors"];
@@ -36,7 +46,9 @@ pub struct Setup {
     pub known: Calibration,
     /// Straightedges and squares, in the file's order.
     pub references: Vec<Reference>,
-    /// The measurements, in the file's order.
+    /// The file of a volumetric compensation whose error motions are taken over.
+    pub volumetric: Option<Spanned<String>>,
+    /// The measurements, in the file's order; none only where there is a volumetric file.
     pub measurements: Vec<Measurement>,
 }
 
@@ -100,9 +112,20 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
     let known = calibration::read(&head(root), &equations.names(), diagnostics);
     let references = fields.get("references").map(|node| reference::read(node, diagnostics));
     let references = references.unwrap_or_default();
-    let measurements = fields.need("measurements", wording, diagnostics);
-    let measurements = measurements.and_then(|node| read_measurements(node, equations, diagnostics));
-    let setup = Setup { known: known?, references, measurements: measurements? };
+    let volumetric = fields.get("volumetric").map(|node| word(node, "`volumetric`", diagnostics));
+    let volumetric = volumetric.map(|name| name.map(|name| name.map(str::to_owned)));
+    let measurements = match (fields.get("measurements"), &volumetric) {
+        (None, Some(_)) => Some(Vec::new()),
+        _ => {
+            let measurements = fields.need("measurements", wording, diagnostics);
+            measurements.and_then(|node| read_measurements(node, equations, diagnostics))
+        }
+    };
+    let volumetric = match volumetric {
+        Some(name) => Some(name?),
+        None => None,
+    };
+    let setup = Setup { known: known?, references, volumetric, measurements: measurements? };
     setup.check(equations, diagnostics);
     Some(setup)
 }
@@ -146,6 +169,28 @@ fn read_measurements(
 }
 
 impl Setup {
+    /// Takes the error motions of the volumetric file over into what is known; each must be given nowhere else (E0911).
+    pub fn take_volumetric(
+        &mut self,
+        terms: &[(usize, CalibratedTerm)],
+        equations: &Equations,
+        diagnostics: &mut Diagnostics,
+    ) {
+        let place = self.volumetric.as_ref().map_or_else(Span::default, |name| name.span);
+        for (number, motion) in equations.motions.iter().enumerate() {
+            let measured = self.measurements.iter().find(|one| one.motion.value == number);
+            let given = self.known.motions.iter().find(|known| known.motion == number);
+            let other = measured.map(|one| one.motion.span).or(given.map(|known| known.span));
+            if let (true, Some(other)) = (terms.iter().any(|(taken, _)| *taken == number), other) {
+                let message = format!("the volumetric file has {}, which stands here too", motion.name);
+                let mistake = Diagnostic::error("E0911", other, message);
+                let help = "leave it out here, or take its column out of the file";
+                diagnostics.push(mistake.also(place, "the volumetric file").help(help));
+            }
+        }
+        self.known = self.known.with(terms);
+    }
+
     /// What holds between the parts of a set-up.
     fn check(&self, equations: &Equations, diagnostics: &mut Diagnostics) {
         for (number, one) in self.measurements.iter().enumerate() {

@@ -1,0 +1,48 @@
+//! The file of a volumetric compensation that a set-up names. In: its name. Out: its error motions among what the set-up knows.
+
+use std::path::Path;
+
+use exchange::controller::{VolumetricForm, volumetric_terms};
+use exchange::instrument::Setup;
+use model_dsl::diagnostic::Diagnostics;
+use model_dsl::equations::Equations;
+use model_dsl::source::SourceFile;
+
+use crate::failure::Failure;
+use crate::load;
+use crate::output::{rendered, warn};
+use crate::recorded::unusable;
+
+/// Takes the file over, where the set-up names one; what is wrong in it stands at its place there, below the place of its name
+/// (E0914).
+pub(super) fn take(
+    setup: &mut Setup,
+    source: &SourceFile,
+    path: &Path,
+    equations: &Equations,
+    diagnostics: &mut Diagnostics,
+) -> Result<(), Failure> {
+    let Some(name) = setup.volumetric.clone() else { return Ok(()) };
+    let not = |failure: Failure| unusable(source, "E0914", "file", &name, failure);
+    let file = load::read(&path.with_file_name(&name.value)).map_err(not)?;
+    let mut findings = Diagnostics::new();
+    let terms = volumetric_terms(equations, &setup.known, &file, form(&file), &mut findings);
+    let terms = terms.map_err(|refused| not(Failure::Wrong(refused.to_string())))?;
+    if findings.has_errors() {
+        return Err(not(Failure::Wrong(rendered(&file, &findings))));
+    }
+    setup.take_volumetric(&terms, equations, diagnostics);
+    warn(&format!("{} terms of error motions from {}", terms.len(), file.name()));
+    Ok(())
+}
+
+/// Etalon's form begins with the name of a section, ISG's with one of a column.
+fn form(file: &SourceFile) -> VolumetricForm {
+    let mut lines =
+        file.text().lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//"));
+    if lines.next().is_some_and(|line| line.starts_with('[')) {
+        VolumetricForm::Etalon
+    } else {
+        VolumetricForm::Isg
+    }
+}

@@ -105,29 +105,19 @@ pub(super) fn read(node: &Node, equations: &Equations, diagnostics: &mut Diagnos
     let axis = read_axis(&fields, motion, known, equations, diagnostics)?;
     let at = fields.get("at").and_then(|node| read_at(node, &fields, (axis, known), equations, diagnostics));
     let along = dimension(equations.axes.get(axis).is_some_and(|axis| axis.rotary));
-    let of_motion = dimension(known.angular);
-    let targets = fields
-        .get("targets")
-        .map(|node| counting::targets(node, fields.key_span("targets"), along, diagnostics));
-    let deviations = fields.get("deviations").map(|node| {
-        counting::deviations(node, fields.key_span("deviations"), (along, of_motion), diagnostics)
-    });
-    // Where a key is left out its default counts; where its value was refused there is no measurement.
-    let (targets, target_column) = targets.unwrap_or_else(|| Some(Default::default()))?;
-    let (deviations, deviation_column) = deviations.unwrap_or_else(|| Some(Default::default()))?;
+    let counted = read_counted(&fields, (along, dimension(known.angular)), diagnostics)?;
+    let ((targets, target_column), (deviations, deviation_column)) = counted;
     let straightness = is_straightness(known, motion.value, &equations.names());
     let runs = fields
         .get("runs")
         .and_then(|node| counting::order(node, diagnostics).map(|order| Spanned::new(order, node.span)));
-    let remove = fields.get("remove").and_then(|node| choice(node, "`remove`", &REMOVES, diagnostics));
-    let usual = if straightness { Remove::Line } else { Remove::Nothing };
     let reversal = fields.get("reversal").and_then(|node| choice(node, "`reversal`", &FORMS, diagnostics));
     let turned = read_flag(&fields, "turned", diagnostics)?;
     let reference = fields.get("reference").and_then(|node| word(node, "`reference`", diagnostics));
     if let Some(edge) = edge_of(&fields).filter(|_| !straightness) {
         diagnostics.push(no_edge(edge, &known.name, &fields));
     }
-    let remove = remove.unwrap_or(usual);
+    let remove = read_remove(&fields, straightness, diagnostics);
     if let Some(name) = reference.filter(|_| straightness && remove != Remove::Line) {
         diagnostics.push(no_line(name.span, &known.name, &fields));
     }
@@ -148,6 +138,32 @@ pub(super) fn read(node: &Node, equations: &Equations, diagnostics: &mut Diagnos
         smooth: read_smooth(&fields, diagnostics),
         resample: read_resample(&fields, along, diagnostics),
     })
+}
+
+/// How targets and deviations count, each with the name of its column. Where a key is left out its default counts; where its value
+/// was refused there is nothing.
+#[expect(clippy::type_complexity, reason = "two pairs that are taken apart at once")]
+fn read_counted(
+    fields: &Fields<'_>,
+    (along, of_motion): (Dimension, Dimension),
+    diagnostics: &mut Diagnostics,
+) -> Option<((Targets, Option<String>), (Deviations, Option<String>))> {
+    let targets = fields
+        .get("targets")
+        .map(|node| counting::targets(node, fields.key_span("targets"), along, diagnostics));
+    let deviations = fields.get("deviations").map(|node| {
+        counting::deviations(node, fields.key_span("deviations"), (along, of_motion), diagnostics)
+    });
+    let targets = targets.unwrap_or_else(|| Some(Default::default()));
+    let deviations = deviations.unwrap_or_else(|| Some(Default::default()));
+    Some((targets?, deviations?))
+}
+
+/// What is taken off: of a straightness its line, unless the set-up says otherwise.
+fn read_remove(fields: &Fields<'_>, straightness: bool, diagnostics: &mut Diagnostics) -> Remove {
+    let usual = if straightness { Remove::Line } else { Remove::Nothing };
+    let written = fields.get("remove").and_then(|node| choice(node, "`remove`", &REMOVES, diagnostics));
+    written.unwrap_or(usual)
 }
 
 /// The slope of a line that stays in a straightness must not make a squareness too (E0910).

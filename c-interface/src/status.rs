@@ -29,7 +29,7 @@ pub enum Status {
     Calibration = -4,
     /// Another thread is in a call with this handle.
     Busy = -5,
-    /// A fault of Abbe. It went no further than this call.
+    /// A fault of Abbe. It went no further than this call; the handle answers nothing else any more.
     Fault = -6,
 }
 

@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# Runs LinuxCNC with a simulated mill that has errors, without Abbe's compensation and with it, and judges the samples. In: this
+# folder and ../c-controller; the program abbe (ABBE, else the one that cargo builds). Out: status 0 where the tool
+# errs by less than a twentieth of what it did, nothing jumps, and a diagnosis finds what was hidden from it; or where LinuxCNC is not to be had, which is told.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+skip() {
+    echo "LinuxCNC is not run: $1"
+    exit 0
+}
+
+modules=/usr/lib/linuxcnc/modules
+if ! command -v linuxcnc halsampler >/dev/null 2>&1 || [ ! -e /usr/include/linuxcnc/hal.h ]; then
+    [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1 || skip "it is not installed, and this is not root with apt-get"
+    { apt-get update && apt-get install -y linuxcnc-uspace linuxcnc-uspace-dev; } >/dev/null 2>&1 ||
+        skip "apt-get cannot install linuxcnc-uspace and linuxcnc-uspace-dev"
+fi
+[ -w "$modules" ] || skip "its real-time modules are loaded from $modules, where this user may not write"
+# There can be one of it on a machine.
+exec 9> /tmp/abbe-linuxcnc.lock
+flock -w 240 9 || skip "another test of it is running"
+if pgrep -x 'rtapi_app|linuxcncsvr|milltask' >/dev/null; then skip "another one is running"; fi
+
+if [ -z "${ABBE:-}" ]; then
+    cargo build --quiet --manifest-path ../../Cargo.toml
+    ABBE="${CARGO_TARGET_DIR:-../../target}/debug/abbe"
+fi
+profile="${PROFILE:-dev}"
+(cd ../c-controller && cargo build --quiet --profile "$profile")
+libraries="$(realpath "${CARGO_TARGET_DIR:-../c-controller/target}")/${profile/dev/debug}"
+
+folder="$(mktemp -d)"
+# Who runs LinuxCNC: this user; in place of root, one who may do nothing.
+as_user=()
+[ "$(id -u)" != 0 ] || as_user=(runuser -u nobody --)
+end() {
+    # What is left of it, by the folder that it was started in: nothing else of this machine is touched.
+    for process in $(pgrep -x 'rtapi_app|linuxcncsvr|milltask|io|halsampler' || true); do
+        if [ "$(readlink "/proc/$process/cwd")" = "$folder" ]; then kill "$process" 2>/dev/null || true; fi
+    done
+    rm -f "$modules/abbe.so" "$modules/plant.so"
+    rm -rf "$folder"
+}
+trap end EXIT
+
+flags=(-Os -Wall -Wextra -Wno-unused-parameter -fPIC -shared -DRTAPI -DUSPACE -DSIM -D_GNU_SOURCE -Drealtime -D__MODULE__
+    -isystem /usr/include/linuxcnc)
+cc "${flags[@]}" -I ../../c-interface/include -o "$folder/abbe.so" abbe.c "$libraries/libmill.a" \
+    -Wl,--gc-sections -Wl,--exclude-libs,ALL -lpthread -ldl -lm
+cc "${flags[@]}" -o "$folder/plant.so" plant.c -lm
+install -m 644 "$folder/abbe.so" "$folder/plant.so" "$modules"
+
+cp mill.hal sampled.hal mill.ngc mill-12.yaml drive.py "$folder"
+sed "s#^CALIBRATION = .*#CALIBRATION = $folder/mill-12.yaml#" mill.ini > "$folder/mill.ini"
+touch "$folder/mill.tbl" "$folder/mill.var"
+[ "$(id -u)" != 0 ] || chown -R nobody "$folder"
+cd "$folder"
+timeout 150 "${as_user[@]}" env -u DISPLAY HOME="$folder" linuxcnc -r mill.ini > linuxcnc.log 2>&1 || true
+if [ ! -e driven ]; then
+    echo "LinuxCNC did not run to the end:"
+    cat linuxcnc.log
+    exit 1
+fi
+grep 'longest cycle' linuxcnc.log
+if [ -n "${KEEP:-}" ]; then cp -r "$folder" "$KEEP"; fi

@@ -39,7 +39,8 @@ pub struct Abbe {
 pub struct Sample {
     /// Position commanded for each axis: mm, rad for a rotary axis; machine coordinates.
     pub position: *const f64,
-    /// For each axis the direction of its last real motion: +1, -1, or 0: found from its positions. Null: all are found.
+    /// For each axis the direction of its last real motion: +1, -1, or 0: found from its commands, their
+    /// corrections included. Null: all are found.
     pub direction: *const f64,
     /// How many axes `position`, `direction` and the correction have.
     pub axes: usize,

@@ -21,13 +21,16 @@ use crate::status::{Cycle, Status};
 pub struct Inputs<'a> {
     /// Position commanded for each axis, mm or rad, machine coordinates.
     pub position: &'a [f64],
-    /// For each axis the direction of its last real motion: +1, -1, or 0: found from its positions. Empty: all are found.
+    /// For each axis the direction of its last real motion: +1, -1, or 0: found from its corrected commands. Empty: all are found.
     pub direction: &'a [f64],
     /// Temperature of each sensor in degC; NaN: silent.
     pub temperature: &'a [f64],
     /// Time since the cycle before this one, s.
     pub time_step: f64,
 }
+
+/// No reversal asks for more, in mm, where the calibration has no limit.
+const LARGEST: f64 = 0.1;
 
 /// Why there is no controller for a calibration.
 #[derive(Debug)]
@@ -68,8 +71,8 @@ impl Controller {
         calibration: Calibration,
     ) -> Result<Self, SetupFailure> {
         let (axes, sensors) = (machine.axes(), calibration.sensors.inputs().count());
-        let running = Running::start(machine, calibration)?;
-        Ok(Self { axes, sensors, tracks: Tracks::new(rotary), running })
+        let tracks = Tracks::new(rotary, transition(&calibration));
+        Ok(Self { axes, sensors, tracks, running: Running::start(machine, calibration)? })
     }
 
     /// How far an axis must move back before its direction counts as turned, in mm or rad; until this is called 0.001 mm or
@@ -105,7 +108,16 @@ impl Controller {
         if !inputs.direction.iter().all(|direction| [1.0, -1.0, 0.0].contains(direction)) {
             return Err(Status::OutOfRange);
         }
-        self.tracks.follow(inputs);
+        self.tracks.follow(inputs, self.running.correction());
         Ok(self.running.cycle(inputs, &self.tracks, enabled))
     }
+}
+
+/// How long a correction may be on its way after a reversal, s: its ramp, and at the greatest rate the largest correction.
+fn transition(calibration: &Calibration) -> f64 {
+    let limits = &calibration.limits;
+    let largest = limits.compensation.map_or(LARGEST, |limit| limit.value);
+    let at_rate = limits.rate.map_or(0.0, |rate| largest / rate.value);
+    let ramps = calibration.motions.iter().flat_map(|motion| &motion.ramps);
+    at_rate + ramps.fold(0.0, |longest, ramp| ramp.time.max(longest))
 }

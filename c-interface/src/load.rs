@@ -75,7 +75,7 @@ fn calibration<M: CompiledMachine>(
     let root = yaml::read(source, diagnostics)?;
     let name = calibration::machine_of(&root, diagnostics)?;
     if let Err(other) = check_machine::<M>(&name, path.parent()) {
-        diagnostics.push(other);
+        diagnostics.push(*other);
         return None;
     }
     let names = names::<M>();
@@ -88,10 +88,10 @@ fn calibration<M: CompiledMachine>(
 fn check_machine<M: CompiledMachine>(
     name: &Spanned<String>,
     folder: Option<&Path>,
-) -> Result<(), Diagnostic> {
+) -> Result<(), Box<Diagnostic>> {
     let unusable = |why: &str, help: String| {
         let message = format!("machine `{}` cannot be used", name.value);
-        Diagnostic::error("E0426", name.span, message).label(why).help(help)
+        Box::new(Diagnostic::error("E0426", name.span, message).label(why).help(help))
     };
     let path = folder.unwrap_or(Path::new("")).join(&name.value);
     if path.is_file() {

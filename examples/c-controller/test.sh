@@ -16,12 +16,15 @@ trap 'rm -rf "$folder"' EXIT
 # calibration is the same without what only a servo cycle has, which is tested by itself.
 cp mill.yaml "$folder"
 sed 's/^limits: .*/limits: {compensation: 0.3 mm, fade: 0.000001 s}/' mill-7.yaml > "$folder/numbers.yaml"
-awk 'BEGIN {
-    print "t,x,y,z,T_column,T_table"
+awk 'function sign(of) { return of < 0 ? -1 : 1 }
+BEGIN {
+    print "t,x,y,z,dir_x,dir_y,dir_z,T_column,T_table"
     for (row = 0; row < 3000; row++) {
         t = row * 0.002
-        printf "%.3f,%.6f,%.6f,%.6f,%.4f,%.4f\n", t, 250 - 240 * cos(1.3 * t), 150 + 140 * sin(2.1 * t),
-            -100 - 90 * sin(3.7 * t + 1), 20 + 0.4 * t, 20 + 1.5 * sin(0.5 * t)
+        printf "%.3f,%.6f,%.6f,%.6f,%d,%d,%d,%.4f,%.4f\n", t,
+            250 - 240 * cos(1.3 * t), 150 + 140 * sin(2.1 * t), -100 - 90 * sin(3.7 * t + 1),
+            sign(sin(1.3 * t)), sign(cos(2.1 * t)), sign(-cos(3.7 * t + 1)),
+            20 + 0.4 * t, 20 + 1.5 * sin(0.5 * t)
     }
 }' > "$folder/positions.csv"
 "$ABBE" compensate "$folder/numbers.yaml" --quiet < "$folder/positions.csv" > "$folder/table.csv"

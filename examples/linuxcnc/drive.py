@@ -110,6 +110,10 @@ def main():
             hal("setp", "abbe.time-max", 0)
             phase(OFF)
             run_program()
+            # The mill comes to stand as the corrections will move it on, so that no screw reverses meanwhile.
+            phase(SETTING_UP)
+            move("G1 X55 Y35 Z-115 F3000")
+            move("G1 X60 Y40 Z-110 F3000")
             phase(STANDING)
             compensate(True)
             settled("1")

@@ -20,7 +20,7 @@ fi
 # There can be one of it on a machine.
 exec 9> /tmp/abbe-linuxcnc.lock
 flock -w 240 9 || skip "another test of it is running"
-if pgrep -x 'rtapi_app|linuxcncsvr|milltask' >/dev/null; then skip "another one is running"; fi
+if pidof -q rtapi_app milltask; then skip "another one is running"; fi
 
 if [ -z "${ABBE:-}" ]; then
     cargo build --quiet --manifest-path ../../Cargo.toml
@@ -36,7 +36,7 @@ as_user=()
 [ "$(id -u)" != 0 ] || as_user=(runuser -u nobody --)
 end() {
     # What is left of it, by the folder that it was started in: nothing else of this machine is touched.
-    for process in $(pgrep -x 'rtapi_app|linuxcncsvr|milltask|io|halsampler' || true); do
+    for process in $(pidof rtapi_app milltask halsampler || true); do
         if [ "$(readlink "/proc/$process/cwd")" = "$folder" ]; then kill "$process" 2>/dev/null || true; fi
     done
     rm -f "$modules/abbe.so" "$modules/plant.so"

@@ -1,9 +1,13 @@
 //! What the axes have done: directions and velocities.
 //!
-//! In: the positions of one cycle after another. Out: for each axis the direction of its last real motion and its velocity.
-//! It exists because controllers command positions, and terms ask for more.
+//! In: the positions of one cycle after another, and the corrections made. Out: for each axis the direction of its last real
+//! motion and its velocity. It exists because controllers command positions, and terms ask for more.
+//!
+//! A screw turns with the command that it is sent, correction included. Where a program lets an axis stand, a correction still
+//! moves it, there and back, through its play. So the direction is that of the corrected command, with one exception: what a
+//! reversal itself adds to the corrections is no motion that could be a reversal again.
 
-use abbe_runtime::{Direction, DirectionTracker};
+use abbe_runtime::Direction;
 
 use super::Inputs;
 use crate::status::Status;
@@ -13,7 +17,11 @@ const HYSTERESIS: f64 = 0.001;
 
 /// The axes' last motions.
 pub(super) struct Tracks {
-    trackers: Vec<DirectionTracker>,
+    axes: Vec<Track>,
+    /// How long corrections may be on their way to what a reversal asks for, s.
+    transition: f64,
+    /// Time since the last reversal of any axis, s.
+    since_reversal: f64,
     /// Positions of the last cycle whose numbers were all finite; empty before it.
     from: Vec<f64>,
     /// Time since then, s.
@@ -22,18 +30,76 @@ pub(super) struct Tracks {
     velocity: Vec<f64>,
 }
 
+/// The last motion of one axis.
+#[derive(Clone, Copy)]
+struct Track {
+    /// How far it must move back before its direction turns.
+    threshold: f64,
+    direction: Direction,
+    /// None before the first cycle.
+    last: Option<Last>,
+}
+
+/// What an axis did until the last cycle.
+#[derive(Clone, Copy)]
+struct Last {
+    /// The furthest that it was programmed to be in its direction since the last reversal of any axis.
+    programmed: f64,
+    /// The furthest that it was sent in its direction, less what reversals added.
+    sent: f64,
+    /// Where it was sent in the last cycle.
+    before: f64,
+}
+
+impl Track {
+    const fn new(threshold: f64) -> Self {
+        Self { threshold, direction: Direction::Positive, last: None }
+    }
+
+    /// Takes the position of a cycle and the one with the correction; tells whether the axis has turned. While corrections
+    /// are on their way after a reversal it is the programmed position that tells, and what they add moves nothing.
+    fn follow(&mut self, position: f64, corrected: f64, reversing: bool) -> bool {
+        let start = Last { programmed: position, sent: corrected, before: corrected };
+        let Last { programmed, sent, before } = self.last.unwrap_or(start);
+        let sent = if reversing { sent + (corrected - before) } else { sent };
+        let onward = if reversing { position - programmed } else { corrected - sent };
+        if onward * self.direction.sign() < -self.threshold {
+            self.direction = self.direction.reversed();
+            self.last = Some(start);
+            return true;
+        }
+        self.last = Some(Last {
+            programmed: if reversing { self.further(programmed, position) } else { position },
+            sent: self.further(sent, corrected),
+            before: corrected,
+        });
+        false
+    }
+
+    /// The one of two places that lies further in the axis's direction.
+    const fn further(&self, one: f64, other: f64) -> f64 {
+        match self.direction {
+            Direction::Positive => one.max(other),
+            Direction::Negative => one.min(other),
+        }
+    }
+}
+
 impl Tracks {
-    /// Axes that have not moved yet, rotary or not.
-    pub(super) fn new(rotary: impl Iterator<Item = bool>) -> Self {
+    /// Axes that have not moved yet, rotary or not; `transition` tells how long corrections may be on their way
+    /// after a reversal, s.
+    pub(super) fn new(rotary: impl Iterator<Item = bool>, transition: f64) -> Self {
         let threshold = |rotary| if rotary { HYSTERESIS.to_radians() } else { HYSTERESIS };
-        let trackers: Vec<_> = rotary.map(|rotary| DirectionTracker::new(threshold(rotary))).collect();
-        let axes = trackers.len();
+        let axes: Vec<_> = rotary.map(|rotary| Track::new(threshold(rotary))).collect();
+        let count = axes.len();
         Self {
-            trackers,
-            from: Vec::with_capacity(axes),
+            axes,
+            transition,
+            since_reversal: f64::INFINITY,
+            from: Vec::with_capacity(count),
             since: 0.0,
-            direction: vec![Direction::default(); axes],
-            velocity: vec![0.0; axes],
+            direction: vec![Direction::default(); count],
+            velocity: vec![0.0; count],
         }
     }
 
@@ -49,9 +115,9 @@ impl Tracks {
 
     /// Sets the threshold of an axis.
     pub(super) fn set_hysteresis(&mut self, axis: usize, threshold: f64) -> Status {
-        match self.trackers.get_mut(axis) {
-            Some(tracker) if threshold.is_finite() && threshold >= 0.0 => {
-                *tracker = DirectionTracker::new(threshold);
+        match self.axes.get_mut(axis) {
+            Some(track) if threshold.is_finite() && threshold >= 0.0 => {
+                *track = Track::new(threshold);
                 Status::Done
             }
             _ => Status::OutOfRange,
@@ -60,26 +126,35 @@ impl Tracks {
 
     /// Forgets all motion.
     pub(super) fn restart(&mut self) {
-        for tracker in &mut self.trackers {
-            *tracker = DirectionTracker::new(tracker.threshold());
+        for track in &mut self.axes {
+            *track = Track::new(track.threshold);
         }
+        self.since_reversal = f64::INFINITY;
         self.from.clear();
         self.since = 0.0;
         self.velocity.fill(0.0);
     }
 
-    /// Takes the positions of a cycle. A direction that is given is taken; all are followed, so that one may be given in some
-    /// cycles only.
-    pub(super) fn follow(&mut self, inputs: &Inputs<'_>) {
-        let axes = self.trackers.iter_mut().zip(&mut self.direction);
-        for (axis, ((tracker, direction), &position)) in axes.zip(inputs.position).enumerate() {
-            let found = tracker.update(position);
+    /// Takes the positions of a cycle, with the corrections of the one before it. A direction that is given is taken; all are
+    /// followed, so that one may be given in some cycles only.
+    pub(super) fn follow(&mut self, inputs: &Inputs<'_>, corrections: &[f64]) {
+        let reversing = self.since_reversal <= self.transition;
+        let mut turned = false;
+        let axes = self.axes.iter_mut().zip(&mut self.direction);
+        let commands = inputs.position.iter().zip(corrections);
+        for (axis, ((track, direction), (&position, &correction))) in axes.zip(commands).enumerate() {
+            if position.is_finite() {
+                turned |= track.follow(position, position + correction, reversing);
+            }
             *direction = match inputs.direction.get(axis) {
                 Some(&given) if given > 0.0 => Direction::Positive,
                 Some(&given) if given < 0.0 => Direction::Negative,
-                _ => found,
+                _ => track.direction,
             };
         }
+        // No time at all is the cycle of the reversal, whose correction is seen in the next.
+        let time_step = if inputs.time_step > 0.0 { inputs.time_step } else { 0.0 };
+        self.since_reversal = if turned { 0.0 } else { self.since_reversal + time_step };
         self.follow_velocity(inputs.position, inputs.time_step);
     }
 

@@ -58,18 +58,18 @@ static void numbers(const char *calibration, const char *table) {
     HOLDS(rows != NULL);
     char line[1024];
     HOLDS(fgets(line, sizeof line, rows) != NULL);
-    HOLDS(strcmp(line, "t,x,y,z,T_column,T_table,error_x,error_y,error_z,x_comp,y_comp,z_comp\n") == 0);
+    HOLDS(strcmp(line, "t,x,y,z,dir_x,dir_y,dir_z,T_column,T_table,error_x,error_y,error_z,x_comp,y_comp,z_comp\n") == 0);
     double before = 0, worst = 0, largest = 0;
     long count = 0, taken = 0;
     while (fgets(line, sizeof line, rows) != NULL) {
-        double row[12];
+        double row[15];
         char *at = line;
-        for (int column = 0; column < 12; column++) {
+        for (int column = 0; column < 15; column++) {
             row[column] = strtod(at, &at);
             at++;
         }
         double correction[AXES];
-        AbbeSample sample = {row + 1, NULL, AXES, row + 4, SENSORS, count == 0 ? 0 : row[0] - before};
+        AbbeSample sample = {row + 1, row + 4, AXES, row + 7, SENSORS, count == 0 ? 0 : row[0] - before};
         AbbeCycle cycle;
         long allocated = allocations;
         HOLDS(abbe_update(abbe, &sample, correction, &cycle) == ABBE_STATUS_ACTIVE);
@@ -78,9 +78,9 @@ static void numbers(const char *calibration, const char *table) {
         /* No time has passed before the first row, and nothing has faded in. */
         if (count++ == 0) continue;
         for (int axis = 0; axis < AXES; axis++) {
-            double expected = row[9 + axis] - row[1 + axis];
+            double expected = row[12 + axis] - row[1 + axis];
             worst = fmax(worst, fabs(correction[axis] - expected));
-            worst = fmax(worst, fabs(cycle.error[axis] - row[6 + axis]));
+            worst = fmax(worst, fabs(cycle.error[axis] - row[9 + axis]));
             largest = fmax(largest, fabs(correction[axis]));
         }
         HOLDS(!cycle.settling && cycle.refused == ABBE_REFUSED_NO && cycle.sensor == -1);
@@ -97,10 +97,10 @@ static void numbers(const char *calibration, const char *table) {
     printf("%ld cycles as `abbe compensate` has them, to %.1e mm of up to %.3f mm\n", count, worst, largest);
 }
 
-/* One cycle of 1 ms at a place. */
+/* One cycle of 1 ms at a place. The directions are given: a correction that fades would turn a screw too. */
 static AbbeStatus at(Abbe *abbe, double x, const double *temperature, double *correction, AbbeCycle *cycle) {
-    double position[AXES] = {x, 100, -50};
-    AbbeSample sample = {position, NULL, AXES, temperature, SENSORS, 0.001};
+    const double position[AXES] = {x, 100, -50}, onward[AXES] = {1, 1, 1};
+    AbbeSample sample = {position, onward, AXES, temperature, SENSORS, 0.001};
     return abbe_update(abbe, &sample, correction, cycle);
 }
 
@@ -162,7 +162,7 @@ static void statuses(const char *calibration) {
 
     /* The direction that is given is taken: half of 8 um of lost motion to either side, X first. */
     double forward[AXES], backward[AXES];
-    const double up[AXES] = {1, 0, 0}, down[AXES] = {-1, 0, 0};
+    const double up[AXES] = {1, 1, 1}, down[AXES] = {-1, 1, 1};
     AbbeSample directed = {position, up, AXES, warm, SENSORS, 0.001};
     abbe_update(abbe, &directed, forward, NULL);
     directed.direction = down;

@@ -14,7 +14,7 @@ import linuxcnc
 
 command, stat, errors = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
 
-# What is sampled under which number; main.rs has the same.
+# What is sampled under which number; samples.rs has the same.
 SETTING_UP, OFF, ON, STANDING, MOVING, SILENT = range(6)
 
 
@@ -54,6 +54,13 @@ def move(block):
     command.mdi(block)
     command.wait_complete(0.1)
     wait(block, idle)
+
+
+def approach():
+    """To where the program begins, towards greater positions on every axis: so a recording may begin. Corrections that fade in
+    there move the screws on and reverse none."""
+    move("G21 G90 G1 X55 Y35 Z-115 F5000")
+    move("G1 X60 Y40 Z-110")
 
 
 def run_program():
@@ -106,14 +113,11 @@ def main():
         try:
             switched_on()
             home()
-            move("G21 G90 G1 X60 Y40 Z-110 F5000")
-            hal("setp", "abbe.time-max", 0)
+            approach()
             phase(OFF)
             run_program()
-            # The mill comes to stand as the corrections will move it on, so that no screw reverses meanwhile.
             phase(SETTING_UP)
-            move("G1 X55 Y35 Z-115 F3000")
-            move("G1 X60 Y40 Z-110 F3000")
+            approach()
             phase(STANDING)
             compensate(True)
             settled("1")
@@ -132,9 +136,10 @@ def main():
             settled("3")
             hal("setp", "abbe.sensor.table.valid", 1)
             settled("1")
-            print("longest cycle of Abbe:", pin("abbe.time-max"), "ns")
             phase(SETTING_UP)
             time.sleep(0.2)
+            if pin("sampler.0.overruns") != "0":
+                sys.exit("samples are lost: this machine is too busy to be looked at")
         finally:
             sampler.terminate()
     with open("driven", "w"):

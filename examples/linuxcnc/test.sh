@@ -26,6 +26,9 @@ if [ -z "${ABBE:-}" ]; then
     cargo build --quiet --manifest-path ../../Cargo.toml
     ABBE="${CARGO_TARGET_DIR:-../../target}/debug/abbe"
 fi
+cargo build --quiet --manifest-path ../../Cargo.toml --example linuxcnc
+judge=("$(realpath "${CARGO_TARGET_DIR:-../../target}")/debug/examples/linuxcnc")
+here="$PWD"
 profile="${PROFILE:-dev}"
 (cd ../c-controller && cargo build --quiet --profile "$profile")
 libraries="$(realpath "${CARGO_TARGET_DIR:-../c-controller/target}")/${profile/dev/debug}"
@@ -43,6 +46,7 @@ end() {
     rm -rf "$folder"
 }
 trap end EXIT
+if [ -n "${KEEP:-}" ]; then trap 'cp -r "$folder" "$KEEP"; end' EXIT; fi
 
 flags=(-Os -Wall -Wextra -Wno-unused-parameter -fPIC -shared -DRTAPI -DUSPACE -DSIM -D_GNU_SOURCE -Drealtime -D__MODULE__
     -isystem /usr/include/linuxcnc)
@@ -62,5 +66,11 @@ if [ ! -e driven ]; then
     cat linuxcnc.log
     exit 1
 fi
-grep 'longest cycle' linuxcnc.log
-if [ -n "${KEEP:-}" ]; then cp -r "$folder" "$KEEP"; fi
+
+# What a controller would have written down without compensation, and a calibration that knows nothing of the play of Y.
+"${judge[@]}" samples samples.txt recording.csv
+cp "$here/mill-12.yaml" "$here/recording.yaml" "$here/../c-controller/mill.yaml" .
+sed -e 's/^machine: .*/machine: mill.yaml/' -e '/^  EYY:/,/^  EAY:/{/backlash/d}' mill-12.yaml > hidden.yaml
+"$ABBE" diagnose recording.yaml --quiet
+"$ABBE" diagnose recording.yaml --quiet --format json > diagnosis.json
+"${judge[@]}" diagnosis diagnosis.json

@@ -114,9 +114,9 @@ fn judge_steps(samples: &[Sample]) -> Result<(), Complaint> {
 /// The largest step from one sample to the next, both of them in what is looked at.
 fn largest_step(samples: &[Sample], of: impl Fn(&Sample) -> bool) -> f64 {
     let pairs = samples.iter().zip(samples.iter().skip(1));
-    let steps = pairs.filter(|(from, to)| of(from) && of(to)).map(|(from, to)| {
-        samples::length([0, 1, 2].map(|axis| to.correction[axis] - from.correction[axis]))
-    });
+    let steps = pairs
+        .filter(|(from, to)| of(from) && of(to))
+        .map(|(from, to)| samples::length([0, 1, 2].map(|axis| to.correction[axis] - from.correction[axis])));
     steps.fold(0.0, f64::max)
 }
 
@@ -140,7 +140,8 @@ fn tell_times(samples: &[Sample]) {
         samples.iter().filter(|sample| sample.phase == Phase::On).map(|sample| sample.nanoseconds).collect();
     times.sort_by(f64::total_cmp);
     let at = |part: f64| {
-        let index = times.iter().enumerate().find(|(index, _)| *index as f64 >= part * (times.len() - 1) as f64);
+        let index =
+            times.iter().enumerate().find(|(index, _)| *index as f64 >= part * (times.len() - 1) as f64);
         index.map_or(f64::NAN, |(_, time)| time / 1e3)
     };
     println!(

@@ -77,7 +77,8 @@ fn sample(line: &str) -> Result<Sample, Box<dyn Error>> {
     let numbers: Result<Vec<f64>, _> = line.split_whitespace().map(str::parse).collect();
     let not_one = || format!("not a sample: {line}");
     let columns: [f64; COLUMNS] = numbers.map_err(|_| not_one())?.try_into().map_err(|_| not_one())?;
-    let [phase, x, y, z, tip_x, tip_y, tip_z, dx, dy, dz, fx, fy, fz, temperature, status, nanoseconds, on] = columns;
+    let [phase, x, y, z, tip_x, tip_y, tip_z, dx, dy, dz, fx, fy, fz, temperature, status, nanoseconds, on] =
+        columns;
     let phases = [Phase::SettingUp, Phase::Off, Phase::On, Phase::Standing, Phase::Moving, Phase::Silent];
     let numbered = (0..).zip(phases).find(|(number, _)| f64::from(*number) == phase);
     let (_, phase) = numbered.ok_or_else(not_one)?;

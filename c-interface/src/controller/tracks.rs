@@ -43,12 +43,10 @@ struct Track {
 /// What an axis did until the last cycle.
 #[derive(Clone, Copy)]
 struct Last {
-    /// The furthest that it was programmed to be in its direction since the last reversal of any axis.
-    programmed: f64,
-    /// The furthest that it was sent in its direction, less what reversals added.
-    sent: f64,
-    /// Where it was sent in the last cycle.
-    before: f64,
+    /// The furthest that it was sent in its direction, moved on with what reversals add.
+    furthest: f64,
+    /// Its correction.
+    correction: f64,
 }
 
 impl Track {
@@ -56,24 +54,20 @@ impl Track {
         Self { threshold, direction: Direction::Positive, last: None }
     }
 
-    /// Takes the position of a cycle and the one with the correction; tells whether the axis has turned. While corrections
-    /// are on their way after a reversal it is the programmed position that tells, and what they add moves nothing.
-    fn follow(&mut self, position: f64, corrected: f64, reversing: bool) -> bool {
-        let start = Last { programmed: position, sent: corrected, before: corrected };
-        let Last { programmed, sent, before } = self.last.unwrap_or(start);
-        let sent = if reversing { sent + (corrected - before) } else { sent };
-        let onward = if reversing { position - programmed } else { corrected - sent };
-        if onward * self.direction.sign() < -self.threshold {
+    /// Takes the position of a cycle and the correction that it goes with; tells whether the axis has turned. While corrections
+    /// are on their way after a reversal, their changes are no motion.
+    fn follow(&mut self, position: f64, correction: f64, reversing: bool) -> bool {
+        let sent = position + correction;
+        let last = self.last.unwrap_or(Last { furthest: sent, correction });
+        let added = if reversing { correction - last.correction } else { 0.0 };
+        let furthest = last.furthest + added;
+        let turned = (sent - furthest) * self.direction.sign() < -self.threshold;
+        if turned {
             self.direction = self.direction.reversed();
-            self.last = Some(start);
-            return true;
         }
-        self.last = Some(Last {
-            programmed: if reversing { self.further(programmed, position) } else { position },
-            sent: self.further(sent, corrected),
-            before: corrected,
-        });
-        false
+        let furthest = if turned { sent } else { self.further(furthest, sent) };
+        self.last = Some(Last { furthest, correction });
+        turned
     }
 
     /// The one of two places that lies further in the axis's direction.
@@ -144,7 +138,7 @@ impl Tracks {
         let commands = inputs.position.iter().zip(corrections);
         for (axis, ((track, direction), (&position, &correction))) in axes.zip(commands).enumerate() {
             if position.is_finite() {
-                turned |= track.follow(position, position + correction, reversing);
+                turned |= track.follow(position, correction, reversing);
             }
             *direction = match inputs.direction.get(axis) {
                 Some(&given) if given > 0.0 => Direction::Positive,

@@ -22,7 +22,7 @@
 
 MODULE_AUTHOR("Abbe");
 MODULE_DESCRIPTION("Compensation of a machine's geometric and thermal errors");
-MODULE_LICENSE("GPL");
+MODULE_LICENSE("Dual MIT/GPL");
 
 static char *calibration = "";
 RTAPI_MP_STRING(calibration, "path of the calibration file, as the real-time process sees it");

@@ -18,7 +18,7 @@
 
 MODULE_AUTHOR("Abbe");
 MODULE_DESCRIPTION("A mill with errors, for tests");
-MODULE_LICENSE("GPL");
+MODULE_LICENSE("Dual MIT/GPL");
 
 enum { X, Y, Z, AXES };
 

@@ -7,6 +7,7 @@ if [ -z "${ABBE:-}" ]; then
     cargo build --quiet --manifest-path ../../Cargo.toml
     ABBE="${CARGO_TARGET_DIR:-../../target}/debug/abbe"
 fi
+ABBE="$(realpath "$ABBE")"
 cargo build --quiet
 libraries="$(realpath "${CARGO_TARGET_DIR:-target}/debug")"
 folder="$(mktemp -d)"

@@ -66,8 +66,8 @@ fn judge_samples(path: &str, recording: &str) -> Result<(), Complaint> {
 
 /// The error at the tool, with compensation beside without.
 fn judge_errors(off: &[&Sample], on: &[&Sample]) -> Result<(), Complaint> {
-    // Both must be the whole program: two circles and two diagonals, which take 20 s.
-    hold(off.len() > 20_000 && on.len() > 20_000, "the program was not sampled as a whole")?;
+    // Both must be the whole program: two circles and two diagonals, which take more than 10 s.
+    hold(off.len() > 10_000 && on.len() > 10_000, "the program was not sampled as a whole")?;
     for (what, figure) in [("rms", rms as fn(&[&Sample]) -> f64), ("greatest", greatest)] {
         let (without, with) = (figure(off), figure(on));
         let part = with / without;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs LinuxCNC with a simulated mill that has errors, without Abbe's compensation and with it, and judges the samples. In: this
-# folder and ../c-controller; the program abbe (ABBE, else the one that cargo builds). Out: status 0 where the tool
+# folder and ../c-controller; the program abbe and the judge of samples (ABBE and JUDGE, else those that cargo builds). Out: status 0 where the tool
 # errs by less than a twentieth of what it did, nothing jumps, and a diagnosis finds what was hidden from it; or where LinuxCNC is not to be had, which is told.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -26,8 +26,12 @@ if [ -z "${ABBE:-}" ]; then
     cargo build --quiet --manifest-path ../../Cargo.toml
     ABBE="${CARGO_TARGET_DIR:-../../target}/debug/abbe"
 fi
-cargo build --quiet --manifest-path ../../Cargo.toml --example linuxcnc
-judge=("$(realpath "${CARGO_TARGET_DIR:-../../target}")/debug/examples/linuxcnc")
+ABBE="$(realpath "$ABBE")"
+if [ -z "${JUDGE:-}" ]; then
+    cargo build --quiet --manifest-path ../../Cargo.toml --example linuxcnc
+    JUDGE="${CARGO_TARGET_DIR:-../../target}/debug/examples/linuxcnc"
+fi
+JUDGE="$(realpath "$JUDGE")"
 here="$PWD"
 profile="${PROFILE:-dev}"
 (cd ../c-controller && cargo build --quiet --profile "$profile")
@@ -68,9 +72,9 @@ if [ ! -e driven ]; then
 fi
 
 # What a controller would have written down without compensation, and a calibration that knows nothing of the play of Y.
-"${judge[@]}" samples samples.txt recording.csv
+"$JUDGE" samples samples.txt recording.csv
 cp "$here/mill-12.yaml" "$here/recording.yaml" "$here/../c-controller/mill.yaml" .
 sed -e 's/^machine: .*/machine: mill.yaml/' -e '/^  EYY:/,/^  EAY:/{/backlash/d}' mill-12.yaml > hidden.yaml
 "$ABBE" diagnose recording.yaml --quiet
 "$ABBE" diagnose recording.yaml --quiet --format json > diagnosis.json
-"${judge[@]}" diagnosis diagnosis.json
+"$JUDGE" diagnosis diagnosis.json

@@ -88,7 +88,8 @@ typedef struct Abbe Abbe;
 typedef struct AbbeSample {
   // Position commanded for each axis: mm, rad for a rotary axis; machine coordinates.
   const double *position;
-  // For each axis the direction of its last real motion: +1, -1, or 0: found from its positions. Null: all are found.
+  // For each axis the direction of its last real motion: +1, -1, or 0: found from its commands, their
+  // corrections included. Null: all are found.
   const double *direction;
   // How many axes `position`, `direction` and the correction have.
   size_t axes;

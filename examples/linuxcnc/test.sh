@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
-# Runs LinuxCNC with a simulated mill that has errors, without Abbe's compensation and with it, and judges the samples. In: this
-# folder and ../c-controller; the program abbe and the judge of samples (ABBE and JUDGE, else those that cargo builds). Out: status 0 where the tool
-# errs by less than a twentieth of what it did, nothing jumps, and a diagnosis finds what was hidden from it; or where LinuxCNC is not to be had, which is told.
+# Runs LinuxCNC with a simulated mill that has errors, without Abbe's compensation and with it, and judges the samples. In:
+# this folder and ../c-controller; the program abbe and the judge of samples (ABBE and JUDGE, else those that cargo builds);
+# PROFILE, that of the library, else dev; KEEP, a folder for what came out. Out: status 0 where the tool errs by less than a
+# twentieth of what it did, nothing jumps, and a diagnosis finds what was hidden from it; or where LinuxCNC is not to be had,
+# which is told.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
@@ -11,14 +13,15 @@ skip() {
 }
 
 modules=/usr/lib/linuxcnc/modules
-if ! command -v linuxcnc halsampler >/dev/null 2>&1 || [ ! -e /usr/include/linuxcnc/hal.h ]; then
+if ! command -v linuxcnc >/dev/null 2>&1 || [ ! -e /usr/include/linuxcnc/hal.h ]; then
     [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1 || skip "it is not installed, and this is not root with apt-get"
-    { apt-get update && apt-get install -y linuxcnc-uspace linuxcnc-uspace-dev; } >/dev/null 2>&1 ||
+    # What it recommends is a real-time kernel, among much else, which a test has no business to install.
+    { apt-get update && apt-get install -y --no-install-recommends linuxcnc-uspace linuxcnc-uspace-dev; } >/dev/null 2>&1 ||
         skip "apt-get cannot install linuxcnc-uspace and linuxcnc-uspace-dev"
 fi
 [ -w "$modules" ] || skip "its real-time modules are loaded from $modules, where this user may not write"
 # There can be one of it on a machine.
-exec 9> /tmp/abbe-linuxcnc.lock
+exec 9>> /tmp/abbe-linuxcnc.lock || skip "another user tests it"
 flock -w 240 9 || skip "another test of it is running"
 if pidof -q rtapi_app milltask; then skip "another one is running"; fi
 

@@ -24,6 +24,9 @@ fi
 exec 9>> /tmp/abbe-linuxcnc.lock || skip "another user tests it"
 flock -w 240 9 || skip "another test of it is running"
 if pidof -q rtapi_app milltask; then skip "another one is running"; fi
+for module in abbe plant; do
+    [ ! -e "$modules/$module.so" ] || skip "there is a $modules/$module.so, which is not this test's to replace"
+done
 
 if [ -z "${ABBE:-}" ]; then
     cargo build --quiet --manifest-path ../../Cargo.toml

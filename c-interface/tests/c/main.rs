@@ -5,7 +5,7 @@
     clippy::unwrap_used,
     clippy::panic,
     clippy::multiple_unsafe_ops_per_block,
-    reason = "tests, whose helpers are theirs alone, and which do what C does, one call after another"
+    reason = "a panic is the report of a test, also from what tests share; and they do what C does, one call after another"
 )]
 
 mod directions;

@@ -73,6 +73,10 @@ pub(crate) struct Check {
 pub(crate) struct Expand {
     /// A machine file, the name of a shipped machine, or a topology word.
     pub(crate) machine: String,
+    /// Add what a library for controllers in C needs: a crate of type `staticlib` or `cdylib` that has this code and the
+    /// crates abbe-runtime and abbe-c offers them the functions of `abbe.h`.
+    #[arg(long)]
+    pub(crate) c_abi: bool,
 }
 
 #[derive(Args)]

@@ -139,6 +139,22 @@ fn an_equation_file_that_cannot_be_read_is_located() {
 }
 
 #[test]
+fn a_library_for_c_is_the_same_code_and_what_c_asks_of_it() {
+    for machine in ["xyfz-mill", "nist-turning-center", "trunnion-5axis", "FX"] {
+        let plain = abbe(&["expand", machine], "");
+        let library = abbe(&["expand", "--c-abi", machine], "");
+        assert_eq!((plain.status, library.status, library.err.as_str()), (0, 0, ""), "{machine}");
+        let more = library.out.strip_prefix(plain.out.trim_end()).unwrap();
+        assert!(more.contains("::abbe_c::CompiledMachine for Machine"), "{machine}: {more}");
+        assert_eq!(more.matches("#[unsafe(no_mangle)]").count(), 1, "{machine}");
+        // The names in the code are all that the library knows of them.
+        for (name, known) in [("MOTIONS", "\"EXX\", false, Some(\"X\")"), ("AXES", "\"X\", false")] {
+            assert!(more.contains(name) && more.contains(known), "{machine}: no {known} in {more}");
+        }
+    }
+}
+
+#[test]
 fn a_new_machine_file_derives_what_its_word_derives() {
     let template = abbe(&["new", "CAFXYZ"], "");
     let path = file("new", "machine.yaml", &template.out);

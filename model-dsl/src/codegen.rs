@@ -5,6 +5,7 @@
 //! tokens as a formatted file. The macro, build scripts and `abbe expand` all come through here.
 
 mod body;
+mod c_interface;
 mod docs;
 mod functions;
 mod idents;
@@ -22,6 +23,12 @@ pub fn tokens(equations: &Equations) -> TokenStream {
     let structs = structs::all(equations);
     let functions = functions::all(equations, &programs);
     quote! { #structs #functions }
+}
+
+/// The tokens of a library for controllers in C: the machine, and what the crate `abbe-c` asks of it.
+pub fn c_tokens(equations: &Equations) -> TokenStream {
+    let (machine, c_interface) = (tokens(equations), c_interface::all(equations));
+    quote! { #machine #c_interface }
 }
 
 /// The tokens as a formatted file, with a line that says where it came from.

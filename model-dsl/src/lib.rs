@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The whole way is [`compile`]: text in, equations and located mistakes out. What it does not
-//! do: read or write files (but for [`rust_for`], which reads the file that it is given), and
+//! do: read or write files (but for [`rust_for`] and [`c_library_for`], which read the file that they are given), and
 //! know anything of recordings or of the command line.
 
 pub mod algebra;
@@ -74,30 +74,42 @@ fn derived(machine: Machine, diagnostics: &mut Diagnostics) -> Compiled {
 
 /// The Rust code of a machine file as tokens, and its warnings; or every mistake, rendered.
 pub fn rust_tokens(source: &SourceFile) -> Result<(TokenStream, Equations, String), String> {
+    let (equations, warnings) = equations_of(source)?;
+    Ok((codegen::tokens(&equations), equations, warnings))
+}
+
+/// The equations of a machine file, and its warnings; or every mistake, rendered.
+fn equations_of(source: &SourceFile) -> Result<(Equations, String), String> {
     let mut diagnostics = Diagnostics::new();
     let compiled = compile(source, &mut diagnostics);
     let rendered = render(source, &diagnostics, false);
-    match compiled {
-        Some(compiled) => Ok((codegen::tokens(&compiled.equations), compiled.equations, rendered)),
-        None => Err(rendered),
-    }
+    compiled.map(|compiled| (compiled.equations, rendered.clone())).ok_or(rendered)
 }
 
 /// The Rust code of a machine file, formatted: what a build script writes into `OUT_DIR`.
 ///
 /// Warnings become `cargo::warning` lines. The error tells the file, or every mistake in it.
-#[expect(clippy::print_stdout, reason = "a build script tells cargo its warnings on standard output")]
 pub fn rust_for(path: impl AsRef<Path>) -> Result<String, CompileError> {
-    let path = path.as_ref();
+    code_for(path.as_ref(), codegen::tokens)
+}
+
+/// The same with what a library for controllers in C needs: the code needs the crates `abbe-runtime` and `abbe-c`.
+pub fn c_library_for(path: impl AsRef<Path>) -> Result<String, CompileError> {
+    code_for(path.as_ref(), codegen::c_tokens)
+}
+
+/// The formatted code that a writer of tokens makes of a machine file.
+#[expect(clippy::print_stdout, reason = "a build script tells cargo its warnings on standard output")]
+fn code_for(path: &Path, tokens: impl Fn(&Equations) -> TokenStream) -> Result<String, CompileError> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| CompileError(format!("cannot read {}: {error}", path.display())))?;
     let source = SourceFile::new(path.display().to_string(), text);
-    let (tokens, _, warnings) = rust_tokens(&source).map_err(CompileError)?;
+    let (equations, warnings) = equations_of(&source).map_err(CompileError)?;
     for line in warnings.lines() {
         println!("cargo::warning={line}");
     }
     let origin = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    codegen::file(&tokens, &origin)
+    codegen::file(&tokens(&equations), &origin)
         .map_err(|error| CompileError(format!("the generated code does not parse: {error}")))
 }
 

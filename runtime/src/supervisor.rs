@@ -160,6 +160,12 @@ impl<'a, K: Kinematics + ?Sized> Supervisor<'a, K> {
         })
     }
 
+    /// What is remembered of each axis, with the correction made in the last cycle.
+    #[must_use]
+    pub const fn axes(&self) -> &[AxisMemory] {
+        self.correction.axes()
+    }
+
     /// Forgets what the terms and the sensors remember, as if the machine had just started; the correction made stays, and
     /// goes from there to what is wanted next.
     pub fn restart(&mut self) {

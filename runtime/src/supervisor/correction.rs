@@ -50,6 +50,11 @@ impl<'a> Correction<'a> {
         Self { axes, active: false, switched: true, left: 0.0 }
     }
 
+    /// What is remembered of each axis.
+    pub(super) const fn axes(&self) -> &[AxisMemory] {
+        self.axes
+    }
+
     /// Lets the next cycle begin a transition.
     pub(super) const fn switch(&mut self) {
         self.switched = true;

@@ -1,0 +1,83 @@
+//! A compiled machine with its names: what generated code tells beside its equations.
+//!
+//! In: constants that generated code holds. Out: the names that a calibration file is read against. It exists because a
+//! controller has the calibration file of its machine, and not the machine file: what that said is compiled in.
+
+use std::ffi::CString;
+
+use abbe_runtime::Kinematics;
+use model_dsl::calibration::{AxisName, MachineNames, MotionName};
+
+/// A constant of a machine by its name, with its value in mm where the machine file gives one.
+pub type ConstantOfMachine = (&'static str, Option<f64>);
+
+/// The letter of an axis, and whether it is rotary (rad) rather than a slide (mm).
+pub type AxisOfMachine = (&'static str, bool);
+
+/// An error motion by its name, whether it is an angle (rad) rather than a length (mm), and the letter of its link's axis.
+pub type MotionOfMachine = (&'static str, bool, Option<&'static str>);
+
+/// A machine compiled to Rust. `abbe expand --c-abi` writes the implementation; nobody else needs one.
+pub trait CompiledMachine: Kinematics + Send + Sized + 'static {
+    /// The machine's name, by which calibrations refer to it.
+    const NAME: &'static str;
+    /// Its constants, in the order of [`CompiledMachine::with_constants`].
+    const CONSTANTS: &'static [ConstantOfMachine];
+    /// Its axes, in the order of positions.
+    const AXES: &'static [AxisOfMachine];
+    /// Its error motions, in the order of the equations.
+    const MOTIONS: &'static [MotionOfMachine];
+    /// Its equations, as `abbe derive --format json --names iso` prints them: a machine file that says something else is
+    /// not the one that was compiled.
+    const EQUATIONS: &'static str;
+
+    /// The machine with these constants, in mm; none where they are too few or too many.
+    fn with_constants(constants: &[f64]) -> Option<Self>;
+}
+
+/// The names of a machine, as a calibration is read against them.
+pub(crate) fn names<M: CompiledMachine>() -> MachineNames {
+    MachineNames {
+        machine: M::NAME.to_owned(),
+        constants: M::CONSTANTS.iter().map(|&(name, default)| (name.to_owned(), default)).collect(),
+        axes: M::AXES
+            .iter()
+            .map(|&(letter, rotary)| AxisName { letter: letter.to_owned(), rotary })
+            .collect(),
+        motions: M::MOTIONS.iter().map(|motion| motion_name(*motion)).collect(),
+    }
+}
+
+fn motion_name((name, angular, axis): MotionOfMachine) -> MotionName {
+    MotionName { name: name.to_owned(), angular, axis: axis.map(str::to_owned) }
+}
+
+/// The names that C asks for.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct ForC {
+    /// The machine.
+    pub machine: CString,
+    /// The letter of each axis, or the id of its link, and whether it is rotary; in the order of positions.
+    pub axes: Vec<(CString, bool)>,
+    /// Each temperature sensor, in the order of temperatures.
+    pub sensors: Vec<CString>,
+}
+
+impl ForC {
+    /// The names of the machine `M`, and these of sensors.
+    ///
+    /// # Errors
+    /// Gives the name that C cannot read, since there is a zero byte in it.
+    pub fn new<'s, M: CompiledMachine>(sensors: impl Iterator<Item = &'s str>) -> Result<Self, String> {
+        let axes = M::AXES.iter().map(|&(letter, rotary)| Ok((c_string(letter)?, rotary)));
+        Ok(Self {
+            machine: c_string(M::NAME)?,
+            axes: axes.collect::<Result<_, String>>()?,
+            sensors: sensors.map(c_string).collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+fn c_string(name: &str) -> Result<CString, String> {
+    CString::new(name).map_err(|_| name.to_owned())
+}

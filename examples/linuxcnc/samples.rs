@@ -1,0 +1,113 @@
+//! The samples of `halsampler`. In: its text, a line for each servo cycle. Out: typed samples; and those of them that make a
+//! recording, as a table.
+
+use std::error::Error;
+use std::fmt::Write;
+
+/// The columns of a sample, as `sampled.hal` wires them.
+const COLUMNS: usize = 17;
+
+/// From the head's origin to the tip of the tool, mm: `plant.c` and `mill-12.yaml` have the same.
+const TOOL: f64 = 120.0;
+
+/// Every so many cycles one is recorded.
+const RECORDED: usize = 10;
+
+/// What was being done; `drive.py` has the numbers.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Phase {
+    /// Nothing that is looked at.
+    SettingUp,
+    /// The program, without compensation.
+    Off,
+    /// The program, with compensation.
+    On,
+    /// Compensation is switched on while the machine stands.
+    Standing,
+    /// Compensation is switched off and on while the machine moves.
+    Moving,
+    /// The thermometer falls silent and speaks again.
+    Silent,
+}
+
+/// One servo cycle.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Sample {
+    /// What was being done.
+    pub(crate) phase: Phase,
+    /// Commanded position of X, Y, Z, mm.
+    pub(crate) position: [f64; 3],
+    /// Where the tip of the tool truly stands relative to the part, mm.
+    pub(crate) tip: [f64; 3],
+    /// Corrections of X, Y, Z, mm.
+    pub(crate) correction: [f64; 3],
+    /// Following errors of X, Y, Z, mm.
+    pub(crate) following: [f64; 3],
+    /// Temperature of the table, degC.
+    pub(crate) temperature: f64,
+    /// Status of Abbe.
+    pub(crate) status: i32,
+    /// How long the cycle of Abbe took, ns.
+    pub(crate) nanoseconds: f64,
+    /// Whether the motion controller moves the machine.
+    pub(crate) machine_on: bool,
+}
+
+impl Sample {
+    /// Distance of the tip from where it should be, mm.
+    pub(crate) fn error(&self) -> f64 {
+        let [x, y, z] = self.position;
+        let nominal = [x, y, z + TOOL];
+        length([0, 1, 2].map(|axis| self.tip[axis] - nominal[axis]))
+    }
+}
+
+/// The length of a vector.
+pub(crate) fn length(vector: [f64; 3]) -> f64 {
+    vector.iter().map(|part| part * part).sum::<f64>().sqrt()
+}
+
+/// Reads all samples; the last line may be cut off.
+pub(crate) fn read(text: &str) -> Result<Vec<Sample>, Box<dyn Error>> {
+    let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+    whole.lines().map(sample).collect()
+}
+
+fn sample(line: &str) -> Result<Sample, Box<dyn Error>> {
+    let numbers: Result<Vec<f64>, _> = line.split_whitespace().map(str::parse).collect();
+    let not_one = || format!("not a sample: {line}");
+    let columns: [f64; COLUMNS] = numbers.map_err(|_| not_one())?.try_into().map_err(|_| not_one())?;
+    let [phase, x, y, z, tip_x, tip_y, tip_z, dx, dy, dz, fx, fy, fz, temperature, status, nanoseconds, on] =
+        columns;
+    let phases = [Phase::SettingUp, Phase::Off, Phase::On, Phase::Standing, Phase::Moving, Phase::Silent];
+    let numbered = (0..).zip(phases).find(|(number, _)| f64::from(*number) == phase);
+    let (_, phase) = numbered.ok_or_else(not_one)?;
+    let status = (-10..10).find(|number| f64::from(*number) == status).ok_or_else(not_one)?;
+    Ok(Sample {
+        phase,
+        position: [x, y, z],
+        tip: [tip_x, tip_y, tip_z],
+        correction: [dx, dy, dz],
+        following: [fx, fy, fz],
+        temperature,
+        status,
+        nanoseconds,
+        machine_on: on == 1.0,
+    })
+}
+
+/// The table of a recording: what an instrument with steps of 0.1 um would have read every 10 ms.
+pub(crate) fn table(samples: &[&Sample]) -> String {
+    let mut table = String::from("t,x,y,z,tip_x,tip_y,tip_z,T_table\n");
+    for (cycle, sample) in samples.iter().enumerate().step_by(RECORDED) {
+        let ([x, y, z], [tip_x, tip_y, tip_z]) = (sample.position, sample.tip);
+        let time = cycle as f64 * 1e-3;
+        // A String takes whatever is written to it.
+        let _ = writeln!(
+            table,
+            "{time:.3},{x:.6},{y:.6},{z:.6},{tip_x:.4},{tip_y:.4},{tip_z:.4},{:.2}",
+            sample.temperature
+        );
+    }
+    table
+}

@@ -1,0 +1,69 @@
+//! What a library for controllers in C has beside the machine: its names, its equations as text, and the function that opens
+//! it. In: the equations. Out: tokens that need the crate `abbe_c`; everything that C calls but for `abbe_open` is there.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use crate::calibration::MachineNames;
+use crate::equations::{Equations, Names};
+use crate::notation::{self, Format};
+
+/// The implementation of `abbe_c::CompiledMachine`, and `abbe_open`.
+pub(super) fn all(equations: &Equations) -> TokenStream {
+    let compiled_machine = compiled_machine(equations);
+    quote! {
+        #compiled_machine
+        /// Opens the compensation of this machine with the numbers of one specimen.
+        ///
+        /// It reads the calibration file, and the machine file where that names one: this belongs before the servo cycle. The
+        /// compensation begins switched off. `message` takes warnings, or why there is no handle; it may be null.
+        ///
+        /// # Safety
+        /// `calibration` is null or a string that ends in a zero byte, `handle` null or a place for a pointer, and `message` null
+        /// or room for `size` bytes.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn abbe_open(
+            calibration: *const ::core::ffi::c_char,
+            handle: *mut *mut ::abbe_c::Abbe,
+            message: *mut ::core::ffi::c_char,
+            size: usize,
+        ) -> ::abbe_c::Status {
+            // SAFETY: what is asked of the pointers is the same.
+            unsafe { ::abbe_c::open::<Machine>(calibration, handle, message, size) }
+        }
+    }
+}
+
+fn compiled_machine(equations: &Equations) -> TokenStream {
+    let MachineNames { machine, constants, axes, motions } = equations.names();
+    let constants = constants.iter().map(|(name, default)| {
+        let default = optional(default.as_ref());
+        quote! { (#name, #default) }
+    });
+    let axes = axes.iter().map(|axis| {
+        let (letter, rotary) = (&axis.letter, axis.rotary);
+        quote! { (#letter, #rotary) }
+    });
+    let motions = motions.iter().map(|motion| {
+        let (name, angular, axis) = (&motion.name, motion.angular, optional(motion.axis.as_ref()));
+        quote! { (#name, #angular, #axis) }
+    });
+    let json = notation::print(equations, Format::Json, Names::Iso);
+    quote! {
+        impl ::abbe_c::CompiledMachine for Machine {
+            const NAME: &'static str = #machine;
+            const CONSTANTS: &'static [::abbe_c::ConstantOfMachine] = &[#(#constants),*];
+            const AXES: &'static [::abbe_c::AxisOfMachine] = &[#(#axes),*];
+            const MOTIONS: &'static [::abbe_c::MotionOfMachine] = &[#(#motions),*];
+            const EQUATIONS: &'static str = #json;
+            fn with_constants(constants: &[f64]) -> Option<Self> {
+                let constants = constants.try_into().ok()?;
+                Some(Self { constants: Constants::from_array(constants) })
+            }
+        }
+    }
+}
+
+fn optional<T: quote::ToTokens>(value: Option<&T>) -> TokenStream {
+    value.map_or_else(|| quote! { None }, |value| quote! { Some(#value) })
+}

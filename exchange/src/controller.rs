@@ -47,4 +47,4 @@ pub use options::{Format, Kind, Options, Sense, Unit};
 pub use refused::Refused;
 pub use report::text;
 pub use space::{Space, Wanted};
-pub use taken::{VolumetricForm, volumetric_terms};
+pub use taken::{VolumetricForm, volumetric_form, volumetric_terms};

@@ -99,7 +99,10 @@ impl Read {
         let mut new = outcome.calibration.clone();
         new.machine.value = machine_name(&new.machine.value, path, &folder(target))?;
         let about = [format!("Written by abbe calibrate from {}.", path.display())];
-        let about = about.into_iter().chain(report::comments(outcome, &self.equations));
+        let volumetric = self.setup.volumetric.as_ref();
+        let taken = volumetric
+            .map(|name| format!("Error motions that are not measured are those of {}.", name.value));
+        let about = about.into_iter().chain(taken).chain(report::comments(outcome, &self.equations));
         let comments: String = about.map(|line| comment(&line)).collect();
         let text = comments + &calibration::write(&new, &self.equations.names());
         written::calibration(target, &text, &self.equations)

@@ -77,9 +77,12 @@ fn listed(heading: &str, lines: impl Iterator<Item = String>) -> String {
 
 /// `X=x.comp`, or a file without an axis.
 fn named_file(named: &str, equations: &Equations) -> Result<(SourceFile, Option<usize>), Failure> {
-    let axis = named.split_once('=').and_then(|(letter, path)| Some((axis_of(letter, equations)?, path)));
-    let (axis, path) = axis.map_or((None, named), |(axis, path)| (Some(axis), path));
-    Ok((load::read(Path::new(path))?, axis))
+    let is_letter = |word: &str| word.len() == 1 && word.bytes().all(|letter| letter.is_ascii_uppercase());
+    let Some((letter, path)) = named.split_once('=').filter(|(letter, _)| is_letter(letter)) else {
+        return Ok((load::read(Path::new(named))?, None));
+    };
+    let axis = axis_of(letter, equations).ok_or_else(|| no_axis("--check", letter, equations))?;
+    Ok((load::read(Path::new(path))?, Some(axis)))
 }
 
 fn axis_of(letter: &str, equations: &Equations) -> Option<usize> {
@@ -96,7 +99,13 @@ fn check_targets(command: &Export, targets: &[PathBuf]) -> Result<(), Failure> {
             )));
         }
     }
-    targets.first().map_or(Ok(()), |first| written::check_folder(first, "--output"))
+    if command.output.is_dir() {
+        return Ok(());
+    }
+    let folder = command.output.display();
+    Err(Failure::Wrong(format!(
+        "error: there is no such folder {folder}\nhelp: --output takes a folder that is there"
+    )))
 }
 
 /// Refuses options for axes that the machine lacks; those of the workspace are looked at with it.
@@ -105,12 +114,7 @@ fn check_names(command: &Export, equations: &Equations) -> Result<(), Failure> {
     let counted = command.counts.iter().map(|(axis, _)| ("--counts", axis));
     for (option, axis) in named.chain(counted) {
         if axis_of(axis, equations).is_none() {
-            let axes: Vec<&str> = equations.axes.iter().map(|axis| axis.letter.as_str()).collect();
-            return Err(Failure::Wrong(format!(
-                "error: {option} {axis}=...: {} has no such axis\nhelp: its axes are {}",
-                equations.machine,
-                axes.join(", ")
-            )));
+            return Err(no_axis(option, axis, equations));
         }
     }
     match command.counts.iter().find(|(_, counts)| *counts <= 0.0) {
@@ -119,6 +123,15 @@ fn check_names(command: &Export, equations: &Equations) -> Result<(), Failure> {
         }
         None => Ok(()),
     }
+}
+
+fn no_axis(option: &str, axis: &str, equations: &Equations) -> Failure {
+    let axes: Vec<&str> = equations.axes.iter().map(|axis| axis.letter.as_str()).collect();
+    Failure::Wrong(format!(
+        "error: {option} {axis}=...: {} has no such axis\nhelp: its axes are {}",
+        equations.machine,
+        axes.join(", ")
+    ))
 }
 
 /// What the user says of the workspace, in mm and rad.

@@ -4,6 +4,7 @@
 use model_dsl::diagnostic::{Diagnostics, render};
 use model_dsl::source::SourceFile;
 
+use super::effects::LEAST;
 use super::geometry::Geometry;
 use super::job::{Controller, File, Job, Written};
 use super::lost::{Lost, Target};
@@ -101,7 +102,7 @@ pub fn check(
         Format::LinuxCnc => Box::new(linuxcnc::controller(&job)),
         Format::Isg => Box::new(isg::controller(&job)?),
         Format::Etalon => Box::new(etalon::controller(&job)?),
-        Format::Sinumerik => Box::new(sinumerik::controller(&job)),
+        Format::Sinumerik => Box::new(sinumerik::controller(&job)?),
         Format::Heidenhain => Box::new(heidenhain::controller(&job)?),
         Format::Pmac => Box::new(pmac::controller(&job)?),
     };
@@ -122,7 +123,7 @@ fn sources(files: &[File]) -> Vec<(SourceFile, Option<usize>)> {
 
 /// Refuses files that make the machine worse: on one whose part turns, a table of one axis may be right at one angle alone.
 fn worth_it(lost: &Lost) -> Result<(), Refused> {
-    if lost.with_files.rms <= lost.without.rms {
+    if lost.with_files.rms <= lost.without.rms + LEAST {
         return Ok(());
     }
     let [with, without] = [lost.with_files.rms, lost.without.rms].map(|rms| rms * 1000.0);

@@ -55,10 +55,7 @@ pub(super) struct Heidenhain {
 pub(super) fn controller(job: &Job<'_, '_>) -> Result<Heidenhain, Refused> {
     let axes = &job.geometry.equations.axes;
     Ok(Heidenhain {
-        letters: axes
-            .iter()
-            .map(|axis| job.options.name(&axis.letter).unwrap_or(&axis.letter).to_owned())
-            .collect(),
+        letters: job.names(|_, letter| letter.to_owned())?,
         units: axes.iter().map(|axis| if axis.rotary { 1_f64.to_degrees() } else { 1.0 }).collect(),
         moved: axes.iter().map(|axis| axis.effect.is_some()).collect(),
         columns: Vec::new(),

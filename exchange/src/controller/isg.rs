@@ -113,6 +113,11 @@ fn take(model: &mut Volumetric, block: &[Line<'_>], diagnostics: &mut Diagnostic
     let Some(records) = numbers(rows, names.len(), diagnostics) else { return };
     let column = |number: usize| records.iter().map(|record| record[number]).collect::<Vec<f64>>();
     for (number, name) in names.iter().enumerate().skip(arguments.len()) {
+        let tip = ["P0X", "P0Y", "P0Z"].iter().position(|tip| *tip == name.text);
+        if let (Some(direction), [place]) = (tip, column(number).as_slice()) {
+            model.set_tip(direction, *place);
+            continue;
+        }
         let Some(motion) = parameters::motion_of(name.text) else {
             if !parameters::is_description(name.text) {
                 let message = format!("`{}` is no parameter", name.text);

@@ -6,6 +6,7 @@ use model_dsl::source::SourceFile;
 use super::geometry::Geometry;
 use super::lost::Target;
 use super::options::Options;
+use super::refused::Refused;
 use super::space::Space;
 
 /// One file.
@@ -27,6 +28,28 @@ pub(super) struct Job<'j, 'c> {
     pub(super) geometry: &'j Geometry<'c>,
     pub(super) space: &'j Space,
     pub(super) options: &'j Options,
+}
+
+impl Job<'_, '_> {
+    /// The controller's names of the axes: what the user says, else what `default` makes of the axis's place and letter.
+    ///
+    /// # Errors
+    /// Two axes of one name.
+    pub(super) fn names(&self, default: impl Fn(usize, &str) -> String) -> Result<Vec<String>, Refused> {
+        let axes = &self.geometry.equations.axes;
+        let said = |(place, letter)| {
+            self.options.name(letter).map_or_else(|| default(place, letter), ToOwned::to_owned)
+        };
+        let names: Vec<String> = axes.iter().map(|axis| axis.letter.as_str()).enumerate().map(said).collect();
+        for (number, name) in names.iter().enumerate() {
+            if let Some(other) = names.iter().take(number).position(|other| other == name) {
+                let [one, other] = [other, number].map(|axis| axes.get(axis).map_or("", |axis| &axis.letter));
+                let what = format!("{one} and {other} are both called `{name}`");
+                return Err(Refused::new(what, "give each a name of its own with --name"));
+            }
+        }
+        Ok(names)
+    }
 }
 
 /// What the writers of all formats give.

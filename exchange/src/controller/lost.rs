@@ -36,8 +36,9 @@ pub struct Lost {
     pub with_abbe: Size,
     /// The difference between the last two: what the format loses.
     pub lost: Size,
-    /// A shift of all positions that counts in none of them: that of the files against Abbe's own at the reference pose,
-    /// X, Y, Z, mm. Where the zero of a part lies is measured anew anyway.
+    /// What the files leave at the reference pose and Abbe's own compensation does not, X, Y, Z, mm: a shift of all positions
+    /// that counts in none of them, as that without compensation does not. Where the zero of a part lies is measured anyway.
+    /// On a machine whose part or tool turns it is no shift, and counts.
     pub shift: [f64; 3],
 }
 
@@ -52,12 +53,13 @@ impl Lost {
             let files = geometry.remaining(pose, &target.correction(pose)?)?;
             Ok([geometry.error(pose)?, files, own])
         };
-        let shift = shift(space, &errors)?;
+        let turns = geometry.equations.axes.iter().any(|axis| axis.rotary);
+        let [before, shift] = if turns { [[0.0; 3]; 2] } else { shifts(space, &errors)? };
         let poses = space.poses(geometry);
         let mut sums = [Sum::default(); 4];
         for pose in &poses {
             let [without, files, own] = errors(pose)?;
-            let files = difference(files, shift);
+            let (without, files) = (difference(without, before), difference(files, shift));
             for (sum, error) in sums.iter_mut().zip([without, files, own, difference(files, own)]) {
                 sum.take(length(error));
             }
@@ -67,15 +69,19 @@ impl Lost {
     }
 }
 
-/// The difference at the reference pose, over both directions.
-fn shift(
+/// What is left at the reference pose besides Abbe's own, over both directions: without compensation, and with the files.
+fn shifts(
     space: &Space,
     errors: &impl Fn(&Pose) -> Result<[[f64; 3]; 3], Refused>,
-) -> Result<[f64; 3], Refused> {
-    let at =
-        |direction| errors(&space.reference_pose(direction)).map(|[_, files, own]| difference(files, own));
+) -> Result<[[f64; 3]; 2], Refused> {
+    let at = |direction| {
+        errors(&space.reference_pose(direction))
+            .map(|[without, files, own]| [without, files].map(|error| difference(error, own)))
+    };
     let (up, down) = (at(Direction::Positive)?, at(Direction::Negative)?);
-    Ok(std::array::from_fn(|axis| f64::midpoint(up[axis], down[axis])))
+    Ok(std::array::from_fn(|which| {
+        std::array::from_fn(|axis| f64::midpoint(up[which][axis], down[which][axis]))
+    }))
 }
 
 fn difference(one: [f64; 3], other: [f64; 3]) -> [f64; 3] {

@@ -23,7 +23,7 @@ pub fn text(geometry: &Geometry<'_>, space: &Space, lost: &Lost) -> String {
     }
     if length(lost.shift) >= 1e-4 {
         let shift = lost.shift.map(|part| format!("{:.1}", part * 1000.0)).join(", ");
-        let _ = writeln!(text, "  besides, the files shift all positions by {shift} um in X, Y, Z");
+        let _ = writeln!(text, "  besides, a constant shift of {shift} um in X, Y, Z is left");
     }
     if !geometry.beyond().is_empty() {
         let _ = writeln!(text, "not in any table, and so not in these figures:");

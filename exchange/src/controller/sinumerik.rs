@@ -26,6 +26,10 @@ impl Controller for Sinumerik {
         archive::load(self, source, diagnostics);
     }
 
+    fn findings(&self) -> Vec<String> {
+        self.idle()
+    }
+
     fn target(&self) -> &dyn Target {
         self
     }

@@ -9,6 +9,7 @@ use model_dsl::source::{SourceFile, Span};
 use super::geometry::Geometry;
 use super::grid::Grid;
 use super::job::Controller;
+use super::parameters::motion_of;
 use super::refused::Refused;
 use super::space::Space;
 use super::volumetric::Volumetric;
@@ -73,6 +74,16 @@ pub fn volumetric_terms(
         }
     }
     Ok(terms)
+}
+
+/// The form of a text that looks like the file of a volumetric compensation.
+pub fn volumetric_form(text: &str) -> Option<VolumetricForm> {
+    let told = |line: &&str| !line.is_empty() && !line.starts_with("//") && !line.starts_with('#');
+    let first = text.lines().map(str::trim).find(told)?;
+    if first.strip_prefix('[').is_some_and(|rest| motion_of(rest.trim_end_matches(']').trim()).is_some()) {
+        return Some(VolumetricForm::Etalon);
+    }
+    first.split_whitespace().any(|word| motion_of(word).is_some()).then_some(VolumetricForm::Isg)
 }
 
 fn loaded<C: Controller>(mut controller: C, source: &SourceFile, diagnostics: &mut Diagnostics) -> C {

@@ -54,14 +54,17 @@ impl Volumetric {
         })?;
         let equations = model(&word)?;
         let tip = geometry.nominal(&vec![0.0; geometry.equations.axes.len()]);
-        let constants = equations.constants.iter().map(|constant| match constant.name.to_string().as_str() {
-            "Xt" => tip[0],
-            "Yt" => tip[1],
-            _ => tip[2],
-        });
-        let machine = Interpreter::new(&equations, &constants.collect::<Vec<_>>());
+        let machine = machine(&equations, tip);
         let workpiece_axes = word.find('F').unwrap_or_default();
         Ok(Self { equations, word, workpiece_axes, tip, machine, parameters: BTreeMap::new() })
+    }
+
+    /// Puts the tip where the file says that it is: 0, 1, 2 for X, Y, Z.
+    pub(super) fn set_tip(&mut self, direction: usize, place: f64) {
+        if let Some(slot) = self.tip.get_mut(direction) {
+            *slot = place;
+        }
+        self.machine = machine(&self.equations, self.tip);
     }
 
     /// By what an error motion of the machine is multiplied to be the controller's: 1 or -1; nothing where the controller's
@@ -98,6 +101,16 @@ impl Target for Volumetric {
             values.into_iter().map(|value| vec![Term::Constant { value }]).collect();
         correction(&self.machine, &terms, pose)
     }
+}
+
+/// The model with the tip at a place.
+fn machine(equations: &Equations, tip: [f64; 3]) -> Interpreter {
+    let constants = equations.constants.iter().map(|constant| match constant.name.to_string().as_str() {
+        "Xt" => tip[0],
+        "Yt" => tip[1],
+        _ => tip[2],
+    });
+    Interpreter::new(equations, &constants.collect::<Vec<_>>())
 }
 
 /// The equations of a topology with all errors that such a controller knows: six motions of each slide, and the directions

@@ -45,8 +45,11 @@ pub struct MeasuredMotion {
     pub curve: Curve,
     /// The difference of its directions, where both were read.
     pub reversal: Option<Reversal>,
-    /// The form of the edge at the targets, half the difference of both files, where it was turned over.
+    /// What the edge added to the readings of the first file, at the targets, where it was turned over: half the difference of
+    /// both files, counted as the tool relative to the part, so that the same edge is the same on every machine.
     pub edge: Option<Vec<f64>>,
+    /// Whether the machine file counts the motion against the tool relative to the part: all figures but the edge turn then.
+    pub against: bool,
     /// The table in the calibration.
     pub table: Tabulated,
 }
@@ -84,7 +87,7 @@ pub fn calibrate(
         .collect();
     let upright = all.iter().filter(|source| !source.measurement.turned);
     let motions: Vec<Option<MeasuredMotion>> =
-        upright.map(|source| source.motion(&all, &mut findings.setup)).collect();
+        upright.map(|source| source.motion(&all, &view, &mut findings.setup)).collect();
     let motions: Vec<MeasuredMotion> = motions.into_iter().collect::<Option<_>>()?;
     let squarenesses = squarenesses(setup, &all, &view, &mut findings.setup);
     if findings.setup.has_errors() {
@@ -130,11 +133,17 @@ struct Source<'s> {
 
 impl Source<'_> {
     /// The motion that this file shows, together with the one that has the edge turned over.
-    fn motion(&self, all: &[Source<'_>], diagnostics: &mut Diagnostics) -> Option<MeasuredMotion> {
+    fn motion(
+        &self,
+        all: &[Source<'_>],
+        view: &View<'_>,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<MeasuredMotion> {
         let over = |other: &&Source<'_>| {
             other.measurement.turned && other.measurement.motion == self.measurement.motion
         };
         let over = all.iter().find(over);
+        let shown = view.shown(self.measurement.motion.value)?;
         let (curve, edge, reversal) = match over {
             Some(over) => {
                 self.check_alike(over, diagnostics)?;
@@ -142,7 +151,9 @@ impl Source<'_> {
                 let reversal = self.reduced.reversal.zip(over.reduced.reversal);
                 let curve = one.half_sum(other, 1.0);
                 let reversal = reversal.and_then(|(one, other)| one.half_sum(&other, &curve));
-                (curve, Some(one.half_sum(other, -1.0).centre()), reversal)
+                let edge =
+                    one.half_sum(other, -1.0).centre().into_iter().map(|value| value * shown).collect();
+                (curve, Some(edge), reversal)
             }
             None => (self.reduced.curve.clone(), None, self.reduced.reversal),
         };
@@ -159,6 +170,7 @@ impl Source<'_> {
             curve,
             reversal,
             edge,
+            against: shown < 0.0,
         })
     }
 

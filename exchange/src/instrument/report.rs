@@ -165,6 +165,9 @@ fn about(text: &mut String, motion: &MeasuredMotion, names: &Names<'_>) {
             runs(motion)
         ),
     );
+    if motion.against {
+        put(text, "  counted as the machine file counts: the tool moved the other way relative to the part");
+    }
     for part in &motion.parts {
         if !part.left_out.is_empty() {
             let places: Vec<String> = part.left_out.iter().map(|at| axis.number(*at)).collect();
@@ -333,7 +336,7 @@ fn squared(one: &Squareness, names: &Names<'_>) -> Vec<String> {
         (Some(square), true) => {
             format!("the square is off by {}, found by turning it over", MICRORADIANS.with_unit(square))
         }
-        (Some(square), false) => format!("the square's own {} is taken off", MICRORADIANS.with_unit(square)),
+        (Some(square), false) => format!("the square's own {} is counted in", MICRORADIANS.with_unit(square)),
         (None, _) => "the square counts as perfect: its own error is in it whole".to_owned(),
     };
     vec![

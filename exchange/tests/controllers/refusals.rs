@@ -137,6 +137,54 @@ fn a_table_that_contradicts_itself_is_shown() {
     }
 }
 
+#[test]
+fn names_are_each_axis_its_own_and_motors_are_numbers() {
+    let named = |names: &[(&str, &str)]| Options {
+        names: names.iter().map(|(axis, name)| ((*axis).to_owned(), (*name).to_owned())).collect(),
+        sense: Some(Sense::Error),
+        ..options()
+    };
+    for (format, names, says) in [
+        (Format::Heidenhain, &[("X", "Y")][..], "X and Y are both called `Y`"),
+        (Format::Sinumerik, &[("X", "Y1")], "X and Y are both called `Y1`"),
+        (Format::Pmac, &[("X", "2")], "X and Y are both called `2`"),
+        (Format::Pmac, &[("X", "MX1")], "`MX1` is no motor"),
+    ] {
+        let text = refusal(&scaled("FXYZ"), format, &named(names));
+        assert!(text.contains(says), "{text}");
+    }
+}
+
+#[test]
+fn cross_tables_that_add_nothing_are_told() {
+    let machine = scaled("FXYZ");
+    let table = "$AN_CEC[0,0]=0\n$AN_CEC[0,1]=0.1\n$AN_CEC_INPUT_AXIS[0]=(X1)\n$AN_CEC_OUTPUT_AXIS[0]=(Y1)\n$AN_CEC_STEP[0]=500\n$AN_CEC_MIN[0]=-100\n$AN_CEC_MAX[0]=400\n$AN_CEC_MULT_BY_TABLE[0]=7\n";
+    let told = |sense| {
+        let files = [(SourceFile::new("cec.ini", table), None)];
+        let options = Options { sense, ..options() };
+        check(&machine.geometry(), &machine.space(), Format::Sinumerik, &options, &files).unwrap().findings
+    };
+    assert!(told(None)[0].contains("--value"), "{:?}", told(None));
+    let findings = told(Some(Sense::Error));
+    assert!(findings[0].contains("table 0") && findings[0].contains("number 7"), "{findings:?}");
+}
+
+#[test]
+fn the_tip_of_a_volumetric_file_counts() {
+    let machine = Machine::of(
+        "FXYZ",
+        &["EAX: [{polynomial: {axis: X, unit: urad, per: mm, coefficients: [0, 0.2]}}]".to_owned()],
+    );
+    let export = machine.export(Format::Isg, &options()).unwrap();
+    assert!(export.lost.lost.largest < 1e-6);
+    let text = export.files[0].text.replace("20.000000 20.000000 150.000000", "20 20 50");
+    assert_ne!(text, export.files[0].text);
+    let files = [(SourceFile::new("volumetric.csv", text), None)];
+    let checked = check(&machine.geometry(), &machine.space(), Format::Isg, &options(), &files).unwrap();
+    // 100 mm of the lever arm are missing: 0.2 urad for each of the 250 mm from the reference, 5 um.
+    assert!((checked.lost.lost.largest - 5e-3).abs() < 1e-5, "{:?}", checked.lost);
+}
+
 const FORMATS: [Format; 6] =
     [Format::LinuxCnc, Format::Isg, Format::Etalon, Format::Sinumerik, Format::Heidenhain, Format::Pmac];
 

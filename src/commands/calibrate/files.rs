@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use exchange::controller::volumetric_form;
 use exchange::instrument::file;
 
 use crate::failure::Failure;
@@ -38,13 +39,22 @@ fn is_of_an_instrument(path: &Path) -> Result<bool, Failure> {
 
 /// What a set-up of these files must say.
 fn to_fill_in(data: &[&PathBuf]) -> String {
-    let mut text = String::from(
-        "error: an instrument's file does not say which motion of which machine it shows, from where and in which sense\nhelp: write a set-up file and give that; for example\n\n    setup: 1\n    machine: XYFZ\n    constants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}\n    measurements:\n",
-    );
-    for path in data {
-        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    let head = "error: an instrument's file does not say which motion of which machine it shows, from where and in which sense\nhelp: write a set-up file and give that; for example\n\n    setup: 1\n    machine: XYFZ\n    constants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}\n";
+    let is_volumetric =
+        |path: &&&PathBuf| load::read(path).is_ok_and(|file| volumetric_form(file.text()).is_some());
+    let (volumetric, measured): (Vec<&&PathBuf>, Vec<&&PathBuf>) = data.iter().partition(is_volumetric);
+    let name = |path: &Path| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    let mut text = head.to_owned();
+    for path in volumetric {
+        text += &format!("    volumetric: {}\n", name(path));
+    }
+    if !measured.is_empty() {
+        text += "    measurements:\n";
+    }
+    for path in measured {
         text += &format!(
-            "      - {{motion: EXX, data: {name}, targets: {{origin: 0 mm, sign: +1}}, deviations: {{sign: +1}}}}\n"
+            "      - {{motion: EXX, data: {}, targets: {{origin: 0 mm, sign: +1}}, deviations: {{sign: +1}}}}\n",
+            name(path)
         );
     }
     text

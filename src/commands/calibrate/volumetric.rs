@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use exchange::controller::{VolumetricForm, volumetric_terms};
+use exchange::controller::{VolumetricForm, volumetric_form, volumetric_terms};
 use exchange::instrument::Setup;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::Equations;
@@ -25,8 +25,10 @@ pub(super) fn take(
     let Some(name) = setup.volumetric.clone() else { return Ok(()) };
     let not = |failure: Failure| unusable(source, "E0914", "file", &name, failure);
     let file = load::read(&path.with_file_name(&name.value)).map_err(not)?;
+    // What is of neither form is told by the reader of the first.
+    let form = volumetric_form(file.text()).unwrap_or(VolumetricForm::Isg);
     let mut findings = Diagnostics::new();
-    let terms = volumetric_terms(equations, &setup.known, &file, form(&file), &mut findings);
+    let terms = volumetric_terms(equations, &setup.known, &file, form, &mut findings);
     let terms = terms.map_err(|refused| not(Failure::Wrong(refused.to_string())))?;
     if findings.has_errors() {
         return Err(not(Failure::Wrong(rendered(&file, &findings))));
@@ -34,15 +36,4 @@ pub(super) fn take(
     setup.take_volumetric(&terms, equations, diagnostics);
     warn(&format!("{} terms of error motions from {}", terms.len(), file.name()));
     Ok(())
-}
-
-/// Etalon's form begins with the name of a section, ISG's with one of a column.
-fn form(file: &SourceFile) -> VolumetricForm {
-    let mut lines =
-        file.text().lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//"));
-    if lines.next().is_some_and(|line| line.starts_with('[')) {
-        VolumetricForm::Etalon
-    } else {
-        VolumetricForm::Isg
-    }
 }

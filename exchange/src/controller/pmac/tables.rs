@@ -56,16 +56,19 @@ pub(in super::super) struct Pmac {
 /// # Errors
 /// Where the counts of a motor are not said.
 pub(in super::super) fn controller(job: &Job<'_, '_>) -> Result<Pmac, Refused> {
-    let axes = job.geometry.equations.axes.iter().enumerate();
-    let motor = |(place, axis): (usize, &AxisInfo)| {
+    let numbers = job.names(|place, _| (place + 1).to_string())?;
+    let axes = job.geometry.equations.axes.iter().zip(numbers);
+    let motor = |(axis, number): (&AxisInfo, String)| {
         let counts =
             job.options.counts.iter().find(|(letter, _)| *letter == axis.letter).map(|(_, counts)| *counts);
         if !axis.rotary && counts.is_none() {
             let help = format!("give the counts for a mm: --counts {}=10000", axis.letter);
             return Err(Refused::new(format!("how many counts {} has is not known", axis.letter), help));
         }
-        let number =
-            job.options.name(&axis.letter).map_or_else(|| (place + 1).to_string(), ToOwned::to_owned);
+        if !number.parse::<u8>().is_ok_and(|number| number > 0) {
+            let help = format!("a motor goes by its number: --name {}=1", axis.letter);
+            return Err(Refused::new(format!("`{number}` is no motor"), help));
+        }
         Ok(Motor { number, counts: counts.filter(|_| !axis.rotary), backlash: None, constant: 0.0 })
     };
     Ok(Pmac { motors: axes.map(motor).collect::<Result<_, _>>()?, screws: Vec::new() })

@@ -42,18 +42,19 @@ pub(in super::super) struct Sinumerik {
 }
 
 /// The control without compensation.
-pub(in super::super) fn controller(job: &Job<'_, '_>) -> Sinumerik {
+///
+/// # Errors
+/// Two axes of one name.
+pub(in super::super) fn controller(job: &Job<'_, '_>) -> Result<Sinumerik, Refused> {
     let axes = &job.geometry.equations.axes;
-    let name =
-        |letter: &str| job.options.name(letter).map_or_else(|| format!("{letter}1"), ToOwned::to_owned);
-    Sinumerik {
-        names: axes.iter().map(|axis| name(&axis.letter)).collect(),
+    Ok(Sinumerik {
+        names: job.names(|_, letter| format!("{letter}1"))?,
         units: axes.iter().map(|axis| if axis.rotary { 1_f64.to_degrees() } else { 1.0 }).collect(),
         moved: axes.iter().map(|axis| axis.effect.is_some()).collect(),
         screws: BTreeMap::new(),
         crosses: BTreeMap::new(),
         sense: job.options.sense,
-    }
+    })
 }
 
 impl Target for Sinumerik {
@@ -102,5 +103,19 @@ impl Sinumerik {
         } else {
             0.0
         }
+    }
+}
+
+impl Sinumerik {
+    /// Cross tables that add nothing, and why.
+    pub(super) fn idle(&self) -> Vec<String> {
+        if self.sense.is_none() && !self.crosses.is_empty() {
+            return vec!["its cross tables (CEC): say with --value what a positive number does".to_owned()];
+        }
+        let missing = |(index, cross): (&usize, &Cross)| {
+            let by = cross.by.filter(|by| !self.crosses.contains_key(by))?;
+            Some(format!("table {index}: it is multiplied by table number {}, which is not there", by + 1))
+        };
+        self.crosses.iter().filter_map(missing).collect()
     }
 }

@@ -16,7 +16,7 @@ const MOST: usize = 5000;
 
 /// The archives of both compensations.
 pub(in super::super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
-    let control = controller(job);
+    let control = controller(job)?;
     let effects = Effects::new(job.geometry, job.space)?;
     let all = nodes(job, &effects)?;
     let mut written = Written::default();

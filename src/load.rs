@@ -44,8 +44,14 @@ pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
+/// The beginning of a file that can be read again; nothing of a pipe, which can not.
+pub(crate) fn head_of_file(path: &Path) -> Result<Option<Vec<u8>>, Failure> {
+    let is_file = std::fs::metadata(path).is_ok_and(|there| there.is_file());
+    is_file.then(|| head(path)).transpose()
+}
+
 /// Reads a file up to one byte more than the most that are taken.
-pub(crate) fn head(path: &Path) -> Result<Vec<u8>, Failure> {
+fn head(path: &Path) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(|error| cannot(path, &error.to_string()))?;
     let read = file.take(MOST_BYTES + 1).read_to_end(&mut bytes);

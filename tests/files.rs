@@ -82,6 +82,11 @@ fn data() -> String {
     format!("t,run,x,m\n{}", rows.collect::<String>())
 }
 
+const SET_UP: &str = "setup: 1\nmachine: machine.yaml\nconstants: {Zt: 50 mm}\nmeasurements: [{motion: EXX, data: readings.csv}]\n";
+
+const READINGS: &str =
+    "run,direction,x,deviation\n#unit,,,mm,um\n1,+1,0,0.4\n1,+1,50,1.1\n1,-1,50,4.9\n1,-1,0,4.1\n";
+
 /// The files of the stage in a folder.
 fn stage(folder: &Path) {
     let data = data();
@@ -93,13 +98,15 @@ fn stage(folder: &Path) {
         ("path.yaml", PATH),
         ("stage.eqs", EQUATIONS),
         ("positions.csv", POSITIONS),
+        ("set-up.yaml", SET_UP),
+        ("readings.csv", READINGS),
     ] {
         fs::write(folder.join(name), text).unwrap();
     }
 }
 
 /// Every command that reads a file, with the file and the arguments behind it; `@` is the folder of the stage.
-const READERS: [(&str, &[&str]); 10] = [
+const READERS: [(&str, &[&str]); 12] = [
     ("machine.yaml", &["derive", "@/machine.yaml"]),
     ("machine.yaml", &["expand", "@/machine.yaml"]),
     ("stage.eqs", &["check", "@/machine.yaml", "@/stage.eqs"]),
@@ -113,6 +120,8 @@ const READERS: [(&str, &[&str]); 10] = [
     ("recording.yaml", &["evaluate", "@/recording.yaml"]),
     ("data.csv", &["evaluate", "@/recording.yaml"]),
     ("recording.yaml", &["update", "@/calibration.yaml", "@/recording.yaml"]),
+    ("set-up.yaml", &["calibrate", "@/set-up.yaml"]),
+    ("readings.csv", &["calibrate", "@/set-up.yaml"]),
 ];
 
 /// The arguments with the folder in its place.

@@ -117,9 +117,9 @@ fn read_data(
     equations: &Equations,
 ) -> Result<Measured, Failure> {
     let not = |failure: Failure| unusable(setup, "E0914", "file", &one.data, failure);
-    let bytes = load::head(path).map_err(not)?;
-    // Of a file of samples the head is enough to say what it is, however long it is.
-    let bytes = if file::is_dynamic(&bytes) { bytes } else { load::bytes(path).map_err(not)? };
+    // Of a file of samples the head is enough to say what it is, however long it is; a pipe can be read once.
+    let head = load::head_of_file(path).map_err(not)?.filter(|head| file::is_dynamic(head));
+    let bytes = head.map_or_else(|| load::bytes(path).map_err(not), Ok)?;
     let source = file::text(&path.display().to_string(), &bytes);
     let letter = equations.axes.get(one.axis).map(|axis| axis.letter.clone());
     let motion = equations.motions.get(one.motion.value).map(|motion| motion.name.clone());

@@ -8,7 +8,7 @@ use std::process::Stdio;
 use super::{folder, on_stage, placed, program, run, stage, status, text};
 
 /// Every command that prints, in its forms; `@` is the folder of the stage.
-const PRINTERS: [&[&str]; 21] = [
+const PRINTERS: [&[&str]; 24] = [
     &["derive", "trunnion-5axis"],
     &["derive", "trunnion-5axis", "--format", "html"],
     &["derive", "@/machine.yaml", "--format", "json"],
@@ -25,6 +25,9 @@ const PRINTERS: [&[&str]; 21] = [
     &["evaluate", "@/recording.yaml", "--format", "json"],
     &["evaluate", "@/recording.yaml", "--format", "html"],
     &["update", "@/calibration.yaml", "@/recording.yaml"],
+    &["calibrate", "@/set-up.yaml"],
+    &["calibrate", "@/set-up.yaml", "--format", "json"],
+    &["export", "linuxcnc", "@/calibration.yaml", "--output", "@/", "--force", "--range", "X=0:100"],
     &["new", "XYFZ"],
     &["explain"],
     &["explain", "backlash"],

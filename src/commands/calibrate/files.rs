@@ -34,7 +34,7 @@ fn is_of_an_instrument(path: &Path) -> Result<bool, Failure> {
     if NAMES.iter().any(|name| ending.eq_ignore_ascii_case(name)) {
         return Ok(true);
     }
-    Ok(file::is_sectioned(&load::head(path)?))
+    Ok(load::head_of_file(path)?.is_some_and(|head| file::is_sectioned(&head)))
 }
 
 /// What a set-up of these files must say.

@@ -16,9 +16,14 @@ modules=/usr/lib/linuxcnc/modules
 if ! command -v linuxcnc >/dev/null 2>&1 || [ ! -e /usr/include/linuxcnc/hal.h ]; then
     [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1 || skip "it is not installed, and this is not root with apt-get"
     # What it recommends is a real-time kernel, among much else, which a test has no business to install.
+    export DEBIAN_FRONTEND=noninteractive
     { apt-get update && apt-get install -y --no-install-recommends linuxcnc-uspace linuxcnc-uspace-dev; } >/dev/null 2>&1 ||
         skip "apt-get cannot install linuxcnc-uspace and linuxcnc-uspace-dev"
 fi
+for tool in linuxcnc halcmd halsampler tclsh cc; do
+    command -v "$tool" >/dev/null 2>&1 || skip "there is no $tool beside it"
+done
+/usr/bin/python3 -c 'import linuxcnc' 2>/dev/null || skip "it has no module for Python"
 [ -w "$modules" ] || skip "its real-time modules are loaded from $modules, where this user may not write"
 # There can be one of it on a machine.
 exec 9>> /tmp/abbe-linuxcnc.lock || skip "another user tests it"

@@ -85,17 +85,17 @@ impl<'c> Geometry<'c> {
 
     /// The lever arms of all motions: X, Y, Z for each, mm per mm or rad.
     pub fn levers(&self, position: &[f64]) -> Vec<[f64; 3]> {
-        self.machine.levers(position, &self.travels(position))
+        self.machine.levers(position, &travels(&self.machine, position))
+    }
+
+    /// What every motion does to the tool relative to the part.
+    pub(super) fn senses(&self, position: &[f64]) -> Vec<[f64; 3]> {
+        senses(&self.machine, position)
     }
 
     /// The tip of the tool relative to the part without errors, mm.
     pub fn nominal(&self, position: &[f64]) -> [f64; 3] {
         self.machine.nominal(position)
-    }
-
-    fn travels(&self, position: &[f64]) -> Vec<f64> {
-        let travels = self.machine.travels().iter();
-        travels.map(|axis| position.get(*axis).copied().unwrap_or(f64::NAN)).collect()
     }
 
     /// What an error motion is at a pose, mm or rad.
@@ -147,6 +147,20 @@ fn asked<T>(
     let work = Work { directions: &mut directions, motions: &mut values, travel: &mut travel };
     let mut compensator = Compensator::new(machine, &motions, &mut states, work)?;
     Ok(ask(&mut compensator, &sample(pose))?)
+}
+
+/// What every motion of a machine does to the tool relative to the part: what it turns it by, in which no offset counts; or
+/// where it turns nothing, what it displaces it by.
+pub(super) fn senses(machine: &Interpreter, position: &[f64]) -> Vec<[f64; 3]> {
+    let travels = travels(machine, position);
+    let turns = machine.turns(position, &travels);
+    let levers = machine.levers(position, &travels);
+    turns.into_iter().zip(levers).map(|(turn, lever)| if turn == [0.0; 3] { lever } else { turn }).collect()
+}
+
+/// The free travels of a machine: the positions of their axes.
+fn travels(machine: &Interpreter, position: &[f64]) -> Vec<f64> {
+    machine.travels().iter().map(|axis| position.get(*axis).copied().unwrap_or(f64::NAN)).collect()
 }
 
 /// What is to be added to the commands of a machine with these error motions, mm; 0 for rotary axes.

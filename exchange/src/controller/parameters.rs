@@ -45,7 +45,7 @@ pub(super) fn gather(job: &Job<'_, '_>, model: &Volumetric, arguments: usize) ->
         if job.geometry.terms(number).is_empty() {
             continue;
         }
-        let Some(sign) = model.sign(job.geometry, job.space, number) else {
+        let Some(sign) = model.sign(job.geometry, number) else {
             gathered
                 .left_out
                 .push(format!("{}: the controller's model has no such error motion", motion.name));

@@ -81,7 +81,7 @@ impl Space {
     }
 
     /// A member of Halton's sequence, spread over the workspace.
-    pub(super) fn between(&self, number: u32) -> Vec<f64> {
+    fn between(&self, number: u32) -> Vec<f64> {
         const BASES: [u32; 9] = [2, 3, 5, 7, 11, 13, 17, 19, 23];
         let ranges = self.ranges.iter().zip(BASES.iter().cycle());
         ranges.map(|([low, high], base)| low + (high - low) * radical_inverse(number, *base)).collect()

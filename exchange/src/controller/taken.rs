@@ -11,15 +11,11 @@ use super::grid::Grid;
 use super::job::Controller;
 use super::parameters::motion_of;
 use super::refused::Refused;
-use super::space::Space;
 use super::volumetric::Volumetric;
 use super::{etalon, isg};
 
 /// What an error motion may depart from a sum of functions of one axis each: mm or rad; files have twelve decimals.
 const SAME: f64 = 1e-11;
-
-/// The length over which lever arms are compared to find their signs, mm.
-const FAR: f64 = 1000.0;
 
 /// Which form a volumetric file has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,12 +44,10 @@ pub fn volumetric_terms(
         VolumetricForm::Isg => loaded(isg::Isg(model), source, diagnostics).0,
         VolumetricForm::Etalon => loaded(etalon::Etalon(model), source, diagnostics).0,
     };
-    let space = Space { ranges: vec![[0.0, FAR]; 3], reference: vec![0.0; 3] };
     let mut terms = Vec::new();
     for (name, mut grid) in std::mem::take(&mut model.parameters) {
         let motion = equations.motions.iter().position(|motion| motion.name == name);
-        let Some((motion, sign)) =
-            motion.and_then(|motion| Some((motion, model.sign(&geometry, &space, motion)?)))
+        let Some((motion, sign)) = motion.and_then(|motion| Some((motion, model.sign(&geometry, motion)?)))
         else {
             if grid.values.iter().any(|value| *value != 0.0) {
                 let message = format!("{} has no error motion {name}", equations.machine);

@@ -17,11 +17,10 @@ use model_dsl::machine::Branch;
 use model_dsl::program::Interpreter;
 use model_dsl::source::SourceFile;
 
-use super::geometry::{Geometry, Pose, correction};
+use super::geometry::{Geometry, Pose, correction, senses};
 use super::grid::Grid;
 use super::lost::Target;
 use super::refused::Refused;
-use super::space::Space;
 
 /// The controller's own model of a machine.
 #[derive(Debug)]
@@ -68,21 +67,15 @@ impl Volumetric {
     }
 
     /// By what an error motion of the machine is multiplied to be the controller's: 1 or -1; nothing where the controller's
-    /// model has no such motion.
-    pub(super) fn sign(&self, geometry: &Geometry<'_>, space: &Space, motion: usize) -> Option<f64> {
+    /// model has no such motion, or one that does something else.
+    pub(super) fn sign(&self, geometry: &Geometry<'_>, motion: usize) -> Option<f64> {
+        // No axis at zero: the lever of an alignment error is a travel.
+        let position: Vec<f64> = geometry.equations.axes.iter().map(|_| 1.0).collect();
         let name = &geometry.equations.motions.get(motion)?.name;
         let own = self.equations.motions.iter().position(|motion| motion.name == *name)?;
-        let alike: f64 = (1..=8)
-            .map(|number| {
-                let position = space.between(number);
-                let arms = [geometry.levers(&position), self.machine.levers(&position, &[])];
-                let [theirs, ours] = [arms[0].get(motion), arms[1].get(own)];
-                theirs
-                    .zip(ours)
-                    .map_or(0.0, |(theirs, ours)| theirs.iter().zip(ours).map(|(a, b)| a * b).sum())
-            })
-            .sum();
-        Some(if alike < 0.0 { -1.0 } else { 1.0 })
+        let (theirs, ours) = (geometry.senses(&position), senses(&self.machine, &position));
+        let alike: f64 = theirs.get(motion)?.iter().zip(ours.get(own)?).map(|(one, other)| one * other).sum();
+        (alike != 0.0).then_some(alike.signum())
     }
 
     /// The error motions at a position, in the order of the model's equations.

@@ -120,11 +120,10 @@ proptest! {
 
 #[test]
 fn what_a_single_axis_cannot_know_is_lost_as_a_lever_arm_says() {
-    // EAY of 40 urad everywhere, on the way Y of FXYZ: the tip lies 150 mm and z beyond it, Y moves by -40 urad times that. A
-    // constant is in every table; what z adds, up to 100 mm from the reference, is not: 4 um at the ends.
+    // EAY of 40 urad turns the tool about the frame of Y: the tip, 150 mm and z above it, goes towards -Y by 40 urad times that. What
+    // stands in the table of Y is right at the reference, z = 0; at the ends of Z, 100 mm from it, 4 um are missing.
     let machine = Machine::of("FXYZ", &["EAY: 40 urad".to_owned()]);
     let export = machine.export(Format::LinuxCnc, &options()).unwrap();
-    // z moves Y, and y does not move Z: its own lever is zero there, all but the tip's own 20 mm.
     assert!((export.lost.lost.largest - 4e-3).abs() < 1e-6, "{:?}", export.lost);
 }
 

@@ -1,8 +1,10 @@
 //! Signs, worked out by hand. X runs 100 um/m too far: at 100 mm it is 10 um beyond, so that its command must be 10 um less.
 //! Every format says that in its own way; a wrong sign would double the error.
 
-use exchange::controller::{Format, Options, Sense};
-use exchange::controller::{Kind, Unit};
+use exchange::controller::{Format, Kind, Options, Sense, Unit, VolumetricForm, volumetric_terms};
+use model_dsl::calibration::CalibratedTerm;
+use model_dsl::diagnostic::Diagnostics;
+use model_dsl::source::SourceFile;
 
 use crate::machine::{Machine, options, text};
 
@@ -55,6 +57,29 @@ fn volumetric_files_hold_the_error_itself() {
     ] {
         let export = too_far().export(format, &options()).unwrap();
         assert!(text(&export, name).contains(line), "{}", text(&export, name));
+    }
+}
+
+#[test]
+fn no_offset_of_a_frame_turns_the_sign_of_an_angle() {
+    // ISO 230-1 counts a rotation about Y by the right hand wherever the carriage stands: here 2 m above the bed's zero, so that
+    // the tip lies below the bed's zero and above the carriage's.
+    for (origin, word) in [("[0, 0, -2000]", "on a column"), ("[0, 0, 0]", "at the zero")] {
+        let text = format!(
+            "abbe: 1\nname: m\nchain:\n  tool:\n    - {{slide: X, along: +X, origin: {origin}}}\n    - {{slide: Y, along: +Y}}\n    - {{slide: Z, along: +Z}}\n    - {{tool: tip, offset: [Xt, Yt, Zt]}}\n"
+        );
+        let machine = Machine::new(&text, "errors: {EBX: 3 urad}\n");
+        let source = SourceFile::new("volumetric", "EBX\n0.00002\n");
+        let mut diagnostics = Diagnostics::new();
+        let terms = volumetric_terms(
+            &machine.equations,
+            &machine.calibration,
+            &source,
+            VolumetricForm::Isg,
+            &mut diagnostics,
+        );
+        let motion = machine.equations.motions.iter().position(|motion| motion.name == "EBX").unwrap();
+        assert_eq!(terms.unwrap(), [(motion, CalibratedTerm::Constant { value: 0.00002 })], "{word}");
     }
 }
 

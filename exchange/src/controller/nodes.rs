@@ -70,7 +70,10 @@ impl Nodes {
     /// Where the controller takes fewer.
     pub fn at_any_places(&self, spacing: Spacing) -> Result<Vec<f64>, Refused> {
         let nodes = match spacing.points {
-            Some(points) => self.spread(intervals(points, &self.letter)?),
+            Some(points) => {
+                self.check_count(points, spacing)?;
+                self.spread(intervals(points, &self.letter)?)
+            }
             None if self.curved => {
                 let mut nodes = self.own.clone();
                 nodes.extend(self.spread(CURVED.min(spacing.most.saturating_sub(nodes.len() + 1).max(1))));
@@ -92,13 +95,14 @@ impl Nodes {
             Some(points) => intervals(points, &self.letter)?,
             None => self.own_intervals().or_else(|| self.round_intervals()).unwrap_or(CURVED),
         };
+        self.check_count(intervals.saturating_add(1), spacing)?;
         let [low, high] = self.range;
         if !self.is_round((high - low) / count(intervals)) {
             let help = "give another number of points with --points, or rounder ends with --range";
             let what = format!("{} points over {} have no step of six decimals", intervals + 1, self.letter);
             return Err(Refused::new(what, help));
         }
-        self.few_enough(self.spread(intervals), spacing)
+        Ok(self.spread(intervals))
     }
 
     /// The number of equal steps on which all own nodes lie; finer where something is curved.
@@ -133,14 +137,17 @@ impl Nodes {
     }
 
     fn few_enough(&self, nodes: Vec<f64>, spacing: Spacing) -> Result<Vec<f64>, Refused> {
-        if nodes.len() <= spacing.most {
-            return Ok(nodes);
+        self.check_count(nodes.len(), spacing)?;
+        Ok(nodes)
+    }
+
+    fn check_count(&self, count: usize, spacing: Spacing) -> Result<(), Refused> {
+        if count <= spacing.most {
+            return Ok(());
         }
         let what = format!(
-            "the table of {} would have {} points, and the controller takes {}",
-            self.letter,
-            nodes.len(),
-            spacing.most
+            "the table of {} would have {count} points, and the controller takes {}",
+            self.letter, spacing.most
         );
         let help = format!("ask for fewer points, --points {}, and see what that loses", spacing.most);
         Err(Refused::new(what, help))

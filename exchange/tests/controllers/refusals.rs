@@ -23,6 +23,11 @@ fn refusal(machine: &Machine, format: Format, options: &Options) -> String {
 fn more_points_than_a_controller_takes_are_refused_not_cut() {
     let text = refusal(&scaled("FXYZ"), Format::LinuxCnc, &Options { points: Some(257), ..options() });
     assert!(text.contains("257 points") && text.contains("--points 256"), "{text}");
+    // Refused before there is a table of that size.
+    for format in [Format::LinuxCnc, Format::Isg, Format::Sinumerik, Format::Pmac] {
+        let text = refusal(&scaled("FXYZ"), format, &Options { points: Some(usize::MAX), ..options() });
+        assert!(text.contains("the controller takes"), "{text}");
+    }
 }
 
 #[test]

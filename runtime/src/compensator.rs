@@ -12,8 +12,7 @@ mod setup;
 use self::inverse::{Reach, spread, tip};
 use self::setup::Needs;
 use crate::math::{add_scaled, dot};
-use crate::sample::OneSample;
-use crate::{ErrorMotion, Kinematics, Sample, TermState};
+use crate::{ErrorMotion, ErrorMotions, Kinematics, MotionReader, Sample, TermState};
 
 pub use self::batch::{Batch, BatchSizes, BatchWork};
 pub use self::report::{Convergence, Limits, Outcome, Refusal, SetupError, Work};
@@ -23,8 +22,10 @@ pub use self::setup::states_needed;
 ///
 /// Each call of [`error`](Self::error) or [`compensate`](Self::compensate) is one cycle: it takes the memory of the terms over to the
 /// sample once. A controller calls one of the two in a cycle; the outcome of `compensate` holds the error too.
+///
+/// `K` is the machine, and `M` its error motions: a slice, or a calibration that was compiled in.
 #[derive(Debug)]
-pub struct Compensator<'a, K: Kinematics + ?Sized> {
+pub struct Compensator<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized = [ErrorMotion<'a>]> {
     /// Whether positions are compensated. Switched off, they pass unchanged while errors and memories are still followed.
     pub enabled: bool,
     /// What a correction must not exceed.
@@ -32,10 +33,12 @@ pub struct Compensator<'a, K: Kinematics + ?Sized> {
     /// When the search for the compensated position ends.
     pub convergence: Convergence,
     kinematics: &'a K,
-    motions: &'a [ErrorMotion<'a>],
+    motions: &'a M,
     states: &'a mut [TermState],
     work: Work<'a>,
     needs: Needs,
+    /// What the axes reach, once that is known and where it is the same everywhere.
+    reach: Option<Reach>,
 }
 
 impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
@@ -50,7 +53,22 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
         states: &'a mut [TermState],
         work: Work<'a>,
     ) -> Result<Self, SetupError> {
-        let needs = setup::check(kinematics, motions, states, &work)?;
+        Self::with_calibration(kinematics, motions, states, work)
+    }
+}
+
+impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M> {
+    /// [`new`](Compensator::new) with any error motions, such as a calibration that was compiled in.
+    ///
+    /// # Errors
+    /// As [`new`](Compensator::new).
+    pub fn with_calibration(
+        kinematics: &'a K,
+        motions: &'a M,
+        states: &'a mut [TermState],
+        work: Work<'a>,
+    ) -> Result<Self, SetupError> {
+        let needs = setup::check(kinematics, motions.motions(), states, &work)?;
         Ok(Self {
             enabled: true,
             limits: Limits::default(),
@@ -60,6 +78,7 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
             states,
             work,
             needs,
+            reach: None,
         })
     }
 
@@ -162,7 +181,7 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
             return;
         }
         let mut rest = &mut *self.states;
-        for motion in self.motions {
+        for motion in self.motions.motions() {
             let Some((states, others)) = rest.split_at_mut_checked(motion.terms.len()) else { return };
             motion.advance(sample, states);
             rest = others;
@@ -171,7 +190,8 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
 
     /// The error in a state of the machine; memories are read only.
     fn error_at(&mut self, sample: &Sample<'_>) -> [f64; 3] {
-        self.sum_at(sample, |motion, from, states| motion.read(from, states))
+        self.motions.read(MotionReader::new(*sample, self.states), self.work.motions);
+        self.sum_at(sample)
     }
 
     /// The part of the error in a state of the machine that is corrected in this cycle; memories are read only.
@@ -179,25 +199,12 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
         if !self.needs.ramp {
             return self.error_at(sample);
         }
-        self.sum_at(sample, |motion, from, states| motion.read_corrected(from, states))
+        self.motions.read(MotionReader::of_corrected(*sample, self.states), self.work.motions);
+        self.sum_at(sample)
     }
 
-    /// The sum of lever arms times these values of the error motions.
-    fn sum_at<'s>(
-        &mut self,
-        sample: &'s Sample<'s>,
-        of: impl Fn(&ErrorMotion<'_>, &mut OneSample<'s>, &[TermState]) -> f64,
-    ) -> [f64; 3] {
-        let mut from = OneSample::new(sample);
-        let mut first = 0_usize;
-        for (motion, value) in self.motions.iter().zip(self.work.motions.iter_mut()) {
-            let next = first.saturating_add(motion.terms.len());
-            *value = match motion.read_alone(&mut from) {
-                Some(value) => value,
-                None => of(motion, &mut from, self.states.get(first..next).unwrap_or_default()),
-            };
-            first = next;
-        }
+    /// The sum of lever arms times the error motions that were read.
+    fn sum_at(&mut self, sample: &Sample<'_>) -> [f64; 3] {
         let travel = if sample.travel.is_empty() {
             for (travel, &axis) in self.work.travel.iter_mut().zip(self.kinematics.travels()) {
                 *travel = sample.position(axis);
@@ -211,15 +218,25 @@ impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
 
     /// Searches for the command, from the error at the target on, and holds it against the limit.
     fn search(&mut self, sample: &Sample<'_>, error: [f64; 3], out: &mut [f64]) -> Result<Outcome, Refusal> {
-        self.kinematics.directions(sample.position, self.work.directions);
-        if !self.work.directions.iter().flatten().all(|part| part.is_finite()) {
-            return Err(Refusal::NotFinite);
-        }
-        let reach = Reach::new(self.work.directions);
+        let reach = match self.reach {
+            Some(reach) => reach,
+            None => self.reach_at(sample.position)?,
+        };
         let start = if self.needs.ramp { self.corrected_at(sample) } else { error };
         let (pull, remaining, iterations) = self.iterate(sample, start, &reach, out)?;
         self.check_limit(spread(self.work.directions, pull))?;
         Ok(Outcome { error, remaining, iterations })
+    }
+
+    /// Finds in which directions the axes move the tip, and what they reach.
+    fn reach_at(&mut self, position: &[f64]) -> Result<Reach, Refusal> {
+        self.kinematics.directions(position, self.work.directions);
+        if !self.work.directions.iter().flatten().all(|part| part.is_finite()) {
+            return Err(Refusal::NotFinite);
+        }
+        let reach = Reach::new(self.work.directions);
+        self.reach = Some(reach).filter(|_| !self.kinematics.directions_vary());
+        Ok(reach)
     }
 
     /// The fixed point, from the corrected error at the target on: returns `A^+ E` there, the error that it leaves, and

@@ -39,4 +39,10 @@ pub trait Kinematics {
     /// that are not sensitive. A slide whose positive motion moves the tool towards negative X of the part
     /// has -1 there. Writes `directions[axis]`; a slice of the wrong length is filled with NaN.
     fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]);
+
+    /// Whether the directions depend on the position: not on machines of slides alone, where a compensator then looks for them
+    /// once. True where nothing else is said, and true where one cannot be sure.
+    fn directions_vary(&self) -> bool {
+        true
+    }
 }

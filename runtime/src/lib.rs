@@ -126,7 +126,7 @@ pub use compensator::{
 pub use direction::{Direction, DirectionTracker};
 pub use kinematics::Kinematics;
 pub use lanes::Lanes;
-pub use motion::ErrorMotion;
+pub use motion::{ErrorMotion, ErrorMotions, MotionReader};
 pub use real::Real;
 pub use sample::Sample;
 pub use supervisor::{AxisMemory, Cycle, Memory, State, Supervisor, Transition};

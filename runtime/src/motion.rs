@@ -3,8 +3,40 @@
 //! In: terms of a calibration and the state of the machine. Out: the value of EXX, EBZ, a squareness. It exists because
 //! the equations of a machine multiply lever arms with these values and know nothing of what makes them up.
 
+mod reader;
+
 use crate::sample::{LaneSample, OneSample, Readings};
 use crate::{Lanes, Real, Sample, Term, TermState};
+
+pub use self::reader::MotionReader;
+
+/// The error motions of a machine with their numbers: a slice that a program has put together, or a calibration that the
+/// compiler has written as code.
+///
+/// What is compiled in says the same twice: as terms, and as code that reads exactly these terms and nothing else. A
+/// controller gains by it what is known before it runs: which term a motion is, where the nodes of its table lie.
+pub trait ErrorMotions {
+    /// The error motions, in the order of the kinematics.
+    fn motions(&self) -> &[ErrorMotion<'_>];
+
+    /// Writes the value of each of them, in mm or rad, in the order of [`motions`](Self::motions).
+    ///
+    /// A slice of another length keeps what it holds, where it is longer or shorter.
+    fn read(&self, from: MotionReader<'_>, values: &mut [f64]);
+}
+
+impl ErrorMotions for [ErrorMotion<'_>] {
+    fn motions(&self) -> &[ErrorMotion<'_>] {
+        self
+    }
+
+    #[inline]
+    fn read(&self, mut from: MotionReader<'_>, values: &mut [f64]) {
+        for (motion, value) in self.iter().zip(values) {
+            *value = from.motion(motion);
+        }
+    }
+}
 
 /// One error motion of one link: the sum of its terms. Without terms it is zero.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -18,30 +50,26 @@ impl ErrorMotion<'_> {
     #[must_use]
     #[inline]
     pub fn value(&self, sample: &Sample<'_>, states: &[TermState]) -> f64 {
-        self.read(&mut OneSample::new(sample), states)
+        self.read(&mut OneSample::new(*sample), states, false)
     }
 
     /// The part of the value that is corrected in this cycle, see [`Term::corrected`]; in mm or rad.
     #[must_use]
     #[inline]
     pub fn corrected(&self, sample: &Sample<'_>, states: &[TermState]) -> f64 {
-        self.read_corrected(&mut OneSample::new(sample), states)
+        self.read(&mut OneSample::new(*sample), states, true)
     }
 
-    /// [`value`](Self::value) in what is read.
-    pub(crate) fn read(&self, from: &mut OneSample<'_>, states: &[TermState]) -> f64 {
-        self.sum(states, |term, state| term.read(from, state.remembered()))
-    }
-
-    /// [`corrected`](Self::corrected) in what is read.
-    pub(crate) fn read_corrected(&self, from: &mut OneSample<'_>, states: &[TermState]) -> f64 {
-        self.sum(states, |term, state| term.read_corrected(from, state))
+    /// [`value`](Self::value) in what is read, or [`corrected`](Self::corrected).
+    #[inline]
+    fn read(&self, from: &mut OneSample<'_>, states: &[TermState], corrected: bool) -> f64 {
+        self.sum(states, |term, state| term.read_one(from, state, corrected))
     }
 
     /// Both of these where one table or one number makes them, as in most motions: without a state, and without the way
     /// through all other terms. None elsewhere.
     #[inline]
-    pub(crate) fn read_alone(&self, from: &mut OneSample<'_>) -> Option<f64> {
+    fn read_alone(&self, from: &mut OneSample<'_>) -> Option<f64> {
         match self.terms {
             [Term::Table { axis, table }] => Some(0.0 + from.table(table, *axis)),
             [Term::Constant { value }] => Some(0.0 + value),

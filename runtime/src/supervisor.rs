@@ -9,7 +9,7 @@ mod sensors;
 
 use self::correction::Correction;
 use self::sensors::{Heard, Sensors};
-use crate::{Compensator, Kinematics, Outcome, Refusal, Sample, SetupError};
+use crate::{Compensator, ErrorMotion, ErrorMotions, Kinematics, Outcome, Refusal, Sample, SetupError};
 
 pub use self::correction::AxisMemory;
 
@@ -127,21 +127,21 @@ pub struct Cycle {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
-pub struct Supervisor<'a, K: Kinematics + ?Sized> {
+pub struct Supervisor<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized = [ErrorMotion<'a>]> {
     /// The compensator, with its switch and its limits.
-    pub compensator: Compensator<'a, K>,
+    pub compensator: Compensator<'a, K, M>,
     /// How the correction changes.
     pub transition: Transition,
     sensors: Sensors<'a>,
     correction: Correction<'a>,
 }
 
-impl<'a, K: Kinematics + ?Sized> Supervisor<'a, K> {
+impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Supervisor<'a, K, M> {
     /// A supervisor of a compensator, whose correction begins with what the memory of the axes holds.
     ///
     /// # Errors
     /// Tells the first slice of a wrong length.
-    pub fn new(compensator: Compensator<'a, K>, memory: Memory<'a>) -> Result<Self, SetupError> {
+    pub fn new(compensator: Compensator<'a, K, M>, memory: Memory<'a>) -> Result<Self, SetupError> {
         let sensors = compensator.sensors();
         for (slice, expected, found) in [
             ("memory.axes", compensator.axes(), memory.axes.len()),

@@ -114,14 +114,16 @@ impl<'a> Table<'a> {
     ///
     /// # Errors
     /// Refuses a table without values, curves that differ in length, a step of zero and numbers that are not finite.
-    pub fn uniform(start: f64, step: f64, values: Values<'a>) -> Result<Self, TableError> {
+    pub const fn uniform(start: f64, step: f64, values: Values<'a>) -> Result<Self, TableError> {
         if !step.is_finite() || step == 0.0 {
             return Err(TableError::Step);
         }
         if !start.is_finite() {
             return Err(TableError::NotFinite);
         }
-        check_values(values, None)?;
+        if let Err(error) = check_values(values, None) {
+            return Err(error);
+        }
         let last = values.curve(Direction::Positive).len().saturating_sub(1);
         Ok(Self::new(Nodes::Even(Even { start, step, last }), values))
     }
@@ -130,16 +132,24 @@ impl<'a> Table<'a> {
     ///
     /// # Errors
     /// Refuses a table without values, slices that differ in length, nodes out of order and numbers that are not finite.
-    pub fn at(at: &'a [f64], values: Values<'a>) -> Result<Self, TableError> {
-        check_values(values, Some(at.len()))?;
-        if !at.iter().all(|node| node.is_finite()) {
+    pub const fn at(at: &'a [f64], values: Values<'a>) -> Result<Self, TableError> {
+        if let Err(error) = check_values(values, Some(at.len())) {
+            return Err(error);
+        }
+        if !all_finite(at) {
             return Err(TableError::NotFinite);
         }
-        let below = at.iter().zip(at.iter().skip(1)).position(|(before, node)| node <= before);
-        match below {
-            Some(index) => Err(TableError::NotAscending { index: index.saturating_add(1) }),
-            None => Ok(Self::new(Nodes::At(at), values)),
+        let (mut rest, mut index) = (at, 0_usize);
+        while let [before, others @ ..] = rest {
+            index = index.saturating_add(1);
+            if let [node, ..] = others
+                && *node <= *before
+            {
+                return Err(TableError::NotAscending { index });
+            }
+            rest = others;
         }
+        Ok(Self::new(Nodes::At(at), values))
     }
 
     const fn new(nodes: Nodes<'a>, values: Values<'a>) -> Self {
@@ -168,20 +178,34 @@ impl<'a> Table<'a> {
 }
 
 /// Checks the curves: not empty, of the same length (`expected`, where given), finite.
-fn check_values(values: Values<'_>, expected: Option<usize>) -> Result<(), TableError> {
-    let forward = values.curve(Direction::Positive);
-    let reverse = values.curve(Direction::Negative);
-    let expected = expected.unwrap_or(forward.len());
-    for curve in [forward, reverse] {
-        if curve.len() != expected {
-            return Err(TableError::Lengths { expected, found: curve.len() });
-        }
+const fn check_values(values: Values<'_>, expected: Option<usize>) -> Result<(), TableError> {
+    let (forward, reverse) = (values.curve(Direction::Positive), values.curve(Direction::Negative));
+    let expected = match expected {
+        Some(expected) => expected,
+        None => forward.len(),
+    };
+    if forward.len() != expected {
+        return Err(TableError::Lengths { expected, found: forward.len() });
+    }
+    if reverse.len() != expected {
+        return Err(TableError::Lengths { expected, found: reverse.len() });
     }
     if expected == 0 {
         return Err(TableError::Empty);
     }
-    let finite = forward.iter().chain(reverse).all(|value| value.is_finite());
-    if finite { Ok(()) } else { Err(TableError::NotFinite) }
+    if all_finite(forward) && all_finite(reverse) { Ok(()) } else { Err(TableError::NotFinite) }
+}
+
+/// Whether there is no NaN and nothing infinite among these numbers.
+const fn all_finite(numbers: &[f64]) -> bool {
+    let mut rest = numbers;
+    while let [first, others @ ..] = rest {
+        if !first.is_finite() {
+            return false;
+        }
+        rest = others;
+    }
+    true
 }
 
 /// Reads a curve over ascending nodes by binary search. Ends are held; NaN at NaN.

@@ -117,11 +117,12 @@ impl Term<'_> {
     #[must_use]
     #[inline]
     pub fn value(&self, sample: &Sample<'_>, state: &TermState) -> f64 {
-        self.read(&mut OneSample::new(sample), state.remembered())
+        self.read_one(&mut OneSample::new(*sample), state, false)
     }
 
     /// The value in what is read; `memory` is what the term remembers, none before its first cycle.
-    #[inline]
+    // Always: see `MotionReader::term`.
+    #[inline(always)]
     pub(crate) fn read<R: Readings>(&self, from: &mut R, memory: Option<&R::Number>) -> R::Number {
         match *self {
             Self::Constant { value } => value.into(),
@@ -164,13 +165,15 @@ impl Term<'_> {
     #[must_use]
     #[inline]
     pub fn corrected(&self, sample: &Sample<'_>, state: &TermState) -> f64 {
-        self.read_corrected(&mut OneSample::new(sample), state)
+        self.read_one(&mut OneSample::new(*sample), state, true)
     }
 
-    /// [`corrected`](Self::corrected) in what is read.
-    pub(crate) fn read_corrected(&self, from: &mut OneSample<'_>, state: &TermState) -> f64 {
+    /// [`value`](Self::value) in what is read of one sample, or [`corrected`](Self::corrected).
+    // Always: see `MotionReader::term`.
+    #[inline(always)]
+    pub(crate) fn read_one(&self, from: &mut OneSample<'_>, state: &TermState, corrected: bool) -> f64 {
         match *self {
-            Self::Backlash { axis, lost_motion, wind_up, ramp } if ramp > 0.0 => {
+            Self::Backlash { axis, lost_motion, wind_up, ramp } if ramp > 0.0 && corrected => {
                 -0.5 * lost_motion * followed(state, take_up(from, axis, wind_up, state.remembered()))
             }
             _ => self.read(from, state.remembered()),
@@ -187,7 +190,7 @@ impl Term<'_> {
                     advance_play(sample, axis, wind_up, state);
                 }
                 if ramp > 0.0 {
-                    let now = take_up(&OneSample::new(sample), axis, wind_up, state.remembered());
+                    let now = take_up(&OneSample::new(*sample), axis, wind_up, state.remembered());
                     follow(now, sample.time_step, ramp, state);
                 }
             }

@@ -16,7 +16,7 @@ pub(super) fn all(equations: &Equations, programs: &Programs) -> TokenStream {
     let error = error(equations, programs);
     let levers = levers(equations, programs);
     let directions = directions(equations, programs);
-    let kinematics = kinematics(equations);
+    let kinematics = kinematics(equations, programs);
     let name = &equations.machine;
     quote! {
         impl Machine {
@@ -135,7 +135,8 @@ fn directions(equations: &Equations, programs: &Programs) -> TokenStream {
     }
 }
 
-fn kinematics(equations: &Equations) -> TokenStream {
+fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
+    let vary = body(equations, &programs.directions, Numbers::Plain).reads.axes;
     let axes = Literal::usize_unsuffixed(equations.axes.len());
     let motions = Literal::usize_unsuffixed(equations.motions.len());
     let travels: Vec<_> =
@@ -180,6 +181,7 @@ fn kinematics(equations: &Equations) -> TokenStream {
                     directions.fill([f64::NAN; 3]);
                 }
             }
+            fn directions_vary(&self) -> bool { #vary }
         }
     }
 }

@@ -9,7 +9,7 @@ mod search;
 
 use self::block::{Block, Parts};
 use super::{Compensator, Outcome, Refusal, same_length};
-use crate::{Kinematics, Lanes};
+use crate::{ErrorMotions, Kinematics, Lanes};
 
 pub use self::block::{BatchSizes, BatchWork};
 pub use self::input::Batch;
@@ -20,7 +20,7 @@ type Open = [bool; Lanes::WIDTH];
 /// What each row is answered.
 type Answers<'a> = &'a mut [Result<Outcome, Refusal>];
 
-impl<K: Kinematics + ?Sized> Compensator<'_, K> {
+impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
     /// The storage that [`compensate_batch`](Self::compensate_batch) works in.
     #[must_use]
     pub fn batch_sizes(&self) -> BatchSizes {
@@ -28,7 +28,7 @@ impl<K: Kinematics + ?Sized> Compensator<'_, K> {
         BatchSizes::new(Parts {
             axes,
             travels,
-            motions: self.motions.len(),
+            motions: self.motions.motions().len(),
             terms: self.states.len(),
             sensors: self.needs.sensors,
         })
@@ -138,7 +138,7 @@ impl<K: Kinematics + ?Sized> Compensator<'_, K> {
         for ((row, lane), _) in (first..).zip(0_usize..).zip(open).filter(|(_, open)| **open) {
             block.row.take(batch, row);
             self.advance(&block.row.sample(batch));
-            let terms = self.motions.iter().flat_map(|motion| motion.terms);
+            let terms = self.motions.motions().iter().flat_map(|motion| motion.terms);
             for ((term, state), memory) in terms.zip(&*self.states).zip(&mut *block.memory) {
                 if term.remembers() {
                     memory.set(lane, state.remembered().copied().unwrap_or(f64::NAN));

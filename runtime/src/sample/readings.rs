@@ -31,13 +31,13 @@ pub(crate) trait Readings {
 /// One sample.
 #[derive(Debug)]
 pub(crate) struct OneSample<'a> {
-    sample: &'a Sample<'a>,
+    pub(crate) sample: Sample<'a>,
     /// Where the table that was read last found its position.
     place: Option<Place>,
 }
 
 impl<'a> OneSample<'a> {
-    pub(crate) const fn new(sample: &'a Sample<'a>) -> Self {
+    pub(crate) const fn new(sample: Sample<'a>) -> Self {
         Self { sample, place: None }
     }
 }
@@ -65,9 +65,10 @@ impl Readings for OneSample<'_> {
         self.sample.direction(axis).map_or(f64::NAN, Direction::sign)
     }
 
-    #[inline]
+    // Always: see `MotionReader::term`.
+    #[inline(always)]
     fn table(&mut self, table: &Table<'_>, axis: usize) -> f64 {
-        table.read(axis, self.sample, &mut self.place)
+        table.read(axis, &self.sample, &mut self.place)
     }
 }
 

@@ -26,10 +26,10 @@ pub(super) struct Even {
 pub(crate) struct Located<I, T, D> {
     axis: usize,
     even: Even,
-    /// Indices of the nodes below and above; beyond the ends both are the end.
+    /// Indices of the nodes below and above; at the last node and beyond both are the last.
     below: I,
     above: I,
-    /// The part of the way from one to the other, within [-1, 1].
+    /// The part of the way from one to the other, from 0 to less than 1; 0 beyond the ends.
     part: T,
     direction: D,
 }
@@ -44,7 +44,8 @@ impl Table<'_> {
     /// The value where an axis is in a sample, on the curve of its direction; NaN where the sample lacks the axis.
     ///
     /// `known` is the place that another table found in the same sample, if any, and is then this table's.
-    #[inline]
+    // Always, as what it calls: a place that is found for one constant table is then known to the compiler for the next.
+    #[inline(always)]
     pub(crate) fn read(&self, axis: usize, sample: &Sample<'_>, known: &mut Option<Place>) -> f64 {
         if let (Nodes::Even(even), Some(place)) = (self.nodes, &*known)
             && place.is(axis, even)
@@ -55,6 +56,7 @@ impl Table<'_> {
     }
 
     /// [`read`](Self::read) where no place is known.
+    #[inline(always)]
     fn read_anew(&self, axis: usize, sample: &Sample<'_>, known: &mut Option<Place>) -> f64 {
         let Some(direction) = sample.direction(axis) else { return f64::NAN };
         let (position, curve) = (sample.position(axis), self.curve(direction));
@@ -92,7 +94,7 @@ impl Table<'_> {
 
 impl<I, T, D> Located<I, T, D> {
     /// Whether this is the place of an axis between these nodes.
-    #[inline]
+    #[inline(always)]
     fn is(&self, axis: usize, even: Even) -> bool {
         // Bits compare faster than numbers; none of these is NaN.
         let bits = |even: Even| (even.start.to_bits(), even.step.to_bits(), even.last);
@@ -101,10 +103,13 @@ impl<I, T, D> Located<I, T, D> {
 }
 
 impl Place {
-    #[inline]
+    #[inline(always)]
     pub(super) fn new(even: Even, axis: usize, position: f64, direction: Direction) -> Self {
-        let [below, above, part] = even.locate(position);
-        Self { axis, even, below: whole(below), above: whole(above), part, direction }
+        let [below, part] = even.locate(position);
+        // Not above the last node already: said once more for the compiler, which then need not check it in every curve.
+        let below = whole(below).min(even.last);
+        let above = below.saturating_add(1).min(even.last);
+        Self { axis, even, below, above, part, direction }
     }
 
     /// Reads a curve.
@@ -116,8 +121,9 @@ impl Place {
 
 impl LanePlace {
     fn new(even: Even, axis: usize, position: Lanes, direction: [Direction; Lanes::WIDTH]) -> Self {
-        let [below, above, part] = even.locate(position);
-        let [below, above] = [below, above].map(|lanes| lanes.numbers().map(whole));
+        let [below, part] = even.locate(position);
+        let below = below.numbers().map(whole);
+        let above = below.map(|node| node.saturating_add(1).min(even.last));
         Self { axis, even, below, above, part, direction }
     }
 
@@ -135,19 +141,16 @@ impl LanePlace {
 }
 
 impl Even {
-    /// The nodes below and above a position, counted from 0, and the part of the way between them.
+    /// The node below a position, counted from 0, and the part of the way to the next.
     #[inline]
-    fn locate<T: Real>(self, position: T) -> [T; 3] {
-        let (zero, one, end) = (T::from(0.0), T::from(1.0), T::from(self.last as f64));
+    fn locate<T: Real>(self, position: T) -> [T; 2] {
+        let (zero, end) = (T::from(0.0), T::from(self.last as f64));
         let count = (position - self.start.into()) / self.step.into();
-        // NaN counts as the first node here, and remains in the part.
-        let inside = count.above(zero, count, zero);
-        let inside = end.above(inside, inside, end);
+        // NaN is neither below nor above, and remains in the part.
+        let inside = zero.above(count, zero, count);
+        let inside = inside.above(end, end, inside);
         let below = floor(inside);
-        let above = below + count.above(zero, one, zero);
-        let part = count - below;
-        let part = part.above(one, one, part);
-        [below, end.above(above, above, end), (-one).above(part, -one, part)]
+        [below, inside - below]
     }
 }
 

@@ -11,7 +11,7 @@ use crate::compensator::inverse::{Reach, set, spread, tip};
 use crate::compensator::{Compensator, Outcome, Refusal};
 use crate::math::{add_scaled, dot};
 use crate::sample::{LaneSample, lanes};
-use crate::{Kinematics, Lanes};
+use crate::{ErrorMotions, Kinematics, Lanes};
 
 /// A step of the search.
 struct Step {
@@ -21,7 +21,7 @@ struct Step {
     distance: Lanes,
 }
 
-impl<K: Kinematics + ?Sized> Compensator<'_, K> {
+impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
     /// Takes the errors at the positions as what remains: all of it, until a search takes some away.
     pub(super) fn begin_lanes(&self, error: [Lanes; 3], open: &mut Open, answers: Answers<'_>) {
         for (lane, (open, answer)) in open.iter_mut().zip(answers).enumerate().filter(|(_, (open, _))| **open)
@@ -141,7 +141,7 @@ impl<K: Kinematics + ?Sized> Compensator<'_, K> {
             place: None,
         };
         let mut rest = &*block.memory;
-        for (motion, value) in self.motions.iter().zip(&mut *block.motions) {
+        for (motion, value) in self.motions.motions().iter().zip(&mut *block.motions) {
             let (memory, others) = rest.split_at_checked(motion.terms.len()).unwrap_or_default();
             *value = motion.read_lanes(&mut at, memory);
             rest = others;

@@ -1,0 +1,71 @@
+//! Error motions read one after the other in one state of the machine.
+//!
+//! In: a sample, and the memories of all terms. Out: the value of each error motion, or of each term, in its turn. It exists
+//! so that motions that are known when the code is compiled and motions that come from a file go through the same formulas.
+
+use crate::sample::OneSample;
+use crate::{Direction, ErrorMotion, Sample, Term, TermState};
+
+/// Reads the terms of a machine's error motions, each in its turn, in one state of the machine.
+///
+/// It is what [`ErrorMotions::read`](crate::ErrorMotions::read) is given.
+#[derive(Debug)]
+pub struct MotionReader<'a> {
+    from: OneSample<'a>,
+    /// The memories of all terms.
+    states: &'a [TermState],
+    /// How many terms were read.
+    read: usize,
+    /// Whether what is read is the part that is corrected in this cycle, see [`Term::corrected`].
+    corrected: bool,
+}
+
+impl<'a> MotionReader<'a> {
+    /// A reader of what the error motions are.
+    pub(crate) const fn new(sample: Sample<'a>, states: &'a [TermState]) -> Self {
+        Self { from: OneSample::new(sample), states, read: 0, corrected: false }
+    }
+
+    /// A reader of the part of them that is corrected in this cycle.
+    pub(crate) const fn of_corrected(sample: Sample<'a>, states: &'a [TermState]) -> Self {
+        Self { from: OneSample::new(sample), states, read: 0, corrected: true }
+    }
+
+    /// The same reader for a machine of so many axes whose motions have so many terms, numbers that the compiler of Rust
+    /// knows from here on; none where they are others.
+    #[must_use]
+    #[inline]
+    pub fn sized<const AXES: usize, const TERMS: usize>(self) -> Option<Self> {
+        let sample = self.from.sample;
+        let position: &[f64; AXES] = sample.position.try_into().ok()?;
+        let direction: &[Direction; AXES] = sample.direction.try_into().ok()?;
+        let states: &[TermState; TERMS] = self.states.try_into().ok()?;
+        let from = OneSample::new(Sample { position, direction, ..sample });
+        Some(Self { from, states, read: 0, corrected: self.corrected })
+    }
+
+    /// The value of the next term, in mm or rad; NaN where it has no memory left.
+    // Always: where the term is a constant, next to nothing is left of all that a term can be.
+    #[inline(always)]
+    #[must_use]
+    pub fn term(&mut self, term: &Term<'_>) -> f64 {
+        let Some(state) = self.states.get(self.read) else { return f64::NAN };
+        self.read = self.read.saturating_add(1);
+        term.read_one(&mut self.from, state, self.corrected)
+    }
+
+    /// The value of the next error motion, in mm or rad; NaN where its terms have no memories left.
+    #[inline]
+    pub(super) fn motion(&mut self, motion: &ErrorMotion<'_>) -> f64 {
+        let first = self.read;
+        // Wraps only where no such slice can exist.
+        self.read = first.wrapping_add(motion.terms.len());
+        match motion.read_alone(&mut self.from) {
+            Some(value) => value,
+            None => {
+                let states = self.states.get(first..self.read).unwrap_or_default();
+                motion.read(&mut self.from, states, self.corrected)
+            }
+        }
+    }
+}

@@ -73,6 +73,9 @@ pub(crate) struct Check {
 pub(crate) struct Expand {
     /// A machine file, the name of a shipped machine, or a topology word.
     pub(crate) machine: String,
+    /// Compile in a calibration of the machine as well: the numbers of a specimen become constants.
+    #[arg(long, value_name = "FILE", conflicts_with = "c_abi")]
+    pub(crate) calibration: Option<PathBuf>,
     /// Add what a library for controllers in C needs: a crate of type `staticlib` or `cdylib` that has this code and the
     /// crates abbe-runtime and abbe-c offers them the functions of `abbe.h`.
     #[arg(long)]

@@ -155,6 +155,31 @@ fn a_library_for_c_is_the_same_code_and_what_c_asks_of_it() {
 }
 
 #[test]
+fn a_calibration_is_compiled_in_beside_the_same_code() {
+    let numbers = root().join("calibrations/postech-mill.yaml");
+    let numbers = numbers.to_str().unwrap();
+    let plain = abbe(&["expand", "postech-mill"], "");
+    let calibrated = abbe(&["expand", "postech-mill", "--calibration", numbers], "");
+    assert_eq!((plain.status, calibrated.status, calibrated.err.as_str()), (0, 0, ""));
+    let more = calibrated.out.strip_prefix(plain.out.trim_end()).unwrap();
+    // The offset of the tool, the limit, the first table and the play of Y, in mm and rad.
+    for known in
+        ["from_array([0.0, 0.0, 120.0])", "compensation: Some(0.2)", "uniform(\n", "lost_motion: 0.01,"]
+    {
+        assert!(more.contains(known), "no {known} in {more}");
+    }
+    let other = abbe(&["expand", "xyfz-mill", "--calibration", numbers], "");
+    assert_eq!((other.status, other.out.as_str()), (1, ""));
+    assert!(other.err.contains("E0426") && other.err.contains("postech-mill.yaml:"), "{}", other.err);
+    let both = abbe(&["expand", "postech-mill", "--c-abi", "--calibration", numbers], "");
+    assert_eq!((both.status, both.out.as_str()), (2, ""));
+    let drift = "calibration: 1\nmachine: FX\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\nerrors:\n  EXX: [{drift: {amplitude: 3 um, time_constant: 60 s}}]\n";
+    let drift = abbe(&["expand", "FX", "--calibration", &file("expand", "drift.yaml", drift)], "");
+    assert_eq!((drift.status, drift.out.as_str()), (1, ""));
+    assert!(drift.err.contains("E0425") && drift.err.contains("drift.yaml:5:10"), "{}", drift.err);
+}
+
+#[test]
 fn a_new_machine_file_derives_what_its_word_derives() {
     let template = abbe(&["new", "CAFXYZ"], "");
     let path = file("new", "machine.yaml", &template.out);

@@ -1,6 +1,8 @@
-//! Generated code of random machines. In: machines drawn with a fixed seed, compiled together by one call of the Rust
-//! compiler. Out: the numbers that their code gives, held against the interpreter, to the last bit, and against dual numbers,
-//! which share nothing with either.
+//! Generated code of random machines and their calibrations. In: machines and numbers drawn with a fixed seed, compiled
+//! together by one call of the Rust compiler. Out: what their code gives, held to the last bit against the interpreter and
+//! against terms that are read at run time, and against dual numbers, which share nothing with either.
+
+mod calibrations;
 
 use std::fmt::Write;
 use std::fs;
@@ -12,6 +14,7 @@ use model_dsl::equations::Equations;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 
+use self::calibrations::Followed;
 use crate::agreement::{Case, compiled, levers_are_dual_numbers};
 use crate::oracle::Machine;
 use crate::random::{machines, state};
@@ -29,6 +32,8 @@ struct Drawn {
     machine: Machine,
     text: String,
     equations: Equations,
+    /// Numbers of a specimen, and the cycles in which they are asked for.
+    followed: Followed,
 }
 
 /// The same machines on every run.
@@ -38,7 +43,10 @@ fn drawn() -> Vec<Drawn> {
         let machine = machines().new_tree(&mut runner).unwrap().current();
         let text = yaml::text(&machine, number.is_multiple_of(2));
         let equations = compiled(&text);
-        Drawn { machine, text, equations }
+        // Terms take the compiler longer than equations: one calibration in four has some.
+        let most = if number.is_multiple_of(4) { 3 } else { 0 };
+        let followed = Followed::draw(&machine, &equations, most, runner.rng());
+        Drawn { machine, text, equations, followed }
     };
     (0..MACHINES).map(draw).collect()
 }
@@ -48,7 +56,8 @@ fn list(numbers: &[f64]) -> String {
     format!("&{numbers:?}")
 }
 
-/// One line of numbers for each machine and point: error, directions, nominal, lever arms, as bits.
+/// One line of numbers for each machine and point: error, directions, nominal, lever arms, as bits. Then one for each cycle of
+/// its calibration.
 fn program(machines: &[Drawn]) -> String {
     let mut text = String::from(
         "//! Random machines.\nuse abbe_runtime::Kinematics;\n\
@@ -63,6 +72,7 @@ fn program(machines: &[Drawn]) -> String {
     for number in 0..machines.len() {
         let _ = writeln!(text, "mod m{number};");
     }
+    text.push_str(calibrations::FOLLOW);
     text.push_str("fn main() {\n");
     for (number, drawn) in machines.iter().enumerate() {
         for seed in 0..POINTS {
@@ -87,6 +97,7 @@ fn program(machines: &[Drawn]) -> String {
                 list(&case.errors(seed)),
             );
         }
+        text.push_str(&drawn.followed.program(number));
     }
     text.push_str("}\n");
     text
@@ -104,7 +115,8 @@ fn printed(machines: &[Drawn]) -> String {
     );
     fs::write(folder.join("Cargo.toml"), manifest).unwrap();
     for (number, drawn) in machines.iter().enumerate() {
-        let tokens = model_dsl::codegen::tokens(&drawn.equations);
+        let tokens = model_dsl::codegen::calibrated_tokens(&drawn.equations, &drawn.followed.calibration);
+        let tokens = tokens.unwrap();
         let code = model_dsl::codegen::file(&tokens, "machine.yaml").unwrap();
         fs::write(folder.join(format!("src/m{number}.rs")), code).unwrap();
     }
@@ -127,11 +139,11 @@ fn run(folder: &Path) -> String {
 }
 
 #[test]
-fn random_machines_compiled() {
+fn random_machines_and_calibrations_compiled() {
     let machines = drawn();
     let printed = printed(&machines);
     let mut lines = printed.lines();
-    for Drawn { machine, text, equations } in &machines {
+    for Drawn { machine, text, equations, followed } in &machines {
         for seed in 0..POINTS {
             let case = Case::new(machine, equations, state(machine, seed));
             let numbers: Vec<f64> =
@@ -149,6 +161,10 @@ fn random_machines_compiled() {
                 .map(|arm| [arm[0], arm[1], arm[2]])
                 .collect();
             levers_are_dual_numbers(&case, &levers).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        }
+        for (cycle, expected) in followed.at_run_time(equations).iter().enumerate() {
+            let calibration = &followed.calibration;
+            assert_eq!(lines.next(), Some(&**expected), "cycle {cycle} of\n{text}\n{calibration:#?}");
         }
     }
     assert_eq!(lines.next(), None);

@@ -106,9 +106,10 @@ fn stage(folder: &Path) {
 }
 
 /// Every command that reads a file, with the file and the arguments behind it; `@` is the folder of the stage.
-const READERS: [(&str, &[&str]); 12] = [
+const READERS: [(&str, &[&str]); 13] = [
     ("machine.yaml", &["derive", "@/machine.yaml"]),
     ("machine.yaml", &["expand", "@/machine.yaml"]),
+    ("calibration.yaml", &["expand", "@/machine.yaml", "--calibration", "@/calibration.yaml"]),
     ("stage.eqs", &["check", "@/machine.yaml", "@/stage.eqs"]),
     ("calibration.yaml", &["compensate", "@/calibration.yaml"]),
     ("path.yaml", &["simulate", "@/calibration.yaml", "@/path.yaml", "--output", "@/out", "--force"]),

@@ -84,6 +84,11 @@ fn through_the_interface(machine: &impl Kinematics, point: &Point, answers: &Ans
     let mut directions = vec![[0.0; 3]; point.position.len()];
     machine.directions(&point.position, &mut directions);
     assert_eq!(directions, answers.directions);
+    if !machine.directions_vary() {
+        let elsewhere: Vec<f64> = point.position.iter().map(|position| 0.3 * position + 1.0).collect();
+        machine.directions(&elsewhere, &mut directions);
+        assert_eq!(directions, answers.directions, "they do vary");
+    }
     let short = &point.position[1..];
     assert!(machine.error(short, &point.travel, &point.motions).iter().all(|part| part.is_nan()));
     assert!(machine.error(&point.position, &[1.0; 9], &point.motions).iter().all(|part| part.is_nan()));
@@ -355,6 +360,11 @@ fn fresh_code_passes_the_strictest_compiler() {
     };
     for shipped in SHIPPED {
         module(shipped.name, &model_dsl::rust_for(machine_file(shipped.name)).unwrap());
+    }
+    for name in ["excello-921", "nist-turning-center", "postech-mill"] {
+        let numbers = root().join("calibrations").join(name).with_extension("yaml");
+        let code = model_dsl::calibrated_rust_for(machine_file(name), numbers).unwrap();
+        module(&format!("calibrated-{name}"), &code);
     }
     for (name, links) in HARD {
         let source = SourceFile::new(format!("{name}.yaml"), hard(name, links));

@@ -1,15 +1,17 @@
 //! `machine!("path")`: the macro's door to the compiler.
 //!
-//! In: the path of a machine file, from the root of the crate that uses the macro. Out: the
-//! items of that machine (`Machine`, `Constants`, `Axes`, `Motions`), the same tokens that a
-//! build script gets. The file is tracked: a change in it compiles the crate again. Mistakes
-//! in it are reported at the literal, with their places in the file.
+//! In: the path of a machine file, from the root of the crate that uses the macro, and that of a calibration where one is to
+//! be compiled in. Out: the items of that machine (`Machine`, `Constants`, `Axes`, `Motions`) and of the calibration
+//! (`Calibration`, `Sensors`), the same tokens that a build script gets. The files are tracked: a change in one compiles the
+//! crate again. Mistakes in them are reported at the literals, with their places in the files.
 
 use std::path::{Path, PathBuf};
 
+use model_dsl::source::SourceFile;
 use proc_macro::TokenStream;
 use quote::quote;
-use syn::{LitStr, parse_macro_input};
+use syn::parse::{Parse, ParseStream};
+use syn::{LitStr, Token, parse_macro_input};
 
 /// Compiles a machine file into the module where the macro stands.
 ///
@@ -29,27 +31,76 @@ use syn::{LitStr, parse_macro_input};
 /// assert!((stage.error(&axes, &motions)[0] - 0.0045).abs() < 1e-12);
 /// # }
 /// ```
+///
+/// A second path compiles a calibration of the machine in: its numbers become the constants of a struct `Calibration`,
+/// which [`Compensator::with_calibration`](../abbe_runtime/struct.Compensator.html#method.with_calibration) takes.
+///
+/// ```
+/// mod stage {
+///     abbe_macros::machine!("../tests/fixtures/stage.yaml", "../tests/fixtures/calibrations/stage.yaml");
+/// }
+/// use abbe_runtime::ErrorMotions;
+/// # fn main() {
+/// assert_eq!(stage::Calibration.motions().len(), stage::Motions::NAMES.len());
+/// # }
+/// ```
 #[proc_macro]
 pub fn machine(input: TokenStream) -> TokenStream {
-    let literal = parse_macro_input!(input as LitStr);
-    expand(&literal).unwrap_or_else(|error| error.to_compile_error()).into()
+    let files = parse_macro_input!(input as Files);
+    expand(&files).unwrap_or_else(|error| error.to_compile_error()).into()
 }
 
-fn expand(literal: &LitStr) -> Result<proc_macro2::TokenStream, syn::Error> {
+/// The paths that the macro is given.
+struct Files {
+    machine: LitStr,
+    calibration: Option<LitStr>,
+}
+
+impl Parse for Files {
+    fn parse(input: ParseStream<'_>) -> syn::Result<Self> {
+        let machine = input.parse()?;
+        let mut calibration = None;
+        if !input.is_empty() {
+            input.parse::<Token![,]>()?;
+            calibration = if input.is_empty() { None } else { Some(input.parse()?) };
+            input.parse::<Option<Token![,]>>()?;
+        }
+        Ok(Self { machine, calibration })
+    }
+}
+
+/// A file that the macro is given: its text, its place, and the item by which a change in it compiles the crate again.
+struct Opened {
+    source: SourceFile,
+    folder: PathBuf,
+    tracked: proc_macro2::TokenStream,
+}
+
+fn expand(files: &Files) -> syn::Result<proc_macro2::TokenStream> {
+    let Opened { source, tracked, .. } = open(&files.machine)?;
+    let at_machine = |message: String| syn::Error::new(files.machine.span(), message);
+    let (tokens, equations, warnings) = model_dsl::rust_tokens(&source).map_err(at_machine)?;
+    show(&warnings);
+    let Some(calibration) = &files.calibration else { return Ok(quote! { #tracked #tokens }) };
+    let Opened { source, folder, tracked: tracked_too } = open(calibration)?;
+    let (tokens, warnings) = model_dsl::calibrated_rust_tokens(&equations, &source, Some(&folder))
+        .map_err(|message| syn::Error::new(calibration.span(), message))?;
+    show(&warnings);
+    Ok(quote! { #tracked #tracked_too #tokens })
+}
+
+/// Opens a file; what is wrong with it is told at the literal.
+fn open(literal: &LitStr) -> syn::Result<Opened> {
     let at_literal = |message: String| syn::Error::new(literal.span(), message);
     let path = resolve(&literal.value());
     let text = std::fs::read_to_string(&path)
         .map_err(|error| at_literal(format!("cannot read {}: {error}", path.display())))?;
-    let source = model_dsl::source::SourceFile::new(literal.value(), text);
-    let (tokens, _, warnings) = model_dsl::rust_tokens(&source).map_err(at_literal)?;
-    show(&warnings);
-    let Some(tracked) = path.to_str() else {
-        return Err(at_literal("the path of the machine file is not UTF-8".to_owned()));
+    let Some(name) = path.to_str() else {
+        return Err(at_literal("the path of the file is not UTF-8".to_owned()));
     };
-    Ok(quote! {
-        const _: &str = include_str!(#tracked);
-        #tokens
-    })
+    let tracked = quote! { const _: &str = include_str!(#name); };
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    Ok(Opened { source: SourceFile::new(literal.value(), text), folder, tracked })
 }
 
 /// Shows warnings where the compiler shows its own; a macro has no other way on stable Rust.
@@ -72,7 +123,7 @@ mod tests {
     use proc_macro2::Span;
     use syn::LitStr;
 
-    use super::expand;
+    use super::{Files, expand};
 
     /// The macro's tokens, printed as a file, are what a build script writes, after the item that tracks the file.
     #[test]
@@ -82,8 +133,9 @@ mod tests {
         for entry in std::fs::read_dir(machines).expect("the shipped machines") {
             let path = entry.expect("an entry").path();
             let name = path.file_name().expect("a file").to_string_lossy().into_owned();
-            let literal = LitStr::new(&format!("../machines/{name}"), Span::call_site());
-            let expanded = codegen::file(&expand(&literal).expect("a valid machine"), &name).expect("a file");
+            let machine = LitStr::new(&format!("../machines/{name}"), Span::call_site());
+            let files = Files { machine, calibration: None };
+            let expanded = codegen::file(&expand(&files).expect("a valid machine"), &name).expect("a file");
             let built = model_dsl::rust_for(&path).expect("a valid machine");
             let (banner, built) = built.split_once("\n\n").expect("a banner");
             let rest = expanded.strip_prefix(banner).expect("the same banner").trim_start();

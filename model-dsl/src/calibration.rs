@@ -32,6 +32,7 @@
 //! Quantities have their own codes, E0301 to E0309: see [`crate::quantity`].
 
 mod build;
+mod compiled_in;
 mod curve;
 mod document;
 mod fields;
@@ -45,6 +46,7 @@ mod term;
 mod write;
 mod write_term;
 
+pub use compiled_in::CompiledIn;
 pub use document::{machine_of, read};
 pub use names::{AxisName, MachineNames, MotionName};
 pub use sensors::{Sensor, SensorKind, SensorReadings, Sensors};

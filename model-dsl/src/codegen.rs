@@ -6,14 +6,17 @@
 
 mod body;
 mod c_interface;
+mod calibration;
 mod docs;
 mod functions;
 mod idents;
+mod sensors;
 mod structs;
 
 use proc_macro2::TokenStream;
 use quote::quote;
 
+use crate::calibration::{Calibration, NotCompensable};
 use crate::equations::Equations;
 use crate::program::Programs;
 
@@ -29,6 +32,18 @@ pub fn tokens(equations: &Equations) -> TokenStream {
 pub fn c_tokens(equations: &Equations) -> TokenStream {
     let (machine, c_interface) = (tokens(equations), c_interface::all(equations));
     quote! { #machine #c_interface }
+}
+
+/// The tokens of one machine's module with a calibration of it compiled in.
+///
+/// # Errors
+/// The first term that no controller can compensate; [`Calibration::refuse_uncompensable`] tells all of them, with places.
+pub fn calibrated_tokens(
+    equations: &Equations,
+    calibration: &Calibration,
+) -> Result<TokenStream, NotCompensable> {
+    let (machine, calibration) = (tokens(equations), calibration::all(equations, calibration)?);
+    Ok(quote! { #machine #calibration })
 }
 
 /// The tokens as a formatted file, with a line that says where it came from.

@@ -4,11 +4,12 @@
 //! text -> yaml -> machine -> derivation -> equations -> notation: text, LaTeX, MathML, Maxima, JSON
 //!                                             |-> check: against published equations
 //!                                             |-> program -> codegen: tokens, or the interpreter
-//! text -> yaml -> calibration: the numbers of one machine, as terms of its error motions
+//! text -> yaml -> calibration: the numbers of one machine, as terms of its error motions -> codegen: the same as constants
 //! ```
 //!
 //! The whole way is [`compile`]: text in, equations and located mistakes out. What it does not
-//! do: read or write files (but for [`rust_for`] and [`c_library_for`], which read the file that they are given), and
+//! do: read or write files (but for [`rust_for`] and its like, which read the files that they are given, and for the machine
+//! that a calibration names), and
 //! know anything of recordings or of the command line.
 
 pub mod algebra;
@@ -33,6 +34,7 @@ use std::path::Path;
 
 use proc_macro2::TokenStream;
 
+use calibration::CompiledIn;
 use diagnostic::{Diagnostics, render};
 use equations::Equations;
 use machine::Machine;
@@ -86,30 +88,61 @@ fn equations_of(source: &SourceFile) -> Result<(Equations, String), String> {
     compiled.map(|compiled| (compiled.equations, rendered.clone())).ok_or(rendered)
 }
 
+/// The Rust code of a machine with a calibration of it compiled in, as tokens, and the calibration's warnings; or every
+/// mistake in it, rendered. `folder` is where the calibration lies: the machine that it names is looked for there.
+pub fn calibrated_rust_tokens(
+    equations: &Equations,
+    calibration: &SourceFile,
+    folder: Option<&Path>,
+) -> Result<(TokenStream, String), String> {
+    let mut diagnostics = Diagnostics::new();
+    let machine = CompiledIn::new(equations, "abbe expand");
+    let read = machine.read_calibration(calibration, folder, &mut diagnostics);
+    let rendered = render(calibration, &diagnostics, false);
+    let Some(read) = read else { return Err(rendered) };
+    let tokens = codegen::calibrated_tokens(equations, &read);
+    let tokens = tokens.map_err(|error| format!("error: {}: {error}", calibration.name()))?;
+    Ok((tokens, rendered))
+}
+
 /// The Rust code of a machine file, formatted: what a build script writes into `OUT_DIR`.
 ///
 /// Warnings become `cargo::warning` lines. The error tells the file, or every mistake in it.
 pub fn rust_for(path: impl AsRef<Path>) -> Result<String, CompileError> {
-    code_for(path.as_ref(), codegen::tokens)
+    code_for(path.as_ref(), |equations| Ok((codegen::tokens(equations), String::new())))
 }
 
-/// The same with what a library for controllers in C needs: the code needs the crates `abbe-runtime` and `abbe-c`.
+/// The same with a calibration of the machine compiled in: its terms as constants, in the struct `Calibration`.
+pub fn calibrated_rust_for(
+    machine: impl AsRef<Path>,
+    calibration: impl AsRef<Path>,
+) -> Result<String, CompileError> {
+    let calibration = calibration.as_ref();
+    code_for(machine.as_ref(), |equations| {
+        let source = SourceFile::open(calibration)?;
+        calibrated_rust_tokens(equations, &source, calibration.parent())
+    })
+}
+
+/// The code of [`rust_for`] with what a library for controllers in C needs: the crates `abbe-runtime` and `abbe-c`.
 pub fn c_library_for(path: impl AsRef<Path>) -> Result<String, CompileError> {
-    code_for(path.as_ref(), codegen::c_tokens)
+    code_for(path.as_ref(), |equations| Ok((codegen::c_tokens(equations), String::new())))
 }
 
-/// The formatted code that a writer of tokens makes of a machine file.
+/// The formatted code that a writer of tokens, and of more warnings, makes of a machine file.
 #[expect(clippy::print_stdout, reason = "a build script tells cargo its warnings on standard output")]
-fn code_for(path: &Path, tokens: impl Fn(&Equations) -> TokenStream) -> Result<String, CompileError> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| CompileError(format!("cannot read {}: {error}", path.display())))?;
-    let source = SourceFile::new(path.display().to_string(), text);
+fn code_for(
+    path: &Path,
+    tokens: impl Fn(&Equations) -> Result<(TokenStream, String), String>,
+) -> Result<String, CompileError> {
+    let source = SourceFile::open(path).map_err(CompileError)?;
     let (equations, warnings) = equations_of(&source).map_err(CompileError)?;
-    for line in warnings.lines() {
+    let (tokens, more) = tokens(&equations).map_err(CompileError)?;
+    for line in warnings.lines().chain(more.lines()) {
         println!("cargo::warning={line}");
     }
     let origin = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    codegen::file(&tokens(&equations), &origin)
+    codegen::file(&tokens, &origin)
         .map_err(|error| CompileError(format!("the generated code does not parse: {error}")))
 }
 

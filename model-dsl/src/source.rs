@@ -4,7 +4,13 @@
 //! these spans along, so that each message can point at the words it speaks of.
 
 use std::fmt;
+use std::fs::File;
 use std::hash::{Hash, Hasher};
+use std::io::Read;
+use std::path::Path;
+
+/// No byte beyond this one is read: a larger file is refused, and a device may have no end.
+const MOST_BYTES: u64 = 8 * 1024 * 1024;
 
 /// One file as it was read: its name, as the user gave it, and its whole text.
 #[derive(Clone, Debug)]
@@ -22,6 +28,21 @@ impl SourceFile {
         let after_breaks = after_breaks.filter(|&(_, byte)| byte == b'\n');
         let line_starts = std::iter::once(0).chain(after_breaks.map(|(offset, _)| offset + 1)).collect();
         Self { name: name.into(), text, line_starts }
+    }
+
+    /// Reads a file whole.
+    ///
+    /// # Errors
+    /// Says in words that it cannot be read, is not UTF-8 or is larger than 8 MiB.
+    pub fn open(path: &Path) -> Result<Self, String> {
+        let cannot = |why: String| format!("error: cannot read {}: {why}", path.display());
+        let mut text = String::new();
+        let file = File::open(path).map_err(|error| cannot(error.to_string()))?;
+        file.take(MOST_BYTES + 1).read_to_string(&mut text).map_err(|error| cannot(error.to_string()))?;
+        if u64::try_from(text.len()).is_ok_and(|length| length > MOST_BYTES) {
+            return Err(cannot(format!("it is larger than {} MiB", MOST_BYTES >> 20)));
+        }
+        Ok(Self::new(path.display().to_string(), text))
     }
 
     /// The file's name as given.

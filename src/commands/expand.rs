@@ -1,8 +1,11 @@
-//! `abbe expand`: the Rust code that a machine file compiles to, for controllers in Rust or in C.
+//! `abbe expand`: the Rust code that a machine file compiles to, and a calibration with it, for controllers in Rust or in C.
 
 use std::path::Path;
 
+use model_dsl::calibration::{Calibration, CompiledIn};
 use model_dsl::codegen;
+use model_dsl::diagnostic::Diagnostics;
+use model_dsl::equations::Equations;
 
 use crate::arguments::Expand;
 use crate::failure::Failure;
@@ -12,10 +15,29 @@ use crate::{load, output};
 pub(crate) fn run(command: &Expand) -> Result<(), Failure> {
     let loaded = load::machine(&command.machine, None)?;
     let equations = &loaded.compiled.equations;
-    let tokens = if command.c_abi { codegen::c_tokens(equations) } else { codegen::tokens(equations) };
+    let tokens = match &command.calibration {
+        Some(path) => codegen::calibrated_tokens(equations, &calibration(equations, path)?)
+            .map_err(|error| Failure::Wrong(format!("error: {}: {error}", path.display())))?,
+        None if command.c_abi => codegen::c_tokens(equations),
+        None => codegen::tokens(equations),
+    };
     let name = Path::new(&loaded.origin).file_name().map(|name| name.to_string_lossy().into_owned());
     let code = codegen::file(&tokens, &name.unwrap_or(loaded.origin)).map_err(|error| {
         Failure::Wrong(format!("error: the generated code does not parse ({error}); this is a fault of Abbe"))
     })?;
     output::print(&code)
+}
+
+/// Reads a calibration of the machine; nothing in it may be beyond a controller.
+fn calibration(equations: &Equations, path: &Path) -> Result<Calibration, Failure> {
+    let source = load::read(path)?;
+    let mut diagnostics = Diagnostics::new();
+    let machine = CompiledIn::new(equations, "abbe expand");
+    match machine.read_calibration(&source, path.parent(), &mut diagnostics) {
+        Some(calibration) => {
+            output::show(&source, &diagnostics);
+            Ok(calibration)
+        }
+        None => Err(Failure::Wrong(output::rendered(&source, &diagnostics))),
+    }
 }

@@ -127,6 +127,11 @@ impl Printer<'_> {
     }
 }
 
+/// A number by itself.
+pub(super) fn number(number: f64) -> TokenStream {
+    number_literal(number).0
+}
+
 /// A number; the sign of a negative one is an operator, as in any expression.
 fn number_literal(number: f64) -> (TokenStream, Binding) {
     if number.is_nan() {

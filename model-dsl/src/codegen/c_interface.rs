@@ -4,9 +4,8 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::calibration::MachineNames;
-use crate::equations::{Equations, Names};
-use crate::notation::{self, Format};
+use crate::calibration::{CompiledIn, MachineNames};
+use crate::equations::Equations;
 
 /// The implementation of `abbe_c::CompiledMachine`, and `abbe_open`.
 pub(super) fn all(equations: &Equations) -> TokenStream {
@@ -48,7 +47,7 @@ fn compiled_machine(equations: &Equations) -> TokenStream {
         let (name, angular, axis) = (&motion.name, motion.angular, optional(motion.axis.as_ref()));
         quote! { (#name, #angular, #axis) }
     });
-    let json = notation::print(equations, Format::Json, Names::Iso);
+    let json = CompiledIn::of_equations(equations);
     quote! {
         impl ::abbe_c::CompiledMachine for Machine {
             const NAME: &'static str = #machine;

@@ -1,0 +1,260 @@
+//! A calibration as code.
+//!
+//! In: the equations of a machine and the numbers of a specimen. Out: tokens of its terms as constants, and of a reader that
+//! reads exactly these. It exists because a controller has no files, and because what is known when code is compiled need not be
+//! asked for in every servo cycle.
+
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::body::number;
+use super::docs;
+use super::sensors::{self, Numbered};
+use crate::calibration::{
+    CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Limits, NotCompensable, SeriesInput,
+};
+use crate::equations::{Equations, Motion};
+
+/// The calibration, its terms and its sensors.
+///
+/// # Errors
+/// The first term that no controller can compensate.
+pub(super) fn all(equations: &Equations, calibration: &Calibration) -> Result<TokenStream, NotCompensable> {
+    let numbered = Numbered::new(&calibration.sensors);
+    let motions: Vec<WrittenMotion> = equations
+        .motions
+        .iter()
+        .enumerate()
+        .map(|(number, motion)| WrittenMotion::new(motion, number, calibration, &numbered))
+        .collect::<Result<_, _>>()?;
+    let (items, reader) = (items(calibration, &motions), reader(equations, &motions));
+    let sensors = sensors::all(&calibration.sensors, &numbered);
+    Ok(quote! { #items #reader #sensors })
+}
+
+/// The terms of an error motion as tokens.
+struct WrittenMotion {
+    /// The name of the constant that holds them.
+    name: Ident,
+    /// What the motion is.
+    about: String,
+    terms: Vec<TokenStream>,
+}
+
+impl WrittenMotion {
+    fn new(
+        motion: &Motion,
+        number: usize,
+        calibration: &Calibration,
+        sensors: &Numbered,
+    ) -> Result<Self, NotCompensable> {
+        let listed = calibration.motions.iter().find(|listed| listed.motion == number);
+        let terms = listed.map_or(&[][..], |listed| &listed.terms).iter().enumerate();
+        let ramp = |place| listed.map_or(0.0, |listed| listed.ramp(place));
+        Ok(Self {
+            name: format_ident!("{}", motion.name.replace('-', "_")),
+            about: docs::motion(motion),
+            terms: terms
+                .map(|(place, written)| term(&written.value, ramp(place), sensors))
+                .collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+/// The calibration itself: machine, limits, terms.
+fn items(calibration: &Calibration, motions: &[WrittenMotion]) -> TokenStream {
+    let about = docs::attributes(&match &calibration.source {
+        Some(source) => format!("The numbers of one machine, compiled in. Source: {source}."),
+        None => "The numbers of one machine, compiled in.".to_owned(),
+    });
+    let constants = calibration.constants.iter().map(|constant| number(*constant));
+    let (limits, transition) = limits(&calibration.limits);
+    let count = Literal::usize_unsuffixed(motions.iter().map(|motion| motion.terms.len()).sum());
+    let lists = motions.iter().map(|WrittenMotion { name, about, terms }| {
+        let (about, count) = (docs::attributes(about), Literal::usize_unsuffixed(terms.len()));
+        quote! {
+            #about
+            const #name: [::abbe_runtime::Term<'static>; #count] = [#(#terms),*];
+        }
+    });
+    quote! {
+        #about
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub struct Calibration;
+        impl Calibration {
+            /// The machine with the constants of the calibration.
+            pub const MACHINE: Machine = Machine { constants: Constants::from_array([#(#constants),*]) };
+            /// What a correction must not exceed.
+            pub const LIMITS: ::abbe_runtime::Limits = #limits;
+            /// How a supervisor goes from one correction to another.
+            pub const TRANSITION: ::abbe_runtime::Transition = #transition;
+            /// The number of terms: a compensator needs a memory for each.
+            pub const TERMS: usize = #count;
+            #(#lists)*
+        }
+    }
+}
+
+/// What the calibration limits: for the compensator, and for the supervisor.
+fn limits(limits: &Limits) -> (TokenStream, TokenStream) {
+    let optional = |given: Option<f64>| match given {
+        Some(given) => {
+            let given = number(given);
+            quote! { Some(#given) }
+        }
+        None => quote! { None },
+    };
+    let compensation = optional(limits.of_compensator().compensation);
+    let transition = limits.transition();
+    let (rate, hold, fade) = (optional(transition.rate), number(transition.hold), number(transition.fade));
+    (
+        quote! { ::abbe_runtime::Limits { compensation: #compensation } },
+        quote! { ::abbe_runtime::Transition { rate: #rate, hold: #hold, fade: #fade } },
+    )
+}
+
+/// The implementation of `ErrorMotions`: term by term, so that each is known where it is read.
+fn reader(equations: &Equations, motions: &[WrittenMotion]) -> TokenStream {
+    let axes = Literal::usize_unsuffixed(equations.axes.len());
+    let names: Vec<_> = motions.iter().map(|motion| &motion.name).collect();
+    let unpacked = motions.iter().filter(|motion| !motion.terms.is_empty()).map(|motion| {
+        let (name, terms) = (&motion.name, terms_of(motion));
+        quote! { let [#(#terms),*] = &Self::#name; }
+    });
+    let sums = motions.iter().map(|motion| {
+        let terms = terms_of(motion);
+        // From zero on, as any sum of terms.
+        quote! { 0.0 #(+ from.term(#terms))* }
+    });
+    // Nothing is read where there are no terms.
+    let from = if motions.iter().all(|motion| motion.terms.is_empty()) {
+        quote! { _ }
+    } else {
+        quote! { mut from }
+    };
+    quote! {
+        impl ::abbe_runtime::ErrorMotions for Calibration {
+            fn motions(&self) -> &[::abbe_runtime::ErrorMotion<'_>] {
+                &[#(::abbe_runtime::ErrorMotion { terms: &Self::#names }),*]
+            }
+            #[inline]
+            fn read(&self, from: ::abbe_runtime::MotionReader<'_>, values: &mut [f64]) {
+                let Some(#from) = from.sized::<#axes, { Self::TERMS }>() else { return values.fill(f64::NAN) };
+                #(#unpacked)*
+                let read = [#(#sums),*];
+                for (value, read) in values.iter_mut().zip(read) {
+                    *value = read;
+                }
+            }
+        }
+    }
+}
+
+/// The names by which the reader knows the terms of a motion.
+fn terms_of(motion: &WrittenMotion) -> Vec<Ident> {
+    let name = motion.name.to_string().to_ascii_lowercase();
+    (0..motion.terms.len()).map(|place| format_ident!("{name}_{place}")).collect()
+}
+
+/// A term with its numbers.
+fn term(term: &CalibratedTerm, ramp: f64, sensors: &Numbered) -> Result<TokenStream, NotCompensable> {
+    let sensor = |sensor: usize| Literal::usize_unsuffixed(sensors.number(sensor));
+    let fields = match term {
+        CalibratedTerm::Constant { value } => {
+            let value = number(*value);
+            quote! { Constant { value: #value } }
+        }
+        CalibratedTerm::Polynomial { input, coefficients } => {
+            let coefficients = numbers(coefficients);
+            let input = match *input {
+                SeriesInput::Axis(axis) => {
+                    let axis = Literal::usize_unsuffixed(axis);
+                    quote! { Axis(#axis) }
+                }
+                SeriesInput::Sensor(number) => {
+                    let number = sensor(number);
+                    quote! { Sensor(#number) }
+                }
+            };
+            quote! { Polynomial { input: ::abbe_runtime::Input::#input, coefficients: #coefficients } }
+        }
+        CalibratedTerm::Coupling { axis, coefficients } => {
+            let (axis, coefficients) = (Literal::usize_unsuffixed(*axis), numbers(coefficients));
+            quote! { Coupling { axis: #axis, coefficients: #coefficients } }
+        }
+        CalibratedTerm::Table { axis, curve } => {
+            curve.runtime().map_err(NotCompensable::Table)?;
+            let (axis, table) = (Literal::usize_unsuffixed(*axis), table(curve));
+            quote! { Table { axis: #axis, table: #table } }
+        }
+        CalibratedTerm::Backlash { axis, lost_motion, wind_up } => {
+            let axis = Literal::usize_unsuffixed(*axis);
+            let [lost_motion, wind_up, ramp] = [*lost_motion, *wind_up, ramp].map(number);
+            quote! { Backlash { axis: #axis, lost_motion: #lost_motion, wind_up: #wind_up, ramp: #ramp } }
+        }
+        CalibratedTerm::Cyclic { axis, period, amplitude, phase } => {
+            let axis = Literal::usize_unsuffixed(*axis);
+            let [period, amplitude, phase] = [*period, *amplitude, *phase].map(number);
+            quote! { Cyclic { axis: #axis, period: #period, amplitude: #amplitude, phase: #phase } }
+        }
+        CalibratedTerm::Lag { axis, gain, frequency: _ } => {
+            let (axis, gain) = (Literal::usize_unsuffixed(*axis), number(*gain));
+            quote! { Lag { axis: #axis, gain: #gain } }
+        }
+        CalibratedTerm::Expansion { axis, sensor: of, coefficient, reference } => {
+            let (axis, of) = (Literal::usize_unsuffixed(*axis), sensor(*of));
+            let [coefficient, reference] = [*coefficient, *reference].map(number);
+            quote! { Expansion { axis: #axis, sensor: #of, coefficient: #coefficient, reference: #reference } }
+        }
+        CalibratedTerm::Growth { sensor: of, coefficient, reference, time_constant } => {
+            let of = sensor(*of);
+            let [coefficient, reference, time_constant] =
+                [*coefficient, *reference, *time_constant].map(number);
+            quote! {
+                Growth { sensor: #of, coefficient: #coefficient, reference: #reference, time_constant: #time_constant }
+            }
+        }
+        CalibratedTerm::ReversalSpike { .. }
+        | CalibratedTerm::Acceleration { .. }
+        | CalibratedTerm::Drift { .. }
+        | CalibratedTerm::Vibration { .. }
+        | CalibratedTerm::Compliance { .. } => return Err(NotCompensable::Term(term.name())),
+    };
+    Ok(quote! { ::abbe_runtime::Term::#fields })
+}
+
+/// A table that was checked here, and is checked once more where it is compiled.
+fn table(curve: &Curve) -> TokenStream {
+    let values = match &curve.values {
+        CurveValues::Both(values) => {
+            let values = numbers(values);
+            quote! { Both(#values) }
+        }
+        CurveValues::Directed { forward, reverse } => {
+            let (forward, reverse) = (numbers(forward), numbers(reverse));
+            quote! { Directed { forward: #forward, reverse: #reverse } }
+        }
+    };
+    let values = quote! { ::abbe_runtime::Values::#values };
+    let read = match &curve.nodes {
+        CurveNodes::Uniform { start, step } => {
+            let (start, step) = (number(*start), number(*step));
+            quote! { uniform(#start, #step, #values) }
+        }
+        CurveNodes::At(at) => {
+            let at = numbers(at);
+            quote! { at(#at, #values) }
+        }
+    };
+    quote! {
+        match ::abbe_runtime::Table::#read {
+            Ok(table) => table,
+            Err(_) => panic!("a table that cannot be read"),
+        }
+    }
+}
+
+fn numbers(numbers: &[f64]) -> TokenStream {
+    let numbers = numbers.iter().map(|given| number(*given));
+    quote! { &[#(#numbers),*] }
+}

@@ -1,0 +1,6 @@
+//! A crate that names a machine file and a calibration.
+
+/// The machine.
+pub mod machine {
+    abbe_macros::machine!("machine.yaml", "numbers.yaml");
+}

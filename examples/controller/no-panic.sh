@@ -17,7 +17,8 @@ folder="$(mktemp -d)"
 trap 'rm -rf "$folder"' EXIT
 cc -o "$folder/once" -x c - -x none "$library" -Wl,-rpath,"$(dirname "$(realpath "$library")")" <<'C'
 double cycle(double time_step, double temperature);
-int main(void) { return cycle(0.001, 21.0) > 0.0 ? 0 : 1; }
+double cycle_compiled(double time_step, double bed, double column);
+int main(void) { return cycle(0.001, 21.0) > 0.0 && cycle_compiled(0.001, 21.0, 22.0) > 0.0 ? 0 : 1; }
 C
 "$folder/once" || { echo "the cycle corrects nothing"; exit 1; }
 echo "no way to panic and no allocation in $(grep -c ' [tT] ' <<< "$symbols") functions of a servo cycle"

@@ -1,7 +1,7 @@
 //! What runs in a controller, as a library that holds nothing else: no standard library, no allocator.
 //!
-//! In: the machine that `build.rs` compiled, terms of every kind, a servo cycle. Out: one exported function, so that a
-//! linker keeps what a cycle needs and drops the rest. It exists to be looked into: were there a way to panic in a cycle,
+//! In: the machine that `build.rs` compiled, terms of every kind, read at run time and compiled in, a servo cycle. Out: two
+//! exported functions, so that a linker keeps what a cycle needs and drops the rest. It exists to be looked into: were there a way to panic in a cycle,
 //! the functions that panic would stand among the symbols of this library (`./no-panic.sh`).
 #![no_std]
 
@@ -9,8 +9,8 @@ use core::hint::black_box;
 use core::panic::PanicInfo;
 
 use abbe_runtime::{
-    AxisMemory, Compensator, DirectionTracker, ErrorMotion, Input, Memory, Sample, Supervisor, Table, Term,
-    TermState, Transition, Values, Work, states_needed,
+    AxisMemory, Compensator, DirectionTracker, ErrorMotion, ErrorMotions, Input, Memory, Sample, Supervisor,
+    Table, Term, TermState, Transition, Values, Work, states_needed,
 };
 
 /// The five-axis machine with a swivelling head.
@@ -19,7 +19,7 @@ mod machine {
     include!(concat!(env!("OUT_DIR"), "/machine.rs"));
 }
 
-use machine::{Axes, Constants, Machine, Motions};
+use machine::{Axes, Calibration, Constants, Machine, Motions, Sensors};
 
 /// Room for the memories of all terms below.
 const STATES: usize = 64;
@@ -65,26 +65,49 @@ pub extern "C" fn cycle(time_step: f64, temperature: f64) -> f64 {
     }
     let mut states = [TermState::default(); STATES];
     let Some(states) = states.get_mut(..states_needed(&motions)) else { return -1.0 };
-    let (mut directions, mut values) = ([[0.0; 3]; Axes::NAMES.len()], [0.0; Motions::NAMES.len()]);
     let machine = Machine { constants: Constants::from_array(black_box([100.0; Constants::NAMES.len()])) };
+    supervised(&machine, black_box(&motions[..]), states, time_step, &[temperature])
+}
+
+/// The same cycle with the calibration that was compiled in.
+#[unsafe(no_mangle)]
+pub extern "C" fn cycle_compiled(time_step: f64, bed: f64, column: f64) -> f64 {
+    let mut states = [TermState::default(); Calibration::TERMS];
+    let temperature = Sensors::new().update([bed, column]);
+    supervised(&Calibration::MACHINE, &Calibration, &mut states, time_step, &temperature)
+}
+
+/// One cycle of a supervisor; the length of its correction.
+fn supervised<M: ErrorMotions + ?Sized>(
+    machine: &Machine,
+    motions: &M,
+    states: &mut [TermState],
+    time_step: f64,
+    temperature: &[f64],
+) -> f64 {
+    let (mut directions, mut values) = ([[0.0; 3]; Axes::NAMES.len()], [0.0; Motions::NAMES.len()]);
     let work = Work { directions: &mut directions, motions: &mut values, travel: &mut [] };
-    let Ok(compensator) = Compensator::new(&machine, black_box(&motions), states, work) else { return -1.0 };
+    let Ok(compensator) = Compensator::with_calibration(machine, motions, states, work) else { return -1.0 };
 
     let mut axes = [AxisMemory::default(); Axes::NAMES.len()];
-    let (mut readings, mut silence) = ([0.0], [0.0]);
-    let memory = Memory { axes: black_box(&mut axes), temperature: &mut readings, silence: &mut silence };
+    let (mut readings, mut silence) = ([0.0; Sensors::NAMES.len()], [0.0; Sensors::NAMES.len()]);
+    let sensors = compensator.sensors();
+    let (Some(readings), Some(silence)) = (readings.get_mut(..sensors), silence.get_mut(..sensors)) else {
+        return -1.0;
+    };
+    let memory = Memory { axes: black_box(&mut axes), temperature: readings, silence };
     let Ok(mut supervisor) = Supervisor::new(compensator, memory) else { return -1.0 };
     supervisor.transition = black_box(Transition { rate: Some(2.0), hold: 1.0, fade: 1.0 });
     let position = black_box([1.0; Axes::NAMES.len()]);
     let mut tracker = DirectionTracker::new(black_box(1e-3));
     let directions = [tracker.update(black_box(1.0)); Axes::NAMES.len()];
-    let (velocity, temperature) = ([0.0; Axes::NAMES.len()], [temperature]);
+    let velocity = [0.0; Axes::NAMES.len()];
     let sample = Sample {
         position: black_box(&position),
         travel: black_box(&[]),
         direction: black_box(&directions),
         velocity: black_box(&velocity),
-        temperature: black_box(&temperature),
+        temperature: black_box(temperature),
         time_step,
     };
     let mut command = [0.0; Axes::NAMES.len()];

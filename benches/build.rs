@@ -1,4 +1,5 @@
-//! Compiles the machines to Rust, and the same machines' C: written by hand, and by other tools where they are there.
+//! Compiles the machines to Rust with the numbers that [`case`] draws, and the same machines' C: written by hand, and by other
+//! tools where they are there.
 //!
 //! In: `../machines/*.yaml`, `c/*.c`, `codegen.py`. Out: `$OUT_DIR/machines.rs`, the library `contestants`, and a `cfg`
 //! for each tool whose code is in it. A tool that is not there gives a warning and is left out.
@@ -8,9 +9,18 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
+#[path = "src/case.rs"]
+#[expect(unreachable_pub, dead_code, reason = "a module of the library")]
+mod case;
 #[path = "src/chain.rs"]
 #[expect(unreachable_pub, reason = "a module of the library")]
 mod chain;
+#[path = "src/random.rs"]
+mod random;
+
+use case::{Case, Values};
+use model_dsl::calibration::{CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues};
+use model_dsl::equations::Equations;
 
 /// The machines of the compensation call.
 const MACHINES: [&str; 3] = ["excello-921", "xyfz-mill", "trunnion-5axis"];
@@ -24,11 +34,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     for name in MACHINES {
         let path = Path::new("../machines").join(name).with_extension("yaml");
         println!("cargo::rerun-if-changed={}", path.display());
-        let code = model_dsl::rust_for(&path)?;
+        let (equations, chain) = compiled(&path)?;
+        let tokens = model_dsl::codegen::calibrated_tokens(&equations, &calibration(&Case::new(name)?))?;
+        let code = model_dsl::codegen::file(&tokens, name)?;
         let module = name.replace('-', "_");
         modules.push_str(&format!("/// The machine `{name}`.\npub mod {module} {{\n{code}}}\n"));
         let described = out.join(format!("{module}.json"));
-        fs::write(&described, description(&path)?)?;
+        fs::write(&described, chain.json())?;
         chains.push(described);
     }
     fs::write(out.join("machines.rs"), modules)?;
@@ -52,14 +64,32 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The chain of a machine file as JSON.
-fn description(path: &Path) -> Result<String, Box<dyn Error>> {
+/// The equations of a machine file, and its chain.
+fn compiled(path: &Path) -> Result<(Equations, chain::Chain), Box<dyn Error>> {
     let source = model_dsl::source::SourceFile::new(path.display().to_string(), fs::read_to_string(path)?);
     let mut diagnostics = model_dsl::diagnostic::Diagnostics::new();
     let compiled =
         model_dsl::compile(&source, &mut diagnostics).ok_or("the machine file does not compile")?;
     let motions: Vec<String> = compiled.equations.motions.iter().map(|motion| motion.name.clone()).collect();
-    Ok(chain::Chain::new(&compiled.machine, &motions)?.json())
+    Ok((compiled.equations, chain::Chain::new(&compiled.machine, &motions)?))
+}
+
+/// The numbers of a case as a calibration.
+fn calibration(case: &Case) -> Calibration {
+    let term = |values: &Values| match values {
+        Values::Number(value) => CalibratedTerm::Constant { value: *value },
+        Values::Table(table) => {
+            let nodes = CurveNodes::Uniform { start: table.start, step: table.step };
+            let forward = table.forward.clone();
+            let values = match table.reverse.clone() {
+                Some(reverse) => CurveValues::Directed { forward, reverse },
+                None => CurveValues::Both(forward),
+            };
+            CalibratedTerm::Table { axis: table.axis, curve: Curve { nodes, values } }
+        }
+    };
+    let terms: Vec<_> = case.motions.iter().map(term).enumerate().collect();
+    Calibration::new(case.name, case.constants.clone()).with(&terms)
 }
 
 /// The C file that a tool writes, with the Python of the virtual environment that `tools.sh` makes.

@@ -4,8 +4,8 @@
 //! with its checks and its refusals, as a controller calls it.
 
 use abbe_runtime::{
-    Compensator, Direction, ErrorMotion, Kinematics, Sample, Table, Term, TermState, Values as Curves, Work,
-    states_needed,
+    Compensator, Direction, ErrorMotion, ErrorMotions, Kinematics, Sample, SetupError, Table, Term,
+    TermState, Values as Curves, Work, states_needed,
 };
 
 use crate::case::{Case, Values};
@@ -14,6 +14,18 @@ use crate::machines::{excello_921, trunnion_5axis, xyfz_mill};
 
 /// The contestants of a machine.
 pub(crate) fn contestants(case: &'static Case, group: Group) -> Vec<Box<dyn Contestant>> {
+    macro_rules! compiled {
+        ($machine:ident) => {
+            with_room($machine::Calibration::TERMS, &$machine::Calibration::MACHINE, |states, work| {
+                Compensator::with_calibration(
+                    &$machine::Calibration::MACHINE,
+                    &$machine::Calibration,
+                    states,
+                    work,
+                )
+            })
+        };
+    }
     macro_rules! of {
         ($machine:ident, $axes:literal) => {{
             let constants = $machine::Constants::from_array(array(&case.constants));
@@ -36,10 +48,16 @@ pub(crate) fn contestants(case: &'static Case, group: Group) -> Vec<Box<dyn Cont
                     ) -> [f64; 3] {
                         machine.error(axes, motions)
                     }
-                    vec![boxed(move |state| call(machine, &states[state].0, &states[state].1))]
+                    vec![boxed("abbe", move |state| call(machine, &states[state].0, &states[state].1))]
                 }
-                Group::Error => vec![error(case, machine)],
-                Group::Command => vec![command::<_, $axes>(case, machine)],
+                Group::Error => vec![
+                    error("abbe", case, compensator(case, machine)),
+                    error("abbe, numbers compiled in", case, compiled!($machine)),
+                ],
+                Group::Command => vec![
+                    command::<_, _, $axes>("abbe", case, compensator(case, machine)),
+                    command::<_, _, $axes>("abbe, numbers compiled in", case, compiled!($machine)),
+                ],
             }
         }};
     }
@@ -51,8 +69,11 @@ pub(crate) fn contestants(case: &'static Case, group: Group) -> Vec<Box<dyn Cont
     }
 }
 
-fn boxed<const N: usize>(answer: impl FnMut(usize) -> [f64; N] + 'static) -> Box<dyn Contestant> {
-    Box::new(Answering { name: "abbe", tolerance: EXACT, answer })
+fn boxed<const N: usize>(
+    name: &'static str,
+    answer: impl FnMut(usize) -> [f64; N] + 'static,
+) -> Box<dyn Contestant> {
+    Box::new(Answering { name, tolerance: EXACT, answer })
 }
 
 /// Numbers that live as long as the program, as a controller's do.
@@ -65,29 +86,37 @@ pub(crate) fn array<const N: usize>(values: &[f64]) -> [f64; N] {
     values.try_into().unwrap_or([f64::NAN; N])
 }
 
-fn error<K: Kinematics + 'static>(case: &'static Case, kinematics: &'static K) -> Box<dyn Contestant> {
-    #[inline(never)]
-    fn call<K: Kinematics>(compensator: &mut Compensator<'_, K>, sample: &Sample<'_>) -> [f64; 3] {
-        compensator.error(sample).unwrap_or([f64::NAN; 3])
-    }
-    let (mut compensator, samples) = (compensator(case, kinematics), samples(case));
-    boxed(move |state| call(&mut compensator, &samples[state]))
-}
-
-fn command<K: Kinematics + 'static, const N: usize>(
+fn error<K: Kinematics + 'static, M: ErrorMotions + ?Sized + 'static>(
+    name: &'static str,
     case: &'static Case,
-    kinematics: &'static K,
+    mut compensator: Compensator<'static, K, M>,
 ) -> Box<dyn Contestant> {
     #[inline(never)]
-    fn call<K: Kinematics>(
-        compensator: &mut Compensator<'_, K>,
+    fn call<K: Kinematics, M: ErrorMotions + ?Sized>(
+        compensator: &mut Compensator<'_, K, M>,
+        sample: &Sample<'_>,
+    ) -> [f64; 3] {
+        compensator.error(sample).unwrap_or([f64::NAN; 3])
+    }
+    let samples = samples(case);
+    boxed(name, move |state| call(&mut compensator, &samples[state]))
+}
+
+fn command<K: Kinematics + 'static, M: ErrorMotions + ?Sized + 'static, const N: usize>(
+    name: &'static str,
+    case: &'static Case,
+    mut compensator: Compensator<'static, K, M>,
+) -> Box<dyn Contestant> {
+    #[inline(never)]
+    fn call<K: Kinematics, M: ErrorMotions + ?Sized>(
+        compensator: &mut Compensator<'_, K, M>,
         sample: &Sample<'_>,
         out: &mut [f64],
     ) -> bool {
         compensator.compensate(sample, out).is_ok()
     }
-    let (mut compensator, samples) = (compensator(case, kinematics), samples(case));
-    boxed(move |state| {
+    let samples = samples(case);
+    boxed(name, move |state| {
         let mut out = [0.0; N];
         if call(&mut compensator, &samples[state], &mut out) { out } else { [f64::NAN; N] }
     })
@@ -111,9 +140,18 @@ fn samples(case: &'static Case) -> Vec<Sample<'static>> {
     case.states.iter().map(sample).collect()
 }
 
-#[expect(clippy::expect_used, reason = "a case that is set up wrong must end the measurement")]
+/// A compensator that reads the numbers of a case as terms.
 fn compensator<K: Kinematics>(case: &'static Case, kinematics: &'static K) -> Compensator<'static, K> {
-    let term = |values: &'static Values| match values {
+    let motions = case.motions.iter().map(|values| ErrorMotion { terms: leak(vec![term(values)]) });
+    let motions: &[ErrorMotion<'static>] = leak(motions.collect::<Vec<_>>());
+    with_room(states_needed(motions), kinematics, |states, work| {
+        Compensator::new(kinematics, motions, states, work)
+    })
+}
+
+#[expect(clippy::expect_used, reason = "a case that is set up wrong must end the measurement")]
+fn term(values: &'static Values) -> Term<'static> {
+    match values {
         Values::Number(value) => Term::Constant { value: *value },
         Values::Table(table) => {
             let curves = match &table.reverse {
@@ -123,15 +161,20 @@ fn compensator<K: Kinematics>(case: &'static Case, kinematics: &'static K) -> Co
             let read = Table::uniform(table.start, table.step, curves).expect("a valid table");
             Term::Table { axis: table.axis, table: read }
         }
-    };
-    let motions: Vec<ErrorMotion<'static>> =
-        case.motions.iter().map(|values| ErrorMotion { terms: leak(vec![term(values)]) }).collect();
-    let motions = leak(motions);
-    let states = leak(vec![TermState::default(); states_needed(motions)]);
+    }
+}
+
+/// A compensator with room for its memories and its work.
+#[expect(clippy::expect_used, reason = "a case that is set up wrong must end the measurement")]
+fn with_room<C>(
+    terms: usize,
+    kinematics: &impl Kinematics,
+    made: impl FnOnce(&'static mut [TermState], Work<'static>) -> Result<C, SetupError>,
+) -> C {
     let work = Work {
         directions: leak(vec![[0.0; 3]; kinematics.axes()]),
         motions: leak(vec![0.0; kinematics.motions()]),
         travel: &mut [],
     };
-    Compensator::new(kinematics, motions, states, work).expect("a valid compensator")
+    made(leak(vec![TermState::default(); terms]), work).expect("a valid compensator")
 }

@@ -14,7 +14,7 @@ use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
 use model_dsl::source::SourceFile;
-use proptest::prelude::RngCore;
+use proptest::prelude::Rng;
 use proptest::test_runner::TestRng;
 
 use super::list;
@@ -184,8 +184,8 @@ fn with_sensors(equations: &Equations) -> Calibration {
 /// A term of any kind that a controller compensates, of this size; none of an axis where there is no axis.
 fn term(rng: &mut TestRng, axes: usize, size: f64) -> Option<CalibratedTerm> {
     let sensor = pick(rng, 4);
-    // Over 300 mm, or a few degC, as much as the size.
-    let (slope, warmth) = (size / 300.0, size / 5.0);
+    // Over a few degC, and below over 300 mm, as much as the size.
+    let warmth = size / 5.0;
     let value = size * draw(rng);
     let term = match (pick(rng, 12), axes) {
         (0, _) => CalibratedTerm::Constant { value },
@@ -200,19 +200,14 @@ fn term(rng: &mut TestRng, axes: usize, size: f64) -> Option<CalibratedTerm> {
             time_constant: if pick(rng, 2) == 0 { 0.0 } else { 0.02 },
         },
         (_, 0) => return None,
-        (kind, _) => of_axis(rng, kind, pick(rng, axes), sensor, size, slope),
+        (kind, _) => of_axis(rng, kind, axes, sensor, size),
     };
     Some(term)
 }
 
-fn of_axis(
-    rng: &mut TestRng,
-    kind: usize,
-    axis: usize,
-    sensor: usize,
-    size: f64,
-    slope: f64,
-) -> CalibratedTerm {
+/// A term of one of so many axes.
+fn of_axis(rng: &mut TestRng, kind: usize, axes: usize, sensor: usize, size: f64) -> CalibratedTerm {
+    let (axis, slope) = (pick(rng, axes), size / 300.0);
     match kind {
         3 => CalibratedTerm::Polynomial {
             input: SeriesInput::Axis(axis),

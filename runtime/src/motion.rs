@@ -21,7 +21,7 @@ pub trait ErrorMotions {
 
     /// Writes the value of each of them, in mm or rad, in the order of [`motions`](Self::motions).
     ///
-    /// A slice of another length keeps what it holds, where it is longer or shorter.
+    /// What a longer slice holds beyond them stays as it was.
     fn read(&self, from: MotionReader<'_>, values: &mut [f64]);
 }
 

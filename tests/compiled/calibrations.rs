@@ -1,5 +1,5 @@
 //! Calibrations that were compiled in. In: random machines. Out: terms of every kind with random numbers, servo cycles with random
-//! positions, directions and silent-free sensors; what the runtime answers to them when it reads the terms from slices; and the
+//! positions, directions and temperatures; what the runtime answers to them when it reads the terms from slices; and the
 //! program by which compiled code answers the same.
 
 use std::fmt::Write;

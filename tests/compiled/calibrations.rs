@@ -47,7 +47,7 @@ fn draw(rng: &mut TestRng) -> f64 {
 }
 
 fn pick(rng: &mut TestRng, count: usize) -> usize {
-    (rng.next_u64() % count as u64) as usize
+    rng.next_u32() as usize % count
 }
 
 fn draws(rng: &mut TestRng, size: f64, count: usize) -> Vec<f64> {

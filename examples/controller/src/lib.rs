@@ -1,8 +1,9 @@
 //! What runs in a controller, as a library that holds nothing else: no standard library, no allocator.
 //!
-//! In: the machine that `build.rs` compiled, terms of every kind, read at run time and compiled in, a servo cycle. Out: two
-//! exported functions, so that a linker keeps what a cycle needs and drops the rest. It exists to be looked into: were there a way to panic in a cycle,
-//! the functions that panic would stand among the symbols of this library (`./no-panic.sh`).
+//! In: the machine that `build.rs` compiled, terms of every kind, read at run time and compiled in, a servo cycle. Out:
+//! two exported functions, so that a linker keeps what a cycle needs and drops the rest. It exists to be looked into:
+//! were there a way to panic in a cycle, the functions that panic would stand among the symbols of this library
+//! (`./no-panic.sh`).
 #![no_std]
 
 use core::hint::black_box;

@@ -38,6 +38,24 @@ pub fn exp_m1(value: f64) -> f64 {
     return libm::expm1(value);
 }
 
+/// Whether there is no NaN and nothing infinite among these numbers.
+#[inline]
+pub(crate) const fn all_finite(numbers: &[f64]) -> bool {
+    nothing(0.0, numbers) == 0.0
+}
+
+/// `sum`, and NaN where one of the numbers is not finite: nothing times a finite number is nothing, NaN times any other.
+// No branch for each number, and no iterator, which a constant could not be made with.
+#[inline]
+pub(crate) const fn nothing(mut sum: f64, numbers: &[f64]) -> f64 {
+    let mut rest = numbers;
+    while let [first, others @ ..] = rest {
+        sum += *first * 0.0;
+        rest = others;
+    }
+    sum
+}
+
 /// Scalar product of two vectors.
 #[inline]
 #[must_use]

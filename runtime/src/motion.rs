@@ -50,14 +50,14 @@ impl ErrorMotion<'_> {
     #[must_use]
     #[inline]
     pub fn value(&self, sample: &Sample<'_>, states: &[TermState]) -> f64 {
-        self.read(&mut OneSample::new(*sample), states, false)
+        self.read(&mut OneSample::new(sample), states, false)
     }
 
     /// The part of the value that is corrected in this cycle, see [`Term::corrected`]; in mm or rad.
     #[must_use]
     #[inline]
     pub fn corrected(&self, sample: &Sample<'_>, states: &[TermState]) -> f64 {
-        self.read(&mut OneSample::new(*sample), states, true)
+        self.read(&mut OneSample::new(sample), states, true)
     }
 
     /// [`value`](Self::value) in what is read, or [`corrected`](Self::corrected).
@@ -71,8 +71,8 @@ impl ErrorMotion<'_> {
     #[inline]
     fn read_alone(&self, from: &mut OneSample<'_>) -> Option<f64> {
         match self.terms {
-            [Term::Table { axis, table }] => Some(0.0 + from.table(table, *axis)),
-            [Term::Constant { value }] => Some(0.0 + value),
+            [Term::Table { axis, table }] => Some(from.table(table, *axis)),
+            [Term::Constant { value }] => Some(*value),
             _ => None,
         }
     }
@@ -87,7 +87,7 @@ impl ErrorMotion<'_> {
     fn sum<M, T: Real>(&self, memories: &[M], mut of: impl FnMut(&Term<'_>, &M) -> T) -> T {
         match (self.terms, memories) {
             // Most motions have one term, for which setting up a loop would cost more than the sum.
-            ([term], [memory]) => T::from(0.0) + of(term, memory),
+            ([term], [memory]) => of(term, memory),
             (terms, memories) if terms.len() == memories.len() => {
                 let both = terms.iter().zip(memories);
                 both.fold(T::from(0.0), |sum, (term, memory)| sum + of(term, memory))

@@ -6,8 +6,9 @@
 mod readings;
 
 use crate::Direction;
+use crate::math::nothing;
 
-pub(crate) use self::readings::{LaneSample, OneSample, Readings, lanes};
+pub(crate) use self::readings::{LaneSample, OneSample, Readings, lanes, number};
 
 /// The state of the machine in one servo cycle, borrowed from the caller.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -30,19 +31,13 @@ impl Sample<'_> {
     /// Position of an axis; NaN where the slice is too short.
     #[inline]
     pub(crate) fn position(&self, axis: usize) -> f64 {
-        self.position.get(axis).copied().unwrap_or(f64::NAN)
-    }
-
-    /// Velocity of an axis; NaN where the slice is too short.
-    #[inline]
-    pub(crate) fn velocity(&self, axis: usize) -> f64 {
-        self.velocity.get(axis).copied().unwrap_or(f64::NAN)
+        number(self.position, axis)
     }
 
     /// Temperature of a sensor; NaN where the slice is too short.
     #[inline]
     pub(crate) fn temperature(&self, sensor: usize) -> f64 {
-        self.temperature.get(sensor).copied().unwrap_or(f64::NAN)
+        number(self.temperature, sensor)
     }
 
     /// Direction of an axis; none where the slice is too short.
@@ -51,9 +46,8 @@ impl Sample<'_> {
     }
 
     /// Whether every number of the sample is finite.
+    #[inline]
     pub(crate) fn is_finite(&self) -> bool {
-        // Nothing times a finite number is nothing, and NaN times any other: no branch for each number.
-        let nothing = |sum: f64, slice: &[f64]| slice.iter().fold(sum, |sum, number| sum + number * 0.0);
         let slices = [self.position, self.travel, self.velocity, self.temperature];
         slices.into_iter().fold(self.time_step * 0.0, nothing) == 0.0
     }

@@ -7,6 +7,7 @@ mod place;
 
 use core::fmt;
 
+use crate::math::all_finite;
 use crate::{Direction, Real};
 
 use self::place::Even;
@@ -194,18 +195,6 @@ const fn check_values(values: Values<'_>, expected: Option<usize>) -> Result<(),
         return Err(TableError::Empty);
     }
     if all_finite(forward) && all_finite(reverse) { Ok(()) } else { Err(TableError::NotFinite) }
-}
-
-/// Whether there is no NaN and nothing infinite among these numbers.
-const fn all_finite(numbers: &[f64]) -> bool {
-    let mut rest = numbers;
-    while let [first, others @ ..] = rest {
-        if !first.is_finite() {
-            return false;
-        }
-        rest = others;
-    }
-    true
 }
 
 /// Reads a curve over ascending nodes by binary search. Ends are held; NaN at NaN.

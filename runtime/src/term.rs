@@ -117,7 +117,7 @@ impl Term<'_> {
     #[must_use]
     #[inline]
     pub fn value(&self, sample: &Sample<'_>, state: &TermState) -> f64 {
-        self.read_one(&mut OneSample::new(*sample), state, false)
+        self.read_one(&mut OneSample::new(sample), state, false)
     }
 
     /// The value in what is read; `memory` is what the term remembers, none before its first cycle.
@@ -165,7 +165,7 @@ impl Term<'_> {
     #[must_use]
     #[inline]
     pub fn corrected(&self, sample: &Sample<'_>, state: &TermState) -> f64 {
-        self.read_one(&mut OneSample::new(*sample), state, true)
+        self.read_one(&mut OneSample::new(sample), state, true)
     }
 
     /// [`value`](Self::value) in what is read of one sample, or [`corrected`](Self::corrected).
@@ -190,7 +190,7 @@ impl Term<'_> {
                     advance_play(sample, axis, wind_up, state);
                 }
                 if ramp > 0.0 {
-                    let now = take_up(&OneSample::new(*sample), axis, wind_up, state.remembered());
+                    let now = take_up(&OneSample::new(sample), axis, wind_up, state.remembered());
                     follow(now, sample.time_step, ramp, state);
                 }
             }

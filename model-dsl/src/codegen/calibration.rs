@@ -121,10 +121,10 @@ fn reader(equations: &Equations, motions: &[WrittenMotion]) -> TokenStream {
         let (name, terms) = (&motion.name, terms_of(motion));
         quote! { let [#(#terms),*] = &Self::#name; }
     });
-    let sums = motions.iter().map(|motion| {
-        let terms = terms_of(motion);
-        // From zero on, as any sum of terms.
-        quote! { 0.0 #(+ from.term(#terms))* }
+    let sums = motions.iter().map(|motion| match &terms_of(motion)[..] {
+        [alone] => quote! { from.term(#alone) },
+        // From zero on, as any sum of several terms or of none.
+        terms => quote! { 0.0 #(+ from.term(#terms))* },
     });
     // Nothing is read where there are no terms.
     let from = if motions.iter().all(|motion| motion.terms.is_empty()) {
@@ -139,12 +139,10 @@ fn reader(equations: &Equations, motions: &[WrittenMotion]) -> TokenStream {
             }
             #[inline]
             fn read(&self, from: ::abbe_runtime::MotionReader<'_>, values: &mut [f64]) {
-                let Some(#from) = from.sized::<#axes, { Self::TERMS }>() else { return values.fill(f64::NAN) };
+                let Some(read) = values.first_chunk_mut() else { return values.fill(f64::NAN) };
+                let Some(#from) = from.sized::<#axes, { Self::TERMS }>() else { return read.fill(f64::NAN) };
                 #(#unpacked)*
-                let read = [#(#sums),*];
-                for (value, read) in values.iter_mut().zip(read) {
-                    *value = read;
-                }
+                *read = [#(#sums),*];
             }
         }
     }

@@ -8,7 +8,7 @@ mod input;
 mod search;
 
 use self::block::{Block, Parts};
-use super::{Compensator, Outcome, Refusal, same_length};
+use super::{Compensator, Outcome, Prediction, Refusal, same_length};
 use crate::{ErrorMotions, Kinematics, Lanes};
 
 pub use self::block::{BatchSizes, BatchWork};
@@ -24,13 +24,13 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
     /// The storage that [`compensate_batch`](Self::compensate_batch) works in.
     #[must_use]
     pub fn batch_sizes(&self) -> BatchSizes {
-        let (axes, travels) = (self.kinematics.axes(), self.kinematics.travels().len());
+        let Prediction { kinematics, motions, states, needs, .. } = &self.prediction;
         BatchSizes::new(Parts {
-            axes,
-            travels,
-            motions: self.motions.motions().len(),
-            terms: self.states.len(),
-            sensors: self.needs.sensors,
+            axes: kinematics.axes(),
+            travels: kinematics.travels().len(),
+            motions: motions.motions().len(),
+            terms: states.len(),
+            sensors: needs.sensors,
         })
     }
 
@@ -55,7 +55,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         let mut block = Block::new(work, &self.batch_sizes())?;
         let mut first = 0_usize;
         for answers in answers.chunks_mut(Lanes::WIDTH) {
-            if self.needs.ramp {
+            if self.prediction.needs.ramp {
                 self.rows(batch, first, &mut block, out, answers);
             } else {
                 self.block(batch, first, &mut block, out, answers);
@@ -67,19 +67,20 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
 
     /// Checks every length of a batch of so many rows.
     fn check_batch(&self, batch: &Batch<'_>, out: &[&mut [f64]], rows: usize) -> Result<(), Refusal> {
-        let axes = self.kinematics.axes();
+        let Prediction { kinematics, needs, .. } = &self.prediction;
+        let axes = kinematics.axes();
         same_length("out", axes, out.len())?;
         out.iter().try_for_each(|column| same_length("out", rows, column.len()))?;
         same_length("position", axes, batch.position.len())?;
         same_length("direction", axes, batch.direction.len())?;
-        if self.needs.velocity || !batch.velocity.is_empty() {
+        if needs.velocity || !batch.velocity.is_empty() {
             same_length("velocity", axes, batch.velocity.len())?;
         }
         if !batch.travel.is_empty() {
-            same_length("travel", self.kinematics.travels().len(), batch.travel.len())?;
+            same_length("travel", kinematics.travels().len(), batch.travel.len())?;
         }
-        if batch.temperature.len() < self.needs.sensors {
-            same_length("temperature", self.needs.sensors, batch.temperature.len())?;
+        if batch.temperature.len() < needs.sensors {
+            same_length("temperature", needs.sensors, batch.temperature.len())?;
         }
         batch.check(rows)
     }
@@ -132,14 +133,15 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
 
     /// Takes the memories over to each row in its turn, and keeps what they are there.
     fn remember(&mut self, batch: &Batch<'_>, first: usize, block: &mut Block<'_>, open: &Open) {
-        if !self.needs.memory {
+        if !self.prediction.needs.memory {
             return;
         }
+        let prediction = &mut self.prediction;
         for ((row, lane), _) in (first..).zip(0_usize..).zip(open).filter(|(_, open)| **open) {
             block.row.take(batch, row);
-            self.advance(&block.row.sample(batch));
-            let terms = self.motions.motions().iter().flat_map(|motion| motion.terms);
-            for ((term, state), memory) in terms.zip(&*self.states).zip(&mut *block.memory) {
+            prediction.advance(&block.row.sample(batch));
+            let terms = prediction.motions.motions().iter().flat_map(|motion| motion.terms);
+            for ((term, state), memory) in terms.zip(&*prediction.states).zip(&mut *block.memory) {
                 if term.remembers() {
                     memory.set(lane, state.remembered().copied().unwrap_or(f64::NAN));
                 }

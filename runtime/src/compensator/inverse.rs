@@ -14,36 +14,47 @@ const DEPENDENT: f64 = 1e-4;
 /// place of 1, squared.
 const ROUNDING: f64 = 64.0 * f64::EPSILON * f64::EPSILON;
 
-/// The pseudo-inverse of `A = J J^T`: `A^+ = sum of p p^T` over the vectors p, which are zero where nothing is reached.
+/// The pseudo-inverse of `A = J J^T`, which is zero where nothing is reached.
 ///
 /// `J^+ = J^T A^+`, so that an axis with direction d moves by `d . (A^+ E)`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Reach<T = f64> {
+    /// The diagonal of `A^+`, where A is diagonal.
+    straight: [T; 3],
+    /// Where it is not, `A^+ = sum of p p^T` over these vectors p.
     vectors: [[T; 3]; 3],
+    /// Whether it is not: 1, or 0 where A is diagonal.
+    skew: T,
 }
 
 impl<T: Real> Reach<T> {
     /// Nothing is reached.
     pub(super) fn nothing() -> Self {
-        Self { vectors: [zero(); 3] }
+        Self { straight: zero(), vectors: [zero(); 3], skew: 0.0.into() }
     }
 
     /// The directions reached by axes that move the tip along these columns.
     pub(super) fn new(columns: &[[T; 3]]) -> Self {
         let (straight, skew) = straight(columns);
-        if !skew.any_above(0.0) {
-            return Self { vectors: straight };
-        }
-        let general = conjugate(columns, &basis(columns));
-        let mut vectors = straight;
-        for (vector, general) in vectors.iter_mut().zip(general) {
-            *vector = above(skew, 0.0.into(), general, *vector);
-        }
-        Self { vectors }
+        let any = skew.any_above(0.0);
+        let vectors = if any { conjugate(columns, &basis(columns)) } else { [zero(); 3] };
+        Self { straight, vectors, skew }
     }
 
     /// `A^+ E`.
+    #[inline]
     pub(super) fn apply(&self, error: [T; 3]) -> [T; 3] {
+        let ([a, b, c], [x, y, z]) = (self.straight, error);
+        let straight = [a * x, b * y, c * z];
+        if self.skew.any_above(0.0) {
+            above(self.skew, 0.0.into(), self.apply_vectors(error), straight)
+        } else {
+            straight
+        }
+    }
+
+    /// [`apply`](Self::apply) where A is not diagonal.
+    fn apply_vectors(&self, error: [T; 3]) -> [T; 3] {
         self.vectors.iter().fold(zero(), |sum, &vector| add_scaled(sum, dot(vector, error), vector))
     }
 }
@@ -80,9 +91,9 @@ pub(super) fn spread<T: Real>(columns: &[[T; 3]], v: [T; 3]) -> T {
     sum.sqrt()
 }
 
-/// The vectors where A is diagonal, as it is for slides at right angles along the axes of the part, or turned with it
-/// through any angle when there are three alike; and 1 where it is not, by more than rounding, or 0.
-fn straight<T: Real>(columns: &[[T; 3]]) -> ([[T; 3]; 3], T) {
+/// The diagonal of `A^+` where A is diagonal, as it is for slides at right angles along the axes of the part, or turned with
+/// it through any angle when there are three alike; and 1 where it is not, by more than rounding, or 0.
+fn straight<T: Real>(columns: &[[T; 3]]) -> ([T; 3], T) {
     let (nothing, one) = (T::from(0.0), T::from(1.0));
     let mut squares = zero();
     let mut mixed = zero();
@@ -95,9 +106,8 @@ fn straight<T: Real>(columns: &[[T; 3]]) -> ([[T; 3]; 3], T) {
     for (mixed, bound) in mixed.into_iter().zip([yy * zz, zz * xx, xx * yy]) {
         skew = (mixed * mixed).above(bound * ROUNDING.into(), one, skew);
     }
-    let scale = |square: T| square.above((DEPENDENT * DEPENDENT).into(), one / square.sqrt(), nothing);
-    let [x, y, z] = squares.map(scale);
-    ([[x, nothing, nothing], [nothing, y, nothing], [nothing, nothing, z]], skew)
+    let inverse = |square: T| square.above((DEPENDENT * DEPENDENT).into(), one / square, nothing);
+    (squares.map(inverse), skew)
 }
 
 /// An orthonormal basis of what the columns span, by Gram-Schmidt. Columns that vanish or depend on others add nothing.
@@ -187,7 +197,7 @@ mod tests {
             assert!(!straight(columns).1.any_above(0.0), "{columns:?}");
             let (reach, general) = (Reach::new(columns), conjugate(columns, &basis(columns)));
             for error in [[1.0, 0.0, 0.0], [0.3, -0.2, 0.7], [0.0, 5.0, 1.0]] {
-                assert_close(reach.apply(error), Reach { vectors: general }.apply(error));
+                assert_close(reach.apply(error), Reach { vectors: general, skew: 1.0, ..reach }.apply(error));
             }
         }
         let skew = [[1.0, 0.0, 0.0], [1e-9, 1.0, 0.0]];

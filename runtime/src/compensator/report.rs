@@ -12,6 +12,16 @@ pub struct Limits {
     pub compensation: Option<f64>,
 }
 
+impl Limits {
+    /// Refuses a correction over the limit; its length over all axes is asked for where there is one.
+    pub(super) fn check(&self, length: impl FnOnce() -> f64) -> Result<(), Refusal> {
+        let Some(limit) = self.compensation else { return Ok(()) };
+        let correction = length();
+        // Not `>`: also at NaN, which no comparison lets through.
+        if correction <= limit { Ok(()) } else { Err(Refusal::OverLimit { correction, limit }) }
+    }
+}
+
 /// When the search for the compensated position ends.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Convergence {

@@ -4,7 +4,7 @@
 //! so that motions that are known when the code is compiled and motions that come from a file go through the same formulas.
 
 use crate::sample::OneSample;
-use crate::{Direction, ErrorMotion, Sample, Term, TermState};
+use crate::{ErrorMotion, Sample, Term, TermState};
 
 /// Reads the terms of a machine's error motions, each in its turn, in one state of the machine.
 ///
@@ -21,14 +21,20 @@ pub struct MotionReader<'a> {
 }
 
 impl<'a> MotionReader<'a> {
-    /// A reader of what the error motions are.
-    pub(crate) const fn new(sample: Sample<'a>, states: &'a [TermState]) -> Self {
-        Self { from: OneSample::new(sample), states, read: 0, corrected: false }
+    /// A reader of what the error motions are at a position, in the state of a sample.
+    #[inline]
+    pub(crate) const fn new(sample: &'a Sample<'a>, position: &'a [f64], states: &'a [TermState]) -> Self {
+        Self { from: OneSample::at(sample, position), states, read: 0, corrected: false }
     }
 
     /// A reader of the part of them that is corrected in this cycle.
-    pub(crate) const fn of_corrected(sample: Sample<'a>, states: &'a [TermState]) -> Self {
-        Self { from: OneSample::new(sample), states, read: 0, corrected: true }
+    #[inline]
+    pub(crate) const fn of_corrected(
+        sample: &'a Sample<'a>,
+        position: &'a [f64],
+        states: &'a [TermState],
+    ) -> Self {
+        Self { from: OneSample::at(sample, position), states, read: 0, corrected: true }
     }
 
     /// The same reader for a machine of so many axes whose motions have so many terms, numbers that the compiler of Rust
@@ -36,12 +42,8 @@ impl<'a> MotionReader<'a> {
     #[must_use]
     #[inline]
     pub fn sized<const AXES: usize, const TERMS: usize>(self) -> Option<Self> {
-        let sample = self.from.sample;
-        let position: &[f64; AXES] = sample.position.try_into().ok()?;
-        let direction: &[Direction; AXES] = sample.direction.try_into().ok()?;
         let states: &[TermState; TERMS] = self.states.try_into().ok()?;
-        let from = OneSample::new(Sample { position, direction, ..sample });
-        Some(Self { from, states, read: 0, corrected: self.corrected })
+        Some(Self { from: self.from.sized::<AXES>()?, states, read: 0, corrected: self.corrected })
     }
 
     /// The value of the next term, in mm or rad; NaN where it has no memory left.

@@ -28,17 +28,36 @@ pub(crate) trait Readings {
     fn table(&mut self, table: &Table<'_>, axis: usize) -> Self::Number;
 }
 
-/// One sample.
+/// One sample, or its state at another position.
 #[derive(Debug)]
 pub(crate) struct OneSample<'a> {
-    pub(crate) sample: Sample<'a>,
+    position: &'a [f64],
+    direction: &'a [Direction],
+    /// All else of the sample.
+    others: &'a Sample<'a>,
     /// Where the table that was read last found its position.
     place: Option<Place>,
 }
 
 impl<'a> OneSample<'a> {
-    pub(crate) const fn new(sample: Sample<'a>) -> Self {
-        Self { sample, place: None }
+    #[inline]
+    pub(crate) const fn new(sample: &'a Sample<'a>) -> Self {
+        Self::at(sample, sample.position)
+    }
+
+    /// The state of a sample at another position.
+    #[inline]
+    pub(crate) const fn at(sample: &'a Sample<'a>, position: &'a [f64]) -> Self {
+        Self { position, direction: sample.direction, others: sample, place: None }
+    }
+
+    /// The same for a machine of so many axes, a number that the compiler of Rust knows from here on; none where it has
+    /// others.
+    #[inline]
+    pub(crate) fn sized<const AXES: usize>(self) -> Option<Self> {
+        let position: &[f64; AXES] = self.position.try_into().ok()?;
+        let direction: &[Direction; AXES] = self.direction.try_into().ok()?;
+        Some(Self { position, direction, others: self.others, place: None })
     }
 }
 
@@ -47,28 +66,28 @@ impl Readings for OneSample<'_> {
 
     #[inline]
     fn position(&self, axis: usize) -> f64 {
-        self.sample.position(axis)
+        number(self.position, axis)
     }
 
     #[inline]
     fn velocity(&self, axis: usize) -> f64 {
-        self.sample.velocity(axis)
+        number(self.others.velocity, axis)
     }
 
     #[inline]
     fn temperature(&self, sensor: usize) -> f64 {
-        self.sample.temperature(sensor)
+        number(self.others.temperature, sensor)
     }
 
     #[inline]
     fn sign(&self, axis: usize) -> f64 {
-        self.sample.direction(axis).map_or(f64::NAN, Direction::sign)
+        self.direction.get(axis).map_or(f64::NAN, |direction| direction.sign())
     }
 
     // Always: see `MotionReader::term`.
     #[inline(always)]
     fn table(&mut self, table: &Table<'_>, axis: usize) -> f64 {
-        table.read(axis, &self.sample, &mut self.place)
+        table.read(axis, self.position, self.direction, &mut self.place)
     }
 }
 
@@ -117,6 +136,12 @@ impl Readings for LaneSample<'_> {
             None => f64::NAN.into(),
         }
     }
+}
+
+/// The number at an index; NaN where there is none.
+#[inline]
+pub(crate) fn number(slice: &[f64], index: usize) -> f64 {
+    slice.get(index).copied().unwrap_or(f64::NAN)
 }
 
 /// The lanes at an index; NaN where there are none.

@@ -5,7 +5,7 @@
 //! to an index are what keeps a processor from reading several side by side.
 
 use super::{Nodes, Table, between, read_at};
-use crate::{Direction, Lanes, Real, Sample};
+use crate::{Direction, Lanes, Real};
 
 /// 2^52: adding it to a number from 0 to 2^51 rounds that to a whole number, which stands in the last bits of the sum.
 const WHOLE: f64 = 4_503_599_627_370_496.0;
@@ -41,25 +41,33 @@ pub(crate) type Place = Located<usize, f64, Direction>;
 pub(crate) type LanePlace = Located<[usize; Lanes::WIDTH], Lanes, [Direction; Lanes::WIDTH]>;
 
 impl Table<'_> {
-    /// The value where an axis is in a sample, on the curve of its direction; NaN where the sample lacks the axis.
+    /// The value where an axis is, on the curve of its direction; NaN where there is no such axis.
     ///
-    /// `known` is the place that another table found in the same sample, if any, and is then this table's.
+    /// `known` is the place that another table found at the same position, if any, and is then this table's.
     // Always, as what it calls: a place that is found for one constant table is then known to the compiler for the next.
     #[inline(always)]
-    pub(crate) fn read(&self, axis: usize, sample: &Sample<'_>, known: &mut Option<Place>) -> f64 {
+    pub(crate) fn read(
+        &self,
+        axis: usize,
+        position: &[f64],
+        direction: &[Direction],
+        known: &mut Option<Place>,
+    ) -> f64 {
         if let (Nodes::Even(even), Some(place)) = (self.nodes, &*known)
             && place.is(axis, even)
         {
             return place.read(self.curve(place.direction));
         }
-        self.read_anew(axis, sample, known)
+        let (Some(&position), Some(&direction)) = (position.get(axis), direction.get(axis)) else {
+            return f64::NAN;
+        };
+        self.read_anew(axis, position, direction, known)
     }
 
     /// [`read`](Self::read) where no place is known.
     #[inline(always)]
-    fn read_anew(&self, axis: usize, sample: &Sample<'_>, known: &mut Option<Place>) -> f64 {
-        let Some(direction) = sample.direction(axis) else { return f64::NAN };
-        let (position, curve) = (sample.position(axis), self.curve(direction));
+    fn read_anew(&self, axis: usize, position: f64, direction: Direction, known: &mut Option<Place>) -> f64 {
+        let curve = self.curve(direction);
         match self.nodes {
             Nodes::Even(even) => known.insert(Place::new(even, axis, position, direction)).read(curve),
             Nodes::At(at) => read_at(curve, at, position),

@@ -8,8 +8,8 @@ use super::block::Block;
 use super::input::Batch;
 use super::{Answers, Open};
 use crate::compensator::inverse::{Reach, set, spread, tip};
-use crate::compensator::{Compensator, Outcome, Refusal};
-use crate::math::{add_scaled, dot};
+use crate::compensator::{Compensator, Outcome, Prediction, Refusal, correct};
+use crate::math::{add_scaled, all_finite};
 use crate::sample::{LaneSample, lanes};
 use crate::{ErrorMotions, Kinematics, Lanes};
 
@@ -27,7 +27,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         for (lane, (open, answer)) in open.iter_mut().zip(answers).enumerate().filter(|(_, (open, _))| **open)
         {
             let error = row(&error, lane);
-            *answer = if error.iter().all(|part| part.is_finite()) {
+            *answer = if all_finite(&error) {
                 Ok(Outcome { error, remaining: error, iterations: 0 })
             } else {
                 *open = false;
@@ -48,12 +48,12 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         for (lane, (open, answer)) in open.iter_mut().zip(answers).enumerate().filter(|(_, (open, _))| **open)
         {
             block.row.take_position(batch, first.saturating_add(lane));
-            self.kinematics.directions(block.row.position, self.work.directions);
-            if !self.work.directions.iter().flatten().all(|part| part.is_finite()) {
+            self.prediction.kinematics.directions(block.row.position, self.directions);
+            if !all_finite(self.directions.as_flattened()) {
                 (*open, *answer) = (false, Err(Refusal::NotFinite));
                 continue;
             }
-            for (lanes, &column) in block.columns.iter_mut().zip(&*self.work.directions) {
+            for (lanes, &column) in block.columns.iter_mut().zip(&*self.directions) {
                 let known = lanes.each_ref().map(|part| part.lane(lane).to_bits());
                 block.reach_known &= known == column.map(f64::to_bits);
                 set(lanes, lane, column);
@@ -88,7 +88,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
             let next = block.reach.apply(step.here);
             step.distance = spread(block.columns, add_scaled(next, Lanes::from(-1.0), step.pull));
             step.pull = next;
-            block.correct(next);
+            correct(block.position, block.columns, next, block.command);
             self.settle(first, block, &step, &mut open, out, answers);
         }
     }
@@ -121,7 +121,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
                 *answer = Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
                 continue;
             }
-            if let Err(refusal) = self.check_limit(correction.lane(lane)) {
+            if let Err(refusal) = self.limits.check(|| correction.lane(lane)) {
                 *answer = Err(refusal);
             } else if let Ok(outcome) = answer {
                 outcome.remaining = row(&remaining, lane);
@@ -140,30 +140,32 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
             direction: block.direction,
             place: None,
         };
+        let Prediction { kinematics, motions, .. } = &self.prediction;
         let mut rest = &*block.memory;
-        for (motion, value) in self.motions.motions().iter().zip(&mut *block.motions) {
+        for (motion, value) in motions.motions().iter().zip(&mut *block.motions) {
             let (memory, others) = rest.split_at_checked(motion.terms.len()).unwrap_or_default();
             *value = motion.read_lanes(&mut at, memory);
             rest = others;
         }
         if !block.travels_given {
-            for (travel, &axis) in block.travel.iter_mut().zip(self.kinematics.travels()) {
+            for (travel, &axis) in block.travel.iter_mut().zip(kinematics.travels()) {
                 *travel = lanes(block.command, axis);
             }
         }
-        self.kinematics
+        kinematics
             .error_lanes(block.command, block.travel, block.motions)
             .unwrap_or_else(|| self.error_lane_by_lane(block))
     }
 
     /// The error at the commands of a machine that answers row by row.
     fn error_lane_by_lane(&mut self, block: &mut Block<'_>) -> [Lanes; 3] {
+        let Prediction { kinematics, values, travel, .. } = &mut self.prediction;
         let mut error = [Lanes::default(); 3];
         for lane in 0..Lanes::WIDTH {
             extract(block.row_command, block.command, lane);
-            extract(self.work.travel, block.travel, lane);
-            extract(self.work.motions, block.motions, lane);
-            let row = self.kinematics.error(block.row_command, self.work.travel, self.work.motions);
+            extract(travel, block.travel, lane);
+            extract(values, block.motions, lane);
+            let row = kinematics.error(block.row_command, travel, values);
             set(&mut error, lane, row);
         }
         error
@@ -192,14 +194,6 @@ fn extract(numbers: &mut [f64], lanes: &[Lanes], lane: usize) {
 }
 
 impl Block<'_> {
-    /// Writes the positions less each axis's share of the pull to the commands.
-    fn correct(&mut self, pull: [Lanes; 3]) {
-        let columns = self.columns.iter();
-        for ((command, &target), &column) in self.command.iter_mut().zip(&*self.position).zip(columns) {
-            *command = target - dot(column, pull);
-        }
-    }
-
     /// Writes the commands of a lane to its row.
     fn write(&self, lane: usize, row: usize, out: &mut [&mut [f64]]) {
         for (out, command) in out.iter_mut().zip(&*self.command) {

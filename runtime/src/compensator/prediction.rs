@@ -1,0 +1,103 @@
+//! The error that a calibration predicts.
+//!
+//! In: the state of the machine in one cycle, and what the terms remember. Out: the error at the tool tip there, or at other
+//! positions in the same state. It exists beside the search for the command, which asks it again and again.
+
+use super::{Needs, Refusal, same_length};
+use crate::math::all_finite;
+use crate::sample::number;
+use crate::{ErrorMotions, Kinematics, MotionReader, Sample, TermState};
+
+/// The equations of a machine, its error motions, and the storage in which they are evaluated.
+#[derive(Debug)]
+pub(super) struct Prediction<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> {
+    pub(super) kinematics: &'a K,
+    pub(super) motions: &'a M,
+    /// What each term remembers.
+    pub(super) states: &'a mut [TermState],
+    /// The value of each error motion.
+    pub(super) values: &'a mut [f64],
+    /// The value of each free travel.
+    pub(super) travel: &'a mut [f64],
+    pub(super) needs: Needs,
+}
+
+impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
+    /// Begins a cycle: checks the sample, takes the memories over to it, and gives the error at its position.
+    #[inline]
+    pub(super) fn begin(&mut self, sample: &Sample<'_>) -> Result<[f64; 3], Refusal> {
+        self.check(sample)?;
+        self.advance(sample);
+        let error = self.error(sample, sample.position);
+        if all_finite(&error) { Ok(error) } else { Err(Refusal::NotFinite) }
+    }
+
+    /// Checks the sample.
+    #[inline]
+    fn check(&self, sample: &Sample<'_>) -> Result<(), Refusal> {
+        let axes = self.kinematics.axes();
+        same_length("position", axes, sample.position.len())?;
+        same_length("direction", axes, sample.direction.len())?;
+        if self.needs.velocity || !sample.velocity.is_empty() {
+            same_length("velocity", axes, sample.velocity.len())?;
+        }
+        if !sample.travel.is_empty() {
+            same_length("travel", self.kinematics.travels().len(), sample.travel.len())?;
+        }
+        if sample.temperature.len() < self.needs.sensors {
+            same_length("temperature", self.needs.sensors, sample.temperature.len())?;
+        }
+        if !sample.is_finite() {
+            return Err(Refusal::NotFinite);
+        }
+        if sample.time_step < 0.0 {
+            return Err(Refusal::NegativeTimeStep { time_step: sample.time_step });
+        }
+        Ok(())
+    }
+
+    /// Takes the memory of every term over to the sample.
+    #[inline]
+    pub(super) fn advance(&mut self, sample: &Sample<'_>) {
+        if self.needs.memory {
+            self.remember(sample);
+        }
+    }
+
+    fn remember(&mut self, sample: &Sample<'_>) {
+        let mut rest = &mut *self.states;
+        for motion in self.motions.motions() {
+            let Some((states, others)) = rest.split_at_mut_checked(motion.terms.len()) else { return };
+            motion.advance(sample, states);
+            rest = others;
+        }
+    }
+
+    /// The error at a position in the state of the sample; memories are read only.
+    #[inline]
+    pub(super) fn error(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
+        self.motions.read(MotionReader::new(sample, position, self.states), self.values);
+        self.sum(sample, position)
+    }
+
+    /// The part of the error that is corrected in this cycle; memories are read only.
+    #[inline]
+    pub(super) fn corrected(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
+        self.motions.read(MotionReader::of_corrected(sample, position, self.states), self.values);
+        self.sum(sample, position)
+    }
+
+    /// The sum of lever arms times the error motions that were read.
+    #[inline]
+    fn sum(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
+        let travel = if sample.travel.is_empty() {
+            for (travel, &axis) in self.travel.iter_mut().zip(self.kinematics.travels()) {
+                *travel = number(position, axis);
+            }
+            &*self.travel
+        } else {
+            sample.travel
+        };
+        self.kinematics.error(position, travel, self.values)
+    }
+}

@@ -249,16 +249,16 @@ pub(crate) struct Export {
     /// Leave terms out that no controller can compensate in real time, naming each on standard error.
     #[arg(long)]
     pub(crate) leave_out_uncompensable: bool,
-    /// LinuxCNC: COMP_FILE_TYPE.
-    #[arg(long = "type", value_name = "TYPE", default_value_t = 1, value_parser = clap::value_parser!(u8).range(0..=1))]
-    pub(crate) kind: u8,
-    /// LinuxCNC: the machine's unit of length.
-    #[arg(long, value_enum, default_value_t = ExportUnit::Mm)]
-    pub(crate) unit: ExportUnit,
-    /// Sinumerik: the number of tables that CEC has.
-    #[arg(long, default_value_t = 8)]
-    pub(crate) tables: usize,
-    /// The controller's name of an axis, or its motor's number, as in X=MX1.
+    /// LinuxCNC: COMP_FILE_TYPE; by default 1.
+    #[arg(long = "type", value_name = "TYPE", value_parser = clap::value_parser!(u8).range(0..=1))]
+    pub(crate) kind: Option<u8>,
+    /// LinuxCNC: the machine's unit of length; by default mm.
+    #[arg(long, value_enum)]
+    pub(crate) unit: Option<ExportUnit>,
+    /// Sinumerik: the number of tables that CEC has; by default 8.
+    #[arg(long)]
+    pub(crate) tables: Option<usize>,
+    /// Sinumerik, HEIDENHAIN, PMAC: the controller's name of an axis, or its motor's number, as in X=MX1.
     #[arg(long, value_name = "AXIS=NAME", value_parser = name)]
     pub(crate) name: Vec<(String, String)>,
     /// PMAC: counts of an axis's motor for a mm, as in X=10000.
@@ -372,7 +372,7 @@ pub(crate) enum EvaluationFormat {
     Html,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ExportFormat {
     /// LinuxCNC: screw compensation, COMP_FILE.
     Linuxcnc,

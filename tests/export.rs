@@ -113,6 +113,9 @@ fn what_cannot_be_exported_is_refused_with_what_to_do() {
         ("pmac", &[], "--counts X=10000"),
         ("heidenhain", &[], "--value error"),
         ("sinumerik", &["--name", "Q=AX1"], "no such axis"),
+        ("isg", &["--counts", "X=10000"], "--counts says nothing to isg"),
+        ("linuxcnc", &["--value", "error"], "it is an option of sinumerik, heidenhain"),
+        ("pmac", &["--type", "1"], "it is an option of linuxcnc"),
     ] {
         let run = match more.first() {
             Some(&"--output") => abbe(&[&["export", format, &postech()], more].concat(), ""),

@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
 use exchange::controller::{self, Format, Geometry, Options, Refused, Sense, Space, Unusable, Wanted};
 use exchange::controller::{Kind, Unit};
 use model_dsl::equations::Equations;
@@ -15,6 +16,9 @@ use crate::load;
 use crate::output::print;
 use crate::written;
 
+/// The cross tables that a Sinumerik has where nothing else is said.
+const TABLES: usize = 8;
+
 /// Runs the command.
 pub(crate) fn run(command: &Export) -> Result<(), Failure> {
     let calibrated = calibrated::read(&command.calibration)?;
@@ -25,6 +29,7 @@ pub(crate) fn run(command: &Export) -> Result<(), Failure> {
     let geometry = Geometry::new(equations, &calibrated.calibration);
     let space =
         Space::new(equations, &calibrated.calibration, &wanted(command, equations)).map_err(refused)?;
+    check_options(command)?;
     check_names(command, equations)?;
     if command.check.is_empty() {
         write(command, &geometry, &space)
@@ -108,6 +113,32 @@ fn check_targets(command: &Export, targets: &[PathBuf]) -> Result<(), Failure> {
     )))
 }
 
+/// Refuses options of other formats: whoever gives one means that it does something.
+fn check_options(command: &Export) -> Result<(), Failure> {
+    use ExportFormat::{Heidenhain, Linuxcnc, Pmac, Sinumerik};
+    let options = [
+        ("--type", command.kind.is_some(), &[Linuxcnc][..]),
+        ("--unit", command.unit.is_some(), &[Linuxcnc]),
+        ("--value", command.value.is_some(), &[Sinumerik, Heidenhain]),
+        ("--tables", command.tables.is_some(), &[Sinumerik]),
+        ("--name", !command.name.is_empty(), &[Sinumerik, Heidenhain, Pmac]),
+        ("--counts", !command.counts.is_empty(), &[Pmac]),
+    ];
+    let stray = options.into_iter().find(|(_, given, formats)| *given && !formats.contains(&command.format));
+    let Some((option, _, formats)) = stray else { return Ok(()) };
+    let names: Vec<String> = formats.iter().map(|format| name(*format)).collect();
+    Err(Failure::Wrong(format!(
+        "error: {option} says nothing to {}\nhelp: leave it out; it is an option of {}",
+        name(command.format),
+        names.join(", ")
+    )))
+}
+
+/// What a format is called on the command line.
+fn name(format: ExportFormat) -> String {
+    format.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+}
+
 /// Refuses options for axes that the machine lacks; those of the workspace are looked at with it.
 fn check_names(command: &Export, equations: &Equations) -> Result<(), Failure> {
     let named = command.name.iter().map(|(axis, _)| ("--name", axis));
@@ -154,16 +185,16 @@ fn wanted(command: &Export, equations: &Equations) -> Wanted {
 fn options(command: &Export) -> Options {
     Options {
         points: command.points,
-        kind: if command.kind == 0 { Kind::Actual } else { Kind::Trim },
+        kind: if command.kind == Some(0) { Kind::Actual } else { Kind::Trim },
         unit: match command.unit {
-            ExportUnit::Mm => Unit::MM,
-            ExportUnit::In => Unit::INCH,
+            None | Some(ExportUnit::Mm) => Unit::MM,
+            Some(ExportUnit::In) => Unit::INCH,
         },
         sense: command.value.map(|value| match value {
             ExportValue::Error => Sense::Error,
             ExportValue::Correction => Sense::Correction,
         }),
-        tables: command.tables,
+        tables: command.tables.unwrap_or(TABLES),
         names: command.name.clone(),
         counts: command.counts.clone(),
     }

@@ -6,8 +6,9 @@
 use std::error::Error;
 use std::time::Duration;
 
+use abbe_benches::agreed::contestants;
 use abbe_benches::case::{Case, STATES};
-use abbe_benches::contest::{Group, MACHINES, contestants};
+use abbe_benches::contest::{Group, MACHINES};
 use criterion::{Criterion, Throughput};
 
 fn main() -> Result<(), Box<dyn Error>> {

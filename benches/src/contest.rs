@@ -1,13 +1,12 @@
 //! Contestants: everything that answers one question about the states of a machine.
 //!
-//! In: a case and a group (which question). Out: the contestants, all of which agree. A pass asks one of them for every
-//! state; that is what is timed and counted. The calls are made inside the pass, so that no dynamic call is measured, and
-//! through functions that are not inlined, so that Rust has no advantage over C that is linked.
+//! In: a function of the number of a state. Out: a contestant. A pass asks it for every state; that is what is timed and
+//! counted. The calls are made inside the pass, so that no dynamic call is measured, and through functions that are not
+//! inlined, so that Rust has no advantage over C that is linked.
 
 use std::hint::black_box;
 
-use crate::case::{Case, STATES};
-use crate::{foreign, ours, product};
+use crate::case::STATES;
 
 /// What is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,33 +76,4 @@ impl<const N: usize, F: FnMut(usize) -> [f64; N]> Contestant for Answering<F> {
             black_box((self.answer)(black_box(state)));
         }
     }
-}
-
-/// All contestants of a group on a machine, ours first, after their answers have been compared in every state.
-///
-/// # Errors
-/// Names a contestant whose answer differs, and where.
-pub fn contestants(case: &'static Case, group: Group) -> Result<Vec<Box<dyn Contestant>>, String> {
-    let mut all = ours::contestants(case, group);
-    all.extend(foreign::contestants(case, group));
-    all.extend(product::contestants(case, group));
-    let (ours, others) = all.split_first_mut().ok_or("there is no contestant")?;
-    for other in others {
-        for state in 0..STATES {
-            let (own, its) = (ours.at(state), other.at(state));
-            let apart = own.iter().zip(&its).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            if own.len() != its.len()
-                || apart > other.tolerance()
-                || own.iter().chain(&its).any(|part| part.is_nan())
-            {
-                return Err(format!(
-                    "{}, {}, {}: state {state} gives {its:?}, ours {own:?}",
-                    case.name,
-                    group.name(),
-                    other.name()
-                ));
-            }
-        }
-    }
-    Ok(all)
 }

@@ -1,10 +1,11 @@
 //! The compensation call of three machines, by Abbe and by what else computes the same.
 //!
-//! In: the machines that `build.rs` compiled, numbers that [`case`] draws. Out: [`Contestant`]s, which answer the same
+//! In: the machines that `build.rs` compiled, numbers that [`case`] draws. Out: [`contest::Contestant`]s, which answer the same
 //! question about the same states: Abbe's, C by hand, C by symbolic tools, and a product of matrices at run time. The
 //! benchmarks time them and `count` runs them under an instruction counter; both hold the answers against each other
 //! first. It exists so that every figure compares like with like.
 
+pub mod agreed;
 pub mod case;
 pub mod chain;
 pub mod contest;
@@ -12,8 +13,6 @@ mod foreign;
 mod ours;
 mod product;
 mod random;
-
-pub use contest::{Contestant, Group, contestants};
 
 /// The machines, compiled by Abbe.
 pub mod machines {

@@ -5,8 +5,9 @@
 
 use std::error::Error;
 
+use abbe_benches::agreed::contestants;
 use abbe_benches::case::Case;
-use abbe_benches::contest::{Group, MACHINES, contestants};
+use abbe_benches::contest::{Group, MACHINES};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

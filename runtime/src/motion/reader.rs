@@ -37,8 +37,8 @@ impl<'a> MotionReader<'a> {
         Self { from: OneSample::at(sample, position), states, read: 0, corrected: true }
     }
 
-    /// The same reader for a machine of so many axes whose motions have so many terms, numbers that the compiler of Rust
-    /// knows from here on; none where they are others.
+    /// A reader of the same, from the first term on, for a machine of so many axes whose motions have so many terms: numbers
+    /// that the compiler of Rust knows from here on. None where they are others.
     #[must_use]
     #[inline]
     pub fn sized<const AXES: usize, const TERMS: usize>(self) -> Option<Self> {

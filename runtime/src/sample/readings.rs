@@ -51,8 +51,8 @@ impl<'a> OneSample<'a> {
         Self { position, direction: sample.direction, others: sample, place: None }
     }
 
-    /// The same for a machine of so many axes, a number that the compiler of Rust knows from here on; none where it has
-    /// others.
+    /// The same, no table being read yet, for a machine of so many axes: a number that the compiler of Rust knows from here
+    /// on. None where there are others.
     #[inline]
     pub(crate) fn sized<const AXES: usize>(self) -> Option<Self> {
         let position: &[f64; AXES] = self.position.try_into().ok()?;

@@ -10,6 +10,7 @@ mod units;
 
 use crate::appraisal::Appraisal;
 use crate::candidates;
+use crate::crossing;
 use crate::curves::BROAD;
 use crate::diagnosis::{Diagnosis, NoiseSummary, Residual, SettingFinding, Verdict};
 use crate::engine::{self, Found};
@@ -23,7 +24,7 @@ use crate::study::{Scene, Study};
 use crate::unsteady;
 use crate::zeros;
 use crate::{Inputs, Progress};
-use decidable::{astray, misplaced, too_little, undecided};
+use decidable::{astray, crossed, misplaced, too_little, undecided};
 use findings::report;
 use summary::summary;
 use units::Units;
@@ -51,8 +52,10 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
     if let Some(reason) = astray(&study, &bare) {
         return undecidable(diagnosis, &study, reason);
     }
-    diagnosis.before = units.residual(&study, &bare);
-    let before = drawn.then(|| pictures::Before::new(&study, &bare));
+    let left = |study: &Study<'_>, bare: &Model| {
+        (units.residual(study, bare), drawn.then(|| pictures::Before::new(study, bare)))
+    };
+    let mut before = left(&study, &bare);
     let mut step = |done: f64| progress(Progress { step: "looking for left-out physics", done: 0.9 * done });
     let always = candidates::always(&study);
     let mut found = engine::find(&mut study, always, &mut step);
@@ -65,11 +68,18 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
         }
         found = engine::find(&mut study, always, &mut step);
     }
+    if study.crosses() {
+        before = with_known_crossings(&mut study, &bare, left);
+        found.appraisal.mark(&mut study);
+    }
+    let drawn_before;
+    (diagnosis.before, drawn_before) = before;
     let held_out = |model: &Model| held_out(&study, &units, model);
     unsteady::weigh_drives_plainly(&study, &mut found, held_out);
     if found.claims() && held_out(&found.fit.model) > diagnosis.before.holdout_rms {
-        withdraw(&study, &mut found);
+        withdraw(&mut study, &mut found);
     }
+    diagnosis.undecided.extend(crossed(&study, &found.fit.model));
     let feature = explain_locally(&mut study, &mut found);
     let mut moving = if feature.is_none() { unsteady::moving(&study, &found.appraisal) } else { None };
     if let Some(moving) = &mut moving {
@@ -82,7 +92,8 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
     diagnosis.noise = units.noise(&study, quiet.as_ref().unwrap_or(&found.appraisal));
     let numbers = report(&study, &found, &units, &mut diagnosis);
     let counts = |kind| units.counts(&study, kind);
-    diagnosis.pictures = before.map(|before| before.draw(&study, &found, (&counts, units.unit.0), &numbers));
+    diagnosis.pictures =
+        drawn_before.map(|before| before.draw(&study, &found, (&counts, units.unit.0), &numbers));
     diagnosis.unexplained = match feature {
         Some(feature) => Some(unexplained::feature(&study, &found, &feature, &units)),
         None => unexplained::unsteady(&study, &found, moving, &units),
@@ -116,10 +127,26 @@ fn held_out(study: &Study<'_>, units: &Units, model: &Model) -> Option<f64> {
 }
 
 /// Takes all effects of the machine back: what makes held-out rows lie farther is no explanation, however well it fitted.
-fn withdraw(study: &Study<'_>, found: &mut Found) {
+fn withdraw(study: &mut Study<'_>, found: &mut Found) {
     let settings: Model = found.fit.model[..found.always].to_vec();
+    crossing::follow(study, &settings);
     found.fit = fit::refine(study, settings, &found.appraisal.as_white(), &found.travels);
     found.appraisal = Appraisal::new(study, &found.fit.model);
+}
+
+/// What `left` tells of the instruments' settings alone where known plays are crossed as far as they go: beside it, what changes
+/// is what was found, and not how a play acts that was known.
+fn with_known_crossings<T>(
+    study: &mut Study<'_>,
+    bare: &Model,
+    left: impl FnOnce(&Study<'_>, &Model) -> T,
+) -> T {
+    let found = study.crossings.clone();
+    crossing::follow(study, bare);
+    let bare = bare_model(study);
+    let left = left(study, &bare);
+    study.crossings = found;
+    left
 }
 
 /// The settings of the instruments alone, fitted.

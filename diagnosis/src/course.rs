@@ -52,19 +52,23 @@ struct Ways {
 
 impl Ways {
     fn new(study: &Study<'_>, scene: usize, model: &[Fitted]) -> Self {
-        let driven = if study.scenes[scene].at_rest {
-            vec![Driven::default(); study.equations.axes.len()]
-        } else {
-            let loops = loops(study, model).into_iter().enumerate();
-            // Only behind a loop does it matter where the feedback says that the axis begins.
-            let zero = |axis: usize, position_loop: PositionLoop| match position_loop.acts() {
-                true => feedback_zero(study, scene, model, axis),
-                false => 0.0,
-            };
-            loops
-                .map(|(axis, position_loop)| Driven { position_loop, zero: zero(axis, position_loop) })
-                .collect()
+        let loops = match study.scenes[scene].at_rest {
+            true => vec![PositionLoop::default(); study.equations.axes.len()],
+            false => loops(study, model),
         };
+        // Only behind a loop does it matter where the feedback says that the axis begins.
+        let zero = |axis: usize, position_loop: PositionLoop| match position_loop.acts() {
+            true => feedback_zero(study, scene, model, axis),
+            false => 0.0,
+        };
+        let driven = loops.into_iter().zip(&study.crossings).enumerate();
+        let driven = driven
+            .map(|(axis, (position_loop, crossing))| Driven {
+                position_loop,
+                zero: zero(axis, position_loop),
+                crossing: *crossing,
+            })
+            .collect();
         Self { driven, clock: clock(scene, model) }
     }
 }
@@ -249,7 +253,7 @@ fn sum(terms: &mut [(&Fitted, Memory)], rows: &Rows<'_>, drive: bool) -> Option<
     for (fitted, memory) in terms {
         if let Some(side) = fitted.effect.side().filter(|side| !drive || side.at_drive()) {
             let sum = sum.get_or_insert_with(|| vec![0.0; rows.len()]);
-            fitted.effect.shape.add(&fitted.coefficients, side.answered_by(), rows, memory, sum);
+            fitted.effect.shape.add(&fitted.coefficients, side, rows, memory, sum);
         }
     }
     sum

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use crate::appraisal::Appraisal;
 use crate::candidates;
 use crate::course::Course;
+use crate::crossing;
 use crate::curves;
 use crate::design::{Design, Regressor};
 use crate::dynamics;
@@ -55,8 +56,10 @@ impl Found {
 
 /// Looks for the model. `always` are the settings that are fitted whatever else is.
 pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dyn FnMut(f64)) -> Found {
+    study.crossings.fill(0.0);
     let mut search = Search::new(study, always);
     search.go_round(study, progress);
+    search.cross_plays(study, progress);
     let mut fit = search.fit(study);
     let curved =
         curves::try_tables(study, fit.clone(), search.always, &search.noises, &search.travels, search.tries);
@@ -67,16 +70,36 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
         search.model = curved.model;
         search.places.clear();
         search.go_round(study, progress);
+        search.cross_plays(study, progress);
         fit = search.fit(study);
     }
     let Search { pool, travels, always, tries, .. } = search;
-    let (mut fit, mut appraisal) = judge::uphold(study, fit, always, &travels, tries);
+    let (mut fit, mut appraisal) = upheld(study, fit, always, &travels, tries);
     let bands = unsteady::take_bands(&mut fit.model, always);
     if !bands.is_empty() {
         let steady = fit::refine(study, fit.model, &appraisal.noises, &travels);
-        (fit, appraisal) = judge::uphold(study, steady, always, &travels, tries);
+        (fit, appraisal) = upheld(study, steady, always, &travels, tries);
     }
     Found { fit, appraisal, pool, travels, bands, always, tries }
+}
+
+/// What the judge upholds. A play that it drops is no longer crossed, and one that the rest is fitted to anew is crossed over
+/// its new length; what stands up beside that is asked again.
+fn upheld(
+    study: &mut Study<'_>,
+    mut fit: Fit,
+    always: usize,
+    travels: &[Travel],
+    tries: Tries,
+) -> (Fit, Appraisal) {
+    for _ in 0..ROUNDS {
+        let (kept, appraisal) = judge::uphold(study, fit, always, travels, tries);
+        if !crossing::follow(study, &kept.model) {
+            return (kept, appraisal);
+        }
+        fit = fit::refine(study, kept.model, &appraisal.noises, travels);
+    }
+    judge::uphold(study, fit, always, travels, tries)
 }
 
 /// A search on its way.
@@ -128,6 +151,21 @@ impl Search {
             let quiet = same_noises(&self.noises, &appraisal.noises);
             self.noises = appraisal.noises;
             if settled && quiet && round > 0 {
+                break;
+            }
+        }
+    }
+
+    /// Lets axes cross their plays where that says as much as what seems to hold them after reversals, and goes on from there.
+    fn cross_plays(&mut self, study: &mut Study<'_>, progress: &mut dyn FnMut(f64)) {
+        let crossed =
+            crossing::try_plays(study, &self.model, self.always, &self.noises, &self.travels, self.tries);
+        let Some(crossed) = crossed else { return };
+        self.model = crossed;
+        for _ in 0..ROUNDS {
+            self.courses = courses(study, &self.model);
+            self.go_round(study, progress);
+            if !crossing::follow(study, &self.model) {
                 break;
             }
         }
@@ -190,7 +228,7 @@ pub(crate) fn with_table(study: &mut Study<'_>, found: &Found, feature: &Feature
     let coefficients = vec![0.0; effect.shape.columns()];
     model.push(Fitted { effect: effect.clone(), coefficients });
     let fit = fit::refine(study, model, &found.appraisal.noises, &found.travels);
-    let (fit, appraisal) = judge::uphold(study, fit, found.always, &found.travels, found.tries);
+    let (fit, appraisal) = upheld(study, fit, found.always, &found.travels, found.tries);
     let upheld = fit.model.iter().any(|fitted| fitted.effect == effect);
     let (pool, travels, bands) = (found.pool.clone(), found.travels.clone(), found.bands.clone());
     let (always, tries) = (found.always, found.tries);

@@ -10,6 +10,7 @@ mod candidates;
 mod certainty;
 mod conclude;
 mod course;
+mod crossing;
 mod curves;
 mod design;
 pub mod diagnosis;

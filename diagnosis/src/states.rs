@@ -50,6 +50,9 @@ pub(crate) struct Driven {
     pub(crate) position_loop: PositionLoop,
     /// What the drive's own feedback shows beyond where the axis is: its zero.
     pub(crate) zero: f64,
+    /// How far the drive goes after a reversal until it has crossed its play and takes the axis along, mm or rad; 0: the play
+    /// acts at once.
+    pub(crate) crossing: f64,
 }
 
 /// The states of all rows of one recording.
@@ -68,6 +71,8 @@ pub(crate) struct AxisStates {
     pub(crate) direction: Shared,
     /// Infinite before the first reversal.
     pub(crate) since_reversal: Shared,
+    /// At which flank of its play the axis is, from -1 to 1: that of its direction, or on the way there where it crosses.
+    pub(crate) flank: Shared,
     /// Its position loop.
     pub(crate) position_loop: PositionLoop,
     /// How the position changes with the time constant of the loop.
@@ -103,6 +108,7 @@ pub(crate) struct AxisRows<'s> {
     pub(crate) acceleration: &'s [f64],
     pub(crate) direction: &'s [f64],
     pub(crate) since_reversal: &'s [f64],
+    pub(crate) flank: &'s [f64],
     pub(crate) lag_slope: &'s [f64],
     inertia_slope: Option<&'s [f64]>,
 }
@@ -129,6 +135,7 @@ impl<'s> Rows<'s> {
             acceleration: &axis.acceleration[rows.clone()],
             direction: &axis.direction[rows.clone()],
             since_reversal: &axis.since_reversal[rows.clone()],
+            flank: &axis.flank[rows.clone()],
             lag_slope: &axis.lag_slope[rows.clone()],
             inertia_slope: axis.inertia_slope.as_ref().map(|slope| &slope[rows]),
         }
@@ -192,6 +199,7 @@ impl Standing {
             acceleration: self.zero.clone(),
             direction: self.forward.clone(),
             since_reversal: self.never.clone(),
+            flank: self.forward.clone(),
             position_loop: PositionLoop::default(),
             lag_slope: self.zero.clone(),
             inertia_slope: None,
@@ -218,11 +226,45 @@ fn axis_states(
     let time = &*given.time;
     let resolution = resolution(axis, programmed);
     let way = Way::new(time, programmed);
-    if driven.position_loop.acts() {
+    let mut states = if driven.position_loop.acts() {
         let start = start(time, axis, &way, driven);
         behind_loop(time, run, &way, driven, start, clock, resolution)
     } else {
         as_programmed(given, run, &way, programmed, clock, resolution)
+    };
+    if driven.crossing > 0.0 {
+        states.flank = flank(&states.position, &states.direction, driven.crossing);
+    }
+    states
+}
+
+/// Where the axis is in its play: it goes from flank to flank while its drive goes as far as the play is wide.
+fn flank(position: &[f64], direction: &[f64], crossing: f64) -> Shared {
+    let mut play = Play::default();
+    position.iter().zip(direction).map(|(q, direction)| play.follow(*q, *direction, crossing)).collect()
+}
+
+/// The play operator: where within [-1, 1] something stands that follows a position by 2 dq / width.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Play {
+    /// The last position that is known, and where it stood there.
+    last: Option<(f64, f64)>,
+}
+
+impl Play {
+    /// Where it stands at the next position; before anything is known, where the direction leaves it.
+    pub(crate) fn follow(&mut self, position: f64, direction: f64, width: f64) -> f64 {
+        let stands = match self.last {
+            None => direction,
+            Some((last, stood)) if position.is_finite() => {
+                (stood + 2.0 * (position - last) / width).clamp(-1.0, 1.0)
+            }
+            Some((_, stood)) => stood,
+        };
+        if position.is_finite() {
+            self.last = Some((position, stands));
+        }
+        stands
     }
 }
 
@@ -259,7 +301,8 @@ fn as_programmed(
     AxisStates {
         position,
         acceleration,
-        direction: direction.into(),
+        flank: direction.clone(),
+        direction,
         since_reversal: since_reversal.into(),
         position_loop: PositionLoop::default(),
         lag_slope: slope.clone(),
@@ -320,7 +363,8 @@ fn behind_loop(
     AxisStates {
         position,
         acceleration: acceleration.into(),
-        direction: direction.into(),
+        flank: direction.clone(),
+        direction,
         since_reversal: since_reversal.into(),
         position_loop: driven.position_loop,
         lag_slope,
@@ -353,7 +397,7 @@ fn derivative(time: &[f64], run: &[i64], values: &[f64]) -> Vec<f64> {
 }
 
 /// Direction of the last real motion, time since the last reversal, and whether there is any motion.
-fn directions(time: &[f64], position: &[f64], resolution: f64) -> (Vec<f64>, Vec<f64>, bool) {
+fn directions(time: &[f64], position: &[f64], resolution: f64) -> (Shared, Vec<f64>, bool) {
     let mut direction = 1.0;
     let mut moved = false;
     let mut reversed = f64::NEG_INFINITY;
@@ -378,7 +422,7 @@ fn directions(time: &[f64], position: &[f64], resolution: f64) -> (Vec<f64>, Vec
         directions.push(direction);
         since.push(time - reversed);
     }
-    (directions, since, moved)
+    (directions.into(), since, moved)
 }
 
 #[cfg(test)]

@@ -30,6 +30,8 @@ pub(crate) struct Study<'a> {
     pub(crate) known: Vec<Fitted>,
     /// The number of the motion that is each axis's own: EXX of X.
     pub(crate) own: Vec<Option<usize>>,
+    /// How far the drive of each axis goes until it has crossed its play, mm or rad; 0 where the play is taken to act at once.
+    pub(crate) crossings: Vec<f64>,
 }
 
 /// One recording in the study.
@@ -125,12 +127,18 @@ impl<'a> Study<'a> {
             .iter()
             .map(|recording| Scene::new(recording, equations, calibration, &sensors, &loads, &interpreter))
             .collect();
-        Self { equations, interpreter, sensors, loads, scenes, known, own }
+        let crossings = vec![0.0; own.len()];
+        Self { equations, interpreter, sensors, loads, scenes, known, own, crossings }
     }
 
     /// How many rows all recordings have together.
     pub(crate) fn rows(&self) -> usize {
         self.scenes.iter().map(Scene::rows).sum()
+    }
+
+    /// Whether any axis crosses its play.
+    pub(crate) fn crosses(&self) -> bool {
+        self.crossings.iter().any(|crossing| *crossing > 0.0)
     }
 
     /// Whether the drive's own feedback of an axis was recorded anywhere.

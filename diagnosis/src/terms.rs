@@ -26,8 +26,9 @@ pub(crate) use known::known;
 pub use meaning::meaning;
 pub(crate) use polynomial::in_position as polynomial_in_position;
 
+use crate::model::Side;
 use crate::position_loop::Follower;
-use crate::states::Rows;
+use crate::states::{Play, Rows};
 
 /// The temperature at which scales are true where nothing else is said: ISO 1, degC.
 pub(crate) const REFERENCE_TEMPERATURE: f64 = 20.0;
@@ -76,6 +77,7 @@ pub(crate) struct Memory {
     value: Option<f64>,
     last: f64,
     last_input: f64,
+    play: Play,
     /// The position loop that answers the shape.
     follower: Follower,
 }
@@ -236,16 +238,16 @@ impl Shape {
         }
     }
 
-    /// Fills its one column behind the position loop of an axis that answers it, or all as they are where none does.
-    pub(crate) fn fill_behind(
-        &self,
-        answered_by: Option<usize>,
-        rows: &Rows<'_>,
-        memory: &mut Memory,
-        out: &mut [Vec<f64>],
-    ) {
-        self.fill(rows, memory, out);
-        let position_loop = answered_by.map(|axis| rows.position_loop(axis));
+    /// Fills its columns as they come in on a side: behind the position loop that answers them, where one does; a play behind the
+    /// drive as far as it is crossed.
+    pub(crate) fn fill_on(&self, side: Side, rows: &Rows<'_>, memory: &mut Memory, out: &mut [Vec<f64>]) {
+        match (side, self) {
+            (Side::After, Self::Backlash { axis, wind_up: 0.0 }) => {
+                one(out, |out| backlash::fill_crossed(rows, *axis, out));
+            }
+            _ => self.fill(rows, memory, out),
+        }
+        let position_loop = side.answered_by().map(|axis| rows.position_loop(axis));
         if let (Some(position_loop), [column]) = (position_loop.filter(|known| known.acts()), out) {
             for (time, value) in rows.time.iter().zip(column) {
                 *value = position_loop.follow(&mut memory.follower, *time, *value).position;
@@ -253,11 +255,11 @@ impl Shape {
         }
     }
 
-    /// Adds the value of the term with these coefficients to `sum`, behind the loop that answers it where one does.
+    /// Adds the value of the term with these coefficients to `sum`, as it comes in on a side.
     pub(crate) fn add(
         &self,
         coefficients: &[f64],
-        answered_by: Option<usize>,
+        side: Side,
         rows: &Rows<'_>,
         memory: &mut Memory,
         sum: &mut [f64],
@@ -270,7 +272,7 @@ impl Shape {
             Self::Lag { .. } => {}
             _ => {
                 let mut columns = vec![Vec::with_capacity(rows.len()); self.columns()];
-                self.fill_behind(answered_by, rows, memory, &mut columns);
+                self.fill_on(side, rows, memory, &mut columns);
                 for (column, coefficient) in columns.iter().zip(coefficients) {
                     for (sum, value) in sum.iter_mut().zip(column) {
                         *sum += coefficient * value;

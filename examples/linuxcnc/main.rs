@@ -198,7 +198,8 @@ fn judge_diagnosis(path: &str) -> Result<(), Complaint> {
         high * 1e3,
         HIDDEN * 1e3
     );
-    hold(low <= HIDDEN && HIDDEN <= high, "the interval does not hold what is in the plant")?;
+    // Of a hundred intervals of 95 % five do not hold what is in the plant: one of them says nothing of a fault.
+    hold((value - HIDDEN).abs() < samples::STEP, "it is not what is in the plant, to the instrument's step")?;
     hold(high - low < HIDDEN / 10.0, "the interval is wide")
 }
 

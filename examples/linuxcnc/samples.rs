@@ -10,6 +10,9 @@ const COLUMNS: usize = 17;
 /// From the head's origin to the tip of the tool, mm: `plant.c` and `mill-12.yaml` have the same.
 const TOOL: f64 = 120.0;
 
+/// The step of the instrument that the recording is of, mm: the tip is written with so many digits.
+pub(crate) const STEP: f64 = 1e-4;
+
 /// Every so many cycles one is recorded.
 const RECORDED: usize = 10;
 
@@ -96,7 +99,7 @@ fn sample(line: &str) -> Result<Sample, Box<dyn Error>> {
     })
 }
 
-/// The table of a recording: what an instrument with steps of 0.1 um would have read every 10 ms.
+/// The table of a recording: what an instrument with steps of [`STEP`] would have read every 10 ms.
 pub(crate) fn table(samples: &[&Sample]) -> String {
     let mut table = String::from("t,x,y,z,tip_x,tip_y,tip_z,T_table\n");
     for (cycle, sample) in samples.iter().enumerate().step_by(RECORDED) {

@@ -4,6 +4,7 @@
 //! the reason why nothing can be claimed from them, where that is so.
 
 use crate::answers::answers;
+use crate::crossing;
 use crate::model::Model;
 use crate::recording::Instrument;
 use crate::study::Study;
@@ -62,6 +63,19 @@ pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
         )
     }));
     sentences
+}
+
+/// What cannot be told of axes that cross their plays, and that nothing which was found holds.
+pub(super) fn crossed(study: &Study<'_>, model: &Model) -> Vec<String> {
+    let axes = crossing::crossing_only(study, model).into_iter();
+    axes.map(|axis| {
+        let letter = &study.equations.axes[axis].letter;
+        format!(
+            "Whether more than its play holds {letter} for a moment after a reversal cannot be decided from this recording, \
+             because a play that {letter} crosses before it moves explains what is seen there."
+        )
+    })
+    .collect()
 }
 
 /// Why nothing at all can be claimed, where that is so.

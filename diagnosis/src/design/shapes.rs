@@ -17,10 +17,10 @@ pub(super) struct Shapes {
     slopes: Vec<Vec<Vec<f64>>>,
 }
 
-/// A term, behind the position loop that answers it where one does.
+/// A term as it comes in on a side.
 struct Different {
     shape: Shape,
-    answered_by: Option<usize>,
+    side: Side,
     memory: Memory,
     columns: Vec<Vec<f64>>,
 }
@@ -50,17 +50,18 @@ impl Shapes {
         let mut shapes = Self { different: Vec::new(), of: Vec::new(), slopes: Vec::new() };
         for regressor in regressors {
             let shape = &regressor.effect.shape;
-            let answered_by = regressor.effect.side().and_then(Side::answered_by);
+            // What an instrument does comes in behind everything.
+            let side = regressor.effect.side().unwrap_or(Side::After);
             let place = shapes.slopes.len();
             let usage = match (&regressor.slope, shape.nonlinear()) {
                 (Some(_), Some(_)) if let Shape::Lag { axis, .. } = *shape => Use::Inertia { axis, place },
                 (Some(coefficients), Some(parameter)) => {
                     let step = parameter.value * SLOPE_STEP;
-                    let low = shapes.number(shape.with_nonlinear(parameter.value - step), answered_by);
-                    let high = shapes.number(shape.with_nonlinear(parameter.value + step), answered_by);
+                    let low = shapes.number(shape.with_nonlinear(parameter.value - step), side);
+                    let high = shapes.number(shape.with_nonlinear(parameter.value + step), side);
                     Use::Slope { low, high, step: 2.0 * step, coefficients: coefficients.clone(), place }
                 }
-                _ => Use::Shape(shapes.number(shape.clone(), answered_by)),
+                _ => Use::Shape(shapes.number(shape.clone(), side)),
             };
             if !matches!(usage, Use::Shape(_)) {
                 shapes.slopes.push(vec![Vec::new()]);
@@ -70,13 +71,13 @@ impl Shapes {
         shapes
     }
 
-    fn number(&mut self, shape: Shape, answered_by: Option<usize>) -> usize {
-        let same = |known: &Different| known.shape == shape && known.answered_by == answered_by;
+    fn number(&mut self, shape: Shape, side: Side) -> usize {
+        let same = |known: &Different| known.shape == shape && alike(&shape, known.side, side);
         if let Some(known) = self.different.iter().position(same) {
             return known;
         }
         let columns = vec![Vec::new(); shape.columns()];
-        self.different.push(Different { shape, answered_by, memory: Memory::default(), columns });
+        self.different.push(Different { shape, side, memory: Memory::default(), columns });
         self.different.len() - 1
     }
 
@@ -84,7 +85,7 @@ impl Shapes {
     pub(super) fn fill(&mut self, view: &Rows<'_>) {
         let work = view.len() * self.different.len();
         parallel::each(&mut self.different, work, |known| {
-            known.shape.fill_behind(known.answered_by, view, &mut known.memory, &mut known.columns);
+            known.shape.fill_on(known.side, view, &mut known.memory, &mut known.columns);
         });
         for usage in &self.of {
             match usage {
@@ -109,4 +110,10 @@ impl Shapes {
             Use::Inertia { place, .. } | Use::Slope { place, .. } => &self.slopes[*place],
         }
     }
+}
+
+/// Whether a term is the same on both sides.
+fn alike(shape: &Shape, one: Side, other: Side) -> bool {
+    let play = matches!(shape, Shape::Backlash { .. });
+    one.answered_by() == other.answered_by() && (!play || one == other)
 }

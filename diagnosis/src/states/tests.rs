@@ -6,7 +6,7 @@ use simulation::path::Shape;
 
 /// A loop of first order.
 fn behind(time_constant: f64) -> Driven {
-    Driven { position_loop: PositionLoop { time_constant, inertia: 0.0 }, zero: 0.0 }
+    Driven { position_loop: PositionLoop { time_constant, inertia: 0.0 }, ..Driven::default() }
 }
 
 fn states(time: &[f64], command: &[f64], lag: f64, clock: f64) -> States {

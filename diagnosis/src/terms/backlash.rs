@@ -11,22 +11,15 @@ pub(super) const MEANING: &str = "Play between the drive and what it moves, or f
 
 pub(super) fn fill(rows: &Rows<'_>, axis: usize, wind_up: f64, memory: &mut Memory, out: &mut Vec<f64>) {
     let axis = rows.axis(axis);
-    if wind_up <= 0.0 {
+    if wind_up > 0.0 {
+        let places = axis.position.iter().zip(axis.direction);
+        out.extend(places.map(|(q, direction)| -0.5 * memory.play.follow(*q, *direction, wind_up)));
+    } else {
         out.extend(axis.direction.iter().map(|direction| -0.5 * direction));
-        return;
     }
-    for (position, direction) in axis.position.iter().zip(axis.direction) {
-        let u = match memory.value {
-            None => *direction,
-            Some(u) if position.is_finite() => {
-                (u + 2.0 * (position - memory.last) / wind_up).clamp(-1.0, 1.0)
-            }
-            Some(u) => u,
-        };
-        if position.is_finite() {
-            memory.value = Some(u);
-            memory.last = *position;
-        }
-        out.push(-0.5 * u);
-    }
+}
+
+/// That of a play which acts at once, or which the axis crosses: -u/2 of where it is between its flanks.
+pub(super) fn fill_crossed(rows: &Rows<'_>, axis: usize, out: &mut Vec<f64>) {
+    out.extend(rows.axis(axis).flank.iter().map(|flank| -0.5 * flank));
 }

@@ -29,7 +29,7 @@ fn value(term: &CalibratedTerm, states: &States) -> Vec<f64> {
     assert_eq!(shape.columns(), coefficients.len());
     let rows = states.rows(0..states.given.time.len());
     let mut sum = vec![0.0; rows.len()];
-    shape.add(&coefficients, None, &rows, &mut Memory::default(), &mut sum);
+    shape.add(&coefficients, Side::After, &rows, &mut Memory::default(), &mut sum);
     // Columns times coefficients say the same; but a loop is in the states, and its column is how they change.
     if !matches!(shape, Shape::Lag { .. }) {
         let mut columns = vec![vec![f64::NAN; 3]; shape.columns()];

@@ -291,3 +291,60 @@ fn a_ballbar_with_its_centre_on_the_axes_and_not_on_the_tip_decides_nothing() {
     );
     assert!(diagnosis.findings.is_empty());
 }
+
+/// Slow circles, read so often that a play of some micrometres takes several rows to cross.
+fn slowly(seed: u64) -> simulation::Scenario {
+    let at = vec![vec![250.0], vec![140.0], vec![-50.0]];
+    noisy(Path { at, runs: 3, ..path(circle(90.0), 8.0, 30.0) }, position("xy"), 0.0005, seed)
+}
+
+/// The sentence about an axis that crosses its play.
+fn crosses(diagnosis: &diagnosis::diagnosis::Diagnosis, letter: &str) -> bool {
+    let begins = format!("Whether more than its play holds {letter} for a moment");
+    diagnosis.undecided.iter().any(|sentence| sentence.starts_with(&begins))
+}
+
+#[test]
+fn a_known_play_that_is_free_holds_nothing_for_a_moment() {
+    let bench = Bench::of("xyfz-mill");
+    let known =
+        together(&bench.calibration(MILL), &bench.calibration("{EXX: [{backlash: {lost_motion: 9 um}}]}"));
+    let free = bench.calibration("{EXX: [{backlash: {lost_motion: 9 um, wind_up: 9 um}}]}");
+    let truth = together(&bench.calibration(MILL), &free);
+    for seed in 1..5 {
+        let diagnosis = diagnosed(&bench, &known, &[&bench.record(&truth, &slowly(seed))]);
+        assert_eq!(diagnosis.verdict, Verdict::Adequate, "{seed}: {:?}", found(&diagnosis));
+        assert!(crosses(&diagnosis, "X") && !crosses(&diagnosis, "Y"), "{:?}", diagnosis.undecided);
+        // Nothing was found, and nothing else changes what is left.
+        let (before, after) = (diagnosis.before.rms, diagnosis.after.rms);
+        assert!((before - after).abs() < 0.005 * after, "{before} {after}");
+    }
+}
+
+#[test]
+fn a_play_that_is_found_beside_a_free_one_is_all_there_is() {
+    let bench = Bench::of("xyfz-mill");
+    let known =
+        together(&bench.calibration(MILL), &bench.calibration("{EXX: [{backlash: {lost_motion: 9 um}}]}"));
+    let free = "{EXX: [{backlash: {lost_motion: 9 um, wind_up: 9 um}}], \
+                EYY: [{backlash: {lost_motion: 12 um, wind_up: 12 um}}]}";
+    let truth = together(&bench.calibration(MILL), &bench.calibration(free));
+    let diagnosis = diagnosed(&bench, &known, &[&bench.record(&truth, &slowly(11))]);
+    assert_eq!(found(&diagnosis), ["EYY backlash"]);
+    let lost = &numbers(&diagnosis.findings[0], "lost_motion")[0];
+    assert!((lost.value - 0.012).abs() < 0.0002, "{lost:?}");
+}
+
+#[test]
+fn a_spike_beside_a_play_that_acts_at_once_is_still_a_spike() {
+    let bench = Bench::of("xyfz-mill");
+    let known =
+        together(&bench.calibration(MILL), &bench.calibration("{EXX: [{backlash: {lost_motion: 9 um}}]}"));
+    let truth =
+        together(&known, &bench.calibration("{EXX: [{reversal-spike: {height: 6 um, decay: 200 ms}}]}"));
+    let diagnosis = diagnosed(&bench, &known, &[&bench.record(&truth, &slowly(21))]);
+    assert_eq!(found(&diagnosis), ["EXX reversal-spike"]);
+    assert!(!crosses(&diagnosis, "X"), "{:?}", diagnosis.undecided);
+    let height = &numbers(&diagnosis.findings[0], "height")[0];
+    assert!(off(height, 0.006) < FAR, "{height:?}");
+}

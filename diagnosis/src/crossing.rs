@@ -1,0 +1,139 @@
+//! Crossing: plays that an axis crosses after a reversal, in the place of what seems to hold it for a moment.
+//!
+//! In: a chosen model. Out: the same, or one in which some axes cross their plays; and how far each of them goes until it has.
+//! Known plays, and those that are found, act at once, as a controller corrects them. A slide with free play stands still
+//! instead until its drive has gone through it: where rows are dense against that time, what is missing meanwhile looks like
+//! something that holds the slide and lets go. So wherever such a thing was chosen, the play of that axis is tried as one that
+//! is crossed over its own length, which takes no parameter.
+
+use crate::curves::cost;
+use crate::fit::{self, Fit};
+use crate::judge::Tries;
+use crate::model::{Effect, Model, Place, Side};
+use crate::noise::Noise;
+use crate::study::Study;
+use crate::terms::Shape;
+use crate::travel::Travel;
+
+/// The most fits until a play that is fitted and the way over which it is crossed agree.
+const AGREEING: usize = 6;
+/// They agree within this share.
+const AGREED: f64 = 0.01;
+
+/// Tries crossed plays on every axis that something seems to hold after a reversal; `None` where none is better.
+pub(crate) fn try_plays(
+    study: &mut Study<'_>,
+    model: &Model,
+    always: usize,
+    noises: &[Vec<Noise>],
+    travels: &[Travel],
+    tries: Tries,
+) -> Option<Model> {
+    let held = |axis: &usize| model[always..].iter().any(|fitted| holds(&fitted.effect, *axis));
+    let held: Vec<usize> = (0..study.own.len()).filter(held).collect();
+    if held.is_empty() {
+        return None;
+    }
+    let now = fit::refine(study, model.clone(), noises, travels);
+    let mut best = (cost(study, &now, always, tries), study.crossings.clone());
+    let mut chosen = None;
+    for axis in held {
+        let start = chosen.clone().unwrap_or_else(|| now.model.clone());
+        let before = best.1.clone();
+        for trial in without_holds(study, &start, always, axis) {
+            study.crossings.clone_from(&before);
+            let Some(fit) = crossed(study, trial, axis, noises, travels) else { continue };
+            let cost = cost(study, &fit, always, tries);
+            if cost < best.0 {
+                best = (cost, study.crossings.clone());
+                chosen = Some(fit.model);
+            }
+        }
+        study.crossings.clone_from(&best.1);
+    }
+    chosen
+}
+
+/// Brings the ways over which plays are crossed to the plays of a model; none where there is no play any more. Whether that
+/// changed any.
+pub(crate) fn follow(study: &mut Study<'_>, model: &Model) -> bool {
+    let mut changed = false;
+    for axis in 0..study.crossings.len() {
+        let (way, play) = (study.crossings[axis], play(study, model, axis));
+        if way > 0.0 && (play - way).abs() > AGREED * way {
+            study.crossings[axis] = play;
+            changed = true;
+        }
+    }
+    changed
+}
+
+/// The axes that cross their plays and that nothing else of the model holds.
+pub(crate) fn crossing_only(study: &Study<'_>, model: &Model) -> Vec<usize> {
+    let held = |axis: usize| model.iter().any(|fitted| holds(&fitted.effect, axis));
+    (0..study.crossings.len()).filter(|axis| study.crossings[*axis] > 0.0 && !held(*axis)).collect()
+}
+
+/// The model fitted with the play of an axis crossed over its own length; `None` where the axis has none.
+fn crossed(
+    study: &mut Study<'_>,
+    mut model: Model,
+    axis: usize,
+    noises: &[Vec<Noise>],
+    travels: &[Travel],
+) -> Option<Fit> {
+    study.crossings[axis] = play(study, &model, axis);
+    for _ in 0..AGREEING {
+        if study.crossings[axis] <= 0.0 {
+            return None;
+        }
+        let fit = fit::refine(study, model, noises, travels);
+        if !follow(study, &fit.model) {
+            return Some(fit);
+        }
+        model = fit.model;
+    }
+    None
+}
+
+/// A model as it stands; without what seems to hold an axis; and without that and the plays of the axis which were found beside
+/// it. Each of them once.
+fn without_holds(study: &Study<'_>, model: &Model, always: usize, axis: usize) -> Vec<Model> {
+    let free = without(model, always, |effect| holds(effect, axis));
+    let known = without(&free, always, |effect| is_play(study, effect, axis));
+    let mut models = vec![model.clone(), free];
+    if known != models[1] {
+        models.push(known);
+    }
+    models
+}
+
+fn without(model: &Model, always: usize, of: impl Fn(&Effect) -> bool) -> Model {
+    let kept = model.iter().enumerate().filter(|(number, fitted)| *number < always || !of(&fitted.effect));
+    kept.map(|(_, fitted)| fitted.clone()).collect()
+}
+
+/// Whether an effect seems to hold an axis after a reversal, for a time or over some way.
+fn holds(effect: &Effect, axis: usize) -> bool {
+    match effect.shape {
+        Shape::ReversalSpike { axis: of, .. } => of == axis,
+        Shape::Backlash { axis: of, wind_up } => of == axis && wind_up > 0.0,
+        _ => false,
+    }
+}
+
+/// Whether an effect is a play of the axis in its own direction, behind the drive, that acts at once.
+fn is_play(study: &Study<'_>, effect: &Effect, axis: usize) -> bool {
+    let own = study.own[axis].map(|motion| Place::Motion { motion, side: Side::After });
+    Some(effect.place) == own && effect.shape == Shape::Backlash { axis, wind_up: 0.0 }
+}
+
+/// How wide the plays of an axis are together, known and found, mm or rad.
+fn play(study: &Study<'_>, model: &Model, axis: usize) -> f64 {
+    let all = study.known.iter().chain(model);
+    let plays = all.filter(|fitted| is_play(study, &fitted.effect, axis));
+    plays.flat_map(|fitted| &fitted.coefficients).sum::<f64>().max(0.0)
+}
+
+#[cfg(test)]
+mod tests;

@@ -79,8 +79,8 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
     if found.claims() && held_out(&found.fit.model) > diagnosis.before.holdout_rms {
         withdraw(&mut study, &mut found);
     }
-    diagnosis.undecided.extend(crossed(&study, &found.fit.model));
     let feature = explain_locally(&mut study, &mut found);
+    diagnosis.undecided.extend(crossed(&study, &found.fit.model));
     let mut moving = if feature.is_none() { unsteady::moving(&study, &found.appraisal) } else { None };
     if let Some(moving) = &mut moving {
         unsteady::fit_plainly(&study, &mut found, moving);

@@ -227,12 +227,16 @@ pub(crate) fn with_table(study: &mut Study<'_>, found: &Found, feature: &Feature
     model.retain(|fitted| !covered(fitted));
     let coefficients = vec![0.0; effect.shape.columns()];
     model.push(Fitted { effect: effect.clone(), coefficients });
+    let crossings = study.crossings.clone();
     let fit = fit::refine(study, model, &found.appraisal.noises, &found.travels);
     let (fit, appraisal) = upheld(study, fit, found.always, &found.travels, found.tries);
-    let upheld = fit.model.iter().any(|fitted| fitted.effect == effect);
+    if !fit.model.iter().any(|fitted| fitted.effect == effect) {
+        study.crossings = crossings;
+        return None;
+    }
     let (pool, travels, bands) = (found.pool.clone(), found.travels.clone(), found.bands.clone());
     let (always, tries) = (found.always, found.tries);
-    upheld.then_some(Found { fit, appraisal, pool, travels, bands, always, tries })
+    Some(Found { fit, appraisal, pool, travels, bands, always, tries })
 }
 
 /// What is left beside a feature: the appraisal of the model with a table in its place.

@@ -76,9 +76,7 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
     (diagnosis.before, drawn_before) = before;
     let held_out = |model: &Model| held_out(&study, &units, model);
     unsteady::weigh_drives_plainly(&study, &mut found, held_out);
-    if found.claims() && held_out(&found.fit.model) > diagnosis.before.holdout_rms {
-        withdraw(&mut study, &mut found);
-    }
+    stand_or_fall(&mut study, &units, &mut found, diagnosis.before.holdout_rms);
     let feature = explain_locally(&mut study, &mut found);
     diagnosis.undecided.extend(crossed(&study, &found.fit.model));
     let mut moving = if feature.is_none() { unsteady::moving(&study, &found.appraisal) } else { None };
@@ -126,7 +124,26 @@ fn held_out(study: &Study<'_>, units: &Units, model: &Model) -> Option<f64> {
     units.residual(study, &model).holdout_rms
 }
 
-/// Takes all effects of the machine back: what makes held-out rows lie farther is no explanation, however well it fitted.
+/// Keeps what was found only where held-out rows lie no farther with it than the calibration leaves them, `before`: what makes
+/// them lie farther is no explanation, however well it fitted. Where it is only that zeros allow for a noise that wanders, they are
+/// weighed as those of the calibration are.
+fn stand_or_fall(study: &mut Study<'_>, units: &Units, found: &mut Found, before: Option<f64>) {
+    let farther = |study: &Study<'_>, model: &Model| held_out(study, units, model) > before;
+    if !found.claims() || !farther(study, &found.fit.model) {
+        return;
+    }
+    let mut plain = found.fit.model.clone();
+    zeros::weigh_plainly(study, &mut plain, found.always, &found.appraisal.as_white());
+    if farther(study, &plain) {
+        withdraw(study, found);
+    } else {
+        found.plain_zeros = true;
+        found.appraisal = Appraisal::new(study, &plain);
+        found.fit.model = plain;
+    }
+}
+
+/// Takes all effects of the machine back.
 fn withdraw(study: &mut Study<'_>, found: &mut Found) {
     let settings: Model = found.fit.model[..found.always].to_vec();
     crossing::follow(study, &settings);

@@ -45,6 +45,8 @@ pub(crate) struct Found {
     /// How many of the model's first effects are settings that are always fitted.
     pub(crate) always: usize,
     pub(crate) tries: Tries,
+    /// Whether the settings are fitted to each row for itself, and not as a noise that wanders lets them.
+    pub(crate) plain_zeros: bool,
 }
 
 impl Found {
@@ -80,7 +82,7 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
         let steady = fit::refine(study, fit.model, &appraisal.noises, &travels);
         (fit, appraisal) = upheld(study, steady, always, &travels, tries);
     }
-    Found { fit, appraisal, pool, travels, bands, always, tries }
+    Found { fit, appraisal, pool, travels, bands, always, tries, plain_zeros: false }
 }
 
 /// What the judge upholds. A play that it drops is no longer crossed, and one that the rest is fitted to anew is crossed over
@@ -236,7 +238,7 @@ pub(crate) fn with_table(study: &mut Study<'_>, found: &Found, feature: &Feature
     }
     let (pool, travels, bands) = (found.pool.clone(), found.travels.clone(), found.bands.clone());
     let (always, tries) = (found.always, found.tries);
-    Some(Found { fit, appraisal, pool, travels, bands, always, tries })
+    Some(Found { fit, appraisal, pool, travels, bands, always, tries, plain_zeros: false })
 }
 
 /// What is left beside a feature: the appraisal of the model with a table in its place.

@@ -13,6 +13,7 @@ use crate::course::Course;
 use crate::design::{Design, Regressor};
 use crate::fit;
 use crate::model::{Model, Place};
+use crate::noise::Noise;
 use crate::observations;
 use crate::study::{Kind, Scene, Study};
 use crate::terms::{Setting, Shape};
@@ -39,6 +40,18 @@ pub(crate) fn free_held_out(study: &Study<'_>, model: &mut Model) {
             model[number] = fitted;
         }
     }
+}
+
+/// Fits the first `always` effects, which are settings, to the rows that are fitted, each row for itself; what else the model
+/// holds stays. Where noise wanders, zeros that allow for it may lie far from the mean of those rows, and farther from others.
+pub(crate) fn weigh_plainly(study: &Study<'_>, model: &mut Model, always: usize, noises: &[Vec<Noise>]) {
+    let settings: Model = model[..always].to_vec();
+    let regressors = settings.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+    let mut design = Design::new(study, model, noises, regressors);
+    design.rebase(&settings);
+    let (products, _) = design.fitted();
+    let fitted = fit::linear(&design, &products, always, &[]);
+    model.splice(..always, fitted);
 }
 
 /// Observed minus predicted of every channel of every recording; where runs have zeros of their own, those of held-out runs
@@ -102,3 +115,6 @@ pub(crate) fn center(values: &mut [f64]) {
     let (sum, count) = known.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
     values.iter_mut().for_each(|value| *value -= sum / f64::max(count, 1.0));
 }
+
+#[cfg(test)]
+mod tests;

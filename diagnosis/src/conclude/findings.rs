@@ -47,6 +47,9 @@ pub(super) fn report(
             continue;
         };
         let mut reduced = judge::without(&design, &swept, &found.fit.model, number);
+        if found.plain_zeros {
+            zeros::weigh_plainly(study, &mut reduced, found.always, &found.appraisal.as_white());
+        }
         zeros::free_held_out(study, &mut reduced);
         let known = &study.equations.motions[motion];
         let calibrated = described.calibrated();

@@ -264,7 +264,7 @@ fn found(study: &Study<'_>) -> Found {
     let fit = fit::refine(study, model, &noises, &travels);
     let appraisal = Appraisal::new(study, &fit.model);
     let tries = Tries { candidates: crate::number(pool.len()), waves: 1.0 };
-    Found { fit, appraisal, pool, travels, bands: Vec::new(), always: 1, tries }
+    Found { fit, appraisal, pool, travels, bands: Vec::new(), always: 1, tries, plain_zeros: false }
 }
 
 /// The standard deviation of what is left over, mm, and the periods of its sines, s.

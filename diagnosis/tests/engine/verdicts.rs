@@ -66,6 +66,24 @@ fn a_sensor_that_walks_makes_no_wave() {
 }
 
 #[test]
+fn a_sensor_that_walks_takes_no_play_back() {
+    // The zero that allows for a walk may lie farther from the rows that are held out than their mean does.
+    let bench = Bench::of("xyfz-mill");
+    let known = bench.calibration(MILL);
+    let truth = together(&known, &bench.calibration("{EXX: [{backlash: {lost_motion: 4 um}}]}"));
+    for seed in 0..12 {
+        let mut scenario = noisy(mill_path(), position("xy"), 0.001, seed);
+        let walk = Some(Walk { sigma: 0.006, after: 160.0 });
+        scenario.measurement.noise = Noise { walk, ..Noise::white(0.0003) };
+        let diagnosis = diagnosed(&bench, &known, &[&bench.record(&truth, &scenario)]);
+        assert_eq!(found(&diagnosis), ["EXX backlash"], "{seed}");
+        let lost = &numbers(&diagnosis.findings[0], "lost_motion")[0];
+        assert!(off(lost, 0.004) < FAR, "{seed}: {lost:?}");
+        assert!(diagnosis.after.holdout_rms <= diagnosis.before.holdout_rms, "{seed}");
+    }
+}
+
+#[test]
 fn the_noise_is_told_with_its_parts() {
     let correlated = Some(Correlated { sigma: 0.002, time_constant: 1.5 });
     let diagnosis = quiet(3, Noise { correlated, ..Noise::white(0.001) }, true);

@@ -4,8 +4,9 @@
 //! Terms with a parameter that is not linear stand on a grid; periods and frequencies are searched for elsewhere.
 
 use crate::answers::answers;
-use crate::model::{Effect, Place, Side};
+use crate::model::{Effect, Place};
 use crate::ranges::shortest_step;
+use crate::side::Side;
 use crate::study::{Kind, Study};
 use crate::terms::{REFERENCE_TEMPERATURE, Setting, Shape};
 use crate::travel::Travel;

@@ -9,8 +9,9 @@
 use crate::curves::cost;
 use crate::fit::{self, Fit};
 use crate::judge::Tries;
-use crate::model::{Effect, Model, Place, Side};
+use crate::model::{Effect, Model, Place};
 use crate::noise::Noise;
+use crate::side::Side;
 use crate::study::Study;
 use crate::terms::Shape;
 use crate::travel::Travel;

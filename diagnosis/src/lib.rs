@@ -34,6 +34,7 @@ mod repeats;
 pub mod report;
 mod rest;
 mod search;
+mod side;
 mod states;
 mod study;
 mod sweep;

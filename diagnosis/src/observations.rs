@@ -11,8 +11,9 @@ use std::ops::Range;
 use model_dsl::program::Column;
 
 use crate::course::{BATCH, Course, inputs, part, pieces, weighted_sum};
-use crate::model::{Effect, Model, Place, Side};
+use crate::model::{Effect, Model, Place};
 use crate::parallel;
+use crate::side::Side;
 use crate::study::{Channel, Kind, Study};
 use crate::terms::Setting;
 

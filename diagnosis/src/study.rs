@@ -11,9 +11,10 @@ use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
 
 use crate::course::LastCourse;
-use crate::model::{Effect, Fitted, Place, Side};
+use crate::model::{Effect, Fitted, Place};
 use crate::noise;
 use crate::recording::{Instrument, Recording};
+use crate::side::Side;
 use crate::states::{Given, Shared, behind_corners, unseen_turns};
 use crate::terms;
 

@@ -26,8 +26,8 @@ pub(crate) use known::known;
 pub use meaning::meaning;
 pub(crate) use polynomial::in_position as polynomial_in_position;
 
-use crate::model::Side;
 use crate::position_loop::Follower;
+use crate::side::Side;
 use crate::states::{Play, Rows};
 
 /// The temperature at which scales are true where nothing else is said: ISO 1, degC.

@@ -12,11 +12,12 @@ use realfft::RealFftPlanner;
 
 use crate::course::Course;
 use crate::kinship;
-use crate::model::{Effect, Model, Place, Side};
+use crate::model::{Effect, Model, Place};
 use crate::noise::{Noise, Whitening, unwhiten, whiten};
 use crate::observations::{Frame, each_frame, residuals};
 use crate::parallel;
 use crate::ranges::{CYCLES, shortest_step};
+use crate::side::Side;
 use crate::study::Study;
 use crate::terms::Shape;
 use crate::travel::Travel;

@@ -5,8 +5,9 @@
 use crate::alternatives::state;
 use crate::curves::active;
 use crate::diagnosis::{Interval, IntervalOf, Location};
-use crate::model::{Effect, Fitted, Side};
+use crate::model::{Effect, Fitted};
 use crate::parameters::axis_unit;
+use crate::side::Side;
 use crate::study::Study;
 use crate::terms::Shape;
 

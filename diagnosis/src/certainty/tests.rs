@@ -4,8 +4,9 @@ use super::*;
 use crate::diagnosis::{Estimate, ParameterValue};
 use crate::engine;
 use crate::fit;
-use crate::model::{Model, Place, Side};
+use crate::model::{Model, Place};
 use crate::parameters::Described;
+use crate::side::Side;
 use crate::testing::{Bench, line, noisy, path, position};
 
 /// How many recordings each law is tried on.

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::engine;
-use crate::model::Side;
 use crate::recording::Recording;
+use crate::side::Side;
 use crate::terms::Setting;
 use crate::testing::{Bench, line, noisy, path, position, programmed};
 use simulation::path::{Shape as PathShape, Stations, Stroke};

@@ -4,8 +4,8 @@
 //! motions often have the same term: each different one is worked out once.
 
 use super::Regressor;
-use crate::model::Side;
 use crate::parallel;
+use crate::side::Side;
 use crate::states::Rows;
 use crate::terms::{Memory, Shape};
 

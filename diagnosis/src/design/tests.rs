@@ -5,9 +5,10 @@ use simulation::{Instrument as Reads, Normal};
 
 use super::*;
 use crate::fit;
-use crate::model::{Fitted, Place, Side};
+use crate::model::{Fitted, Place};
 use crate::noise::{Whitening, whiten};
 use crate::recording::Recording;
+use crate::side::Side;
 use crate::study::Block;
 use crate::terms::{Setting, Shape};
 use crate::testing::{Bench, ballbar, circle, distance, line, noisy, normals, path, peak, position, warming};

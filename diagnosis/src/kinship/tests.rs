@@ -1,8 +1,9 @@
 //! What a recording shows alike stands in one group; what it tells apart does not.
 
 use super::*;
-use crate::model::{Place, Side};
+use crate::model::Place;
 use crate::recording::Recording;
+use crate::side::Side;
 use crate::terms::Shape;
 use crate::testing::{Bench, circle, line, path, position, scenario};
 use simulation::path::Shape as PathShape;

@@ -5,8 +5,9 @@ use std::f64::consts::PI;
 use nalgebra::DMatrix;
 
 use super::*;
-use crate::model::{Effect, Place, Side};
+use crate::model::{Effect, Place};
 use crate::recording::{AngleUnit, Recording};
+use crate::side::Side;
 use crate::states::Driven;
 use crate::states::States;
 use crate::terms::{Memory, known};

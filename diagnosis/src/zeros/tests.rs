@@ -1,7 +1,8 @@
 //! Zeros that are weighed plainly.
 
 use super::*;
-use crate::model::{Effect, Fitted, Side};
+use crate::model::{Effect, Fitted};
+use crate::side::Side;
 use crate::testing::{Bench, circle, noisy, path, position};
 
 #[test]

@@ -55,7 +55,7 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
     let left = |study: &Study<'_>, bare: &Model| {
         (units.residual(study, bare), drawn.then(|| pictures::Before::new(study, bare)))
     };
-    let mut before = left(&study, &bare);
+    let (mut before, mut drawn_before) = left(&study, &bare);
     let mut step = |done: f64| progress(Progress { step: "looking for left-out physics", done: 0.9 * done });
     let always = candidates::always(&study);
     let mut found = engine::find(&mut study, always, &mut step);
@@ -69,11 +69,10 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
         found = engine::find(&mut study, always, &mut step);
     }
     if study.crosses() {
-        before = with_known_crossings(&mut study, &bare, left);
+        (before, drawn_before) = with_known_crossings(&mut study, &bare, left);
         found.appraisal.mark(&mut study);
     }
-    let drawn_before;
-    (diagnosis.before, drawn_before) = before;
+    diagnosis.before = before;
     let held_out = |model: &Model| held_out(&study, &units, model);
     unsteady::weigh_drives_plainly(&study, &mut found, held_out);
     stand_or_fall(&mut study, &units, &mut found, diagnosis.before.holdout_rms);

@@ -223,3 +223,6 @@ fn share(design: &Design, swept: &Swept, number: usize, block: &Products) -> (f6
     }
     (energy, score)
 }
+
+#[cfg(test)]
+mod tests;

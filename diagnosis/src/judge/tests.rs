@@ -1,0 +1,135 @@
+//! What the judge asks of an effect, one question at a time.
+
+use super::*;
+use crate::model::{Effect, Place};
+use crate::recording::Recording;
+use crate::side::Side;
+use crate::terms::{Setting, Shape};
+use crate::testing::{Bench, circle, normals, path, position, scenario};
+
+/// The lost motion of X where it acts with its whole strength, mm.
+const LOST: f64 = 0.01;
+
+/// Four circles, the last of which is held out, with a lost motion of X that has another strength in each block of rows; and white
+/// noise of X, mm.
+fn recorded(bench: &Bench, strength: impl Fn(usize, bool) -> f64, noise: f64) -> Recording {
+    let circles = simulation::Path { runs: 4, ..path(circle(40.0), 20.0, 10.0) };
+    let scenario = simulation::Scenario { holdout: vec![4], ..scenario(circles, position("x")) };
+    let play = bench.calibration(&format!("{{EXX: [{{backlash: {{lost_motion: {LOST} mm}}}}]}}"));
+    let mut recording = bench.record(&bench.calibration("{}"), &scenario);
+    let whole = bench.record(&play, &scenario);
+    let study = Study::new(bench.equations(), None, &[&whole]);
+    let random = normals(7, recording.time.len());
+    let (Some(without), Some(with)) = (&mut recording.measured[0], &whole.measured[0]) else { panic!() };
+    for (number, block) in study.scenes[0].blocks.iter().enumerate() {
+        for row in block.rows.clone() {
+            without[row] +=
+                strength(number, block.held_out) * (with[row] - without[row]) + noise * random[row];
+        }
+    }
+    recording
+}
+
+/// What the judge is asked about: the zero of X and its lost motion, fitted.
+struct Case<'a> {
+    study: Study<'a>,
+    fit: Fit,
+    design: Design,
+    appraisal: Appraisal,
+}
+
+/// The number of the lost motion in the model.
+const PLAY: usize = 1;
+
+fn fitted<'a>(bench: &'a Bench, recording: &'a Recording, noise: f64) -> Case<'a> {
+    let mut study = Study::new(bench.equations(), None, &[recording]);
+    let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
+    let shape = Shape::Backlash { axis: 0, wind_up: 0.0 };
+    let effects = [Effect::setting(0, Setting::Offset { channel: 0 }), Effect { place, shape }];
+    let model = effects.map(|effect| Fitted { effect, coefficients: vec![0.0] }).to_vec();
+    let noises = vec![vec![Noise::white(noise)]];
+    let fit = fit::refine(&study, model, &noises, &[]);
+    let design = design(&study, &fit.model, &noises);
+    let appraisal = Appraisal::new(&study, &fit.model);
+    appraisal.mark(&mut study);
+    Case { study, fit, design, appraisal }
+}
+
+impl Case<'_> {
+    fn swept(&self) -> Swept {
+        let mut swept = Swept::new(&self.design.fitted().0);
+        for column in 0..self.design.width {
+            swept.take(column);
+        }
+        swept
+    }
+
+    fn returns(&self) -> bool {
+        returns(&self.design, &self.swept(), PLAY, 1.0)
+    }
+
+    fn steady(&self) -> bool {
+        steady(&self.design, &self.swept(), PLAY)
+    }
+
+    fn pays(&self) -> bool {
+        let whole = zeros::residuals(&self.study, &self.fit.model);
+        pays(&self.study, &self.design, &self.swept(), &self.fit, (&self.appraisal, &whole), PLAY)
+    }
+}
+
+/// Noise beside which the lost motion is plain, mm; and the other way round.
+const QUIET: f64 = 1e-4;
+const LOUD: f64 = 0.06;
+
+/// The strength of an effect that is there in the rows that are fitted, and of this strength where they are held out.
+fn held(strength: f64) -> impl Fn(usize, bool) -> f64 {
+    move |_, held_out| if held_out { strength } else { 1.0 }
+}
+
+#[test]
+fn an_effect_comes_back_with_two_fifths_of_its_strength_at_least() {
+    let bench = Bench::of("XFY");
+    for (strength, comes_back) in [(1.0, true), (0.45, true), (0.35, false), (0.0, false), (-1.0, false)] {
+        let recording = recorded(&bench, held(strength), QUIET);
+        assert_eq!(fitted(&bench, &recording, QUIET).returns(), comes_back, "{strength}");
+    }
+    // Where the held-out rows cannot tell, nothing is held against it.
+    let recording = recorded(&bench, held(-1.0), LOUD);
+    assert!(fitted(&bench, &recording, 10.0 * LOUD).returns());
+}
+
+#[test]
+fn an_effect_that_rests_on_one_stretch_is_not_steady() {
+    let bench = Bench::of("XFY");
+    let steady = |strength: &dyn Fn(usize, bool) -> f64| {
+        let recording = recorded(&bench, strength, QUIET);
+        fitted(&bench, &recording, QUIET).steady()
+    };
+    assert!(steady(&|_, _| 1.0));
+    assert!(steady(&|block, _| if block % 2 == 0 { 0.8 } else { 1.2 }));
+    assert!(!steady(&|block, _| if block == 2 { 9.0 } else { 0.0 }));
+    assert!(!steady(&|block, _| if block % 2 == 0 { -1.0 } else { 3.0 }));
+}
+
+#[test]
+fn an_effect_pays_where_held_out_rows_come_nearer() {
+    let bench = Bench::of("XFY");
+    for (strength, does) in [(1.0, true), (0.6, true), (0.4, false), (0.0, false), (-1.0, false)] {
+        let recording = recorded(&bench, held(strength), QUIET);
+        assert_eq!(fitted(&bench, &recording, QUIET).pays(), does, "{strength}");
+    }
+}
+
+#[test]
+fn an_effect_far_below_the_noise_of_a_sample_does_not_matter() {
+    let bench = Bench::of("XFY");
+    // The peak of the effect is half of the lost motion; 0.12 of the noise is the least that counts.
+    for (share, matters) in [(0.3, true), (0.16, true), (0.08, false)] {
+        let recording = recorded(&bench, |_, _| 1.0, 0.0);
+        let mut case = fitted(&bench, &recording, QUIET);
+        let size = 0.5 * LOST / share;
+        case.appraisal.noises = vec![vec![Noise::white(size)]];
+        assert_eq!(case.pays(), matters, "{share}");
+    }
+}

@@ -32,6 +32,7 @@ pub(crate) struct Study<'a> {
     /// The number of the motion that is each axis's own: EXX of X.
     pub(crate) own: Vec<Option<usize>>,
     /// How far the drive of each axis goes until it has crossed its play, mm or rad; 0 where the play is taken to act at once.
+    /// Whatever of the axis jumps behind the drive, a reversal of its yaw too, goes with it.
     pub(crate) crossings: Vec<f64>,
 }
 

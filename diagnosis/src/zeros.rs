@@ -1,8 +1,9 @@
-//! Zeros of what is held out: an instrument that was set up anew has a zero of its own.
+//! Zeros beside effects that stay: an instrument that was set up anew has a zero of its own, and a noise that wanders draws zeros
+//! away from the mean.
 //!
 //! In: a model that was fitted to some rows. Out: the same with the settings of recordings that are held out as a whole fitted
-//! on themselves; and residuals in which every run has its own zero where runs do not repeat. Nothing of the machine is fitted
-//! here.
+//! on themselves, or with all settings fitted to each row for itself; and residuals in which every run has its own zero where
+//! runs do not repeat. Nothing of the machine is fitted here.
 
 use std::ops::Range;
 

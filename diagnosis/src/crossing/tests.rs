@@ -116,7 +116,7 @@ fn nothing_is_tried_where_nothing_holds_an_axis() {
 }
 
 #[test]
-fn a_play_that_both_sides_know_is_crossed_together() {
+fn plays_that_are_known_and_found_are_one_way_to_cross() {
     let bench = Bench::of("XFY");
     let part = bench.calibration("{EXX: [{backlash: {lost_motion: 5 um}}]}");
     let whole = together(&part, &bench.calibration("{EXX: [{backlash: {lost_motion: 4 um}}]}"));

@@ -9,6 +9,7 @@ mod c_interface;
 mod calibration;
 mod docs;
 mod functions;
+mod held;
 mod idents;
 mod sensors;
 mod structs;

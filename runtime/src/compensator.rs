@@ -14,7 +14,7 @@ use self::inverse::{Reach, spread, tip};
 use self::prediction::Prediction;
 use self::setup::Needs;
 use crate::math::{add_scaled, all_finite, dot};
-use crate::{ErrorMotion, ErrorMotions, Kinematics, Real, Sample, TermState};
+use crate::{ErrorMotion, ErrorMotions, Kinematics, Real, Sample, Sines, TermState};
 
 pub use self::batch::{Batch, BatchSizes, BatchWork};
 pub use self::report::{Convergence, Limits, Outcome, Refusal, SetupError, Work};
@@ -74,7 +74,15 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
             enabled: true,
             limits: Limits::default(),
             convergence: Convergence::default(),
-            prediction: Prediction { kinematics, motions, states, values, travel, needs },
+            prediction: Prediction {
+                kinematics,
+                motions,
+                states,
+                values,
+                travel,
+                sines: Sines::default(),
+                needs,
+            },
             directions,
             reach: None,
         })
@@ -161,7 +169,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     /// Finds in which directions the axes move the tip, and what they reach.
     fn reach_at(&mut self, position: &[f64]) -> Result<Reach, Refusal> {
         let kinematics = self.prediction.kinematics;
-        kinematics.directions(position, self.directions);
+        kinematics.directions_with(&self.prediction.sines, position, self.directions);
         if !all_finite(self.directions.as_flattened()) {
             return Err(Refusal::NotFinite);
         }
@@ -194,7 +202,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
             if !distance.is_finite() {
                 return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
             }
-            here = self.prediction.corrected(sample, out);
+            here = self.prediction.corrected_again(sample, out);
         }
         Err(Refusal::NotConverging { iterations: self.convergence.iterations, distance })
     }

@@ -6,6 +6,10 @@
 
 use crate::Lanes;
 
+/// Sine and cosine of each rotary axis that the equations read, in the order of the axes; zero beyond them. ISO 841 names three
+/// rotary axes: A, B and C.
+pub type Sines = [(f64, f64); 3];
+
 /// The compiled equations of one machine: what the topology says, with the machine's constants already in it.
 ///
 /// Positions and travels are in mm for slides and in rad for rotary axes. Error motions are in mm for displacements and
@@ -26,6 +30,17 @@ pub trait Kinematics {
     /// A direction that is not sensitive is 0.0. A slice of the wrong length gives NaN in all three.
     fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3];
 
+    /// The sines and cosines of rotary axes at a position, which do not correct: no step of a search for a command moves them, so
+    /// that a compensator asks once for what it passes to [`error_with`](Self::error_with) at each step.
+    fn sines(&self, _position: &[f64]) -> Sines {
+        Sines::default()
+    }
+
+    /// [`Kinematics::error`], bit for bit, at a position at which [`sines`](Self::sines) gives these.
+    fn error_with(&self, _sines: &Sines, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
+        self.error(position, travel, motions)
+    }
+
     /// [`Kinematics::error`] in every lane at once, bit for bit; none: the machine answers row by row only.
     ///
     /// Generated code and the compiler's interpreter have it. A slice of the wrong length gives NaN in all lanes.
@@ -39,6 +54,11 @@ pub trait Kinematics {
     /// that are not sensitive. A slide whose positive motion moves the tool towards negative X of the part
     /// has -1 there. Writes `directions[axis]`; a slice of the wrong length is filled with NaN.
     fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]);
+
+    /// [`Kinematics::directions`], bit for bit, at a position at which [`sines`](Self::sines) gives these.
+    fn directions_with(&self, _sines: &Sines, position: &[f64], directions: &mut [[f64; 3]]) {
+        self.directions(position, directions);
+    }
 
     /// Whether the directions depend on the position: not on machines of slides alone, where a compensator then looks for them
     /// once. True where nothing else is said, and true where one cannot be sure.

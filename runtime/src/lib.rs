@@ -124,7 +124,7 @@ pub use compensator::{
     states_needed,
 };
 pub use direction::{Direction, DirectionTracker};
-pub use kinematics::Kinematics;
+pub use kinematics::{Kinematics, Sines};
 pub use lanes::Lanes;
 pub use motion::{ErrorMotion, ErrorMotions, MotionReader};
 pub use real::Real;

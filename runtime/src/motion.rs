@@ -23,6 +23,14 @@ pub trait ErrorMotions {
     ///
     /// What a longer slice holds beyond them stays as it was.
     fn read(&self, from: MotionReader<'_>, values: &mut [f64]);
+
+    /// Writes the value of each that may have changed since [`read`](Self::read) wrote all of them in the same state of the
+    /// machine, but at positions that differ for axes that correct: those that have a
+    /// [direction](crate::Kinematics::directions).
+    #[inline]
+    fn read_moved(&self, from: MotionReader<'_>, values: &mut [f64]) {
+        self.read(from, values);
+    }
 }
 
 impl ErrorMotions for [ErrorMotion<'_>] {

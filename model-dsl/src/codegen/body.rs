@@ -8,19 +8,40 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::idents::field;
-use crate::equations::Equations;
+use crate::equations::{AxisInfo, Equations};
 use crate::program::{Input, Program, Step, Value};
 
 /// A body: the inputs it reads, its bindings, and its results.
 pub(super) struct Body {
     /// Which records it reads.
     pub(super) reads: Reads,
-    /// The constants and the sines and cosines that it reads.
-    pub(super) prelude: TokenStream,
+    /// Brings the constants that it reads into scope.
+    pub(super) constants: TokenStream,
+    /// The sines and cosines that it reads, in the order of the axes.
+    pub(super) turned: Vec<Turned>,
     /// Values that are used more than once.
     pub(super) bindings: TokenStream,
     /// One expression for each result.
     pub(super) results: Vec<TokenStream>,
+}
+
+/// The sine and the cosine of an axis.
+pub(super) struct Turned {
+    /// The number of the axis.
+    pub(super) axis: usize,
+    /// The pattern that names what is read of them.
+    pub(super) names: TokenStream,
+    /// What works them out from `axes`.
+    pub(super) value: TokenStream,
+}
+
+impl Body {
+    /// Brings the constants and the sines and cosines that it reads into scope.
+    pub(super) fn prelude(&self) -> TokenStream {
+        let constants = &self.constants;
+        let turned = self.turned.iter().map(|Turned { names, value, .. }| quote! { let #names = #value; });
+        quote! { #constants #(#turned)* }
+    }
 }
 
 /// How tightly an expression binds, to know where it needs brackets.
@@ -61,7 +82,8 @@ pub(super) fn body(equations: &Equations, program: &Program, numbers: Numbers) -
     let reads = reads(&inputs);
     Body {
         reads,
-        prelude: prelude(equations, &inputs, reads, numbers),
+        constants: constants(reads, numbers),
+        turned: turned(equations, &inputs, numbers),
         bindings: bindings.collect(),
         results: program.results.iter().map(|result| printer.value(*result).0).collect(),
     }
@@ -169,13 +191,22 @@ fn input(equations: &Equations, input: Input) -> TokenStream {
 /// Which records a program reads.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Reads {
-    /// The positions of the axes.
+    /// The record of the axes: their positions, or what of them sines and cosines are of.
     pub(super) axes: bool,
+    /// The positions of the axes as they are.
+    pub(super) positions: bool,
     /// The free travels.
     pub(super) travels: bool,
     /// The error motions.
     pub(super) motions: bool,
-    constants: bool,
+    /// The constants.
+    pub(super) constants: bool,
+}
+
+impl Reads {
+    /// Every record.
+    pub(super) const EVERYTHING: Self =
+        Self { axes: true, positions: true, travels: true, motions: true, constants: true };
 }
 
 fn inputs(program: &Program) -> BTreeSet<Input> {
@@ -188,7 +219,8 @@ fn reads(inputs: &BTreeSet<Input>) -> Reads {
     let mut reads = Reads::default();
     for input in inputs {
         match input {
-            Input::Position(_) | Input::Cos(_) | Input::Sin(_) => reads.axes = true,
+            Input::Position(_) => (reads.axes, reads.positions) = (true, true),
+            Input::Cos(_) | Input::Sin(_) => reads.axes = true,
             Input::Travel(_) => reads.travels = true,
             Input::Constant(_) => reads.constants = true,
             Input::Motion(_) => reads.motions = true,
@@ -197,35 +229,35 @@ fn reads(inputs: &BTreeSet<Input>) -> Reads {
     reads
 }
 
-/// Brings the constants and the sines and cosines that a program reads into scope.
-fn prelude(equations: &Equations, inputs: &BTreeSet<Input>, reads: Reads, numbers: Numbers) -> TokenStream {
-    let mut tokens = TokenStream::new();
+fn constants(reads: Reads, numbers: Numbers) -> TokenStream {
     match numbers {
-        _ if !reads.constants => {}
-        Numbers::Plain => tokens.extend(quote! { let constants = &self.constants; }),
-        Numbers::Any => tokens.extend(quote! {
+        _ if !reads.constants => TokenStream::new(),
+        Numbers::Plain => quote! { let constants = &self.constants; },
+        Numbers::Any => quote! {
             let constants = Constants::from_array(self.constants.to_array().map(T::from));
-        }),
+        },
     }
-    for (number, axis) in equations.axes.iter().enumerate() {
-        let (sine, cosine) = (Input::Sin(number), Input::Cos(number));
-        if !inputs.contains(&sine) && !inputs.contains(&cosine) {
-            continue;
+}
+
+fn turned(equations: &Equations, inputs: &BTreeSet<Input>, numbers: Numbers) -> Vec<Turned> {
+    let name = |wanted: Input| match inputs.contains(&wanted) {
+        true => input(equations, wanted),
+        false => quote! { _ },
+    };
+    let read = |(number, _): &(usize, &_)| {
+        [Input::Sin(*number), Input::Cos(*number)].iter().any(|wanted| inputs.contains(wanted))
+    };
+    let turned = |(number, axis): (usize, &AxisInfo)| {
+        let (sine, cosine) = (name(Input::Sin(number)), name(Input::Cos(number)));
+        let position = field(&axis.variable);
+        Turned {
+            axis: number,
+            names: quote! { (#sine, #cosine) },
+            value: match numbers {
+                Numbers::Plain => quote! { ::abbe_runtime::math::sin_cos(axes.#position) },
+                Numbers::Any => quote! { axes.#position.sin_cos() },
+            },
         }
-        let name = |wanted: Input| {
-            if inputs.contains(&wanted) {
-                input(equations, wanted)
-            } else {
-                quote! { _ }
-            }
-        };
-        let (sine, cosine, position) = (name(sine), name(cosine), field(&axis.variable));
-        tokens.extend(match numbers {
-            Numbers::Plain => {
-                quote! { let (#sine, #cosine) = ::abbe_runtime::math::sin_cos(axes.#position); }
-            }
-            Numbers::Any => quote! { let (#sine, #cosine) = axes.#position.sin_cos(); },
-        });
-    }
-    tokens
+    };
+    equations.axes.iter().enumerate().filter(read).map(turned).collect()
 }

@@ -4,6 +4,7 @@
 //! reads exactly these. It exists because a controller has no files, and because what is known when code is compiled need not be
 //! asked for in every servo cycle.
 
+use abbe_runtime::Term;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -13,7 +14,7 @@ use super::sensors::{self, Numbered};
 use crate::calibration::{
     CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Limits, NotCompensable, SeriesInput,
 };
-use crate::equations::{Equations, Motion};
+use crate::equations::{AxisInfo, Equations, Motion};
 
 /// The calibration, its terms and its sensors.
 ///
@@ -25,7 +26,7 @@ pub(super) fn all(equations: &Equations, calibration: &Calibration) -> Result<To
         .motions
         .iter()
         .enumerate()
-        .map(|(number, motion)| WrittenMotion::new(motion, number, calibration, &numbered))
+        .map(|(number, motion)| WrittenMotion::new(equations, motion, number, calibration, &numbered))
         .collect::<Result<_, _>>()?;
     let (items, reader) = (items(calibration, &motions), reader(equations, &motions));
     let sensors = sensors::all(&calibration.sensors, &numbered);
@@ -39,24 +40,32 @@ struct WrittenMotion {
     /// What the motion is.
     about: String,
     terms: Vec<TokenStream>,
+    /// Whether one of them reads an axis that corrects, which a search for a command moves.
+    moved: bool,
 }
 
 impl WrittenMotion {
     fn new(
+        equations: &Equations,
         motion: &Motion,
         number: usize,
         calibration: &Calibration,
         sensors: &Numbered,
     ) -> Result<Self, NotCompensable> {
         let listed = calibration.motions.iter().find(|listed| listed.motion == number);
-        let terms = listed.map_or(&[][..], |listed| &listed.terms).iter().enumerate();
+        let terms = listed.map_or(&[][..], |listed| &listed.terms);
         let ramp = |place| listed.map_or(0.0, |listed| listed.ramp(place));
+        let corrects = |axis: usize| equations.axes.get(axis).is_some_and(|axis| axis.effect.is_some());
+        let read: Vec<_> = terms.iter().map(|term| term.value.runtime()).collect::<Result<_, _>>()?;
         Ok(Self {
             name: format_ident!("{}", motion.name.replace('-', "_")),
             about: docs::motion(motion),
             terms: terms
+                .iter()
+                .enumerate()
                 .map(|(place, written)| term(&written.value, ramp(place), sensors))
                 .collect::<Result<_, _>>()?,
+            moved: read.iter().filter_map(Term::axis).any(corrects),
         })
     }
 }
@@ -70,7 +79,7 @@ fn items(calibration: &Calibration, motions: &[WrittenMotion]) -> TokenStream {
     let constants = calibration.constants.iter().map(|constant| number(*constant));
     let (limits, transition) = limits(&calibration.limits);
     let count = Literal::usize_unsuffixed(motions.iter().map(|motion| motion.terms.len()).sum());
-    let lists = motions.iter().map(|WrittenMotion { name, about, terms }| {
+    let lists = motions.iter().map(|WrittenMotion { name, about, terms, .. }| {
         let (about, count) = (docs::attributes(about), Literal::usize_unsuffixed(terms.len()));
         quote! {
             #about
@@ -117,15 +126,9 @@ fn limits(limits: &Limits) -> (TokenStream, TokenStream) {
 fn reader(equations: &Equations, motions: &[WrittenMotion]) -> TokenStream {
     let axes = Literal::usize_unsuffixed(equations.axes.len());
     let names: Vec<_> = motions.iter().map(|motion| &motion.name).collect();
-    let unpacked = motions.iter().filter(|motion| !motion.terms.is_empty()).map(|motion| {
-        let (name, terms) = (&motion.name, terms_of(motion));
-        quote! { let [#(#terms),*] = &Self::#name; }
-    });
-    let sums = motions.iter().map(|motion| match &terms_of(motion)[..] {
-        [alone] => quote! { from.term(#alone) },
-        // From zero on, as any sum of several terms or of none.
-        terms => quote! { 0.0 #(+ from.term(#terms))* },
-    });
+    let unpacked = motions.iter().filter(|motion| !motion.terms.is_empty()).map(unpacked);
+    let sums = motions.iter().map(sum);
+    let read_moved = read_moved(equations, motions);
     // Nothing is read where there are no terms.
     let from = if motions.iter().all(|motion| motion.terms.is_empty()) {
         quote! { _ }
@@ -144,8 +147,63 @@ fn reader(equations: &Equations, motions: &[WrittenMotion]) -> TokenStream {
                 #(#unpacked)*
                 *read = [#(#sums),*];
             }
+            #read_moved
         }
     }
+}
+
+/// What reads the motions again that a search for a command changes; nothing where each of them may be changed, but for those
+/// that cost nothing.
+fn read_moved(equations: &Equations, motions: &[WrittenMotion]) -> Option<TokenStream> {
+    let stays = |motion: &&WrittenMotion| !motion.moved;
+    let corrects = |axis: &AxisInfo| axis.effect.is_some();
+    if equations.axes.iter().all(corrects)
+        || motions.iter().filter(stays).all(|motion| motion.terms.is_empty())
+    {
+        return None;
+    }
+    let axes = Literal::usize_unsuffixed(equations.axes.len());
+    let names = motions.iter().map(|motion| if motion.moved { value_of(motion) } else { format_ident!("_") });
+    let unpacked = motions.iter().filter(|motion| motion.moved).map(unpacked);
+    let reads = motions.iter().filter(|motion| !motion.terms.is_empty()).map(|motion| {
+        if motion.moved {
+            let (value, sum) = (value_of(motion), sum(motion));
+            quote! { *#value = #sum; }
+        } else {
+            let terms = Literal::usize_unsuffixed(motion.terms.len());
+            quote! { from.pass_over(#terms); }
+        }
+    });
+    Some(quote! {
+        #[inline]
+        fn read_moved(&self, from: ::abbe_runtime::MotionReader<'_>, values: &mut [f64]) {
+            let Some(read) = values.first_chunk_mut() else { return values.fill(f64::NAN) };
+            let Some(mut from) = from.sized::<#axes, { Self::TERMS }>() else { return read.fill(f64::NAN) };
+            #(#unpacked)*
+            let [#(#names),*] = read;
+            #(#reads)*
+        }
+    })
+}
+
+/// Names the terms of a motion.
+fn unpacked(motion: &WrittenMotion) -> TokenStream {
+    let (name, terms) = (&motion.name, terms_of(motion));
+    quote! { let [#(#terms),*] = &Self::#name; }
+}
+
+/// The sum of the terms of a motion, read in their turn.
+fn sum(motion: &WrittenMotion) -> TokenStream {
+    match &terms_of(motion)[..] {
+        [alone] => quote! { from.term(#alone) },
+        // From zero on, as any sum of several terms or of none.
+        terms => quote! { 0.0 #(+ from.term(#terms))* },
+    }
+}
+
+/// The name by which a reader knows the value of a motion.
+fn value_of(motion: &WrittenMotion) -> Ident {
+    format_ident!("{}_value", motion.name.to_string().to_ascii_lowercase())
 }
 
 /// The names by which the reader knows the terms of a motion.

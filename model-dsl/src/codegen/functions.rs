@@ -4,8 +4,9 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-use super::body::{Body, Numbers, body};
+use super::body::{Body, Numbers, Reads, body};
 use super::docs;
+use super::held::Held;
 use super::structs::of_any;
 use crate::equations::Equations;
 use crate::program::Programs;
@@ -51,8 +52,8 @@ fn nominal(equations: &Equations, programs: &Programs) -> TokenStream {
         docs::nominal_equations(equations),
         programs.nominal.operations()
     ));
-    let axes = unused("axes", body.reads.axes);
-    let Body { prelude, bindings, results, .. } = body;
+    let (axes, prelude) = (unused("axes", body.reads.axes), body.prelude());
+    let Body { bindings, results, .. } = body;
     quote! {
         #about
         #[must_use]
@@ -71,31 +72,71 @@ fn error(equations: &Equations, programs: &Programs) -> TokenStream {
         docs::error_equations(equations),
         programs.error.operations()
     ));
-    let (axes, motions) = (unused("axes", body.reads.axes), unused("motions", body.reads.motions));
-    let of_axes = of_any(equations.axes.len());
-    let of_motions = of_any(equations.motions.len());
-    let (travels, plain, given) = match equations.travels.len() {
+    let (plain, given) = match equations.travels.len() {
         0 => Default::default(),
-        count => {
-            let (name, of_travels) = (unused("travels", body.reads.travels), of_any(count));
-            (quote! { , #name: &Travels #of_travels }, quote! { , travels: &Travels }, quote! { , travels })
-        }
+        _ => (quote! { , travels: &Travels }, quote! { , travels }),
     };
-    let Body { prelude, bindings, results, .. } = body;
+    let in_any = error_in(equations, &body, &given);
     quote! {
         #about
         #[must_use]
         pub fn error(&self, axes: &Axes #plain, motions: &Motions) -> [f64; 3] {
             self.error_in(axes #given, motions)
         }
+        #in_any
+    }
+}
+
+/// The error in any numbers; where sines and cosines stay the same while a command is searched for, with them as well.
+fn error_in(equations: &Equations, body: &Body, given: &TokenStream) -> TokenStream {
+    let Body { reads, constants, bindings, results, .. } = body;
+    let about = quote! {
         /// [`Machine::error`] in one row or in several side by side, as [`abbe_runtime::Lanes`].
         #[inline]
         #[must_use]
-        pub fn error_in<T: ::abbe_runtime::Real>(&self, #axes: &Axes #of_axes #travels, #motions: &Motions #of_motions) -> [T; 3] {
-            #prelude #bindings
-            [#(#results),*]
+    };
+    match Held::new(equations, body) {
+        None => {
+            let (records, prelude) = (records(equations, *reads), body.prelude());
+            quote! {
+                #about
+                pub fn error_in<T: ::abbe_runtime::Real>(&self, #records) -> [T; 3] {
+                    #prelude #bindings
+                    [#(#results),*]
+                }
+            }
+        }
+        Some(held) => {
+            let (every, sines) = (records(equations, Reads::EVERYTHING), held.sines());
+            let records = records(equations, Reads { axes: reads.positions, ..*reads });
+            let turned = held.parameter(body, &quote! { T });
+            quote! {
+                #about
+                pub fn error_in<T: ::abbe_runtime::Real>(&self, #every) -> [T; 3] {
+                    self.error_turned(Self::sines_in(axes), axes #given, motions)
+                }
+                #sines
+                /// [`Machine::error_in`] where its rotary axes have these sines and cosines.
+                #[inline(always)]
+                fn error_turned<T: ::abbe_runtime::Real>(&self, #turned, #records) -> [T; 3] {
+                    #constants #bindings
+                    [#(#results),*]
+                }
+            }
         }
     }
+}
+
+/// The parameters `axes`, `travels` and `motions` in any numbers, with an underscore where the body does not read them.
+fn records(equations: &Equations, reads: Reads) -> TokenStream {
+    let (axes, motions) = (unused("axes", reads.axes), unused("motions", reads.motions));
+    let of_axes = of_any(equations.axes.len());
+    let of_motions = of_any(equations.motions.len());
+    let travels = (!equations.travels.is_empty()).then(|| {
+        let (name, of_travels) = (unused("travels", reads.travels), of_any(equations.travels.len()));
+        quote! { #name: &Travels #of_travels, }
+    });
+    quote! { #axes: &Axes #of_axes, #travels #motions: &Motions #of_motions }
 }
 
 fn levers(equations: &Equations, programs: &Programs) -> TokenStream {
@@ -105,8 +146,8 @@ fn levers(equations: &Equations, programs: &Programs) -> TokenStream {
         programs.levers.operations()
     ));
     let parameters = parameters(equations, &body);
-    let count = Literal::usize_unsuffixed(equations.motions.len());
-    let Body { prelude, bindings, results, .. } = body;
+    let (count, prelude) = (Literal::usize_unsuffixed(equations.motions.len()), body.prelude());
+    let Body { bindings, results, .. } = body;
     let arms = results.chunks(3).map(|arm| quote! { [#(#arm),*] });
     quote! {
         #about
@@ -120,68 +161,114 @@ fn levers(equations: &Equations, programs: &Programs) -> TokenStream {
 
 fn directions(equations: &Equations, programs: &Programs) -> TokenStream {
     let body = body(equations, &programs.directions, Numbers::Plain);
-    let axes = unused("axes", body.reads.axes);
+    let (axes, prelude) = (unused("axes", body.reads.axes), body.prelude());
     let count = Literal::usize_unsuffixed(equations.axes.len());
-    let Body { prelude, bindings, results, .. } = body;
+    let Body { constants, bindings, results, .. } = &body;
     let effects = results.chunks(3).map(|effect| quote! { [#(#effect),*] });
-    quote! {
+    let about = quote! {
         /// The displacement of the tool tip relative to the part for each mm of an axis, in the order of
         /// [`Axes::NAMES`]: X, Y, Z of the part's frame; zero for an axis that does not correct.
         #[must_use]
-        pub fn directions(&self, #axes: &Axes) -> [[f64; 3]; #count] {
-            #prelude #bindings
-            [#(#effects),*]
+    };
+    match held(equations, programs).filter(|held| held.suffice(&body)) {
+        None => quote! {
+            #about
+            pub fn directions(&self, #axes: &Axes) -> [[f64; 3]; #count] {
+                #prelude #bindings
+                [#(#effects),*]
+            }
+        },
+        Some(held) => {
+            let turned = held.parameter(&body, &quote! { f64 });
+            quote! {
+                #about
+                pub fn directions(&self, axes: &Axes) -> [[f64; 3]; #count] {
+                    self.directions_turned(Self::sines_in(axes))
+                }
+                /// [`Machine::directions`] where its rotary axes have these sines and cosines.
+                fn directions_turned(&self, #turned) -> [[f64; 3]; #count] {
+                    #constants #bindings
+                    [#(#effects),*]
+                }
+            }
         }
     }
 }
 
+/// The sines and cosines that stay the same while a command is searched for.
+fn held(equations: &Equations, programs: &Programs) -> Option<Held> {
+    Held::new(equations, &body(equations, &programs.error, Numbers::Any))
+}
+
 fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
-    let vary = body(equations, &programs.directions, Numbers::Plain).reads.axes;
+    let directions = body(equations, &programs.directions, Numbers::Plain);
+    let vary = directions.reads.axes;
+    let held = held(equations, programs);
     let axes = Literal::usize_unsuffixed(equations.axes.len());
     let motions = Literal::usize_unsuffixed(equations.motions.len());
-    let travels: Vec<_> =
-        equations.travels.iter().map(|travel| Literal::usize_unsuffixed(travel.axis)).collect();
-    let (position, of_axes) = record("position", "Axes", equations.axes.len());
-    let (travel, of_travels) = record("travel", "Travels", travels.len());
-    let (values, of_motions) = record("motions", "Motions", equations.motions.len());
-    let of_travels = (!travels.is_empty()).then(|| quote! { &#of_travels, });
+    let travels = equations.travels.iter().map(|travel| Literal::usize_unsuffixed(travel.axis));
+    let error_from = error_from(equations, held.as_ref());
+    let (sines, with_sines) = match &held {
+        None => Default::default(),
+        Some(held) => (quote! { Self::sines_of(position), }, held.kinematics(&directions)),
+    };
     quote! {
         impl Machine {
-            /// [`Machine::error_in`] from slices, NaN where one has the wrong length.
-            fn error_from<T: ::abbe_runtime::Real>(&self, position: &[T], travel: &[T], motions: &[T]) -> [T; 3] {
-                #position
-                #values
-                #travel
-                self.error_in(&#of_axes, #of_travels &#of_motions)
-            }
+            #error_from
         }
         impl ::abbe_runtime::Kinematics for Machine {
             fn axes(&self) -> usize { #axes }
             fn travels(&self) -> &[usize] { &[#(#travels),*] }
             fn motions(&self) -> usize { #motions }
             fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
-                self.error_from(position, travel, motions)
+                self.error_from(#sines position, travel, motions)
             }
+            #with_sines
             fn error_lanes(
                 &self,
                 position: &[::abbe_runtime::Lanes],
                 travel: &[::abbe_runtime::Lanes],
                 motions: &[::abbe_runtime::Lanes],
             ) -> Option<[::abbe_runtime::Lanes; 3]> {
-                Some(self.error_from(position, travel, motions))
+                Some(self.error_from(#sines position, travel, motions))
             }
             fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {
-                let filled = match position.try_into() {
+                let found = match position.try_into() {
                     Ok(position) => Machine::directions(self, &Axes::from_array(position)),
                     Err(_) => [[f64::NAN; 3]; #axes],
                 };
-                if directions.len() == filled.len() {
-                    directions.copy_from_slice(&filled);
-                } else {
-                    directions.fill([f64::NAN; 3]);
+                match directions.as_mut_array() {
+                    Some(directions) => *directions = found,
+                    None => directions.fill([f64::NAN; 3]),
                 }
             }
             fn directions_vary(&self) -> bool { #vary }
+        }
+    }
+}
+
+/// The error from slices.
+fn error_from(equations: &Equations, held: Option<&Held>) -> TokenStream {
+    let (position, of_axes) = record("position", "Axes", equations.axes.len());
+    let (travel, of_travels) = record("travel", "Travels", equations.travels.len());
+    let (values, of_motions) = record("motions", "Motions", equations.motions.len());
+    let of_travels = (!equations.travels.is_empty()).then(|| quote! { &#of_travels, });
+    let slices = quote! { position: &[T], travel: &[T], motions: &[T] };
+    let (sines, error) = match held {
+        None => (None, quote! { self.error_in(&#of_axes, #of_travels &#of_motions) }),
+        Some(held) => {
+            let sines = held.of(&quote! { T });
+            let error = quote! { self.error_turned(sines, &#of_axes, #of_travels &#of_motions) };
+            (Some(quote! { sines: #sines, }), error)
+        }
+    };
+    quote! {
+        /// [`Machine::error_in`] from slices, NaN where one has the wrong length.
+        fn error_from<T: ::abbe_runtime::Real>(&self, #sines #slices) -> [T; 3] {
+            #position
+            #values
+            #travel
+            #error
         }
     }
 }

@@ -6,7 +6,7 @@
 use super::{Needs, Refusal, same_length};
 use crate::math::all_finite;
 use crate::sample::number;
-use crate::{ErrorMotions, Kinematics, MotionReader, Sample, TermState};
+use crate::{ErrorMotions, Kinematics, MotionReader, Sample, Sines, TermState};
 
 /// The equations of a machine, its error motions, and the storage in which they are evaluated.
 #[derive(Debug)]
@@ -19,6 +19,8 @@ pub(super) struct Prediction<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Size
     pub(super) values: &'a mut [f64],
     /// The value of each free travel.
     pub(super) travel: &'a mut [f64],
+    /// What the equations need of rotary axes in this cycle.
+    pub(super) sines: Sines,
     pub(super) needs: Needs,
 }
 
@@ -28,6 +30,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
     pub(super) fn begin(&mut self, sample: &Sample<'_>) -> Result<[f64; 3], Refusal> {
         self.check(sample)?;
         self.advance(sample);
+        self.sines = self.kinematics.sines(sample.position);
         let error = self.error(sample, sample.position);
         if all_finite(&error) { Ok(error) } else { Err(Refusal::NotFinite) }
     }
@@ -73,7 +76,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
         }
     }
 
-    /// The error at a position in the state of the sample; memories are read only.
+    /// The error at a position in the state of the sample, the rotary axes where they are there; memories are read only.
     #[inline]
     pub(super) fn error(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
         self.motions.read(MotionReader::new(sample, position, self.states), self.values);
@@ -84,6 +87,14 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
     #[inline]
     pub(super) fn corrected(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
         self.motions.read(MotionReader::of_corrected(sample, position, self.states), self.values);
+        self.sum(sample, position)
+    }
+
+    /// [`corrected`](Self::corrected) at a position that differs from that of the last reading for axes that correct; where
+    /// nothing is ramped, that reading may have been of the whole error.
+    #[inline]
+    pub(super) fn corrected_again(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
+        self.motions.read_moved(MotionReader::of_corrected(sample, position, self.states), self.values);
         self.sum(sample, position)
     }
 
@@ -98,6 +109,6 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
         } else {
             sample.travel
         };
-        self.kinematics.error(position, travel, self.values)
+        self.kinematics.error_with(&self.sines, position, travel, self.values)
     }
 }

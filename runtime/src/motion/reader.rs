@@ -56,12 +56,18 @@ impl<'a> MotionReader<'a> {
         term.read_one(&mut self.from, state, self.corrected)
     }
 
+    /// Leaves out the next so many terms.
+    #[inline]
+    pub fn pass_over(&mut self, terms: usize) {
+        // Wraps only where no such slice can exist.
+        self.read = self.read.wrapping_add(terms);
+    }
+
     /// The value of the next error motion, in mm or rad; NaN where its terms have no memories left.
     #[inline]
     pub(super) fn motion(&mut self, motion: &ErrorMotion<'_>) -> f64 {
         let first = self.read;
-        // Wraps only where no such slice can exist.
-        self.read = first.wrapping_add(motion.terms.len());
+        self.pass_over(motion.terms.len());
         match motion.read_alone(&mut self.from) {
             Some(value) => value,
             None => {

@@ -6,8 +6,9 @@
 use super::{Input, Term};
 
 impl Term<'_> {
-    /// Index of the axis that the term reads.
-    pub(crate) const fn axis(&self) -> Option<usize> {
+    /// Index of the axis whose position, velocity or direction the term reads; none where it reads no axis.
+    #[must_use]
+    pub const fn axis(&self) -> Option<usize> {
         match *self {
             Self::Polynomial { input: Input::Axis(axis), .. }
             | Self::Coupling { axis, .. }

@@ -143,7 +143,8 @@ impl Search {
                 next =
                     dynamics::try_drives(study, next, self.always, &self.noises, &self.travels, self.tries);
                 settled = same_effects(&self.model, &next);
-            } else if dynamics::may_answer(&next, self.always) {
+            } else if round > 0 && dynamics::may_answer(&next, self.always) {
+                // Not in the first round, which takes all noise as white: what it chooses serves to know the noise.
                 next =
                     dynamics::try_drives(study, next, self.always, &self.noises, &self.travels, self.tries);
             }

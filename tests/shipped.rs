@@ -4,6 +4,10 @@
 use std::fs;
 use std::path::PathBuf;
 
+use model_dsl::compile;
+use model_dsl::diagnostic::Diagnostics;
+use model_dsl::source::SourceFile;
+
 use crate::oracle::{ErrorMotion, Kind, Link, Machine, Shape};
 use crate::random::of_word;
 
@@ -49,6 +53,20 @@ fn all_of_them_are_described() {
     files.sort();
     let described: Vec<String> = SHIPPED.iter().map(|shipped| format!("{}.yaml", shipped.name)).collect();
     assert_eq!(files, described);
+}
+
+/// Tables and polynomials of a motion are over this axis, where a calibration names no other.
+#[test]
+fn a_motion_has_the_axis_after_which_its_link_is_called() {
+    for shipped in SHIPPED {
+        let source = SourceFile::new(shipped.name, shipped.text());
+        let equations = compile(&source, &mut Diagnostics::new()).unwrap().equations;
+        for motion in &equations.motions {
+            let axis = motion.axis.map(|axis| equations.axes[axis].letter.clone());
+            let programmed = equations.axes.iter().any(|axis| axis.letter == motion.link);
+            assert_eq!(axis, programmed.then(|| motion.link.clone()), "{} {}", shipped.name, motion.name);
+        }
+    }
 }
 
 fn link(kind: Kind, id: &str, along: &str, origin: [&str; 3]) -> Link {

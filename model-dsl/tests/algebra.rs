@@ -155,3 +155,23 @@ fn a_small_rotation_about_z_turns_x_towards_y() {
     let [_, y, _] = turned.place(&[one, zero(), zero()]);
     assert_eq!(y, FirstOrder::error(0, Polynomial::one()));
 }
+
+/// Equation (3-9) of the Excello report: `1 + [e]x` beside the displacement, above a row 0 0 0 1.
+#[test]
+fn a_small_displacement_has_the_entries_of_its_matrix() {
+    let error = |at: usize| FirstOrder::error(at, Polynomial::one());
+    let small = Htm::small([error(0), error(1), error(2)], [error(3), error(4), error(5)]);
+    let (zero, one) = (FirstOrder::default(), FirstOrder::nominal(Polynomial::one()));
+    let expected = [
+        [one.clone(), -&error(2), error(1), error(3)],
+        [error(2), one.clone(), -&error(0), error(4)],
+        [-&error(1), error(0), one.clone(), error(5)],
+        [zero.clone(), zero.clone(), zero, one],
+    ];
+    for (row, entries) in expected.iter().enumerate() {
+        for (column, entry) in entries.iter().enumerate() {
+            assert_eq!(small.entry(row, column).as_ref(), Some(entry), "row {row}, column {column}");
+        }
+    }
+    assert_eq!((small.entry(4, 0), small.entry(0, 4)), (None, None));
+}

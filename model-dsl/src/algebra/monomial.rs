@@ -31,11 +31,6 @@ impl Monomial {
         self.0.is_empty()
     }
 
-    /// The sum of the powers.
-    pub fn degree(&self) -> u32 {
-        self.0.iter().map(|(_, power)| power).sum()
-    }
-
     /// The power of one symbol, 0 where it is absent.
     pub fn power_of(&self, symbol: &Symbol) -> u32 {
         self.0.iter().find(|(own, _)| own == symbol).map_or(0, |(_, power)| *power)

@@ -107,11 +107,17 @@ impl Whitening {
         if self.noise.wander == 0.0 {
             return 0.0;
         }
-        if (step - self.decay.0).abs() > 1e-9 * step {
+        if !same_step(step, self.decay.0) {
             self.decay = (step, (-step / self.noise.time_constant).exp());
         }
         self.decay.1
     }
+}
+
+/// Whether steps of time are the same but for the rounding of a clock, which a file gives with so many digits: what is left of a
+/// wandering after them then is the same within a ten-thousandth of what it loses.
+fn same_step(step: f64, known: f64) -> bool {
+    (step - known).abs() <= 1e-4 * step
 }
 
 /// Whitens columns in place, which stand one behind the other; `states` go on from the rows before, 0 at the beginning.

@@ -112,6 +112,14 @@ proptest! {
         }
     }
 
+    /// Of any symbol whose powers are not rewritten.
+    #[test]
+    fn a_product_is_differentiated_by_the_rule_of_leibniz(a in polynomial(), b in polynomial(), at in 0_usize..3) {
+        let by = |polynomial: &Polynomial| polynomial.derivative(&letters()[at]);
+        prop_assert_eq!(by(&(&a * &b)), &(&by(&a) * &b) + &(&a * &by(&b)));
+        prop_assert_eq!(by(&Polynomial::symbol(letters()[at].clone())), Polynomial::one());
+    }
+
     #[test]
     fn the_first_order_product_is_the_derivative(a in polynomial(), da in polynomial(), b in polynomial(), db in polynomial()) {
         let with = |nominal: &Polynomial, slope: &Polynomial| {

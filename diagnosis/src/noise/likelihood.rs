@@ -5,7 +5,7 @@
 //!
 //! [`Whitening`]: super::Whitening
 
-use super::Noise;
+use super::{Noise, same_step};
 
 /// Minus twice the logarithm of the likelihood of a residual under each noise, its scale concentrated out, and that scale (a
 /// variance).
@@ -73,7 +73,7 @@ impl<const N: usize> Filters<N> {
     }
 
     fn wait(&mut self, step: f64) {
-        if (step - self.step).abs() > 1e-9 * step {
+        if !same_step(step, self.step) {
             self.step = step;
             self.settled = false;
             self.decay = decays(&self.noises, step);

@@ -128,6 +128,23 @@ fn a_filter_that_has_settled_does_what_it_would_work_out() {
 }
 
 #[test]
+fn the_rounding_of_a_clock_is_no_step_of_its_own() {
+    let noise = Noise { white: 0.7, wander: 1.3, time_constant: 0.002 };
+    let exact: Vec<f64> = (0..400).map(|row| f64::from(row) * 6.0319e-5 / 1.7).collect();
+    let clock: Vec<f64> = exact.iter().map(|time| (time * 1e9).round() / 1e9).collect();
+    let steps = |time: &[f64]| Whitening::new(noise).steps(time, &[true; 400]);
+    for (row, (exact, seen)) in steps(&exact).into_iter().zip(steps(&clock)).enumerate() {
+        let numbers = [(seen.decay, exact.decay), (seen.gain, exact.gain), (seen.weight, exact.weight)];
+        assert!(
+            numbers.iter().all(|(a, b)| (a - b).abs() <= 1e-4 * b),
+            "row {row}: {seen:?} is not {exact:?}"
+        );
+    }
+    let decays: Vec<f64> = steps(&clock).iter().skip(1).map(|step| step.decay).collect();
+    assert!(decays.windows(2).all(|pair| pair[0] == pair[1]));
+}
+
+#[test]
 fn unwhitening_is_the_transpose_and_gives_the_weights_of_least_squares() {
     for (noise, time, valid) in cases() {
         let steps = Whitening::new(noise).steps(&time, &valid);

@@ -66,6 +66,15 @@ mod tests {
     }
 
     #[test]
+    fn forty_digits_and_places_are_the_most() {
+        let digits = |count: usize| "7".repeat(count);
+        assert_eq!(decimal(&digits(40)).map(|value| value.to_string()), Some(digits(40)));
+        assert_eq!((decimal(&digits(41)), decimal(&digits(42))), (None, None));
+        assert!(decimal("1e40").is_some() && decimal("1e-40").is_some());
+        assert_eq!((decimal("1e41"), decimal("1e-41")), (None, None));
+    }
+
+    #[test]
     fn what_is_not_a_number_or_is_absurd_is_refused() {
         // Integers of any size may be written with underscores in Rust, and numbers of a file may not.
         for text in ["", ".", "1,5", "x", "1e", "1e999999999", "--1", "0x1", "1_0", "1.5_0", "1.-5", "_1.5"] {

@@ -103,7 +103,9 @@ proptest! {
             Input::Motion(at) => value_of(&letters[at]),
             other => panic!("{other:?} was never given"),
         };
-        for (result, polynomial) in program.run(given).into_iter().zip(&polynomials) {
+        let results = program.run(given);
+        prop_assert_eq!(results.len(), polynomials.len());
+        for (result, polynomial) in results.into_iter().zip(&polynomials) {
             prop_assert!(close(result, polynomial.evaluate(value_of)), "{} for {:?}", result, polynomial);
         }
         for (number, step) in program.steps.iter().enumerate() {

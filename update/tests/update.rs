@@ -275,6 +275,7 @@ fn a_compensated_part_shows_what_was_left() {
     let one = bench.update(&known, &[&plain], Options::default()).unwrap();
     let options = Options { compensated: true, ..Options::default() };
     let other = bench.update(&known, &[&left], options).unwrap();
+    assert!(!one.residuals.is_empty() && one.residuals.len() == other.residuals.len());
     for (one, other) in one.residuals.iter().zip(&other.residuals) {
         assert!((one.before.rms - other.before.rms).abs() < 2e-6, "{one:?} {other:?}");
     }

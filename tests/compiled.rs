@@ -17,8 +17,8 @@ use proptest::test_runner::TestRunner;
 use self::calibrations::Followed;
 use crate::agreement::{Case, compiled, levers_are_dual_numbers};
 use crate::oracle::Machine;
-use crate::random::{machines, state};
-use crate::shipped::root;
+use crate::random::{machines, of_word, state};
+use crate::shipped::{axis, root, tip, with};
 use crate::yaml;
 
 /// Enough for every feature of the file to meet every other one; each takes the compiler a third of a second.
@@ -36,11 +36,15 @@ struct Drawn {
     followed: Followed,
 }
 
-/// The same machines on every run.
+/// The same random machines on every run, and one that is described by hand.
 fn drawn() -> Vec<Drawn> {
     let mut runner = TestRunner::deterministic();
     let draw = |number: usize| {
-        let machine = machines().new_tree(&mut runner).unwrap().current();
+        let machine = if number < MACHINES {
+            machines().new_tree(&mut runner).unwrap().current()
+        } else {
+            turned_further()
+        };
         let text = yaml::text(&machine, number.is_multiple_of(2));
         let equations = compiled(&text);
         // Terms take the compiler longer than equations: one calibration in four has some.
@@ -48,7 +52,24 @@ fn drawn() -> Vec<Drawn> {
         let followed = Followed::draw(&machine, &equations, most, runner.rng());
         Drawn { machine, text, equations, followed }
     };
-    (0..MACHINES).map(draw).collect()
+    (0..=MACHINES).map(draw).collect()
+}
+
+/// Its error turns with A alone, and the direction of Y with C as well, which has no error motions as Y has none. There are no
+/// offsets in it.
+fn turned_further() -> Machine {
+    let here = ["0", "0", "0"];
+    Machine {
+        workpiece: vec![with(axis('X', "-X", here), &[("EXX", "EXX")])],
+        tool: vec![
+            with(axis('A', "+A", here), &[]),
+            with(axis('Z', "+Z", here), &[("EYZ", "EYZ")]),
+            with(axis('C', "+C", here), &[]),
+            with(axis('Y', "+Y", here), &[]),
+            tip("tip", here),
+        ],
+        ..of_word("FX")
+    }
 }
 
 /// A list of numbers that the compiler reads back to the last bit.
@@ -60,7 +81,7 @@ fn list(numbers: &[f64]) -> String {
 /// its calibration.
 fn program(machines: &[Drawn]) -> String {
     let mut text = String::from(
-        "//! Random machines.\nuse abbe_runtime::Kinematics;\n\
+        "//! Machines.\nuse abbe_runtime::Kinematics;\n\
          fn say<const N: usize>(machine: &dyn Kinematics, position: &[f64], travel: &[f64], motions: &[f64], nominal: [f64; 3], levers: [[f64; 3]; N]) {\n\
              let mut directions = vec![[0.0; 3]; position.len()];\n\
              machine.directions(position, &mut directions);\n\

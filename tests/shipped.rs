@@ -90,17 +90,19 @@ fn link(kind: Kind, id: &str, along: &str, origin: [&str; 3]) -> Link {
     }
 }
 
-fn axis(letter: char, along: &str, origin: [&str; 3]) -> Link {
+/// A slide or a rotary axis of a letter, its errors as usual.
+pub(crate) fn axis(letter: char, along: &str, origin: [&str; 3]) -> Link {
     let kind = if "ABC".contains(letter) { Kind::Rotary(letter) } else { Kind::Slide(letter) };
     link(kind, &letter.to_string(), along, origin)
 }
 
-fn tip(id: &str, offset: [&str; 3]) -> Link {
+/// The tool.
+pub(crate) fn tip(id: &str, offset: [&str; 3]) -> Link {
     link(Kind::Tool, id, "", offset)
 }
 
 /// Error motions by name with symbols; `-` before a symbol counts against the ISO sense, `@` names a travel.
-fn with(mut link: Link, names: &[(&str, &str)]) -> Link {
+pub(crate) fn with(mut link: Link, names: &[(&str, &str)]) -> Link {
     let errors = names.iter().map(|(name, symbol)| {
         let (symbol, travel) =
             symbol.split_once('@').map_or((*symbol, None), |(symbol, travel)| (symbol, Some(travel)));

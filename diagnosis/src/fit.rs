@@ -147,3 +147,6 @@ fn furthest(shape: &Shape, travels: &[Travel]) -> f64 {
         _ => f64::INFINITY,
     }
 }
+
+#[cfg(test)]
+mod tests;

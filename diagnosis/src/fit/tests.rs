@@ -1,0 +1,74 @@
+//! Fits that begin far from the least squares, where a whole step overshoots.
+
+use super::*;
+use crate::engine;
+use crate::model::Place;
+use crate::side::Side;
+use crate::terms::Setting;
+use crate::testing::{Bench, line, noisy, path, position};
+use crate::travel::travels;
+
+/// White noise, mm.
+const NOISE: f64 = 1e-4;
+
+/// What a stage X does, mm and Hz, that vibrates while it goes 200 mm there and back, in 8 s.
+const VIBRATES: &str = "{EXX: [{vibration: {frequency: 3.1 Hz, amplitude: 2 um, phase: 10 deg}}]}";
+const FREQUENCY: f64 = 3.1;
+const OBSERVED: f64 = 8.0;
+
+/// For fits that begin at these frequencies, Hz: the sum of squares of the linear fit at the beginning, and the end.
+fn from(frequencies: impl Iterator<Item = f64>) -> Vec<(f64, f64, Fit)> {
+    let bench = Bench::of("FX");
+    let scenario = noisy(path(line(0, 0.0, 200.0), 50.0, 40.0), position("x"), NOISE, 7);
+    let recording = bench.record(&bench.calibration(VIBRATES), &scenario);
+    let study = Study::new(bench.equations(), None, &[&recording]);
+    let travels = travels(&study, &engine::courses(&study, &Model::new()));
+    let noises = vec![vec![Noise::white(NOISE)]];
+    let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
+    let fit = |frequency: f64| {
+        let zero = Effect::setting(0, Setting::Offset { channel: 0 });
+        let vibration = Effect { place, shape: Shape::Vibration { frequency } };
+        let model = vec![
+            Fitted { effect: zero, coefficients: vec![0.0] },
+            Fitted { effect: vibration, coefficients: vec![0.0; 2] },
+        ];
+        // Without an amplitude the frequency has no slope: the first step is the linear fit at this frequency.
+        let begin = Linearised::new(&study, model, &noises).stepped(&study, 1.0, &travels);
+        let squares = Linearised::new(&study, begin.clone(), &noises).remaining;
+        (frequency, squares, refine(&study, begin, &noises, &travels))
+    };
+    frequencies.map(fit).collect()
+}
+
+fn frequency(fit: &Fit) -> f64 {
+    fit.model[1].effect.shape.nonlinear().unwrap().value
+}
+
+#[test]
+fn no_fit_is_worse_than_where_it_began() {
+    // Up to five turns ahead of the vibration and behind it, where most fits end on a side lobe of its spectrum.
+    let fits = from((0..60).map(|step| 2.5 + 0.02 * f64::from(step)));
+    for (start, squares, fit) in &fits {
+        assert!(
+            fit.remaining <= *squares,
+            "{start} Hz: {squares}, {} at {} Hz",
+            fit.remaining,
+            frequency(fit)
+        );
+    }
+}
+
+#[test]
+fn a_fit_that_begins_within_half_a_turn_comes_to_the_vibration() {
+    // A frequency is known to a standard deviation of 3e-4 Hz there: sqrt(6) / pi / 8 s times noise / amplitude / sqrt(320).
+    for (start, _, fit) in
+        from([-0.5, -0.3, -0.1, 0.1, 0.3, 0.5].map(|turns| FREQUENCY + turns / OBSERVED).into_iter())
+    {
+        assert!((frequency(&fit) - FREQUENCY).abs() < 1e-3, "{start} Hz: {}", frequency(&fit));
+        assert!(
+            (fit.remaining / fit.samples - 1.0).abs() < 0.25,
+            "{start} Hz: {}",
+            fit.remaining / fit.samples
+        );
+    }
+}

@@ -48,7 +48,9 @@ fn compiled_machine(equations: &Equations) -> TokenStream {
         quote! { (#name, #angular, #axis) }
     });
     let json = CompiledIn::of_equations(equations);
+    let measured = super::measured();
     quote! {
+        #measured
         impl ::abbe_c::CompiledMachine for Machine {
             const NAME: &'static str = #machine;
             const CONSTANTS: &'static [::abbe_c::ConstantOfMachine] = &[#(#constants),*];

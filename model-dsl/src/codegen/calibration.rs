@@ -9,8 +9,8 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::body::number;
-use super::docs;
 use super::sensors::{self, Numbered};
+use super::{docs, measured};
 use crate::calibration::{
     CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Limits, NotCompensable, SeriesInput,
 };
@@ -78,6 +78,7 @@ fn items(calibration: &Calibration, motions: &[WrittenMotion]) -> TokenStream {
     });
     let constants = calibration.constants.iter().map(|constant| number(*constant));
     let (limits, transition) = limits(&calibration.limits);
+    let measured = measured();
     let count = Literal::usize_unsuffixed(motions.iter().map(|motion| motion.terms.len()).sum());
     let lists = motions.iter().map(|WrittenMotion { name, about, terms, .. }| {
         let (about, count) = (docs::attributes(about), Literal::usize_unsuffixed(terms.len()));
@@ -90,6 +91,7 @@ fn items(calibration: &Calibration, motions: &[WrittenMotion]) -> TokenStream {
         #about
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub struct Calibration;
+        #measured
         impl Calibration {
             /// The machine with the constants of the calibration.
             pub const MACHINE: Machine = Machine { constants: Constants::from_array([#(#constants),*]) };

@@ -5,9 +5,9 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::body::{Body, Numbers, Reads, body};
-use super::docs;
 use super::held::Held;
 use super::structs::of_any;
+use super::{docs, measured};
 use crate::equations::Equations;
 use crate::program::Programs;
 
@@ -18,8 +18,9 @@ pub(super) fn all(equations: &Equations, programs: &Programs) -> TokenStream {
     let levers = levers(equations, programs);
     let directions = directions(equations, programs);
     let kinematics = kinematics(equations, programs);
-    let name = &equations.machine;
+    let (measured, name) = (measured(), &equations.machine);
     quote! {
+        #measured
         impl Machine {
             /// The machine's name, by which calibrations refer to it.
             pub const NAME: &'static str = #name;

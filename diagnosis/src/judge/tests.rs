@@ -55,31 +55,33 @@ fn fitted<'a>(bench: &'a Bench, recording: &'a Recording, noise: f64) -> Case<'a
     Case { study, fit, design, appraisal }
 }
 
-impl Case<'_> {
-    fn swept(&self) -> Swept {
-        let mut swept = Swept::new(&self.design.fitted().0);
-        for column in 0..self.design.width {
-            swept.take(column);
-        }
-        swept
+/// All columns of a design, taken in.
+fn swept(design: &Design) -> Swept {
+    let mut swept = Swept::new(&design.fitted().0);
+    for column in 0..design.width {
+        swept.take(column);
     }
+    swept
+}
 
+impl Case<'_> {
     fn returns(&self) -> bool {
-        returns(&self.design, &self.swept(), PLAY, 1.0)
+        returns(&self.design, &swept(&self.design), PLAY, 1.0)
     }
 
     fn steady(&self) -> bool {
-        steady(&self.design, &self.swept(), PLAY)
+        steady(&self.design, &swept(&self.design), PLAY)
     }
 
     fn pays(&self) -> bool {
         let whole = zeros::residuals(&self.study, &self.fit.model);
-        pays(&self.study, &self.design, &self.swept(), &self.fit, (&self.appraisal, &whole), PLAY)
+        pays(&self.study, &self.design, &swept(&self.design), &self.fit, (&self.appraisal, &whole), PLAY)
     }
 }
 
-/// Noise beside which the lost motion is plain, mm; and the other way round.
+/// Noise beside which the lost motion is plain, mm; beside which there is some doubt of it; and beside which it is lost.
 const QUIET: f64 = 1e-4;
+const DOUBTFUL: f64 = 0.025;
 const LOUD: f64 = 0.06;
 
 /// The strength of an effect that is there in the rows that are fitted, and of this strength where they are held out.
@@ -132,4 +134,38 @@ fn an_effect_far_below_the_noise_of_a_sample_does_not_matter() {
         case.appraisal.noises = vec![vec![Noise::white(size)]];
         assert_eq!(case.pays(), matters, "{share}");
     }
+}
+
+/// The first effect to fall, of those after the first `always`, where so many candidates were tried that the price of the lost
+/// motion is this share of what it is worth: in squares, or in likelihood where the noise takes up a part of it.
+fn falls(case: &Case<'_>, always: usize, share: f64) -> Option<usize> {
+    let design = design(&case.study, &case.fit.model, &case.appraisal.noises);
+    let (swept, samples) = (swept(&design), design.fitted().1);
+    let columns: Vec<usize> = design.columns(PLAY).collect();
+    let squares = swept.worth(&columns) * samples / swept.remaining();
+    let bare = Appraisal::new(&case.study, &without(&design, &swept, &case.fit.model, PLAY));
+    let worth = squares.min(bare.deviance - case.appraisal.deviance);
+    let untried = price(&case.study, &case.fit.model[PLAY].effect, samples, 1.0, 1.0);
+    assert!(untried < 0.5 * worth, "{untried} {worth}");
+    let candidates = (0.5 * (share * worth - untried)).exp();
+    weakest(&case.study, &case.fit, &case.appraisal, always, Tries { candidates, waves: 1.0 })
+}
+
+#[test]
+fn an_effect_stands_where_it_is_worth_its_price() {
+    let bench = Bench::of("XFY");
+    let recording = recorded(&bench, |_, _| 1.0, DOUBTFUL);
+    let case = fitted(&bench, &recording, DOUBTFUL);
+    assert_eq!(falls(&case, PLAY, 0.999), None);
+    assert_eq!(falls(&case, PLAY, 1.001), Some(PLAY));
+}
+
+#[test]
+fn what_is_worth_least_falls_first() {
+    let bench = Bench::of("XFY");
+    let recording = recorded(&bench, |_, _| 1.0, DOUBTFUL);
+    let case = fitted(&bench, &recording, DOUBTFUL);
+    // The zero, which nothing asks for, is judged here as well.
+    let zero = 0;
+    assert_eq!(falls(&case, zero, 1.001), Some(zero));
 }

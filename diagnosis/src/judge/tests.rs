@@ -115,6 +115,19 @@ fn an_effect_that_rests_on_one_stretch_is_not_steady() {
 }
 
 #[test]
+fn a_few_stretches_tell_nothing_of_steadiness() {
+    let bench = Bench::of("XFY");
+    let recording = recorded(&bench, |block, _| if block % 2 == 0 { -1.0 } else { 3.0 }, QUIET);
+    let mut case = fitted(&bench, &recording, QUIET);
+    case.design.blocks.retain(|block| !block.held_out);
+    for (stretches, steady) in [(FEW_BLOCKS, false), (FEW_BLOCKS - 1, true), (2, true)] {
+        case.design.blocks.truncate(stretches);
+        assert_eq!(case.design.blocks.len(), stretches);
+        assert_eq!(case.steady(), steady, "{stretches}");
+    }
+}
+
+#[test]
 fn an_effect_pays_where_held_out_rows_come_nearer() {
     let bench = Bench::of("XFY");
     for (strength, does) in [(1.0, true), (0.6, true), (0.4, false), (0.0, false), (-1.0, false)] {

@@ -45,10 +45,11 @@ fn the_compiler_has_no_hash_maps() {
     assert!(broken.is_empty(), "unordered maps in {broken:#?}");
 }
 
-/// An exception to a lint gives its reason and goes stale loudly.
+/// An exception to a lint gives its reason and goes stale loudly. The code that the compiler writes cannot: whether a number of a
+/// machine is near a constant is not known when the exception is written.
 #[test]
 fn lints_are_expected_and_never_allowed() {
-    let attribute = ["#[al", "low("].concat();
-    let broken = breaking(|_, text| !text.contains(&attribute));
+    let (attribute, writer) = (["#[al", "low("].concat(), root().join("model-dsl/src/codegen.rs"));
+    let broken = breaking(|path, text| path == writer || !text.contains(&attribute));
     assert!(broken.is_empty(), "write #[expect(lint, reason = \"...\")] in {broken:#?}");
 }

@@ -200,8 +200,18 @@ mod tests {
                 assert_close(reach.apply(error), Reach { vectors: general, skew: 1.0, ..reach }.apply(error));
             }
         }
-        let skew = [[1.0, 0.0, 0.0], [1e-9, 1.0, 0.0]];
-        assert!(straight(&skew).1.any_above(0.0));
+    }
+
+    #[test]
+    fn a_slide_that_leans_in_any_plane_is_not_straight() {
+        for (slide, towards) in [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)] {
+            for lean in [1e-9, -1e-3] {
+                let mut columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+                columns[slide][towards] = lean;
+                assert!(straight(&columns).1.any_above(0.0), "{columns:?}");
+                assert_close(made(&columns, [0.3, -0.2, 0.7]), [0.3, -0.2, 0.7]);
+            }
+        }
     }
 
     #[test]

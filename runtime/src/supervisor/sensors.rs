@@ -58,3 +58,25 @@ impl<'a> Sensors<'a> {
         if of_sample.len() < self.temperature.len() { of_sample } else { self.temperature }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sensor_that_has_been_silent_longest_is_told() {
+        let (mut temperature, mut silence) = ([0.0; 3], [0.0; 3]);
+        let mut sensors = Sensors::new(&mut temperature, &mut silence);
+        let gone = f64::NAN;
+        let cycles = [
+            ([20.0, 20.0, 20.0], None),
+            ([20.0, gone, 20.0], Some((1, 0.5))),
+            ([gone, gone, 20.0], Some((1, 1.0))),
+            ([gone, gone, gone], Some((1, 1.5))),
+            ([gone, 21.0, gone], Some((0, 1.5))),
+        ];
+        for (readings, silent) in cycles {
+            assert_eq!(sensors.hear(&readings, 0.5).silent, silent, "{readings:?}");
+        }
+    }
+}

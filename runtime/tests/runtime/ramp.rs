@@ -52,6 +52,22 @@ fn no_time_no_step() {
 }
 
 #[test]
+fn a_time_or_a_place_that_is_no_number_leaves_the_ramp_where_it_is() {
+    let found =
+        corrected(PLAY, &[(FORWARD, 0.0), (BACK, 0.3), (BACK, f64::NAN), (BACK, f64::INFINITY), (BACK, 0.2)]);
+    assert_close(&found, &[-0.005, -0.002, -0.002, -0.002, 0.0]);
+
+    let wound = Term::Backlash { axis: 0, lost_motion: 0.01, wind_up: 4.0, ramp: 1.0 };
+    let mut state = TermState::default();
+    for (position, time_step) in [(3.0, 0.0), (0.0, 0.1)] {
+        wound.advance(&Sample { direction: BACK, time_step, ..at(&[position]) }, &mut state);
+    }
+    let before = state;
+    wound.advance(&Sample { direction: BACK, time_step: 0.1, ..at(&[f64::NAN]) }, &mut state);
+    assert_eq!(state, before);
+}
+
+#[test]
 fn the_prediction_does_not_wait_and_the_rest_is_told() {
     let motions = [ErrorMotion { terms: &[PLAY] }];
     let ((outcome, command), _) = with(&Slide, &motions, |compensator| {

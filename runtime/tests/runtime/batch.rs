@@ -353,10 +353,12 @@ fn each_row_is_refused_for_its_own_reason() {
 
 #[test]
 fn slices_of_a_wrong_length_are_refused_and_nothing_is_written() {
-    let motions = [ErrorMotion::default()];
+    let growth = [Term::Growth { sensor: 0, coefficient: 1.0, reference: 20.0, time_constant: 0.0 }];
+    let motions = [ErrorMotion { terms: &growth }];
     let good = Rows {
         position: vec![vec![1.0; 3]],
         direction: vec![vec![Direction::Positive; 3]],
+        temperature: vec![vec![20.0; 3]],
         time_step: vec![0.0; 3],
         ..Rows::default()
     };
@@ -368,10 +370,10 @@ fn slices_of_a_wrong_length_are_refused_and_nothing_is_written() {
         let work = BatchWork { lanes: &mut lanes, numbers: &mut numbers, directions: &mut directions };
         let all = Batch {
             position: &slices(&rows.position, 0..rows.position[0].len()),
-            travel: &[],
+            travel: &slices(&rows.travel, 0..3),
             direction: &slices(&rows.direction, 0..rows.direction[0].len()),
-            velocity: &[],
-            temperature: &[],
+            velocity: &slices(&rows.velocity, 0..3),
+            temperature: &slices(&rows.temperature, 0..3),
             time_step: &rows.time_step,
         };
         let mut answers = [Err(Refusal::NotFinite); 3];
@@ -385,6 +387,12 @@ fn slices_of_a_wrong_length_are_refused_and_nothing_is_written() {
     assert_eq!(told(&short, &mut [&mut out]), refused("direction", 3, 4));
     let short = Rows { time_step: vec![0.0; 1], ..good.clone() };
     assert_eq!(told(&short, &mut [&mut out]), refused("time_step", 3, 1));
+    let none = Rows { temperature: vec![], ..good.clone() };
+    assert_eq!(told(&none, &mut [&mut out]), refused("temperature", 1, 0));
+    let more = Rows { velocity: vec![vec![0.0; 3]; 2], ..good.clone() };
+    assert_eq!(told(&more, &mut [&mut out]), refused("velocity", 1, 2));
+    let more = Rows { travel: vec![vec![0.0; 3]], ..good.clone() };
+    assert_eq!(told(&more, &mut [&mut out]), refused("travel", 0, 1));
     assert_eq!(told(&good, &mut []), refused("out", 1, 0));
     assert_eq!(told(&good, &mut [&mut [0.0; 2]]), refused("out", 3, 2));
     assert_eq!(out, [7.0; 3]);

@@ -228,6 +228,21 @@ fn where_time_stands_still_so_does_the_correction() {
 }
 
 #[test]
+fn a_restart_forgets_the_readings_and_leaves_the_correction_made() {
+    supervised(fading(1.0, 0.004), |supervisor| {
+        let (_, full) = (0..5).map(|_| rest(supervisor, 25.0)).last().unwrap();
+        assert!(length(full) > 0.010, "there is something to fade: {full:?}");
+        supervisor.restart();
+        // No reading is left that a silent sensor could be given.
+        for part in [0.75, 0.5] {
+            let (cycle, made) = rest(supervisor, f64::NAN);
+            assert_eq!((cycle.outcome, cycle.state), (Err(Refusal::NotFinite), State::Refused));
+            assert!(close(made, full.map(|axis| axis * part)), "{part}: {made:?}");
+        }
+    });
+}
+
+#[test]
 fn what_has_arrived_stays_arrived_while_time_stands_still() {
     supervised(Transition { rate: Some(2.0), hold: 1.0, fade: 0.001 }, |supervisor| {
         let (last, full) = (0..40).map(|_| rest(supervisor, 25.0)).last().unwrap();

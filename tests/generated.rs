@@ -89,6 +89,13 @@ fn through_the_interface(machine: &impl Kinematics, point: &Point, answers: &Ans
         machine.directions(&elsewhere, &mut directions);
         assert_eq!(directions, answers.directions, "they do vary");
     }
+    match machine.fixed_directions() {
+        Some(fixed) => assert_eq!(fixed, answers.directions),
+        None => assert!(
+            machine.directions_vary(),
+            "no shipped machine has a slide that leans by a number of its own"
+        ),
+    }
     let short = &point.position[1..];
     assert!(machine.error(short, &point.travel, &point.motions).iter().all(|part| part.is_nan()));
     assert!(machine.error(&point.position, &[1.0; 9], &point.motions).iter().all(|part| part.is_nan()));

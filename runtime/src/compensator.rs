@@ -10,11 +10,11 @@ mod prediction;
 mod report;
 mod setup;
 
-use self::inverse::{Reach, spread, tip};
+use self::inverse::{Columns, Reach};
 use self::prediction::Prediction;
 use self::setup::Needs;
-use crate::math::{add_scaled, all_finite, dot};
-use crate::{ErrorMotion, ErrorMotions, Kinematics, Real, Sample, Sines, TermState};
+use crate::math::{add_scaled, all_finite};
+use crate::{ErrorMotion, ErrorMotions, Kinematics, Sample, Sines, TermState};
 
 pub use self::batch::{Batch, BatchSizes, BatchWork};
 pub use self::report::{Convergence, Limits, Outcome, Refusal, SetupError, Work};
@@ -155,14 +155,20 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
             Some(reach) => reach,
             None => self.reach_at(sample.position)?,
         };
-        let ramp = self.prediction.needs.ramp;
-        let start = if ramp { self.prediction.corrected(sample, sample.position) } else { error };
-        let Pulled { pull, mut here, iterations } = self.iterate(sample, start, &reach, out)?;
-        self.limits.check(|| spread(self.directions, pull))?;
+        let Self { prediction, convergence, limits, .. } = self;
+        let columns = prediction.columns(self.directions);
+        let ramp = prediction.needs.ramp;
+        let start = if ramp { prediction.corrected(sample, sample.position) } else { error };
+        let Pulled { pull, mut here, iterations } =
+            convergence.iterate(prediction, sample, start, columns, &reach, out)?;
+        limits.check(|| columns.spread(pull))?;
         if ramp {
-            here = self.prediction.error(sample, out);
+            here = prediction.error(sample, out);
         }
-        let remaining = add_scaled(here, -1.0, tip(self.directions, pull));
+        let remaining = add_scaled(here, -1.0, columns.tip(pull));
+        if columns.leave_out(remaining) {
+            return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
+        }
         Ok(Outcome { error, remaining, iterations })
     }
 
@@ -177,34 +183,38 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
         self.reach = Some(reach).filter(|_| !kinematics.directions_vary());
         Ok(reach)
     }
+}
 
+impl Convergence {
     /// The fixed point, from the corrected error at the target on.
     #[inline]
-    fn iterate(
-        &mut self,
+    fn iterate<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized>(
+        &self,
+        prediction: &mut Prediction<'_, K, M>,
         sample: &Sample<'_>,
         start: [f64; 3],
+        columns: Columns<'_>,
         reach: &Reach,
         out: &mut [f64],
     ) -> Result<Pulled, Refusal> {
         let mut distance = f64::INFINITY;
         let mut here = start;
         let mut pull = [0.0; 3];
-        for iterations in 1..=self.convergence.iterations {
+        for iterations in 1..=self.iterations {
             let next = reach.apply(here);
             // Not that of the commands, which far from the origin are too coarse to tell when it ends.
-            distance = spread(self.directions, add_scaled(next, -1.0, pull));
+            distance = columns.spread(add_scaled(next, -1.0, pull));
             pull = next;
-            correct(sample.position, self.directions, pull, out);
-            if distance <= self.convergence.tolerance {
+            columns.correct(sample.position, pull, out);
+            if distance <= self.tolerance {
                 return Ok(Pulled { pull, here, iterations });
             }
             if !distance.is_finite() {
                 return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
             }
-            here = self.prediction.corrected_again(sample, out);
+            here = prediction.corrected_again(sample, out);
         }
-        Err(Refusal::NotConverging { iterations: self.convergence.iterations, distance })
+        Err(Refusal::NotConverging { iterations: self.iterations, distance })
     }
 }
 
@@ -215,14 +225,6 @@ struct Pulled {
     /// The error that was corrected with it.
     here: [f64; 3],
     iterations: u32,
-}
-
-/// Writes each target less its axis's share of the pull.
-#[inline]
-fn correct<T: Real>(target: &[T], columns: &[[T; 3]], pull: [T; 3], commands: &mut [T]) {
-    for ((command, &target), &column) in commands.iter_mut().zip(target).zip(columns) {
-        *command = target - dot(column, pull);
-    }
 }
 
 /// Copies as many numbers as both hold; unlike `copy_from_slice` it has no way to panic.

@@ -65,4 +65,10 @@ pub trait Kinematics {
     fn directions_vary(&self) -> bool {
         true
     }
+
+    /// [`Kinematics::directions`] where they are the same at every position and known when the code is compiled; none where
+    /// nothing else is said. A search for a command then leaves out what is zero.
+    fn fixed_directions(&self) -> Option<&'static [[f64; 3]]> {
+        None
+    }
 }

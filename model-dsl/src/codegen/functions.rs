@@ -204,6 +204,7 @@ fn held(equations: &Equations, programs: &Programs) -> Option<Held> {
 fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
     let directions = body(equations, &programs.directions, Numbers::Plain);
     let vary = directions.reads.axes;
+    let fixed = fixed_directions(&directions);
     let held = held(equations, programs);
     let axes = Literal::usize_unsuffixed(equations.axes.len());
     let motions = Literal::usize_unsuffixed(equations.motions.len());
@@ -244,8 +245,20 @@ fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
                 }
             }
             fn directions_vary(&self) -> bool { #vary }
+            #fixed
         }
     }
+}
+
+/// The directions where they are numbers, which neither positions nor constants change.
+fn fixed_directions(directions: &Body) -> Option<TokenStream> {
+    let effects = directions.results.chunks(3).map(|effect| quote! { [#(#effect),*] });
+    let fixed = !directions.reads.axes && !directions.reads.constants && directions.bindings.is_empty();
+    fixed.then(|| {
+        quote! {
+            fn fixed_directions(&self) -> Option<&'static [[f64; 3]]> { Some(&[#(#effects),*]) }
+        }
+    })
 }
 
 /// The error from slices.

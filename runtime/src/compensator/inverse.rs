@@ -4,7 +4,7 @@
 //! the axes that makes the part of E which they can make. It exists because a machine may have one slide or six, in
 //! directions that a rotary table has turned, and directions that nothing reaches.
 
-use crate::math::{add_scaled, dot, length};
+use crate::math::{add_scaled, all_finite, dot, length};
 use crate::{Lanes, Real};
 
 /// A direction that the slides reach only by moving ten thousand times as far as the tip counts as out of reach.
@@ -77,18 +77,80 @@ pub(super) fn set(lanes: &mut [Lanes; 3], lane: usize, vector: [f64; 3]) {
     }
 }
 
-/// `A v = J J^T v`: what the tip does when each axis moves by its share of v.
-pub(super) fn tip<T: Real>(columns: &[[T; 3]], v: [T; 3]) -> [T; 3] {
-    columns.iter().fold(zero(), |sum, &column| add_scaled(sum, dot(column, v), column))
+/// The direction of the tip for each axis: the columns of J.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Columns<'c, T = f64> {
+    /// The same at every position, and known when the code is compiled: nothing is left then of what is zero, or one.
+    Known(&'static [[f64; 3]]),
+    /// Found for a position.
+    Found(&'c [[T; 3]]),
 }
 
-/// The length over all axes of the motion in which each takes its share of v.
-pub(super) fn spread<T: Real>(columns: &[[T; 3]], v: [T; 3]) -> T {
-    let sum = columns.iter().fold(T::from(0.0), |sum, &column| {
-        let share = dot(column, v);
-        sum + share * share
-    });
-    sum.sqrt()
+impl<T: Real> Columns<'_, T> {
+    /// `A v = J J^T v`: what the tip does when each axis moves by its share of v.
+    #[inline]
+    pub(super) fn tip(self, v: [T; 3]) -> [T; 3] {
+        match self {
+            Self::Known(columns) => columns.iter().fold(zero(), |sum, column| {
+                let (share, [x, y, z]) = (product(column, v), sum);
+                let &[a, b, c] = column;
+                [added(x, a, share), added(y, b, share), added(z, c, share)]
+            }),
+            Self::Found(columns) => tip(columns, v),
+        }
+    }
+
+    /// The length over all axes of the motion in which each takes its share of v.
+    #[inline]
+    pub(super) fn spread(self, v: [T; 3]) -> T {
+        let mut sum = T::from(0.0);
+        self.shares(v, |share| sum = sum + share * share);
+        sum.sqrt()
+    }
+
+    /// Writes each target less its axis's share of the pull.
+    #[inline]
+    pub(super) fn correct(self, target: &[T], pull: [T; 3], commands: &mut [T]) {
+        let mut axes = commands.iter_mut().zip(target);
+        self.shares(pull, |share| {
+            if let Some((command, &target)) = axes.next() {
+                *command = target - share;
+            }
+        });
+    }
+
+    /// Whether a number that is none stands where no axis has a share in it, so that no share has told.
+    #[inline]
+    pub(super) fn leave_out(self, remaining: [f64; 3]) -> bool {
+        matches!(self, Self::Known(_)) && !all_finite(&remaining)
+    }
+
+    /// Goes through the shares of v that the axes take, in their order.
+    #[inline(always)]
+    fn shares(self, v: [T; 3], mut each: impl FnMut(T)) {
+        match self {
+            Self::Known(columns) => columns.iter().for_each(|column| each(product(column, v))),
+            Self::Found(columns) => columns.iter().for_each(|&column| each(dot(column, v))),
+        }
+    }
+}
+
+/// The scalar product, without what is zero.
+#[inline(always)]
+fn product<T: Real>(known: &[f64; 3], v: [T; 3]) -> T {
+    // Nothing is added to a zero below zero, so that the first sum is none.
+    known.iter().zip(v).fold(T::from(-0.0), |sum, (&part, v)| added(sum, part, v))
+}
+
+/// `sum + known * number`, or the sum where the one that is known is zero.
+#[inline(always)]
+fn added<T: Real>(sum: T, known: f64, number: T) -> T {
+    if known == 0.0 { sum } else { sum + T::from(known) * number }
+}
+
+/// [`Columns::tip`] of columns that were found.
+fn tip<T: Real>(columns: &[[T; 3]], v: [T; 3]) -> [T; 3] {
+    columns.iter().fold(zero(), |sum, &column| add_scaled(sum, dot(column, v), column))
 }
 
 /// The diagonal of `A^+` where A is diagonal, as it is for slides at right angles along the axes of the part, or turned with
@@ -211,6 +273,24 @@ mod tests {
                 assert!(straight(&columns).1.any_above(0.0), "{columns:?}");
                 assert_close(made(&columns, [0.3, -0.2, 0.7]), [0.3, -0.2, 0.7]);
             }
+        }
+    }
+
+    #[test]
+    fn what_is_known_is_what_is_found() {
+        const LATHE: &[[f64; 3]] = &[[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]];
+        const LEANING: &[[f64; 3]] = &[[0.6, -0.8, 0.0], [0.0; 3], [0.0, 0.0, 2.0], [0.1, 0.2, -0.3]];
+        let v = [0.3, -0.2, 0.7];
+        for known in [&[], LATHE, LEANING] {
+            let (known, found) = (Columns::Known(known), Columns::Found(known));
+            assert_close(known.tip(v), found.tip(v));
+            assert!((known.spread(v) - found.spread(v)).abs() < 1e-15);
+            let commands = [known, found].map(|columns| {
+                let mut commands = [f64::NAN; 4];
+                columns.correct(&[5.0, -6.0, 7.0, 8.0], v, &mut commands);
+                commands.map(f64::to_bits)
+            });
+            assert_eq!(commands[0], commands[1]);
         }
     }
 

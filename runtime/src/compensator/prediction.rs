@@ -3,6 +3,7 @@
 //! In: the state of the machine in one cycle, and what the terms remember. Out: the error at the tool tip there, or at other
 //! positions in the same state. It exists beside the search for the command, which asks it again and again.
 
+use super::inverse::Columns;
 use super::{Needs, Refusal, same_length};
 use crate::math::all_finite;
 use crate::sample::number;
@@ -96,6 +97,12 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
     pub(super) fn corrected_again(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
         self.motions.read_moved(MotionReader::of_corrected(sample, position, self.states), self.values);
         self.sum(sample, position)
+    }
+
+    /// The directions of the axes: those that are known when the code is compiled, or else these.
+    #[inline]
+    pub(super) fn columns<'c, T>(&self, found: &'c [[T; 3]]) -> Columns<'c, T> {
+        self.kinematics.fixed_directions().map_or(Columns::Found(found), Columns::Known)
     }
 
     /// The sum of lever arms times the error motions that were read.

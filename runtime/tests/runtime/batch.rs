@@ -156,6 +156,33 @@ impl<K: Kinematics> Kinematics for Plain<K> {
     }
 }
 
+/// A machine whose directions are known when the code is compiled.
+struct Known<K>(K, &'static [[f64; 3]]);
+
+impl<K: Kinematics> Kinematics for Known<K> {
+    fn axes(&self) -> usize {
+        self.0.axes()
+    }
+    fn travels(&self) -> &[usize] {
+        self.0.travels()
+    }
+    fn motions(&self) -> usize {
+        self.0.motions()
+    }
+    fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
+        self.0.error(position, travel, motions)
+    }
+    fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {
+        self.0.directions(position, directions);
+    }
+    fn directions_vary(&self) -> bool {
+        false
+    }
+    fn fixed_directions(&self) -> Option<&'static [[f64; 3]]> {
+        Some(self.1)
+    }
+}
+
 /// The numbers from which a term is made.
 #[derive(Clone, Debug)]
 struct Plan {
@@ -293,6 +320,26 @@ proptest! {
     }
 
     #[test]
+    fn directions_that_are_known_change_no_command(
+        tool in prop::array::uniform2(-1.0..1.0_f64), plans in plans(4), rows in rows(2, 1), setting in setting(),
+        cut in 0..35_usize, ramps in prop::bool::weighted(0.2),
+    ) {
+        let (known, found) = (Known(Lathe { tool }, Lathe::DIRECTIONS), Plain(Lathe { tool }));
+        planned(&plans, 2, ramps, |motions| {
+            let told = alone(&known, motions, setting, &rows);
+            prop_assert_eq!(&together(&known, motions, setting, &rows, cut), &told);
+            // The sign of a zero is nothing that a drive could tell.
+            let of_found = alone(&found, motions, setting, &rows);
+            let numbers = |told: &Told| -> Vec<f64> { told.out.iter().flatten().copied().map(f64::from_bits).collect() };
+            let alike = |(a, b): (f64, f64)| a == b || (a.is_nan() && b.is_nan());
+            prop_assert!(numbers(&told).into_iter().zip(numbers(&of_found)).all(alike));
+            let plain = |answers: &[String]| answers.join(" ").replace("-0.0", "0.0");
+            prop_assert_eq!(plain(&told.answers), plain(&of_found.answers));
+            Ok(())
+        })?;
+    }
+
+    #[test]
     fn lanes_do_what_numbers_do(
         a in prop::array::uniform8(any::<f64>()), b in prop::array::uniform8(any::<f64>()),
     ) {
@@ -349,6 +396,49 @@ fn each_row_is_refused_for_its_own_reason() {
         }
     }
     assert_eq!(answers.iter().filter(|answer| answer.is_ok()).count(), 5);
+}
+
+/// A slide along X beside which, wherever it is not at 5, the tip is said to be infinitely far in Y.
+struct Lost;
+
+impl Kinematics for Lost {
+    fn axes(&self) -> usize {
+        1
+    }
+    fn travels(&self) -> &[usize] {
+        &[]
+    }
+    fn motions(&self) -> usize {
+        1
+    }
+    fn error(&self, position: &[f64], _travel: &[f64], motions: &[f64]) -> [f64; 3] {
+        [motions[0], if position == [5.0] { 0.0 } else { f64::INFINITY }, 0.0]
+    }
+    fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {
+        Slide.directions(position, directions);
+    }
+}
+
+#[test]
+fn an_error_without_bounds_is_refused_where_no_axis_reaches_it() {
+    let exx = [Term::Constant { value: 0.25 }];
+    let motions = [ErrorMotion { terms: &exx }];
+    let rows = Rows {
+        position: vec![vec![5.0; 3]],
+        direction: vec![vec![Direction::Positive; 3]],
+        time_step: vec![0.0; 3],
+        ..Rows::default()
+    };
+    let setting = Setting { enabled: true, limits: Limits::default(), convergence: Convergence::default() };
+    let known = Known(Lost, &[[1.0, 0.0, 0.0]]);
+    for told in [
+        alone(&Lost, &motions, setting, &rows),
+        alone(&known, &motions, setting, &rows),
+        together(&known, &motions, setting, &rows, 0),
+    ] {
+        assert_eq!(told.out, [[5.0_f64.to_bits(); 3]]);
+        assert!(told.answers.iter().all(|answer| answer.starts_with("Err(NotConverging")), "{told:?}");
+    }
 }
 
 #[test]

@@ -67,6 +67,11 @@ pub(crate) struct Lathe {
     pub(crate) tool: [f64; 2],
 }
 
+impl Lathe {
+    /// What the axes X and Z do to the tip.
+    pub(crate) const DIRECTIONS: &'static [[f64; 3]] = &[[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]];
+}
+
 impl Kinematics for Lathe {
     fn axes(&self) -> usize {
         2
@@ -85,7 +90,7 @@ impl Kinematics for Lathe {
         [exx + zt * ebx - dz * eb0z, 0.0, -ezz - xt * ebx]
     }
     fn directions(&self, _position: &[f64], directions: &mut [[f64; 3]]) {
-        directions.copy_from_slice(&[[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]);
+        directions.copy_from_slice(Self::DIRECTIONS);
     }
 }
 

@@ -7,8 +7,8 @@
 use super::block::Block;
 use super::input::Batch;
 use super::{Answers, Open};
-use crate::compensator::inverse::{Reach, set, spread, tip};
-use crate::compensator::{Compensator, Outcome, Prediction, Refusal, correct};
+use crate::compensator::inverse::{Reach, set};
+use crate::compensator::{Compensator, Outcome, Prediction, Refusal};
 use crate::math::{add_scaled, all_finite};
 use crate::sample::{LaneSample, lanes};
 use crate::{ErrorMotions, Kinematics, Lanes};
@@ -36,8 +36,32 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         }
     }
 
-    /// Finds for each row in which directions its axes move the tip.
+    /// Finds for each row in which directions its axes move the tip, and what they reach.
     pub(super) fn reach_lanes(
+        &mut self,
+        batch: &Batch<'_>,
+        first: usize,
+        block: &mut Block<'_>,
+        open: &mut Open,
+        answers: Answers<'_>,
+    ) {
+        match self.prediction.kinematics.fixed_directions() {
+            Some(_) if block.reach_known => return,
+            Some(known) => {
+                for (lanes, column) in block.columns.iter_mut().zip(known) {
+                    *lanes = column.map(Lanes::from);
+                }
+            }
+            None => self.directions_lanes(batch, first, block, open, answers),
+        }
+        if !block.reach_known {
+            block.reach = Reach::new(block.columns);
+            block.reach_known = true;
+        }
+    }
+
+    /// Finds the directions at the position of each row.
+    fn directions_lanes(
         &mut self,
         batch: &Batch<'_>,
         first: usize,
@@ -58,10 +82,6 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
                 block.reach_known &= known == column.map(f64::to_bits);
                 set(lanes, lane, column);
             }
-        }
-        if !block.reach_known {
-            block.reach = Reach::new(block.columns);
-            block.reach_known = true;
         }
     }
 
@@ -86,9 +106,10 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
             }
             step.iterations = step.iterations.saturating_add(1);
             let next = block.reach.apply(step.here);
-            step.distance = spread(block.columns, add_scaled(next, Lanes::from(-1.0), step.pull));
+            let columns = self.prediction.columns(block.columns);
+            step.distance = columns.spread(add_scaled(next, Lanes::from(-1.0), step.pull));
             step.pull = next;
-            correct(block.position, block.columns, next, block.command);
+            columns.correct(block.position, next, block.command);
             self.settle(first, block, &step, &mut open, out, answers);
         }
     }
@@ -108,8 +129,9 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         if !open.iter().zip(step.distance.numbers()).any(|(open, distance)| *open && ends(distance)) {
             return;
         }
-        let correction = spread(block.columns, step.pull);
-        let remaining = add_scaled(step.here, Lanes::from(-1.0), tip(block.columns, step.pull));
+        let columns = self.prediction.columns(block.columns);
+        let correction = columns.spread(step.pull);
+        let remaining = add_scaled(step.here, Lanes::from(-1.0), columns.tip(step.pull));
         for (lane, (open, answer)) in open.iter_mut().zip(answers).enumerate() {
             let distance = step.distance.lane(lane);
             if !*open || !ends(distance) {
@@ -121,11 +143,13 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
                 *answer = Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
                 continue;
             }
+            let (iterations, remaining) = (step.iterations, row(&remaining, lane));
             if let Err(refusal) = self.limits.check(|| correction.lane(lane)) {
                 *answer = Err(refusal);
+            } else if columns.leave_out(remaining) {
+                *answer = Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
             } else if let Ok(outcome) = answer {
-                outcome.remaining = row(&remaining, lane);
-                outcome.iterations = step.iterations;
+                (outcome.remaining, outcome.iterations) = (remaining, iterations);
                 block.write(lane, first.saturating_add(lane), out);
             }
         }

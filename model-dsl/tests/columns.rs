@@ -67,6 +67,11 @@ proptest! {
             let turns = interpreter.turn_columns(&position_slices, &travel_slices);
             prop_assert_eq!((levers.len(), turns.len()), (equations.motions.len(), equations.motions.len()));
             let values = interpreter.lever_values(&position_slices, &travel_slices);
+            for (triple, levers) in values.iter().zip(&levers) {
+                for (column, lever) in triple.iter().zip(levers) {
+                    prop_assert!((0..rows).all(|row| column.at(row).to_bits() == lever[row].to_bits()));
+                }
+            }
             let written: Vec<_> = values.into_iter().map(|triple| triple.map(|column| column.written_out(rows))).collect();
             prop_assert_eq!(&written, &levers);
             for number in 0..rows {

@@ -189,6 +189,10 @@ impl Kinematics for Interpreter {
             *slot = triple(values);
         }
     }
+
+    fn directions_vary(&self) -> bool {
+        self.directions.reads_axes()
+    }
 }
 
 fn triple<T: Real>(values: &[T]) -> [T; 3] {

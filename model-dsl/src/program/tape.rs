@@ -57,6 +57,11 @@ impl Tape {
         tape
     }
 
+    /// Whether any of the inputs is the position of an axis, or its sine or cosine.
+    pub fn reads_axes(&self) -> bool {
+        self.inputs.iter().any(|input| matches!(input, Input::Position(_) | Input::Sin(_) | Input::Cos(_)))
+    }
+
     /// Runs the tape on the inputs that `given` supplies; one number, or one in each lane, for each result.
     pub fn run<T: Real>(&self, given: impl Fn(Input) -> T) -> Vec<T> {
         let mut values = Vec::with_capacity(self.numbers.len() + self.inputs.len() + self.operations.len());

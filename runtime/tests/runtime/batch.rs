@@ -71,6 +71,12 @@ struct Setting {
     convergence: Convergence,
 }
 
+impl Default for Setting {
+    fn default() -> Self {
+        Self { enabled: true, limits: Limits::default(), convergence: Convergence::default() }
+    }
+}
+
 impl Setting {
     fn give<K: Kinematics>(self, compensator: &mut Compensator<'_, K>) {
         compensator.enabled = self.enabled;
@@ -156,10 +162,10 @@ impl<K: Kinematics> Kinematics for Plain<K> {
     }
 }
 
-/// A machine whose directions are known when the code is compiled.
-struct Known<K>(K, &'static [[f64; 3]]);
+/// A machine whose directions are the same everywhere, and are known when the code is compiled or not.
+struct Steady<K>(K, Option<&'static [[f64; 3]]>);
 
-impl<K: Kinematics> Kinematics for Known<K> {
+impl<K: Kinematics> Kinematics for Steady<K> {
     fn axes(&self) -> usize {
         self.0.axes()
     }
@@ -179,7 +185,7 @@ impl<K: Kinematics> Kinematics for Known<K> {
         false
     }
     fn fixed_directions(&self) -> Option<&'static [[f64; 3]]> {
-        Some(self.1)
+        self.1
     }
 }
 
@@ -320,21 +326,23 @@ proptest! {
     }
 
     #[test]
-    fn directions_that_are_known_change_no_command(
+    fn directions_that_stay_the_same_give_the_same_commands(
         tool in prop::array::uniform2(-1.0..1.0_f64), plans in plans(4), rows in rows(2, 1), setting in setting(),
         cut in 0..35_usize, ramps in prop::bool::weighted(0.2),
     ) {
-        let (known, found) = (Known(Lathe { tool }, Lathe::DIRECTIONS), Plain(Lathe { tool }));
+        let machines = [Some(Lathe::DIRECTIONS), None].map(|known| Steady(Lathe { tool }, known));
         planned(&plans, 2, ramps, |motions| {
-            let told = alone(&known, motions, setting, &rows);
-            prop_assert_eq!(&together(&known, motions, setting, &rows, cut), &told);
+            let [of_known, of_found] = machines.each_ref().map(|machine| alone(machine, motions, setting, &rows));
+            for (machine, told) in machines.iter().zip([&of_known, &of_found]) {
+                prop_assert_eq!(&together(machine, motions, setting, &rows, cut), told);
+            }
+            prop_assert_eq!(&alone(&Plain(Lathe { tool }), motions, setting, &rows), &of_found);
             // The sign of a zero is nothing that a drive could tell.
-            let of_found = alone(&found, motions, setting, &rows);
             let numbers = |told: &Told| -> Vec<f64> { told.out.iter().flatten().copied().map(f64::from_bits).collect() };
             let alike = |(a, b): (f64, f64)| a == b || (a.is_nan() && b.is_nan());
-            prop_assert!(numbers(&told).into_iter().zip(numbers(&of_found)).all(alike));
+            prop_assert!(numbers(&of_known).into_iter().zip(numbers(&of_found)).all(alike));
             let plain = |answers: &[String]| answers.join(" ").replace("-0.0", "0.0");
-            prop_assert_eq!(plain(&told.answers), plain(&of_found.answers));
+            prop_assert_eq!(plain(&of_known.answers), plain(&of_found.answers));
             Ok(())
         })?;
     }
@@ -398,6 +406,25 @@ fn each_row_is_refused_for_its_own_reason() {
     assert_eq!(answers.iter().filter(|answer| answer.is_ok()).count(), 5);
 }
 
+#[test]
+fn rows_that_are_refused_tell_nothing_of_those_after_them() {
+    let exx = [Term::Constant { value: 0.25 }];
+    let motions =
+        [ErrorMotion { terms: &exx }, ErrorMotion::default(), ErrorMotion::default(), ErrorMotion::default()];
+    let machine = Steady(Lathe { tool: [0.0; 2] }, None);
+    let (bad, count) = (Lanes::WIDTH, Lanes::WIDTH + 3);
+    let position = (0..count).map(|row| if row < bad { f64::NAN } else { 5.0 }).collect();
+    let rows = Rows {
+        position: vec![position, vec![7.0; count]],
+        direction: vec![vec![Direction::Positive; count]; 2],
+        time_step: vec![0.0; count],
+        ..Rows::default()
+    };
+    let told = together(&machine, &motions, Setting::default(), &rows, 0);
+    assert_eq!(told, alone(&machine, &motions, Setting::default(), &rows));
+    assert_eq!(told.out[0][bad..], [4.75_f64.to_bits(); 3]);
+}
+
 /// A slide along X beside which, wherever it is not at 5, the tip is said to be infinitely far in Y.
 struct Lost;
 
@@ -429,8 +456,8 @@ fn an_error_without_bounds_is_refused_where_no_axis_reaches_it() {
         time_step: vec![0.0; 3],
         ..Rows::default()
     };
-    let setting = Setting { enabled: true, limits: Limits::default(), convergence: Convergence::default() };
-    let known = Known(Lost, &[[1.0, 0.0, 0.0]]);
+    let setting = Setting::default();
+    let known = Steady(Lost, Some(&[[1.0, 0.0, 0.0]]));
     for told in [
         alone(&Lost, &motions, setting, &rows),
         alone(&known, &motions, setting, &rows),

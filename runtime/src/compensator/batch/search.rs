@@ -36,7 +36,8 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         }
     }
 
-    /// Finds for each row in which directions its axes move the tip, and what they reach.
+    /// Finds in which directions the axes of each row move the tip, and what they reach; once, where these are the same
+    /// everywhere.
     pub(super) fn reach_lanes(
         &mut self,
         batch: &Batch<'_>,
@@ -45,14 +46,18 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         open: &mut Open,
         answers: Answers<'_>,
     ) {
-        match self.prediction.kinematics.fixed_directions() {
-            Some(_) if block.reach_known => return,
-            Some(known) => {
-                for (lanes, column) in block.columns.iter_mut().zip(known) {
-                    *lanes = column.map(Lanes::from);
-                }
+        let vary = self.prediction.kinematics.directions_vary();
+        if block.reach_known && !vary {
+            return;
+        }
+        self.directions_lanes(batch, first, block, open, answers);
+        if !open.contains(&true) {
+            return;
+        }
+        if !vary {
+            for (lanes, &column) in block.columns.iter_mut().zip(&*self.directions) {
+                *lanes = column.map(Lanes::from);
             }
-            None => self.directions_lanes(batch, first, block, open, answers),
         }
         if !block.reach_known {
             block.reach = Reach::new(block.columns);

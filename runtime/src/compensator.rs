@@ -166,7 +166,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
             here = prediction.error(sample, out);
         }
         let remaining = add_scaled(here, -1.0, columns.tip(pull));
-        if columns.leave_out(remaining) {
+        if columns.overlook(remaining) {
             return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
         }
         Ok(Outcome { error, remaining, iterations })

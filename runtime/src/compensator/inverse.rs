@@ -119,9 +119,10 @@ impl<T: Real> Columns<'_, T> {
         });
     }
 
-    /// Whether a number that is none stands where no axis has a share in it, so that no share has told.
+    /// Whether the shares have overlooked a number that is none: those of known columns read no direction that no axis
+    /// reaches.
     #[inline]
-    pub(super) fn leave_out(self, remaining: [f64; 3]) -> bool {
+    pub(super) fn overlook(self, remaining: [f64; 3]) -> bool {
         matches!(self, Self::Known(_)) && !all_finite(&remaining)
     }
 

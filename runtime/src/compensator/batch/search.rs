@@ -151,7 +151,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
             let (iterations, remaining) = (step.iterations, row(&remaining, lane));
             if let Err(refusal) = self.limits.check(|| correction.lane(lane)) {
                 *answer = Err(refusal);
-            } else if columns.leave_out(remaining) {
+            } else if columns.overlook(remaining) {
                 *answer = Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
             } else if let Ok(outcome) = answer {
                 (outcome.remaining, outcome.iterations) = (remaining, iterations);

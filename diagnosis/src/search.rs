@@ -358,15 +358,4 @@ fn positive(shape: &Shape) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn each_parameter_costs_the_logarithm_of_the_samples() {
-        for columns in [0, 1, 3] {
-            let doubled = untold_price(columns, 2000.0) - untold_price(columns, 1000.0);
-            assert!((doubled - crate::number(columns) * 2.0_f64.ln()).abs() < 1e-12, "{columns}: {doubled}");
-        }
-        assert_eq!(untold_price(2, 0.0), untold_price(2, 2.0));
-    }
-}
+mod tests;

@@ -1,0 +1,63 @@
+//! What a set of effects costs, however it came about.
+
+use super::*;
+use crate::judge;
+use crate::model::{Fitted, Place};
+use crate::noise::Noise;
+use crate::side::Side;
+use crate::testing::{Bench, circle, path, position, scenario};
+
+#[test]
+fn each_parameter_costs_the_logarithm_of_the_samples() {
+    for columns in [0, 1, 3] {
+        let doubled = untold_price(columns, 2000.0) - untold_price(columns, 1000.0);
+        assert!((doubled - crate::number(columns) * 2.0_f64.ln()).abs() < 1e-12, "{columns}: {doubled}");
+    }
+    assert_eq!(untold_price(2, 0.0), untold_price(2, 2.0));
+}
+
+/// Effects of X, after its zero: one that the zero holds already, one that it holds a third of, and two of their own.
+fn effects(bench: &Bench) -> Vec<Effect> {
+    let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
+    let shapes = [
+        Shape::Constant,
+        Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 40.0 },
+        Shape::Backlash { axis: 0, wind_up: 0.0 },
+        Shape::Cyclic { axis: 0, period: 7.0 },
+    ];
+    let others = shapes.map(|shape| Effect { place: place.clone(), shape });
+    std::iter::once(Effect::setting(0, Setting::Offset { channel: 0 })).chain(others).collect()
+}
+
+#[test]
+fn a_set_costs_the_same_by_whatever_way_it_is_reached() {
+    let bench = Bench::of("XFY");
+    let calibration = bench.calibration(
+        "{EXX: [{backlash: {lost_motion: 8 um}}, {cyclic: {period: 7 mm, amplitude: 3 um, phase: 0.4 rad}}]}",
+    );
+    let recording = bench.record(&calibration, &scenario(path(circle(40.0), 20.0, 10.0), position("x")));
+    let study = Study::new(bench.equations(), None, &[&recording]);
+    let fitted = |effect: Effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect };
+    let model: Vec<Fitted> = effects(&bench).into_iter().map(fitted).collect();
+    let design = judge::design(&study, &model, &[vec![Noise::white(1e-3)]]);
+    let (products, samples) = design.fitted();
+    let choice = Choice::new(&study, &design, products, samples, 1, 1.0, Resolution::new(&study, &[]));
+
+    let alike = |a: f64, b: f64| (a - b).abs() < 1e-6 * (a.abs() + samples);
+    let empty = choice.empty();
+    for &first in &choice.open {
+        let one = choice.with(&empty, first);
+        assert!(alike(choice.cost_with(&empty, first), one.cost), "promised: {first}");
+        assert!(alike(choice.without(&one, first).cost, empty.cost), "there and back: {first}");
+        for &second in choice.open.iter().filter(|second| **second != first) {
+            let both = choice.with(&one, second);
+            let other_way = choice.with(&choice.with(&empty, second), first);
+            assert!(alike(both.cost, other_way.cost), "{first} and {second}");
+            assert!(alike(choice.cost_with(&one, second), both.cost), "promised: {second} beside {first}");
+            assert!(alike(choice.without(&both, second).cost, one.cost), "{second} beside {first}, and back");
+        }
+    }
+    // What the zero holds already is worth nothing, and costs what its name does.
+    let held = choice.with(&empty, 1).cost - empty.cost;
+    assert!((0.0..choice.prices[1]).contains(&held), "{held}");
+}

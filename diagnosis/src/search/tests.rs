@@ -61,3 +61,53 @@ fn a_set_costs_the_same_by_whatever_way_it_is_reached() {
     let held = choice.with(&empty, 1).cost - empty.cost;
     assert!((0.0..choice.prices[1]).contains(&held), "{held}");
 }
+
+#[test]
+fn what_is_one_piece_of_physics_stands_once() {
+    let bench = Bench::of("XFY");
+    let on = |motion: &str, shape: Shape| Effect {
+        place: Place::Motion { motion: bench.motion(motion), side: Side::After },
+        shape,
+    };
+    let wave = |period| on("EXX", Shape::Cyclic { axis: 0, period });
+    let vibration = |frequency| on("EXX", Shape::Vibration { frequency });
+    let coupling = |axis, degree| on("EXX", Shape::Coupling { axis, degree, scale: 1.0 });
+    let play = |wind_up| on("EXX", Shape::Backlash { axis: 0, wind_up });
+    let setting = |setting| Effect::setting(0, setting);
+    for (a, b, one) in [
+        (wave(7.0), wave(7.1), true),
+        (wave(7.0), wave(7.3), false),
+        (wave(7.0), wave(3.5), false),
+        (vibration(50.0), vibration(50.02), true),
+        (vibration(50.0), vibration(51.0), false),
+        (coupling(1, 1), coupling(1, 2), true),
+        (coupling(1, 1), coupling(0, 1), false),
+        (play(0.0), play(3.0), true),
+        (play(0.0), on("EYX", Shape::Backlash { axis: 0, wind_up: 0.0 }), false),
+        (play(0.0), on("EXX", Shape::Constant), false),
+        (setting(Setting::Radius), setting(Setting::Radius), true),
+        (setting(Setting::Radius), setting(Setting::Cosine), false),
+        (setting(Setting::Offset { channel: 0 }), setting(Setting::Offset { channel: 1 }), false),
+    ] {
+        assert_eq!((rivals(&a, &b), rivals(&b, &a)), (one, one), "{a:?} and {b:?}");
+    }
+}
+
+#[test]
+fn only_what_turns_a_body_is_held_to_small_turns() {
+    let bench = Bench::of("XFY");
+    let recording =
+        bench.record(&bench.calibration("{}"), &scenario(path(circle(40.0), 20.0, 10.0), position("x")));
+    let study = Study::new(bench.equations(), None, &[&recording]);
+    let turns = |motion: &str, shape: Shape| {
+        let place = Place::Motion { motion: bench.motion(motion), side: Side::After };
+        rotates(&study, &Effect { place, shape })
+    };
+    assert!(turns("ECX", Shape::Constant));
+    assert!(turns("ECX", Shape::Backlash { axis: 0, wind_up: 0.0 }));
+    // So many rad for each degree, or newton, are no angle.
+    assert!(!turns("ECX", Shape::Growth { sensor: 0, reference: 20.0, time_constant: 0.0 }));
+    assert!(!turns("ECX", Shape::Compliance { load: 0 }));
+    assert!(!turns("EXX", Shape::Constant));
+    assert!(!rotates(&study, &Effect::setting(0, Setting::Radius)));
+}

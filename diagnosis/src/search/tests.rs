@@ -25,7 +25,7 @@ fn effects(bench: &Bench) -> Vec<Effect> {
         Shape::Backlash { axis: 0, wind_up: 0.0 },
         Shape::Cyclic { axis: 0, period: 7.0 },
     ];
-    let others = shapes.map(|shape| Effect { place: place.clone(), shape });
+    let others = shapes.map(|shape| Effect { place, shape });
     std::iter::once(Effect::setting(0, Setting::Offset { channel: 0 })).chain(others).collect()
 }
 

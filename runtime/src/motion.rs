@@ -19,17 +19,18 @@ pub trait ErrorMotions {
     /// The error motions, in the order of the kinematics.
     fn motions(&self) -> &[ErrorMotion<'_>];
 
-    /// Writes the value of each of them, in mm or rad, in the order of [`motions`](Self::motions).
+    /// Writes the value of each of them, in mm or rad, in the order of [`motions`](Self::motions), and gives true: what a
+    /// longer slice holds beyond them stays as it was.
     ///
-    /// What a longer slice holds beyond them stays as it was.
-    fn read(&self, from: MotionReader<'_>, values: &mut [f64]);
+    /// Gives false where the slice has no place for each, or what is read is not of such a machine; there is no error then.
+    fn read(&self, from: MotionReader<'_>, values: &mut [f64]) -> bool;
 
     /// Writes the value of each that may have changed since [`read`](Self::read) wrote all of them in the same state of the
     /// machine, but at positions that differ for axes that correct: those that have a
     /// [direction](crate::Kinematics::directions).
     #[inline]
-    fn read_moved(&self, from: MotionReader<'_>, values: &mut [f64]) {
-        self.read(from, values);
+    fn read_moved(&self, from: MotionReader<'_>, values: &mut [f64]) -> bool {
+        self.read(from, values)
     }
 }
 
@@ -39,10 +40,12 @@ impl ErrorMotions for [ErrorMotion<'_>] {
     }
 
     #[inline]
-    fn read(&self, mut from: MotionReader<'_>, values: &mut [f64]) {
+    fn read(&self, mut from: MotionReader<'_>, values: &mut [f64]) -> bool {
+        let Some(values) = values.get_mut(..self.len()) else { return false };
         for (motion, value) in self.iter().zip(values) {
             *value = from.motion(motion);
         }
+        true
     }
 }
 

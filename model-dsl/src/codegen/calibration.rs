@@ -143,11 +143,12 @@ fn reader(equations: &Equations, motions: &[WrittenMotion]) -> TokenStream {
                 &[#(::abbe_runtime::ErrorMotion { terms: &Self::#names }),*]
             }
             #[inline]
-            fn read(&self, from: ::abbe_runtime::MotionReader<'_>, values: &mut [f64]) {
-                let Some(read) = values.first_chunk_mut() else { return values.fill(f64::NAN) };
-                let Some(#from) = from.sized::<#axes, { Self::TERMS }>() else { return read.fill(f64::NAN) };
+            fn read(&self, from: ::abbe_runtime::MotionReader<'_>, values: &mut [f64]) -> bool {
+                let Some(read) = values.first_chunk_mut() else { return false };
+                let Some(#from) = from.sized::<#axes, { Self::TERMS }>() else { return false };
                 #(#unpacked)*
                 *read = [#(#sums),*];
+                true
             }
             #read_moved
         }
@@ -178,12 +179,13 @@ fn read_moved(equations: &Equations, motions: &[WrittenMotion]) -> Option<TokenS
     });
     Some(quote! {
         #[inline]
-        fn read_moved(&self, from: ::abbe_runtime::MotionReader<'_>, values: &mut [f64]) {
-            let Some(read) = values.first_chunk_mut() else { return values.fill(f64::NAN) };
-            let Some(mut from) = from.sized::<#axes, { Self::TERMS }>() else { return read.fill(f64::NAN) };
+        fn read_moved(&self, from: ::abbe_runtime::MotionReader<'_>, values: &mut [f64]) -> bool {
+            let Some(read) = values.first_chunk_mut() else { return false };
+            let Some(mut from) = from.sized::<#axes, { Self::TERMS }>() else { return false };
             #(#unpacked)*
             let [#(#names),*] = read;
             #(#reads)*
+            true
         }
     })
 }

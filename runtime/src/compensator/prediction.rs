@@ -80,23 +80,24 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
     /// The error at a position in the state of the sample, the rotary axes where they are there; memories are read only.
     #[inline]
     pub(super) fn error(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
-        self.motions.read(MotionReader::new(sample, position, self.states), self.values);
-        self.sum(sample, position)
+        let read = self.motions.read(MotionReader::new(sample, position, self.states), self.values);
+        self.sum(read, sample, position)
     }
 
     /// The part of the error that is corrected in this cycle; memories are read only.
     #[inline]
     pub(super) fn corrected(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
-        self.motions.read(MotionReader::of_corrected(sample, position, self.states), self.values);
-        self.sum(sample, position)
+        let read = self.motions.read(MotionReader::of_corrected(sample, position, self.states), self.values);
+        self.sum(read, sample, position)
     }
 
     /// [`corrected`](Self::corrected) at a position that differs from that of the last reading for axes that correct; where
     /// nothing is ramped, that reading may have been of the whole error.
     #[inline]
     pub(super) fn corrected_again(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
-        self.motions.read_moved(MotionReader::of_corrected(sample, position, self.states), self.values);
-        self.sum(sample, position)
+        let read =
+            self.motions.read_moved(MotionReader::of_corrected(sample, position, self.states), self.values);
+        self.sum(read, sample, position)
     }
 
     /// The directions of the axes: those that are known when the code is compiled, or else these.
@@ -105,9 +106,12 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
         self.kinematics.fixed_directions().map_or(Columns::Found(found), Columns::Known)
     }
 
-    /// The sum of lever arms times the error motions that were read.
+    /// The sum of lever arms times the error motions; NaN where they were not read.
     #[inline]
-    fn sum(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
+    fn sum(&mut self, read: bool, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
+        if !read {
+            return [f64::NAN; 3];
+        }
         let travel = if sample.travel.is_empty() {
             for (travel, &axis) in self.travel.iter_mut().zip(self.kinematics.travels()) {
                 *travel = number(position, axis);

@@ -113,9 +113,9 @@ impl<I, T, D> Located<I, T, D> {
 impl Place {
     #[inline(always)]
     pub(super) fn new(even: Even, axis: usize, position: f64, direction: Direction) -> Self {
-        let [below, part] = even.locate(position);
+        let (below, part) = split(even.steps(position));
         // Not above the last node already: said once more for the compiler, which then need not check it in every curve.
-        let below = whole(below).min(even.last);
+        let below = below.min(even.last);
         let above = below.saturating_add(1).min(even.last);
         Self { axis, even, below, above, part, direction }
     }
@@ -129,8 +129,11 @@ impl Place {
 
 impl LanePlace {
     fn new(even: Even, axis: usize, position: Lanes, direction: [Direction; Lanes::WIDTH]) -> Self {
-        let [below, part] = even.locate(position);
-        let below = below.numbers().map(whole);
+        let mut below = [0; Lanes::WIDTH];
+        let mut part = even.steps(position);
+        for (below, part) in below.iter_mut().zip(part.iter_mut()) {
+            (*below, *part) = split(*part);
+        }
         let above = below.map(|node| node.saturating_add(1).min(even.last));
         Self { axis, even, below, above, part, direction }
     }
@@ -149,16 +152,13 @@ impl LanePlace {
 }
 
 impl Even {
-    /// The node below a position, counted from 0, and the part of the way to the next.
+    /// How many steps a position lies from the first node: from 0 to the number of the last; NaN remains.
     #[inline]
-    fn locate<T: Real>(self, position: T) -> [T; 2] {
+    fn steps<T: Real>(self, position: T) -> T {
         let (zero, end) = (T::from(0.0), T::from(self.last as f64));
         let count = (position - self.start.into()) / self.step.into();
-        // NaN is neither below nor above, and remains in the part.
         let inside = zero.above(count, zero, count);
-        let inside = inside.above(end, end, inside);
-        let below = floor(inside);
-        [below, inside - below]
+        inside.above(end, end, inside)
     }
 }
 
@@ -168,15 +168,14 @@ fn node(curve: &[f64], index: usize) -> f64 {
     curve.get(index).copied().unwrap_or(f64::NAN)
 }
 
-/// The greatest whole number that is not above a number from 0 to 2^51.
+/// The greatest whole number that is not above a number from 0 to 2^51, and what is left of it; NaN is left of NaN.
+///
+/// It is put together from bits, since a table is read at places that no processor foresees: any comparison could become a branch.
 #[inline]
-fn floor<T: Real>(number: T) -> T {
-    let nearest = (number + WHOLE.into()) - WHOLE.into();
-    nearest.above(number, nearest - 1.0.into(), nearest)
-}
-
-/// A whole number from 0 to 2^51 as an index.
-#[inline]
-fn whole(number: f64) -> usize {
-    ((number + WHOLE).to_bits() & BITS) as usize
+fn split(number: f64) -> (usize, f64) {
+    let nearest = number + WHOLE;
+    // 1 where that is a number above zero, and 0 where it is none or zero.
+    let too_much = ((nearest - WHOLE) - number).to_bits().wrapping_neg() >> 63;
+    let below = nearest.to_bits().wrapping_sub(too_much);
+    ((below & BITS) as usize, number - (f64::from_bits(below) - WHOLE))
 }

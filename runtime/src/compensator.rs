@@ -13,7 +13,7 @@ mod setup;
 use self::inverse::{Columns, Reach};
 use self::prediction::Prediction;
 use self::setup::Needs;
-use crate::math::{add_scaled, all_finite};
+use crate::math::{add_scaled, all_finite, sqrt};
 use crate::{ErrorMotion, ErrorMotions, Kinematics, Sample, Sines, TermState};
 
 pub use self::batch::{Batch, BatchSizes, BatchWork};
@@ -149,21 +149,22 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     /// Searches for the command, from the error at the target on, and holds it against the limit.
     #[inline]
     fn search(&mut self, sample: &Sample<'_>, error: [f64; 3], out: &mut [f64]) -> Result<Outcome, Refusal> {
-        // They always are so many: said once more, and the compiler of Rust knows how often each loop below goes round.
-        same_length("work.directions", self.axes(), self.directions.len())?;
         let reach = match self.reach {
             Some(reach) => reach,
             None => self.reach_at(sample.position)?,
         };
-        let Self { prediction, convergence, limits, .. } = self;
-        let columns = prediction.columns(self.directions);
+        let Self { prediction, convergence, limits, directions, .. } = self;
+        // They always are so many: said once more, and the compiler of Rust knows how often each loop below goes round.
+        let directions = &**directions;
+        same_length("work.directions", prediction.kinematics.axes(), directions.len())?;
+        let columns = prediction.columns(directions);
         let ramp = prediction.needs.ramp;
         let start = if ramp { prediction.corrected(sample, sample.position) } else { error };
         let Pulled { pull, mut here, iterations } =
             convergence.iterate(prediction, sample, start, columns, &reach, out)?;
         limits.check(|| columns.spread(pull))?;
         if ramp {
-            here = prediction.error(sample, out);
+            here = prediction.error_behind_ramp(sample, out);
         }
         let remaining = add_scaled(here, -1.0, columns.tip(pull));
         if columns.overlook(remaining) {
@@ -192,29 +193,32 @@ impl Convergence {
         &self,
         prediction: &mut Prediction<'_, K, M>,
         sample: &Sample<'_>,
-        start: [f64; 3],
+        [x, y, z]: [f64; 3],
         columns: Columns<'_>,
         reach: &Reach,
         out: &mut [f64],
     ) -> Result<Pulled, Refusal> {
-        let mut distance = f64::INFINITY;
-        let mut here = start;
+        let bound = self.tolerance_squared();
+        let mut square = f64::INFINITY;
+        // Part by part here and below: copied as a whole, the error would go through memory at every step.
+        let mut here = [x, y, z];
         let mut pull = [0.0; 3];
         for iterations in 1..=self.iterations {
             let next = reach.apply(here);
             // Not that of the commands, which far from the origin are too coarse to tell when it ends.
-            distance = columns.spread(add_scaled(next, -1.0, pull));
+            square = columns.spread_squared(add_scaled(next, -1.0, pull));
             pull = next;
             columns.correct(sample.position, pull, out);
-            if distance <= self.tolerance {
+            if square <= bound {
                 return Ok(Pulled { pull, here, iterations });
             }
-            if !distance.is_finite() {
+            if !square.is_finite() {
                 return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
             }
-            here = prediction.corrected_again(sample, out);
+            let [x, y, z] = prediction.corrected_again(sample, out);
+            here = [x, y, z];
         }
-        Err(Refusal::NotConverging { iterations: self.iterations, distance })
+        Err(Refusal::NotConverging { iterations: self.iterations, distance: sqrt(square) })
     }
 }
 

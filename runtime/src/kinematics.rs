@@ -37,6 +37,7 @@ pub trait Kinematics {
     }
 
     /// [`Kinematics::error`], bit for bit, at a position at which [`sines`](Self::sines) gives these.
+    #[inline(always)]
     fn error_with(&self, _sines: &Sines, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
         self.error(position, travel, motions)
     }

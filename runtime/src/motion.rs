@@ -16,36 +16,42 @@ pub use self::reader::MotionReader;
 /// What is compiled in says the same twice: as terms, and as code that reads exactly these terms and nothing else. A
 /// controller gains by it what is known before it runs: which term a motion is, where the nodes of its table lie.
 pub trait ErrorMotions {
+    /// One number for each error motion, in mm or rad.
+    ///
+    /// A calibration that was compiled in gives an array, which need never lie in memory.
+    type Values<'k>: AsRef<[f64]>;
+
     /// The error motions, in the order of the kinematics.
     fn motions(&self) -> &[ErrorMotion<'_>];
 
-    /// Writes the value of each of them, in mm or rad, in the order of [`motions`](Self::motions), and gives true: what a
-    /// longer slice holds beyond them stays as it was.
+    /// The value of each of them, in the order of [`motions`](Self::motions); none where what is read is not of such a
+    /// machine.
     ///
-    /// Gives false where the slice has no place for each, or what is read is not of such a machine; there is no error then.
-    fn read(&self, from: MotionReader<'_>, values: &mut [f64]) -> bool;
+    /// `kept` has a place for each; what stays there is what [`read_moved`](Self::read_moved) needs of it.
+    fn read<'k>(&self, from: MotionReader<'_>, kept: &'k mut [f64]) -> Option<Self::Values<'k>>;
 
-    /// Writes the value of each that may have changed since [`read`](Self::read) wrote all of them in the same state of the
-    /// machine, but at positions that differ for axes that correct: those that have a
-    /// [direction](crate::Kinematics::directions).
+    /// [`read`](Self::read) once more in the same state of the machine, but at positions that differ for axes that correct:
+    /// those that have a [direction](crate::Kinematics::directions).
     #[inline]
-    fn read_moved(&self, from: MotionReader<'_>, values: &mut [f64]) -> bool {
-        self.read(from, values)
+    fn read_moved<'k>(&self, from: MotionReader<'_>, kept: &'k mut [f64]) -> Option<Self::Values<'k>> {
+        self.read(from, kept)
     }
 }
 
 impl ErrorMotions for [ErrorMotion<'_>] {
+    type Values<'k> = &'k [f64];
+
     fn motions(&self) -> &[ErrorMotion<'_>] {
         self
     }
 
     #[inline]
-    fn read(&self, mut from: MotionReader<'_>, values: &mut [f64]) -> bool {
-        let Some(values) = values.get_mut(..self.len()) else { return false };
-        for (motion, value) in self.iter().zip(values) {
+    fn read<'k>(&self, mut from: MotionReader<'_>, kept: &'k mut [f64]) -> Option<&'k [f64]> {
+        let values = kept.get_mut(..self.len())?;
+        for (motion, value) in self.iter().zip(&mut *values) {
             *value = from.motion(motion);
         }
-        true
+        Some(values)
     }
 }
 

@@ -56,7 +56,7 @@ pub enum TableError {
         /// The length found.
         found: usize,
     },
-    /// The step between nodes is zero or not finite.
+    /// The step between nodes is not finite, or so near to zero that its inverse is not.
     Step,
     /// A node does not lie above the one before it.
     NotAscending {
@@ -114,9 +114,12 @@ impl<'a> Table<'a> {
     /// The step may be negative: published tables run from 0 to -110 mm as well.
     ///
     /// # Errors
-    /// Refuses a table without values, curves that differ in length, a step of zero and numbers that are not finite.
+    /// Refuses a table without values, curves that differ in length, a step of zero or nearly so (its inverse must be finite)
+    /// and numbers that are not finite.
     pub const fn uniform(start: f64, step: f64, values: Values<'a>) -> Result<Self, TableError> {
-        if !step.is_finite() || step == 0.0 {
+        // Reading multiplies, which takes less time than to divide.
+        let per_unit = 1.0 / step;
+        if !step.is_finite() || !per_unit.is_finite() {
             return Err(TableError::Step);
         }
         if !start.is_finite() {
@@ -126,7 +129,7 @@ impl<'a> Table<'a> {
             return Err(error);
         }
         let last = values.curve(Direction::Positive).len().saturating_sub(1);
-        Ok(Self::new(Nodes::Even(Even { start, step, last }), values))
+        Ok(Self::new(Nodes::Even(Even { start, per_unit, last }), values))
     }
 
     /// A table whose nodes lie at the positions `at` (mm or rad), strictly ascending; read by binary search.

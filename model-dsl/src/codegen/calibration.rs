@@ -126,33 +126,44 @@ fn limits(limits: &Limits) -> (TokenStream, TokenStream) {
 
 /// The implementation of `ErrorMotions`: term by term, so that each is known where it is read.
 fn reader(equations: &Equations, motions: &[WrittenMotion]) -> TokenStream {
-    let axes = Literal::usize_unsuffixed(equations.axes.len());
-    let names: Vec<_> = motions.iter().map(|motion| &motion.name).collect();
+    let names = motions.iter().map(|motion| &motion.name);
+    let count = Literal::usize_unsuffixed(motions.len());
+    let read_moved = read_moved(equations, motions);
+    let read = read(equations, motions, read_moved.is_some());
+    quote! {
+        impl ::abbe_runtime::ErrorMotions for Calibration {
+            type Values<'k> = [f64; #count];
+            fn motions(&self) -> &[::abbe_runtime::ErrorMotion<'_>] {
+                &[#(::abbe_runtime::ErrorMotion { terms: &Self::#names }),*]
+            }
+            #read
+            #read_moved
+        }
+    }
+}
+
+/// What reads all motions, and keeps them where `read_moved` asks for some of them.
+fn read(equations: &Equations, motions: &[WrittenMotion], keeps: bool) -> TokenStream {
     let unpacked = motions.iter().filter(|motion| !motion.terms.is_empty()).map(unpacked);
     let sums = motions.iter().map(sum);
-    let read_moved = read_moved(equations, motions);
     // Nothing is read where there are no terms.
     let from = if motions.iter().all(|motion| motion.terms.is_empty()) {
         quote! { _ }
     } else {
         quote! { mut from }
     };
-    quote! {
-        impl ::abbe_runtime::ErrorMotions for Calibration {
-            fn motions(&self) -> &[::abbe_runtime::ErrorMotion<'_>] {
-                &[#(::abbe_runtime::ErrorMotion { terms: &Self::#names }),*]
-            }
-            #[inline]
-            fn read(&self, from: ::abbe_runtime::MotionReader<'_>, values: &mut [f64]) -> bool {
-                let Some(read) = values.first_chunk_mut() else { return false };
-                let Some(#from) = from.sized::<#axes, { Self::TERMS }>() else { return false };
-                #(#unpacked)*
-                *read = [#(#sums),*];
-                true
-            }
-            #read_moved
-        }
-    }
+    let (kept, keep) = if keeps {
+        (quote! { kept }, Some(quote! { *kept.first_chunk_mut()? = read; }))
+    } else {
+        (quote! { _kept }, None)
+    };
+    let body = quote! {
+        #(#unpacked)*
+        let read = [#(#sums),*];
+        #keep
+        Some(read)
+    };
+    method(equations, motions, &quote! { read }, &[from, kept], &body)
 }
 
 /// What reads the motions again that a search for a command changes; nothing where each of them may be changed, but for those
@@ -165,29 +176,41 @@ fn read_moved(equations: &Equations, motions: &[WrittenMotion]) -> Option<TokenS
     {
         return None;
     }
-    let axes = Literal::usize_unsuffixed(equations.axes.len());
-    let names = motions.iter().map(|motion| if motion.moved { value_of(motion) } else { format_ident!("_") });
+    let names = motions.iter().map(|motion| if motion.moved { format_ident!("_") } else { value_of(motion) });
     let unpacked = motions.iter().filter(|motion| motion.moved).map(unpacked);
-    let reads = motions.iter().filter(|motion| !motion.terms.is_empty()).map(|motion| {
-        if motion.moved {
-            let (value, sum) = (value_of(motion), sum(motion));
-            quote! { *#value = #sum; }
-        } else {
-            let terms = Literal::usize_unsuffixed(motion.terms.len());
-            quote! { from.pass_over(#terms); }
+    let values = motions.iter().map(|motion| {
+        let (value, terms) = (value_of(motion), Literal::usize_unsuffixed(motion.terms.len()));
+        match (motion.moved, motion.terms.is_empty()) {
+            (true, _) => sum(motion),
+            (false, true) => quote! { #value },
+            (false, false) => quote! { { from.pass_over(#terms); #value } },
         }
     });
-    Some(quote! {
-        #[inline]
-        fn read_moved(&self, from: ::abbe_runtime::MotionReader<'_>, values: &mut [f64]) -> bool {
-            let Some(read) = values.first_chunk_mut() else { return false };
-            let Some(mut from) = from.sized::<#axes, { Self::TERMS }>() else { return false };
-            #(#unpacked)*
-            let [#(#names),*] = read;
-            #(#reads)*
-            true
+    let body = quote! {
+        #(#unpacked)*
+        let [#(#names),*] = *kept.first_chunk()?;
+        Some([#(#values),*])
+    };
+    Some(method(equations, motions, &quote! { read_moved }, &[quote! { mut from }, quote! { kept }], &body))
+}
+
+/// A method of `ErrorMotions` that reads motions, the reader and what was kept under these names.
+// Always inlined, as all on the way from positions to an error: between two functions, numbers would go through memory.
+fn method(
+    equations: &Equations,
+    motions: &[WrittenMotion],
+    name: &TokenStream,
+    [from, kept]: &[TokenStream; 2],
+    body: &TokenStream,
+) -> TokenStream {
+    let [axes, count] = [equations.axes.len(), motions.len()].map(Literal::usize_unsuffixed);
+    quote! {
+        #[inline(always)]
+        fn #name(&self, from: ::abbe_runtime::MotionReader<'_>, #kept: &mut [f64]) -> Option<[f64; #count]> {
+            let #from = from.sized::<#axes, { Self::TERMS }>()?;
+            #body
         }
-    })
+    }
 }
 
 /// Names the terms of a motion.

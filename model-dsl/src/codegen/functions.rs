@@ -222,6 +222,7 @@ fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
             fn axes(&self) -> usize { #axes }
             fn travels(&self) -> &[usize] { &[#(#travels),*] }
             fn motions(&self) -> usize { #motions }
+            #[inline(always)]
             fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
                 self.error_from(#sines position, travel, motions)
             }
@@ -278,6 +279,7 @@ fn error_from(equations: &Equations, held: Option<&Held>) -> TokenStream {
     };
     quote! {
         /// [`Machine::error_in`] from slices, NaN where one has the wrong length.
+        #[inline(always)]
         fn error_from<T: ::abbe_runtime::Real>(&self, #sines #slices) -> [T; 3] {
             #position
             #values

@@ -83,6 +83,7 @@ impl Held {
                 }
                 sines
             }
+            #[inline(always)]
             fn error_with(
                 &self,
                 sines: &::abbe_runtime::Sines,

@@ -54,6 +54,8 @@ impl<T: Real> Reach<T> {
     }
 
     /// [`apply`](Self::apply) where A is not diagonal.
+    // Always: what is passed to a function lies in memory, and then also for machines that never come here.
+    #[inline(always)]
     fn apply_vectors(&self, error: [T; 3]) -> [T; 3] {
         self.vectors.iter().fold(zero(), |sum, &vector| add_scaled(sum, dot(vector, error), vector))
     }
@@ -88,14 +90,17 @@ pub(super) enum Columns<'c, T = f64> {
 
 impl<T: Real> Columns<'_, T> {
     /// `A v = J J^T v`: what the tip does when each axis moves by its share of v.
-    #[inline]
+    #[inline(always)]
     pub(super) fn tip(self, v: [T; 3]) -> [T; 3] {
         match self {
-            Self::Known(columns) => columns.iter().fold(zero(), |sum, column| {
-                let (share, [x, y, z]) = (product(column, v), sum);
-                let &[a, b, c] = column;
-                [added(x, a, share), added(y, b, share), added(z, c, share)]
-            }),
+            Self::Known(columns) => {
+                let mut sum = zero();
+                for column in columns {
+                    let (share, [x, y, z], &[a, b, c]) = (product(column, v), sum, column);
+                    sum = [added(x, a, share), added(y, b, share), added(z, c, share)];
+                }
+                sum
+            }
             Self::Found(columns) => tip(columns, v),
         }
     }
@@ -103,9 +108,15 @@ impl<T: Real> Columns<'_, T> {
     /// The length over all axes of the motion in which each takes its share of v.
     #[inline]
     pub(super) fn spread(self, v: [T; 3]) -> T {
+        self.spread_squared(v).sqrt()
+    }
+
+    /// The square of [`spread`](Self::spread).
+    #[inline]
+    pub(super) fn spread_squared(self, v: [T; 3]) -> T {
         let mut sum = T::from(0.0);
         self.shares(v, |share| sum = sum + share * share);
-        sum.sqrt()
+        sum
     }
 
     /// Writes each target less its axis's share of the pull.
@@ -130,8 +141,16 @@ impl<T: Real> Columns<'_, T> {
     #[inline(always)]
     fn shares(self, v: [T; 3], mut each: impl FnMut(T)) {
         match self {
-            Self::Known(columns) => columns.iter().for_each(|column| each(product(column, v))),
-            Self::Found(columns) => columns.iter().for_each(|&column| each(dot(column, v))),
+            Self::Known(columns) => {
+                for column in columns {
+                    each(product(column, v));
+                }
+            }
+            Self::Found(columns) => {
+                for &column in columns {
+                    each(dot(column, v));
+                }
+            }
         }
     }
 }

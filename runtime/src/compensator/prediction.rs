@@ -78,26 +78,38 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
     }
 
     /// The error at a position in the state of the sample, the rotary axes where they are there; memories are read only.
-    #[inline]
+    // Always, as all on the way from positions to an error: between two functions, numbers would go through memory.
+    #[inline(always)]
     pub(super) fn error(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
-        let read = self.motions.read(MotionReader::new(sample, position, self.states), self.values);
-        self.sum(read, sample, position)
+        let from = MotionReader::new(sample, position, self.states);
+        let values = self.motions.read(from, self.values);
+        sum(self.kinematics, &self.sines, sample, position, self.travel, values)
+    }
+
+    /// [`error`](Self::error) where a part of it is corrected in later cycles.
+    // Apart, as `corrected`: few machines have a ramp.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn error_behind_ramp(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
+        self.error(sample, position)
     }
 
     /// The part of the error that is corrected in this cycle; memories are read only.
-    #[inline]
+    #[cold]
+    #[inline(never)]
     pub(super) fn corrected(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
-        let read = self.motions.read(MotionReader::of_corrected(sample, position, self.states), self.values);
-        self.sum(read, sample, position)
+        let from = MotionReader::of_corrected(sample, position, self.states);
+        let values = self.motions.read(from, self.values);
+        sum(self.kinematics, &self.sines, sample, position, self.travel, values)
     }
 
     /// [`corrected`](Self::corrected) at a position that differs from that of the last reading for axes that correct; where
     /// nothing is ramped, that reading may have been of the whole error.
-    #[inline]
+    #[inline(always)]
     pub(super) fn corrected_again(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
-        let read =
-            self.motions.read_moved(MotionReader::of_corrected(sample, position, self.states), self.values);
-        self.sum(read, sample, position)
+        let from = MotionReader::of_corrected(sample, position, self.states);
+        let values = self.motions.read_moved(from, self.values);
+        sum(self.kinematics, &self.sines, sample, position, self.travel, values)
     }
 
     /// The directions of the axes: those that are known when the code is compiled, or else these.
@@ -105,21 +117,26 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
     pub(super) fn columns<'c, T>(&self, found: &'c [[T; 3]]) -> Columns<'c, T> {
         self.kinematics.fixed_directions().map_or(Columns::Found(found), Columns::Known)
     }
+}
 
-    /// The sum of lever arms times the error motions; NaN where they were not read.
-    #[inline]
-    fn sum(&mut self, read: bool, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
-        if !read {
-            return [f64::NAN; 3];
+/// The sum of lever arms times the error motions; NaN where they were not read.
+#[inline(always)]
+fn sum<K: Kinematics + ?Sized>(
+    kinematics: &K,
+    sines: &Sines,
+    sample: &Sample<'_>,
+    position: &[f64],
+    travel: &mut [f64],
+    values: Option<impl AsRef<[f64]>>,
+) -> [f64; 3] {
+    let Some(values) = values else { return [f64::NAN; 3] };
+    let travel = if sample.travel.is_empty() {
+        for (travel, &axis) in travel.iter_mut().zip(kinematics.travels()) {
+            *travel = number(position, axis);
         }
-        let travel = if sample.travel.is_empty() {
-            for (travel, &axis) in self.travel.iter_mut().zip(self.kinematics.travels()) {
-                *travel = number(position, axis);
-            }
-            &*self.travel
-        } else {
-            sample.travel
-        };
-        self.kinematics.error_with(&self.sines, position, travel, self.values)
-    }
+        &*travel
+    } else {
+        sample.travel
+    };
+    kinematics.error_with(sines, position, travel, values.as_ref())
 }

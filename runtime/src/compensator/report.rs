@@ -14,6 +14,7 @@ pub struct Limits {
 
 impl Limits {
     /// Refuses a correction over the limit; its length over all axes is asked for where there is one.
+    #[inline]
     pub(super) fn check(&self, length: impl FnOnce() -> f64) -> Result<(), Refusal> {
         let Some(limit) = self.compensation else { return Ok(()) };
         let correction = length();
@@ -29,6 +30,16 @@ pub struct Convergence {
     pub iterations: u32,
     /// Length over all axes below which a step ends the search, in mm.
     pub tolerance: f64,
+}
+
+impl Convergence {
+    /// The square of the tolerance, below zero where that is: no step is then small enough.
+    ///
+    /// Squares are compared: a root would be worked out at every step.
+    #[inline]
+    pub(super) const fn tolerance_squared(&self) -> f64 {
+        self.tolerance * self.tolerance.abs()
+    }
 }
 
 impl Default for Convergence {

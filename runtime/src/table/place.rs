@@ -1,23 +1,16 @@
 //! Reading curves with even steps, at one position or at several side by side.
 //!
 //! In: positions of an axis, and the direction of each. Out: the values there. It exists because the curves of an axis
-//! mostly have the same nodes, so that a place that was found for one of them serves all; and because branches and a cast
-//! to an index are what keeps a processor from reading several side by side.
+//! mostly have the same nodes, so that a place that was found for one of them serves all.
 
 use super::{Nodes, Table, between, read_at};
 use crate::{Direction, Lanes, Real};
 
-/// 2^52: adding it to a number from 0 to 2^51 rounds that to a whole number, which stands in the last bits of the sum.
-const WHOLE: f64 = 4_503_599_627_370_496.0;
-
-/// The bits of a sum with [`WHOLE`] that hold the whole number.
-const BITS: u64 = (1 << 52) - 1;
-
-/// Even nodes: the first, the step to the next, and the index of the last.
+/// Even nodes: the first, how many of them there are for each mm or rad, and the index of the last.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Even {
     pub(super) start: f64,
-    pub(super) step: f64,
+    pub(super) per_unit: f64,
     pub(super) last: usize,
 }
 
@@ -105,7 +98,7 @@ impl<I, T, D> Located<I, T, D> {
     #[inline(always)]
     fn is(&self, axis: usize, even: Even) -> bool {
         // Bits compare faster than numbers; none of these is NaN.
-        let bits = |even: Even| (even.start.to_bits(), even.step.to_bits(), even.last);
+        let bits = |even: Even| (even.start.to_bits(), even.per_unit.to_bits(), even.last);
         self.axis == axis && bits(self.even) == bits(even)
     }
 }
@@ -156,7 +149,7 @@ impl Even {
     #[inline]
     fn steps<T: Real>(self, position: T) -> T {
         let (zero, end) = (T::from(0.0), T::from(self.last as f64));
-        let count = (position - self.start.into()) / self.step.into();
+        let count = (position - self.start.into()) * self.per_unit.into();
         let inside = zero.above(count, zero, count);
         inside.above(end, end, inside)
     }
@@ -168,14 +161,17 @@ fn node(curve: &[f64], index: usize) -> f64 {
     curve.get(index).copied().unwrap_or(f64::NAN)
 }
 
-/// The greatest whole number that is not above a number from 0 to 2^51, and what is left of it; NaN is left of NaN.
-///
-/// It is put together from bits, since a table is read at places that no processor foresees: any comparison could become a branch.
+/// The greatest whole number that is not above the number of a node, and what is left of it; NaN is left of NaN.
+// No comparison, which could become a branch: a table is read at places that no processor foresees. A signed number, since
+// processors have no instruction for others.
 #[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "from 0 to the number of the last node; NaN becomes 0"
+)]
 fn split(number: f64) -> (usize, f64) {
-    let nearest = number + WHOLE;
-    // 1 where that is a number above zero, and 0 where it is none or zero.
-    let too_much = ((nearest - WHOLE) - number).to_bits().wrapping_neg() >> 63;
-    let below = nearest.to_bits().wrapping_sub(too_much);
-    ((below & BITS) as usize, number - (f64::from_bits(below) - WHOLE))
+    let below = number as i64;
+    (below as usize, number - below as f64)
 }

@@ -11,14 +11,15 @@ use crate::compensator::inverse::{Reach, set};
 use crate::compensator::{Compensator, Outcome, Prediction, Refusal};
 use crate::math::{add_scaled, all_finite};
 use crate::sample::{LaneSample, lanes};
-use crate::{ErrorMotions, Kinematics, Lanes};
+use crate::{ErrorMotions, Kinematics, Lanes, Real};
 
 /// A step of the search.
 struct Step {
     iterations: u32,
     here: [Lanes; 3],
     pull: [Lanes; 3],
-    distance: Lanes,
+    /// The square of its length over all axes.
+    square: Lanes,
 }
 
 impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
@@ -101,7 +102,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         answers: Answers<'_>,
     ) {
         let zero = [Lanes::from(0.0); 3];
-        let mut step = Step { iterations: 0, here: start, pull: zero, distance: f64::INFINITY.into() };
+        let mut step = Step { iterations: 0, here: start, pull: zero, square: f64::INFINITY.into() };
         while open.contains(&true) {
             if step.iterations >= self.convergence.iterations {
                 return give_up(&step, open, answers);
@@ -112,7 +113,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
             step.iterations = step.iterations.saturating_add(1);
             let next = block.reach.apply(step.here);
             let columns = self.prediction.columns(block.columns);
-            step.distance = columns.spread(add_scaled(next, Lanes::from(-1.0), step.pull));
+            step.square = columns.spread_squared(add_scaled(next, Lanes::from(-1.0), step.pull));
             step.pull = next;
             columns.correct(block.position, next, block.command);
             self.settle(first, block, &step, &mut open, out, answers);
@@ -129,21 +130,22 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         out: &mut [&mut [f64]],
         answers: Answers<'_>,
     ) {
-        let settled = |distance: f64| distance <= self.convergence.tolerance;
-        let ends = |distance: f64| settled(distance) || !distance.is_finite();
-        if !open.iter().zip(step.distance.numbers()).any(|(open, distance)| *open && ends(distance)) {
+        let bound = self.convergence.tolerance_squared();
+        let settled = |square: f64| square <= bound;
+        let ends = |square: f64| settled(square) || !square.is_finite();
+        if !open.iter().zip(step.square.numbers()).any(|(open, square)| *open && ends(square)) {
             return;
         }
         let columns = self.prediction.columns(block.columns);
         let correction = columns.spread(step.pull);
         let remaining = add_scaled(step.here, Lanes::from(-1.0), columns.tip(step.pull));
         for (lane, (open, answer)) in open.iter_mut().zip(answers).enumerate() {
-            let distance = step.distance.lane(lane);
-            if !*open || !ends(distance) {
+            let square = step.square.lane(lane);
+            if !*open || !ends(square) {
                 continue;
             }
             *open = false;
-            if !settled(distance) {
+            if !settled(square) {
                 let iterations = step.iterations;
                 *answer = Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
                 continue;
@@ -203,7 +205,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
 
 /// Refuses the rows whose search has taken all the steps that it may.
 fn give_up(step: &Step, open: Open, answers: Answers<'_>) {
-    for ((open, answer), distance) in open.into_iter().zip(answers).zip(step.distance.numbers()) {
+    for ((open, answer), distance) in open.into_iter().zip(answers).zip(step.square.sqrt().numbers()) {
         if open {
             *answer = Err(Refusal::NotConverging { iterations: step.iterations, distance });
         }

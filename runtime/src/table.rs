@@ -74,7 +74,7 @@ impl fmt::Display for TableError {
             Self::Lengths { expected, found } => {
                 write!(f, "the table needs {expected} values in each curve, found {found}")
             }
-            Self::Step => write!(f, "the step between nodes is zero or not finite"),
+            Self::Step => write!(f, "the step between nodes is zero, next to zero or not finite"),
             Self::NotAscending { index } => {
                 write!(f, "node {index} (counted from 0) does not lie above the one before it")
             }

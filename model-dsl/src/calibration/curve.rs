@@ -69,8 +69,9 @@ fn read_uniform(term: &mut Parameters<'_, '_, '_>, axis: Option<usize>) -> Optio
     let start = term.quantity("start", kind);
     let step_node = term.need("step")?;
     let step = term.quantity_in(step_node, "step", kind)?;
-    if step.value == 0.0 {
-        let message = format!("{} must not be zero", term.words("step"));
+    // Tables are read by the inverse of their step.
+    if !step.value.recip().is_finite() {
+        let message = format!("{} must not be zero, or next to it", term.words("step"));
         let mistake = Diagnostic::error("E0419", step.span, message);
         term.report(mistake.help("write the distance from one value to the next"));
         return None;

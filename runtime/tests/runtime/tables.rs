@@ -152,6 +152,7 @@ fn bad_tables_are_refused() {
     let uniform = |start, step, values| Table::uniform(start, step, values).unwrap_err();
     assert_eq!(uniform(0.0, 1.0, Values::Both(&[])), Empty);
     assert_eq!(uniform(0.0, 0.0, two), Step);
+    assert_eq!(uniform(0.0, -1e-310, two), Step);
     assert_eq!(uniform(0.0, f64::NAN, two), Step);
     assert_eq!(uniform(0.0, f64::INFINITY, two), Step);
     assert_eq!(uniform(f64::NAN, 1.0, two), NotFinite);

@@ -216,6 +216,7 @@ fn tables_are_checked() {
     refused(&table("unit: um, values: [1]"), &[("E0411", "table")]);
     refused(&table("start: 0 mm, unit: um, values: [1]"), &[("E0411", "table")]);
     refused(&table("start: 0 mm, step: 0 mm, unit: um, values: [1]"), &[("E0419", "0 mm")]);
+    refused(&table("start: 0 mm, step: -1e-310 mm, unit: um, values: [1]"), &[("E0419", "-1e-310 mm")]);
     refused(
         &table("start: 0, step: 1 deg, unit: s, values: [1]"),
         &[("E0306", "0"), ("E0307", "deg"), ("E0413", "s")],

@@ -193,6 +193,7 @@ fn the_way_back_counts_from_the_furthest_point() {
 #[test]
 fn positions_that_are_no_numbers_are_ignored() {
     let mut tracker = DirectionTracker::new(1.0);
+    assert_eq!(tracker.threshold(), 1.0);
     for position in [f64::NAN, 5.0, f64::NEG_INFINITY, f64::NAN, 4.5] {
         assert_eq!(tracker.update(position), Direction::Positive);
     }

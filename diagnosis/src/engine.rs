@@ -144,7 +144,7 @@ impl Search {
                     dynamics::try_drives(study, next, self.always, &self.noises, &self.travels, self.tries);
                 settled = same_effects(&self.model, &next);
             } else if round > 0 && dynamics::may_answer(&next, self.always) {
-                // Not in the first round, which takes all noise as white: what it chooses serves to know the noise.
+                // Not in a first round, whose choice serves to know the noise: at the very first, all of it is taken as white.
                 next =
                     dynamics::try_drives(study, next, self.always, &self.noises, &self.travels, self.tries);
             }

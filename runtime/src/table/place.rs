@@ -162,8 +162,8 @@ fn node(curve: &[f64], index: usize) -> f64 {
 }
 
 /// The greatest whole number that is not above the number of a node, and what is left of it; NaN is left of NaN.
-// No comparison, which could become a branch: a table is read at places that no processor foresees. A signed number, since
-// processors have no instruction for others.
+// No comparison, which could become a branch: a table is read at places that no processor foresees. A signed number of the
+// processor's own width, which it has an instruction for; no slice of numbers is too long for it.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
@@ -172,6 +172,6 @@ fn node(curve: &[f64], index: usize) -> f64 {
     reason = "from 0 to the number of the last node; NaN becomes 0"
 )]
 fn split(number: f64) -> (usize, f64) {
-    let below = number as i64;
+    let below = number as isize;
     (below as usize, number - below as f64)
 }

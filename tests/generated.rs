@@ -87,10 +87,13 @@ fn through_the_interface(machine: &impl Kinematics, point: &Point, answers: &Ans
     vary_as_told(machine, point, &answers.directions);
     match machine.fixed_directions() {
         Some(fixed) => assert_eq!(fixed, answers.directions),
-        None => assert!(
-            machine.directions_vary(),
-            "no shipped machine has a slide that leans by a number of its own"
-        ),
+        None => {
+            let leans = "no shipped machine has a slide that leans by a number of its own";
+            assert!(machine.directions_vary(), "{leans}");
+            let resting: Vec<bool> =
+                answers.directions.iter().map(|direction| *direction == [0.0; 3]).collect();
+            assert_eq!(machine.resting(), resting);
+        }
     }
     let short = &point.position[1..];
     assert!(machine.error(short, &point.travel, &point.motions).iter().all(|part| part.is_nan()));

@@ -67,6 +67,12 @@ pub trait Kinematics {
         true
     }
 
+    /// For each axis, whether its [direction](Self::directions) is known to be zero at every position when the code is compiled;
+    /// empty where nothing is said. A search for a command then leaves out these axes.
+    fn resting(&self) -> &'static [bool] {
+        &[]
+    }
+
     /// [`Kinematics::directions`] where they are the same at every position and known when the code is compiled; none where
     /// nothing else is said. A search for a command then leaves out what is zero.
     fn fixed_directions(&self) -> Option<&'static [[f64; 3]]> {

@@ -204,7 +204,7 @@ fn held(equations: &Equations, programs: &Programs) -> Option<Held> {
 fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
     let directions = body(equations, &programs.directions, Numbers::Plain);
     let vary = directions.reads.axes;
-    let fixed = fixed_directions(&directions);
+    let known = fixed_directions(&directions).or_else(|| resting(equations));
     let held = held(equations, programs);
     let axes = Literal::usize_unsuffixed(equations.axes.len());
     let motions = Literal::usize_unsuffixed(equations.motions.len());
@@ -246,7 +246,7 @@ fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
                 }
             }
             fn directions_vary(&self) -> bool { #vary }
-            #fixed
+            #known
         }
     }
 }
@@ -260,6 +260,12 @@ fn fixed_directions(directions: &Body) -> Option<TokenStream> {
             fn fixed_directions(&self) -> Option<&'static [[f64; 3]]> { Some(&[#(#effects),*]) }
         }
     })
+}
+
+/// Which axes do not correct, where some do not.
+fn resting(equations: &Equations) -> Option<TokenStream> {
+    let rest: Vec<bool> = equations.axes.iter().map(|axis| axis.effect.is_none()).collect();
+    rest.contains(&true).then(|| quote! { fn resting(&self) -> &'static [bool] { &[#(#rest),*] } })
 }
 
 /// The error from slices.

@@ -85,7 +85,11 @@ pub(super) enum Columns<'c, T = f64> {
     /// The same at every position, and known when the code is compiled: nothing is left then of what is zero, or one.
     Known(&'static [[f64; 3]]),
     /// Found for a position.
-    Found(&'c [[T; 3]]),
+    Found {
+        columns: &'c [[T; 3]],
+        /// Which of them are known to be zero everywhere; empty where nothing is known.
+        resting: &'static [bool],
+    },
 }
 
 impl<T: Real> Columns<'_, T> {
@@ -101,7 +105,7 @@ impl<T: Real> Columns<'_, T> {
                 }
                 sum
             }
-            Self::Found(columns) => tip(columns, v),
+            Self::Found { columns, .. } => tip(columns, v),
         }
     }
 
@@ -146,9 +150,10 @@ impl<T: Real> Columns<'_, T> {
                     each(product(column, v));
                 }
             }
-            Self::Found(columns) => {
-                for &column in columns {
-                    each(dot(column, v));
+            Self::Found { columns, resting } => {
+                for (axis, &column) in columns.iter().enumerate() {
+                    let rests = resting.get(axis) == Some(&true);
+                    each(if rests { T::from(0.0) } else { dot(column, v) });
                 }
             }
         }
@@ -301,16 +306,21 @@ mod tests {
         const LATHE: &[[f64; 3]] = &[[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]];
         const LEANING: &[[f64; 3]] = &[[0.6, -0.8, 0.0], [0.0; 3], [0.0, 0.0, 2.0], [0.1, 0.2, -0.3]];
         let v = [0.3, -0.2, 0.7];
-        for known in [&[], LATHE, LEANING] {
-            let (known, found) = (Columns::Known(known), Columns::Found(known));
-            assert_close(known.tip(v), found.tip(v));
-            assert!((known.spread(v) - found.spread(v)).abs() < 1e-15);
-            let commands = [known, found].map(|columns| {
+        for (columns, resting) in [(&[][..], &[][..]), (LATHE, &[false; 2]), (LEANING, &[false, true, false])]
+        {
+            let [known, found, rested] = [
+                Columns::Known(columns),
+                Columns::Found { columns, resting: &[] },
+                Columns::Found { columns, resting },
+            ];
+            let commands = [known, found, rested].map(|columns| {
+                assert_close(columns.tip(v), found.tip(v));
+                assert!((columns.spread(v) - found.spread(v)).abs() < 1e-15);
                 let mut commands = [f64::NAN; 4];
                 columns.correct(&[5.0, -6.0, 7.0, 8.0], v, &mut commands);
                 commands.map(f64::to_bits)
             });
-            assert_eq!(commands[0], commands[1]);
+            assert_eq!(commands, [commands[0]; 3]);
         }
     }
 

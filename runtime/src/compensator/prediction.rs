@@ -115,7 +115,10 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
     /// The directions of the axes: those that are known when the code is compiled, or else these.
     #[inline]
     pub(super) fn columns<'c, T>(&self, found: &'c [[T; 3]]) -> Columns<'c, T> {
-        self.kinematics.fixed_directions().map_or(Columns::Found(found), Columns::Known)
+        match self.kinematics.fixed_directions() {
+            Some(known) => Columns::Known(known),
+            None => Columns::Found { columns: found, resting: self.kinematics.resting() },
+        }
     }
 }
 

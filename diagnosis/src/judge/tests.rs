@@ -41,13 +41,13 @@ struct Case<'a> {
 /// The number of the lost motion in the model.
 const PLAY: usize = 1;
 
-fn fitted<'a>(bench: &'a Bench, recording: &'a Recording, noise: f64) -> Case<'a> {
-    let mut study = Study::new(bench.equations(), None, &[recording]);
+fn fitted<'a>(bench: &'a Bench, recordings: &[&'a Recording], noise: f64) -> Case<'a> {
+    let mut study = Study::new(bench.equations(), None, recordings);
     let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
     let shape = Shape::Backlash { axis: 0, wind_up: 0.0 };
     let effects = [Effect::setting(0, Setting::Offset { channel: 0 }), Effect { place, shape }];
     let model = effects.map(|effect| Fitted { effect, coefficients: vec![0.0] }).to_vec();
-    let noises = vec![vec![Noise::white(noise)]];
+    let noises = vec![vec![Noise::white(noise)]; recordings.len()];
     let fit = fit::refine(&study, model, &noises, &[]);
     let design = design(&study, &fit.model, &noises);
     let appraisal = Appraisal::new(&study, &fit.model);
@@ -94,11 +94,11 @@ fn an_effect_comes_back_with_two_fifths_of_its_strength_at_least() {
     let bench = Bench::of("XFY");
     for (strength, comes_back) in [(1.0, true), (0.45, true), (0.35, false), (0.0, false), (-1.0, false)] {
         let recording = recorded(&bench, held(strength), QUIET);
-        assert_eq!(fitted(&bench, &recording, QUIET).returns(), comes_back, "{strength}");
+        assert_eq!(fitted(&bench, &[&recording], QUIET).returns(), comes_back, "{strength}");
     }
     // Where the held-out rows cannot tell, nothing is held against it.
     let recording = recorded(&bench, held(-1.0), LOUD);
-    assert!(fitted(&bench, &recording, 10.0 * LOUD).returns());
+    assert!(fitted(&bench, &[&recording], 10.0 * LOUD).returns());
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn an_effect_that_rests_on_one_stretch_is_not_steady() {
     let bench = Bench::of("XFY");
     let steady = |strength: &dyn Fn(usize, bool) -> f64| {
         let recording = recorded(&bench, strength, QUIET);
-        fitted(&bench, &recording, QUIET).steady()
+        fitted(&bench, &[&recording], QUIET).steady()
     };
     assert!(steady(&|_, _| 1.0));
     assert!(steady(&|block, _| if block % 2 == 0 { 0.8 } else { 1.2 }));
@@ -118,7 +118,7 @@ fn an_effect_that_rests_on_one_stretch_is_not_steady() {
 fn a_few_stretches_tell_nothing_of_steadiness() {
     let bench = Bench::of("XFY");
     let recording = recorded(&bench, |block, _| if block % 2 == 0 { -1.0 } else { 3.0 }, QUIET);
-    let mut case = fitted(&bench, &recording, QUIET);
+    let mut case = fitted(&bench, &[&recording], QUIET);
     case.design.blocks.retain(|block| !block.held_out);
     for (stretches, steady) in [(FEW_BLOCKS, false), (FEW_BLOCKS - 1, true), (2, true)] {
         case.design.blocks.truncate(stretches);
@@ -132,7 +132,7 @@ fn an_effect_pays_where_held_out_rows_come_nearer() {
     let bench = Bench::of("XFY");
     for (strength, does) in [(1.0, true), (0.6, true), (0.4, false), (0.0, false), (-1.0, false)] {
         let recording = recorded(&bench, held(strength), QUIET);
-        assert_eq!(fitted(&bench, &recording, QUIET).pays(), does, "{strength}");
+        assert_eq!(fitted(&bench, &[&recording], QUIET).pays(), does, "{strength}");
     }
 }
 
@@ -142,10 +142,22 @@ fn an_effect_far_below_the_noise_of_a_sample_does_not_matter() {
     // The peak of the effect is half of the lost motion; 0.12 of the noise is the least that counts.
     for (share, matters) in [(0.3, true), (0.16, true), (0.08, false)] {
         let recording = recorded(&bench, |_, _| 1.0, 0.0);
-        let mut case = fitted(&bench, &recording, QUIET);
+        let mut case = fitted(&bench, &[&recording], QUIET);
         let size = 0.5 * LOST / share;
         case.appraisal.noises = vec![vec![Noise::white(size)]];
         assert_eq!(case.pays(), matters, "{share}");
+    }
+}
+
+#[test]
+fn recordings_weigh_by_the_squares_of_their_noise() {
+    let bench = Bench::of("XFY");
+    // Where an effect of strength 1 is there with another strength s, squares fall by 2 s - 1 of its own: by 1, and by -3.
+    let recordings = [1.0, -1.0].map(|strength| recorded(&bench, held(strength), QUIET));
+    for (ratio, does) in [(1.5, false), (2.0, true)] {
+        let mut case = fitted(&bench, &recordings.each_ref(), QUIET);
+        case.appraisal.noises = [QUIET, ratio * QUIET].map(|size| vec![Noise::white(size)]).to_vec();
+        assert_eq!(case.pays(), does, "{ratio}");
     }
 }
 
@@ -168,7 +180,7 @@ fn falls(case: &Case<'_>, always: usize, share: f64) -> Option<usize> {
 fn an_effect_stands_where_it_is_worth_its_price() {
     let bench = Bench::of("XFY");
     let recording = recorded(&bench, |_, _| 1.0, DOUBTFUL);
-    let case = fitted(&bench, &recording, DOUBTFUL);
+    let case = fitted(&bench, &[&recording], DOUBTFUL);
     assert_eq!(falls(&case, PLAY, 0.999), None);
     assert_eq!(falls(&case, PLAY, 1.001), Some(PLAY));
 }
@@ -177,7 +189,7 @@ fn an_effect_stands_where_it_is_worth_its_price() {
 fn what_is_worth_least_falls_first() {
     let bench = Bench::of("XFY");
     let recording = recorded(&bench, |_, _| 1.0, DOUBTFUL);
-    let case = fitted(&bench, &recording, DOUBTFUL);
+    let case = fitted(&bench, &[&recording], DOUBTFUL);
     // The zero, which nothing asks for, is judged here as well.
     let zero = 0;
     assert_eq!(falls(&case, zero, 1.001), Some(zero));

@@ -180,9 +180,13 @@ fn falls(case: &Case<'_>, always: usize, share: f64) -> Option<usize> {
 fn an_effect_stands_where_it_is_worth_its_price() {
     let bench = Bench::of("XFY");
     let recording = recorded(&bench, |_, _| 1.0, DOUBTFUL);
-    let case = fitted(&bench, &[&recording], DOUBTFUL);
-    assert_eq!(falls(&case, PLAY, 0.999), None);
-    assert_eq!(falls(&case, PLAY, 1.001), Some(PLAY));
+    // Also where the noise was taken for smaller or larger than it is.
+    for times in [1.0, 0.5, 2.0] {
+        let mut case = fitted(&bench, &[&recording], DOUBTFUL);
+        case.appraisal.noises = vec![vec![Noise::white(times * DOUBTFUL)]];
+        assert_eq!(falls(&case, PLAY, 0.999), None, "{times}");
+        assert_eq!(falls(&case, PLAY, 1.001), Some(PLAY), "{times}");
+    }
 }
 
 #[test]

@@ -140,12 +140,26 @@ fn an_effect_pays_where_held_out_rows_come_nearer() {
 fn an_effect_far_below_the_noise_of_a_sample_does_not_matter() {
     let bench = Bench::of("XFY");
     // The peak of the effect is half of the lost motion; 0.12 of the noise is the least that counts.
-    for (share, matters) in [(0.3, true), (0.16, true), (0.08, false)] {
-        let recording = recorded(&bench, |_, _| 1.0, 0.0);
-        let mut case = fitted(&bench, &[&recording], QUIET);
+    for (share, noise, matters) in
+        [(0.3, 0.0, true), (0.16, 0.0, true), (0.08, 0.0, false), (0.04, 1.0, false)]
+    {
         let size = 0.5 * LOST / share;
+        let recording = recorded(&bench, |_, _| 1.0, noise * size);
+        let mut case = fitted(&bench, &[&recording], QUIET);
         case.appraisal.noises = vec![vec![Noise::white(size)]];
         assert_eq!(case.pays(), matters, "{share}");
+    }
+}
+
+#[test]
+fn what_held_out_rows_cannot_tell_is_not_held_against_an_effect() {
+    let bench = Bench::of("XFY");
+    // It is not there in the held-out circle, where a row tells the square of this share.
+    for (share, passes) in [(0.16, true), (0.3, false)] {
+        let recording = recorded(&bench, held(0.0), 0.0);
+        let mut case = fitted(&bench, &[&recording], QUIET);
+        case.appraisal.noises = vec![vec![Noise::white(0.5 * LOST / share)]];
+        assert_eq!(case.pays(), passes, "{share}");
     }
 }
 

@@ -66,7 +66,19 @@ fn swept(design: &Design) -> Swept {
 
 impl Case<'_> {
     fn returns(&self) -> bool {
-        returns(&self.design, &swept(&self.design), PLAY, 1.0)
+        self.returns_beside(1.0)
+    }
+
+    /// Beside a noise of so many times the variance that it was taken for.
+    fn returns_beside(&self, scale: f64) -> bool {
+        returns(&self.design, &swept(&self.design), PLAY, scale)
+    }
+
+    /// How much there is of the lost motion in the held-out rows, in squares of the noise.
+    fn held_out_energy(&self) -> f64 {
+        let (design, swept) = (&self.design, swept(&self.design));
+        let held_out = design.blocks.iter().filter(|block| block.held_out);
+        held_out.map(|block| share(design, &swept, PLAY, block).0).sum()
     }
 
     fn steady(&self) -> bool {
@@ -99,6 +111,17 @@ fn an_effect_comes_back_with_two_fifths_of_its_strength_at_least() {
     // Where the held-out rows cannot tell, nothing is held against it.
     let recording = recorded(&bench, held(-1.0), LOUD);
     assert!(fitted(&bench, &[&recording], 10.0 * LOUD).returns());
+}
+
+#[test]
+fn held_out_rows_tell_what_stands_above_the_noise_that_is_there() {
+    let bench = Bench::of("XFY");
+    let recording = recorded(&bench, held(-1.0), QUIET);
+    let case = fitted(&bench, &[&recording], QUIET);
+    let telling = case.held_out_energy() / TELLING;
+    assert!(telling > 2.0, "{telling}");
+    assert!(!case.returns_beside(0.99 * telling));
+    assert!(case.returns_beside(1.01 * telling), "nothing is held against it that is lost in noise");
 }
 
 #[test]

@@ -73,6 +73,9 @@ fn what_is_one_piece_of_physics_stands_once() {
     let vibration = |frequency| on("EXX", Shape::Vibration { frequency });
     let coupling = |axis, degree| on("EXX", Shape::Coupling { axis, degree, scale: 1.0 });
     let play = |wind_up| on("EXX", Shape::Backlash { axis: 0, wind_up });
+    let expansion = |sensor| on("EXX", Shape::Expansion { axis: 0, sensor, reference: 20.0 });
+    let growth = |sensor, time_constant| on("EXX", Shape::Growth { sensor, reference: 20.0, time_constant });
+    let load = |load| on("EXX", Shape::Compliance { load });
     let setting = |setting| Effect::setting(0, setting);
     for (a, b, one) in [
         (wave(7.0), wave(7.1), true),
@@ -85,6 +88,12 @@ fn what_is_one_piece_of_physics_stands_once() {
         (play(0.0), play(3.0), true),
         (play(0.0), on("EYX", Shape::Backlash { axis: 0, wind_up: 0.0 }), false),
         (play(0.0), on("EXX", Shape::Constant), false),
+        (expansion(0), expansion(0), true),
+        (expansion(0), expansion(1), false),
+        (growth(0, 0.0), growth(0, 60.0), true),
+        (growth(0, 0.0), growth(1, 0.0), false),
+        (load(0), load(0), true),
+        (load(0), load(1), false),
         (setting(Setting::Radius), setting(Setting::Radius), true),
         (setting(Setting::Radius), setting(Setting::Cosine), false),
         (setting(Setting::Offset { channel: 0 }), setting(Setting::Offset { channel: 1 }), false),
@@ -109,5 +118,38 @@ fn only_what_turns_a_body_is_held_to_small_turns() {
     assert!(!turns("ECX", Shape::Growth { sensor: 0, reference: 20.0, time_constant: 0.0 }));
     assert!(!turns("ECX", Shape::Compliance { load: 0 }));
     assert!(!turns("EXX", Shape::Constant));
+    assert!(!turns("EYX", Shape::Constant), "a displacement that is not the axis's own");
     assert!(!rotates(&study, &Effect::setting(0, Setting::Radius)));
+}
+
+#[test]
+fn a_loop_that_runs_ahead_of_its_command_is_not_chosen() {
+    let bench = Bench::of("XFY");
+    let scenario = scenario(path(circle(40.0), 20.0, 10.0), position("x"));
+    let true_machine = bench.record(&bench.calibration("{}"), &scenario);
+    let late = bench.record(&bench.calibration("{EXX: [{lag: {gain: 40 1/s}}]}"), &scenario);
+    let mut ahead = late.clone();
+    let (Some(read), Some(exact)) = (&mut ahead.measured[0], &true_machine.measured[0]) else { panic!() };
+    for (read, exact) in read.iter_mut().zip(exact) {
+        *read = 2.0 * exact - *read;
+    }
+
+    for (recording, possible) in [(&late, true), (&ahead, false)] {
+        let study = Study::new(bench.equations(), None, &[recording]);
+        let place = Place::Motion { motion: bench.motion("EXX"), side: Side::Drive };
+        let lag = Effect { place, shape: Shape::Lag { axis: 0, inertia: 0.0 } };
+        let zero = Effect::setting(0, Setting::Offset { channel: 0 });
+        let model =
+            [zero, lag].map(|effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
+        let design = judge::design(&study, &model.to_vec(), &[vec![Noise::white(1e-3)]]);
+        let (products, samples) = design.fitted();
+        let choice = Choice::new(&study, &design, products, samples, 1, 1.0, Resolution::new(&study, &[]));
+        let empty = choice.empty();
+        assert_eq!(choice.fits(&empty, 1), possible);
+        let with = choice.with(&empty, 1);
+        assert!(with.cost < empty.cost, "it would explain what is seen");
+        assert_eq!(choice.impossible(&with, 1), !possible);
+        assert_eq!(choice.pruned(with).chosen.is_empty(), !possible);
+        assert_eq!(choice.best().is_empty(), !possible);
+    }
 }

@@ -153,3 +153,17 @@ fn independence_likeness_and_sign_are_of_what_the_others_leave() {
     assert!(with.take(4));
     assert_eq!(swept.sign(4), with.coefficient(4).signum());
 }
+
+#[test]
+fn energy_is_the_length_of_a_sum_as_far_as_the_swept_columns_leave_it() {
+    let mut swept = swept();
+    swept.take(0);
+    swept.take(3);
+    let all = columns();
+    let of = [1, 2, 4];
+    let coefficients = [7e5, -0.02, 1.5];
+    let sum = all.select_columns(&of) * DVector::from_row_slice(&coefficients);
+    let base = all.select_columns(&[0, 3]);
+    let left = &sum - &base * base.clone().svd(true, true).solve(&sum, 1e-14).unwrap();
+    assert!(near(swept.energy(&of, &coefficients), left.norm_squared()));
+}

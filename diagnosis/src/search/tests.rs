@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::judge;
-use crate::model::{Fitted, Place};
+use crate::model::{Fitted, Model, Place};
 use crate::noise::Noise;
 use crate::side::Side;
 use crate::testing::{Bench, circle, path, position, scenario};
@@ -151,5 +151,52 @@ fn a_loop_that_runs_ahead_of_its_command_is_not_chosen() {
         assert_eq!(choice.impossible(&with, 1), !possible);
         assert_eq!(choice.pruned(with).chosen.is_empty(), !possible);
         assert_eq!(choice.best().is_empty(), !possible);
+    }
+}
+
+#[test]
+fn of_two_that_bend_alike_in_one_place_one_is_enough() {
+    let bench = Bench::of("XFY");
+    let scenario = scenario(path(circle(40.0), 20.0, 10.0), position("xy"));
+    let recording = bench.record(&bench.calibration("{}"), &scenario);
+    let study = Study::new(bench.equations(), None, &[&recording]);
+    let on = |motion: &str, shape: Shape| Effect {
+        place: Place::Motion { motion: bench.motion(motion), side: Side::After },
+        shape,
+    };
+    let nodes = vec![-40.0, -20.0, 0.0, 20.0, 40.0];
+    let table = Shape::Table { axis: 0, nodes, directed: false };
+    let bow = Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 40.0 };
+    let wave = |period| Shape::Cyclic { axis: 0, period };
+    let effects = [
+        on("EXX", table),
+        on("EXX", bow.clone()),
+        on("EYX", bow),
+        on("EXX", wave(7.0)),
+        on("EXX", wave(7.3)),
+        on("EXX", wave(5.0)),
+        on("EYX", wave(7.3)),
+    ];
+    let fitted = |effect: Effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect };
+    let model: Model = effects.into_iter().map(fitted).collect();
+    let design = judge::design(&study, &model, &[vec![Noise::white(1e-3); 2]]);
+    let (products, samples) = design.fitted();
+    let travels = crate::travel::travels(&study, &crate::engine::courses(&study, &Model::new()));
+    let resolution = Resolution::new(&study, &travels);
+    let choice = Choice::new(&study, &design, products, samples, 0, 1.0, resolution);
+    for (a, b, both) in [
+        (0, 1, false),
+        (0, 2, true),
+        // A table from 20 mm to 20 mm leaves such a wave as it is.
+        (0, 3, true),
+        // In 80 mm these two cannot be told apart.
+        (3, 4, false),
+        (3, 5, true),
+        (3, 6, true),
+    ] {
+        for (chosen, next) in [(a, b), (b, a)] {
+            let set = choice.with(&choice.empty(), chosen);
+            assert_eq!(choice.fits(&set, next), both, "{next} beside {chosen}");
+        }
     }
 }

@@ -57,6 +57,12 @@ fn a_set_costs_the_same_by_whatever_way_it_is_reached() {
             assert!(alike(choice.without(&both, second).cost, one.cost), "{second} beside {first}, and back");
         }
     }
+    // Each costs its price, less what is counted for columns that the zero holds already.
+    for (first, held) in [(1, 1), (2, 1), (3, 0), (4, 0)] {
+        let spared = untold_price(held, samples);
+        let price = choice.price(&choice.with(&empty, first)) - choice.price(&empty);
+        assert!((price + spared - choice.prices[first]).abs() < 1e-6, "{first}: {price}");
+    }
     // What the zero holds already is worth nothing, and costs what its name does.
     let held = choice.with(&empty, 1).cost - empty.cost;
     assert!((0.0..choice.prices[1]).contains(&held), "{held}");

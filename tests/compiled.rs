@@ -86,7 +86,8 @@ fn program(machines: &[Drawn]) -> String {
              let mut directions = vec![[0.0; 3]; position.len()];\n\
              machine.directions(position, &mut directions);\n\
              let error = machine.error(position, travel, motions);\n\
-             let (sines, mut turned) = (machine.sines(position), directions.clone());\n\
+             let (mut sines, mut turned) = (abbe_runtime::Sines::default(), directions.clone());\n\
+             machine.turn(position, &mut sines);\n\
              machine.directions_with(&sines, position, &mut turned);\n\
              assert!(turned == directions && machine.error_with(&sines, position, travel, motions) == error);\n\
              let all = error.iter().chain(directions.iter().flatten()).chain(&nominal).chain(levers.iter().flatten());\n\

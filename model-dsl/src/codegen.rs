@@ -5,6 +5,7 @@
 //! tokens as a formatted file. The macro, build scripts and `abbe expand` all come through here.
 
 mod body;
+mod bundles;
 mod c_interface;
 mod calibration;
 mod docs;

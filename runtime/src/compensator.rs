@@ -127,16 +127,23 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     /// Every [`Refusal`] leaves the position of the sample in `out`, and nothing of a correction.
     pub fn compensate(&mut self, sample: &Sample<'_>, out: &mut [f64]) -> Result<Outcome, Refusal> {
         self.check_lengths(sample, out)?;
-        copy(sample.position, out);
-        let error = self.prediction.begin(sample)?;
-        if !self.enabled {
-            return Ok(Outcome { error, remaining: error, iterations: 0 });
-        }
-        let outcome = self.search(sample, error, out);
+        let outcome = self.cycle(sample, out);
         if outcome.is_err() {
             copy(sample.position, out);
         }
         outcome
+    }
+
+    /// [`compensate`](Self::compensate), where all is as long as it must be; a refusal leaves anything in `out`.
+    #[inline]
+    fn cycle(&mut self, sample: &Sample<'_>, out: &mut [f64]) -> Result<Outcome, Refusal> {
+        let error = self.prediction.begin(sample)?;
+        if self.enabled {
+            self.search(sample, error, out)
+        } else {
+            copy(sample.position, out);
+            Ok(Outcome { error, remaining: error, iterations: 0 })
+        }
     }
 
     /// Checks that there is a position, and room for a command, for each axis.
@@ -149,7 +156,8 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     /// Searches for the command, from the error at the target on, and holds it against the limit.
     #[inline]
     fn search(&mut self, sample: &Sample<'_>, error: [f64; 3], out: &mut [f64]) -> Result<Outcome, Refusal> {
-        let reach = match self.reach {
+        let known = self.prediction.kinematics.fixed_directions().and_then(Reach::at_right_angles);
+        let reach = match known.or(self.reach) {
             Some(reach) => reach,
             None => self.reach_at(sample.position)?,
         };
@@ -159,12 +167,12 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
         same_length("work.directions", prediction.kinematics.axes(), directions.len())?;
         let columns = prediction.columns(directions);
         let ramp = prediction.needs.ramp;
-        let start = if ramp { prediction.corrected(sample, sample.position) } else { error };
+        let start = if ramp { prediction.corrected(sample, sample.position)? } else { error };
         let Pulled { pull, mut here, iterations } =
             convergence.iterate(prediction, sample, start, columns, &reach, out)?;
         limits.check(|| columns.spread(pull))?;
         if ramp {
-            here = prediction.error_behind_ramp(sample, out);
+            here = prediction.error_behind_ramp(sample, out)?;
         }
         let remaining = add_scaled(here, -1.0, columns.tip(pull));
         if columns.overlook(remaining) {
@@ -203,7 +211,8 @@ impl Convergence {
         // Part by part here and below: copied as a whole, the error would go through memory at every step.
         let mut here = [x, y, z];
         let mut pull = [0.0; 3];
-        for iterations in 1..=self.iterations {
+        for before in 0..self.iterations {
+            let iterations = before.saturating_add(1);
             let next = reach.apply(here);
             // Not that of the commands, which far from the origin are too coarse to tell when it ends.
             square = columns.spread_squared(add_scaled(next, -1.0, pull));
@@ -212,10 +221,11 @@ impl Convergence {
             if square <= bound {
                 return Ok(Pulled { pull, here, iterations });
             }
-            if !square.is_finite() {
+            let finite = square < f64::INFINITY;
+            if !finite {
                 return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
             }
-            let [x, y, z] = prediction.corrected_again(sample, out);
+            let [x, y, z] = prediction.corrected_again(sample, out)?;
             here = [x, y, z];
         }
         Err(Refusal::NotConverging { iterations: self.iterations, distance: sqrt(square) })

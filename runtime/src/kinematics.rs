@@ -30,13 +30,12 @@ pub trait Kinematics {
     /// A direction that is not sensitive is 0.0. A slice of the wrong length gives NaN in all three.
     fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3];
 
-    /// The sines and cosines of rotary axes at a position, which do not correct: no step of a search for a command moves them, so
-    /// that a compensator asks once for what it passes to [`error_with`](Self::error_with) at each step.
-    fn sines(&self, _position: &[f64]) -> Sines {
-        Sines::default()
-    }
+    /// Writes the sines and cosines of rotary axes at a position, as far as the equations read them. Rotary axes do not correct: no
+    /// step of a search for a command moves them, so that a compensator asks once for what it passes to
+    /// [`error_with`](Self::error_with) at each step.
+    fn turn(&self, _position: &[f64], _sines: &mut Sines) {}
 
-    /// [`Kinematics::error`], bit for bit, at a position at which [`sines`](Self::sines) gives these.
+    /// [`Kinematics::error`], bit for bit, at a position at which [`turn`](Self::turn) writes these.
     #[inline(always)]
     fn error_with(&self, _sines: &Sines, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
         self.error(position, travel, motions)
@@ -56,7 +55,7 @@ pub trait Kinematics {
     /// has -1 there. Writes `directions[axis]`; a slice of the wrong length is filled with NaN.
     fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]);
 
-    /// [`Kinematics::directions`], bit for bit, at a position at which [`sines`](Self::sines) gives these.
+    /// [`Kinematics::directions`], bit for bit, at a position at which [`turn`](Self::turn) writes these.
     fn directions_with(&self, _sines: &Sines, position: &[f64], directions: &mut [[f64; 3]]) {
         self.directions(position, directions);
     }

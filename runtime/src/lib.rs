@@ -130,5 +130,5 @@ pub use motion::{ErrorMotion, ErrorMotions, MotionReader};
 pub use real::Real;
 pub use sample::Sample;
 pub use supervisor::{AxisMemory, Cycle, Memory, State, Supervisor, Transition};
-pub use table::{Table, TableError, Values};
+pub use table::{Bundle, Table, TableError, Values};
 pub use term::{Input, Term, TermState};

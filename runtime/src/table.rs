@@ -3,6 +3,7 @@
 //! In: nodes and values, borrowed and checked once. Out: the value at a position, held constant outside the table. It
 //! exists because most published calibrations are tables, and the controller must read them in bounded time.
 
+mod bundle;
 mod place;
 
 use core::fmt;
@@ -10,6 +11,7 @@ use core::fmt;
 use crate::math::all_finite;
 use crate::{Direction, Real};
 
+pub use self::bundle::Bundle;
 use self::place::Even;
 pub(crate) use self::place::{LanePlace, Place};
 
@@ -56,6 +58,8 @@ pub enum TableError {
         /// The length found.
         found: usize,
     },
+    /// There are more than 2^32 even nodes.
+    TooLong,
     /// The step between nodes is not finite, or so near to zero that its inverse is not.
     Step,
     /// A node does not lie above the one before it.
@@ -65,6 +69,11 @@ pub enum TableError {
     },
     /// A start, a node or a value is NaN or infinite.
     NotFinite,
+    /// In a [`Bundle`], a term is not a table over the axis and the even nodes of the first.
+    Unlike {
+        /// Index of that term.
+        index: usize,
+    },
 }
 
 impl fmt::Display for TableError {
@@ -74,11 +83,18 @@ impl fmt::Display for TableError {
             Self::Lengths { expected, found } => {
                 write!(f, "the table needs {expected} values in each curve, found {found}")
             }
+            Self::TooLong => write!(f, "the table has more than 4294967296 nodes"),
             Self::Step => write!(f, "the step between nodes is zero, next to zero or not finite"),
             Self::NotAscending { index } => {
                 write!(f, "node {index} (counted from 0) does not lie above the one before it")
             }
             Self::NotFinite => write!(f, "a start, a node or a value is not a finite number"),
+            Self::Unlike { index } => {
+                write!(
+                    f,
+                    "term {index} (counted from 0) is not a table over the axis and the even nodes of the first"
+                )
+            }
         }
     }
 }
@@ -114,7 +130,7 @@ impl<'a> Table<'a> {
     /// The step may be negative: published tables run from 0 to -110 mm as well.
     ///
     /// # Errors
-    /// Refuses a table without values, curves that differ in length, a step of zero or nearly so (its inverse must be finite)
+    /// Refuses a table without values or with more than 2^32, curves that differ in length, a step of zero or nearly so (its inverse must be finite)
     /// and numbers that are not finite.
     pub const fn uniform(start: f64, step: f64, values: Values<'a>) -> Result<Self, TableError> {
         // Reading multiplies, which takes less time than to divide.
@@ -129,6 +145,9 @@ impl<'a> Table<'a> {
             return Err(error);
         }
         let last = values.curve(Direction::Positive).len().saturating_sub(1);
+        if last > u32::MAX as usize {
+            return Err(TableError::TooLong);
+        }
         Ok(Self::new(Nodes::Even(Even { start, per_unit, last }), values))
     }
 

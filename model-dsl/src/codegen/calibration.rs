@@ -9,6 +9,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::body::number;
+use super::bundles::{Bundles, EvenNodes};
 use super::sensors::{self, Numbered};
 use super::{docs, measured};
 use crate::calibration::{
@@ -28,20 +29,27 @@ pub(super) fn all(equations: &Equations, calibration: &Calibration) -> Result<To
         .enumerate()
         .map(|(number, motion)| WrittenMotion::new(equations, motion, number, calibration, &numbered))
         .collect::<Result<_, _>>()?;
-    let (items, reader) = (items(calibration, &motions), reader(equations, &motions));
+    let bundles = Bundles::new(equations, &motions);
+    let (items, reader) = (items(calibration, &motions, &bundles), reader(equations, &motions, &bundles));
     let sensors = sensors::all(&calibration.sensors, &numbered);
     Ok(quote! { #items #reader #sensors })
 }
 
 /// The terms of an error motion as tokens.
-struct WrittenMotion {
+pub(super) struct WrittenMotion {
     /// The name of the constant that holds them.
-    name: Ident,
+    pub(super) name: Ident,
     /// What the motion is.
     about: String,
-    terms: Vec<TokenStream>,
+    terms: Vec<WrittenTerm>,
     /// Whether one of them reads an axis that corrects, which a search for a command moves.
     moved: bool,
+}
+
+/// A term as tokens, and its nodes where it is a table with even ones.
+struct WrittenTerm {
+    tokens: TokenStream,
+    even: Option<EvenNodes>,
 }
 
 impl WrittenMotion {
@@ -63,15 +71,67 @@ impl WrittenMotion {
             terms: terms
                 .iter()
                 .enumerate()
-                .map(|(place, written)| term(&written.value, ramp(place), sensors))
+                .map(|(place, written)| {
+                    let tokens = term(&written.value, ramp(place), sensors)?;
+                    Ok(WrittenTerm { tokens, even: EvenNodes::of(&written.value) })
+                })
                 .collect::<Result<_, _>>()?,
             moved: read.iter().filter_map(Term::axis).any(corrects),
         })
     }
+
+    /// The places of its tables with even nodes, and these.
+    pub(super) fn even_tables(&self) -> impl Iterator<Item = (usize, EvenNodes)> {
+        self.terms.iter().enumerate().filter_map(|(place, term)| Some((place, term.even?)))
+    }
+
+    /// The name by which the reader knows a term, or its value where that is read before its turn.
+    pub(super) fn term_name(&self, place: usize) -> Ident {
+        format_ident!("{}_{place}", self.name.to_string().to_ascii_lowercase())
+    }
+
+    /// The name by which the reader knows the value of the motion.
+    fn value_name(&self) -> Ident {
+        format_ident!("{}_value", self.name.to_string().to_ascii_lowercase())
+    }
+
+    /// Names the terms whose value is not read before their turn; nothing where there is none.
+    fn unpacked(&self) -> Option<TokenStream> {
+        let name = &self.name;
+        let terms = self.terms.iter().enumerate().map(|(place, term)| match term.even {
+            Some(_) => format_ident!("_"),
+            None => self.term_name(place),
+        });
+        self.terms
+            .iter()
+            .any(|term| term.even.is_none())
+            .then(|| quote! { let [#(#terms),*] = &Self::#name; })
+    }
+
+    /// The sum of the terms, read in their turn.
+    fn sum(&self) -> TokenStream {
+        let terms: Vec<_> = self
+            .terms
+            .iter()
+            .enumerate()
+            .map(|(place, term)| {
+                let name = self.term_name(place);
+                match term.even {
+                    Some(_) => quote! { from.known(#name) },
+                    None => quote! { from.term(#name) },
+                }
+            })
+            .collect();
+        match &terms[..] {
+            [alone] => alone.clone(),
+            // From zero on, as any sum of several terms or of none.
+            terms => quote! { 0.0 #(+ #terms)* },
+        }
+    }
 }
 
 /// The calibration itself: machine, limits, terms.
-fn items(calibration: &Calibration, motions: &[WrittenMotion]) -> TokenStream {
+fn items(calibration: &Calibration, motions: &[WrittenMotion], bundles: &Bundles<'_>) -> TokenStream {
     let about = docs::attributes(&match &calibration.source {
         Some(source) => format!("The numbers of one machine, compiled in. Source: {source}."),
         None => "The numbers of one machine, compiled in.".to_owned(),
@@ -82,11 +142,13 @@ fn items(calibration: &Calibration, motions: &[WrittenMotion]) -> TokenStream {
     let count = Literal::usize_unsuffixed(motions.iter().map(|motion| motion.terms.len()).sum());
     let lists = motions.iter().map(|WrittenMotion { name, about, terms, .. }| {
         let (about, count) = (docs::attributes(about), Literal::usize_unsuffixed(terms.len()));
+        let terms = terms.iter().map(|term| &term.tokens);
         quote! {
             #about
             const #name: [::abbe_runtime::Term<'static>; #count] = [#(#terms),*];
         }
     });
+    let bundles = bundles.items();
     quote! {
         #about
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -102,6 +164,7 @@ fn items(calibration: &Calibration, motions: &[WrittenMotion]) -> TokenStream {
             /// The number of terms: a compensator needs a memory for each.
             pub const TERMS: usize = #count;
             #(#lists)*
+            #bundles
         }
     }
 }
@@ -125,11 +188,11 @@ fn limits(limits: &Limits) -> (TokenStream, TokenStream) {
 }
 
 /// The implementation of `ErrorMotions`: term by term, so that each is known where it is read.
-fn reader(equations: &Equations, motions: &[WrittenMotion]) -> TokenStream {
+fn reader(equations: &Equations, motions: &[WrittenMotion], bundles: &Bundles<'_>) -> TokenStream {
     let names = motions.iter().map(|motion| &motion.name);
     let count = Literal::usize_unsuffixed(motions.len());
-    let read_moved = read_moved(equations, motions);
-    let read = read(equations, motions, read_moved.is_some());
+    let read_moved = read_moved(equations, motions, bundles);
+    let read = read(equations, motions, bundles, read_moved.is_some());
     quote! {
         impl ::abbe_runtime::ErrorMotions for Calibration {
             type Values<'k> = [f64; #count];
@@ -143,9 +206,10 @@ fn reader(equations: &Equations, motions: &[WrittenMotion]) -> TokenStream {
 }
 
 /// What reads all motions, and keeps them where `read_moved` asks for some of them.
-fn read(equations: &Equations, motions: &[WrittenMotion], keeps: bool) -> TokenStream {
-    let unpacked = motions.iter().filter(|motion| !motion.terms.is_empty()).map(unpacked);
-    let sums = motions.iter().map(sum);
+fn read(equations: &Equations, motions: &[WrittenMotion], bundles: &Bundles<'_>, keeps: bool) -> TokenStream {
+    let bundles = bundles.unpacked(|_| true);
+    let unpacked = motions.iter().map(WrittenMotion::unpacked);
+    let sums = motions.iter().map(WrittenMotion::sum);
     // Nothing is read where there are no terms.
     let from = if motions.iter().all(|motion| motion.terms.is_empty()) {
         quote! { _ }
@@ -158,6 +222,7 @@ fn read(equations: &Equations, motions: &[WrittenMotion], keeps: bool) -> TokenS
         (quote! { _kept }, None)
     };
     let body = quote! {
+        #bundles
         #(#unpacked)*
         let read = [#(#sums),*];
         #keep
@@ -168,7 +233,11 @@ fn read(equations: &Equations, motions: &[WrittenMotion], keeps: bool) -> TokenS
 
 /// What reads the motions again that a search for a command changes; nothing where each of them may be changed, but for those
 /// that cost nothing.
-fn read_moved(equations: &Equations, motions: &[WrittenMotion]) -> Option<TokenStream> {
+fn read_moved(
+    equations: &Equations,
+    motions: &[WrittenMotion],
+    bundles: &Bundles<'_>,
+) -> Option<TokenStream> {
     let stays = |motion: &&WrittenMotion| !motion.moved;
     let corrects = |axis: &AxisInfo| axis.effect.is_some();
     if equations.axes.iter().all(corrects)
@@ -176,17 +245,20 @@ fn read_moved(equations: &Equations, motions: &[WrittenMotion]) -> Option<TokenS
     {
         return None;
     }
-    let names = motions.iter().map(|motion| if motion.moved { format_ident!("_") } else { value_of(motion) });
-    let unpacked = motions.iter().filter(|motion| motion.moved).map(unpacked);
+    let names =
+        motions.iter().map(|motion| if motion.moved { format_ident!("_") } else { motion.value_name() });
+    let bundles = bundles.unpacked(|motion| motion.moved);
+    let unpacked = motions.iter().filter(|motion| motion.moved).map(WrittenMotion::unpacked);
     let values = motions.iter().map(|motion| {
-        let (value, terms) = (value_of(motion), Literal::usize_unsuffixed(motion.terms.len()));
+        let (value, terms) = (motion.value_name(), Literal::usize_unsuffixed(motion.terms.len()));
         match (motion.moved, motion.terms.is_empty()) {
-            (true, _) => sum(motion),
+            (true, _) => motion.sum(),
             (false, true) => quote! { #value },
             (false, false) => quote! { { from.pass_over(#terms); #value } },
         }
     });
     let body = quote! {
+        #bundles
         #(#unpacked)*
         let [#(#names),*] = *kept.first_chunk()?;
         Some([#(#values),*])
@@ -211,32 +283,6 @@ fn method(
             #body
         }
     }
-}
-
-/// Names the terms of a motion.
-fn unpacked(motion: &WrittenMotion) -> TokenStream {
-    let (name, terms) = (&motion.name, terms_of(motion));
-    quote! { let [#(#terms),*] = &Self::#name; }
-}
-
-/// The sum of the terms of a motion, read in their turn.
-fn sum(motion: &WrittenMotion) -> TokenStream {
-    match &terms_of(motion)[..] {
-        [alone] => quote! { from.term(#alone) },
-        // From zero on, as any sum of several terms or of none.
-        terms => quote! { 0.0 #(+ from.term(#terms))* },
-    }
-}
-
-/// The name by which a reader knows the value of a motion.
-fn value_of(motion: &WrittenMotion) -> Ident {
-    format_ident!("{}_value", motion.name.to_string().to_ascii_lowercase())
-}
-
-/// The names by which the reader knows the terms of a motion.
-fn terms_of(motion: &WrittenMotion) -> Vec<Ident> {
-    let name = motion.name.to_string().to_ascii_lowercase();
-    (0..motion.terms.len()).map(|place| format_ident!("{name}_{place}")).collect()
 }
 
 /// A term with its numbers.

@@ -76,12 +76,10 @@ impl Held {
     pub(super) fn kinematics(&self, directions: &Body) -> TokenStream {
         let directions_with = self.suffice(directions).then(directions_with);
         quote! {
-            fn sines(&self, position: &[f64]) -> ::abbe_runtime::Sines {
-                let mut sines = ::abbe_runtime::Sines::default();
+            fn turn(&self, position: &[f64], sines: &mut ::abbe_runtime::Sines) {
                 if let Some(read) = sines.first_chunk_mut() {
                     *read = Self::sines_of(position);
                 }
-                sines
             }
             #[inline(always)]
             fn error_with(

@@ -73,7 +73,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         out.iter().try_for_each(|column| same_length("out", rows, column.len()))?;
         same_length("position", axes, batch.position.len())?;
         same_length("direction", axes, batch.direction.len())?;
-        if needs.velocity || !batch.velocity.is_empty() {
+        if batch.velocity.len() != needs.velocities {
             same_length("velocity", axes, batch.velocity.len())?;
         }
         if !batch.travel.is_empty() {

@@ -29,6 +29,7 @@ pub(super) struct Reach<T = f64> {
 
 impl<T: Real> Reach<T> {
     /// Nothing is reached.
+    #[inline]
     pub(super) fn nothing() -> Self {
         Self { straight: zero(), vectors: [zero(); 3], skew: 0.0.into() }
     }
@@ -39,6 +40,14 @@ impl<T: Real> Reach<T> {
         let any = skew.any_above(0.0);
         let vectors = if any { conjugate(columns, &basis(columns)) } else { [zero(); 3] };
         Self { straight, vectors, skew }
+    }
+
+    /// [`new`](Self::new) where A is diagonal; none where it is not.
+    // Always: of columns that are known when the code is compiled, nothing is left to work out.
+    #[inline(always)]
+    pub(super) fn at_right_angles(columns: &[[T; 3]]) -> Option<Self> {
+        let (straight, skew) = straight(columns);
+        (!skew.any_above(0.0)).then(|| Self { straight, ..Self::nothing() })
     }
 
     /// `A^+ E`.
@@ -180,6 +189,7 @@ fn tip<T: Real>(columns: &[[T; 3]], v: [T; 3]) -> [T; 3] {
 
 /// The diagonal of `A^+` where A is diagonal, as it is for slides at right angles along the axes of the part, or turned with
 /// it through any angle when there are three alike; and 1 where it is not, by more than rounding, or 0.
+#[inline(always)]
 fn straight<T: Real>(columns: &[[T; 3]]) -> ([T; 3], T) {
     let (nothing, one) = (T::from(0.0), T::from(1.0));
     let mut squares = zero();

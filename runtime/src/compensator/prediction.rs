@@ -31,8 +31,8 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
     pub(super) fn begin(&mut self, sample: &Sample<'_>) -> Result<[f64; 3], Refusal> {
         self.check(sample)?;
         self.advance(sample);
-        self.sines = self.kinematics.sines(sample.position);
-        let error = self.error(sample, sample.position);
+        self.kinematics.turn(sample.position, &mut self.sines);
+        let error = self.error(sample, sample.position)?;
         if all_finite(&error) { Ok(error) } else { Err(Refusal::NotFinite) }
     }
 
@@ -42,7 +42,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
         let axes = self.kinematics.axes();
         same_length("position", axes, sample.position.len())?;
         same_length("direction", axes, sample.direction.len())?;
-        if self.needs.velocity || !sample.velocity.is_empty() {
+        if sample.velocity.len() != self.needs.velocities {
             same_length("velocity", axes, sample.velocity.len())?;
         }
         if !sample.travel.is_empty() {
@@ -80,7 +80,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
     /// The error at a position in the state of the sample, the rotary axes where they are there; memories are read only.
     // Always, as all on the way from positions to an error: between two functions, numbers would go through memory.
     #[inline(always)]
-    pub(super) fn error(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
+    pub(super) fn error(&mut self, sample: &Sample<'_>, position: &[f64]) -> Result<[f64; 3], Refusal> {
         let from = MotionReader::new(sample, position, self.states);
         let values = self.motions.read(from, self.values);
         sum(self.kinematics, &self.sines, sample, position, self.travel, values)
@@ -90,14 +90,18 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
     // Apart, as `corrected`: few machines have a ramp.
     #[cold]
     #[inline(never)]
-    pub(super) fn error_behind_ramp(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
+    pub(super) fn error_behind_ramp(
+        &mut self,
+        sample: &Sample<'_>,
+        position: &[f64],
+    ) -> Result<[f64; 3], Refusal> {
         self.error(sample, position)
     }
 
     /// The part of the error that is corrected in this cycle; memories are read only.
     #[cold]
     #[inline(never)]
-    pub(super) fn corrected(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
+    pub(super) fn corrected(&mut self, sample: &Sample<'_>, position: &[f64]) -> Result<[f64; 3], Refusal> {
         let from = MotionReader::of_corrected(sample, position, self.states);
         let values = self.motions.read(from, self.values);
         sum(self.kinematics, &self.sines, sample, position, self.travel, values)
@@ -106,7 +110,11 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
     /// [`corrected`](Self::corrected) at a position that differs from that of the last reading for axes that correct; where
     /// nothing is ramped, that reading may have been of the whole error.
     #[inline(always)]
-    pub(super) fn corrected_again(&mut self, sample: &Sample<'_>, position: &[f64]) -> [f64; 3] {
+    pub(super) fn corrected_again(
+        &mut self,
+        sample: &Sample<'_>,
+        position: &[f64],
+    ) -> Result<[f64; 3], Refusal> {
         let from = MotionReader::of_corrected(sample, position, self.states);
         let values = self.motions.read_moved(from, self.values);
         sum(self.kinematics, &self.sines, sample, position, self.travel, values)
@@ -122,7 +130,10 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
     }
 }
 
-/// The sum of lever arms times the error motions; NaN where they were not read.
+/// The sum of lever arms times the error motions.
+///
+/// # Errors
+/// Refuses error motions that were not read.
 #[inline(always)]
 fn sum<K: Kinematics + ?Sized>(
     kinematics: &K,
@@ -131,8 +142,8 @@ fn sum<K: Kinematics + ?Sized>(
     position: &[f64],
     travel: &mut [f64],
     values: Option<impl AsRef<[f64]>>,
-) -> [f64; 3] {
-    let Some(values) = values else { return [f64::NAN; 3] };
+) -> Result<[f64; 3], Refusal> {
+    let values = values.ok_or(Refusal::NotFinite)?;
     let travel = if sample.travel.is_empty() {
         for (travel, &axis) in travel.iter_mut().zip(kinematics.travels()) {
             *travel = number(position, axis);
@@ -141,5 +152,5 @@ fn sum<K: Kinematics + ?Sized>(
     } else {
         sample.travel
     };
-    kinematics.error_with(sines, position, travel, values.as_ref())
+    Ok(kinematics.error_with(sines, position, travel, values.as_ref()))
 }

@@ -11,8 +11,8 @@ use crate::{ErrorMotion, Kinematics, Term, TermState};
 pub(super) struct Needs {
     /// The least number of temperatures.
     pub(super) sensors: usize,
-    /// Whether a term reads velocities.
-    pub(super) velocity: bool,
+    /// The number of velocities: one for each axis where a term reads them, or else none.
+    pub(super) velocities: usize,
     /// Whether the correction of a term is spread over time.
     pub(super) ramp: bool,
     /// Whether a term remembers anything from cycle to cycle.
@@ -70,7 +70,9 @@ fn check_terms(motions: &[ErrorMotion<'_>], axes: usize) -> Result<Needs, SetupE
             }
             let sensors = given.sensor().map_or(0, |sensor| sensor.saturating_add(1));
             needs.sensors = needs.sensors.max(sensors);
-            needs.velocity |= matches!(given, Term::Lag { .. });
+            if matches!(given, Term::Lag { .. }) {
+                needs.velocities = axes;
+            }
             needs.ramp |= given.is_ramped();
             needs.memory |= given.remembers();
         }

@@ -4,7 +4,7 @@
 //! so that motions that are known when the code is compiled and motions that come from a file go through the same formulas.
 
 use crate::sample::OneSample;
-use crate::{ErrorMotion, Sample, Term, TermState};
+use crate::{Bundle, ErrorMotion, Sample, Term, TermState};
 
 /// Reads the terms of a machine's error motions, each in its turn, in one state of the machine.
 ///
@@ -54,6 +54,25 @@ impl<'a> MotionReader<'a> {
         let Some(state) = self.states.get(self.read) else { return f64::NAN };
         self.read = self.read.saturating_add(1);
         term.read_one(&mut self.from, state, self.corrected)
+    }
+
+    /// The values of tables that lie side by side, in mm or rad; none where there is no such axis.
+    // Always: see `term`.
+    #[inline(always)]
+    #[must_use]
+    pub fn bundle<const CURVES: usize, const ROWS: usize>(
+        &self,
+        bundle: &Bundle<CURVES, ROWS>,
+    ) -> Option<[f64; CURVES]> {
+        self.from.bundle(bundle)
+    }
+
+    /// The value of the next term, which is known.
+    #[inline]
+    #[must_use]
+    pub fn known(&mut self, value: f64) -> f64 {
+        self.pass_over(1);
+        value
     }
 
     /// Leaves out the next so many terms.

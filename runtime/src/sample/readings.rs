@@ -5,7 +5,7 @@
 
 use super::Sample;
 use crate::table::{LanePlace, Place};
-use crate::{Direction, Lanes, Real, Table};
+use crate::{Bundle, Direction, Lanes, Real, Table};
 
 /// What a term reads; NaN where there is none.
 pub(crate) trait Readings {
@@ -58,6 +58,16 @@ impl<'a> OneSample<'a> {
         let position: &[f64; AXES] = self.position.try_into().ok()?;
         let direction: &[Direction; AXES] = self.direction.try_into().ok()?;
         Some(Self { position, direction, others: self.others, place: None })
+    }
+
+    /// The values of tables that lie side by side; none where there is no such axis.
+    // Always: see `MotionReader::term`.
+    #[inline(always)]
+    pub(crate) fn bundle<const CURVES: usize, const ROWS: usize>(
+        &self,
+        bundle: &Bundle<CURVES, ROWS>,
+    ) -> Option<[f64; CURVES]> {
+        bundle.read(self.position, self.direction)
     }
 }
 

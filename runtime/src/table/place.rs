@@ -97,9 +97,7 @@ impl<I, T, D> Located<I, T, D> {
     /// Whether this is the place of an axis between these nodes.
     #[inline(always)]
     fn is(&self, axis: usize, even: Even) -> bool {
-        // Bits compare faster than numbers; none of these is NaN.
-        let bits = |even: Even| (even.start.to_bits(), even.per_unit.to_bits(), even.last);
-        self.axis == axis && bits(self.even) == bits(even)
+        self.axis == axis && self.even.is(even)
     }
 }
 
@@ -145,9 +143,18 @@ impl LanePlace {
 }
 
 impl Even {
+    /// Whether these are the same nodes.
+    #[inline(always)]
+    pub(super) const fn is(self, other: Self) -> bool {
+        // Bits compare faster than numbers; none of these is NaN.
+        self.start.to_bits() == other.start.to_bits()
+            && self.per_unit.to_bits() == other.per_unit.to_bits()
+            && self.last == other.last
+    }
+
     /// How many steps a position lies from the first node: from 0 to the number of the last; NaN remains.
     #[inline]
-    fn steps<T: Real>(self, position: T) -> T {
+    pub(super) fn steps<T: Real>(self, position: T) -> T {
         let (zero, end) = (T::from(0.0), T::from(self.last as f64));
         let count = (position - self.start.into()) * self.per_unit.into();
         let inside = zero.above(count, zero, count);
@@ -162,16 +169,15 @@ fn node(curve: &[f64], index: usize) -> f64 {
 }
 
 /// The greatest whole number that is not above the number of a node, and what is left of it; NaN is left of NaN.
-// No comparison, which could become a branch: a table is read at places that no processor foresees. A signed number of the
-// processor's own width, which it has an instruction for; no slice of numbers is too long for it.
+// No comparison, which could become a branch: a table is read at places that no processor foresees. What is below zero or no
+// number costs a u32 fewer instructions than it costs any other integer; `Table::uniform` refuses what is too long for it.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
-    clippy::cast_precision_loss,
     clippy::cast_sign_loss,
     reason = "from 0 to the number of the last node; NaN becomes 0"
 )]
-fn split(number: f64) -> (usize, f64) {
-    let below = number as isize;
-    (below as usize, number - below as f64)
+pub(super) fn split(number: f64) -> (usize, f64) {
+    let below = number as u32;
+    (below as usize, number - f64::from(below))
 }

@@ -4,7 +4,7 @@
 //! the axes that makes the part of E which they can make. It exists because a machine may have one slide or six, in
 //! directions that a rotary table has turned, and directions that nothing reaches.
 
-use crate::math::{add_scaled, all_finite, dot, length};
+use crate::math::{add_scaled, dot, length};
 use crate::{Lanes, Real};
 
 /// A direction that the slides reach only by moving ten thousand times as far as the tip counts as out of reach.
@@ -143,11 +143,18 @@ impl<T: Real> Columns<'_, T> {
         });
     }
 
-    /// Whether the shares have overlooked a number that is none: those of known columns read no direction that no axis
-    /// reaches.
+    /// Whether the shares, which are finite, have overlooked a number that is none: those of known columns read no direction
+    /// that no axis reaches.
     #[inline]
     pub(super) fn overlook(self, remaining: [f64; 3]) -> bool {
-        matches!(self, Self::Known(_)) && !all_finite(&remaining)
+        let Self::Known(columns) = self else { return false };
+        let mut reached = [false; 3];
+        for column in columns {
+            for (reached, part) in reached.iter_mut().zip(column) {
+                *reached |= *part != 0.0;
+            }
+        }
+        reached.iter().zip(remaining).any(|(reached, remaining)| !reached && !remaining.is_finite())
     }
 
     /// Goes through the shares of v that the axes take, in their order.
@@ -331,6 +338,21 @@ mod tests {
                 commands.map(f64::to_bits)
             });
             assert_eq!(commands, [commands[0]; 3]);
+        }
+    }
+
+    #[test]
+    fn only_what_no_known_column_reads_is_overlooked() {
+        let lathe: Columns<'_, f64> = Columns::Known(&[[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]);
+        assert!(!lathe.overlook([1.0, 2.0, 3.0]));
+        for number in [f64::NAN, f64::INFINITY] {
+            assert!(lathe.overlook([0.0, number, 0.0]));
+            // Shares read these, so that they are not finite either.
+            assert!(!lathe.overlook([number, 0.0, number]));
+            assert!(
+                !Columns::Found { columns: &[[1.0, 0.0, 0.0]], resting: &[] }.overlook([0.0, number, 0.0])
+            );
+            assert!(Columns::<'_, f64>::Known(&[]).overlook([0.0, 0.0, number]));
         }
     }
 

@@ -148,6 +148,8 @@ fn sum<K: Kinematics + ?Sized>(
         for (travel, &axis) in travel.iter_mut().zip(kinematics.travels()) {
             *travel = number(position, axis);
         }
+        // It always is as long: said once more, and the compiler of Rust need not ask in the equations.
+        same_length("work.travel", kinematics.travels().len(), travel.len())?;
         &*travel
     } else {
         sample.travel

@@ -4,7 +4,7 @@
 //! a position. It exists because the error motions of an axis are mostly measured at the same places: what stands side by side is
 //! found once, chosen by direction once, and read as one row, which a vector unit takes several numbers of at a time.
 
-use super::place::{Even, split};
+use super::place::Even;
 use super::{Nodes, Table, TableError, between};
 use crate::{Direction, Term};
 
@@ -81,7 +81,7 @@ impl<const CURVES: usize, const ROWS: usize> Bundle<CURVES, ROWS> {
             Direction::Negative if self.directed => &self.reverse,
             Direction::Positive | Direction::Negative => &self.forward,
         };
-        let (below, part) = split(self.even.steps(*position.get(self.axis)?));
+        let (below, part) = self.even.place(*position.get(self.axis)?);
         let [low, high] = rows.get(below..)?.first_chunk()?;
         let mut values = *low;
         for (value, high) in values.iter_mut().zip(high) {

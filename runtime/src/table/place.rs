@@ -104,9 +104,7 @@ impl<I, T, D> Located<I, T, D> {
 impl Place {
     #[inline(always)]
     pub(super) fn new(even: Even, axis: usize, position: f64, direction: Direction) -> Self {
-        let (below, part) = split(even.steps(position));
-        // Not above the last node already: said once more for the compiler, which then need not check it in every curve.
-        let below = below.min(even.last);
+        let (below, part) = even.place(position);
         let above = below.saturating_add(1).min(even.last);
         Self { axis, even, below, above, part, direction }
     }
@@ -152,11 +150,33 @@ impl Even {
             && self.last == other.last
     }
 
-    /// How many steps a position lies from the first node: from 0 to the number of the last; NaN remains.
+    /// The index of the node below a position, not above the last one, and what is left of a step from there; NaN is left of NaN.
+    // Most positions lie within the table. What is worked out beyond its ends stays out of their way: they need no limits, for
+    // which a search would wait at every step.
+    #[inline(always)]
+    pub(super) fn place(self, position: f64) -> (usize, f64) {
+        let count = self.count(position);
+        let (below, part) = split(count);
+        if count >= 0.0 && below < self.last {
+            (below, part)
+        } else {
+            core::hint::cold_path();
+            let (below, part) = split(self.steps(position));
+            (below.min(self.last), part)
+        }
+    }
+
+    /// How many steps a position lies behind the first node.
     #[inline]
-    pub(super) fn steps<T: Real>(self, position: T) -> T {
+    fn count<T: Real>(self, position: T) -> T {
+        (position - self.start.into()) * self.per_unit.into()
+    }
+
+    /// The same within the table: from 0 to the number of the last; NaN remains.
+    #[inline]
+    fn steps<T: Real>(self, position: T) -> T {
         let (zero, end) = (T::from(0.0), T::from(self.last as f64));
-        let count = (position - self.start.into()) * self.per_unit.into();
+        let count = self.count(position);
         let inside = zero.above(count, zero, count);
         inside.above(end, end, inside)
     }
@@ -168,16 +188,18 @@ fn node(curve: &[f64], index: usize) -> f64 {
     curve.get(index).copied().unwrap_or(f64::NAN)
 }
 
-/// The greatest whole number that is not above the number of a node, and what is left of it; NaN is left of NaN.
-// No comparison, which could become a branch: a table is read at places that no processor foresees. What is below zero or no
-// number costs a u32 fewer instructions than it costs any other integer; `Table::uniform` refuses what is too long for it.
+/// The greatest whole number that is not above a number of steps, and what is left of it; NaN is left of NaN, and below zero it is
+/// all left of 0.
+// No comparison of one node with the next, which could become a branch: no processor foresees between which two a table is read.
+// A u32 takes fewer instructions than any other integer where a number is none of them; `Table::uniform` refuses what is too long
+// for it.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "from 0 to the number of the last node; NaN becomes 0"
+    reason = "what is below 0 and NaN become 0, what is too great the greatest"
 )]
-pub(super) fn split(number: f64) -> (usize, f64) {
+fn split(number: f64) -> (usize, f64) {
     let below = number as u32;
     (below as usize, number - f64::from(below))
 }

@@ -156,6 +156,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     /// Searches for the command, from the error at the target on, and holds it against the limit.
     #[inline]
     fn search(&mut self, sample: &Sample<'_>, error: [f64; 3], out: &mut [f64]) -> Result<Outcome, Refusal> {
+        // What is known when the code is compiled is not looked up: nothing is left of it, mostly, but signs.
         let known = self.prediction.kinematics.fixed_directions().and_then(Reach::at_right_angles);
         let reach = match known.or(self.reach) {
             Some(reach) => reach,

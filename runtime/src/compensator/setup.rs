@@ -11,7 +11,7 @@ use crate::{ErrorMotion, Kinematics, Term, TermState};
 pub(super) struct Needs {
     /// The least number of temperatures.
     pub(super) sensors: usize,
-    /// The number of velocities: one for each axis where a term reads them, or else none.
+    /// The least number of velocities: one for each axis where a term reads them, or else none.
     pub(super) velocities: usize,
     /// Whether the correction of a term is spread over time.
     pub(super) ramp: bool,

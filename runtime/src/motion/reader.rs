@@ -67,7 +67,7 @@ impl<'a> MotionReader<'a> {
         self.from.bundle(bundle)
     }
 
-    /// The value of the next term, which is known.
+    /// The value of the next term, which was read before its turn.
     #[inline]
     #[must_use]
     pub fn known(&mut self, value: f64) -> f64 {

@@ -23,7 +23,7 @@ use crate::{Direction, Term};
 /// assert_eq!(Bundle::<2, 4>::new([&terms[0], &other]), Err(TableError::Unlike { index: 1 }));
 /// # Ok::<(), TableError>(())
 /// ```
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub struct Bundle<const CURVES: usize, const ROWS: usize> {
     axis: usize,
     even: Even,

@@ -206,3 +206,58 @@ fn of_two_that_bend_alike_in_one_place_one_is_enough() {
         }
     }
 }
+
+/// Whether each of some effects of X outgrows what there is to explain, all of them being fitted to a recording of X and Y.
+fn outgrown(calibration: &str, effects: &[(&str, Shape)]) -> Vec<bool> {
+    let bench = Bench::of("XFY");
+    let scenario = scenario(path(circle(40.0), 20.0, 10.0), position("xy"));
+    let recording = bench.record(&bench.calibration(calibration), &scenario);
+    let study = Study::new(bench.equations(), None, &[&recording]);
+    let zeros = (0..2).map(|channel| Effect::setting(0, Setting::Offset { channel }));
+    let effects = effects.iter().map(|(motion, shape)| Effect {
+        place: Place::Motion { motion: bench.motion(motion), side: Side::After },
+        shape: shape.clone(),
+    });
+    let fitted = |effect: Effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect };
+    let model: Model = zeros.chain(effects).map(fitted).collect();
+    let design = judge::design(&study, &model, &[vec![Noise::white(1e-3); 2]]);
+    let (products, samples) = design.fitted();
+    let choice = Choice::new(&study, &design, products, samples, 2, 1.0, Resolution::new(&study, &[]));
+    let all = choice.open.iter().fold(choice.empty(), |set, regressor| choice.with(&set, *regressor));
+    choice.open.iter().map(|regressor| choice.outgrows(&all, *regressor)).collect()
+}
+
+#[test]
+fn two_effects_that_nearly_cancel_have_outgrown_what_they_explain() {
+    // A bow of 40 um over 40 mm, and a long wave that leaves a half, a quarter or a tenth of it: some 4, 13 and 60 times the squares
+    // of what there is to explain, of which 25 is the most.
+    let (period, bow) = (400.0, 0.04 / 1600.0);
+    let bent = [
+        ("EXX", Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 40.0 }),
+        ("EXX", Shape::Cyclic { axis: 0, period }),
+    ];
+    for (left, outgrow) in [(0.5, false), (0.25, false), (0.1, true)] {
+        // The wave is turned up at 0, and bends downwards there by half its amplitude times the square of its angle.
+        let amplitude = 2.0 * bow * (1.0 - left) / (std::f64::consts::TAU / period).powi(2);
+        let calibration = format!(
+            "{{EXX: [{{polynomial: {{axis: X, per: mm, unit: um, coefficients: [0, 0, {}]}}}}, \
+             {{cyclic: {{period: {period} mm, amplitude: {} um, phase: 1.5707963267948966 rad}}}}]}}",
+            bow * 1e3,
+            amplitude * 1e3,
+        );
+        assert_eq!(outgrown(&calibration, &bent), [outgrow; 2], "{left} of the bow is left");
+    }
+}
+
+#[test]
+fn a_body_turns_by_hundredths_at_most() {
+    let turned = [("ECX", Shape::Constant)];
+    for (turn, far) in [(10.0, false), (-10.0, false), (30.0, true), (-30.0, true)] {
+        let calibration = format!("{{ECX: {turn} mrad}}");
+        assert_eq!(outgrown(&calibration, &turned), [far], "{turn} mrad");
+    }
+    // A number that is no angle may be greater: 40 um, written as mm.
+    let bent = [("EXX", Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 40.0 })];
+    let calibration = "{EXX: [{polynomial: {axis: X, per: mm, unit: um, coefficients: [0, 0, 0.025]}}]}";
+    assert_eq!(outgrown(calibration, &bent), [false]);
+}

@@ -49,14 +49,17 @@ fn drawn() -> Vec<Drawn> {
         let equations = compiled(&text);
         // Terms take the compiler longer than equations: one calibration in four has some.
         let most = if number.is_multiple_of(4) { 3 } else { 0 };
-        let followed = Followed::draw(&machine, &equations, most, runner.rng());
+        let mut followed = Followed::draw(&machine, &equations, most, runner.rng());
+        if number == MACHINES {
+            followed = followed.with_long_tables(runner.rng());
+        }
         Drawn { machine, text, equations, followed }
     };
     (0..=MACHINES).map(draw).collect()
 }
 
 /// Its error turns with A alone, and the direction of Y with C as well, which has no error motions as Y has none. There are no
-/// offsets in it.
+/// offsets in it. Its tables are as long as a file can tell.
 fn turned_further() -> Machine {
     let here = ["0", "0", "0"];
     Machine {

@@ -50,12 +50,14 @@ pub fn calibrated_tokens(
 
 /// What stands before items that hold numbers of a machine, some of which will be near a constant of mathematics: an offset of
 /// 3.14 mm, a table from -pi on. Clippy, which takes that for a mistake, would refuse the crate that the code is included in.
+/// The compiler would too where there are very many: it goes through every number, and takes that for a loop without an end.
 fn measured() -> TokenStream {
     quote! {
         #[allow(
             clippy::allow_attributes,
             clippy::approx_constant,
-            reason = "numbers of a machine, which may be near a constant of mathematics"
+            long_running_const_eval,
+            reason = "numbers of a machine, which may be near a constant of mathematics, and very many"
         )]
     }
 }

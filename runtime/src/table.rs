@@ -130,8 +130,8 @@ impl<'a> Table<'a> {
     /// The step may be negative: published tables run from 0 to -110 mm as well.
     ///
     /// # Errors
-    /// Refuses a table without values or with more than 2^32, curves that differ in length, a step of zero or nearly so (its inverse must be finite)
-    /// and numbers that are not finite.
+    /// Refuses a table without values or with more than 2^32, curves that differ in length, a step of zero or nearly so (its
+    /// inverse must be finite) and numbers that are not finite.
     pub const fn uniform(start: f64, step: f64, values: Values<'a>) -> Result<Self, TableError> {
         // Reading multiplies, which takes less time than to divide.
         let per_unit = 1.0 / step;

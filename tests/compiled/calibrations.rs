@@ -25,6 +25,8 @@ use crate::random::state;
 const CYCLES: usize = 6;
 /// The sensors of the machine, in the order in which the calibration first speaks of them.
 const INPUTS: usize = 2;
+/// Nodes of a long table: those of two motions fill a calibration file, which holds 200 000 values.
+const LONG: usize = 99_000;
 
 /// A calibration, and cycles in which it is asked for.
 pub(super) struct Followed {
@@ -81,6 +83,16 @@ impl Followed {
         }
         let cycles = (0..CYCLES).map(|_| Cycle::draw(rng, equations.axes.len())).collect();
         Self { calibration, cycles }
+    }
+
+    /// With a table of very many nodes for each error motion, over the first axis.
+    pub(super) fn with_long_tables(mut self, rng: &mut TestRng) -> Self {
+        let nodes = || CurveNodes::Uniform { start: -300.0, step: 600.0 / LONG as f64 };
+        for motion in 0..self.calibration.motions.len() {
+            let curve = Curve { nodes: nodes(), values: CurveValues::Both(draws(rng, 2e-5, LONG)) };
+            self.calibration = self.calibration.with(&[(motion, CalibratedTerm::Table { axis: 0, curve })]);
+        }
+        self
     }
 
     /// The calls by which the compiled calibration answers every cycle.

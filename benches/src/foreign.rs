@@ -113,8 +113,8 @@ fn equations(case: &'static Case, number: usize, hand: Equations) -> Vec<Box<dyn
     let by_hand = Box::new(Answering {
         name: "c by hand",
         tolerance: EXACT,
-        answer: move |state: usize| {
-            let (state, mut out) = (&case.states[state], [0.0; 3]);
+        answer: move |state: usize, out: &mut [f64; 3]| {
+            let state = &case.states[state];
             // SAFETY: the case holds as many constants, positions and motions as its machine has; out has three.
             unsafe {
                 hand(
@@ -124,7 +124,6 @@ fn equations(case: &'static Case, number: usize, hand: Equations) -> Vec<Box<dyn
                     out.as_mut_ptr(),
                 );
             }
-            out
         },
     });
     let mut all: Vec<Box<dyn Contestant>> = vec![by_hand];
@@ -133,8 +132,8 @@ fn equations(case: &'static Case, number: usize, hand: Equations) -> Vec<Box<dyn
             eprintln!("{name}: its code is not in this build, it is left out");
             continue;
         };
-        let answer = move |state: usize| {
-            let (state, mut out) = (&case.states[state], [0.0; 3]);
+        let answer = move |state: usize, out: &mut [f64; 3]| {
+            let state = &case.states[state];
             // SAFETY: as above.
             unsafe {
                 function(
@@ -144,7 +143,6 @@ fn equations(case: &'static Case, number: usize, hand: Equations) -> Vec<Box<dyn
                     out.as_mut_ptr(),
                 );
             }
-            out
         };
         all.push(Box::new(Answering { name, tolerance: EXACT, answer }));
     }
@@ -195,8 +193,7 @@ fn reversals(case: &'static Case) -> Vec<[c_long; AXES]> {
 
 fn error(case: &'static Case, name: &'static str, function: Error) -> Box<dyn Contestant> {
     let (machine, reversals) = (packed(case), reversals(case));
-    let answer = move |state: usize| {
-        let mut out = [0.0; 3];
+    let answer = move |state: usize, out: &mut [f64; 3]| {
         // SAFETY: the machine is packed as its struct, and positions and flags are one for each of its axes.
         unsafe {
             function(
@@ -206,7 +203,6 @@ fn error(case: &'static Case, name: &'static str, function: Error) -> Box<dyn Co
                 out.as_mut_ptr(),
             );
         }
-        out
     };
     Box::new(Answering { name, tolerance: EXACT, answer })
 }
@@ -215,8 +211,7 @@ fn commands<const N: usize>(case: &'static Case, functions: [Command; 2]) -> Vec
     let names = ["c, own nodes", "c, shared nodes"];
     let one = |(name, function): (&'static str, Command)| {
         let (machine, reversals) = (packed(case), reversals(case));
-        let answer = move |state: usize| {
-            let mut out = [0.0; N];
+        let answer = move |state: usize, out: &mut [f64; N]| {
             // SAFETY: as for the error; N is the number of axes.
             let steps = unsafe {
                 function(
@@ -226,7 +221,9 @@ fn commands<const N: usize>(case: &'static Case, functions: [Command; 2]) -> Vec
                     out.as_mut_ptr(),
                 )
             };
-            if steps > 0 { out } else { [f64::NAN; N] }
+            if steps <= 0 {
+                *out = [f64::NAN; N];
+            }
         };
         let boxed: Box<dyn Contestant> = Box::new(Answering { name, tolerance: EXACT, answer });
         boxed

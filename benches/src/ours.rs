@@ -45,10 +45,13 @@ pub(crate) fn contestants(case: &'static Case, group: Group) -> Vec<Box<dyn Cont
                         machine: &$machine::Machine,
                         axes: &$machine::Axes,
                         motions: &$machine::Motions,
-                    ) -> [f64; 3] {
-                        machine.error(axes, motions)
+                        out: &mut [f64; 3],
+                    ) {
+                        *out = machine.error(axes, motions);
                     }
-                    vec![boxed("abbe", move |state| call(machine, &states[state].0, &states[state].1))]
+                    vec![boxed("abbe", move |state, out| {
+                        call(machine, &states[state].0, &states[state].1, out);
+                    })]
                 }
                 Group::Error => vec![
                     error("abbe", case, compensator(case, machine)),
@@ -71,7 +74,7 @@ pub(crate) fn contestants(case: &'static Case, group: Group) -> Vec<Box<dyn Cont
 
 fn boxed<const N: usize>(
     name: &'static str,
-    answer: impl FnMut(usize) -> [f64; N] + 'static,
+    answer: impl FnMut(usize, &mut [f64; N]) + 'static,
 ) -> Box<dyn Contestant> {
     Box::new(Answering { name, tolerance: EXACT, answer })
 }
@@ -95,11 +98,14 @@ fn error<K: Kinematics + 'static, M: ErrorMotions + ?Sized + 'static>(
     fn call<K: Kinematics, M: ErrorMotions + ?Sized>(
         compensator: &mut Compensator<'_, K, M>,
         sample: &Sample<'_>,
-    ) -> [f64; 3] {
-        compensator.error(sample).unwrap_or([f64::NAN; 3])
+        out: &mut [f64; 3],
+    ) {
+        if let Ok(error) = compensator.error(sample) {
+            *out = error;
+        }
     }
     let samples = samples(case);
-    boxed(name, move |state| call(&mut compensator, &samples[state]))
+    boxed(name, move |state, out| call(&mut compensator, &samples[state], out))
 }
 
 fn command<K: Kinematics + 'static, M: ErrorMotions + ?Sized + 'static, const N: usize>(
@@ -116,9 +122,10 @@ fn command<K: Kinematics + 'static, M: ErrorMotions + ?Sized + 'static, const N:
         compensator.compensate(sample, out).is_ok()
     }
     let samples = samples(case);
-    boxed(name, move |state| {
-        let mut out = [0.0; N];
-        if call(&mut compensator, &samples[state], &mut out) { out } else { [f64::NAN; N] }
+    boxed(name, move |state, out: &mut [f64; N]| {
+        if !call(&mut compensator, &samples[state], out) {
+            *out = [f64::NAN; N];
+        }
     })
 }
 

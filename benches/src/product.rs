@@ -55,20 +55,20 @@ fn boxed(
     };
     let mut values = vec![0.0; case.motions.len()];
     match group {
-        Group::Equations => vec![contestant(move |state| {
+        Group::Equations => vec![contestant(move |state, out| {
             let state = &case.states[state];
-            error(&state.position, &state.motions)
+            *out = error(&state.position, &state.motions);
         })],
-        Group::Error => vec![contestant(move |state| {
+        Group::Error => vec![contestant(move |state, out| {
             let state = &case.states[state];
             case.read(&state.position, &state.reversed, &mut values);
-            error(&state.position, &values)
+            *out = error(&state.position, &values);
         })],
         Group::Command => Vec::new(),
     }
 }
 
-fn contestant(answer: impl FnMut(usize) -> [f64; 3] + 'static) -> Box<dyn Contestant> {
+fn contestant(answer: impl FnMut(usize, &mut [f64; 3]) + 'static) -> Box<dyn Contestant> {
     Box::new(Answering { name: "matrices (nalgebra)", tolerance: SECOND_ORDER, answer })
 }
 

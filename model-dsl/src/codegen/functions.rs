@@ -80,6 +80,7 @@ fn error(equations: &Equations, programs: &Programs) -> TokenStream {
     let in_any = error_in(equations, &body, &given);
     quote! {
         #about
+        #[inline]
         #[must_use]
         pub fn error(&self, axes: &Axes #plain, motions: &Motions) -> [f64; 3] {
             self.error_in(axes #given, motions)

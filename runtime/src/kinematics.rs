@@ -6,9 +6,9 @@
 
 use crate::Lanes;
 
-/// Sine and cosine of each rotary axis that the equations read, in the order of the axes; zero beyond them. ISO 841 names three
-/// rotary axes: A, B and C.
-pub type Sines = [(f64, f64); 3];
+/// The sines and the cosines of the rotary axes that the equations read, in the order of the axes; zero beyond them. ISO 841
+/// names three rotary axes: A, B and C.
+pub type Sines = ([f64; 3], [f64; 3]);
 
 /// The compiled equations of one machine: what the topology says, with the machine's constants already in it.
 ///

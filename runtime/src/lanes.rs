@@ -135,12 +135,17 @@ impl Neg for Lanes {
 }
 
 impl Real for Lanes {
-    /// Lane by lane, so that each has the bits of [`math::sin_cos`].
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        let (mut sines, mut cosines) = (self, self);
-        for (sine, cosine) in sines.0.iter_mut().zip(&mut cosines.0) {
-            (*sine, *cosine) = math::sin_cos(*sine);
+        let (sines, cosines) = math::sin_cos_each(self.0);
+        (Self(sines), Self(cosines))
+    }
+
+    #[inline]
+    fn sin_cos_each<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
+        let (mut sines, mut cosines) = (angles, angles);
+        for (sine, cosine) in sines.iter_mut().zip(&mut cosines) {
+            (*sine, *cosine) = sine.sin_cos();
         }
         (sines, cosines)
     }

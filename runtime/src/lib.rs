@@ -101,7 +101,8 @@
 //!
 //! # Features
 //!
-//! `std` takes sine, exponential and square root from the standard library in place of libm. Nothing else changes.
+//! `std` takes the exponential, the square root, and sine and cosine of angles beyond a million rad from the standard library in
+//! place of libm. Nothing else changes.
 #![no_std]
 
 #[cfg(feature = "std")]

@@ -1,18 +1,13 @@
 //! The few functions of analysis that the runtime and the generated code need.
 //!
-//! In: numbers. Out: numbers, NaN where the argument is NaN. It exists because `core` has no sine: they come from libm,
-//! or from the standard library with the feature `std`.
+//! In: numbers. Out: numbers, NaN where the argument is NaN. It exists because `core` has no root and no exponential: they
+//! come from libm, or from the standard library with the feature `std`. Sine and cosine are Abbe's own.
+
+mod sine;
 
 use crate::Real;
 
-/// Sine and cosine of an angle in rad, in this order.
-#[must_use]
-pub fn sin_cos(angle: f64) -> (f64, f64) {
-    #[cfg(feature = "std")]
-    return angle.sin_cos();
-    #[cfg(not(feature = "std"))]
-    return libm::sincos(angle);
-}
+pub use sine::{sin_cos, sin_cos_each};
 
 /// Sine of an angle in rad.
 #[must_use]

@@ -23,6 +23,10 @@ pub trait Real:
     #[must_use]
     fn sin_cos(self) -> (Self, Self);
 
+    /// The sines and the cosines of several angles in rad, bit for bit those of [`Real::sin_cos`].
+    #[must_use]
+    fn sin_cos_each<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]);
+
     /// Square root; NaN for a negative number.
     #[must_use]
     fn sqrt(self) -> Self;
@@ -40,6 +44,11 @@ impl Real for f64 {
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
         math::sin_cos(self)
+    }
+
+    #[inline(always)]
+    fn sin_cos_each<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
+        math::sin_cos_each(angles)
     }
 
     #[inline]

@@ -19,6 +19,8 @@ pub(super) struct Body {
     pub(super) constants: TokenStream,
     /// The sines and cosines that it reads, in the order of the axes.
     pub(super) turned: Vec<Turned>,
+    /// What it computes with.
+    numbers: Numbers,
     /// Values that are used more than once.
     pub(super) bindings: TokenStream,
     /// One expression for each result.
@@ -29,19 +31,43 @@ pub(super) struct Body {
 pub(super) struct Turned {
     /// The number of the axis.
     pub(super) axis: usize,
-    /// The pattern that names what is read of them.
-    pub(super) names: TokenStream,
-    /// What works them out from `axes`.
-    pub(super) value: TokenStream,
+    /// The pattern that names the sine if it is read.
+    pub(super) sine: TokenStream,
+    /// The pattern that names the cosine if it is read.
+    pub(super) cosine: TokenStream,
+    /// The angle that they are of.
+    pub(super) angle: TokenStream,
 }
 
 impl Body {
     /// Brings the constants and the sines and cosines that it reads into scope.
     pub(super) fn prelude(&self) -> TokenStream {
         let constants = &self.constants;
-        let turned = self.turned.iter().map(|Turned { names, value, .. }| quote! { let #names = #value; });
-        quote! { #constants #(#turned)* }
+        let read: Vec<_> = self.turned.iter().map(Some).collect();
+        let (names, values) = (names(&read), self.sines());
+        let turned = (!read.is_empty()).then(|| quote! { let #names = #values; });
+        quote! { #constants #turned }
     }
+
+    /// What works out the sines and cosines that it reads from `axes`, all at once.
+    pub(super) fn sines(&self) -> TokenStream {
+        let angles = self.turned.iter().map(|turned| &turned.angle);
+        let function = match self.numbers {
+            Numbers::Plain => quote! { ::abbe_runtime::math::sin_cos_each },
+            Numbers::Any => quote! { T::sin_cos_each },
+        };
+        quote! { #function([#(#angles),*]) }
+    }
+}
+
+/// The pattern that names the sines and cosines of axes, as far as they are read.
+pub(super) fn names(read: &[Option<&Turned>]) -> TokenStream {
+    let of = |name: fn(&Turned) -> &TokenStream| {
+        let names = read.iter().map(move |turned| turned.map_or(quote! { _ }, |turned| name(turned).clone()));
+        quote! { [#(#names),*] }
+    };
+    let (sines, cosines) = (of(|turned| &turned.sine), of(|turned| &turned.cosine));
+    quote! { (#sines, #cosines) }
 }
 
 /// How tightly an expression binds, to know where it needs brackets.
@@ -83,7 +109,8 @@ pub(super) fn body(equations: &Equations, program: &Program, numbers: Numbers) -
     Body {
         reads,
         constants: constants(reads, numbers),
-        turned: turned(equations, &inputs, numbers),
+        turned: turned(equations, &inputs),
+        numbers,
         bindings: bindings.collect(),
         results: program.results.iter().map(|result| printer.value(*result).0).collect(),
     }
@@ -239,7 +266,7 @@ fn constants(reads: Reads, numbers: Numbers) -> TokenStream {
     }
 }
 
-fn turned(equations: &Equations, inputs: &BTreeSet<Input>, numbers: Numbers) -> Vec<Turned> {
+fn turned(equations: &Equations, inputs: &BTreeSet<Input>) -> Vec<Turned> {
     let name = |wanted: Input| match inputs.contains(&wanted) {
         true => input(equations, wanted),
         false => quote! { _ },
@@ -248,15 +275,12 @@ fn turned(equations: &Equations, inputs: &BTreeSet<Input>, numbers: Numbers) -> 
         [Input::Sin(*number), Input::Cos(*number)].iter().any(|wanted| inputs.contains(wanted))
     };
     let turned = |(number, axis): (usize, &AxisInfo)| {
-        let (sine, cosine) = (name(Input::Sin(number)), name(Input::Cos(number)));
         let position = field(&axis.variable);
         Turned {
             axis: number,
-            names: quote! { (#sine, #cosine) },
-            value: match numbers {
-                Numbers::Plain => quote! { ::abbe_runtime::math::sin_cos(axes.#position) },
-                Numbers::Any => quote! { axes.#position.sin_cos() },
-            },
+            sine: name(Input::Sin(number)),
+            cosine: name(Input::Cos(number)),
+            angle: quote! { axes.#position },
         }
     };
     equations.axes.iter().enumerate().filter(read).map(turned).collect()

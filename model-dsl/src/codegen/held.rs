@@ -7,15 +7,15 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-use super::body::{Body, Turned};
+use super::body::{self, Body};
 use crate::equations::Equations;
 
 /// The sines and cosines of a machine's error.
 pub(super) struct Held {
     /// The axes whose they are.
     axes: Vec<usize>,
-    /// What works each out from `axes`.
-    values: Vec<TokenStream>,
+    /// What works them out from `axes`.
+    sines: TokenStream,
     count: Literal,
 }
 
@@ -24,11 +24,11 @@ impl Held {
     pub(super) fn new(equations: &Equations, body: &Body) -> Option<Self> {
         let axes = || body.turned.iter().filter_map(|turned| equations.axes.get(turned.axis));
         let count = axes().count();
-        let held = (1..=abbe_runtime::Sines::default().len()).contains(&count)
+        let held = (1..=abbe_runtime::Sines::default().0.len()).contains(&count)
             && axes().all(|axis| axis.effect.is_none());
         held.then(|| Self {
             axes: body.turned.iter().map(|turned| turned.axis).collect(),
-            values: body.turned.iter().map(|Turned { value, .. }| value.clone()).collect(),
+            sines: body.sines(),
             count: Literal::usize_unsuffixed(count),
         })
     }
@@ -41,32 +41,30 @@ impl Held {
     /// Their type in numbers of a type.
     pub(super) fn of(&self, number: &TokenStream) -> TokenStream {
         let count = &self.count;
-        quote! { [(#number, #number); #count] }
+        quote! { ([#number; #count], [#number; #count]) }
     }
 
     /// The parameter that brings those into scope which a body reads.
     pub(super) fn parameter(&self, body: &Body, number: &TokenStream) -> TokenStream {
-        let names = self.axes.iter().map(|axis| {
-            let read = body.turned.iter().find(|turned| turned.axis == *axis);
-            read.map_or(quote! { _ }, |Turned { names, .. }| names.clone())
-        });
-        let of = self.of(number);
-        quote! { [#(#names),*]: #of }
+        let read: Vec<_> =
+            self.axes.iter().map(|axis| body.turned.iter().find(|turned| turned.axis == *axis)).collect();
+        let (names, of) = (body::names(&read), self.of(number));
+        quote! { #names: #of }
     }
 
     /// The functions that work them out.
     pub(super) fn sines(&self) -> TokenStream {
-        let (values, given, count) = (&self.values, self.of(&quote! { T }), &self.count);
+        let (sines, given, count) = (&self.sines, self.of(&quote! { T }), &self.count);
         quote! {
-            /// Sine and cosine of each rotary axis that the error reads.
+            /// The sines and cosines of the rotary axes that the error reads.
             fn sines_in<T: ::abbe_runtime::Real>(axes: &Axes<T>) -> #given {
-                [#(#values),*]
+                #sines
             }
             /// The same from a slice, NaN where it has the wrong length.
             fn sines_of<T: ::abbe_runtime::Real>(position: &[T]) -> #given {
                 match position.try_into() {
                     Ok(position) => Self::sines_in(&Axes::from_array(position)),
-                    Err(_) => [(T::from(f64::NAN), T::from(f64::NAN)); #count],
+                    Err(_) => ([T::from(f64::NAN); #count], [T::from(f64::NAN); #count]),
                 }
             }
         }
@@ -77,8 +75,8 @@ impl Held {
         let directions_with = self.suffice(directions).then(directions_with);
         quote! {
             fn turn(&self, position: &[f64], sines: &mut ::abbe_runtime::Sines) {
-                if let Some(read) = sines.first_chunk_mut() {
-                    *read = Self::sines_of(position);
+                if let (Some(sines), Some(cosines)) = (sines.0.first_chunk_mut(), sines.1.first_chunk_mut()) {
+                    (*sines, *cosines) = Self::sines_of(position);
                 }
             }
             #[inline(always)]
@@ -89,8 +87,10 @@ impl Held {
                 travel: &[f64],
                 motions: &[f64],
             ) -> [f64; 3] {
-                let Some(sines) = sines.first_chunk() else { return [f64::NAN; 3] };
-                self.error_from(*sines, position, travel, motions)
+                let (Some(sines), Some(cosines)) = (sines.0.first_chunk(), sines.1.first_chunk()) else {
+                    return [f64::NAN; 3];
+                };
+                self.error_from((*sines, *cosines), position, travel, motions)
             }
             #directions_with
         }
@@ -100,10 +100,12 @@ impl Held {
 fn directions_with() -> TokenStream {
     quote! {
         fn directions_with(&self, sines: &::abbe_runtime::Sines, position: &[f64], directions: &mut [[f64; 3]]) {
-            let (Some(sines), Some(directions)) = (sines.first_chunk(), directions.as_mut_array()) else {
+            let (Some(sines), Some(cosines), Some(directions)) =
+                (sines.0.first_chunk(), sines.1.first_chunk(), directions.as_mut_array())
+            else {
                 return ::abbe_runtime::Kinematics::directions(self, position, directions);
             };
-            *directions = self.directions_turned(*sines);
+            *directions = self.directions_turned((*sines, *cosines));
         }
     }
 }

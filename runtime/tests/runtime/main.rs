@@ -11,6 +11,7 @@ mod cycle;
 mod hostile;
 mod inverse;
 mod ramp;
+mod sines;
 mod skew;
 mod supervisor;
 mod tables;

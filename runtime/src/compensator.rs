@@ -171,14 +171,14 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
         let start = if ramp { prediction.corrected(sample, sample.position)? } else { error };
         let Pulled { pull, mut here, iterations } =
             convergence.iterate(prediction, sample, start, columns, &reach, out)?;
-        limits.check(|| columns.spread(pull))?;
+        limits.check(|| sqrt(reach.distance_squared(here)))?;
         if ramp {
             here = prediction.error_behind_ramp(sample, out)?;
+            if !all_finite(&here) {
+                return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
+            }
         }
         let remaining = add_scaled(here, -1.0, columns.tip(pull));
-        if columns.overlook(remaining) {
-            return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
-        }
         Ok(Outcome { error, remaining, iterations })
     }
 
@@ -211,13 +211,12 @@ impl Convergence {
         let mut square = f64::INFINITY;
         // Part by part here and below: copied as a whole, the error would go through memory at every step.
         let mut here = [x, y, z];
-        let mut pull = [0.0; 3];
+        let mut corrected = [0.0; 3];
         for before in 0..self.iterations {
             let iterations = before.saturating_add(1);
-            let next = reach.apply(here);
-            // Not that of the commands, which far from the origin are too coarse to tell when it ends.
-            square = columns.spread_squared(add_scaled(next, -1.0, pull));
-            pull = next;
+            let pull = reach.apply(here);
+            // Not from the commands, which far from the origin are too coarse to tell when it ends.
+            square = reach.distance_squared(add_scaled(here, -1.0, corrected));
             columns.correct(sample.position, pull, out);
             if square <= bound {
                 return Ok(Pulled { pull, here, iterations });
@@ -227,7 +226,7 @@ impl Convergence {
                 return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
             }
             let [x, y, z] = prediction.corrected_again(sample, out)?;
-            here = [x, y, z];
+            (corrected, here) = (here, [x, y, z]);
         }
         Err(Refusal::NotConverging { iterations: self.iterations, distance: sqrt(square) })
     }

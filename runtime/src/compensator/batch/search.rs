@@ -16,9 +16,12 @@ use crate::{ErrorMotions, Kinematics, Lanes, Real};
 /// A step of the search.
 struct Step {
     iterations: u32,
+    /// The error that this step corrects, and `A^+` of it.
     here: [Lanes; 3],
     pull: [Lanes; 3],
-    /// The square of its length over all axes.
+    /// The error that the step before corrected.
+    corrected: [Lanes; 3],
+    /// The square of the length of the step over all axes.
     square: Lanes,
 }
 
@@ -102,20 +105,20 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         answers: Answers<'_>,
     ) {
         let zero = [Lanes::from(0.0); 3];
-        let mut step = Step { iterations: 0, here: start, pull: zero, square: f64::INFINITY.into() };
+        let mut step =
+            Step { iterations: 0, here: start, pull: zero, corrected: zero, square: f64::INFINITY.into() };
         while open.contains(&true) {
             if step.iterations >= self.convergence.iterations {
                 return give_up(&step, open, answers);
             }
             if step.iterations > 0 {
-                step.here = self.error_in_lanes(block);
+                (step.corrected, step.here) = (step.here, self.error_in_lanes(block));
             }
             step.iterations = step.iterations.saturating_add(1);
-            let next = block.reach.apply(step.here);
-            let columns = self.prediction.columns(block.columns);
-            step.square = columns.spread_squared(add_scaled(next, Lanes::from(-1.0), step.pull));
-            step.pull = next;
-            columns.correct(block.position, next, block.command);
+            step.pull = block.reach.apply(step.here);
+            let change = add_scaled(step.here, Lanes::from(-1.0), step.corrected);
+            step.square = block.reach.distance_squared(change);
+            self.prediction.columns(block.columns).correct(block.position, step.pull, block.command);
             self.settle(first, block, &step, &mut open, out, answers);
         }
     }
@@ -137,7 +140,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
             return;
         }
         let columns = self.prediction.columns(block.columns);
-        let correction = columns.spread(step.pull);
+        let correction = block.reach.distance_squared(step.here).sqrt();
         let remaining = add_scaled(step.here, Lanes::from(-1.0), columns.tip(step.pull));
         for (lane, (open, answer)) in open.iter_mut().zip(answers).enumerate() {
             let square = step.square.lane(lane);
@@ -153,8 +156,6 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
             let (iterations, remaining) = (step.iterations, row(&remaining, lane));
             if let Err(refusal) = self.limits.check(|| correction.lane(lane)) {
                 *answer = Err(refusal);
-            } else if columns.overlook(remaining) {
-                *answer = Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
             } else if let Ok(outcome) = answer {
                 (outcome.remaining, outcome.iterations) = (remaining, iterations);
                 block.write(lane, first.saturating_add(lane), out);

@@ -66,9 +66,9 @@ pub trait Kinematics {
         true
     }
 
-    /// For each axis, whether its [direction](Self::directions) is known to be zero at every position when the code is compiled;
-    /// empty where nothing is said. A search for a command then leaves out these axes.
-    fn resting(&self) -> &'static [bool] {
+    /// For each axis, whether its [direction](Self::directions) is known to be zero at every position; empty where nothing is
+    /// said. A search for a command then leaves out these axes, and keeps what error motions read of them.
+    fn resting(&self) -> &[bool] {
         &[]
     }
 

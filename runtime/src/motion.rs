@@ -94,6 +94,11 @@ impl ErrorMotion<'_> {
         }
     }
 
+    /// Whether a search for a command changes it: a term reads an axis that is not known to rest.
+    pub(crate) fn moves(&self, resting: &[bool]) -> bool {
+        self.terms.iter().filter_map(Term::axis).any(|axis| resting.get(axis) != Some(&true))
+    }
+
     /// [`value`](Self::value) in every lane; `memories` holds what each term remembers, or the value is NaN.
     pub(crate) fn read_lanes(&self, from: &mut LaneSample<'_>, memories: &[Lanes]) -> Lanes {
         self.sum(memories, |term, memory| term.read(from, Some(memory)))

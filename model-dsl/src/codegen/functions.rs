@@ -266,7 +266,7 @@ fn fixed_directions(directions: &Body) -> Option<TokenStream> {
 /// Which axes do not correct, where some do not.
 fn resting(equations: &Equations) -> Option<TokenStream> {
     let rest: Vec<bool> = equations.axes.iter().map(|axis| axis.effect.is_none()).collect();
-    rest.contains(&true).then(|| quote! { fn resting(&self) -> &'static [bool] { &[#(#rest),*] } })
+    rest.contains(&true).then(|| quote! { fn resting(&self) -> &[bool] { &[#(#rest),*] } })
 }
 
 /// The error from slices.

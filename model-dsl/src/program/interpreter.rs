@@ -20,6 +20,8 @@ pub struct Interpreter {
     constants: Vec<f64>,
     travels: Vec<usize>,
     rotary: Vec<bool>,
+    /// For each axis, whether it never corrects; empty where all do.
+    resting: Vec<bool>,
     motions: usize,
 }
 
@@ -27,6 +29,7 @@ impl Interpreter {
     /// Prepares a machine with the values of its constants (mm), in the order of its equations.
     pub fn new(equations: &Equations, constants: &[f64]) -> Self {
         let programs = Programs::new(equations);
+        let resting: Vec<bool> = equations.axes.iter().map(|axis| axis.effect.is_none()).collect();
         Self {
             nominal: Tape::new(&programs.nominal),
             error: Tape::new(&programs.error),
@@ -36,6 +39,7 @@ impl Interpreter {
             constants: constants.to_vec(),
             travels: equations.travels.iter().map(|travel| travel.axis).collect(),
             rotary: equations.axes.iter().map(|axis| axis.rotary).collect(),
+            resting: if resting.contains(&true) { resting } else { Vec::new() },
             motions: equations.motions.len(),
         }
     }
@@ -192,6 +196,10 @@ impl Kinematics for Interpreter {
 
     fn directions_vary(&self) -> bool {
         self.directions.reads_axes()
+    }
+
+    fn resting(&self) -> &[bool] {
+        &self.resting
     }
 }
 

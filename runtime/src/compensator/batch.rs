@@ -123,7 +123,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
             *open = answer.is_ok();
         }
         self.remember(batch, first, block, &open);
-        let error = self.error_in_lanes(block);
+        let error = self.error_in_lanes(block, None);
         self.begin_lanes(error, &mut open, answers);
         if self.enabled {
             self.reach_lanes(batch, first, block, &mut open, answers);

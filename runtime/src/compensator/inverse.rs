@@ -119,7 +119,7 @@ pub(super) enum Columns<'c, T = f64> {
     Found {
         columns: &'c [[T; 3]],
         /// Which of them are known to be zero everywhere; empty where nothing is known.
-        resting: &'static [bool],
+        resting: &'c [bool],
     },
 }
 

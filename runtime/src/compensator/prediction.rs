@@ -25,7 +25,7 @@ pub(super) struct Prediction<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Size
     pub(super) needs: Needs,
 }
 
-impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
+impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> {
     /// Begins a cycle: checks the sample, takes the memories over to it, and gives the error at its position.
     #[inline]
     pub(super) fn begin(&mut self, sample: &Sample<'_>) -> Result<[f64; 3], Refusal> {
@@ -122,10 +122,14 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
 
     /// The directions of the axes: those that are known when the code is compiled, or else these.
     #[inline]
-    pub(super) fn columns<'c, T>(&self, found: &'c [[T; 3]]) -> Columns<'c, T> {
-        match self.kinematics.fixed_directions() {
+    pub(super) fn columns<'c, T>(&self, found: &'c [[T; 3]]) -> Columns<'c, T>
+    where
+        'a: 'c,
+    {
+        let kinematics = self.kinematics;
+        match kinematics.fixed_directions() {
             Some(known) => Columns::Known(known),
-            None => Columns::Found { columns: found, resting: self.kinematics.resting() },
+            None => Columns::Found { columns: found, resting: kinematics.resting() },
         }
     }
 }

@@ -150,4 +150,7 @@ impl Kinematics for TableMill {
         }
         directions[3] = [0.0; 3];
     }
+    fn resting(&self) -> &[bool] {
+        &[false, false, false, true]
+    }
 }

@@ -112,7 +112,8 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
                 return give_up(&step, open, answers);
             }
             if step.iterations > 0 {
-                (step.corrected, step.here) = (step.here, self.error_in_lanes(block));
+                let resting = self.prediction.kinematics.resting();
+                (step.corrected, step.here) = (step.here, self.error_in_lanes(block, Some(resting)));
             }
             step.iterations = step.iterations.saturating_add(1);
             step.pull = block.reach.apply(step.here);
@@ -163,8 +164,8 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         }
     }
 
-    /// The error at the commands.
-    pub(super) fn error_in_lanes(&mut self, block: &mut Block<'_>) -> [Lanes; 3] {
+    /// The error at the commands; once more in the same block, axes have moved but for these that rest.
+    pub(super) fn error_in_lanes(&mut self, block: &mut Block<'_>, once_more: Option<&[bool]>) -> [Lanes; 3] {
         let mut at = LaneSample {
             position: block.command,
             velocity: block.velocity,
@@ -176,7 +177,9 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         let mut rest = &*block.memory;
         for (motion, value) in motions.motions().iter().zip(&mut *block.motions) {
             let (memory, others) = rest.split_at_checked(motion.terms.len()).unwrap_or_default();
-            *value = motion.read_lanes(&mut at, memory);
+            if once_more.is_none_or(|resting| motion.moves(resting)) {
+                *value = motion.read_lanes(&mut at, memory);
+            }
             rest = others;
         }
         if !block.travels_given {

@@ -135,6 +135,36 @@ pub(crate) fn directions_are_derivatives(case: &Case<'_>) -> Result<(), TestCase
     Ok(())
 }
 
+/// `J J^T`, J being the directions of the axes: what the equations say of it holds at any position; and where they say nothing,
+/// there is something beside its diagonal, a rotary axis changes it, or none changes J.
+pub(crate) fn squares_are_those_of_the_directions(case: &Case<'_>) -> Result<(), TestCaseError> {
+    let at = |position: &[f64]| {
+        let mut directions = vec![[f64::NAN; 3]; position.len()];
+        case.interpreter.directions(position, &mut directions);
+        let entry =
+            |row: usize, column: usize| directions.iter().map(|way| way[row] * way[column]).sum::<f64>();
+        std::array::from_fn::<_, 9, _>(|place| entry(place / 3, place % 3))
+    };
+    let elsewhere: Vec<f64> = case.position.iter().map(|position| 0.3 * position + 1.0).collect();
+    let (here, elsewhere) = (at(&case.position), at(&elsewhere));
+    let far = |a: [f64; 9], b: [f64; 9]| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 1e-12);
+    let diagonal = |squares: [f64; 3]| {
+        std::array::from_fn(|place| if place % 4 == 0 { squares[place / 4] } else { 0.0 })
+    };
+    match case.interpreter.squares() {
+        Some(squares) => {
+            let told = diagonal(squares);
+            prop_assert!(!far(told, here) && !far(told, elsewhere), "{told:?}: {here:?}, {elsewhere:?}");
+        }
+        None => {
+            let alone = diagonal([here[0], here[4], here[8]]);
+            let varies = case.interpreter.directions_vary();
+            prop_assert!(!varies || far(alone, here) || far(here, elsewhere), "nothing is told of {here:?}");
+        }
+    }
+    Ok(())
+}
+
 /// The exact machine: what the first order leaves quarters when all errors are halved.
 ///
 /// With f(s) the exact tip at errors s times the given ones, r(s) = f(s) - f(0) - s E. Taylor's series of f leaves
@@ -204,6 +234,7 @@ fn all_laws(machine: &Machine, text: &str, seed: u64) -> Result<(), TestCaseErro
     agrees_with_dual_numbers(&case, seed)?;
     nothing_seen_is_missing(&case)?;
     directions_are_derivatives(&case)?;
+    squares_are_those_of_the_directions(&case)?;
     turns_are_those_of_the_exact_machine(&case)?;
     turns_add(&case, seed)?;
     remainder_is_of_second_order(&case, seed)
@@ -248,6 +279,7 @@ fn every_shipped_machine() {
             let laws = agrees_with_dual_numbers(&case, seed)
                 .and_then(|()| nothing_seen_is_missing(&case))
                 .and_then(|()| directions_are_derivatives(&case))
+                .and_then(|()| squares_are_those_of_the_directions(&case))
                 .and_then(|()| turns_are_those_of_the_exact_machine(&case))
                 .and_then(|()| turns_add(&case, seed))
                 .and_then(|()| remainder_is_of_second_order(&case, seed));

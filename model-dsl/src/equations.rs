@@ -11,7 +11,7 @@
 
 use std::fmt;
 
-use crate::algebra::{Axis, Name, Polynomial};
+use crate::algebra::{Axis, Name, Polynomial, to_f64};
 use crate::calibration::{AxisName, MachineNames, MotionName};
 use crate::machine::{Branch, Link};
 
@@ -163,6 +163,29 @@ impl Equations {
     pub fn turn(&self, direction: Axis, motion: usize) -> Polynomial {
         let terms = &self.turns[direction.index()];
         terms.iter().find(|term| term.motion == motion).map(|term| term.arm.clone()).unwrap_or_default()
+    }
+
+    /// The diagonal of `J J^T`, J being the effects of all axes as columns, where these vary, but it is made of numbers and has
+    /// nothing beside it: three slides at right angles, however rotary axes have turned them.
+    ///
+    /// None as well where it is not looked for, in a chain so long that the products would take longer than the derivation.
+    pub fn squares(&self) -> Option<[f64; 3]> {
+        const MOST_TERMS: usize = 100;
+        let effects: Vec<_> = self.axes.iter().filter_map(|axis| axis.effect.as_ref()).collect();
+        let mut parts = effects.iter().flat_map(|effect| effect.iter());
+        let varies = parts.clone().any(|part| part.as_number().is_none());
+        if !varies || parts.any(|part| part.size() > MOST_TERMS) {
+            return None;
+        }
+        let entry = |row: usize, column: usize| -> Polynomial {
+            effects.iter().map(|effect| &effect[row] * &effect[column]).collect()
+        };
+        let beside = [(0, 1), (0, 2), (1, 2)];
+        if !beside.into_iter().all(|(row, column)| entry(row, column).is_zero()) {
+            return None;
+        }
+        let [x, y, z] = [0, 1, 2].map(|place| entry(place, place).as_number().map(|square| to_f64(&square)));
+        Some([x?, y?, z?])
     }
 
     /// The names that a calibration of the machine may use.

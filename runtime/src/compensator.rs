@@ -156,12 +156,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     /// Searches for the command, from the error at the target on, and holds it against the limit.
     #[inline]
     fn search(&mut self, sample: &Sample<'_>, error: [f64; 3], out: &mut [f64]) -> Result<Outcome, Refusal> {
-        // What is known when the code is compiled is not looked up: nothing is left of it, mostly, but signs.
-        let known = self.prediction.kinematics.fixed_directions().and_then(Reach::at_right_angles);
-        let reach = match known.or(self.reach) {
-            Some(reach) => reach,
-            None => self.reach_at(sample.position)?,
-        };
+        let reach = self.reach_at(sample.position)?;
         let Self { prediction, convergence, limits, directions, .. } = self;
         // They always are so many: said once more, and the compiler of Rust knows how often each loop below goes round.
         let directions = &**directions;
@@ -178,20 +173,38 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
                 return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
             }
         }
-        let remaining = add_scaled(here, -1.0, columns.tip(pull));
+        let remaining = add_scaled(here, -1.0, reach.tip(columns, pull));
         Ok(Outcome { error, remaining, iterations })
     }
 
-    /// Finds in which directions the axes move the tip, and what they reach.
+    /// What the axes reach; finds in which directions they move the tip, but where that is known.
+    // Always: what is known when the code is compiled is not looked up, and nothing is left of it, mostly, but signs.
+    #[inline(always)]
     fn reach_at(&mut self, position: &[f64]) -> Result<Reach, Refusal> {
         let kinematics = self.prediction.kinematics;
-        kinematics.directions_with(&self.prediction.sines, position, self.directions);
-        if !all_finite(self.directions.as_flattened()) {
-            return Err(Refusal::NotFinite);
+        if let Some(squares) = kinematics.squares() {
+            self.find_directions(position)?;
+            return Ok(Reach::straight(squares));
         }
+        match kinematics.fixed_directions().and_then(Reach::at_right_angles).or(self.reach) {
+            Some(reach) => Ok(reach),
+            None => self.find_reach(position),
+        }
+    }
+
+    /// Finds what the axes reach, in the directions in which they move the tip.
+    fn find_reach(&mut self, position: &[f64]) -> Result<Reach, Refusal> {
+        self.find_directions(position)?;
         let reach = Reach::new(self.directions);
-        self.reach = Some(reach).filter(|_| !kinematics.directions_vary());
+        self.reach = Some(reach).filter(|_| !self.prediction.kinematics.directions_vary());
         Ok(reach)
+    }
+
+    /// Finds in which directions the axes move the tip.
+    #[inline]
+    fn find_directions(&mut self, position: &[f64]) -> Result<(), Refusal> {
+        self.prediction.kinematics.directions_with(&self.prediction.sines, position, self.directions);
+        if all_finite(self.directions.as_flattened()) { Ok(()) } else { Err(Refusal::NotFinite) }
     }
 }
 

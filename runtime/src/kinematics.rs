@@ -72,6 +72,13 @@ pub trait Kinematics {
         &[]
     }
 
+    /// The diagonal of `J J^T`, J being the [directions](Self::directions) of all axes as columns, where these vary, but it is known
+    /// to be the same at every position, with nothing beside it: of three slides at right angles, however a rotary axis has
+    /// turned them. A compensator then need not find out in each cycle what they reach.
+    fn squares(&self) -> Option<[f64; 3]> {
+        None
+    }
+
     /// [`Kinematics::directions`] where they are the same at every position and known when the code is compiled; none where
     /// nothing else is said. A search for a command then leaves out what is zero.
     fn fixed_directions(&self) -> Option<&'static [[f64; 3]]> {

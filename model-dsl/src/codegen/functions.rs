@@ -4,7 +4,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-use super::body::{Body, Numbers, Reads, body};
+use super::body::{Body, Numbers, Reads, body, number};
 use super::held::Held;
 use super::structs::of_any;
 use super::{docs, measured};
@@ -206,6 +206,7 @@ fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
     let directions = body(equations, &programs.directions, Numbers::Plain);
     let vary = directions.reads.axes;
     let known = fixed_directions(&directions).or_else(|| resting(equations));
+    let squares = equations.squares().map(squares);
     let held = held(equations, programs);
     let axes = Literal::usize_unsuffixed(equations.axes.len());
     let motions = Literal::usize_unsuffixed(equations.motions.len());
@@ -247,6 +248,7 @@ fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
                 }
             }
             fn directions_vary(&self) -> bool { #vary }
+            #squares
             #known
         }
     }
@@ -261,6 +263,12 @@ fn fixed_directions(directions: &Body) -> Option<TokenStream> {
             fn fixed_directions(&self) -> Option<&'static [[f64; 3]]> { Some(&[#(#effects),*]) }
         }
     })
+}
+
+/// What slides at right angles reach.
+fn squares(squares: [f64; 3]) -> TokenStream {
+    let squares = squares.map(number);
+    quote! { fn squares(&self) -> Option<[f64; 3]> { Some([#(#squares),*]) } }
 }
 
 /// Which axes do not correct, where some do not.

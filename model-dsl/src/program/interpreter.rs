@@ -22,6 +22,7 @@ pub struct Interpreter {
     rotary: Vec<bool>,
     /// For each axis, whether it never corrects; empty where all do.
     resting: Vec<bool>,
+    squares: Option<[f64; 3]>,
     motions: usize,
 }
 
@@ -40,6 +41,7 @@ impl Interpreter {
             travels: equations.travels.iter().map(|travel| travel.axis).collect(),
             rotary: equations.axes.iter().map(|axis| axis.rotary).collect(),
             resting: if resting.contains(&true) { resting } else { Vec::new() },
+            squares: equations.squares(),
             motions: equations.motions.len(),
         }
     }
@@ -200,6 +202,10 @@ impl Kinematics for Interpreter {
 
     fn resting(&self) -> &[bool] {
         &self.resting
+    }
+
+    fn squares(&self) -> Option<[f64; 3]> {
+        self.squares
     }
 }
 

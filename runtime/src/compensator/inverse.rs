@@ -19,6 +19,8 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON * f64::EPSILON;
 /// `J^+ = J^T A^+`, so that an axis with direction d moves by `d . (A^+ E)`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Reach<T = f64> {
+    /// The diagonal of A, where it is known to be all of it.
+    squares: Option<[T; 3]>,
     /// The diagonal of `A^+`, where A is diagonal.
     straight: [T; 3],
     /// Where it is not, `A^+ = sum of p p^T` over these vectors p.
@@ -31,23 +33,29 @@ impl<T: Real> Reach<T> {
     /// Nothing is reached.
     #[inline]
     pub(super) fn nothing() -> Self {
-        Self { straight: zero(), vectors: [zero(); 3], skew: 0.0.into() }
+        Self { squares: None, straight: zero(), vectors: [zero(); 3], skew: 0.0.into() }
     }
 
     /// The directions reached by axes that move the tip along these columns.
     pub(super) fn new(columns: &[[T; 3]]) -> Self {
-        let (straight, skew) = straight(columns);
+        let (squares, skew) = squares(columns);
         let any = skew.any_above(0.0);
         let vectors = if any { conjugate(columns, &basis(columns)) } else { [zero(); 3] };
-        Self { straight, vectors, skew }
+        Self { squares: None, straight: inverses(squares), vectors, skew }
     }
 
     /// [`new`](Self::new) where A is diagonal; none where it is not.
     // Always: of columns that are known when the code is compiled, nothing is left to work out.
     #[inline(always)]
     pub(super) fn at_right_angles(columns: &[[T; 3]]) -> Option<Self> {
-        let (straight, skew) = straight(columns);
-        (!skew.any_above(0.0)).then(|| Self { straight, ..Self::nothing() })
+        let (squares, skew) = squares(columns);
+        (!skew.any_above(0.0)).then(|| Self { straight: inverses(squares), ..Self::nothing() })
+    }
+
+    /// [`new`](Self::new) where A is known to be diagonal, from its diagonal.
+    #[inline(always)]
+    pub(super) fn straight(squares: [T; 3]) -> Self {
+        Self { squares: Some(squares), straight: inverses(squares), ..Self::nothing() }
     }
 
     /// `A^+ E`.
@@ -59,6 +67,16 @@ impl<T: Real> Reach<T> {
             above(self.skew, 0.0.into(), self.apply_vectors(error), straight)
         } else {
             straight
+        }
+    }
+
+    /// `A v = J J^T v`: what the tip does when each axis moves along these columns by its share of v.
+    // Always: see `at_right_angles`.
+    #[inline(always)]
+    pub(super) fn tip(&self, columns: Columns<'_, T>, v: [T; 3]) -> [T; 3] {
+        match self.squares {
+            Some([a, b, c]) => add_scaled(zero(), T::from(1.0), [a * v[0], b * v[1], c * v[2]]),
+            None => columns.tip(v),
         }
     }
 
@@ -124,9 +142,9 @@ pub(super) enum Columns<'c, T = f64> {
 }
 
 impl<T: Real> Columns<'_, T> {
-    /// `A v = J J^T v`: what the tip does when each axis moves by its share of v.
+    /// `A v`, axis by axis.
     #[inline(always)]
-    pub(super) fn tip(self, v: [T; 3]) -> [T; 3] {
+    fn tip(self, v: [T; 3]) -> [T; 3] {
         match self {
             Self::Known(columns) => {
                 let mut sum = zero();
@@ -191,10 +209,10 @@ fn tip<T: Real>(columns: &[[T; 3]], v: [T; 3]) -> [T; 3] {
     columns.iter().fold(zero(), |sum, &column| add_scaled(sum, dot(column, v), column))
 }
 
-/// The diagonal of `A^+` where A is diagonal, as it is for slides at right angles along the axes of the part, or turned with
-/// it through any angle when there are three alike; and 1 where it is not, by more than rounding, or 0.
+/// The diagonal of A; and 1 where there is more beside it than rounding leaves, or 0. There is nothing for slides at right
+/// angles along the axes of the part, or turned with it through any angle when there are three alike.
 #[inline(always)]
-fn straight<T: Real>(columns: &[[T; 3]]) -> ([T; 3], T) {
+fn squares<T: Real>(columns: &[[T; 3]]) -> ([T; 3], T) {
     let (nothing, one) = (T::from(0.0), T::from(1.0));
     let mut squares = zero();
     let mut mixed = zero();
@@ -207,8 +225,14 @@ fn straight<T: Real>(columns: &[[T; 3]]) -> ([T; 3], T) {
     for (mixed, bound) in mixed.into_iter().zip([yy * zz, zz * xx, xx * yy]) {
         skew = (mixed * mixed).above(bound * ROUNDING.into(), one, skew);
     }
-    let inverse = |square: T| square.above((DEPENDENT * DEPENDENT).into(), one / square, nothing);
-    (squares.map(inverse), skew)
+    (squares, skew)
+}
+
+/// The diagonal of `A^+` where A is diagonal, from that of A.
+#[inline(always)]
+fn inverses<T: Real>(squares: [T; 3]) -> [T; 3] {
+    let one = T::from(1.0);
+    squares.map(|square| square.above((DEPENDENT * DEPENDENT).into(), one / square, T::from(0.0)))
 }
 
 /// An orthonormal basis of what the columns span, by Gram-Schmidt. Columns that vanish or depend on others add nothing.
@@ -295,7 +319,7 @@ mod tests {
         let lathe = [[0.0; 3], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]];
         let doubled = [[2.0, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 1.0], [0.0, 1.5, 0.0]];
         for columns in [&turned[..], &lathe, &doubled] {
-            assert!(!straight(columns).1.any_above(0.0), "{columns:?}");
+            assert!(!squares(columns).1.any_above(0.0), "{columns:?}");
             let (reach, general) = (Reach::new(columns), conjugate(columns, &basis(columns)));
             for error in [[1.0, 0.0, 0.0], [0.3, -0.2, 0.7], [0.0, 5.0, 1.0]] {
                 assert_close(reach.apply(error), Reach { vectors: general, skew: 1.0, ..reach }.apply(error));
@@ -309,7 +333,7 @@ mod tests {
             for lean in [1e-9, -1e-3] {
                 let mut columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
                 columns[slide][towards] = lean;
-                assert!(straight(&columns).1.any_above(0.0), "{columns:?}");
+                assert!(squares(&columns).1.any_above(0.0), "{columns:?}");
                 assert_close(made(&columns, [0.3, -0.2, 0.7]), [0.3, -0.2, 0.7]);
             }
         }

@@ -64,7 +64,11 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
             }
         }
         if !block.reach_known {
-            block.reach = Reach::new(block.columns);
+            let known = self.prediction.kinematics.squares();
+            block.reach = match known {
+                Some(squares) => Reach::straight(squares.map(Lanes::from)),
+                None => Reach::new(block.columns),
+            };
             block.reach_known = true;
         }
     }
@@ -142,7 +146,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         }
         let columns = self.prediction.columns(block.columns);
         let correction = block.reach.distance_squared(step.here).sqrt();
-        let remaining = add_scaled(step.here, Lanes::from(-1.0), columns.tip(step.pull));
+        let remaining = add_scaled(step.here, Lanes::from(-1.0), block.reach.tip(columns, step.pull));
         for (lane, (open, answer)) in open.iter_mut().zip(answers).enumerate() {
             let square = step.square.lane(lane);
             if !*open || !ends(square) {

@@ -165,6 +165,12 @@ impl Equations {
         terms.iter().find(|term| term.motion == motion).map(|term| term.arm.clone()).unwrap_or_default()
     }
 
+    /// For each axis, whether it never corrects; empty where all do.
+    pub fn resting(&self) -> Vec<bool> {
+        let rest: Vec<bool> = self.axes.iter().map(|axis| axis.effect.is_none()).collect();
+        if rest.contains(&true) { rest } else { Vec::new() }
+    }
+
     /// The diagonal of `J J^T`, J being the effects of all axes as columns, where these vary, but it is made of numbers and has
     /// nothing beside it: three slides at right angles, however rotary axes have turned them.
     ///

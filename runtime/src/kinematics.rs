@@ -67,7 +67,7 @@ pub trait Kinematics {
     }
 
     /// For each axis, whether its [direction](Self::directions) is known to be zero at every position; empty where nothing is
-    /// said. A search for a command then leaves out these axes, and keeps what error motions read of them.
+    /// said. A search for a command then leaves out these axes, and a batch reads motions that depend on nothing else once.
     fn resting(&self) -> &[bool] {
         &[]
     }

@@ -273,8 +273,8 @@ fn squares(squares: [f64; 3]) -> TokenStream {
 
 /// Which axes do not correct, where some do not.
 fn resting(equations: &Equations) -> Option<TokenStream> {
-    let rest: Vec<bool> = equations.axes.iter().map(|axis| axis.effect.is_none()).collect();
-    rest.contains(&true).then(|| quote! { fn resting(&self) -> &[bool] { &[#(#rest),*] } })
+    let rest = equations.resting();
+    (!rest.is_empty()).then(|| quote! { fn resting(&self) -> &[bool] { &[#(#rest),*] } })
 }
 
 /// The error from slices.

@@ -20,7 +20,6 @@ pub struct Interpreter {
     constants: Vec<f64>,
     travels: Vec<usize>,
     rotary: Vec<bool>,
-    /// For each axis, whether it never corrects; empty where all do.
     resting: Vec<bool>,
     squares: Option<[f64; 3]>,
     motions: usize,
@@ -30,7 +29,6 @@ impl Interpreter {
     /// Prepares a machine with the values of its constants (mm), in the order of its equations.
     pub fn new(equations: &Equations, constants: &[f64]) -> Self {
         let programs = Programs::new(equations);
-        let resting: Vec<bool> = equations.axes.iter().map(|axis| axis.effect.is_none()).collect();
         Self {
             nominal: Tape::new(&programs.nominal),
             error: Tape::new(&programs.error),
@@ -40,7 +38,7 @@ impl Interpreter {
             constants: constants.to_vec(),
             travels: equations.travels.iter().map(|travel| travel.axis).collect(),
             rotary: equations.axes.iter().map(|axis| axis.rotary).collect(),
-            resting: if resting.contains(&true) { resting } else { Vec::new() },
+            resting: equations.resting(),
             squares: equations.squares(),
             motions: equations.motions.len(),
         }

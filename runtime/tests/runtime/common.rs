@@ -153,4 +153,7 @@ impl Kinematics for TableMill {
     fn resting(&self) -> &[bool] {
         &[false, false, false, true]
     }
+    fn squares(&self) -> Option<[f64; 3]> {
+        Some([1.0; 3])
+    }
 }

@@ -74,7 +74,7 @@ impl Bundle<'_> {
         let Self { name, nodes, tables } = self;
         let names: Vec<_> = tables.iter().map(|(motion, _)| motion.name.to_string()).collect();
         let about = format!(" Side by side, as they are read: the tables of {}.", names.join(", "));
-        let [curves, rows] = [tables.len(), nodes.count.saturating_add(1)].map(Literal::usize_unsuffixed);
+        let [curves, rows] = [tables.len(), nodes.count].map(Literal::usize_unsuffixed);
         let terms = tables.iter().map(|(motion, place)| {
             let (name, place) = (&motion.name, Literal::usize_unsuffixed(*place));
             quote! { &Self::#name[#place] }

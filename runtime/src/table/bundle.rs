@@ -5,11 +5,11 @@
 //! found once, chosen by direction once, and read as one row, which a vector unit takes several numbers of at a time.
 
 use super::place::Even;
-use super::{Nodes, Table, TableError, between};
+use super::{Nodes, Table, TableError};
 use crate::{Direction, Term};
 
-/// Tables over the same even nodes of one axis, a row for each node and one more: the last row stands twice, so that every node
-/// has one above it.
+/// Tables over the same even nodes of one axis, a row for each node: what each table is there, and by how much it rises to the next
+/// one, which then need not be found when it is read.
 ///
 /// It reads what its tables read, bit for bit.
 ///
@@ -18,9 +18,9 @@ use crate::{Direction, Term};
 /// let exx = Table::uniform(0.0, 50.0, Values::Both(&[0.0, 0.002, 0.003]))?;
 /// let eyx = Table::uniform(0.0, 50.0, Values::Both(&[0.001, 0.0, 0.001]))?;
 /// let terms = [exx, eyx].map(|table| Term::Table { axis: 0, table });
-/// assert!(Bundle::<2, 4>::new([&terms[0], &terms[1]]).is_ok());
+/// assert!(Bundle::<2, 3>::new([&terms[0], &terms[1]]).is_ok());
 /// let other = Term::Constant { value: 0.001 };
-/// assert_eq!(Bundle::<2, 4>::new([&terms[0], &other]), Err(TableError::Unlike { index: 1 }));
+/// assert_eq!(Bundle::<2, 3>::new([&terms[0], &other]), Err(TableError::Unlike { index: 1 }));
 /// # Ok::<(), TableError>(())
 /// ```
 #[derive(Clone, PartialEq, Debug)]
@@ -29,37 +29,53 @@ pub struct Bundle<const CURVES: usize, const ROWS: usize> {
     even: Even,
     /// Whether a curve depends on the direction of motion.
     directed: bool,
-    forward: [[f64; CURVES]; ROWS],
-    reverse: [[f64; CURVES]; ROWS],
+    /// For each node the curves of both directions, at [`FORWARD`] and [`REVERSE`].
+    rows: [[Row<CURVES>; 2]; ROWS],
 }
+
+/// The places of the curves that are read while the last real motion was positive or negative.
+const FORWARD: usize = 0;
+const REVERSE: usize = 1;
+
+/// Curves from a node to the next one; they rise by nothing from the last node on.
+#[derive(Clone, Copy, PartialEq, Debug)]
+struct Row<const CURVES: usize> {
+    values: Side<CURVES>,
+    rises: Side<CURVES>,
+}
+
+/// Numbers side by side, of which a vector unit takes two at a time from where they lie.
+#[derive(Clone, Copy, PartialEq, Debug)]
+#[repr(align(16))]
+struct Side<const CURVES: usize>([f64; CURVES]);
 
 impl<const CURVES: usize, const ROWS: usize> Bundle<CURVES, ROWS> {
     /// Tables side by side, in their order.
     ///
     /// # Errors
     /// Refuses no table at all, a term that is not a table over the axis and the even nodes of the first, and another number of rows
-    /// than that of the nodes and one.
+    /// than that of the nodes.
     pub const fn new(terms: [&Term<'_>; CURVES]) -> Result<Self, TableError> {
         let [Term::Table { axis, table: Table { nodes: Nodes::Even(even), .. } }, ..] = terms.as_slice()
         else {
             return Err(if CURVES == 0 { TableError::Empty } else { TableError::Unlike { index: 0 } });
         };
-        let expected = even.last.saturating_add(2);
+        let expected = even.last.saturating_add(1);
         if ROWS != expected {
             return Err(TableError::Lengths { expected, found: ROWS });
         }
-        let none = [[0.0; CURVES]; ROWS];
-        let mut bundle = Self { axis: *axis, even: *even, directed: false, forward: none, reverse: none };
+        let none = Row { values: Side([0.0; CURVES]), rises: Side([0.0; CURVES]) };
+        let mut bundle = Self { axis: *axis, even: *even, directed: false, rows: [[none; 2]; ROWS] };
         let mut column = 0;
         while column < CURVES {
             let Some(table) = bundle.like(terms[column]) else {
                 return Err(TableError::Unlike { index: column });
             };
-            fill(&mut bundle.forward, column, table.forward);
-            fill(&mut bundle.reverse, column, table.reverse);
+            fill(&mut bundle.rows, FORWARD, column, table.forward);
+            fill(&mut bundle.rows, REVERSE, column, table.reverse);
+            bundle.directed |= differ(table.forward, table.reverse);
             column = column.saturating_add(1);
         }
-        bundle.directed = differ(bundle.forward.as_flattened(), bundle.reverse.as_flattened());
         Ok(bundle)
     }
 
@@ -77,28 +93,38 @@ impl<const CURVES: usize, const ROWS: usize> Bundle<CURVES, ROWS> {
     /// The value of each table where its axis is, on the curves of its direction; none where there is no such axis.
     #[inline(always)]
     pub(crate) fn read(&self, position: &[f64], direction: &[Direction]) -> Option<[f64; CURVES]> {
-        let rows = match direction.get(self.axis)? {
-            Direction::Negative if self.directed => &self.reverse,
-            Direction::Positive | Direction::Negative => &self.forward,
+        let side = match direction.get(self.axis)? {
+            Direction::Negative if self.directed => REVERSE,
+            Direction::Positive | Direction::Negative => FORWARD,
         };
         let (below, part) = self.even.place(*position.get(self.axis)?);
-        let [low, high] = rows.get(below..)?.first_chunk()?;
-        let mut values = *low;
-        for (value, high) in values.iter_mut().zip(high) {
-            *value = between(*value, *high, part);
+        let Row { values: Side(values), rises: Side(rises) } =
+            self.rows.as_flattened().get(below.wrapping_mul(2) | side)?;
+        let mut read = *values;
+        for (value, rise) in read.iter_mut().zip(rises) {
+            // What `between` does, which has the rise to find.
+            *value += *rise * part;
         }
-        Some(values)
+        Some(read)
     }
 }
 
-/// Writes a curve into a column, its last value into all rows beyond it.
-const fn fill<const CURVES: usize>(rows: &mut [[f64; CURVES]], column: usize, mut curve: &[f64]) {
+/// Writes a curve into a column of one side.
+const fn fill<const CURVES: usize>(
+    rows: &mut [[Row<CURVES>; 2]],
+    side: usize,
+    column: usize,
+    mut curve: &[f64],
+) {
     let mut row = 0;
-    while row < rows.len() {
-        if let [value, later @ ..] = curve {
-            rows[row][column] = *value;
-            curve = if later.is_empty() { curve } else { later };
+    while let [value, later @ ..] = curve
+        && row < rows.len()
+    {
+        rows[row][side].values.0[column] = *value;
+        if let [next, ..] = later {
+            rows[row][side].rises.0[column] = *next - *value;
         }
+        curve = later;
         row = row.saturating_add(1);
     }
 }

@@ -15,7 +15,7 @@ use super::{docs, measured};
 use crate::calibration::{
     CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Limits, NotCompensable, SeriesInput,
 };
-use crate::equations::{AxisInfo, Equations, Motion};
+use crate::equations::{Equations, Motion};
 
 /// The calibration, its terms and its sensors.
 ///
@@ -44,6 +44,8 @@ pub(super) struct WrittenMotion {
     terms: Vec<WrittenTerm>,
     /// Whether one of them reads an axis that corrects, which a search for a command moves.
     moved: bool,
+    /// Whether it is more than numbers that are known, which cost nothing to read.
+    costs: bool,
 }
 
 /// A term as tokens, and its nodes where it is a table with even ones.
@@ -77,7 +79,13 @@ impl WrittenMotion {
                 })
                 .collect::<Result<_, _>>()?,
             moved: read.iter().filter_map(Term::axis).any(corrects),
+            costs: !read.iter().all(|term| matches!(term, Term::Constant { .. })),
         })
+    }
+
+    /// Whether it costs something to read what a search for a command does not change.
+    fn stays(&self) -> bool {
+        self.costs && !self.moved
     }
 
     /// The places of its tables with even nodes, and these.
@@ -191,8 +199,9 @@ fn limits(limits: &Limits) -> (TokenStream, TokenStream) {
 fn reader(equations: &Equations, motions: &[WrittenMotion], bundles: &Bundles<'_>) -> TokenStream {
     let names = motions.iter().map(|motion| &motion.name);
     let count = Literal::usize_unsuffixed(motions.len());
-    let read_moved = read_moved(equations, motions, bundles);
-    let read = read(equations, motions, bundles, read_moved.is_some());
+    let kept = kept(motions);
+    let read = read(equations, motions, bundles, &kept);
+    let read_moved = (!kept.is_empty()).then(|| read_moved(equations, motions, bundles, &kept));
     quote! {
         impl ::abbe_runtime::ErrorMotions for Calibration {
             type Values<'k> = [f64; #count];
@@ -205,56 +214,66 @@ fn reader(equations: &Equations, motions: &[WrittenMotion], bundles: &Bundles<'_
     }
 }
 
-/// What reads all motions, and keeps them where `read_moved` asks for some of them.
-fn read(equations: &Equations, motions: &[WrittenMotion], bundles: &Bundles<'_>, keeps: bool) -> TokenStream {
+/// The motions whose values are kept for the next step of a search for a command; none where all of them may be changed by it,
+/// but for those that cost nothing.
+// Those that it changes as well: what goes to memory side by side is what the compiler of Rust reads side by side.
+fn kept(motions: &[WrittenMotion]) -> Vec<&WrittenMotion> {
+    match motions.iter().any(WrittenMotion::stays) {
+        true => motions.iter().filter(|motion| motion.costs).collect(),
+        false => Vec::new(),
+    }
+}
+
+/// What reads all motions, and keeps some of them.
+fn read(
+    equations: &Equations,
+    motions: &[WrittenMotion],
+    bundles: &Bundles<'_>,
+    kept: &[&WrittenMotion],
+) -> TokenStream {
     let bundles = bundles.unpacked(|_| true);
     let unpacked = motions.iter().map(WrittenMotion::unpacked);
-    let sums = motions.iter().map(WrittenMotion::sum);
+    let (names, sums): (Vec<_>, Vec<_>) =
+        motions.iter().map(|motion| (motion.value_name(), motion.sum())).unzip();
     // Nothing is read where there are no terms.
     let from = if motions.iter().all(|motion| motion.terms.is_empty()) {
         quote! { _ }
     } else {
         quote! { mut from }
     };
-    let (kept, keep) = if keeps {
-        (quote! { kept }, Some(quote! { *kept.first_chunk_mut()? = read; }))
-    } else {
+    let (keeping, keep) = if kept.is_empty() {
         (quote! { _kept }, None)
+    } else {
+        let values = kept.iter().map(|motion| motion.value_name());
+        (quote! { kept }, Some(quote! { *kept.first_chunk_mut()? = [#(#values),*]; }))
     };
     let body = quote! {
         #bundles
         #(#unpacked)*
-        let read = [#(#sums),*];
+        #(let #names = #sums;)*
         #keep
-        Some(read)
+        Some([#(#names),*])
     };
-    method(equations, motions, &quote! { read }, &[from, kept], &body)
+    method(equations, motions, &quote! { read }, &[from, keeping], &body)
 }
 
-/// What reads the motions again that a search for a command changes; nothing where each of them may be changed, but for those
-/// that cost nothing.
+/// What reads the motions again that a search for a command changes, and takes the others as they were kept.
 fn read_moved(
     equations: &Equations,
     motions: &[WrittenMotion],
     bundles: &Bundles<'_>,
-) -> Option<TokenStream> {
-    let stays = |motion: &&WrittenMotion| !motion.moved;
-    let corrects = |axis: &AxisInfo| axis.effect.is_some();
-    if equations.axes.iter().all(corrects)
-        || motions.iter().filter(stays).all(|motion| motion.terms.is_empty())
-    {
-        return None;
-    }
+    kept: &[&WrittenMotion],
+) -> TokenStream {
     let names =
-        motions.iter().map(|motion| if motion.moved { format_ident!("_") } else { motion.value_name() });
-    let bundles = bundles.unpacked(|motion| motion.moved);
-    let unpacked = motions.iter().filter(|motion| motion.moved).map(WrittenMotion::unpacked);
+        kept.iter().map(|motion| if motion.stays() { motion.value_name() } else { format_ident!("_") });
+    let bundles = bundles.unpacked(|motion| !motion.stays());
+    let unpacked = motions.iter().filter(|motion| !motion.stays()).map(WrittenMotion::unpacked);
     let values = motions.iter().map(|motion| {
         let (value, terms) = (motion.value_name(), Literal::usize_unsuffixed(motion.terms.len()));
-        match (motion.moved, motion.terms.is_empty()) {
-            (true, _) => motion.sum(),
-            (false, true) => quote! { #value },
-            (false, false) => quote! { { from.pass_over(#terms); #value } },
+        if motion.stays() {
+            quote! { { from.pass_over(#terms); #value } }
+        } else {
+            motion.sum()
         }
     });
     let body = quote! {
@@ -263,7 +282,7 @@ fn read_moved(
         let [#(#names),*] = *kept.first_chunk()?;
         Some([#(#values),*])
     };
-    Some(method(equations, motions, &quote! { read_moved }, &[quote! { mut from }, quote! { kept }], &body))
+    method(equations, motions, &quote! { read_moved }, &[quote! { mut from }, quote! { kept }], &body)
 }
 
 /// A method of `ErrorMotions` that reads motions, the reader and what was kept under these names.

@@ -12,7 +12,7 @@ use crate::math::all_finite;
 use crate::{Direction, Real};
 
 pub use self::bundle::Bundle;
-use self::place::Even;
+use self::place::{Even, MOST};
 pub(crate) use self::place::{LanePlace, Place};
 
 /// The values of a table at its nodes: one curve, or one for each direction of motion.
@@ -58,7 +58,7 @@ pub enum TableError {
         /// The length found.
         found: usize,
     },
-    /// There are more than 2^32 even nodes.
+    /// There are more than 2^24 even nodes.
     TooLong,
     /// The step between nodes is not finite, or so near to zero that its inverse is not.
     Step,
@@ -83,7 +83,7 @@ impl fmt::Display for TableError {
             Self::Lengths { expected, found } => {
                 write!(f, "the table needs {expected} values in each curve, found {found}")
             }
-            Self::TooLong => write!(f, "the table has more than 4294967296 nodes"),
+            Self::TooLong => write!(f, "the table has more than {MOST} even nodes"),
             Self::Step => write!(f, "the step between nodes is zero, next to zero or not finite"),
             Self::NotAscending { index } => {
                 write!(f, "node {index} (counted from 0) does not lie above the one before it")
@@ -130,7 +130,7 @@ impl<'a> Table<'a> {
     /// The step may be negative: published tables run from 0 to -110 mm as well.
     ///
     /// # Errors
-    /// Refuses a table without values or with more than 2^32, curves that differ in length, a step of zero or nearly so (its
+    /// Refuses a table without values or with more than 2^24, curves that differ in length, a step of zero or nearly so (its
     /// inverse must be finite) and numbers that are not finite.
     pub const fn uniform(start: f64, step: f64, values: Values<'a>) -> Result<Self, TableError> {
         // Reading multiplies, which takes less time than to divide.
@@ -144,10 +144,11 @@ impl<'a> Table<'a> {
         if let Err(error) = check_values(values, None) {
             return Err(error);
         }
-        let last = values.curve(Direction::Positive).len().saturating_sub(1);
-        if last > u32::MAX as usize {
+        let nodes = values.curve(Direction::Positive).len();
+        if nodes > MOST {
             return Err(TableError::TooLong);
         }
+        let last = nodes.saturating_sub(1);
         Ok(Self::new(Nodes::Even(Even { start, per_unit, last }), values))
     }
 

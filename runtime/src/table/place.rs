@@ -151,18 +151,17 @@ impl Even {
     }
 
     /// The index of the node below a position, not above the last one, and what is left of a step from there; NaN is left of NaN.
-    // Most positions lie within the table. What is worked out beyond its ends stays out of their way: they need no limits, for
-    // which a search would wait at every step.
+    // Most positions lie within the table. What lies beyond its ends stays out of their way: they need no limits, for which a
+    // search would wait at every step.
     #[inline(always)]
     pub(super) fn place(self, position: f64) -> (usize, f64) {
         let count = self.count(position);
         let (below, part) = split(count);
-        if count >= 0.0 && below < self.last {
+        if below < self.last {
             (below, part)
         } else {
             core::hint::cold_path();
-            let (below, part) = split(self.steps(position));
-            (below.min(self.last), part)
+            (if count < 0.0 { 0 } else { self.last }, count.clamp(0.0, 0.0))
         }
     }
 
@@ -188,18 +187,23 @@ fn node(curve: &[f64], index: usize) -> f64 {
     curve.get(index).copied().unwrap_or(f64::NAN)
 }
 
-/// The greatest whole number that is not above a number of steps, and what is left of it; NaN is left of NaN, and below zero it is
-/// all left of 0.
+/// The number of even nodes that a table may have: as many as [`split`] tells apart.
+pub(super) const MOST: usize = 1 << 24;
+
+/// A sum of it and a smaller number has 28 binary digits behind the point, in the last of its bits.
+const FIXED: f64 = MOST as f64;
+
+/// The bits of these digits.
+const FRACTION: u64 = (1 << 28) - 1;
+
+/// The greatest whole number that is not above a number of steps, and what is left of it. What is no more than 2^-29 below a whole number
+/// is that number. What is further below zero, too large or NaN gives a whole number from [`MOST`] on.
 // No comparison of one node with the next, which could become a branch: no processor foresees between which two a table is read.
-// A u32 takes fewer instructions than any other integer where a number is none of them; `Table::uniform` refuses what is too long
-// for it.
+// Nor a conversion to an integer and back, which takes longer than all of this.
 #[inline]
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "what is below 0 and NaN become 0, what is too great the greatest"
-)]
 fn split(number: f64) -> (usize, f64) {
-    let below = number as u32;
-    (below as usize, number - f64::from(below))
+    let bits = (number + FIXED).to_bits();
+    let left = number - (f64::from_bits(bits & !FRACTION) - FIXED);
+    let whole = bits.wrapping_sub(FIXED.to_bits()) >> FRACTION.count_ones();
+    (usize::try_from(whole).unwrap_or(usize::MAX), if left > 0.0 { left } else { 0.0 })
 }

@@ -66,6 +66,34 @@ proptest! {
     }
 
     #[test]
+    fn beside_a_node_even_and_listed_ones_agree_to_what_even_ones_tell_apart(
+        values in values(), start in -90.0..90.0_f64, step in 0.5..40.0_f64, node in 0..12_usize, off in -1e-8..1e-8_f64,
+    ) {
+        let at: Vec<f64> = (0..values.len()).map(|k| start + step * k as f64).collect();
+        let uniform = Table::uniform(start, step, Values::Both(&values)).unwrap();
+        let listed = Table::at(&at, Values::Both(&values)).unwrap();
+        let position = start + step * (node as f64 + off);
+        // Within 2^-29 of a step below a node is at the node; no step here changes a value by more than 2.
+        let apart = 2.0_f64.powi(-28) + 1e-11;
+        prop_assert!((uniform.value(position, FORWARD) - listed.value(position, FORWARD)).abs() < apart);
+    }
+
+    #[test]
+    fn ends_of_even_nodes_are_held(
+        values in values(), step in 0.5..40.0_f64, falls in any::<bool>(), beyond in prop_oneof![0.0..1e-7_f64, 0.0..1e6_f64],
+    ) {
+        let step = if falls { -step } else { step };
+        let table = Table::uniform(0.0, step, Values::Both(&values)).unwrap();
+        let (first, last) = (values[0], values[values.len() - 1]);
+        // The last node of a table lies where its step is rounded to.
+        let end = step * (values.len() - 1) as f64 * (1.0 + 1e-15);
+        for beyond in [beyond.copysign(step), f64::INFINITY.copysign(step)] {
+            prop_assert_eq!(table.value(-beyond, FORWARD), first);
+            prop_assert_eq!(table.value(end + beyond, FORWARD), last);
+        }
+    }
+
+    #[test]
     fn a_descending_table_is_the_ascending_one_read_from_its_other_end(
         values in values(), start in -90.0..90.0_f64, step in 0.5..40.0_f64, position in -600.0..600.0_f64,
     ) {
@@ -137,10 +165,24 @@ fn published_descending_table() {
 }
 
 #[test]
+fn a_table_of_the_most_nodes_is_read_to_its_end() {
+    let mut values = vec![0.0; 16_777_217];
+    (values[16_777_213], values[16_777_214], values[16_777_215]) = (1.0, 2.0, 4.0);
+    let table = Table::uniform(0.0, 1.0, Values::Both(&values[..16_777_216])).unwrap();
+    assert_eq!(table.value(16_777_213.5, FORWARD), 1.5);
+    assert_eq!(table.value(16_777_214.75, FORWARD), 3.5);
+    assert_eq!(table.value(16_777_215.0, FORWARD), 4.0);
+    assert_eq!(table.value(1e15, FORWARD), 4.0);
+    assert_eq!(Table::uniform(0.0, 1.0, Values::Both(&values)), Err(TableError::TooLong));
+}
+
+#[test]
 fn nan_gives_nan() {
-    let uniform = Table::uniform(0.0, 1.0, Values::Both(&[5.0])).unwrap();
+    for values in [&[5.0][..], &[5.0, 6.0, 7.0]] {
+        let uniform = Table::uniform(0.0, 1.0, Values::Both(values)).unwrap();
+        assert!(uniform.value(f64::NAN, FORWARD).is_nan());
+    }
     let listed = Table::at(&[0.0, 1.0], Values::Both(&[5.0, 5.0])).unwrap();
-    assert!(uniform.value(f64::NAN, FORWARD).is_nan());
     assert!(listed.value(f64::NAN, FORWARD).is_nan());
 }
 

@@ -15,8 +15,11 @@ const MAX_SHOWN: usize = 100;
 /// Lines are cut to about this many characters, `...` standing for the rest.
 const WIDTH: usize = 140;
 
-/// Marked texts longer than this many bytes are shown by their first line; lines longer than this are cut.
+/// Marked texts longer than this many bytes are shown by their first line.
 const LONG: usize = 2_000;
+
+/// A line longer than this many bytes is cut around each mark.
+const LONG_LINE: usize = 500;
 
 /// Two places that are no more than this many bytes apart stand under one heading.
 const NEAR: usize = 16_000;
@@ -120,16 +123,16 @@ impl<'a> Window<'a> {
         let (last_line, _) = source.line_column(span.end);
         let start = source.line_start(first_line);
         let mut bytes = start..source.line_start(last_line + 1);
-        let mut cut = false;
+        let line = start..source.line_start(first_line + 1);
         if bytes.len() > LONG {
-            bytes = start..source.line_start(first_line + 1);
+            bytes = line.clone();
         }
-        if bytes.len() > LONG {
+        let cut = bytes == line && bytes.len() > LONG_LINE;
+        if cut {
             let text = source.text();
             let from = span.start.saturating_sub(CONTEXT).max(bytes.start);
             let to = (span.start + LONG_MARK + CONTEXT).min(bytes.end);
             bytes = text.ceil_char_boundary(from)..text.floor_char_boundary(to);
-            cut = true;
         }
         Self { bytes, first_line, cut, marks: vec![mark] }
     }
@@ -269,6 +272,21 @@ error[E0002]: this file is empty
             assert!(report.contains("1.25, bad, µ, µ"), "{report}");
             assert!(report.lines().all(|line| line.chars().count() < 200), "{report}");
         }
+    }
+
+    #[test]
+    fn two_places_in_a_long_line_are_cut_each_by_itself() {
+        let text = format!("{{a: 1, {}a: 2}}\n", "b: 3, ".repeat(150));
+        let again = Span::new(907, 908);
+        let finding = Diagnostic::error("E0005", again, "duplicate key `a`").label("again");
+        let report = shown(&text, finding.also(Span::new(1, 2), "first"), false);
+        let lines: Vec<&str> = report.lines().collect();
+        assert!(report.contains("1:908") && report.contains("1:2"), "{report}");
+        let marked = |text, mark| {
+            lines.windows(2).any(|two| two[0].contains(text) && two[1].trim_end().ends_with(mark))
+        };
+        assert!(marked("b: 3, a: 2}", "^ again") && marked("{a: 1, b: 3", "- first"), "{report}");
+        assert!(lines.iter().all(|line| line.len() < 200), "{report}");
     }
 
     #[test]

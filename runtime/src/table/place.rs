@@ -205,5 +205,5 @@ fn split(number: f64) -> (usize, f64) {
     let bits = (number + FIXED).to_bits();
     let left = number - (f64::from_bits(bits & !FRACTION) - FIXED);
     let whole = bits.wrapping_sub(FIXED.to_bits()) >> FRACTION.count_ones();
-    (usize::try_from(whole).unwrap_or(usize::MAX), if left > 0.0 { left } else { 0.0 })
+    (usize::try_from(whole).unwrap_or(usize::MAX), if left < 0.0 { 0.0 } else { left })
 }

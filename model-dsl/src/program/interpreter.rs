@@ -107,7 +107,10 @@ impl Interpreter {
         let turn = |(angle, rotary): (&T, &bool)| {
             if *rotary { angle.sin_cos() } else { (T::from(0.0), T::from(1.0)) }
         };
-        let turns: Vec<(T, T)> = position.iter().zip(&self.rotary).map(turn).collect();
+        let turns: Vec<(T, T)> = match self.rotary.contains(&true) {
+            true => position.iter().zip(&self.rotary).map(turn).collect(),
+            false => Vec::new(),
+        };
         let or_nan = |values: &[T], number: usize| values.get(number).copied().unwrap_or(f64::NAN.into());
         tape.run(|input| match input {
             Input::Position(axis) => or_nan(position, axis),

@@ -64,7 +64,9 @@ impl Tape {
 
     /// Runs the tape on the inputs that `given` supplies; one number, or one in each lane, for each result.
     pub fn run<T: Real>(&self, given: impl Fn(Input) -> T) -> Vec<T> {
-        let mut values = Vec::with_capacity(self.numbers.len() + self.inputs.len() + self.operations.len());
+        let places = self.numbers.len() + self.inputs.len() + self.operations.len();
+        // With room for the results, which then need no array of their own.
+        let mut values = Vec::with_capacity(places + self.results.len());
         values.extend(self.numbers.iter().map(|number| T::from(*number)));
         values.extend(self.inputs.iter().map(|input| given(*input)));
         let at = |values: &[T], place: usize| values.get(place).copied().unwrap_or(f64::NAN.into());
@@ -77,7 +79,11 @@ impl Tape {
                 Operation::Neg => -a,
             });
         }
-        self.results.iter().map(|place| at(&values, *place)).collect()
+        for place in &self.results {
+            values.push(at(&values, *place));
+        }
+        values.drain(..places);
+        values
     }
 
     /// Runs the tape on columns of equal length; one column for each result.

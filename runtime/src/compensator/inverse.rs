@@ -340,6 +340,16 @@ mod tests {
     }
 
     #[test]
+    fn what_a_slide_reaches_by_a_thousandth_is_reached_and_by_a_hundred_thousandth_not() {
+        for lean in [0.0, 0.5] {
+            let columns = |reach| [[reach, 0.0, 0.0], [0.0, 1.0, lean], [0.0, 0.0, 1.0]];
+            let error = [0.3, -0.2, 0.7];
+            assert_close(made(&columns(1e-3), error), error);
+            assert_close(made(&columns(1e-5), error), [0.0, -0.2, 0.7]);
+        }
+    }
+
+    #[test]
     fn what_is_known_is_what_is_found() {
         const LATHE: &[[f64; 3]] = &[[1.0, 0.0, 0.0], [0.0, 0.0, -1.0]];
         const LEANING: &[[f64; 3]] = &[[0.6, -0.8, 0.0], [0.0; 3], [0.0, 0.0, 2.0], [0.1, 0.2, -0.3]];

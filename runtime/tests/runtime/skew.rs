@@ -135,15 +135,22 @@ proptest! {
         let places = |step: f64| (0..angles.len()).map(|row| step * row as f64).collect::<Vec<f64>>();
         let targets = [places(3.0), places(-5.0), angles.clone()];
         let ([u, v, c], answers) = side_by_side(&Turned, &motions, &targets);
+        // One compensator for all cycles keeps nothing of where the slide stood in an earlier one.
+        let target = |row: usize| [targets[0][row], targets[1][row], angles[row]];
+        let (one_after_the_other, _) = with(&Turned, &motions, |one| {
+            let mut command = [f64::NAN; 3];
+            let mut cycle = |row| one.compensate(&at(&target(row)), &mut command).map(|_| command);
+            (0..angles.len()).map(&mut cycle).collect::<Vec<_>>()
+        });
         for (row, angle) in angles.iter().enumerate() {
             // u + v sin(c) = -ex and v cos(c) = -ey: what the slides move, against the error.
             let (du, dv) = (u[row] - targets[0][row], v[row] - targets[1][row]);
             prop_assert!((du + dv * angle.sin() + ex).abs() < 1e-9, "row {} at {}", row, angle);
             prop_assert!((dv * angle.cos() + ey).abs() < 1e-9, "row {} at {}", row, angle);
-            let target = [targets[0][row], targets[1][row], *angle];
             let mut alone = [f64::NAN; 3];
-            let (answer, _) = with(&Turned, &motions, |one| one.compensate(&at(&target), &mut alone));
+            let (answer, _) = with(&Turned, &motions, |one| one.compensate(&at(&target(row)), &mut alone));
             prop_assert_eq!(&answers[row], &answer);
+            prop_assert_eq!(one_after_the_other[row], Ok(alone));
             prop_assert_eq!([u[row], v[row], c[row]].map(f64::to_bits), alone.map(f64::to_bits));
         }
     }

@@ -7,6 +7,9 @@ use std::fmt::Write;
 /// Decimal places: of a millimetre a picometre, so that rounding never shows.
 const PLACES: usize = 9;
 
+/// One of each place in units of the last one, from that on.
+const POWERS: [u32; PLACES] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
+
 /// One, in units of the last place.
 const ONE: u64 = 1_000_000_000;
 
@@ -35,7 +38,7 @@ impl Decimal {
     }
 
     /// Writes from the last digit to the first.
-    fn write(&mut self, mut units: u64, negative: bool) -> &[u8] {
+    fn write(&mut self, units: u64, negative: bool) -> &[u8] {
         let negative = negative && units > 0;
         let mut left = LONGEST;
         let mut put = |byte: u8| {
@@ -44,13 +47,17 @@ impl Decimal {
                 *place = byte;
             }
         };
-        for place in 0.. {
-            if place == PLACES {
-                put(b'.');
-            }
-            put(DIGITS[(units % 10) as usize]);
-            units /= 10;
-            if units == 0 && place >= PLACES {
+        // As many as are known, and none of them waits for the one before.
+        let places = (units % ONE) as u32;
+        for power in POWERS {
+            put(DIGITS[(places / power % 10) as usize]);
+        }
+        put(b'.');
+        let mut whole = units / ONE;
+        loop {
+            put(DIGITS[(whole % 10) as usize]);
+            whole /= 10;
+            if whole == 0 {
                 break;
             }
         }

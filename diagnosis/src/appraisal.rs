@@ -10,7 +10,7 @@ use crate::noise::{self, Noise};
 use crate::observations;
 use crate::outliers;
 use crate::parallel;
-use crate::study::Study;
+use crate::study::{Scene, Study};
 
 /// How often a likelihood is worked out until the noise of a channel is known, at least.
 const ESTIMATES: usize = 20;
@@ -43,12 +43,12 @@ impl Appraisal {
         let work = residuals.len() * known.rows() * ESTIMATES;
         let results = parallel::counted(residuals.len(), work, |channel| {
             let residual = &residuals[channel];
-            let marks = outliers::mark(residual);
+            let observed = &known.channels[channel];
+            let apart = |row: usize, distance: f64| known.returns.apart(residual, row, distance);
+            let marks = outliers::mark(residual, observed.rounding, &apart);
             let counts = |row: usize| fitted[row] && residual[row].is_finite() && !marks[row];
             let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
-            let floor = known.channels[channel].rounding;
-            let estimate = noise::estimate(&known.recording.time, residual, &valid, floor);
-            (marks, estimate)
+            (marks, estimate(known, channel, residual, &valid))
         });
         let mut marks = Vec::new();
         let mut noises = Vec::new();
@@ -75,4 +75,21 @@ impl Appraisal {
             }
         }
     }
+}
+
+/// The noise of a channel, which is what does not come back of its residual, and minus twice the log-likelihood of all of it as
+/// such noise.
+fn estimate(known: &Scene<'_>, channel: usize, residual: &[f64], valid: &[bool]) -> (Noise, f64) {
+    let (time, observed) = (&known.recording.time, &known.channels[channel]);
+    if observed.returning.is_empty() {
+        return noise::estimate(time, residual, valid, observed.rounding);
+    }
+    let (left, factor) = known.returns.beside(&observed.returning, residual, valid);
+    let found = noise::estimate(time, &left, valid, observed.rounding).0;
+    let noise = Noise {
+        white: (factor * found.white).max(observed.rounding),
+        wander: factor * found.wander,
+        ..found
+    };
+    (noise, noise::deviance(time, residual, valid, &noise))
 }

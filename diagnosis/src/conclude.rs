@@ -2,6 +2,7 @@
 //!
 //! In: what the user gives. Out: the verdict, findings in words and numbers, and how far they carry on held-out data.
 
+mod ceiling;
 mod decidable;
 mod findings;
 mod summary;
@@ -20,6 +21,7 @@ use crate::model::{Fitted, Model};
 use crate::pictures;
 use crate::repeats;
 use crate::rest;
+use crate::returns;
 use crate::study::{Scene, Study};
 use crate::unsteady;
 use crate::zeros;
@@ -49,6 +51,7 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
     }
     let units = Units::new(&study);
     let bare = bare_model(&mut study);
+    diagnosis.returns = ceiling::ceiling(&study);
     if let Some(reason) = astray(&study, &bare) {
         return undecidable(diagnosis, &study, reason);
     }
@@ -173,6 +176,7 @@ fn bare_model(study: &mut Study<'_>) -> Model {
     appraisal.mark(study);
     let mut model = fit::refine(study, model, &appraisal.as_white(), &[]).model;
     zeros::free_held_out(study, &mut model);
+    returns::tell(study, &model);
     model
 }
 

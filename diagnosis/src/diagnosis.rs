@@ -22,6 +22,9 @@ pub struct Diagnosis {
     pub before: Residual,
     /// The residual with the findings.
     pub after: Residual,
+    /// What of the calibration's residual comes back, before any name: for each channel the states that predict it in units to
+    /// which they were not fitted.
+    pub returns: Vec<Returning>,
     /// The physics that was left out, in order of share.
     pub findings: Vec<Finding>,
     /// Settings of the instruments that the data demand, the zeros apart.
@@ -109,6 +112,23 @@ pub struct Residual {
     pub rms: f64,
     /// Root mean square over the samples that were held out; `None` where nothing could be.
     pub holdout_rms: Option<f64>,
+    /// `mm`, `rad` or `deg`.
+    pub unit: &'static str,
+}
+
+/// What of one channel some function of states predicts, whatever the function is.
+#[derive(Clone, Debug, Default)]
+pub struct Returning {
+    /// The recording, by number.
+    pub recording: usize,
+    /// The channel's name in it.
+    pub channel: String,
+    /// The states, in words: `position and direction of X`.
+    pub state: String,
+    /// The share of the residual's variance that they predict in units to which they were not fitted.
+    pub share: f64,
+    /// The root mean square of what they leave: no model of these states can leave less.
+    pub left: f64,
     /// `mm`, `rad` or `deg`.
     pub unit: &'static str,
 }

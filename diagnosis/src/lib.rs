@@ -33,6 +33,7 @@ pub mod recording;
 mod repeats;
 pub mod report;
 mod rest;
+mod returns;
 mod search;
 mod side;
 mod states;

@@ -178,6 +178,15 @@ pub(crate) fn unwhiten(steps: &[Step], column: &mut [f64]) {
     }
 }
 
+/// Minus twice the logarithm of the likelihood of a residual under a noise.
+pub(crate) fn deviance(time: &[f64], residual: &[f64], valid: &[bool], noise: &Noise) -> f64 {
+    let steps = Whitening::new(*noise).steps(time, valid);
+    let mut white = residual.to_vec();
+    whiten(&steps, &mut [0.0], &mut white);
+    let each = steps.iter().zip(&white).filter(|(step, _)| step.weight > 0.0);
+    each.map(|(step, white)| white * white - 2.0 * step.weight.ln()).sum()
+}
+
 /// The noise of a channel with the greatest likelihood, and minus twice the logarithm of that.
 ///
 /// `floor` is the least standard deviation of the white part: that of the rounding of the data.
@@ -252,20 +261,36 @@ pub(crate) fn from_differences(residual: &[f64]) -> f64 {
     median / (0.6745 * std::f64::consts::SQRT_2)
 }
 
-/// The standard deviation of the rounding of recorded values: of the coarsest decimal step of which all are multiples, in
-/// mm, deg or in, over the root of twelve. Values that were not rounded give next to nothing.
-pub(crate) fn rounding(values: &[f64]) -> f64 {
-    let known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).take(LOOKED_AT).collect();
+/// The step of the display of recorded values: the coarsest decimal step of which all are multiples, in mm, deg or in. It is never
+/// larger than the smallest difference between two of them, so that readings at whole millimetres are not taken for a display of
+/// millimetres. Values that were not rounded give next to nothing.
+pub(crate) fn display_step(values: &[f64]) -> f64 {
+    let mut known: Vec<f64> =
+        values.iter().copied().filter(|value| value.is_finite()).take(LOOKED_AT).collect();
+    known.sort_by(f64::total_cmp);
     let scale = known.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let least = (1e-12 * scale).max(f64::MIN_POSITIVE.sqrt());
-    let units = [1.0, std::f64::consts::PI / 180.0, 25.4];
+    let differences = known.windows(2).map(|pair| pair[1] - pair[0]).filter(|difference| *difference > least);
+    let smallest = differences.fold(f64::INFINITY, f64::min);
+    let units = [1.0, std::f64::consts::PI / 180.0, std::f64::consts::PI / 180.0 / 3600.0, 25.4];
     let decades = (0..10).map(|decade| 0.1_f64.powi(decade));
     let mut steps = decades.flat_map(|decade| [decade, 0.5 * decade, 0.2 * decade]);
     let multiple = |step: f64| {
-        scale > 0.5 * step && known.iter().all(|value| (value / step - (value / step).round()).abs() < 1e-3)
+        step < ROUNDED * smallest
+            && known.iter().all(|value| (value / step - (value / step).round()).abs() < MULTIPLE)
     };
     let found = steps.find_map(|step| units.iter().map(|unit| step * unit).find(|step| multiple(*step)));
-    found.map_or(least, |step| (step / 12f64.sqrt()).max(least))
+    found.unwrap_or_default().max(least)
+}
+
+/// A difference of one step may come out smaller by the rounding of the numbers themselves.
+const ROUNDED: f64 = 1.01;
+/// How far from a whole multiple of the display's step a reading may lie, in steps: what the conversion of units rounds.
+const MULTIPLE: f64 = 1e-3;
+
+/// The standard deviation of the rounding of recorded values: that of a display, over the root of twelve.
+pub(crate) fn rounding(values: &[f64]) -> f64 {
+    display_step(values) / 12f64.sqrt()
 }
 
 /// How many values are looked at for their rounding.

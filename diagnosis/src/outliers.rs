@@ -1,46 +1,60 @@
-//! Outliers: samples that are no part of any motion.
+//! Outliers: single readings that are no part of any motion.
 //!
-//! In: the residual of a channel. Out: a mark for each sample that stands far from its neighbours on both sides: single
-//! samples or pairs. What lasts longer is something that happened, and stays.
+//! In: the residual of a channel, its display's step, and which rows other passes read at the same place. Out: a mark for each
+//! reading, or two in a row, that stand far from their neighbours *and* from the other passes at their place. What lasts longer is
+//! something that happened, and what comes back is something of the machine: both stay.
 
-/// How many robust standard deviations from its neighbours a sample must stand.
+/// How many robust standard deviations from its neighbours a reading must stand: normal noise of a million rows gives none.
 const FAR: f64 = 8.0;
-/// How many neighbours on each side are looked at.
-const NEIGHBOURS: usize = 4;
+/// How many neighbours on each side are looked at: with two, one or two readings may stand apart from the rest.
+const NEIGHBOURS: usize = 2;
+/// In how many rows around a reading the scatter is looked at: where an axis moves it is another than where it stands.
+const AROUND: usize = 32;
+/// One reading in so many may be an outlier; where more are marked the rule is wrong for these readings, and none is.
+const MOST: usize = 20;
 
-/// Marks the outliers of a residual.
-pub(crate) fn mark(residual: &[f64]) -> Vec<bool> {
-    let distances: Vec<f64> = (0..residual.len()).map(|row| from_neighbours(residual, row)).collect();
-    let mut sizes: Vec<f64> =
-        distances.iter().map(|distance| distance.abs()).filter(|size| size.is_finite()).collect();
-    if sizes.is_empty() {
-        return vec![false; residual.len()];
+/// Marks the outliers of a residual. `step` is that of the display; `apart` says of a row and a distance whether it lies as far
+/// from what other passes read at its place, or nobody else came by.
+pub(crate) fn mark(residual: &[f64], step: f64, apart: &dyn Fn(usize, f64) -> bool) -> Vec<bool> {
+    let none = vec![false; residual.len()];
+    let known: Vec<usize> = (0..residual.len()).filter(|row| residual[*row].is_finite()).collect();
+    let values: Vec<f64> = known.iter().map(|row| residual[*row]).collect();
+    let distances: Vec<f64> = (0..values.len()).map(|at| from_neighbours(&values, at)).collect();
+    let Some(everywhere) = scatter(&distances) else { return none };
+    let least = FAR * everywhere.max(step);
+    let far: Vec<usize> = (0..distances.len())
+        .filter(|at| distances[*at].abs() > least && least > 0.0)
+        .filter(|at| distances[*at].abs() > FAR * around(&distances, *at))
+        .filter(|at| apart(known[*at], distances[*at]))
+        .collect();
+    if far.len() * MOST > known.len() {
+        return none;
     }
-    let middle = sizes.len() / 2;
-    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
-    let limit = FAR * *median / 0.6745;
-    distances.iter().map(|distance| limit > 0.0 && distance.abs() > limit).collect()
+    let mut marks = none;
+    far.into_iter().for_each(|at| marks[known[at]] = true);
+    marks
 }
 
-/// A sample minus the nearer of the medians before and after it.
-fn from_neighbours(residual: &[f64], row: usize) -> f64 {
-    let before = median(residual[..row].iter().rev());
-    let after = median(residual[row + 1..].iter());
-    let value = residual[row];
-    match (before, after) {
-        (Some(before), Some(after)) if (value - before).signum() == (value - after).signum() => {
-            if (value - before).abs() < (value - after).abs() { value - before } else { value - after }
-        }
-        (Some(_), Some(_)) => 0.0,
-        (Some(one), None) | (None, Some(one)) => value - one,
-        (None, None) => 0.0,
-    }
-}
-
-fn median<'v>(values: impl Iterator<Item = &'v f64>) -> Option<f64> {
-    let mut few: Vec<f64> = values.take(NEIGHBOURS).copied().filter(|value| value.is_finite()).collect();
+/// A reading minus the median of itself and its neighbours: one or two that stand apart are no median of five.
+fn from_neighbours(values: &[f64], at: usize) -> f64 {
+    let from = at.saturating_sub(NEIGHBOURS);
+    let to = (at + NEIGHBOURS + 1).min(values.len());
+    let mut few = values[from..to].to_vec();
     few.sort_by(f64::total_cmp);
-    few.get(few.len() / 2).copied()
+    values[at] - few[few.len() / 2]
+}
+
+/// The scatter of the readings around one, itself left out.
+fn around(distances: &[f64], at: usize) -> f64 {
+    let half = AROUND / 2;
+    let (from, to) = (at.saturating_sub(half), (at + half + 1).min(distances.len()));
+    scatter(&[&distances[from..at], &distances[at + 1..to]].concat()).unwrap_or_default()
+}
+
+/// The standard deviation of normal numbers of the same median size.
+fn scatter(distances: &[f64]) -> Option<f64> {
+    let mut sizes: Vec<f64> = distances.iter().map(|distance| distance.abs()).collect();
+    crate::noise::middle(&mut sizes).map(|median| median / 0.6745)
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use crate::travel::Travel;
 /// The fewest cycles of a vibration in the time that was observed.
 pub(crate) const CYCLES: f64 = 6.0;
 /// The fewest periods of a cyclic error in the travel.
-const PERIODS: f64 = 1.6;
+pub(crate) const PERIODS: f64 = 1.6;
 /// A decay may last this share of the time from reversal to reversal.
 const DECAY: f64 = 0.3;
 /// A play may be taken up over this share of the travel.
@@ -26,6 +26,8 @@ pub(crate) fn range(study: &Study<'_>, travels: &[Travel], shape: &Shape) -> (f6
     match shape {
         Shape::Backlash { .. } => (travel.step.min(WIND_UP * travel.range()), WIND_UP * travel.range()),
         Shape::ReversalSpike { .. } => (0.3 * step, DECAY * travel.between),
+        // A part of a turn is a part of a turn: it is not fitted.
+        Shape::Cyclic { axis, period } if goes_round(study, *axis, &travel) => (*period, *period),
         Shape::Cyclic { .. } => (2.0 * travel.step, travel.range() / PERIODS),
         Shape::Vibration { .. } => (CYCLES / observed, 0.5 / step),
         Shape::Drift { .. } => (5.0 * step, SETTLING * observed),
@@ -33,6 +35,15 @@ pub(crate) fn range(study: &Study<'_>, travels: &[Travel], shape: &Shape) -> (f6
         _ => (f64::NEG_INFINITY, f64::INFINITY),
     }
 }
+
+/// Whether an axis is a rotary one that has gone round. It comes back to where it was: its errors repeat in whole parts of a turn,
+/// and no other period is possible.
+pub(crate) fn goes_round(study: &Study<'_>, axis: usize, travel: &Travel) -> bool {
+    study.equations.axes[axis].rotary && travel.range() > ROUND * std::f64::consts::TAU
+}
+
+/// The share of a turn from which on a rotary axis has gone round, and parts of a turn are told apart.
+const ROUND: f64 = 0.95;
 
 /// What stands for a shape whose parameter has run to the end of its range, beyond which it is not looked for: a step for a spike
 /// that fades over so much of the way to the next reversal, and play that is taken up at once for what is taken up between

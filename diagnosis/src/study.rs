@@ -10,10 +10,11 @@ use model_dsl::calibration::{Calibration, SensorReadings};
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
 
-use crate::course::LastCourse;
+use crate::course::{Course, LastCourse};
 use crate::model::{Effect, Fitted, Place};
 use crate::noise;
 use crate::recording::{Instrument, Recording};
+use crate::returns::{Return, Returns};
 use crate::side::Side;
 use crate::states::{Given, Shared, behind_corners, unseen_turns};
 use crate::terms;
@@ -53,6 +54,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) leans: [bool; 3],
     /// The course that was worked out last.
     pub(crate) last_course: LastCourse,
+    /// What may come back in it.
+    pub(crate) returns: Returns,
 }
 
 /// One observed quantity: a number with a direction in each row.
@@ -67,6 +70,8 @@ pub(crate) struct Channel<'a> {
     pub(crate) outliers: Vec<bool>,
     /// The standard deviation of the rounding of its values.
     pub(crate) rounding: f64,
+    /// The states of which functions predict what the calibration leaves of it.
+    pub(crate) returning: Vec<Return>,
 }
 
 /// What a channel observes.
@@ -130,7 +135,12 @@ impl<'a> Study<'a> {
             .map(|recording| Scene::new(recording, equations, calibration, &sensors, &loads, &interpreter))
             .collect();
         let crossings = vec![0.0; own.len()];
-        Self { equations, interpreter, sensors, loads, scenes, known, own, crossings }
+        let mut study = Self { equations, interpreter, sensors, loads, scenes, known, own, crossings };
+        for scene in 0..study.scenes.len() {
+            let course = Course::new(&study, scene, &[]);
+            study.scenes[scene].returns = Returns::new(&study, scene, &course.shown);
+        }
+        study
     }
 
     /// How many rows all recordings have together.
@@ -231,6 +241,7 @@ impl<'a> Scene<'a> {
         Self {
             at_rest: false,
             last_course: LastCourse::default(),
+            returns: Returns::default(),
             observed: observed(&given),
             corners: corners(recording, &given),
             leans: leans(recording, &given.programmed, interpreter),
@@ -375,7 +386,8 @@ fn channels<'a>(recording: &'a Recording, equations: &Equations) -> Vec<Channel<
     let mut channels = Vec::new();
     let mut add = |name: String, kind: Kind, values: &'a [f64]| {
         let rounding = noise::rounding(values);
-        channels.push(Channel { name, kind, values, outliers: vec![false; rows], rounding });
+        let (outliers, returning) = (vec![false; rows], Vec::new());
+        channels.push(Channel { name, kind, values, outliers, rounding, returning });
     };
     for (direction, values) in recording.measured.iter().enumerate() {
         if let Some(values) = values {

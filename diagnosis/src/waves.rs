@@ -2,13 +2,13 @@
 //!
 //! In: the residual of every channel under the present model, and its noise. Out: the most promising `cyclic` and
 //! `vibration` effects, with how many independent waves were looked at. The residual is weighted by the inverse of its
-//! noise, sorted into fine bins of position or time, and Fourier transformed at once: each bin of the spectrum is then
-//! what generalised least squares would gain from that wave.
+//! noise, sorted into fine bins of position or time, and Fourier transformed at once: `spectrum` tells what each wave would
+//! gain.
+
+mod spectrum;
 
 use std::ops::Range;
 use std::sync::Arc;
-
-use realfft::RealFftPlanner;
 
 use crate::course::Course;
 use crate::kinship;
@@ -16,11 +16,12 @@ use crate::model::{Effect, Model, Place};
 use crate::noise::{Noise, Whitening, unwhiten, whiten};
 use crate::observations::{Frame, each_frame, residuals};
 use crate::parallel;
-use crate::ranges::{CYCLES, shortest_step};
+use crate::ranges::{CYCLES, PERIODS, goes_round, shortest_step};
 use crate::side::Side;
 use crate::study::Study;
 use crate::terms::Shape;
 use crate::travel::Travel;
+use spectrum::{Top, tops};
 
 /// A wave that might be there.
 #[derive(Clone, Debug)]
@@ -97,10 +98,24 @@ pub(crate) fn places(
 /// What a channel sees of each motion, summed up for waves: gain times weighted residual.
 struct Source {
     place: WavePlace,
-    /// For each scene a column.
+    /// For each scene a column: gain times weighted residual, and squared gain times weight.
     products: Vec<Vec<f64>>,
-    /// The mean of the squared gain times the squared weight of the noise, over all samples.
-    strength: f64,
+    weights: Vec<Vec<f64>>,
+}
+
+impl Source {
+    fn seen(&self) -> bool {
+        self.weights.iter().flatten().any(|weight| *weight > 0.0)
+    }
+
+    /// What a wave of each frequency would gain at these places, scene by scene.
+    fn spectrum(&self, places: &[&[f64]], low: f64, range: f64, shortest: f64) -> Vec<spectrum::Line> {
+        let columns = self.products.iter().zip(&self.weights).zip(places);
+        let rows: Vec<spectrum::Rows<'_>> = columns
+            .map(|((weighted, weights), places)| spectrum::Rows { places, weighted, weights })
+            .collect();
+        spectrum::spectrum(&rows, low, range, shortest)
+    }
 }
 
 /// The weighted residuals of all channels of a scene under a model.
@@ -183,10 +198,10 @@ fn along(
     let (low, range) = (travels[axis].low, travels[axis].range());
     let shortest = 2.2 * travels[axis].step;
     (shortest < range / 2.0).then_some(())?;
-    let found = best(spectrum(&source.products, &positions, low, range, shortest), 2.0 / range, OF_A_PLACE);
-    let peak = |(frequency, power): (f64, f64)| Peak {
-        effect: effect(source, Shape::Cyclic { axis, period: 1.0 / frequency }),
-        gain: power / source.strength,
+    let found = tops(&source.spectrum(&positions, low, range, shortest), PERIODS / range, OF_A_PLACE);
+    let peak = |top: Top| {
+        let shape = Shape::Cyclic { axis, period: turned(study, axis, &travels[axis], 1.0 / top.frequency) };
+        Peak { effect: effect(source, shape), gain: top.local }
     };
     Some(LookedAt { peaks: found.into_iter().map(peak).collect(), tried: range / shortest })
 }
@@ -198,13 +213,18 @@ fn in_time(study: &Study<'_>, source: &Source, courses: &[Arc<Course>]) -> Optio
     let step = shortest_step(study);
     (source.place.vibration && span > 10.0 * step).then_some(())?;
     let observed = study.scenes.iter().map(|scene| scene.observed).fold(0.0, f64::max);
-    let found =
-        best(spectrum(&source.products, &times, 0.0, span, 2.0 * step), CYCLES / observed, OF_A_PLACE);
-    let peak = |(frequency, power): (f64, f64)| Peak {
-        effect: effect(source, Shape::Vibration { frequency }),
-        gain: power / source.strength,
+    let found = tops(&source.spectrum(&times, 0.0, span, 2.0 * step), CYCLES / observed, OF_A_PLACE);
+    let peak = |top: Top| Peak {
+        effect: effect(source, Shape::Vibration { frequency: top.frequency }),
+        gain: top.local,
     };
     Some(LookedAt { peaks: found.into_iter().map(peak).collect(), tried: span / (2.0 * step) })
+}
+
+/// A period along an axis; of one that goes round the nearest whole part of a turn.
+fn turned(study: &Study<'_>, axis: usize, travel: &Travel, period: f64) -> f64 {
+    let turn = std::f64::consts::TAU;
+    if goes_round(study, axis, travel) { turn / (turn / period).round().max(1.0) } else { period }
 }
 
 fn effect(source: &Source, shape: Shape) -> Effect {
@@ -220,10 +240,11 @@ fn sources(
     places: &[WavePlace],
 ) -> Vec<Source> {
     let mut sources: Vec<Source> =
-        places.iter().map(|place| Source { place: *place, products: Vec::new(), strength: 0.0 }).collect();
+        places.iter().map(|place| Source { place: *place, products: Vec::new(), weights: Vec::new() }).collect();
     for (scene, course) in courses.iter().enumerate() {
         for source in &mut sources {
             source.products.push(Vec::with_capacity(study.scenes[scene].rows()));
+            source.weights.push(Vec::with_capacity(study.scenes[scene].rows()));
         }
         let sides: Vec<Side> = [Side::After, Side::Drive]
             .into_iter()
@@ -242,8 +263,7 @@ fn sources(
             }
         });
     }
-    sources.retain(|source| source.strength > 0.0);
-    sources.iter_mut().for_each(|source| source.strength *= 0.5);
+    sources.retain(Source::seen);
     sources
 }
 
@@ -260,14 +280,20 @@ fn add_sources(
 ) {
     let work = rows.len() * sources.len() * gains.len();
     parallel::each(sources, work, |source| {
-        let Some(target) = source.products.last_mut().filter(|_| source.place.side == side) else { return };
-        target.resize(rows.end, 0.0);
+        if source.place.side != side {
+            return;
+        }
+        let (Some(products), Some(weights)) = (source.products.last_mut(), source.weights.last_mut()) else {
+            return;
+        };
+        products.resize(rows.end, 0.0);
+        weights.resize(rows.end, 0.0);
         for (gains, residual) in gains.iter().zip(residuals) {
             let Some(gain) = &gains[source.place.motion] else { continue };
             for (row, gain) in rows.clone().zip(gain) {
                 if residual.valid[row] && gain.is_finite() {
-                    target[row] += gain * residual.weighted[row];
-                    source.strength += gain * gain * residual.weight;
+                    products[row] += gain * residual.weighted[row];
+                    weights[row] += gain * gain * residual.weight;
                 }
             }
         }
@@ -281,78 +307,3 @@ fn mean_weight(white: &[f64], weighted: &[f64], valid: &[bool]) -> f64 {
         counted.fold((0.0, 0.0), |(white, weighted), ((a, b), _)| (white + a * a, weighted + b * b));
     if white > 0.0 { weighted / white } else { 0.0 }
 }
-
-/// Squared magnitude of the Fourier sum of weights at places between `low` and `low + range`, from frequency 0 by equal
-/// steps up to that of the shortest period: pairs of frequency and power.
-fn spectrum(
-    weights: &[Vec<f64>],
-    places: &[&[f64]],
-    low: f64,
-    range: f64,
-    shortest: f64,
-) -> impl Iterator<Item = (f64, f64)> {
-    // Three bins for the shortest period, and the range padded to twice its length.
-    let size = transform_size(2.0 * range / shortest * 3.0);
-    let bin = 2.0 * range / crate::number(size);
-    let mut bins = vec![0.0; size];
-    for (weights, places) in weights.iter().zip(places) {
-        for (weight, place) in weights.iter().zip(*places) {
-            if let Some(target) = crate::index((place - low) / bin).and_then(|index| bins.get_mut(index)) {
-                *target += weight;
-            }
-        }
-    }
-    let transform = RealFftPlanner::new().plan_fft_forward(size);
-    let mut lines = transform.make_output_vec();
-    if transform.process(&mut bins, &mut lines).is_err() {
-        // It fails for lengths alone that are not its own.
-        lines.clear();
-    }
-    let step = 1.0 / (2.0 * range);
-    let frequencies = (0..lines.len()).map(move |number| crate::number(number) * step);
-    frequencies
-        .zip(lines)
-        .take_while(move |(frequency, _)| *frequency <= 1.0 / shortest)
-        .map(|(frequency, line)| (frequency, line.norm_sqr()))
-}
-
-/// The most bins of a transform.
-const MOST_BINS: usize = 1 << 23;
-
-/// A length that transforms fast, at least `wanted` where that is not too long: a power of two, or three quarters or
-/// five eighths of one.
-fn transform_size(wanted: f64) -> usize {
-    let sizes = (8..=23).map(|power| 1_usize << power).flat_map(|size| [size / 8 * 5, size / 4 * 3, size]);
-    sizes.into_iter().find(|size| crate::number(*size) >= wanted).unwrap_or(MOST_BINS)
-}
-
-/// The highest peaks above a frequency, measured against the spectrum around them, so that a slope is no peak.
-fn best(spectrum: impl Iterator<Item = (f64, f64)>, above: f64, count: usize) -> Vec<(f64, f64)> {
-    let mut peaks: Vec<(f64, f64)> = Vec::new();
-    let mut before: [Option<(f64, f64)>; 2] = [None, None];
-    for last in spectrum {
-        if let [Some(first), Some(middle)] = before
-            && middle.0 >= above
-            && middle.1 >= first.1
-            && middle.1 > last.1
-        {
-            // Of equal ones the first.
-            let place = peaks.partition_point(|peak| peak.1.total_cmp(&middle.1).is_ge());
-            peaks.insert(place, (vertex(&[first, middle, last]), middle.1));
-            peaks.truncate(count);
-        }
-        before = [before[1], Some(last)];
-    }
-    peaks
-}
-
-/// The place of the top of the parabola through three points of the spectrum.
-fn vertex(three: &[(f64, f64)]) -> f64 {
-    let (left, middle, right) = (three[0].1.sqrt(), three[1].1.sqrt(), three[2].1.sqrt());
-    let curvature = left - 2.0 * middle + right;
-    let shift = if curvature < 0.0 { 0.5 * (left - right) / curvature } else { 0.0 };
-    three[1].0 + shift * (three[1].0 - three[0].0)
-}
-
-#[cfg(test)]
-mod tests;

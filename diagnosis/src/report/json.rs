@@ -8,7 +8,7 @@ use super::figure::change;
 use super::told;
 use crate::diagnosis::{
     Alternative, Diagnosis, Estimate, Evidence, Finding, Interval, IntervalOf, NoiseSummary, Parameter,
-    ParameterValue, Repeatability, Residual, SettingFinding, Summary, Unexplained,
+    ParameterValue, Repeatability, Residual, Returning, SettingFinding, Summary, Unexplained,
 };
 
 /// The diagnosis as one JSON object with the schema `abbe-diagnosis/1`.
@@ -27,6 +27,7 @@ struct ReportJson<'d> {
     noise: NoiseJson,
     before: ResidualJson,
     after: ResidualJson,
+    returns: Vec<ReturnsJson<'d>>,
     findings: Vec<FindingJson<'d>>,
     instrument: Vec<SettingJson<'d>>,
     unexplained: Option<UnexplainedJson<'d>>,
@@ -49,6 +50,22 @@ struct NoiseJson {
 struct ResidualJson {
     rms: f64,
     holdout_rms: Option<f64>,
+    unit: &'static str,
+}
+
+#[derive(Serialize)]
+struct ReturnsJson<'d> {
+    channel: &'d str,
+    state: &'d str,
+    share: f64,
+    left: AmountJson,
+    recording: Option<&'d str>,
+}
+
+/// A number that was not fitted, with its unit.
+#[derive(Serialize)]
+struct AmountJson {
+    value: f64,
     unit: &'static str,
 }
 
@@ -208,6 +225,7 @@ fn report(diagnosis: &Diagnosis) -> ReportJson<'_> {
         noise: noise(&diagnosis.noise),
         before: residual(&diagnosis.before),
         after: residual(&diagnosis.after),
+        returns: diagnosis.returns.iter().map(|one| returning(one, diagnosis)).collect(),
         findings: diagnosis.findings.iter().map(finding).collect(),
         instrument: diagnosis.settings.iter().map(|one| setting(one, diagnosis)).collect(),
         unexplained: diagnosis.unexplained.as_ref().map(unexplained),
@@ -225,6 +243,16 @@ fn noise(noise: &NoiseSummary) -> NoiseJson {
 fn residual(residual: &Residual) -> ResidualJson {
     let &Residual { rms, holdout_rms, unit } = residual;
     ResidualJson { rms, holdout_rms, unit }
+}
+
+fn returning<'d>(one: &'d Returning, diagnosis: &'d Diagnosis) -> ReturnsJson<'d> {
+    ReturnsJson {
+        channel: &one.channel,
+        state: &one.state,
+        share: one.share,
+        left: AmountJson { value: one.left, unit: one.unit },
+        recording: diagnosis.recordings.get(one.recording).map(|recording| recording.file.as_str()),
+    }
 }
 
 fn finding(finding: &Finding) -> FindingJson<'_> {

@@ -1,0 +1,162 @@
+//! The spectrum of a residual along an axis or in time: what a wave of each frequency would take from it.
+//!
+//! In: for each row its place, its weighted residual and its weight. Out: for each frequency what least squares gains from a sine
+//! and a cosine beside a free mean, and the highest peaks: measured against the spectrum around each of them, since that is
+//! the noise of that frequency, and not against the one number that all rows share.
+//!
+//! The sums are Fourier transforms of fine bins, of the weighted residual and of the weights: the least-squares spectrum of Lomb,
+//! Scargle, Zechmeister and Kuerster by the way of Press and Rybicki. Rows at which an axis rests weigh at one place only.
+
+use realfft::RealFftPlanner;
+use realfft::num_complex::Complex;
+
+/// Rows of one recording.
+pub(super) struct Rows<'r> {
+    pub(super) places: &'r [f64],
+    /// What each row adds to the normal equations: residual times weight, and weight.
+    pub(super) weighted: &'r [f64],
+    pub(super) weights: &'r [f64],
+}
+
+/// A frequency, and what a wave of it gains.
+pub(super) type Line = (f64, f64);
+
+/// The spectrum at places between `low` and `low + range`, from frequency 0 by equal steps up to that of the shortest period.
+pub(super) fn spectrum(rows: &[Rows<'_>], low: f64, range: f64, shortest: f64) -> Vec<Line> {
+    // Three bins for the shortest period, and the range padded to twice its length.
+    let size = transform_size(2.0 * range / shortest * 3.0);
+    let bin = 2.0 * range / crate::number(size);
+    let transformed = |column: fn(&Rows<'_>, usize) -> f64| {
+        let mut bins = vec![0.0; size];
+        for rows in rows {
+            for (row, place) in rows.places.iter().enumerate() {
+                if let Some(target) = crate::index((place - low) / bin).and_then(|index| bins.get_mut(index)) {
+                    *target += column(rows, row);
+                }
+            }
+        }
+        fourier(bins)
+    };
+    let residual = transformed(|rows, row| rows.weighted.get(row).copied().unwrap_or_default());
+    let weights = transformed(|rows, row| rows.weights.get(row).copied().unwrap_or_default());
+    let step = 1.0 / (2.0 * range);
+    (0..residual.len())
+        .map(|number| (crate::number(number) * step, gain(&residual, &weights, number)))
+        .take_while(|(frequency, _)| *frequency <= 1.0 / shortest)
+        .collect()
+}
+
+/// The normal equations of sine and cosine beside a free mean must be so far from singular: where all rows see the same phase
+/// there is no wave to tell.
+const SINGULAR: f64 = 1e-3;
+
+/// What sine and cosine of one frequency gain beside a free mean.
+fn gain(residual: &[Complex<f64>], weights: &[Complex<f64>], number: usize) -> f64 {
+    let total = weights[0].re;
+    if total <= 0.0 {
+        return 0.0;
+    }
+    let once = weights[number];
+    let twice = weights.get(2 * number).copied().unwrap_or_default();
+    let mean = residual[0].re / total;
+    let cosine = residual[number].re - mean * once.re;
+    let sine = residual[number].im - mean * once.im;
+    let cosines = 0.5 * (total + twice.re) - once.re * once.re / total;
+    let sines = 0.5 * (total - twice.re) - once.im * once.im / total;
+    let mixed = 0.5 * twice.im - once.re * once.im / total;
+    let determinant = cosines * sines - mixed * mixed;
+    if determinant < SINGULAR * total * total {
+        return 0.0;
+    }
+    (sines * cosine * cosine + cosines * sine * sine - 2.0 * mixed * cosine * sine) / determinant
+}
+
+fn fourier(mut bins: Vec<f64>) -> Vec<Complex<f64>> {
+    let transform = RealFftPlanner::new().plan_fft_forward(bins.len());
+    let mut lines = transform.make_output_vec();
+    if transform.process(&mut bins, &mut lines).is_err() {
+        // It fails for lengths alone that are not its own.
+        lines.clear();
+    }
+    lines
+}
+
+/// The most bins of a transform.
+const MOST_BINS: usize = 1 << 23;
+
+/// A length that transforms fast, at least `wanted` where that is not too long: a power of two, or three quarters or
+/// five eighths of one.
+fn transform_size(wanted: f64) -> usize {
+    let sizes = (8..=23).map(|power| 1_usize << power).flat_map(|size| [size / 8 * 5, size / 4 * 3, size]);
+    sizes.into_iter().find(|size| crate::number(*size) >= wanted).unwrap_or(MOST_BINS)
+}
+
+/// A peak: its frequency, what a wave gains there, and what it would gain were the noise of all frequencies that around it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Top {
+    pub(super) frequency: f64,
+    pub(super) gain: f64,
+    pub(super) local: f64,
+}
+
+/// The highest peaks above a frequency: half of them by what they gain, half by what they gain at their own noise.
+pub(super) fn tops(spectrum: &[Line], above: f64, count: usize) -> Vec<Top> {
+    let level = levels(spectrum);
+    let mut all: Vec<Top> = (1..spectrum.len().saturating_sub(1))
+        .filter(|at| spectrum[*at].0 >= above)
+        .filter(|at| spectrum[*at].1 >= spectrum[at - 1].1 && spectrum[*at].1 > spectrum[at + 1].1)
+        .map(|at| {
+            let gain = spectrum[at].1;
+            // The median of a sum of two squares is that of an exponential number: ln 2 times its mean, which is 2.
+            let local = gain * MEDIAN / level[at].max(f64::MIN_POSITIVE);
+            Top { frequency: vertex(&spectrum[at - 1..=at + 1]), gain, local }
+        })
+        .collect();
+    all.sort_by(|a, b| b.local.total_cmp(&a.local));
+    let mut chosen: Vec<Top> = all.iter().take(count).copied().collect();
+    all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    for top in all.into_iter().take(count) {
+        if !chosen.contains(&top) {
+            chosen.push(top);
+        }
+    }
+    chosen
+}
+
+/// The median of what a wave gains from white noise of unit variance: 2 ln 2.
+const MEDIAN: f64 = 2.0 * std::f64::consts::LN_2;
+/// The spectrum around a line: this share of its frequency to either side, and so many lines at least. Fewer are a median of
+/// chance, more are another noise.
+const SHARE: f64 = 0.3;
+const LINES: usize = 24;
+
+/// The median of the spectrum around each line.
+fn levels(spectrum: &[Line]) -> Vec<f64> {
+    let count = spectrum.len();
+    let mut levels = vec![0.0; count];
+    let mut at = 0;
+    while at < count {
+        let half = crate::index(SHARE * crate::number(at)).unwrap_or_default().max(LINES);
+        let mut around: Vec<f64> = spectrum[at.saturating_sub(half).max(1).min(count - 1)..(at + half + 1).min(count)]
+            .iter()
+            .map(|line| line.1)
+            .collect();
+        let level = crate::noise::middle(&mut around).unwrap_or_default();
+        // Windows overlap for the most part: one serves for its middle quarter.
+        let next = (at + (half / 4).max(1)).min(count);
+        levels[at..next].fill(level);
+        at = next;
+    }
+    levels
+}
+
+/// The place of the top of the parabola through three points of the spectrum.
+fn vertex(three: &[Line]) -> f64 {
+    let (left, middle, right) = (three[0].1.sqrt(), three[1].1.sqrt(), three[2].1.sqrt());
+    let curvature = left - 2.0 * middle + right;
+    let shift = if curvature < 0.0 { 0.5 * (left - right) / curvature } else { 0.0 };
+    three[1].0 + shift * (three[1].0 - three[0].0)
+}
+
+#[cfg(test)]
+mod tests;

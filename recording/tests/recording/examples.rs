@@ -76,6 +76,8 @@ fn all_are_read_without_findings() {
 fn as_the_library_reads(path: &Path, column: &str, unit: &str) -> Vec<f64> {
     let factor = match unit {
         "deg" => std::f64::consts::PI / 180.0,
+        "arcsec" => std::f64::consts::PI / 180.0 / 3600.0,
+        "um" => 1e-3,
         _ => 1.0,
     };
     let mut reader = csv::Reader::from_path(path.with_file_name("data.csv")).unwrap();

@@ -3,11 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
-use diagnosis::recording::{self, Header, Recording};
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::source::{SourceFile, Span, Spanned};
 use model_dsl::yaml;
+use recording::{self, Header, Recording};
 
 use crate::calibrated::{self, Calibrated};
 use crate::failure::Failure;

@@ -7,11 +7,11 @@
 use std::fs;
 use std::path::PathBuf;
 
-use diagnosis::recording::{AxisChannels, Instrument, Named, Recording};
 use model_dsl::Compiled;
 use model_dsl::calibration::{self, CalibratedTerm, Calibration};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
+use recording::{AxisChannels, Instrument, Named, Recording};
 use serde_json::Value;
 use simulation::noise::Source;
 use simulation::{Column, Commands, Plant};

@@ -41,7 +41,15 @@ fn listed() -> BTreeMap<String, String> {
 /// The codes in the code of the program.
 fn emitted() -> BTreeSet<String> {
     let mut codes = BTreeSet::new();
-    for folder in ["model-dsl/src", "simulation/src", "diagnosis/src", "update/src", "exchange/src", "src"] {
+    for folder in [
+        "model-dsl/src",
+        "simulation/src",
+        "recording/src",
+        "diagnosis/src",
+        "update/src",
+        "exchange/src",
+        "src",
+    ] {
         for path in rust_files(&root().join(folder)) {
             let text = fs::read_to_string(&path).unwrap();
             // What stands in tests is no finding of the program.

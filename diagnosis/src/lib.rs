@@ -29,7 +29,6 @@ mod parameters;
 pub mod pictures;
 mod position_loop;
 mod ranges;
-pub mod recording;
 mod repeats;
 pub mod report;
 mod rest;
@@ -53,6 +52,8 @@ use model_dsl::calibration::Calibration;
 use model_dsl::equations::Equations;
 
 use diagnosis::Diagnosis;
+// Recordings are a crate of their own; the modules know it by this name.
+pub(crate) use ::recording;
 use recording::Recording;
 
 pub use terms::meaning;

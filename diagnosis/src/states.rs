@@ -209,10 +209,9 @@ impl Standing {
     }
 }
 
-/// The position that stands for an axis: programmed, or the drive's where nothing was programmed; 0 where neither is known.
+/// The position that stands for an axis, for all to share.
 pub(crate) fn nominal_position(axis: &AxisChannels, rows: usize) -> Shared {
-    let known = axis.command.as_ref().or(axis.actual.as_ref()).or(axis.measured.as_ref());
-    known.map_or_else(|| vec![0.0; rows].into(), |known| known.as_slice().into())
+    axis.position_or_zero(rows).into()
 }
 
 fn axis_states(

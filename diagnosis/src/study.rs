@@ -278,13 +278,7 @@ impl<'a> Scene<'a> {
 
     /// The runs in order of their first rows.
     pub(crate) fn run_numbers(&self) -> Vec<i64> {
-        let mut numbers: Vec<i64> = Vec::new();
-        for (_, run) in runs(&self.recording.run) {
-            if !numbers.contains(&run) {
-                numbers.push(run);
-            }
-        }
-        numbers
+        self.recording.run_numbers()
     }
 }
 
@@ -431,7 +425,7 @@ const HELD_OUT_EVERY: usize = 4;
 
 /// Runs cut into blocks; those of held-out runs, or else one of every four blocks, are held out.
 fn blocks(recording: &Recording) -> Vec<Block> {
-    let runs = runs(&recording.run);
+    let runs = recording.runs();
     let several = runs.len() > 1;
     let pieces = BLOCKS.div_ceil(runs.len().max(1)).max(2);
     let mut blocks = Vec::new();
@@ -455,16 +449,4 @@ fn blocks(recording: &Recording) -> Vec<Block> {
         }
     }
     blocks
-}
-
-/// The stretches of rows that belong to one run each.
-pub(crate) fn runs(run: &[i64]) -> Vec<(Range<usize>, i64)> {
-    let mut runs: Vec<(Range<usize>, i64)> = Vec::new();
-    for (row, run) in run.iter().enumerate() {
-        match runs.last_mut() {
-            Some((rows, last)) if last == run => rows.end = row + 1,
-            _ => runs.push((row..row + 1, *run)),
-        }
-    }
-    runs
 }

@@ -66,7 +66,7 @@ impl PathTrace {
 
 /// All circular traces of a recording.
 pub(crate) fn traces(course: &Course<'_>) -> Vec<PathTrace> {
-    course.blocks().into_iter().flat_map(|block| of_block(course, block)).collect()
+    course.recording.runs().into_iter().flat_map(|(block, _)| of_block(course, block)).collect()
 }
 
 fn of_block(course: &Course<'_>, block: Range<usize>) -> Vec<PathTrace> {

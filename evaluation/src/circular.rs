@@ -19,7 +19,7 @@ mod reader;
 
 use std::f64::consts::TAU;
 
-use diagnosis::recording::Instrument;
+use recording::Instrument;
 
 use crate::NotGiven;
 use crate::circles::PathTrace;

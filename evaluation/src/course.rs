@@ -3,11 +3,9 @@
 //! In: a recording and the equations of its machine. Out: positions of the axes in every row, the nominal tool tip, and what
 //! was read of it.
 
-use std::ops::Range;
-
-use diagnosis::recording::Recording;
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
+use recording::Recording;
 
 use crate::Inputs;
 use crate::figure::Sensor;
@@ -23,7 +21,8 @@ const LEAST: f64 = 1e-9;
 pub(crate) struct Course<'c> {
     pub(crate) equations: &'c Equations,
     pub(crate) recording: &'c Recording,
-    /// The programmed position of every axis; zero for an axis without a command.
+    /// The programmed position of every axis; zero for an axis without a command. A deviation counts from a target, and only a
+    /// command is one: what a drive or the instrument has would bring its noise into the places that are told apart.
     pub(crate) positions: Vec<Vec<f64>>,
     /// Which axes have a command.
     pub(crate) commanded: Vec<bool>,
@@ -73,20 +72,6 @@ impl<'c> Course<'c> {
     /// Whether all programmed positions of a row are there.
     pub(crate) fn complete(&self, row: usize) -> bool {
         self.positions.iter().all(|column| cell(column, row).is_finite())
-    }
-
-    /// The blocks of rows of one run each, in order.
-    pub(crate) fn blocks(&self) -> Vec<Range<usize>> {
-        let runs = &self.recording.run;
-        let mut blocks = Vec::new();
-        let mut start = 0;
-        for row in 1..=runs.len() {
-            if runs.get(row) != runs.get(start) {
-                blocks.push(start..row);
-                start = row;
-            }
-        }
-        blocks
     }
 
     pub(crate) fn letter(&self, axis: usize) -> &str {

@@ -1,6 +1,6 @@
 //! Evaluation: the field's standard figures, from a recording.
 //!
-//! In: the equations of a machine and a recording of it ([`diagnosis::recording`]). Out: an [`Evaluation`]: positioning of
+//! In: the equations of a machine and a recording of it ([`recording`]). Out: an [`Evaluation`]: positioning of
 //! linear and rotary axes and of diagonals from stations approached from both sides (ISO 230-2), and circular, bidirectional
 //! circular and radial deviations (ISO 230-4); each figure with what it rests on, or why the recording cannot give it.
 //!
@@ -25,9 +25,9 @@ mod positioning;
 pub mod report;
 mod stations;
 
-use diagnosis::recording::{Instrument, Recording};
 use model_dsl::calibration::Calibration;
 use model_dsl::equations::Equations;
+use recording::{Instrument, Recording};
 
 pub use circular::{Circle, Pair, Point, Sense, Trace, TraceFigures};
 pub use diagonals::Diagonals;

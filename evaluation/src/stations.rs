@@ -86,8 +86,8 @@ pub(crate) fn travelled(course: &Course<'_>, circles: &[PathTrace]) -> Travelled
     let straight = |block: &Range<usize>| {
         !circles.iter().any(|trace| trace.rows.first().is_some_and(|row| block.contains(row)))
     };
-    let mut runs: Vec<Vec<Stop>> =
-        course.blocks().into_iter().filter(straight).map(|block| stops(course, block)).collect();
+    let blocks = course.recording.runs().into_iter().map(|(block, _)| block);
+    let mut runs: Vec<Vec<Stop>> = blocks.filter(straight).map(|block| stops(course, block)).collect();
     cycle::complete(course, &mut runs);
     for stops in runs {
         for piece in pieces(course, &stops) {

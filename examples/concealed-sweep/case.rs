@@ -3,12 +3,12 @@
 
 use std::sync::Arc;
 
-use diagnosis::recording::{Recording, read_header};
 use model_dsl::calibration::{CalibratedTerm, Calibration};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
 use model_dsl::yaml;
 use nalgebra::Vector3;
+use recording::{Recording, read_header};
 use simulation::noise::{Missing, Noise};
 use simulation::write::{Head, recording, table};
 use simulation::{Instrument, Measurement, Plant, Scenario, Simulated, State, simulate};

@@ -6,9 +6,9 @@ use std::process::Command;
 use std::time::Instant;
 
 use diagnosis::Inputs;
-use diagnosis::recording::read_header;
 use model_dsl::calibration;
 use model_dsl::diagnostic::Diagnostics;
+use recording::read_header;
 
 use crate::case::{machine, tree};
 

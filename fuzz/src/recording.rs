@@ -1,6 +1,6 @@
 //! Recordings: the recording file, a line `=== data`, and the table. Read, evaluated, and diagnosed where the table is short.
 
-use diagnosis::recording::{self, Recording};
+use ::recording::{self, Recording};
 use diagnosis::report::{self, Origin};
 use model_dsl::Compiled;
 use model_dsl::diagnostic::Diagnostics;

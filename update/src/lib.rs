@@ -1,7 +1,7 @@
 //! Model update: the coefficients of a calibration, changed to what measured parts show.
 //!
 //! In: the equations of a machine, a calibration with all its terms, and parts that were measured point by point
-//! ([`diagnosis::recording`], instruments `probe` and `position`). Out: an [`Update`]: every coefficient `A` as
+//! ([`recording`], instruments `probe` and `position`). Out: an [`Update`]: every coefficient `A` as
 //! `A (1 + dA)`, what that leaves at the points, what the points cannot tell apart, and the calibration that results.
 //!
 //! The method is that of NISTIR 6722 (Gilsinn, Bandy, Ling 2001), equations (15) to (29) and appendix E. An error motion
@@ -27,9 +27,9 @@ mod singular;
 mod solution;
 mod update;
 
-use diagnosis::recording::Recording;
 use model_dsl::calibration::Calibration;
 use model_dsl::equations::Equations;
+use recording::Recording;
 
 pub use error::UpdateError;
 pub use residuals::{Figures, Residual};

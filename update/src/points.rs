@@ -6,10 +6,10 @@
 //! order, also those without a reading: they show from where an axis came.
 
 use abbe_runtime::{Direction, DirectionTracker, Sample, Term, TermState};
-use diagnosis::recording::{AxisChannels, Instrument, Recording};
 use model_dsl::calibration::{Calibration, SensorReadings};
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
+use recording::{Instrument, Recording};
 
 use crate::coefficient::Coefficient;
 use crate::error::UpdateError;
@@ -94,26 +94,21 @@ impl<'c> Course<'c> {
     fn of(machine: &'c Machine<'c>, recording: &'c Recording, number: usize) -> Result<Self, UpdateError> {
         let rows = recording.time.len();
         let axes = machine.equations.axes.len();
-        let known = |axis: usize| recording.axes.get(axis).and_then(position).cloned();
-        let mut runs: Vec<i64> = Vec::new();
-        for run in &recording.run {
-            if !runs.contains(run) {
-                runs.push(*run);
-            }
-        }
+        let known =
+            |axis: usize| recording.axes.get(axis).map(|axis| axis.position_or_zero(rows).into_owned());
         Ok(Self {
             machine,
             recording,
             positions: (0..axes).map(|axis| known(axis).unwrap_or(vec![0.0; rows])).collect(),
             temperatures: temperatures(machine.calibration, recording, number)?,
-            runs,
+            runs: recording.run_numbers(),
         })
     }
 
     /// The axes of which the recording knows nothing, and which are taken to stand at zero.
     fn standing(&self) -> Vec<String> {
         let axes = self.machine.equations.axes.iter().zip(&self.recording.axes);
-        let unknown = axes.filter(|(_, channels)| position(channels).is_none());
+        let unknown = axes.filter(|(_, channels)| channels.position().is_none());
         unknown.map(|(axis, _)| axis.letter.clone()).collect()
     }
 
@@ -208,11 +203,6 @@ impl States<'_> {
         };
         terms.map(value).collect()
     }
-}
-
-/// What stands for the position of an axis: programmed, or else the drive's own.
-fn position(channels: &AxisChannels) -> Option<&Vec<f64>> {
-    channels.command.as_ref().or(channels.actual.as_ref()).or(channels.measured.as_ref())
 }
 
 /// The readings of a row: a direction and the deviation along it, mm. Cells without a sample are no readings.

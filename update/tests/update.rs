@@ -6,12 +6,12 @@
     reason = "a panic is the report of a test, also from a function that tests share"
 )]
 
-use diagnosis::recording::{AxisChannels, Instrument, Named, Recording};
 use model_dsl::calibration::{self, Calibration};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
 use model_dsl::{Compiled, compile_word, yaml};
 use nalgebra::{DMatrix, DVector};
+use recording::{AxisChannels, Instrument, Named, Recording};
 use simulation::noise::Source;
 use simulation::{Column, Commands, Plant};
 use update::{Inputs, Method, Options, Update, UpdateError, update};

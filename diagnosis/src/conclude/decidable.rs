@@ -18,8 +18,7 @@ pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
     let mut sentences = Vec::new();
     let moving = |axis: usize| {
         study.scenes.iter().any(|scene| {
-            let known = &scene.recording.axes[axis];
-            let positions = known.command.as_ref().or(known.actual.as_ref()).or(known.measured.as_ref());
+            let positions = scene.recording.axes[axis].position();
             let mut finite = positions.into_iter().flatten().filter(|position| position.is_finite());
             finite.next().is_some_and(|first| finite.any(|position| position != first))
         })

@@ -7,7 +7,7 @@ use super::{AxisTrack, ChannelPicture, RunMean, Samples, Track};
 use crate::course::Course;
 use crate::model::Model;
 use crate::states::States;
-use crate::study::{Kind, Scene, Study, runs};
+use crate::study::{Kind, Scene, Study};
 use crate::terms::Shape;
 
 /// What all channels of a recording are seen with.
@@ -210,7 +210,7 @@ fn loads(sight: &Sight<'_>, rows: &[usize]) -> Vec<Track> {
 /// The means of the runs, where there are several; of very many every so-many-th.
 fn run_means(scene: &Scene<'_>, (before, after): &(Vec<f64>, Vec<f64>)) -> Vec<RunMean> {
     let fitted = scene.fitted_rows();
-    let stretches = runs(&scene.recording.run);
+    let stretches = scene.recording.runs();
     if stretches.len() < 2 {
         return Vec::new();
     }

@@ -16,4 +16,4 @@ mod testing;
 mod verdicts;
 
 // What the machines and recordings of the tests are made for, under the name that they know it by.
-use diagnosis::recording;
+use ::recording;

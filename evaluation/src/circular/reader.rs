@@ -1,6 +1,6 @@
 //! What reads a circle. In: a course and a trace. Out: the actual path, relative to the nominal centre; or why there is none.
 
-use diagnosis::recording::Instrument;
+use recording::Instrument;
 
 use crate::circles::PathTrace;
 use crate::course::{Course, cell};

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use diagnosis::recording::{Instrument, own_direction};
+use recording::{Instrument, own_direction};
 
 use super::{Kind, Zero};
 use crate::course::{Course, LETTERS, cell, dot};

@@ -1,11 +1,11 @@
 //! Machines that are driven and read. In: a topology, its true errors, a program. Out: recordings.
 
-use diagnosis::recording::{AxisChannels, Instrument, Recording};
 use evaluation::{Evaluation, Figure, Inputs, evaluate};
 use model_dsl::calibration::{self, Calibration};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
 use model_dsl::{Compiled, compile_word, yaml};
+use recording::{AxisChannels, Instrument, Recording};
 use simulation::noise::Source;
 use simulation::{Commands, Plant};
 

@@ -1,7 +1,7 @@
 //! Circles of machines with known errors.
 
-use diagnosis::recording::{Instrument, Recording};
 use evaluation::{Sense, Sensor};
+use recording::{Instrument, Recording};
 
 use crate::bench::{Bench, Program, near, reason, value};
 

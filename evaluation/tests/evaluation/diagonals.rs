@@ -1,7 +1,7 @@
 //! Diagonals of a machine with known errors.
 
-use diagnosis::recording::{Instrument, Line};
 use evaluation::Kind;
+use recording::{Instrument, Line};
 
 use crate::bench::{Bench, Program, near, reason, value};
 

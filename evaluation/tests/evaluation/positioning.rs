@@ -1,7 +1,7 @@
 //! Positioning of machines with known errors.
 
-use diagnosis::recording::{Instrument, Line, Recording};
 use evaluation::{Kind, Unit, Zero};
+use recording::{Instrument, Line, Recording};
 
 use crate::bench::{Bench, Program, figure, near, reason, value};
 

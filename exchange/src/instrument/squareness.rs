@@ -141,8 +141,7 @@ impl Pair {
 impl Pair {
     fn of(sides: &[Side<'_>], view: &View<'_>) -> Option<Self> {
         let [one, other] = sides else { return None };
-        let along =
-            |side: &Side<'_>| diagnosis::recording::own_direction(view.equations, side.measurement.axis);
+        let along = |side: &Side<'_>| recording::own_direction(view.equations, side.measurement.axis);
         let across = |side: &Side<'_>| view.direction(side.measurement.motion.value);
         let about = number(cross(along(one)?, along(other)?))?;
         let straight =
@@ -174,7 +173,7 @@ impl Pair {
 
 /// The slope that a reading gets for each rad by which the line of motion is turned: +1 or -1.
 fn turned_by(side: &Side<'_>, about: usize, view: &View<'_>) -> Option<f64> {
-    let along = diagnosis::recording::own_direction(view.equations, side.measurement.axis)?;
+    let along = recording::own_direction(view.equations, side.measurement.axis)?;
     let slope = dot(cross(unit(about)?, along), view.direction(side.measurement.motion.value)?);
     (slope.abs() == 1.0).then_some(slope)
 }
@@ -182,7 +181,7 @@ fn turned_by(side: &Side<'_>, about: usize, view: &View<'_>) -> Option<f64> {
 /// The only alignment error that turns one of the two lines about the third axis, and how much it changes their difference by.
 fn alignment(pair: &Pair, sides: &[Side<'_>], view: &View<'_>) -> Option<(usize, f64)> {
     let sign = |side: &Side<'_>| {
-        let along = diagnosis::recording::own_direction(view.equations, side.measurement.axis)?;
+        let along = recording::own_direction(view.equations, side.measurement.axis)?;
         Some(if number(along)? == (pair.about + 1) % 3 { -1.0 } else { 1.0 })
     };
     let gain = |motion: usize| -> Option<f64> {

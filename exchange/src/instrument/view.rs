@@ -5,11 +5,11 @@
 //! branch it is, unless the machine file says otherwise. The lever arms of the equations know both, so that no rule of signs is
 //! written here a second time. All axes stand at zero.
 
-use diagnosis::recording::own_direction;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
 use model_dsl::quantity::Dimension;
+use recording::own_direction;
 
 use super::setup::{Measurement, Place};
 

@@ -3,7 +3,7 @@
 //! In: a recording and a plant. Out: the same channels at the same times, as the model predicts them: no noise, no gap, and an
 //! instrument that stands where the set-up says.
 
-use diagnosis::recording::{AxisChannels, Instrument as Recorder, Named, Recording};
+use recording::{Instrument as Recorder, Named, Recording};
 use simulation::{Column, Commands, DEADBAND, Instrument, Measurement, Normal, Plant, Simulated};
 
 /// A motion back by less is none where an axis's own feedback, with its noise, has to stand for its command: mm or rad.
@@ -11,7 +11,7 @@ const FEEDBACK_DEADBAND: f64 = 1e-3;
 
 /// What the plant shows where the recording was taken; or, as a sentence, why that cannot be told.
 pub(super) fn replayed(plant: Plant, recording: &Recording) -> Result<Simulated, String> {
-    let commanded = recording.axes.iter().all(|axis| axis.command.is_some() || nothing_known(axis));
+    let commanded = recording.axes.iter().all(|axis| axis.command.is_some() || axis.position().is_none());
     let plant = plant.with_deadband(if commanded { DEADBAND } else { FEEDBACK_DEADBAND });
     let measurement =
         Measurement { drives: drives(recording), ..Measurement::perfect(instrument(recording)?) };
@@ -20,10 +20,6 @@ pub(super) fn replayed(plant: Plant, recording: &Recording) -> Result<Simulated,
     simulated.title.clone_from(&recording.title);
     simulated.holdout = recording.holdout.clone().unwrap_or_default();
     Ok(simulated)
-}
-
-fn nothing_known(axis: &AxisChannels) -> bool {
-    axis.actual.is_none() && axis.measured.is_none()
 }
 
 /// The numbers of the axes whose drives were recorded.
@@ -37,18 +33,11 @@ fn commands(recording: &Recording) -> Commands {
     Commands {
         time: recording.time.clone(),
         run: recording.run.clone(),
-        positions: recording.axes.iter().map(|axis| position(axis, rows)).collect(),
+        positions: recording.axes.iter().map(|axis| axis.position_or_zero(rows).into_owned()).collect(),
         temperatures: recording.temperatures.iter().map(column).collect(),
         loads: recording.loads.iter().map(column).collect(),
         ..Commands::default()
     }
-}
-
-/// Where an axis was sent: as it was programmed; where that is not known as its drive or the instrument has it; else it
-/// stands at zero.
-fn position(axis: &AxisChannels, rows: usize) -> Vec<f64> {
-    let known = axis.command.as_ref().or(axis.actual.as_ref()).or(axis.measured.as_ref());
-    known.cloned().unwrap_or_else(|| vec![0.0; rows])
 }
 
 fn column(named: &Named) -> Column {

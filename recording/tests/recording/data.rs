@@ -1,6 +1,6 @@
 //! Tables of data that are read, however they are written.
 
-use diagnosis::recording::AngleUnit;
+use recording::AngleUnit;
 
 use crate::common::{header, packed, recording};
 

@@ -1,6 +1,6 @@
 //! Instruments as they were set up, and what is derived where it is evident.
 
-use diagnosis::recording::{Header, Instrument, Line};
+use recording::{Header, Instrument, Line};
 
 use crate::common::{header, recording};
 

@@ -93,7 +93,7 @@ impl Header {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::read_header;
+    use crate::read_header;
     use model_dsl::diagnostic::Diagnostics;
     use model_dsl::source::SourceFile;
     use model_dsl::{compile_word, yaml};

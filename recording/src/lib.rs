@@ -7,6 +7,9 @@
 //! machine's name alone, the caller finds the machine; [`read_header`] reads the rest of the file against its equations;
 //! and [`Header::read_data`] reads the data.
 //!
+//! Whoever takes a recording asks it where an axis is ([`AxisChannels::position`]) and which rows belong together
+//! ([`Recording::runs`]), so that all of Abbe has one answer.
+//!
 //! | code | finding |
 //! | --- | --- |
 //! | E0601 | a required key or channel is missing |
@@ -35,6 +38,8 @@ mod channel;
 mod data;
 mod direction;
 mod header;
+mod position;
+mod runs;
 mod setup;
 mod suited;
 mod words;
@@ -77,7 +82,7 @@ pub struct Recording {
     pub notes: Vec<String>,
 }
 
-/// What a recording knows of one axis of the machine: mm, or rad for a rotary axis.
+/// What a recording knows of one axis of the machine: mm, or rad for a rotary axis. [`AxisChannels::position`] says where it is.
 #[derive(Clone, Debug, Default)]
 pub struct AxisChannels {
     /// The programmed position.

@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use diagnosis::recording::{ChannelKind, Header, Recording, machine_of, read_header};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
 use model_dsl::{Compiled, compile, compile_word, yaml};
+use recording::{ChannelKind, Header, Recording, machine_of, read_header};
 
 /// The recording files of the examples; none where the folder is missing.
 fn examples() -> Vec<PathBuf> {
@@ -76,6 +76,8 @@ fn all_are_read_without_findings() {
 fn as_the_library_reads(path: &Path, column: &str, unit: &str) -> Vec<f64> {
     let factor = match unit {
         "deg" => std::f64::consts::PI / 180.0,
+        "arcsec" => std::f64::consts::PI / 180.0 / 3600.0,
+        "um" => 1e-3,
         _ => 1.0,
     };
     let mut reader = csv::Reader::from_path(path.with_file_name("data.csv")).unwrap();
@@ -90,7 +92,7 @@ fn every_number_is_that_of_the_table() {
         let (header, recording) = read(&path);
         for channel in &header.channels {
             let expected = as_the_library_reads(&path, &channel.column.value, &channel.written_unit);
-            let named = |list: &[diagnosis::recording::Named], name: &str| {
+            let named = |list: &[recording::Named], name: &str| {
                 list.iter().find(|one| one.name == name).unwrap().values.clone()
             };
             let found = match &channel.kind {

@@ -1,6 +1,6 @@
 //! What a recording file that is right says.
 
-use diagnosis::recording::{ChannelKind, Instrument};
+use recording::{ChannelKind, Instrument};
 
 use crate::common::{header, read};
 

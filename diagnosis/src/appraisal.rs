@@ -1,8 +1,13 @@
-//! Appraisal: what a model leaves, and how likely that is as noise.
+//! Appraisal: what a model leaves, what of that is noise, and how samples weigh.
 //!
-//! In: a model. Out: the residual of every channel, outliers marked, and the noise with the greatest likelihood on the rows
-//! that are fitted. Two models are compared by their likelihoods, each with the noise that suits it best: an effect that a
-//! wandering sensor explains as well is then worth nothing.
+//! In: a model. Out: for every channel the residual, its outliers, the floor, and weights. The floor is the noise: what does not
+//! come back of the residual. The weights are those of that noise, as long as noise is most of what is left. Where more comes
+//! back than does not, or the residual moves as no sensor's noise does, the model lacks something: then every sample weighs the
+//! same, and a stretch over which the residual keeps its direction counts for one. Weights of a walk would look at its steps, and
+//! not at how far the machine is off.
+//!
+//! Two models are compared by their likelihoods, each with the noise that suits it best: an effect that a wandering sensor
+//! explains as well is then worth nothing.
 
 use crate::course::Course;
 use crate::model::Model;
@@ -11,6 +16,7 @@ use crate::observations;
 use crate::outliers;
 use crate::parallel;
 use crate::study::{Scene, Study};
+use crate::unsteady;
 
 /// How often a likelihood is worked out until the noise of a channel is known, at least.
 const ESTIMATES: usize = 20;
@@ -20,45 +26,79 @@ pub(crate) struct Appraisal {
     /// For each scene and channel.
     pub(crate) residuals: Vec<Vec<Vec<f64>>>,
     pub(crate) outliers: Vec<Vec<Vec<bool>>>,
+    /// How samples weigh.
     pub(crate) noises: Vec<Vec<Noise>>,
+    /// What does not come back.
+    pub(crate) floors: Vec<Vec<Noise>>,
+    /// The sum of squares of what comes back.
+    pub(crate) returning: Vec<Vec<f64>>,
     /// Minus twice the log-likelihood of all channels.
     pub(crate) deviance: f64,
+}
+
+/// What is known of one channel under a model.
+#[derive(Clone)]
+struct Estimate {
+    floor: Noise,
+    weights: Noise,
+    returning: f64,
+    deviance: f64,
 }
 
 impl Appraisal {
     /// Appraises a model.
     pub(crate) fn new(study: &Study<'_>, model: &Model) -> Self {
-        let mut appraisal =
-            Self { residuals: Vec::new(), outliers: Vec::new(), noises: Vec::new(), deviance: 0.0 };
+        Self::under(study, model, None)
+    }
+
+    /// Appraises a model beside another one, so that their likelihoods can be compared: where samples weigh alike under that one
+    /// they do so here.
+    pub(crate) fn beside(study: &Study<'_>, model: &Model, other: &Self) -> Self {
+        Self::under(study, model, Some(other))
+    }
+
+    fn under(study: &Study<'_>, model: &Model, other: Option<&Self>) -> Self {
+        let mut appraisal = Self {
+            residuals: Vec::new(),
+            outliers: Vec::new(),
+            noises: Vec::new(),
+            floors: Vec::new(),
+            returning: Vec::new(),
+            deviance: 0.0,
+        };
         for scene in 0..study.scenes.len() {
             let course = Course::new(study, scene, model);
-            appraisal.add(study, scene, observations::residuals(study, scene, model, &course));
+            let residuals = observations::residuals(study, scene, model, &course);
+            appraisal.add(study, scene, residuals, other.map(|other| &other.noises[scene]));
         }
         appraisal
     }
 
-    fn add(&mut self, study: &Study<'_>, scene: usize, residuals: Vec<Vec<f64>>) {
+    fn add(
+        &mut self,
+        study: &Study<'_>,
+        scene: usize,
+        residuals: Vec<Vec<f64>>,
+        weights: Option<&Vec<Noise>>,
+    ) {
         let known = &study.scenes[scene];
         let fitted = known.fitted_rows();
         let work = residuals.len() * known.rows() * ESTIMATES;
         let results = parallel::counted(residuals.len(), work, |channel| {
             let residual = &residuals[channel];
-            let observed = &known.channels[channel];
             let apart = |row: usize, distance: f64| known.returns.apart(residual, row, distance);
-            let marks = outliers::mark(residual, observed.rounding, &apart);
+            let marks = outliers::mark(residual, known.channels[channel].rounding, &apart);
             let counts = |row: usize| fitted[row] && residual[row].is_finite() && !marks[row];
             let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
-            (marks, estimate(known, channel, residual, &valid))
+            let estimate = estimate(known, channel, residual, &valid, weights.map(|weights| weights[channel]));
+            (marks, estimate)
         });
-        let mut marks = Vec::new();
-        let mut noises = Vec::new();
-        for (mark, (noise, deviance)) in results {
-            marks.push(mark);
-            noises.push(noise);
-            self.deviance += deviance;
-        }
+        let (marks, estimates): (Vec<Vec<bool>>, Vec<Estimate>) = results.into_iter().unzip();
+        self.deviance += estimates.iter().map(|estimate| estimate.deviance).sum::<f64>();
         self.outliers.push(marks);
-        self.noises.push(noises);
+        self.floors.push(estimates.iter().map(|estimate| estimate.floor).collect());
+        self.returning.push(estimates.iter().map(|estimate| estimate.returning).collect());
+        self.noises.push(estimates.into_iter().map(|estimate| estimate.weights).collect());
         self.residuals.push(residuals);
     }
 
@@ -77,19 +117,55 @@ impl Appraisal {
     }
 }
 
-/// The noise of a channel, which is what does not come back of its residual, and minus twice the log-likelihood of all of it as
-/// such noise.
-fn estimate(known: &Scene<'_>, channel: usize, residual: &[f64], valid: &[bool]) -> (Noise, f64) {
+/// What comes back must be so many times what does not for every sample to weigh the same: from there on it is most of it.
+const MOSTLY: f64 = 1.0;
+
+/// Floor and weights of a channel; `like` are weights with which these are to be compared.
+fn estimate(
+    known: &Scene<'_>,
+    channel: usize,
+    residual: &[f64],
+    valid: &[bool],
+    like: Option<Noise>,
+) -> Estimate {
     let (time, observed) = (&known.recording.time, &known.channels[channel]);
-    if observed.returning.is_empty() {
-        return noise::estimate(time, residual, valid, observed.rounding);
-    }
     let (left, factor) = known.returns.beside(&observed.returning, residual, valid);
-    let found = noise::estimate(time, &left, valid, observed.rounding).0;
-    let noise = Noise {
-        white: (factor * found.white).max(observed.rounding),
-        wander: factor * found.wander,
-        ..found
+    let (found, deviance) = noise::estimate(time, &left, valid, observed.rounding);
+    let whole = squares(residual, valid);
+    let alone = squares(&left, valid);
+    let returning = (whole - alone).max(0.0);
+    let floor =
+        Noise { white: (factor * found.white).max(observed.rounding), wander: factor * found.wander, ..found };
+    let plainly = match like {
+        Some(like) => like.alike > 1.0,
+        None => returning > MOSTLY * alone || moves(known, residual, valid),
     };
-    (noise, noise::deviance(time, residual, valid, &noise))
+    if plainly {
+        let alike = like.map_or_else(|| noise::alike(residual, valid), |like| like.alike);
+        let count = crate::number(valid.iter().filter(|valid| **valid).count()).max(1.0);
+        let weights = Noise { alike: alike.max(MORE_THAN_ONE), ..Noise::white((whole / count).sqrt().max(floor.white)) };
+        let deviance = noise::deviance(time, residual, valid, &weights);
+        return Estimate { floor, weights, returning, deviance };
+    }
+    // Where nothing comes back, the noise with the greatest likelihood is the floor itself.
+    let same = returning == 0.0 && floor.white == found.white;
+    let deviance = if same { deviance } else { noise::deviance(time, residual, valid, &floor) };
+    Estimate { floor, weights: floor, returning, deviance }
+}
+
+/// Samples of what a model leaves out never count for themselves.
+const MORE_THAN_ONE: f64 = 1.0 + 1e-9;
+
+/// Whether a residual moves as no sensor's noise does.
+fn moves(known: &Scene<'_>, residual: &[f64], valid: &[bool]) -> bool {
+    let counted: Vec<f64> =
+        residual.iter().zip(valid).map(|(value, valid)| if *valid { *value } else { f64::NAN }).collect();
+    unsteady::keeps_on(&known.recording.time, &counted, known.given.step).is_some()
+}
+
+/// The sum of squares about the mean.
+fn squares(residual: &[f64], valid: &[bool]) -> f64 {
+    let known = || residual.iter().zip(valid).filter(|(_, valid)| **valid).map(|(value, _)| *value);
+    let mean = known().sum::<f64>() / crate::number(known().count()).max(1.0);
+    known().map(|value| (value - mean).powi(2)).sum()
 }

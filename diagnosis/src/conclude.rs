@@ -76,15 +76,10 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
         found.appraisal.mark(&mut study);
     }
     diagnosis.before = before;
-    let held_out = |model: &Model| held_out(&study, &units, model);
-    unsteady::weigh_drives_plainly(&study, &mut found, held_out);
     stand_or_fall(&mut study, &units, &mut found, diagnosis.before.holdout_rms);
     let feature = explain_locally(&mut study, &mut found);
     diagnosis.undecided.extend(crossed(&study, &found.fit.model));
-    let mut moving = if feature.is_none() { unsteady::moving(&study, &found.appraisal) } else { None };
-    if let Some(moving) = &mut moving {
-        unsteady::fit_plainly(&study, &mut found, moving);
-    }
+    let moving = if feature.is_none() { unsteady::moving(&study, &found.appraisal) } else { None };
     progress(Progress { step: "comparing with other names", done: 0.95 });
     zeros::free_held_out(&study, &mut found.fit.model);
     diagnosis.after = units.residual(&study, &found.fit.model);

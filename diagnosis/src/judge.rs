@@ -107,6 +107,7 @@ fn pays(
     let others = without(design, swept, &fit.model, number);
     let [bare, others] = [&bare, &others].map(|model| zeros::residuals(study, model));
     let (mut gained, mut expected, mut peak) = (0.0, 0.0, 0.0_f64);
+    let (mut taken, mut returning) = (0.0, 0.0);
     for (scene, known) in study.scenes.iter().enumerate() {
         let fitted = known.fitted_rows();
         for channel in 0..known.channels.len() {
@@ -120,17 +121,22 @@ fn pays(
             let mut everywhere: Vec<f64> = rows.iter().map(|row| effect(*row)).collect();
             zeros::center(&mut everywhere);
             peak = everywhere.iter().fold(peak, |peak, value| peak.max(value.abs()));
+            let nearer = |row: usize| (others[row] * others[row] - left[row] * left[row]) / (size * size);
+            taken += rows.iter().map(|row| nearer(*row)).sum::<f64>();
+            returning += appraisal.returning[scene][channel] / (size * size);
             let held = || rows.iter().copied().filter(|row| !fitted[*row]);
             let mut signal: Vec<f64> = held().map(effect).collect();
             zeros::center(&mut signal);
             expected += signal.iter().map(|value| value * value).sum::<f64>();
-            gained += held()
-                .map(|row| (others[row] * others[row] - left[row] * left[row]) / (size * size))
-                .sum::<f64>();
+            gained += held().map(nearer).sum::<f64>();
         }
     }
-    peak > MATERIAL && (expected < TELLING || gained > 0.0)
+    peak > MATERIAL && (expected < TELLING || gained > 0.0) && taken > APART * returning
 }
+
+/// What an effect takes from the sum of squares must be at least this share of what still comes back without a name: less may be a
+/// piece of that.
+const APART: f64 = 1.0;
 
 /// An effect must reach this share of the noise of a sample somewhere.
 const MATERIAL: f64 = 0.12;
@@ -154,7 +160,7 @@ fn noise_explains(
     price: f64,
 ) -> bool {
     let without = without(design, swept, &fit.model, number);
-    Appraisal::new(study, &without).deviance - appraisal.deviance < price
+    Appraisal::beside(study, &without, appraisal).deviance - appraisal.deviance < price
 }
 
 /// The model without one effect, the linear coefficients of the others fitted again.

@@ -19,12 +19,14 @@ pub(crate) struct Noise {
     pub(crate) wander: f64,
     /// Correlation time of the wandering part.
     pub(crate) time_constant: f64,
+    /// How many samples in a row count for one: 1 but for what a model leaves out, which keeps its direction.
+    pub(crate) alike: f64,
 }
 
 impl Noise {
     /// White noise alone.
     pub(crate) fn white(deviation: f64) -> Self {
-        Self { white: deviation, wander: 0.0, time_constant: 1.0 }
+        Self { white: deviation, wander: 0.0, time_constant: 1.0, alike: 1.0 }
     }
 
     /// The standard deviation of a sample.
@@ -98,7 +100,7 @@ impl Whitening {
         let total = self.variance + self.noise.white * self.noise.white;
         let gain = self.variance / total;
         self.variance *= 1.0 - gain;
-        let step = Step { decay, gain, weight: 1.0 / total.sqrt() };
+        let step = Step { decay, gain, weight: 1.0 / (total * self.noise.alike).sqrt() };
         self.settled = Some(Settled { before, step, after: self.variance });
         step
     }
@@ -180,12 +182,43 @@ pub(crate) fn unwhiten(steps: &[Step], column: &mut [f64]) {
 
 /// Minus twice the logarithm of the likelihood of a residual under a noise.
 pub(crate) fn deviance(time: &[f64], residual: &[f64], valid: &[bool], noise: &Noise) -> f64 {
-    let steps = Whitening::new(*noise).steps(time, valid);
+    let steps = Whitening::new(Noise { alike: 1.0, ..*noise }).steps(time, valid);
     let mut white = residual.to_vec();
     whiten(&steps, &mut [0.0], &mut white);
     let each = steps.iter().zip(&white).filter(|(step, _)| step.weight > 0.0);
-    each.map(|(step, white)| white * white - 2.0 * step.weight.ln()).sum()
+    each.map(|(step, white)| white * white - 2.0 * step.weight.ln()).sum::<f64>() / noise.alike
 }
+
+/// How many samples in a row of a residual count for one: its autocorrelation summed up to where it changes its sign.
+pub(crate) fn alike(residual: &[f64], valid: &[bool]) -> f64 {
+    let known: Vec<f64> =
+        residual.iter().zip(valid).filter(|(_, valid)| **valid).map(|(value, _)| *value).collect();
+    let count = crate::number(known.len()).max(1.0);
+    let mean = known.iter().sum::<f64>() / count;
+    let product = |lag: usize| {
+        let pairs = known.iter().zip(&known[lag.min(known.len())..]);
+        pairs.map(|(a, b)| (a - mean) * (b - mean)).sum::<f64>() / count
+    };
+    let square = product(0);
+    if square <= 0.0 {
+        return 1.0;
+    }
+    let (mut sum, mut lag, mut before) = (1.0, 1, 1.0);
+    while crate::number(lag) < count / FEWEST_APART {
+        let next = (lag * 5 / 4).max(lag + 1);
+        let correlation = product(lag) / square;
+        if correlation <= 0.0 {
+            break;
+        }
+        // Between the lags that are looked at it is taken as straight, 2 for both sides.
+        sum += correlation.min(before) * 2.0 * crate::number(next - lag);
+        (lag, before) = (next, correlation);
+    }
+    sum.min(count / FEWEST_APART).max(1.0)
+}
+
+/// The fewest stretches that are told apart: with fewer, nothing could be.
+const FEWEST_APART: f64 = 12.0;
 
 /// The noise of a channel with the greatest likelihood, and minus twice the logarithm of that.
 ///
@@ -193,7 +226,7 @@ pub(crate) fn deviance(time: &[f64], residual: &[f64], valid: &[bool], noise: &N
 pub(crate) fn estimate(time: &[f64], residual: &[f64], valid: &[bool], floor: f64) -> (Noise, f64) {
     let step = typical_step(time);
     let span = (time.last().unwrap_or(&1.0) - time.first().unwrap_or(&0.0)).max(step);
-    let unit = |ratio: f64, time_constant: f64| Noise { white: 1.0, wander: ratio, time_constant };
+    let unit = |ratio: f64, time_constant: f64| Noise { white: 1.0, wander: ratio, time_constant, alike: 1.0 };
     let at = |point: [f64; 2]| unit(point[0].clamp(-12.0, 12.0).exp(), point[1].exp());
     // Between half a step and ten recordings, and a wandering from nothing to all there is.
     let outside = |point: [f64; 2]| {
@@ -217,10 +250,10 @@ pub(crate) fn estimate(time: &[f64], residual: &[f64], valid: &[bool], floor: f6
         let (ratio, time_constant) = (point[0].clamp(-12.0, 12.0).exp(), point[1].exp());
         let scale = alone(unit(ratio, time_constant)).1.sqrt();
         let wander = ratio * scale;
-        let reach = wander * (1.0 - (-2.0 * span / time_constant).exp()).sqrt();
-        return (Noise { white: scale.max(floor).max(ROUGH * reach), wander, time_constant }, value);
+        let reach = wander * (1.0 - (-2.0 * STRETCH * span / time_constant).exp()).sqrt();
+        return (Noise { white: scale.max(floor).max(ROUGH * reach), wander, time_constant, alike: 1.0 }, value);
     }
-    (Noise { white: white.1.sqrt().max(floor), wander: 0.0, time_constant: span }, white.0)
+    (Noise { white: white.1.sqrt().max(floor), time_constant: span, ..Noise::white(1.0) }, white.0)
 }
 
 /// The best of some points to start from: short and long times, of which none is longer than the recording.
@@ -248,6 +281,9 @@ fn starts(
 /// what the model leaves out, which has a slope at every moment: its steps from row to row are so small that a fit would
 /// follow slopes alone, and not see how far the machine is off.
 const ROUGH: f64 = 0.1;
+
+/// The share of a recording in which it gets there: a stretch that effects of a machine are told from.
+const STRETCH: f64 = 0.05;
 
 /// How much the wandering must lower minus twice the log-likelihood: chance does it with two more parameters in one of a
 /// hundred cases.

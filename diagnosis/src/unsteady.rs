@@ -8,13 +8,10 @@ use crate::appraisal::Appraisal;
 use crate::candidates::simplicity;
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
-use crate::fit;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::noise::{self, Noise};
 use crate::study::{Kind, Study};
 use crate::sweep::Swept;
 use crate::terms::Shape;
-use crate::zeros;
 
 /// An oscillation of an error motion that is spread over a band of frequencies.
 #[derive(Clone, Copy, Debug)]
@@ -148,7 +145,7 @@ fn accepted(appraisal: &Appraisal, scene: usize, channel: usize) -> Vec<f64> {
 }
 
 /// The shortest time over which a residual goes far and keeps its direction, and its standard deviation.
-fn keeps_on(time: &[f64], residual: &[f64], step: f64) -> Option<(f64, f64)> {
+pub(crate) fn keeps_on(time: &[f64], residual: &[f64], step: f64) -> Option<(f64, f64)> {
     let known: Vec<f64> = residual.iter().copied().filter(|value| value.is_finite()).collect();
     let count = crate::number(known.len());
     let mean = known.iter().sum::<f64>() / f64::max(count, 1.0);
@@ -178,76 +175,6 @@ fn differences(time: &[f64], residual: &[f64], step: f64, lag: usize) -> Option<
         }
     }
     (count > 0.0).then(|| (first / count, second / count))
-}
-
-/// Fits a model again to samples each for itself. As noise, what moves smoothly is a walk whose steps are known to a hair, and
-/// weighted so, steps would count and not how far the machine is off. Stretches over which it keeps its direction count once.
-pub(crate) fn fit_plainly(study: &Study<'_>, found: &mut Found, moving: &mut Moving) {
-    let noises = found.appraisal.as_white();
-    found.fit = fit::refine(study, found.fit.model.clone(), &noises, &found.travels);
-    let step = study.scenes[moving.scene].given.step;
-    let alike = (2.0 * moving.time / step).max(1.0);
-    found.fit.covariances.iter_mut().for_each(|covariance| *covariance *= alike);
-    found.appraisal = Appraisal::new(study, &found.fit.model);
-    let residuals = found.appraisal.residuals.iter().flatten();
-    for (noise, residual) in found.appraisal.noises.iter_mut().flatten().zip(residuals) {
-        *noise = apart(residual, moving.time);
-    }
-    moving.rms = found.appraisal.noises[moving.scene][moving.channel].size();
-}
-
-/// The same effects fitted to samples each for itself, where the drive's own feedback shows a loop and its held-out rows then
-/// lie nearer. An encoder does not wander: what wanders behind a loop is what the model of the loop still lacks, and weighted
-/// as a walk it would draw the loop to itself. `held_out` tells what a model leaves of rows that are not fitted.
-pub(crate) fn weigh_drives_plainly(
-    study: &Study<'_>,
-    found: &mut Found,
-    held_out: impl Fn(&Model) -> Option<f64>,
-) {
-    let Some((scene, channel)) = wandering_drive(study, found) else { return };
-    let noises = found.appraisal.as_white();
-    let fit = fit::refine(study, found.fit.model.clone(), &noises, &found.travels);
-    let nearer =
-        held_out(&fit.model).zip(held_out(&found.fit.model)).is_some_and(|(new, old)| new < NEARER * old);
-    if !nearer {
-        return;
-    }
-    found.fit = fit;
-    found.appraisal = Appraisal::new(study, &found.fit.model);
-    let noise = found.appraisal.noises[scene][channel];
-    let step = study.scenes[scene].given.step;
-    let share = (noise.wander / noise.size().max(f64::MIN_POSITIVE)).powi(2);
-    let alike = 1.0 + 2.0 * share * noise.time_constant / step;
-    found.fit.covariances.iter_mut().for_each(|covariance| *covariance *= alike);
-}
-
-/// Held-out rows lie nearer when their rms falls below this share.
-const NEARER: f64 = 0.8;
-
-/// The drive's feedback of an axis whose loop was found, where more of its noise wanders than not.
-fn wandering_drive(study: &Study<'_>, found: &Found) -> Option<(usize, usize)> {
-    let channels = study.scenes.iter().enumerate().flat_map(|(scene, known)| {
-        known.channels.iter().enumerate().map(move |(number, channel)| (scene, number, channel.kind))
-    });
-    let wanders = |scene: usize, channel: usize| {
-        let noise = &found.appraisal.noises[scene][channel];
-        noise.wander > noise.white
-    };
-    channels
-        .filter(|(scene, number, kind)| {
-            matches!(kind, Kind::Drive(axis) if looped(&found.fit.model, *axis)) && wanders(*scene, *number)
-        })
-        .map(|(scene, number, _)| (scene, number))
-        .next()
-}
-
-/// The noise of a channel as what is new from sample to sample, and what moves.
-fn apart(residual: &[f64], time_constant: f64) -> Noise {
-    let mut known: Vec<f64> = residual.iter().copied().filter(|value| value.is_finite()).collect();
-    zeros::center(&mut known);
-    let square = known.iter().map(|value| value * value).sum::<f64>() / crate::number(known.len().max(1));
-    let white = noise::from_differences(residual).min(square.sqrt());
-    Noise { white, wander: (square - white * white).max(0.0).sqrt(), time_constant }
 }
 
 /// A term that takes this share of what remains, alone, comes near to it.

@@ -71,7 +71,7 @@ impl Units {
         let channels = study
             .scenes
             .iter()
-            .zip(&appraisal.noises)
+            .zip(&appraisal.floors)
             .flat_map(|(scene, noises)| scene.channels.iter().zip(noises));
         let counted: Vec<_> = channels
             .filter(|(channel, _)| self.counts(study, channel.kind))

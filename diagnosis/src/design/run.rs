@@ -120,7 +120,7 @@ impl<'r> ChannelRun<'r> {
         whiten_all(&steps, &mut filters, columns.as_mut_slice());
         places.iter().zip(filters).for_each(|(place, filter)| self.filters[*place] = filter);
         self.products.add(&columns, &places);
-        self.samples += crate::number(valid.iter().filter(|valid| **valid).count());
+        self.samples += crate::number(valid.iter().filter(|valid| **valid).count()) / self.noise.alike;
     }
 
     /// The products of the block that ends here, and its samples; the next block begins.

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use crate::states::{AxisStates, States};
-use crate::study::{Study, runs};
+use crate::study::Study;
 
 /// What a residual may be a function of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,14 +51,16 @@ const TURNS: f64 = 0.1;
 /// All states of a recording that vary and come back.
 pub(super) fn states(study: &Study<'_>, scene: usize, states: &States) -> Vec<State> {
     let run = &study.scenes[scene].recording.run;
+    let runs: Vec<Range<usize>> =
+        study.scenes[scene].recording.runs().into_iter().map(|(rows, _)| rows).collect();
     let mut all = Vec::new();
     for (axis, known) in states.axes.iter().enumerate().filter(|(_, axis)| axis.moves) {
-        all.extend(of_axis(axis, known, run, &states.given.time));
+        all.extend(of_axis(axis, known, (run, &runs), &states.given.time));
     }
     all.extend(path(states, run));
     let given = &states.given;
     let slow = |quantity: Quantity, values: &[f64]| {
-        let units = units(&legs(values, run), values.len());
+        let units = units(&legs(values, &runs), values.len());
         state(quantity, values.to_vec(), None, units)
     };
     all.extend(given.temperatures.iter().enumerate().filter_map(|(n, v)| slow(Quantity::Temperature(n), v)));
@@ -66,10 +68,15 @@ pub(super) fn states(study: &Study<'_>, scene: usize, states: &States) -> Vec<St
     all
 }
 
-fn of_axis(axis: usize, known: &AxisStates, run: &[i64], time: &[f64]) -> Vec<State> {
+fn of_axis(
+    axis: usize,
+    known: &AxisStates,
+    (run, runs): (&[i64], &[Range<usize>]),
+    time: &[f64],
+) -> Vec<State> {
     let position = known.position.to_vec();
     let back: Vec<bool> = known.direction.iter().map(|direction| *direction < 0.0).collect();
-    let units = units(&legs(&position, run), position.len());
+    let units = units(&legs(&position, runs), position.len());
     let velocity = slopes(&position, time, run);
     let acceleration = known.acceleration.to_vec();
     let ways = ways(&position, &known.direction, run);
@@ -173,10 +180,10 @@ fn range(values: &[f64]) -> (f64, f64) {
 }
 
 /// The legs of a quantity: rows of one run in which it goes one way.
-fn legs(values: &[f64], run: &[i64]) -> Vec<Range<usize>> {
+fn legs(values: &[f64], runs: &[Range<usize>]) -> Vec<Range<usize>> {
     let (low, high) = range(values);
     let far = TURNS * (high - low);
-    runs(run).into_iter().flat_map(|(rows, _)| legs_of_run(values, rows, far)).collect()
+    runs.iter().flat_map(|rows| legs_of_run(values, rows.clone(), far)).collect()
 }
 
 fn legs_of_run(values: &[f64], rows: Range<usize>, far: f64) -> Vec<Range<usize>> {

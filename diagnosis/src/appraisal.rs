@@ -87,7 +87,7 @@ impl Appraisal {
         let results = parallel::counted(residuals.len(), work, |channel| {
             let residual = &residuals[channel];
             let apart = |row: usize, distance: f64| known.returns.apart(residual, row, distance);
-            let marks = outliers::mark(residual, known.channels[channel].rounding, &apart);
+            let marks = outliers::mark(residual, known.channels[channel].step(), &apart);
             let counts = |row: usize| fitted[row] && residual[row].is_finite() && !marks[row];
             let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
             let estimate = estimate(known, channel, residual, &valid, weights.map(|weights| weights[channel]));

@@ -9,7 +9,7 @@ use crate::model::{Effect, Fitted, Model, Place};
 use crate::noise::Noise;
 use crate::search::price;
 use crate::study::Study;
-use crate::terms::Shape;
+use crate::terms::{Shape, oddity};
 use crate::travel::Travel;
 
 /// How many nodes are tried.
@@ -166,7 +166,10 @@ fn held(nodes: &[f64], places: &[f64]) -> bool {
 pub(crate) fn cost(study: &Study<'_>, fit: &Fit, always: usize, tries: Tries) -> f64 {
     let prices = fit.model[always..]
         .iter()
-        .map(|fitted| price(study, &fitted.effect, fit.samples, tries.candidates, tries.waves));
+        .map(|fitted| {
+            price(study, &fitted.effect, fit.samples, tries.candidates, tries.waves)
+                + oddity(&fitted.effect.shape, &fitted.coefficients)
+        });
     fit.samples * (fit.remaining / fit.samples).ln() + prices.sum::<f64>()
 }
 

@@ -44,7 +44,7 @@ pub(crate) fn uphold(
     loop {
         let appraisal = Appraisal::new(study, &fit.model);
         appraisal.mark(study);
-        let Some(weakest) = weakest(study, &fit, &appraisal, always, tries) else {
+        let Some(weakest) = weakest(study, &fit, &appraisal, always, tries, travels) else {
             let fit = fit::refine(study, fit.model, &appraisal.noises, travels);
             return (fit, appraisal);
         };
@@ -61,6 +61,7 @@ fn weakest(
     appraisal: &Appraisal,
     always: usize,
     tries: Tries,
+    travels: &[Travel],
 ) -> Option<usize> {
     let design = design(study, &fit.model, &appraisal.noises);
     let (products, samples) = design.fitted();
@@ -80,7 +81,7 @@ fn weakest(
             || !returns(&design, &swept, number, scale)
             || !steady(&design, &swept, number)
             || noise_explains(study, &design, &swept, fit, appraisal, number, price)
-            || !pays(study, &design, &swept, fit, (appraisal, &whole), number);
+            || !pays(study, &design, &swept, fit, (appraisal, &whole), number, travels);
         fails.then_some((worth, number))
     };
     let count = fit.model.len() - always;
@@ -100,11 +101,12 @@ fn pays(
     fit: &Fit,
     left: (&Appraisal, &[Vec<Vec<f64>>]),
     number: usize,
+    travels: &[Travel],
 ) -> bool {
     let (appraisal, whole) = left;
     let mut bare = fit.model.clone();
     bare.remove(number);
-    let others = without(design, swept, &fit.model, number);
+    let others = followed(study, without(design, swept, &fit.model, number), fit, appraisal, number, travels);
     let [bare, others] = [&bare, &others].map(|model| zeros::residuals(study, model));
     let (mut gained, mut expected, mut peak) = (0.0, 0.0, 0.0_f64);
     let (mut taken, mut returning) = (0.0, 0.0);
@@ -137,6 +139,26 @@ fn pays(
 /// What an effect takes from the sum of squares must be at least this share of what still comes back without a name: less may be a
 /// piece of that.
 const APART: f64 = 1.0;
+
+/// A model without an effect, in which the periods of other waves along the same axis follow: a slope beside a wave of two cycles
+/// draws its period, and without it the wave fits as well at its own.
+fn followed(
+    study: &Study<'_>,
+    others: Model,
+    fit: &Fit,
+    appraisal: &Appraisal,
+    number: usize,
+    travels: &[Travel],
+) -> Model {
+    let dropped = &fit.model[number].effect;
+    let draws = |fitted: &Fitted| {
+        fitted.effect.shape.is_wave()
+            && fitted.effect.shape.axis() == dropped.shape.axis()
+            && fitted.effect.motion() == dropped.motion()
+    };
+    let drawn = dropped.shape.axis().is_some() && others.iter().any(draws);
+    if drawn { fit::refine(study, others, &appraisal.noises, travels).model } else { others }
+}
 
 /// An effect must reach this share of the noise of a sample somewhere.
 const MATERIAL: f64 = 0.12;

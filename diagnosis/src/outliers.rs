@@ -1,6 +1,6 @@
 //! Outliers: single readings that are no part of any motion.
 //!
-//! In: the residual of a channel, its display's step, and which rows other passes read at the same place. Out: a mark for each
+//! In: the residual of a channel, the step of its display, and which rows other passes read at the same place. Out: a mark for each
 //! reading, or two in a row, that stand far from their neighbours *and* from the other passes at their place. What lasts longer is
 //! something that happened, and what comes back is something of the machine: both stay.
 
@@ -24,7 +24,7 @@ pub(crate) fn mark(residual: &[f64], step: f64, apart: &dyn Fn(usize, f64) -> bo
     let least = FAR * everywhere.max(step);
     let far: Vec<usize> = (0..distances.len())
         .filter(|at| distances[*at].abs() > least && least > 0.0)
-        .filter(|at| distances[*at].abs() > FAR * around(&distances, *at))
+        .filter(|at| distances[*at].abs() > FAR * around(&distances, *at).max(step))
         .filter(|at| apart(known[*at], distances[*at]))
         .collect();
     if far.len() * MOST > known.len() {

@@ -13,7 +13,7 @@ use crate::model::Effect;
 use crate::ranges::{Resolution, holds};
 use crate::study::Study;
 use crate::sweep::Swept;
-use crate::terms::{Setting, Shape};
+use crate::terms::{Setting, Shape, oddity};
 
 /// How many sets are carried along.
 const BEAM: usize = 8;
@@ -27,11 +27,10 @@ const PATIENCE: f64 = 12.0;
 /// What an effect must take from the cost to be chosen: each parameter what it could gain by chance in so many samples,
 /// and what the best of so many tries would gain by chance; and a little for a complicated name.
 pub(crate) fn price(study: &Study<'_>, effect: &Effect, samples: f64, tries: f64, waves: f64) -> f64 {
-    let parameters = effect.shape.columns() + usize::from(effect.shape.nonlinear().is_some());
-    let waves = match effect.shape {
-        Shape::Cyclic { .. } | Shape::Vibration { .. } => waves.max(1.0).ln(),
-        _ => 0.0,
-    };
+    // The period of a wave was looked for among all waves, which is what their number counts.
+    let searched = effect.shape.nonlinear().is_some() && !effect.shape.is_wave();
+    let parameters = effect.shape.columns() + usize::from(searched);
+    let waves = if effect.shape.is_wave() { waves.max(1.0).ln() } else { 0.0 };
     (crate::number(parameters) - FIRST_SAVES) * parameter_price(samples)
         + 2.0 * (tries.ln() + waves)
         + simplicity(study, effect)
@@ -216,7 +215,17 @@ impl<'d> Choice<'d> {
     }
 
     fn price(&self, set: &Set) -> f64 {
-        set.cost - self.misfit(set.swept.remaining())
+        set.cost - self.misfit(set.swept.remaining()) - self.odd(set)
+    }
+
+    /// What the sizes of the effects of a set cost beyond what their physics allows.
+    fn odd(&self, set: &Set) -> f64 {
+        let size = |regressor: &usize| {
+            let coefficients: Vec<f64> =
+                self.design.columns(*regressor).map(|column| set.swept.coefficient(column)).collect();
+            oddity(&self.design.regressors[*regressor].effect.shape, &coefficients)
+        };
+        set.chosen.iter().map(size).sum()
     }
 
     fn with(&self, set: &Set, regressor: usize) -> Set {
@@ -227,7 +236,13 @@ impl<'d> Choice<'d> {
         chosen.push(regressor);
         let cost =
             self.misfit(swept.remaining()) + price + self.prices[regressor] - self.missing(regressor, rank);
-        Set { chosen, swept, cost }
+        self.weighed(Set { chosen, swept, cost })
+    }
+
+    /// A set with what its sizes cost.
+    fn weighed(&self, mut set: Set) -> Set {
+        set.cost += self.odd(&set);
+        set
     }
 
     fn without(&self, set: &Set, regressor: usize) -> Set {
@@ -241,7 +256,7 @@ impl<'d> Choice<'d> {
         let chosen = set.chosen.iter().copied().filter(|known| *known != regressor).collect();
         let cost =
             self.misfit(swept.remaining()) + price - self.prices[regressor] + self.missing(regressor, rank);
-        Set { chosen, swept, cost }
+        self.weighed(Set { chosen, swept, cost })
     }
 
     /// Drops what has become needless, or whose sign has become impossible.

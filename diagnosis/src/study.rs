@@ -74,6 +74,13 @@ pub(crate) struct Channel<'a> {
     pub(crate) returning: Vec<Return>,
 }
 
+impl Channel<'_> {
+    /// The step of its display.
+    pub(crate) fn step(&self) -> f64 {
+        self.rounding * 12f64.sqrt()
+    }
+}
+
 /// What a channel observes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Kind {

@@ -16,6 +16,7 @@ mod known;
 mod lag;
 mod load;
 mod meaning;
+mod plausible;
 mod polynomial;
 mod reversal_spike;
 mod table;
@@ -24,6 +25,7 @@ mod vibration;
 pub(crate) use instrument::Setting;
 pub(crate) use known::known;
 pub use meaning::meaning;
+pub(crate) use plausible::oddity;
 pub(crate) use polynomial::in_position as polynomial_in_position;
 
 use crate::position_loop::Follower;

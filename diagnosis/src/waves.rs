@@ -18,7 +18,7 @@ use crate::observations::{Frame, each_frame, residuals};
 use crate::parallel;
 use crate::ranges::{CYCLES, PERIODS, goes_round, shortest_step};
 use crate::side::Side;
-use crate::study::Study;
+use crate::study::{Scene, Study};
 use crate::terms::Shape;
 use crate::travel::Travel;
 use spectrum::{Top, tops};
@@ -72,12 +72,15 @@ pub(crate) fn places(
         let sides = [(Side::After, true), (Side::Drive, driven)];
         for side in sides.into_iter().filter(|(_, possible)| *possible).map(|(side, _)| side) {
             let place = Place::Motion { motion, side };
-            if let Some(axis) = known.axis.filter(|axis| travels[*axis].moves) {
+            let along = known.axis.filter(|axis| travels[*axis].moves);
+            if let Some(axis) = along {
                 // Any period and any frequency tell which places are alike.
                 let period = travels[axis].range() / 3.7;
                 samples.push(Effect { place, shape: Shape::Cyclic { axis, period } });
             }
-            samples.push(Effect { place, shape: Shape::Vibration { frequency: 7.3 / span } });
+            if along.is_none_or(|axis| !steadily(study, axis)) {
+                samples.push(Effect { place, shape: Shape::Vibration { frequency: 7.3 / span } });
+            }
         }
     }
     let mut places: Vec<WavePlace> = Vec::new();
@@ -94,6 +97,30 @@ pub(crate) fn places(
     }
     places
 }
+
+/// Whether an axis moves at one speed all the time, in all recordings: then time and place are the same, and so are waves in
+/// both. Of the two names that of the place is told, and the other beside it.
+fn steadily(study: &Study<'_>, axis: usize) -> bool {
+    let speeds: Vec<f64> = study.scenes.iter().flat_map(|scene| speeds(scene, axis)).collect();
+    let most = speeds.iter().fold(f64::NEG_INFINITY, |most, speed| most.max(*speed));
+    let least = speeds.iter().fold(f64::INFINITY, |least, speed| least.min(*speed));
+    least * most > 0.0 && (most - least) <= STEADY * (most + least).abs()
+}
+
+/// The mean speeds of an axis over tenths of each run.
+fn speeds(scene: &Scene<'_>, axis: usize) -> Vec<f64> {
+    let (time, position) = (&scene.given.time, &scene.given.programmed[axis]);
+    let of_run = |rows: Range<usize>| {
+        let far = (rows.len() / 10).max(1);
+        let ends = rows.clone().step_by(far).zip(rows.clone().skip(far).step_by(far));
+        ends.map(|(from, to)| (position[to] - position[from]) / (time[to] - time[from])).collect::<Vec<f64>>()
+    };
+    let runs = scene.recording.runs().into_iter();
+    runs.flat_map(|(rows, _)| of_run(rows)).filter(|speed| speed.is_finite()).collect()
+}
+
+/// Speeds that differ by less than this share shift no wave by more than a part of a turn.
+const STEADY: f64 = 0.05;
 
 /// What a channel sees of each motion, summed up for waves: gain times weighted residual.
 struct Source {

@@ -6,6 +6,9 @@ use crate::states::Rows;
 pub(super) const MEANING: &str = "What acceleration bends: feed-forward that is missing in the drive, or a column and a table that \
     yield to inertia. Plausible: gains of some hundreds to tens of thousands 1/s^2.";
 
+/// Gains, 1/s^2.
+pub(super) const PLAUSIBLE: (f64, f64) = (100.0, 1e5);
+
 pub(super) fn fill(rows: &Rows<'_>, axis: usize, out: &mut Vec<f64>) {
     out.extend(rows.axis(axis).acceleration.iter().map(|acceleration| -acceleration));
 }

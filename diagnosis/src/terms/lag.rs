@@ -8,6 +8,9 @@ pub(super) const MEANING: &str = "The position loop follows its command late, by
     circle too small, loops of unequal gain trace an ellipse at 45 degrees. Plausible gains: 10 to \
     200 1/s.";
 
+/// Gains of position loops, 1/s.
+pub(super) const PLAUSIBLE: (f64, f64) = (10.0, 200.0);
+
 pub(super) fn fill(rows: &Rows<'_>, axis: usize, out: &mut Vec<f64>) {
     out.extend_from_slice(rows.axis(axis).lag_slope);
 }

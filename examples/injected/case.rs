@@ -32,23 +32,20 @@ pub(crate) struct Case {
 }
 
 impl Case {
-    /// The effect scaled so that its largest value in the readings is `size` times what a straight line leaves of them;
-    /// nothing where no such effect is one of its kind.
-    pub(crate) fn of(number: usize, base: &Base, allowed: &Allowed, size: f64) -> Option<Self> {
-        let Allowed { motion, axis, effect } = *allowed;
-        let unit = effect.values(&base.path)?;
-        let most = largest(&unit);
-        // So small that bodies turn in proportion to it.
-        let small: Vec<f64> = unit.iter().map(|value| SMALL * value / most).collect();
-        let shown = base.shown(motion, &small)?;
-        let peak = departure(&shown, effect) * most / SMALL;
-        let wanted = size * left(base, axis, &shown);
-        let effect = effect.scaled(wanted / peak);
+    /// The effect at several sizes: its largest value in the readings over what a straight line leaves of them. None of a
+    /// size at which no such effect is one of its kind.
+    pub(crate) fn all(number: usize, base: &Base, allowed: &Allowed, sizes: &[f64]) -> Vec<Self> {
+        let Some(unit) = unit(base, allowed) else { return Vec::new() };
+        sizes.iter().filter_map(|size| Self::of(number, base, allowed, *size, size * unit)).collect()
+    }
+
+    fn of(number: usize, base: &Base, allowed: &Allowed, size: f64, factor: f64) -> Option<Self> {
+        let (motion, effect) = (allowed.motion, allowed.effect.scaled(factor));
         let sensible = match effect {
             Effect::Lag { gain, .. } => gain > SLOWEST && gain < SETTLED / base.path.clock.step,
             _ => true,
         };
-        if !(sensible && wanted > 0.0 && peak > 0.0 && peak.is_finite()) {
+        if !sensible {
             return None;
         }
         let values = effect.values(&base.path)?;
@@ -62,6 +59,19 @@ impl Case {
         let drive = own.filter(|_| self.effect.at_the_drive());
         base.with(&self.signal, drive.map(|axis| (axis, self.values.as_slice())))
     }
+}
+
+/// How many times as large an effect of size one must be for its largest value in the readings to be what a straight line
+/// leaves of them.
+fn unit(base: &Base, allowed: &Allowed) -> Option<f64> {
+    let Allowed { motion, axis, effect } = *allowed;
+    let values = effect.values(&base.path)?;
+    let most = largest(&values);
+    // So small that bodies turn in proportion to it.
+    let small: Vec<f64> = values.iter().map(|value| SMALL * value / most).collect();
+    let shown = base.shown(motion, &small)?;
+    let unit = left(base, axis, &shown) * SMALL / (departure(&shown, effect) * most);
+    (unit.is_finite() && unit > 0.0).then_some(unit)
 }
 
 fn largest(values: &[f64]) -> f64 {

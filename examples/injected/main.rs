@@ -75,12 +75,14 @@ fn bases(options: &Options) -> Vec<Base> {
         let wanted = options.only.as_ref().is_none_or(|only| name.contains(only));
         wanted.then_some((name, folder))
     });
-    let read = |(name, folder): (String, PathBuf)| {
-        let base = catch_unwind(AssertUnwindSafe(|| Base::read(&name, &folder)));
+    let named: Vec<(String, PathBuf)> = named.collect();
+    let read = |number: usize| {
+        let (name, folder) = &named[number];
+        let base = catch_unwind(AssertUnwindSafe(|| Base::read(name, folder)));
         let base = base.unwrap_or_else(|_| Err("it cannot be made again".to_owned()));
         base.inspect_err(|why| eprintln!("{name}: skipped: {why}")).ok()
     };
-    named.filter_map(read).collect()
+    parallel(named.len(), read).into_iter().flatten().collect()
 }
 
 /// All folders with a recording, in order.
@@ -99,23 +101,21 @@ fn recordings(folder: &Path, found: &mut Vec<PathBuf>) {
 
 /// All cases that were asked for.
 fn cases(bases: &[Base], options: &Options) -> Vec<Case> {
-    let mut cases = Vec::new();
-    for (number, base) in bases.iter().enumerate() {
+    let of_base = |number: usize| -> Vec<Case> {
+        let base = &bases[number];
         let allowed = allowed::allowed(base, options.seed);
         let wanted = allowed.iter().filter(|one| options.wants(one.effect.kind()));
-        let before = cases.len();
-        for one in wanted {
-            cases.extend(options.sizes.iter().filter_map(|size| Case::of(number, base, one, *size)));
-        }
-        if cases.len() == before {
-            eprintln!("{}: skipped: none of the effects would show in it", base.name);
-        }
+        wanted.flat_map(|one| Case::all(number, base, one, &options.sizes)).collect()
+    };
+    let cases = parallel(bases.len(), of_base);
+    for (base, _) in bases.iter().zip(&cases).filter(|(_, cases)| cases.is_empty()) {
+        eprintln!("{}: skipped: none of the effects would show in it", base.name);
     }
-    let drawn = case::shuffled(cases.len(), options.seed);
-    let mut kept: Vec<usize> = drawn.into_iter().take(options.most).collect();
-    kept.sort_unstable();
-    let mut numbered: Vec<Option<Case>> = cases.into_iter().map(Some).collect();
-    kept.into_iter().filter_map(|number| numbered[number].take()).collect()
+    let cases: Vec<Case> = cases.into_iter().flatten().collect();
+    let mut kept = case::shuffled(cases.len(), options.seed);
+    kept.truncate(options.most);
+    let chosen = |number: &usize| kept.contains(number);
+    cases.into_iter().enumerate().filter(|(number, _)| chosen(number)).map(|(_, case)| case).collect()
 }
 
 /// Diagnoses bases and cases on all processors, and scores.

@@ -58,53 +58,74 @@ struct Match {
     beside_unclaimed: bool,
 }
 
+/// A finding with what it alone shows; nothing where that cannot be told.
+struct Claim<'d> {
+    finding: &'d Finding,
+    signal: Option<Signal>,
+}
+
 impl Score {
     /// Scores the diagnosis of a case.
     pub(crate) fn of(case: &Case, base: &Base, found: &Diagnosis, alone: &Diagnosis) -> Self {
         let left = held_out(found).zip(held_out(alone)).map(|(case, base)| case / base);
         let whole = left.is_some_and(|left| left < NEAR);
-        let matches: Vec<Option<Match>> =
-            found.findings.iter().map(|finding| matched(case, base, finding, alone, whole)).collect();
+        let injected = centred(case, base, &case.signal);
+        let (claims, known) = (claims(case, base, found), claims(case, base, alone));
+        let matched = |claim: &Claim<'_>| matched(case, base, claim, &known, &injected, whole);
+        let matches: Vec<Option<Match>> = claims.iter().map(matched).collect();
         let best =
             |named: bool| matches.iter().position(|one| one.as_ref().is_some_and(|one| one.named == named));
         let hit = best(true).or_else(|| best(false));
-        let located = matches!(case.effect, Effect::Table { .. }) && located(case, base, found);
-        let told = setting(case, found) && whole;
-        let pieces = hit.is_none() && together(case, base, found, alone);
-        let how = match hit {
-            _ if located => How::Named,
-            Some(hit) if matches[hit].as_ref().is_some_and(|one| one.named) => How::Named,
+        let pieces = hit.is_none() && together(&claims, &known, &injected);
+        let how = match hit.and_then(|hit| matches[hit].as_ref()) {
+            _ if located(case, base, found) => How::Named,
+            Some(hit) if hit.named => How::Named,
             Some(_) => How::Same,
-            None if told || pieces => How::Same,
+            None if pieces || setting(case, found) && whole => How::Same,
             None => How::Missed,
         };
         let covered = hit.and_then(|hit| {
             let clean = matches[hit].as_ref().is_some_and(|one| one.named && !one.beside_unclaimed);
-            covered(case, base, &found.findings[hit], alone).filter(|_| clean)
+            covered(case, base, claims[hit].finding, &known).filter(|_| clean)
         });
         // What was injected, told in several pieces, is no claim besides.
-        let extra = if pieces { Vec::new() } else { extra(case, base, found, alone, hit) };
+        let extra = if pieces { Vec::new() } else { extra(case, base, &claims, &known, hit) };
         Self { how, extra, left, covered, verdict: found.verdict.word() }
     }
+}
+
+fn claims<'d>(case: &Case, base: &Base, diagnosis: &'d Diagnosis) -> Vec<Claim<'d>> {
+    let claim = |finding: &'d Finding| {
+        let signal = signal(base, finding).map(|signal| centred(case, base, &signal));
+        Claim { finding, signal }
+    };
+    diagnosis.findings.iter().map(claim).collect()
 }
 
 fn held_out(diagnosis: &Diagnosis) -> Option<f64> {
     diagnosis.after.holdout_rms.filter(|rms| *rms > 0.0)
 }
 
-/// Whether a finding is the injected effect, alone or beside what the base has of the same.
-fn matched(case: &Case, base: &Base, finding: &Finding, alone: &Diagnosis, whole: bool) -> Option<Match> {
-    let claimed = centred(case, base, &signal(base, finding)?);
-    let injected = centred(case, base, &case.signal);
-    let known: Vec<&Finding> = alone.findings.iter().filter(|known| same_label(known, finding)).collect();
-    let of_base = known.iter().filter_map(|known| Some(centred(case, base, &signal(base, known)?)));
-    let more = of_base.fold(claimed.clone(), |sum, known| minus(&sum, &known));
-    let near = |claim: &Signal| size(&minus(claim, &injected)) < SAME * size(&injected);
-    let beside_unclaimed = !near(&more) && !near(&claimed);
-    if beside_unclaimed && !(known.is_empty() && whole && larger(&claimed, &injected)) {
+/// Whether a claim is the injected effect, alone or beside what the base has of the same.
+fn matched(
+    case: &Case,
+    base: &Base,
+    claim: &Claim<'_>,
+    known: &[Claim<'_>],
+    injected: &Signal,
+    whole: bool,
+) -> Option<Match> {
+    let claimed = claim.signal.as_ref()?;
+    let known: Vec<&Claim<'_>> =
+        known.iter().filter(|known| same_label(known.finding, claim.finding)).collect();
+    let of_base = known.iter().filter_map(|known| known.signal.as_ref());
+    let more = of_base.fold(claimed.clone(), |sum, known| minus(&sum, known));
+    let near = |claim: &Signal| size(&minus(claim, injected)) < SAME * size(injected);
+    let beside_unclaimed = !near(&more) && !near(claimed);
+    if beside_unclaimed && !(known.is_empty() && whole && larger(claimed, injected)) {
         return None;
     }
-    Some(Match { named: is_named(case, base, finding), beside_unclaimed })
+    Some(Match { named: is_named(case, base, claim.finding), beside_unclaimed })
 }
 
 /// Whether a claim is the injected effect, only larger: the base has its own share of it.
@@ -123,15 +144,12 @@ fn is_named(case: &Case, base: &Base, finding: &Finding) -> bool {
 }
 
 /// Whether all that was claimed more than in the base is what was injected.
-fn together(case: &Case, base: &Base, found: &Diagnosis, alone: &Diagnosis) -> bool {
-    let zero: Signal = case.signal.iter().map(|column| vec![0.0; column.len()]).collect();
-    let sum = |of: &Diagnosis| {
-        let signals = of.findings.iter().filter_map(|finding| signal(base, finding));
-        signals.fold(zero.clone(), |sum, one| minus(&sum, &negative(&one)))
-    };
-    let more = centred(case, base, &minus(&sum(found), &sum(alone)));
-    let injected = centred(case, base, &case.signal);
-    size(&minus(&more, &injected)) < SAME * size(&injected)
+fn together(claims: &[Claim<'_>], known: &[Claim<'_>], injected: &Signal) -> bool {
+    let added = claims.iter().filter_map(|claim| claim.signal.as_ref());
+    let less = added.fold(injected.clone(), |left, claim| minus(&left, claim));
+    let taken = known.iter().filter_map(|claim| claim.signal.as_ref());
+    let left = taken.fold(less, |left, claim| plus(&left, claim));
+    size(&left) < SAME * size(injected)
 }
 
 /// Whether a setting of the instrument stands for it: a late clock for a lag, a tilted beam for a scale.
@@ -186,8 +204,9 @@ fn minus(left: &Signal, right: &Signal) -> Signal {
     left.iter().zip(right).map(|(left, right)| difference(left, right)).collect()
 }
 
-fn negative(signal: &Signal) -> Signal {
-    signal.iter().map(|column| column.iter().map(|value| -value).collect()).collect()
+fn plus(left: &Signal, right: &Signal) -> Signal {
+    let sum = |(left, right): (&Vec<f64>, &Vec<f64>)| left.iter().zip(right).map(|(l, r)| l + r).collect();
+    left.iter().zip(right).map(sum).collect()
 }
 
 fn size(signal: &Signal) -> f64 {
@@ -200,12 +219,19 @@ fn dot(left: &Signal, right: &Signal) -> f64 {
 }
 
 /// Claims that are neither the hit nor in the base; the injected name with another size is a miss and no claim besides.
-fn extra(case: &Case, base: &Base, found: &Diagnosis, alone: &Diagnosis, hit: Option<usize>) -> Vec<String> {
-    let of_base = |finding: &Finding| alone.findings.iter().any(|known| same_label(known, finding));
-    let findings = found.findings.iter().enumerate().filter(|(number, _)| Some(*number) != hit);
-    let own = |finding: &Finding| is_named(case, base, finding);
-    let more = findings.filter(|(_, finding)| !of_base(finding) && !(hit.is_none() && own(finding)));
-    more.map(|(_, finding)| format!("{} {}", finding.motion, finding.term)).collect()
+fn extra(
+    case: &Case,
+    base: &Base,
+    claims: &[Claim<'_>],
+    known: &[Claim<'_>],
+    hit: Option<usize>,
+) -> Vec<String> {
+    let of_base = |finding: &Finding| known.iter().any(|known| same_label(known.finding, finding));
+    let claims = claims.iter().enumerate().filter(|(number, _)| Some(*number) != hit);
+    let findings = claims.map(|(_, claim)| claim.finding);
+    let own = |finding: &Finding| hit.is_none() && is_named(case, base, finding);
+    let more = findings.filter(|finding| !of_base(finding) && !own(finding));
+    more.map(|finding| format!("{} {}", finding.motion, finding.term)).collect()
 }
 
 /// Whether two findings are of one name, and of one wave where they are waves.
@@ -223,17 +249,15 @@ fn same_label(left: &Finding, right: &Finding) -> bool {
 }
 
 /// Whether the interval of the size holds what was injected and what the base has of it.
-fn covered(case: &Case, base: &Base, finding: &Finding, alone: &Diagnosis) -> Option<bool> {
+fn covered(case: &Case, base: &Base, finding: &Finding, known: &[Claim<'_>]) -> Option<bool> {
     let (name, place, injected) = case.effect.size()?;
     if finding.term != case.effect.term() || finding.motion != base.names.motions[case.motion].name {
         return None;
     }
     let found = estimate(finding, name, place)?;
-    let known = alone.findings.iter().filter(|known| same_label(known, finding));
-    let known: Vec<f64> = known
-        .filter_map(|known| Some(estimate(known, name, place)?))
-        .map(|known| value_of(known, known.value))
-        .collect();
+    let known = known.iter().map(|known| known.finding).filter(|known| same_label(known, finding));
+    let known = known.filter_map(|known| estimate(known, name, place));
+    let known: Vec<f64> = known.map(|known| value_of(known, known.value)).collect();
     let (low, high) = (value_of(found, found.ci95.0), value_of(found, found.ci95.1));
     let truth = match case.effect {
         // What stays behind adds up: one over the gain.

@@ -8,9 +8,10 @@ use std::f64::consts::TAU;
 
 use simulation::noise::Source;
 
-use crate::base::{Base, Signal, rms, straightened};
+use crate::base::{Base, Signal};
+use crate::columns::{alike, correlation, median, rms, straightened};
 use crate::effect::Effect;
-use crate::state::{Axis, median};
+use crate::state::Axis;
 
 /// All kinds, in the order in which they are told.
 pub(crate) const KINDS: [&str; 15] = [
@@ -45,9 +46,6 @@ const SLOW: f64 = 300.0;
 
 /// A rise of temperature that is more than its sensor's display, K.
 const WARMER: f64 = 1.0;
-
-/// Two columns that are closer to one line are one column.
-const ALIKE: f64 = 0.9;
 
 /// An effect of size one and the motion that it is in.
 pub(crate) struct Allowed {
@@ -268,28 +266,9 @@ fn varies(column: &[f64]) -> bool {
     column.iter().any(|value| (value - middle).abs() > 0.1 * size.max(1e-9))
 }
 
-fn alike(left: &[f64], right: &[f64]) -> bool {
-    correlation(left, right).abs() > ALIKE
-}
-
-fn correlation(left: &[f64], right: &[f64]) -> f64 {
-    let flat = vec![0.0; left.len()];
-    let (left, right) = (straightened(left, &flat), straightened(right, &flat));
-    let product: f64 = left.iter().zip(&right).map(|(left, right)| left * right).sum();
-    product / (rms(&left) * rms(&right) * left.len() as f64).max(f64::MIN_POSITIVE)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn columns_on_a_line_are_alike_and_a_bow_is_not() {
-        let along: Vec<f64> = (0..50).map(f64::from).collect();
-        let line: Vec<f64> = along.iter().map(|x| 3.0 - 2.0 * x).collect();
-        let bow: Vec<f64> = along.iter().map(|x| (x - 24.5).powi(2)).collect();
-        assert!(alike(&along, &line) && !alike(&along, &bow));
-    }
 
     #[test]
     fn choices_of_a_case_do_not_depend_on_other_cases() {

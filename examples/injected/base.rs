@@ -7,30 +7,16 @@ use std::fs;
 use std::path::{Path as File, PathBuf};
 use std::sync::Arc;
 
-use diagnosis::recording::{
-    AxisChannels, Instrument as Recorder, Named, Recording, calibration_of, machine_of, read_header,
-};
+use diagnosis::recording::{Recording, calibration_of, machine_of, read_header};
 use model_dsl::calibration::{self, CalibratedTerm, Calibration, MachineNames, SeriesInput};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
 use model_dsl::{Compiled, compile, compile_word, yaml};
-use simulation::{Column, Commands, Instrument, Measurement, Normal, Plant, replay};
+use simulation::{Commands, Measurement, Plant, replay};
 
-use crate::effect::{Path, difference};
-use crate::state::{Axis, Clock};
-
-/// A way back by less than this part of the travel is rounding of a command.
-const ROUNDING: f64 = 1e-6;
-
-/// The same of a drive's feedback, which jitters.
-const JITTER: f64 = 1e-3;
-
-/// A drive further behind its command than this part of the travel is where its own feedback has it, not its command.
-const BEHIND: f64 = 1e-3;
-
-/// What is further from its command than this part of the travel was not told where to be: the command is where it shall
-/// come to in the end.
-const END_POINT: f64 = 0.1;
+use crate::columns::difference;
+use crate::effect::Path;
+use crate::taken::{Outlet, column_of, commands, instrument, path, reading};
 
 /// A recording with its machine.
 pub(crate) struct Base {
@@ -49,19 +35,6 @@ pub(crate) struct Base {
     known: Calibration,
     commands: Commands,
     measurement: Measurement,
-}
-
-/// Where a reading stands in the recording.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Outlet {
-    /// `measured.x|y|z`, by direction.
-    Measured(usize),
-    /// `measured` of a rotary axis.
-    Angle(usize),
-    /// `deviation`.
-    Deviation,
-    /// `actual` of an axis, where nothing outside the drive measures.
-    Actual(usize),
 }
 
 /// One number a row for each outlet.
@@ -204,25 +177,6 @@ fn add(column: &mut [f64], gain: &[f64]) {
     column.iter_mut().zip(gain).for_each(|(value, gain)| *value += gain);
 }
 
-fn reading(recording: &Recording, outlet: Outlet) -> Vec<f64> {
-    match outlet {
-        Outlet::Measured(direction) => recording.measured[direction].clone(),
-        Outlet::Angle(axis) => recording.axes[axis].measured.clone(),
-        Outlet::Deviation => recording.deviation.clone(),
-        Outlet::Actual(axis) => recording.axes[axis].actual.clone(),
-    }
-    .unwrap_or_default()
-}
-
-fn column_of(recording: &mut Recording, outlet: Outlet) -> Option<&mut Vec<f64>> {
-    match outlet {
-        Outlet::Measured(direction) => recording.measured[direction].as_mut(),
-        Outlet::Angle(axis) => recording.axes[axis].measured.as_mut(),
-        Outlet::Deviation => recording.deviation.as_mut(),
-        Outlet::Actual(axis) => recording.axes[axis].actual.as_mut(),
-    }
-}
-
 fn source(path: &File) -> Result<SourceFile, String> {
     let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
     Ok(SourceFile::new(path.display().to_string(), text))
@@ -246,145 +200,10 @@ fn calibration_named(path: &File, names: &MachineNames) -> Result<Calibration, S
     read.ok_or_else(|| format!("{} cannot be used", path.display()))
 }
 
-/// The instrument of a recording without faults, and where its readings stand. Where there is none, the drives are read as
-/// if an instrument stood in their place.
-fn instrument(recording: &Recording, names: &MachineNames) -> Result<(Instrument, Vec<Outlet>), String> {
-    let instrument = match &recording.instrument {
-        Recorder::Position => return positions(recording, names),
-        Recorder::Ballbar { center, radius } => Instrument::Ballbar {
-            center: Some(*center),
-            radius: Some(*radius),
-            eccentricity: [0.0; 3],
-            offset: 0.0,
-        },
-        Recorder::Linear(line) => match line.axis {
-            Some(axis) => Instrument::Linear { axis, direction: line.direction, cosine: 0.0 },
-            None => Instrument::Probe { normal: Normal::Fixed(line.direction) },
-        },
-        Recorder::Straightness(line) => match line.axis {
-            Some(axis) => Instrument::Straightness { axis, direction: line.direction },
-            None => Instrument::Probe { normal: Normal::Fixed(line.direction) },
-        },
-        Recorder::Angular { axis, about } => Instrument::Angular { axis: *axis, about: *about },
-        Recorder::Probe => return Err("a probe's readings cannot be made again".to_owned()),
-    };
-    Ok((instrument, vec![Outlet::Deviation]))
-}
-
-fn positions(recording: &Recording, names: &MachineNames) -> Result<(Instrument, Vec<Outlet>), String> {
-    let angle = |axis: &usize| recording.axes[*axis].measured.is_some();
-    let directions = recording.measured.each_ref().map(Option::is_some);
-    let angles: Vec<usize> = (0..recording.axes.len()).filter(angle).collect();
-    let outside = (0..3).filter(|direction| directions[*direction]).map(Outlet::Measured);
-    let outlets: Vec<Outlet> = outside.chain(angles.iter().copied().map(Outlet::Angle)).collect();
-    if outlets.is_empty() {
-        return drives(recording, names);
-    }
-    Ok((Instrument::Position { directions, angles }, outlets))
-}
-
-fn drives(recording: &Recording, names: &MachineNames) -> Result<(Instrument, Vec<Outlet>), String> {
-    let read: Vec<usize> =
-        (0..recording.axes.len()).filter(|axis| recording.axes[*axis].actual.is_some()).collect();
-    if read.is_empty() {
-        return Err("nothing was measured".to_owned());
-    }
-    let (turning, sliding): (Vec<usize>, Vec<usize>) =
-        read.into_iter().partition(|axis| names.axes[*axis].rotary);
-    let direction = |axis: &usize| "XYZ".find(names.axes[*axis].letter.as_str());
-    let mut slides: Vec<(usize, usize)> =
-        sliding.iter().filter_map(|axis| Some((direction(axis)?, *axis))).collect();
-    slides.sort_unstable();
-    let mut directions = [false; 3];
-    slides.iter().for_each(|(direction, _)| directions[*direction] = true);
-    let outlets = slides.iter().map(|(_, axis)| *axis).chain(turning.iter().copied()).map(Outlet::Actual);
-    Ok((Instrument::Position { directions, angles: turning.clone() }, outlets.collect()))
-}
-
-/// Where the axes were sent, and what surrounded them.
-fn commands(recording: &Recording) -> Commands {
-    let column = |named: &Named| Column {
-        name: named.name.clone(),
-        unit: named.unit.clone(),
-        values: filled(&named.values),
-    };
-    let position = |axis: &AxisChannels| {
-        let known = axis.command.as_ref().or(axis.actual.as_ref()).or(axis.measured.as_ref());
-        known.map_or_else(|| vec![0.0; recording.time.len()], |known| filled(known))
-    };
-    Commands {
-        time: recording.time.clone(),
-        run: recording.run.clone(),
-        positions: recording.axes.iter().map(position).collect(),
-        temperatures: recording.temperatures.iter().map(column).collect(),
-        loads: recording.loads.iter().map(column).collect(),
-        ..Commands::default()
-    }
-}
-
-/// What effects follow: the commands; the drive's feedback where it is far behind them.
-fn path(recording: &Recording, names: &MachineNames) -> Path {
-    let clock = Clock::new(recording.time.clone(), &recording.run);
-    let axes = recording.axes.iter().enumerate().map(|(number, axis)| {
-        let command = filled(axis.command.as_ref()?);
-        let direction = "XYZ".find(names.axes[number].letter.as_str());
-        let outside = direction.and_then(|direction| recording.measured[direction].as_ref());
-        let came = axis.actual.as_ref().or(axis.measured.as_ref()).or(outside);
-        let state = Axis::new(&clock, command.clone(), ROUNDING);
-        let strayed = came.map_or(0.0, |came| rms(&straightened(&difference(came, &command), &command)));
-        if strayed > END_POINT * state.travel() && state.travel() > 0.0 {
-            return None;
-        }
-        match &axis.actual {
-            Some(actual) if strayed > BEHIND * state.travel() => {
-                Some(Axis::new(&clock, filled(actual), JITTER))
-            }
-            _ => Some(state),
-        }
-    });
-    let values = |named: &Vec<Named>| named.iter().map(|named| filled(&named.values)).collect();
-    Path {
-        axes: axes.collect(),
-        temperatures: values(&recording.temperatures),
-        loads: values(&recording.loads),
-        clock,
-    }
-}
-
-/// Gaps take the value before them; those in the beginning the first value there is.
-fn filled(values: &[f64]) -> Vec<f64> {
-    let mut last = values.iter().copied().find(|value| value.is_finite()).unwrap_or(0.0);
-    let next = |value: &f64| {
-        last = if value.is_finite() { *value } else { last };
-        last
-    };
-    values.iter().map(next).collect()
-}
-
-/// Values less their line over `along`; NaN stays.
-pub(crate) fn straightened(values: &[f64], along: &[f64]) -> Vec<f64> {
-    let rows: Vec<(f64, f64)> =
-        along.iter().zip(values).filter(|(_, y)| y.is_finite()).map(|(x, y)| (*x, *y)).collect();
-    let count = rows.len().max(1) as f64;
-    let (x0, y0) = (
-        rows.iter().map(|row| row.0).sum::<f64>() / count,
-        rows.iter().map(|row| row.1).sum::<f64>() / count,
-    );
-    let square: f64 = rows.iter().map(|(x, _)| (x - x0).powi(2)).sum();
-    let product: f64 = rows.iter().map(|(x, y)| (x - x0) * (y - y0)).sum();
-    let slope = if square > 0.0 { product / square } else { 0.0 };
-    along.iter().zip(values).map(|(x, y)| y - y0 - slope * (x - x0)).collect()
-}
-
-/// The root mean square of what is there.
-pub(crate) fn rms(values: &[f64]) -> f64 {
-    let there = values.iter().filter(|value| value.is_finite());
-    let (sum, count) = there.fold((0.0, 0.0), |(sum, count), value| (sum + value * value, count + 1.0));
-    f64::sqrt(sum / f64::max(count, 1.0))
-}
-
 #[cfg(test)]
 mod tests {
+    use diagnosis::recording::AxisChannels;
+
     use super::*;
 
     /// A machine that goes along X and across Y within 10 s, and is read without error.
@@ -448,16 +267,5 @@ mod tests {
         let axes = vec![AxisChannels::default()];
         let empty = Recording { time: vec![0.0, 1.0], run: vec![1, 1], axes, ..Recording::default() };
         assert_eq!(Base::new("empty", compiled, None, empty).err().as_deref(), Some("nothing was measured"));
-    }
-
-    #[test]
-    fn a_gap_takes_the_value_before_it() {
-        assert_eq!(filled(&[f64::NAN, 2.0, f64::NAN, 3.0]), [2.0, 2.0, 2.0, 3.0]);
-    }
-
-    #[test]
-    fn a_line_leaves_nothing_and_gaps_do_not_count() {
-        let along = [0.0, 1.0, 2.0, 3.0];
-        assert!(rms(&straightened(&[1.0, f64::NAN, 5.0, 7.0], &along)) < 1e-12);
     }
 }

@@ -5,7 +5,8 @@ use diagnosis::recording::Recording;
 use simulation::noise::Source;
 
 use crate::allowed::Allowed;
-use crate::base::{Base, Signal, rms, straightened};
+use crate::base::{Base, Signal};
+use crate::columns::{rms, straightened};
 use crate::effect::Effect;
 
 /// Gains of a position loop that anyone has set, 1/s: slower ones are none, faster ones settle from row to row.

@@ -5,6 +5,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::columns::difference;
 use crate::state::{Axis, Clock, followed, taken_up};
 
 /// What an effect may depend on.
@@ -231,11 +232,6 @@ impl Effect {
 fn warmed(time: &[f64], temperature: &[f64], time_constant: f64) -> Vec<f64> {
     let whole = Clock { time: time.to_vec(), stretches: vec![(0, time.len())], step: 0.0 };
     followed(&whole, temperature, 1.0 / time_constant)
-}
-
-/// Row by row.
-pub(crate) fn difference(left: &[f64], right: &[f64]) -> Vec<f64> {
-    left.iter().zip(right).map(|(left, right)| left - right).collect()
 }
 
 #[cfg(test)]

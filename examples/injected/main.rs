@@ -14,8 +14,6 @@
 
 #![expect(
     clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
     clippy::print_stdout,
     clippy::print_stderr,
     reason = "a program for the terminal, whose cases are its own"
@@ -24,11 +22,13 @@
 mod allowed;
 mod base;
 mod case;
+mod columns;
 mod effect;
 mod options;
 mod report;
 mod score;
 mod state;
+mod taken;
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};

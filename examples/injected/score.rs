@@ -5,9 +5,10 @@ use diagnosis::diagnosis::{Diagnosis, Estimate, Finding, IntervalOf, ParameterVa
 use model_dsl::calibration::CalibratedTerm;
 use model_dsl::quantity::parse_unit;
 
-use crate::base::{Base, Signal, rms, straightened};
+use crate::base::{Base, Signal};
 use crate::case::Case;
-use crate::effect::{Effect, difference};
+use crate::columns::{difference, rms, straightened};
+use crate::effect::Effect;
 
 /// How far a claimed effect may be from the injected one, in parts of its size: within a third it is the right size.
 const SAME: f64 = 0.35;

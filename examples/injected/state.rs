@@ -3,6 +3,8 @@
 //!
 //! All of it is written from the definitions of the terms alone: nothing here is shared with the diagnosis or the simulation.
 
+use crate::columns::median;
+
 /// A pause this many times as long as the usual step is a gap, over which nothing is driven.
 const GAP: f64 = 20.0;
 
@@ -89,13 +91,13 @@ impl Axis {
 
 /// Slopes by central differences within each stretch, one-sided at its ends.
 fn slopes(clock: &Clock, values: &[f64]) -> Vec<f64> {
-    let mut slopes = vec![0.0; values.len()];
+    let mut slopes = Vec::with_capacity(values.len());
     for &(start, end) in &clock.stretches {
-        for row in start..end {
+        slopes.extend((start..end).map(|row| {
             let (from, to) = (row.saturating_sub(1).max(start), (row + 1).min(end - 1));
             let step = clock.time[to] - clock.time[from];
-            slopes[row] = if step > 0.0 { (values[to] - values[from]) / step } else { 0.0 };
-        }
+            if step > 0.0 { (values[to] - values[from]) / step } else { 0.0 }
+        }));
     }
     slopes
 }
@@ -148,13 +150,6 @@ pub(crate) fn taken_up(axis: &Axis, wind_up: f64) -> Vec<f64> {
         state
     };
     axis.position.iter().map(next).collect()
-}
-
-/// The middle one by size; zero of nothing.
-pub(crate) fn median(values: &[f64]) -> f64 {
-    let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
 }
 
 #[cfg(test)]

@@ -91,7 +91,7 @@ pub(crate) fn allowed(base: &Base, seed: u64) -> Vec<Allowed> {
             take(motion, None, &|draw| beside(base, kind, draw), kind);
         }
     }
-    if let Some(motion) = squareness(base) {
+    if let Some(motion) = squareness(base).filter(|_| base.outside()) {
         take(motion, None, &|draw| Some(Effect::Constant { value: draw.sign() }), "constant");
     }
     all
@@ -147,8 +147,8 @@ fn of_axis(base: &Base, number: usize, axis: &Axis, kind: &str, draw: &mut Draw)
         "acceleration" if turns && clock.step < FAST => {
             let most = axis.acceleration.iter().fold(0.0, |most: f64, a| most.max(a.abs()));
             let strong = axis.acceleration.iter().filter(|a| a.abs() > 0.2 * most).count();
-            // A command that jumps from speed to speed has no acceleration that rows could show.
-            let smooth = most > 0.0 && strong > PLACES;
+            // A command that jumps from speed to speed, or is rounded, has no acceleration that rows could show.
+            let smooth = strong > PLACES && axis.smooth();
             smooth.then(|| Effect::Acceleration { axis: number, gain: draw.sign() })
         }
         "expansion" => {
@@ -161,7 +161,7 @@ fn of_axis(base: &Base, number: usize, axis: &Axis, kind: &str, draw: &mut Draw)
                 reference,
             })
         }
-        "coupling" => coupling(base, number, axis, draw),
+        "coupling" if base.outside() => coupling(base, number, axis, draw),
         _ => None,
     }
 }

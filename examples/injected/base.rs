@@ -165,6 +165,11 @@ impl Base {
         candidates.iter().copied().filter(own).find(seen).or_else(|| candidates.iter().copied().find(seen))
     }
 
+    /// Whether an instrument stands outside the drives: no encoder of an axis sees what another axis does to it.
+    pub(crate) fn outside(&self) -> bool {
+        !self.outlets.iter().any(|outlet| matches!(outlet, Outlet::Actual(_)))
+    }
+
     /// Whether any reading shows an error motion.
     pub(crate) fn sees(&self, motion: usize) -> bool {
         let step = vec![1e-3; self.recording.time.len()];

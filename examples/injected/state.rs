@@ -3,7 +3,7 @@
 //!
 //! All of it is written from the definitions of the terms alone: nothing here is shared with the diagnosis or the simulation.
 
-use crate::columns::median;
+use crate::columns::{median, rms};
 
 /// A pause this many times as long as the usual step is a gap, over which nothing is driven.
 const GAP: f64 = 20.0;
@@ -77,6 +77,13 @@ impl Axis {
     /// The longest way from row to row.
     pub(crate) fn stride(&self) -> f64 {
         self.position.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max)
+    }
+
+    /// Whether the acceleration goes on from row to row, as that of rounded or jittering positions does not: differences of
+    /// numbers that know nothing of each other are 1.4 times as large as the numbers.
+    pub(crate) fn smooth(&self) -> bool {
+        let steps: Vec<f64> = self.acceleration.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        rms(&steps) < 0.7 * rms(&self.acceleration)
     }
 
     /// How many places it stands at, told apart by a millionth of the travel.
@@ -173,6 +180,15 @@ mod tests {
         // Away from the ends, where differences are one-sided.
         assert!(axis.acceleration[2..7].iter().all(|a| (a - 6.0).abs() < 1e-9), "{:?}", axis.acceleration);
         assert!((axis.velocity[4] - 12.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_swing_is_smooth_and_a_jitter_is_not() {
+        let clock = clock(200, 0.01);
+        let swing = clock.time.iter().map(|t| (6.0 * t).sin()).collect();
+        assert!(Axis::new(&clock, swing, 0.0).smooth());
+        let jitter = (0..200_u32).map(|row| f64::from(row.wrapping_mul(2_654_435_761) >> 16)).collect();
+        assert!(!Axis::new(&clock, jitter, 0.0).smooth());
     }
 
     #[test]

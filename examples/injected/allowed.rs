@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use simulation::noise::Source;
 
 use crate::base::{Base, Signal};
-use crate::columns::{alike, correlation, median, rms, straightened};
+use crate::columns::{alike, correlation, rms, straightened};
 use crate::effect::Effect;
 use crate::state::Axis;
 
@@ -250,20 +250,19 @@ fn pushes(base: &Base) -> Option<usize> {
     base.path.loads.iter().position(|load| changes(load) && !answer(load))
 }
 
-/// The first alignment that readings see change.
+/// The alignment that readings see most of, where two axes move.
 fn squareness(base: &Base) -> Option<usize> {
     let alignments =
         base.compiled.equations.motions.iter().enumerate().filter(|(_, motion)| motion.alignment);
-    let step = vec![1e-3; base.path.clock.time.len()];
-    let changes = |signal: &Signal| signal.iter().any(|column| varies(column));
-    let mut seen = alignments.filter(|(motion, _)| base.shown(*motion, &step).as_ref().is_some_and(changes));
+    let flat = vec![0.0; base.path.clock.time.len()];
+    let step = vec![1e-3; flat.len()];
+    // Without what it adds everywhere alike, which is the zero of the reading.
+    let change =
+        |signal: Signal| signal.iter().map(|column| rms(&straightened(column, &flat))).fold(0.0, f64::max);
+    let seen = alignments.filter_map(|(motion, _)| Some((motion, change(base.shown(motion, &step)?))));
+    let (motion, most) = seen.max_by(|left, right| left.1.total_cmp(&right.1))?;
     let moving = base.path.axes.iter().flatten().filter(|axis| axis.travel() > 0.0).count();
-    seen.next().map(|(motion, _)| motion).filter(|_| moving > 1)
-}
-
-fn varies(column: &[f64]) -> bool {
-    let (middle, size) = (median(column), rms(column));
-    column.iter().any(|value| (value - middle).abs() > 0.1 * size.max(1e-9))
+    (moving > 1 && most > 0.0).then_some(motion)
 }
 
 #[cfg(test)]

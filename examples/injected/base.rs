@@ -18,6 +18,9 @@ use crate::columns::difference;
 use crate::effect::Path;
 use crate::taken::{Outlet, column_of, commands, instrument, path, reading};
 
+/// The part of a motion that a reading must show: a tenth.
+const SEEN: f64 = 0.1;
+
 /// A recording with its machine.
 pub(crate) struct Base {
     pub(crate) name: String,
@@ -170,11 +173,11 @@ impl Base {
         !self.outlets.iter().any(|outlet| matches!(outlet, Outlet::Actual(_)))
     }
 
-    /// Whether any reading shows an error motion.
-    pub(crate) fn sees(&self, motion: usize) -> bool {
+    /// Whether any reading shows a good part of an error motion: of what it hardly shows no machine has enough.
+    fn sees(&self, motion: usize) -> bool {
         let step = vec![1e-3; self.recording.time.len()];
         let shown = self.shown(motion, &step);
-        shown.iter().flatten().flatten().any(|gain| gain.abs() > 1e-6)
+        shown.iter().flatten().flatten().any(|gain| gain.abs() > SEEN * 1e-3)
     }
 }
 

@@ -45,6 +45,7 @@ mod reproducible;
 mod round_trips;
 mod schemas;
 mod shipped;
+mod shipped_recordings;
 mod simulate;
 mod snapshots;
 mod terminal;

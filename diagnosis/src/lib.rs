@@ -19,6 +19,7 @@ mod engine;
 mod fit;
 mod judge;
 mod kinship;
+mod legs;
 mod local;
 mod model;
 mod noise;

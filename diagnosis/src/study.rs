@@ -11,6 +11,7 @@ use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
 
 use crate::course::LastCourse;
+use crate::legs::GAP;
 use crate::model::{Effect, Fitted, Place};
 use crate::noise;
 use crate::recording::{Instrument, Recording};
@@ -288,9 +289,9 @@ fn corners(recording: &Recording, given: &Given) -> Vec<bool> {
         if marked.iter().filter(|mark| **mark).count() > rows / most { vec![false; rows] } else { marked }
     };
     let mut corners =
-        any(&|position| behind_corners(&recording.time, &recording.run, position), MOST_CORNERS);
+        any(&|position| behind_corners(&recording.time, &given.legs, position), MOST_CORNERS);
     if given.step > SPARSE {
-        let turns = any(&unseen_turns, MOST_TURNS);
+        let turns = any(&|position| unseen_turns(&given.legs, position), MOST_TURNS);
         corners.iter_mut().zip(turns).for_each(|(corner, turn)| *corner |= turn);
     }
     corners
@@ -301,9 +302,6 @@ fn observed(given: &Given) -> f64 {
     let longest = GAP * given.step;
     given.time.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step <= longest).sum()
 }
-
-/// A step of time so many times as long as the typical one is a gap.
-const GAP: f64 = 20.0;
 
 /// One row in so many may lie behind a corner, and one in so many where an axis may have turned unseen.
 const MOST_CORNERS: usize = 20;

@@ -109,7 +109,9 @@ impl Linearised {
                 .collect();
             let coefficients = match fitted.effect.shape {
                 // A loop that rings cannot run ahead of its command.
-                Shape::Lag { inertia, .. } if inertia > 0.0 => coefficients.iter().map(|lag| lag.max(1e-7)).collect(),
+                Shape::Lag { inertia, .. } if inertia > 0.0 => {
+                    coefficients.iter().map(|lag| lag.max(1e-7)).collect()
+                }
                 _ => coefficients,
             };
             let moved = self.slopes[number].zip(fitted.effect.shape.nonlinear()).map(|(slope, parameter)| {

@@ -34,11 +34,13 @@ pub mod recording;
 mod repeats;
 pub mod report;
 mod rest;
+mod rounded;
 mod search;
 mod side;
 mod states;
 mod study;
 mod sweep;
+mod targets;
 mod terms;
 #[cfg(test)]
 mod testing;

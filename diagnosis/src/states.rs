@@ -10,11 +10,12 @@ mod motion;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::legs::legs;
+use crate::legs::{legs, stretches};
 use crate::noise::typical_step;
 use crate::parallel;
 use crate::position_loop::{PositionLoop, Stand};
 use crate::recording::{AxisChannels, Recording};
+use crate::rounded::unrounded;
 use crate::way::Way;
 use motion::{Motion, followed};
 
@@ -33,8 +34,10 @@ pub(crate) struct Given {
     pub(crate) step: f64,
     /// The number of the leg of each row: from leg to leg nothing is driven.
     pub(crate) legs: Arc<[usize]>,
-    /// The programmed position of each axis.
+    /// The programmed position of each axis; the way that was rounded to it, where it was.
     pub(crate) programmed: Arc<[Shared]>,
+    /// The step to which the command of each axis was rounded; 0 where nothing speaks for that.
+    pub(crate) rounded: Arc<[f64]>,
     /// By the sensors of the study; NaN where the recording lacks one.
     pub(crate) temperatures: Arc<[Vec<f64>]>,
     pub(crate) loads: Arc<[Vec<f64>]>,
@@ -44,13 +47,25 @@ impl Given {
     /// What a recording says, with sensors and loads in the study's order.
     pub(crate) fn new(recording: &Recording, temperatures: Vec<Vec<f64>>, loads: Vec<Vec<f64>>) -> Self {
         let rows = recording.time.len();
-        let programmed: Arc<[Shared]> =
+        let mut programmed: Vec<Shared> =
             recording.axes.iter().map(|axis| nominal_position(axis, rows)).collect();
+        let legs: Arc<[usize]> = legs(&recording.time, &recording.run, &programmed).into();
+        let mut rounded = vec![0.0; programmed.len()];
+        for (axis, step) in rounded.iter_mut().enumerate() {
+            let command = recording.axes[axis].command.as_deref();
+            if let Some(found) =
+                command.and_then(|command| unrounded(&recording.time, command, stretches(&legs)))
+            {
+                programmed[axis] = found.way.into();
+                *step = found.step;
+            }
+        }
         Self {
             time: recording.time.as_slice().into(),
             step: typical_step(&recording.time),
-            legs: legs(&recording.time, &recording.run, &programmed).into(),
-            programmed,
+            legs,
+            programmed: programmed.into(),
+            rounded: rounded.into(),
             temperatures: temperatures.into(),
             loads: loads.into(),
         }
@@ -200,7 +215,9 @@ impl States {
                     Some(standing) => standing.at(programmed),
                     None => {
                         let axis = &recording.axes[number];
-                        axis_states(given, axis, programmed, loops[number], clock)
+                        // What is no more than rounding is no motion.
+                        let resolution = resolution(axis, programmed).max(given.rounded[number]);
+                        axis_states(given, axis, programmed, loops[number], (clock, resolution))
                     }
                 }
             });
@@ -252,9 +269,8 @@ fn axis_states(
     axis: &AxisChannels,
     programmed: &Shared,
     driven: Driven,
-    clock: f64,
+    (clock, resolution): (f64, f64),
 ) -> AxisStates {
-    let resolution = resolution(axis, programmed);
     let way = Way::new(&given.time, programmed, &given.legs);
     let mut states = if driven.position_loop.acts() {
         let starts: Vec<Option<Stand>> =
@@ -269,8 +285,7 @@ fn axis_states(
     if driven.crossing > 0.0 {
         let (position, direction) = (&states.position, &states.direction);
         let mut play = Play::default();
-        states.flank =
-            followed(position, direction, &states.displaced, &mut play, driven.crossing).into();
+        states.flank = followed(position, direction, &states.displaced, &mut play, driven.crossing).into();
     }
     states
 }

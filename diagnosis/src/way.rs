@@ -78,9 +78,7 @@ impl<'w> Way<'w> {
         for (rows, start) in self.stretches().zip(starts) {
             let mut follower = Follower::from(*start);
             let told = self.time[rows.clone()].iter().zip(&self.command[rows]);
-            followed.extend(
-                told.map(|(time, command)| position_loop.follow(&mut follower, *time, *command)),
-            );
+            followed.extend(told.map(|(time, command)| position_loop.follow(&mut follower, *time, *command)));
         }
         if clock == 0.0 {
             return followed;

@@ -56,8 +56,7 @@ impl Step<'_> {
         let same = self.run.get(self.row) == self.run.get(self.row - 1);
         let pause = self.duration(self.row) / self.typical;
         same && pause <= GAP
-            || (same || pause <= PAUSE)
-                && positions.iter().all(|position| self.is_driven(position, !same))
+            || (same || pause <= PAUSE) && positions.iter().all(|position| self.is_driven(position, !same))
     }
 
     /// The time from the sample before to a sample.
@@ -68,9 +67,8 @@ impl Step<'_> {
 
     /// The speed on the way to a sample; 0 where there is none, or none that counts.
     fn speed(&self, position: &[f64], row: usize) -> f64 {
-        let near = row > 0
-            && self.run.get(row) == self.run.get(row - 1)
-            && self.duration(row) <= GAP * self.typical;
+        let near =
+            row > 0 && self.run.get(row) == self.run.get(row - 1) && self.duration(row) <= GAP * self.typical;
         let speed = if near { way(position, row) / self.duration(row) } else { 0.0 };
         if speed.is_finite() { speed } else { 0.0 }
     }

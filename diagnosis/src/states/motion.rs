@@ -65,8 +65,7 @@ impl Motion {
                 displaced[rows.start] = true;
                 // Where it does not move any more, it is likeliest to stand as it came.
                 let direction = first_motion(known(), resolution).unwrap_or(way).signum();
-                tracker =
-                    Tracker { direction, moved: false, reversed: f64::NEG_INFINITY, extreme: None };
+                tracker = Tracker { direction, moved: false, reversed: f64::NEG_INFINITY, extreme: None };
                 moves = true;
             }
             for row in rows.clone() {
@@ -77,7 +76,12 @@ impl Motion {
             moves |= tracker.moved;
             last = known().last().or(last);
         }
-        Self { direction: directions.into(), displaced: displaced.into(), since_reversal: since.into(), moves }
+        Self {
+            direction: directions.into(),
+            displaced: displaced.into(),
+            since_reversal: since.into(),
+            moves,
+        }
     }
 }
 

@@ -296,12 +296,8 @@ fn runs_that_go_on_keep_their_direction_and_reversal() {
     let command = [0.0, 1.0, 2.0, 3.0, 3.0, 3.0, 2.0, 1.0];
     let mut recording = programmed(&[0.0, 1.0, 2.0, 3.0, 4.0, 105.0, 106.0, 107.0], &[command.to_vec()]);
     recording.run = vec![1, 1, 1, 1, 1, 2, 2, 2];
-    let states = States::new(
-        &recording,
-        &Given::new(&recording, Vec::new(), Vec::new()),
-        &[behind(0.0)],
-        0.0,
-    );
+    let states =
+        States::new(&recording, &Given::new(&recording, Vec::new(), Vec::new()), &[behind(0.0)], 0.0);
     assert_eq!(*states.axes[0].direction, [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, -1.0, -1.0]);
     assert_eq!(states.axes[0].since_reversal[6..], [0.0, 1.0]);
 }

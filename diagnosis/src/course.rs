@@ -189,9 +189,6 @@ fn loops(study: &Study<'_>, model: &[Fitted]) -> Vec<PositionLoop> {
             loops[*axis].inertia += inertia;
         }
     }
-    for one in &mut loops {
-        one.time_constant = one.time_constant.max(0.0);
-    }
     loops
 }
 

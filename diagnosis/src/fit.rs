@@ -108,8 +108,10 @@ impl Linearised {
                 .map(|(coefficient, column)| coefficient + change(column))
                 .collect();
             let coefficients = match fitted.effect.shape {
-                // A loop cannot run ahead of its command.
-                Shape::Lag { .. } => coefficients.iter().map(|lag| lag.max(1e-7)).collect(),
+                // A loop that rings cannot run ahead of its command.
+                Shape::Lag { inertia, .. } if inertia > 0.0 => {
+                    coefficients.iter().map(|lag| lag.max(1e-7)).collect()
+                }
                 _ => coefficients,
             };
             let moved = self.slopes[number].zip(fitted.effect.shape.nonlinear()).map(|(slope, parameter)| {

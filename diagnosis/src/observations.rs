@@ -105,9 +105,9 @@ impl<'c> Frame<'c> {
             }
             Kind::Drive(axis) => self.drive(study, axis),
         };
-        let corners = &study.scenes[scene].corners[self.rows.clone()];
         let left = observed.iter().zip(predicted).map(|(observed, predicted)| observed - predicted);
-        left.zip(corners).map(|(left, corner)| if *corner { f64::NAN } else { left }).collect()
+        let rows = self.rows.clone().zip(left);
+        rows.map(|(row, left)| if study.scenes[scene].left_out(row) { f64::NAN } else { left }).collect()
     }
 
     /// Observed minus predicted of a channel by number, the instrument's settings included.

@@ -257,7 +257,11 @@ impl<'f> Described<'f> {
     fn reciprocal(&self, unit: &str) -> Estimate {
         let value = self.coefficient(0);
         let half = WIDTH_95 * self.certainty.covariance[(0, 0)].max(0.0).sqrt();
-        let ends = (1.0 / (value + half), 1.0 / (value - half).max(1e-9));
+        // Both ends lie on the side of the value: beyond zero is another sign, at an infinite gain.
+        let ends = match value < 0.0 {
+            true => (1.0 / (value + half).min(-1e-9), 1.0 / (value - half)),
+            false => (1.0 / (value + half), 1.0 / (value - half).max(1e-9)),
+        };
         Estimate { value: 1.0 / value, ci95: ends, unit: unit.to_owned() }
     }
 

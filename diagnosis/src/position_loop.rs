@@ -7,7 +7,8 @@
 /// The loop of an axis: `q' = K (q_cmd - q)`, or of second order with the natural frequency w.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub(crate) struct PositionLoop {
-    /// 1/K, s: what the axis stays behind by, over its velocity. 0: no loop.
+    /// 1/K, s: what the axis stays behind by, over its velocity. 0: no loop. Below zero the drive leads, because its feed-forward
+    /// is too large: such a loop has no stable solution, and stands for its steady state `q = q_cmd - v/K`.
     pub(crate) time_constant: f64,
     /// 1/w^2, s^2. 0: of first order.
     pub(crate) inertia: f64,
@@ -37,9 +38,14 @@ impl Follower {
 }
 
 impl PositionLoop {
-    /// Whether there is one.
+    /// Whether there is one that follows.
     pub(crate) fn acts(self) -> bool {
         self.time_constant > 0.0
+    }
+
+    /// Whether the drive leads.
+    pub(crate) fn leads(self) -> bool {
+        self.time_constant < 0.0
     }
 
     /// The rate at which its answer to a change fades at last, 1/s; infinite without a loop.

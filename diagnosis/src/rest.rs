@@ -15,7 +15,7 @@ pub(crate) fn tell(study: &mut Study<'_>) {
         return;
     }
     for scene in 0..study.scenes.len() {
-        if study.scenes[scene].sparse() {
+        if study.scenes[scene].sparse() && study.scenes[scene].targets.axes.is_empty() {
             let moving = misfit(study, scene);
             study.scenes[scene].at_rest = true;
             let resting = misfit(study, scene);

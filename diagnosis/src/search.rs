@@ -198,7 +198,18 @@ impl<'d> Choice<'d> {
         }
         let mut columns = self.design.columns(regressor);
         let apart = columns.any(|column| set.swept.independence(column) > APART);
-        apart && (!positive(&effect.shape) || set.swept.sign(self.design.first[regressor]) > 0.0)
+        let sign = || set.swept.sign(self.design.first[regressor]);
+        apart && (!positive(&effect.shape) || sign() > 0.0 || self.may_lead(set, regressor))
+    }
+
+    /// Whether a lag may be below zero: its drive then leads. A clock that does the same is likelier than a feed-forward that is
+    /// too large.
+    fn may_lead(&self, set: &Set, regressor: usize) -> bool {
+        let shape = |number: usize| &self.design.regressors[number].effect.shape;
+        let clock = |other: &usize| *shape(*other) == Shape::Instrument(Setting::Clock);
+        let mut clocks = (0..self.design.regressors.len()).filter(clock);
+        matches!(shape(regressor), Shape::Lag { inertia: 0.0, .. })
+            && !clocks.any(|clock| self.alike(set, regressor, clock))
     }
 
     fn cost_with(&self, set: &Set, regressor: usize) -> f64 {
@@ -276,7 +287,8 @@ impl<'d> Choice<'d> {
 
     fn impossible(&self, set: &Set, regressor: usize) -> bool {
         let effect = &self.design.regressors[regressor].effect;
-        positive(&effect.shape) && set.swept.coefficient(self.design.first[regressor]) <= 0.0
+        let leads = matches!(effect.shape, Shape::Lag { inertia: 0.0, .. });
+        positive(&effect.shape) && !leads && set.swept.coefficient(self.design.first[regressor]) <= 0.0
             || self.outgrows(set, regressor)
     }
 

@@ -4,14 +4,23 @@
 //! clock. Out: for each axis position, velocity, acceleration, direction and time since the last reversal, behind the loop
 //! where the axis has one; and views of stretches of rows.
 
+mod corners;
+mod motion;
+
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::legs::{legs, stretches};
 use crate::noise::typical_step;
 use crate::parallel;
 use crate::position_loop::{PositionLoop, Stand};
 use crate::recording::{AxisChannels, Recording};
-use crate::way::{CORNER, Way};
+use crate::rounded::unrounded;
+use crate::way::Way;
+use motion::{Motion, followed};
+
+pub(crate) use corners::{behind_corners, unseen_turns};
+pub(crate) use motion::Play;
 
 /// A column of one entry a row, held once wherever it is needed: a recording has many rows.
 pub(crate) type Shared = Arc<[f64]>;
@@ -23,8 +32,12 @@ pub(crate) struct Given {
     pub(crate) time: Shared,
     /// The typical step of time between rows, s.
     pub(crate) step: f64,
-    /// The programmed position of each axis.
+    /// The number of the leg of each row: from leg to leg nothing is driven.
+    pub(crate) legs: Arc<[usize]>,
+    /// The programmed position of each axis; the way that was rounded to it, where it was.
     pub(crate) programmed: Arc<[Shared]>,
+    /// The step to which the command of each axis was rounded; 0 where nothing speaks for that.
+    pub(crate) rounded: Arc<[f64]>,
     /// By the sensors of the study; NaN where the recording lacks one.
     pub(crate) temperatures: Arc<[Vec<f64>]>,
     pub(crate) loads: Arc<[Vec<f64>]>,
@@ -34,10 +47,25 @@ impl Given {
     /// What a recording says, with sensors and loads in the study's order.
     pub(crate) fn new(recording: &Recording, temperatures: Vec<Vec<f64>>, loads: Vec<Vec<f64>>) -> Self {
         let rows = recording.time.len();
+        let mut programmed: Vec<Shared> =
+            recording.axes.iter().map(|axis| nominal_position(axis, rows)).collect();
+        let legs: Arc<[usize]> = legs(&recording.time, &recording.run, &programmed).into();
+        let mut rounded = vec![0.0; programmed.len()];
+        for (axis, step) in rounded.iter_mut().enumerate() {
+            let command = recording.axes[axis].command.as_deref();
+            if let Some(found) =
+                command.and_then(|command| unrounded(&recording.time, command, stretches(&legs)))
+            {
+                programmed[axis] = found.way.into();
+                *step = found.step;
+            }
+        }
         Self {
             time: recording.time.as_slice().into(),
             step: typical_step(&recording.time),
-            programmed: recording.axes.iter().map(|axis| nominal_position(axis, rows)).collect(),
+            legs,
+            programmed: programmed.into(),
+            rounded: rounded.into(),
             temperatures: temperatures.into(),
             loads: loads.into(),
         }
@@ -67,9 +95,12 @@ pub(crate) struct States {
 pub(crate) struct AxisStates {
     pub(crate) position: Shared,
     pub(crate) acceleration: Shared,
-    /// +1 or -1: that of the last real motion; +1 before the first.
+    /// +1 or -1: that of the last real motion; +1 before the first. A leg that begins where none ended begins with the direction
+    /// of its own first motion.
     pub(crate) direction: Shared,
-    /// Infinite before the first reversal.
+    /// Whether the axis begins a leg elsewhere than where it ended the last one; empty where it never does.
+    pub(crate) displaced: Arc<[bool]>,
+    /// Infinite before the first reversal since it was displaced.
     pub(crate) since_reversal: Shared,
     /// At which flank of its play the axis is, from -1 to 1: that of its direction, or on the way there where it crosses.
     pub(crate) flank: Shared,
@@ -107,6 +138,8 @@ pub(crate) struct AxisRows<'s> {
     pub(crate) position: &'s [f64],
     pub(crate) acceleration: &'s [f64],
     pub(crate) direction: &'s [f64],
+    /// Empty where the axis is displaced in none of them.
+    displaced: &'s [bool],
     pub(crate) since_reversal: &'s [f64],
     pub(crate) flank: &'s [f64],
     pub(crate) lag_slope: &'s [f64],
@@ -114,6 +147,12 @@ pub(crate) struct AxisRows<'s> {
 }
 
 impl AxisRows<'_> {
+    /// Where a play of this width stands in each row, from -1 to 1: it follows the position, and begins anew where the axis was
+    /// displaced.
+    pub(crate) fn followed(&self, play: &mut Play, width: f64) -> Vec<f64> {
+        followed(self.position, self.direction, self.displaced, play, width)
+    }
+
     /// How the position changes with the inertia of the loop; 0 for a loop of first order.
     pub(crate) fn inertia_slope(&self) -> Vec<f64> {
         self.inertia_slope.map_or_else(|| vec![0.0; self.position.len()], <[f64]>::to_vec)
@@ -134,11 +173,18 @@ impl<'s> Rows<'s> {
             position: &axis.position[rows.clone()],
             acceleration: &axis.acceleration[rows.clone()],
             direction: &axis.direction[rows.clone()],
+            displaced: axis.displaced.get(rows.clone()).unwrap_or_default(),
             since_reversal: &axis.since_reversal[rows.clone()],
             flank: &axis.flank[rows.clone()],
             lag_slope: &axis.lag_slope[rows.clone()],
             inertia_slope: axis.inertia_slope.as_ref().map(|slope| &slope[rows]),
         }
+    }
+
+    /// Whether a leg begins in a row, counted from the first of the stretch.
+    pub(crate) fn begins(&self, row: usize) -> bool {
+        let (legs, row) = (&self.states.given.legs, self.first + row);
+        row > 0 && legs[row] != legs[row - 1]
     }
 
     /// The position loop of an axis.
@@ -169,7 +215,9 @@ impl States {
                     Some(standing) => standing.at(programmed),
                     None => {
                         let axis = &recording.axes[number];
-                        axis_states(given, &recording.run, axis, programmed, loops[number], clock)
+                        // What is no more than rounding is no motion.
+                        let resolution = resolution(axis, programmed).max(given.rounded[number]);
+                        axis_states(given, axis, programmed, loops[number], (clock, resolution))
                     }
                 }
             });
@@ -198,6 +246,7 @@ impl Standing {
             position: position.clone(),
             acceleration: self.zero.clone(),
             direction: self.forward.clone(),
+            displaced: Arc::default(),
             since_reversal: self.never.clone(),
             flank: self.forward.clone(),
             position_loop: PositionLoop::default(),
@@ -216,55 +265,28 @@ pub(crate) fn nominal_position(axis: &AxisChannels, rows: usize) -> Shared {
 
 fn axis_states(
     given: &Given,
-    run: &[i64],
     axis: &AxisChannels,
     programmed: &Shared,
     driven: Driven,
-    clock: f64,
+    (clock, resolution): (f64, f64),
 ) -> AxisStates {
-    let time = &*given.time;
-    let resolution = resolution(axis, programmed);
-    let way = Way::new(time, programmed);
+    let way = Way::new(&given.time, programmed, &given.legs);
     let mut states = if driven.position_loop.acts() {
-        let start = start(time, axis, &way, driven);
-        behind_loop(time, run, &way, driven, start, clock, resolution)
+        let starts: Vec<Option<Stand>> =
+            way.stretches().map(|rows| start(&given.time, axis, programmed, &way, driven, rows)).collect();
+        behind_loop(given, &way, driven, &starts, clock, resolution)
+    } else if driven.position_loop.leads() {
+        ahead(given, programmed, driven.position_loop, clock, resolution)
     } else {
-        as_programmed(given, run, &way, programmed, clock, resolution)
+        as_programmed(given, &way, programmed, clock, resolution)
     };
+    // From flank to flank the axis stands while its drive goes as far as the play is wide.
     if driven.crossing > 0.0 {
-        states.flank = flank(&states.position, &states.direction, driven.crossing);
+        let (position, direction) = (&states.position, &states.direction);
+        let mut play = Play::default();
+        states.flank = followed(position, direction, &states.displaced, &mut play, driven.crossing).into();
     }
     states
-}
-
-/// Where the axis is in its play: it goes from flank to flank while its drive goes as far as the play is wide.
-fn flank(position: &[f64], direction: &[f64], crossing: f64) -> Shared {
-    let mut play = Play::default();
-    position.iter().zip(direction).map(|(q, direction)| play.follow(*q, *direction, crossing)).collect()
-}
-
-/// The play operator: where within [-1, 1] something stands that follows a position by 2 dq / width.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Play {
-    /// The last position that is known, and where it stood there.
-    last: Option<(f64, f64)>,
-}
-
-impl Play {
-    /// Where it stands at the next position; before anything is known, where the direction leaves it.
-    pub(crate) fn follow(&mut self, position: f64, direction: f64, width: f64) -> f64 {
-        let stands = match self.last {
-            None => direction,
-            Some((last, stood)) if position.is_finite() => {
-                (stood + 2.0 * (position - last) / width).clamp(-1.0, 1.0)
-            }
-            Some((_, stood)) => stood,
-        };
-        if position.is_finite() {
-            self.last = Some((position, stands));
-        }
-        stands
-    }
 }
 
 /// How far an axis must turn back before it has really turned: nothing but rounding for a programmed position; more for a
@@ -281,28 +303,29 @@ fn resolution(axis: &AxisChannels, positions: &[f64]) -> f64 {
 /// Without a loop. A quick loop stays behind by its time constant times the speed on the way to a row, as a late clock does.
 fn as_programmed(
     given: &Given,
-    run: &[i64],
     way: &Way<'_>,
     programmed: &Shared,
     clock: f64,
     resolution: f64,
 ) -> AxisStates {
-    let time = &*given.time;
-    let curve = way.curve(derivative(time, run, programmed));
+    let (time, legs) = (&*given.time, &*given.legs);
+    let curve = way.curve(derivative(time, legs, programmed));
     let position = if clock == 0.0 { programmed.clone() } else { curve.earlier(clock).into() };
     // A little earlier: what is seen then is the way just before, not the mean of the ways before and after.
     let step = 1e-3 * given.step;
     let mut slope = curve.earlier(clock + step);
     slope.iter_mut().zip(position.iter()).for_each(|(earlier, now)| *earlier = (*earlier - now) / step);
     let slope: Shared = slope.into();
-    let acceleration = derivative(time, run, &derivative(time, run, &position)).into();
-    let (direction, since_reversal, moves) = directions(time, &position, resolution);
+    let acceleration = derivative(time, legs, &derivative(time, legs, &position)).into();
+    let Motion { direction, displaced, since_reversal, moves } =
+        Motion::of(time, legs, &position, resolution);
     AxisStates {
         position,
         acceleration,
         flank: direction.clone(),
         direction,
-        since_reversal: since_reversal.into(),
+        displaced,
+        since_reversal,
         position_loop: PositionLoop::default(),
         lag_slope: slope.clone(),
         inertia_slope: None,
@@ -311,13 +334,38 @@ fn as_programmed(
     }
 }
 
+/// Of a drive that leads: by its time constant times the velocity of the way at the rows.
+fn ahead(
+    given: &Given,
+    programmed: &Shared,
+    position_loop: PositionLoop,
+    clock: f64,
+    resolution: f64,
+) -> AxisStates {
+    let (time, legs) = (&*given.time, &*given.legs);
+    let velocity = derivative(time, legs, programmed);
+    let led = programmed.iter().zip(&velocity).map(|(q, v)| q - position_loop.time_constant * v);
+    let led: Shared = led.collect();
+    let states = as_programmed(given, &Way::new(time, &led, legs), &led, clock, resolution);
+    let speeds = Way::new(time, &velocity, legs);
+    let shown = speeds.curve(derivative(time, legs, &velocity)).earlier(clock);
+    AxisStates { position_loop, lag_slope: shown.iter().map(|velocity| -velocity).collect(), ..states }
+}
+
 /// The relative step by which the slopes with time constant and inertia are taken.
 const LOOP_STEP: f64 = 1e-4;
 
-/// Where an axis stands in the first row, as its drive's own feedback says, where a recording does not begin at rest: it is then
-/// further from its command than friction leaves it. The speed is that of the rows within the loop's time.
-fn start(time: &[f64], axis: &AxisChannels, way: &Way<'_>, driven: Driven) -> Option<Stand> {
-    let actual = axis.actual.as_ref()?;
+/// Where an axis stands in the first of these rows, a leg, as its drive's own feedback says, where that does not begin at rest: it
+/// is then further from its command than friction leaves it. The speed is that of the rows within the loop's time.
+fn start(
+    time: &[f64],
+    axis: &AxisChannels,
+    programmed: &[f64],
+    way: &Way<'_>,
+    driven: Driven,
+    rows: Range<usize>,
+) -> Option<Stand> {
+    let (time, actual) = (&time[rows.clone()], axis.actual.as_ref()?.get(rows.clone())?);
     let first = *actual.first().filter(|first| first.is_finite())?;
     let early =
         time.iter().zip(actual).take_while(|(at, _)| **at - time[0] <= driven.position_loop.time_constant);
@@ -329,24 +377,23 @@ fn start(time: &[f64], axis: &AxisChannels, way: &Way<'_>, driven: Driven) -> Op
     let velocity = if squares > 0.0 { moved / squares } else { 0.0 };
     let position = first - driven.zero;
     let lag = driven.position_loop.time_constant * way.fastest();
-    ((position - way.first()).abs() > AWAY * lag).then_some(Stand { position, velocity })
+    ((position - programmed[rows.start]).abs() > AWAY * lag).then_some(Stand { position, velocity })
 }
 
 /// The share of the lag at the highest speed beyond which an axis does not begin at rest.
 const AWAY: f64 = 0.05;
 
 fn behind_loop(
-    time: &[f64],
-    run: &[i64],
+    given: &Given,
     way: &Way<'_>,
     driven: Driven,
-    start: Option<Stand>,
+    starts: &[Option<Stand>],
     clock: f64,
     resolution: f64,
 ) -> AxisStates {
-    let stands = way.behind_loop(driven.position_loop, start, clock);
+    let stands = way.behind_loop(driven.position_loop, starts, clock);
     let slope = |changed: PositionLoop, change: f64| -> Shared {
-        let changed = way.behind_loop(changed, start, clock);
+        let changed = way.behind_loop(changed, starts, clock);
         changed.iter().zip(&stands).map(|(far, near)| (far.position - near.position) / change).collect()
     };
     let PositionLoop { time_constant, inertia } = driven.position_loop;
@@ -357,14 +404,16 @@ fn behind_loop(
         (inertia > 0.0).then(|| slope(PositionLoop { time_constant, inertia: inertia + heavier }, heavier));
     let velocity: Vec<f64> = stands.iter().map(|stand| stand.velocity).collect();
     let position: Shared = stands.iter().map(|stand| stand.position).collect();
-    let acceleration = derivative(time, run, &velocity);
-    let (direction, since_reversal, moves) = directions(time, &position, resolution);
+    let acceleration = derivative(&given.time, &given.legs, &velocity);
+    let Motion { direction, displaced, since_reversal, moves } =
+        Motion::of(&given.time, &given.legs, &position, resolution);
     AxisStates {
         position,
         acceleration: acceleration.into(),
         flank: direction.clone(),
         direction,
-        since_reversal: since_reversal.into(),
+        displaced,
+        since_reversal,
         position_loop: driven.position_loop,
         lag_slope,
         inertia_slope,
@@ -373,15 +422,15 @@ fn behind_loop(
     }
 }
 
-/// The derivative in time by the parabola through each sample and its neighbours in the same run; NaN samples are passed over.
-fn derivative(time: &[f64], run: &[i64], values: &[f64]) -> Vec<f64> {
+/// The derivative in time by the parabola through each sample and its neighbours in the same leg; NaN samples are passed over.
+fn derivative(time: &[f64], legs: &[usize], values: &[f64]) -> Vec<f64> {
     let known: Vec<usize> = (0..values.len()).filter(|row| values[*row].is_finite()).collect();
     let slope = |from: usize, to: usize| (values[to] - values[from]) / (time[to] - time[from]);
     let mut result = vec![f64::NAN; values.len()];
     for (place, row) in known.iter().enumerate() {
-        let same_run = |other: &usize| run[*other] == run[*row];
-        let before = place.checked_sub(1).map(|place| known[place]).filter(same_run);
-        let after = known.get(place + 1).copied().filter(same_run);
+        let same_leg = |other: &usize| legs[*other] == legs[*row];
+        let before = place.checked_sub(1).map(|place| known[place]).filter(same_leg);
+        let after = known.get(place + 1).copied().filter(same_leg);
         result[*row] = match (before, after) {
             (Some(before), Some(after)) => {
                 let (left, right) = (time[*row] - time[before], time[after] - time[*row]);
@@ -395,80 +444,5 @@ fn derivative(time: &[f64], run: &[i64], values: &[f64]) -> Vec<f64> {
     result
 }
 
-/// Direction of the last real motion, time since the last reversal, and whether there is any motion.
-fn directions(time: &[f64], position: &[f64], resolution: f64) -> (Shared, Vec<f64>, bool) {
-    let mut direction = 1.0;
-    let mut moved = false;
-    let mut reversed = f64::NEG_INFINITY;
-    let mut extreme: Option<f64> = None;
-    let mut directions = Vec::with_capacity(position.len());
-    let mut since = Vec::with_capacity(position.len());
-    for (time, position) in time.iter().zip(position) {
-        if position.is_finite() {
-            let from = *extreme.get_or_insert(*position);
-            let gone = position - from;
-            if gone.abs() > resolution && (!moved || gone * direction < 0.0) {
-                if moved {
-                    reversed = *time;
-                }
-                direction = gone.signum();
-                moved = true;
-            }
-            if gone * direction > 0.0 {
-                extreme = Some(*position);
-            }
-        }
-        directions.push(direction);
-        since.push(time - reversed);
-    }
-    (directions.into(), since, moved)
-}
-
 #[cfg(test)]
 mod tests;
-
-/// Rows in which it is not known from which side an axis came to its place: it stands where it stood in the row before, and leaves
-/// the other way than it came. The cycle of ISO 230-2 goes beyond its last target and comes back in between; a path without an
-/// overrun does not.
-pub(crate) fn unseen_turns(position: &[f64]) -> Vec<bool> {
-    let known = || position.iter().copied().filter(|position| position.is_finite());
-    let range = known().fold(f64::NEG_INFINITY, f64::max) - known().fold(f64::INFINITY, f64::min);
-    let mut unseen = vec![false; position.len()];
-    let mut came = 0.0;
-    let mut first = 0;
-    for row in 1..position.len() {
-        let step = position[row] - position[row - 1];
-        // A missing position is no step: nothing is known of it. A millionth of the travel is rounding.
-        if step.is_nan() || step.abs() <= 1e-6 * range {
-            continue;
-        }
-        if came * step < 0.0 {
-            unseen[first + 1..row].fill(true);
-        }
-        (came, first) = (step, row);
-    }
-    unseen
-}
-
-/// Rows behind a corner of the path that lies between two rows: where the axis was on the way is not recorded, so that no
-/// loop and no clock can be judged by them.
-pub(crate) fn behind_corners(time: &[f64], run: &[i64], position: &[f64]) -> Vec<bool> {
-    let slope = |row: usize| (position[row] - position[row - 1]) / (time[row] - time[row - 1]);
-    let fastest = (1..time.len())
-        .filter(|row| run[*row] == run[row - 1])
-        .map(|row| slope(row).abs())
-        .filter(|slope| slope.is_finite())
-        .fold(0.0, f64::max);
-    (0..time.len())
-        .map(|row| {
-            let inside = row >= 2 && row + 1 < time.len() && run[row - 2] == run[row + 1];
-            let (before, here, after) =
-                if inside { (slope(row - 1), slope(row), slope(row + 1)) } else { return false };
-            let mixed = (here - before).abs().min((after - here).abs()) > MIXED * fastest;
-            mixed && (after - before).abs() > CORNER * fastest
-        })
-        .collect()
-}
-
-/// The least share of the highest speed by which the speed changes before and behind such a row.
-const MIXED: f64 = 0.02;

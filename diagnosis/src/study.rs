@@ -4,6 +4,7 @@
 //! and in which direction), its sensors under the numbers of the study, its blocks of rows, and which of them are held out.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use model_dsl::algebra::Axis;
 use model_dsl::calibration::{Calibration, SensorReadings};
@@ -11,12 +12,15 @@ use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
 
 use crate::course::{Course, LastCourse};
+use crate::legs::GAP;
 use crate::model::{Effect, Fitted, Place};
 use crate::noise;
 use crate::recording::{Instrument, Recording};
 use crate::returns::{Return, Returns};
+use crate::rounded;
 use crate::side::Side;
 use crate::states::{Given, Shared, behind_corners, unseen_turns};
+use crate::targets::Targets;
 use crate::terms;
 
 /// A machine, what is known of it, and what was recorded.
@@ -47,6 +51,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) observed: f64,
     /// Rows that are left out because an axis turned a corner just before, between two rows.
     pub(crate) corners: Vec<bool>,
+    /// Axes whose command is an end point; the rows in which they are on their way are left out too.
+    pub(crate) targets: Targets,
     /// Whether the axes are at rest in every row, as far as position loops go: rows far apart, which a calibration with
     /// loops explains better so.
     pub(crate) at_rest: bool,
@@ -68,7 +74,7 @@ pub(crate) struct Channel<'a> {
     pub(crate) values: &'a [f64],
     /// Samples that are left out as outliers.
     pub(crate) outliers: Vec<bool>,
-    /// The standard deviation of the rounding of its values.
+    /// The standard deviation of the rounding of its values, and of the commands that it is held against.
     pub(crate) rounding: f64,
     /// The states of which functions predict what the calibration leaves of it.
     pub(crate) returning: Vec<Return>,
@@ -245,8 +251,13 @@ impl<'a> Scene<'a> {
         let rows = recording.time.len();
         let loads = loads.iter().map(|(name, _)| column(&recording.loads, name, rows)).collect();
         let given = Given::new(recording, temperatures(recording, calibration, sensors), loads);
+        let letters: Vec<&str> = equations.axes.iter().map(|axis| axis.letter.as_str()).collect();
+        let targets = Targets::new(recording, &given, &letters);
+        let rounded = Arc::clone(&given.rounded);
         Self {
-            at_rest: false,
+            // Only the rows in which they have arrived are left.
+            at_rest: !targets.axes.is_empty(),
+            targets,
             last_course: LastCourse::default(),
             returns: Returns::default(),
             observed: observed(&given),
@@ -254,7 +265,7 @@ impl<'a> Scene<'a> {
             leans: leans(recording, &given.programmed, interpreter),
             recording,
             given,
-            channels: channels(recording, equations),
+            channels: channels(recording, equations, &rounded),
             blocks: blocks(recording),
         }
     }
@@ -267,6 +278,11 @@ impl<'a> Scene<'a> {
     /// Whether a channel is a drive's own feedback.
     pub(crate) fn has_drives(&self) -> bool {
         self.channels.iter().any(|channel| !channel.kind.outside())
+    }
+
+    /// Whether nothing is read off a row, whatever stands in it.
+    pub(crate) fn left_out(&self, row: usize) -> bool {
+        self.corners[row] || self.targets.on_the_way.get(row) == Some(&true)
     }
 
     /// Whether rows are so far apart that what a position loop does is over before the next.
@@ -299,10 +315,9 @@ fn corners(recording: &Recording, given: &Given) -> Vec<bool> {
         // A path of such rows only is one that was recorded so; nothing would be left.
         if marked.iter().filter(|mark| **mark).count() > rows / most { vec![false; rows] } else { marked }
     };
-    let mut corners =
-        any(&|position| behind_corners(&recording.time, &recording.run, position), MOST_CORNERS);
+    let mut corners = any(&|position| behind_corners(&recording.time, &given.legs, position), MOST_CORNERS);
     if given.step > SPARSE {
-        let turns = any(&unseen_turns, MOST_TURNS);
+        let turns = any(&|position| unseen_turns(&given.legs, position), MOST_TURNS);
         corners.iter_mut().zip(turns).for_each(|(corner, turn)| *corner |= turn);
     }
     corners
@@ -313,9 +328,6 @@ fn observed(given: &Given) -> f64 {
     let longest = GAP * given.step;
     given.time.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step <= longest).sum()
 }
-
-/// A step of time so many times as long as the typical one is a gap.
-const GAP: f64 = 20.0;
 
 /// One row in so many may lie behind a corner, and one in so many where an axis may have turned unseen.
 const MOST_CORNERS: usize = 20;
@@ -382,11 +394,18 @@ fn temperatures(
     columns
 }
 
-fn channels<'a>(recording: &'a Recording, equations: &Equations) -> Vec<Channel<'a>> {
+/// What was observed. `rounded` are the steps of the commands: their rounding is noise of what is predicted.
+fn channels<'a>(recording: &'a Recording, equations: &Equations, rounded: &[f64]) -> Vec<Channel<'a>> {
     let rows = recording.time.len();
     let mut channels = Vec::new();
     let mut add = |name: String, kind: Kind, values: &'a [f64]| {
-        let rounding = noise::rounding(values);
+        let predicted = rounded.iter().enumerate().filter(|(axis, _)| match kind {
+            Kind::Drive(own) | Kind::Stage(own) => *axis == own,
+            // How far an axis moves the tip depends on the machine; a slide does it one to one.
+            _ => equations.axes.get(*axis).is_some_and(|axis| !axis.rotary) && !kind.angular(equations),
+        });
+        let predicted = predicted.map(|(_, step)| rounded::deviation(*step));
+        let rounding = predicted.fold(noise::rounding(values), f64::hypot);
         let (outliers, returning) = (vec![false; rows], Vec::new());
         channels.push(Channel { name, kind, values, outliers, rounding, returning });
     };

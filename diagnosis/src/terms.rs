@@ -251,7 +251,10 @@ impl Shape {
         }
         let position_loop = side.answered_by().map(|axis| rows.position_loop(axis));
         if let (Some(position_loop), [column]) = (position_loop.filter(|known| known.acts()), out) {
-            for (time, value) in rows.time.iter().zip(column) {
+            for (row, (time, value)) in rows.time.iter().zip(column).enumerate() {
+                if rows.begins(row) {
+                    memory.follower = Follower::default();
+                }
                 *value = position_loop.follow(&mut memory.follower, *time, *value).position;
             }
         }

@@ -1,15 +1,20 @@
 //! The way between rows: where an axis was a little earlier than a row says.
 //!
-//! In: times and programmed positions of the rows of a recording, and the time constant of the position loop. Out: positions
-//! at the rows, or a clock's offset before them. Without a loop the way is a smooth curve through the rows, straight at
-//! corners; behind a loop it is the loop's own solution for a command that is straight between rows.
+//! In: times and programmed positions of the rows of a recording, its legs, and the time constant of the position loop. Out:
+//! positions at the rows, or a clock's offset before them. Without a loop the way is a smooth curve through the rows, straight at
+//! corners; behind a loop it is the loop's own solution for a command that is straight between rows. No way leads from one leg
+//! to the next: before the first row of a leg and behind its last the axis rests.
 
+use std::ops::Range;
+
+use crate::legs::stretches;
 use crate::position_loop::{Follower, PositionLoop, Stand};
 
 /// The way of one axis.
 pub(crate) struct Way<'w> {
     time: &'w [f64],
     command: &'w [f64],
+    legs: &'w [usize],
     fastest: f64,
 }
 
@@ -27,9 +32,10 @@ pub(crate) const CORNER: f64 = 0.3;
 
 impl<'w> Way<'w> {
     /// The way of a programmed axis.
-    pub(crate) fn new(time: &'w [f64], command: &'w [f64]) -> Self {
-        let mut way = Self { time, command, fastest: 0.0 };
-        let speeds = (1..time.len()).map(|row| way.chord(row - 1).1.abs());
+    pub(crate) fn new(time: &'w [f64], command: &'w [f64], legs: &'w [usize]) -> Self {
+        let mut way = Self { time, command, legs, fastest: 0.0 };
+        let driven = (1..time.len()).filter(|row| legs[*row] == legs[*row - 1]);
+        let speeds = driven.map(|row| way.chord(row - 1).1.abs());
         way.fastest = speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max);
         way
     }
@@ -42,7 +48,8 @@ impl<'w> Way<'w> {
 
     fn turns_sharply(&self, row: usize) -> bool {
         // Nothing is known of the way before the first row, behind the last and through a gap.
-        if row == 0 || row + 1 == self.time.len() {
+        let inside = row > 0 && row + 1 < self.time.len() && self.legs[row - 1] == self.legs[row + 1];
+        if !inside {
             return true;
         }
         let change = (self.chord(row).1 - self.chord(row - 1).1).abs();
@@ -54,22 +61,25 @@ impl<'w> Way<'w> {
         self.fastest
     }
 
-    /// Where it begins; NaN where that is not known.
-    pub(crate) fn first(&self) -> f64 {
-        self.command.first().copied().unwrap_or(f64::NAN)
+    /// The rows of each leg.
+    pub(crate) fn stretches(&self) -> impl Iterator<Item = Range<usize>> {
+        stretches(self.legs)
     }
 
-    /// Where the axis stands behind a loop, a clock's offset before each row.
+    /// Where the axis stands behind a loop, a clock's offset before each row; `starts` tells for each leg where it begins, at rest
+    /// on its command where nothing is said.
     pub(crate) fn behind_loop(
         &self,
         position_loop: PositionLoop,
-        start: Option<Stand>,
+        starts: &[Option<Stand>],
         clock: f64,
     ) -> Vec<Stand> {
-        let mut follower = Follower::from(start);
-        let rows = self.time.iter().zip(self.command);
-        let followed: Vec<Stand> =
-            rows.map(|(time, command)| position_loop.follow(&mut follower, *time, *command)).collect();
+        let mut followed: Vec<Stand> = Vec::with_capacity(self.time.len());
+        for (rows, start) in self.stretches().zip(starts) {
+            let mut follower = Follower::from(*start);
+            let told = self.time[rows.clone()].iter().zip(&self.command[rows]);
+            followed.extend(told.map(|(time, command)| position_loop.follow(&mut follower, *time, *command)));
+        }
         if clock == 0.0 {
             return followed;
         }
@@ -83,25 +93,27 @@ impl<'w> Way<'w> {
     }
 
     /// For each row the step in which the wanted instant lies: its first row, and the share of the step; before the first
-    /// row and behind the last the axis rests.
+    /// row of its leg and behind the last the axis rests.
     fn each_earlier<T>(&self, clock: f64, value: impl Fn(usize, f64) -> T) -> Vec<T> {
         let time = self.time;
-        let mut from = 0;
-        (0..time.len())
-            .map(|row| {
+        let mut values = Vec::with_capacity(time.len());
+        for rows in self.stretches() {
+            let mut from = rows.start;
+            values.extend(rows.clone().map(|row| {
                 let wanted = time[row] - clock;
-                while from + 1 < time.len() && time[from + 1] <= wanted {
+                while from + 1 < rows.end && time[from + 1] <= wanted {
                     from += 1;
                 }
-                while from > 0 && time[from] > wanted {
+                while from > rows.start && time[from] > wanted {
                     from -= 1;
                 }
-                if from + 1 == time.len() || wanted <= time[from] {
+                if from + 1 == rows.end || wanted <= time[from] {
                     return value(from, 0.0);
                 }
                 value(from, (wanted - time[from]) / (time[from + 1] - time[from]))
-            })
-            .collect()
+            }));
+        }
+        values
     }
 
     /// The time of the step that begins at a row, and the speed in it.

@@ -381,7 +381,9 @@ fn what_the_machine_lacks_is_refused_when_it_is_read() {
     assert_eq!(written(0, lag(0, 1.0)), [""; 0]);
     assert_eq!(written(99, lag(0, 1.0)), ["E0407"]);
     assert_eq!(written(0, lag(99, 1.0)), ["E0414"]);
-    assert_eq!(written(0, lag(0, -1.0)), ["E0419"]);
+    // A drive that leads is written too, a gain of zero is none.
+    assert_eq!(written(0, lag(0, -1.0)), [""; 0]);
+    assert_eq!(written(0, lag(0, 0.0)), ["E0419"]);
     assert_eq!(written(0, lag(0, f64::NAN)), ["E0302"]);
     assert_eq!(written(0, lag(0, f64::INFINITY)), ["E0302"]);
     assert_eq!(written(5, growth(20.0)), ["E0404"]);

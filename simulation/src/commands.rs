@@ -3,6 +3,7 @@
 //! In: columns from a path or from a recording. Out: the same, checked to fit together. Everything is in mm, rad, s,
 //! degC and the units of the loads.
 
+use crate::legs::legs;
 use crate::plant::error::PlantError;
 
 /// A named column, such as a temperature or a load.
@@ -31,9 +32,17 @@ pub struct Commands {
     pub loads: Vec<Column>,
     /// Which samples are written down; all of them where it is empty. The machine goes through the others too.
     pub recorded: Vec<bool>,
+    /// The number of the leg of each sample: from leg to leg nothing is driven, and the axes begin at rest where the first sample
+    /// stands. Where it is empty, gaps and runs tell.
+    pub legs: Vec<i64>,
 }
 
 impl Commands {
+    /// The number of the leg of each sample.
+    pub(crate) fn numbered_legs(&self) -> Vec<i64> {
+        if self.legs.is_empty() { legs(&self.time, &self.run, &self.positions) } else { self.legs.clone() }
+    }
+
     /// Whether a sample is written down.
     pub fn is_recorded(&self, row: usize) -> bool {
         self.recorded.is_empty() || self.recorded.get(row) == Some(&true)
@@ -55,6 +64,9 @@ impl Commands {
         }
         if !self.recorded.is_empty() && self.recorded.len() != rows {
             return wrong("the list of recorded samples");
+        }
+        if !self.legs.is_empty() && self.legs.len() != rows {
+            return wrong("the list of legs");
         }
         let named = self.temperatures.iter().chain(&self.loads);
         match named.into_iter().find(|column| column.values.len() != rows) {
@@ -83,6 +95,7 @@ impl Commands {
             temperatures: self.temperatures.iter().map(named).collect(),
             loads: self.loads.iter().map(named).collect(),
             recorded: Vec::new(),
+            legs: Vec::new(),
         }
     }
 }

@@ -41,6 +41,7 @@
 mod commands;
 pub mod file;
 mod instrument;
+mod legs;
 pub mod noise;
 pub mod path;
 pub mod picture;

@@ -26,6 +26,7 @@ use model_dsl::machine::{Branch, LinkKind, Machine, MotionKind};
 use nalgebra::{Rotation3, Vector3};
 
 use crate::commands::Commands;
+use crate::legs::stretches;
 use body::Body;
 use piece::{Memory, Piece};
 use servo::Before;
@@ -83,6 +84,8 @@ pub struct State<'s> {
     pub row: usize,
     /// Time since the recording began.
     pub time: f64,
+    /// Whether a leg begins here.
+    begins: bool,
     histories: &'s [History],
     temperatures: &'s [f64],
     loads: &'s [f64],
@@ -112,6 +115,12 @@ impl State<'_> {
     /// The direction of an axis's last real motion: +1 or -1.
     pub fn direction(&self, axis: usize) -> f64 {
         self.at(axis, |history| &history.direction)
+    }
+
+    /// Whether an axis begins a leg here, elsewhere than it ended the last one.
+    fn is_displaced(&self, axis: usize) -> bool {
+        let history = self.histories.get(axis);
+        history.is_some_and(|history| history.displaced.get(self.row) == Some(&true))
     }
 
     /// The time at which an axis reversed last; NaN before the first reversal.
@@ -367,7 +376,8 @@ impl Plant {
     /// [`PlantError::Length`] where columns differ in length.
     pub fn run(&self, commands: &Commands, mut each: impl FnMut(&Moment<'_>)) -> Result<(), PlantError> {
         commands.check(self.names.axes.len())?;
-        let histories = self.histories(commands);
+        let legs = commands.numbered_legs();
+        let histories = self.histories(commands, &legs);
         let inputs = self.inputs(commands)?;
         let loads = self.load_columns(commands)?;
         let mut readings = SensorReadings::new(&self.sensors);
@@ -382,7 +392,8 @@ impl Plant {
                 readings.update(|sensor| inputs.get(sensor).copied().flatten().map_or(f64::NAN, at));
             row_loads.iter_mut().zip(&loads).for_each(|(slot, column)| *slot = at(column));
             positions.iter_mut().zip(&histories).for_each(|(slot, history)| *slot = at(&history.position));
-            let state = State { row, time, histories: &histories, temperatures, loads: &row_loads };
+            let begins = row > 0 && legs.get(row) != legs.get(row - 1);
+            let state = State { row, time, begins, histories: &histories, temperatures, loads: &row_loads };
             drive.copy_from_slice(&positions);
             self.evaluate(&state, &mut memories, &mut motions, &mut drive);
             let pose = self.pose(&positions, &motions);
@@ -402,7 +413,12 @@ impl Plant {
         for (term, (memory, before)) in self.terms.iter().zip(memories) {
             let value = term.piece.value(state, memory);
             let value = match term.inside.and_then(|axis| self.servo(axis)) {
-                Some(servo) => servo.answer(before, state.time, value),
+                Some(servo) => {
+                    if state.begins {
+                        *before = Before::default();
+                    }
+                    servo.answer(before, state.time, value)
+                }
                 None => value,
             };
             if let Some(motion) = motions.get_mut(term.motion) {
@@ -419,14 +435,23 @@ impl Plant {
         }
     }
 
-    fn histories(&self, commands: &Commands) -> Vec<History> {
+    fn histories(&self, commands: &Commands, legs: &[i64]) -> Vec<History> {
+        let stretches = stretches(legs);
+        let followed = |servo: &Servo, command: &[f64]| -> Vec<f64> {
+            let part = |from: &(usize, usize)| {
+                let rows = from.0..from.1;
+                commands.time.get(rows.clone()).zip(command.get(rows)).unwrap_or_default()
+            };
+            let parts = stretches.iter().map(part);
+            parts.flat_map(|(time, command)| servo.follow(time, command)).collect()
+        };
         let axes = commands.positions.iter().zip(&self.servos);
         let histories = axes.map(|(command, servo)| {
             let position = match servo {
-                Some(servo) => servo.follow(&commands.time, command),
+                Some(servo) => followed(servo, command),
                 None => command.clone(),
             };
-            History::of(&commands.time, &commands.run, position, self.deadband)
+            History::of(&commands.time, legs, position, self.deadband)
         });
         histories.collect()
     }

@@ -12,6 +12,7 @@ use nalgebra::{Rotation3, Vector3};
 
 use crate::commands::{Column, Commands};
 use crate::instrument::{Channel, Instrument};
+use crate::legs::stretches;
 use crate::noise::{Missing, Noise};
 use crate::path::{Path, PathError, Timeline};
 use crate::plant::{Plant, PlantError, Pose};
@@ -171,11 +172,12 @@ pub fn simulate(plant: &Plant, scenario: &Scenario) -> Result<Simulated, Simulat
     let noises = scenario.temperatures.iter().map(|sensor| (&sensor.name, sensor.noise));
     let noises = noises.chain(scenario.loads.iter().map(|load| (&load.name, load.noise)));
     wanted.sensor_noise.extend(noises.map(|(name, noise)| (name.clone(), noise)));
-    let looks = looks(&commands, measurement.clock).map(|times| {
+    let looks = looks(&commands, measurement.clock).map(|Looks { time, legs }| {
         scenario.surrounded(Commands {
-            run: times.iter().map(|time| timeline.run(*time)).collect(),
-            positions: timeline.positions(&times),
-            time: times,
+            run: time.iter().map(|time| timeline.run(*time)).collect(),
+            positions: timeline.positions(&time),
+            time,
+            legs,
             ..Commands::default()
         })
     });
@@ -196,7 +198,8 @@ pub fn replay(
     measurement: &Measurement,
 ) -> Result<Simulated, SimulationError> {
     commands.check(plant.names().axes.len())?;
-    let looks = looks(commands, measurement.clock).map(|times| commands.at(&times));
+    let looks = looks(commands, measurement.clock);
+    let looks = looks.map(|Looks { time, legs }| Commands { legs, ..commands.at(&time) });
     join(plant, commands, looks.as_ref(), measurement)
 }
 
@@ -207,8 +210,10 @@ impl Scenario {
         let time: Vec<f64> = instants.iter().map(|instant| instant.time).collect();
         let whole = instants.iter().all(|instant| instant.recorded);
         let recorded = instants.iter().filter(|_| !whole).map(|instant| instant.recorded).collect();
+        let run: Vec<i64> = instants.iter().map(|instant| instant.run).collect();
         self.surrounded(Commands {
-            run: instants.iter().map(|instant| instant.run).collect(),
+            legs: run.clone(),
+            run,
             positions: timeline.positions(&time),
             time,
             recorded,
@@ -239,10 +244,29 @@ fn circle(plant: &Plant, path: &Path) -> Option<([f64; 3], f64, [bool; 3])> {
     Some((middle.into(), radius, inside))
 }
 
-/// The times at which the instrument looks, where they are not those of the rows.
-fn looks(commands: &Commands, clock: f64) -> Option<Vec<f64>> {
-    let rows = commands.time.iter().enumerate().filter(|(row, _)| commands.is_recorded(*row));
-    (clock != 0.0).then(|| rows.map(|(_, time)| time - clock).collect())
+/// The instants at which the instrument looks, one for each recorded row.
+struct Looks {
+    time: Vec<f64>,
+    legs: Vec<i64>,
+}
+
+/// When the instrument looks, where that is not at the rows. Before the first sample of a leg and behind its last the axes rest.
+fn looks(commands: &Commands, clock: f64) -> Option<Looks> {
+    if clock == 0.0 {
+        return None;
+    }
+    let legs = commands.numbered_legs();
+    let mut looks = Looks { time: Vec::new(), legs: Vec::new() };
+    for (first, end) in stretches(&legs) {
+        let time = commands.time.get(first..end).unwrap_or_default();
+        let (Some(start), Some(last)) = (time.first(), time.last()) else { continue };
+        for row in (first..end).filter(|row| commands.is_recorded(*row)) {
+            let at = commands.time.get(row).copied().unwrap_or(f64::NAN);
+            looks.time.push((at - clock).clamp(*start, *last));
+            looks.legs.extend(legs.get(row));
+        }
+    }
+    Some(looks)
 }
 
 /// Runs the plant through rows and looks in order of time, and reads it.

@@ -7,7 +7,7 @@ use crate::answers::answers;
 use crate::crossing;
 use crate::model::Model;
 use crate::recording::Instrument;
-use crate::study::Study;
+use crate::study::{Scene, Study};
 use crate::zeros;
 
 /// The fewest samples from which anything is claimed.
@@ -48,6 +48,7 @@ pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
              side it came the second time."
         ));
     }
+    sentences.extend(study.scenes.iter().filter_map(|scene| end_points(study, scene)));
     if study.scenes.iter().all(|scene| scene.run_numbers().len() < 2) {
         sentences.push(
             "Whether runs repeat cannot be decided from this recording, because there is one run.".to_owned(),
@@ -62,6 +63,23 @@ pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
         )
     }));
     sentences
+}
+
+/// What commands that are end points leave open.
+fn end_points(study: &Study<'_>, scene: &Scene<'_>) -> Option<String> {
+    let axes = scene.targets.axes.iter().map(|axis| study.equations.axes[*axis].letter.as_str());
+    let axes: Vec<&str> = axes.collect();
+    let used = (0..scene.rows()).filter(|row| !scene.left_out(*row)).count();
+    let (verb, runs) = if axes.len() == 1 { ("is", "runs") } else { ("are", "run") };
+    let letters = axes.join(" and ");
+    (!axes.is_empty()).then(|| {
+        format!(
+            "What depends on the speed of {letters} cannot be decided from {file}, because its command is an end point: it \
+             stands while {letters} {runs} there, and no loop explains the way. Only the {used} rows in which {letters} {verb} at \
+             rest are used.",
+            file = scene.recording.file
+        )
+    })
 }
 
 /// What cannot be told of axes that cross their plays, and that nothing which was found holds.
@@ -84,9 +102,10 @@ pub(super) fn too_little(study: &Study<'_>) -> Option<String> {
     for scene in &study.scenes {
         let rows = scene.fitted_rows();
         for channel in &scene.channels {
-            for (value, fits) in channel.values.iter().zip(&rows) {
-                fitted += usize::from(value.is_finite() && *fits);
-                held_out += usize::from(value.is_finite() && !*fits);
+            for (row, (value, fits)) in channel.values.iter().zip(&rows).enumerate() {
+                let counts = value.is_finite() && !scene.left_out(row);
+                fitted += usize::from(counts && *fits);
+                held_out += usize::from(counts && !*fits);
             }
         }
     }

@@ -187,7 +187,7 @@ fn mean_error(recording: &Recording, station: f64) -> (f64, f64) {
     let command = recording.axes[0].command.as_ref().unwrap();
     let measured = recording.measured[0].as_ref().unwrap();
     let here = |row: &usize| (command[*row] - station).abs() < 1e-6 && recording.run[*row] != i64::from(RUNS);
-    let unseen = crate::states::unseen_turns(command);
+    let unseen = crate::states::unseen_turns(&vec![0; command.len()], command);
     let rows: Vec<usize> = (0..command.len()).filter(here).filter(|row| !unseen[*row]).collect();
     let sum: f64 = rows.iter().map(|row| measured[*row] - command[*row]).sum();
     (sum / crate::number(rows.len()), crate::number(rows.len()))

@@ -62,11 +62,19 @@ pub(super) fn friction(finding: &Finding) -> Option<&'static str> {
     )
 }
 
-/// What a lost motion below zero means; nothing for other findings.
+/// What a lost motion, or the gain of a position loop, below zero means; nothing for other findings.
 pub(super) fn ahead(finding: &Finding) -> Option<&'static str> {
-    let lost = finding.parameters.iter().find(|parameter| parameter.name == "lost_motion")?;
-    let ParameterValue::Fitted(estimate) = &lost.value else { return None };
-    (estimate.ci95.1 < 0.0).then_some(
+    let below = |name: &str| {
+        let parameter = finding.parameters.iter().find(|parameter| parameter.name == name);
+        matches!(parameter.map(|known| &known.value), Some(ParameterValue::Fitted(estimate)) if estimate.ci95.1 < 0.0)
+    };
+    if finding.term == "lag" {
+        return below("gain").then_some(
+            "Here it is below zero: the drive leads its command, by velocity over gain. Its feed-forward is too large, or the \
+             loop is quicker than the calibration says.",
+        );
+    }
+    below("lost_motion").then_some(
         "Here it is below zero: after a reversal the axis seems to run ahead, as no play makes it. Look at the sign of the \
          sensor, and at a calibration that compensates more than there is.",
     )

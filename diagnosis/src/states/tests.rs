@@ -1,7 +1,7 @@
 //! States against closed solutions, fine integration, and the histories of the exact machine.
 
 use super::*;
-use crate::testing::{Bench, commands, distance, path, peak, programmed, scenario, uneven};
+use crate::testing::{Bench, commands, distance, normals, path, peak, programmed, scenario, uneven};
 use simulation::path::Shape;
 
 /// A loop of first order.
@@ -149,7 +149,7 @@ fn derivatives_of_parabolas_are_exact_at_uneven_times() {
 }
 
 #[test]
-fn derivatives_stay_within_a_run() {
+fn derivatives_stay_within_a_leg() {
     let time = [0.0, 1.0, 3.0, 10.0, 11.0, 12.0];
     let values = time.map(|t| if t < 5.0 { 2.0 * t } else { 50.0 - 3.0 * t });
     assert_eq!(derivative(&time, &[1, 1, 1, 2, 2, 2], &values), [2.0, 2.0, 2.0, -3.0, -3.0, -3.0]);
@@ -225,7 +225,7 @@ fn the_drive_stands_in_where_nothing_was_programmed() {
 #[test]
 fn what_turned_between_two_rows_at_one_place_is_not_known() {
     let turns = |position: &[f64]| -> Vec<usize> {
-        let unseen = unseen_turns(position);
+        let unseen = unseen_turns(&vec![0; position.len()], position);
         (0..position.len()).filter(|row| unseen[*row]).collect()
     };
     // There and back, each end read twice; the second reading comes from nobody knows where.
@@ -235,4 +235,107 @@ fn what_turned_between_two_rows_at_one_place_is_not_known() {
     assert_eq!(turns(&[0.0, 5.0, 5.0, 9.0, 5.0, 0.0, 0.0]), [0; 0]);
     // An overrun that was recorded tells the side.
     assert_eq!(turns(&[0.0, 9.0, 11.0, 9.0, 0.0, -2.0, 0.0, 9.0]), [0; 0]);
+}
+
+/// Sweeps as recorders store them: each run with a clock of its own, laid behind the last; and one that is the last of them alone.
+fn sweeps() -> (Recording, Recording) {
+    let speeds = [20.0, -35.0, 50.0];
+    let sweep = |speed: f64| -> Vec<f64> {
+        (0..150).map(|row: i32| 0.01 * speed * f64::from((row - 10).clamp(0, 100))).collect()
+    };
+    let command: Vec<f64> = speeds.iter().flat_map(|speed| sweep(*speed)).collect();
+    let time: Vec<f64> = (0..command.len()).map(|row| 0.01 * crate::number(row)).collect();
+    let mut all = programmed(&time, &[command]);
+    all.run = (1..=3).flat_map(|run| vec![run; 150]).collect();
+    (all, programmed(&time[..150], &[sweep(50.0)]))
+}
+
+#[test]
+fn every_run_is_what_it_is_alone() {
+    let (all, alone) = sweeps();
+    for clock in [0.0, 0.017, -0.031, 0.4] {
+        for lag in [0.0, 0.05, 0.3] {
+            let states = |recording: &Recording| {
+                let given = Given::new(recording, Vec::new(), Vec::new());
+                States::new(recording, &given, &[behind(lag)], clock).axes.remove(0)
+            };
+            let (all, alone) = (states(&all), states(&alone));
+            let pairs = [
+                (&all.position, &alone.position),
+                (&all.acceleration, &alone.acceleration),
+                (&all.direction, &alone.direction),
+                (&all.lag_slope, &alone.lag_slope),
+                (&all.clock_slope, &alone.clock_slope),
+            ];
+            for (number, (all, alone)) in pairs.into_iter().enumerate() {
+                let apart = distance(&all[300..], alone);
+                // What is subtracted from a time that goes on is not rounded as what is subtracted from one that begins.
+                assert!(apart <= 1e-9 * (1.0 + peak(alone)), "{number} of {lag} s, {clock} s: {apart}");
+            }
+            // No run turns, and to be driven to its beginning is no reversal.
+            assert!(all.since_reversal.iter().all(|since| since.is_infinite()));
+            assert!(all.direction[150..300].iter().all(|direction| *direction == -1.0));
+        }
+    }
+}
+
+#[test]
+fn a_play_begins_anew_where_an_axis_was_displaced() {
+    let (all, alone) = sweeps();
+    let stands = |recording: &Recording| {
+        let given = Given::new(recording, Vec::new(), Vec::new());
+        let driven = Driven { crossing: 4.0, ..Driven::default() };
+        States::new(recording, &given, &[driven], 0.0).axes.remove(0).flank
+    };
+    assert!(distance(&stands(&all)[300..], &stands(&alone)) < 1e-12);
+}
+
+#[test]
+fn runs_that_go_on_keep_their_direction_and_reversal() {
+    // There, a pause, and back from where it stood: to leave the other way is a reversal.
+    let command = [0.0, 1.0, 2.0, 3.0, 3.0, 3.0, 2.0, 1.0];
+    let mut recording = programmed(&[0.0, 1.0, 2.0, 3.0, 4.0, 105.0, 106.0, 107.0], &[command.to_vec()]);
+    recording.run = vec![1, 1, 1, 1, 1, 2, 2, 2];
+    let states =
+        States::new(&recording, &Given::new(&recording, Vec::new(), Vec::new()), &[behind(0.0)], 0.0);
+    assert_eq!(*states.axes[0].direction, [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, -1.0, -1.0]);
+    assert_eq!(states.axes[0].since_reversal[6..], [0.0, 1.0]);
+}
+
+#[test]
+fn runs_and_gaps_are_those_of_the_exact_machine() {
+    let bench = Bench::of("FX");
+    let truth = bench.calibration("{EXX: [{lag: {gain: 12 1/s}}]}");
+    let plant = bench.plant(&truth);
+    for seed in 0..40 {
+        // Pieces of motion and of rest, which go on, begin elsewhere, or come after a gap; with one run number or several.
+        let mut draws = normals(seed, 60).into_iter();
+        let mut draw = || draws.next().unwrap();
+        let (mut time, mut command, mut run) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut now, mut place, mut number) = (0.0, 0.0, 1);
+        for _ in 0..8 {
+            let speed = if draw() > 0.0 { 30.0 * draw() } else { 0.0 };
+            for _ in 0..40 {
+                time.push(now);
+                command.push(place);
+                run.push(number);
+                now += 0.01;
+                place += 0.01 * speed;
+            }
+            now += if draw() > 0.5 { 1.0 } else { 0.0 };
+            place += if draw() > 0.0 { 50.0 * draw() } else { 0.0 };
+            number += i64::from(draw() > 0.0);
+        }
+        let mut recording = programmed(&time, &[command]);
+        recording.run = run;
+        let given = Given::new(&recording, Vec::new(), Vec::new());
+        let states = States::new(&recording, &given, &[behind(1.0 / 12.0)], 0.0);
+        let axis = &states.axes[0];
+        let mut each = |moment: &simulation::Moment<'_>| {
+            let row = moment.state.row;
+            assert!((axis.position[row] - moment.state.position(0)).abs() < 1e-9, "{seed}, row {row}");
+            assert_eq!(axis.direction[row], moment.state.direction(0), "{seed}, row {row}");
+        };
+        plant.run(&commands(&recording), &mut each).unwrap();
+    }
 }

@@ -12,8 +12,7 @@ pub(super) const MEANING: &str = "Play between the drive and what it moves, or f
 pub(super) fn fill(rows: &Rows<'_>, axis: usize, wind_up: f64, memory: &mut Memory, out: &mut Vec<f64>) {
     let axis = rows.axis(axis);
     if wind_up > 0.0 {
-        let places = axis.position.iter().zip(axis.direction);
-        out.extend(places.map(|(q, direction)| -0.5 * memory.play.follow(*q, *direction, wind_up)));
+        out.extend(axis.followed(&mut memory.play, wind_up).iter().map(|stands| -0.5 * stands));
     } else {
         out.extend(axis.direction.iter().map(|direction| -0.5 * direction));
     }

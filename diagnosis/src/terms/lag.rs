@@ -1,5 +1,6 @@
 //! `lag`: the following error of the position loop q' = K (q_cmd - q), started at rest. In: the position behind the loop,
-//! which the states hold. Out: how the position changes with the loop's time constant 1/K: -v in the steady state.
+//! which the states hold. Out: how the position changes with the loop's time constant 1/K: -v in the steady state. Below zero the
+//! drive leads, by -v/K at once: its feed-forward is too large.
 
 use crate::states::Rows;
 

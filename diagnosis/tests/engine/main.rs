@@ -14,6 +14,7 @@ mod pictures;
 #[path = "../../src/testing.rs"]
 mod testing;
 mod verdicts;
+mod ways;
 
 // What the machines and recordings of the tests are made for, under the name that they know it by.
 use ::recording;

@@ -62,6 +62,12 @@ impl<'n> Parameters<'_, 'n, '_> {
         self.greater(node, key, kind, |value| value > 0.0, "greater than zero")
     }
 
+    /// A quantity that must be there, of either sign and not zero.
+    pub(super) fn not_zero(&mut self, key: &str, kind: Dimension) -> Option<f64> {
+        let node = self.need(key)?;
+        self.greater(node, key, kind, |value| value != 0.0, "less or greater than zero")
+    }
+
     /// A quantity that may be left out, then 0, and must not be negative.
     pub(super) fn not_negative(&mut self, key: &str, kind: Dimension) -> Option<f64> {
         match self.fields.get(key) {

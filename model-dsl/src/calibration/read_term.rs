@@ -151,10 +151,10 @@ fn gain_kind(term: Read<'_, '_, '_, '_>, axis: Option<usize>) -> Dimension {
 fn read_lag(term: Read<'_, '_, '_, '_>) -> Option<CalibratedTerm> {
     let axis = term.axis();
     let kind = gain_kind(term, axis);
-    let gain = term.positive("gain", kind);
-    let frequency = match term.fields.get("frequency") {
-        Some(_) => term.positive("frequency", Dimension::FREQUENCY),
-        None => Some(0.0),
+    // Below zero the drive leads: there is no loop of second order that does.
+    let (gain, frequency) = match term.fields.get("frequency") {
+        Some(_) => (term.positive("gain", kind), term.positive("frequency", Dimension::FREQUENCY)),
+        None => (term.not_zero("gain", kind), Some(0.0)),
     };
     Some(CalibratedTerm::Lag { axis: axis?, gain: gain?, frequency: frequency? })
 }

@@ -78,11 +78,12 @@ pub enum CalibratedTerm {
     },
     /// The lag of a position loop, `-v/K` in steady state. With a natural frequency w the loop is of second order,
     /// `q'' = w^2 (q_cmd - q) - (w^2/K) q'`, and rings where its damping `w/(2 K)` is below 1; without, it is
-    /// `q' = K (q_cmd - q)`.
+    /// `q' = K (q_cmd - q)`. Below zero K is that of a drive that leads, because its feed-forward is too large:
+    /// `q = q_cmd - v/K`, v the velocity of the command.
     Lag {
         /// The axis.
         axis: usize,
-        /// K, 1/s, greater than zero.
+        /// K, 1/s, not zero; greater than zero where there is a natural frequency.
         gain: f64,
         /// w/(2 pi), Hz, not negative; 0: a loop of first order.
         frequency: f64,

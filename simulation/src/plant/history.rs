@@ -1,55 +1,60 @@
 //! The history of one axis: what the terms of error motions read of it.
 //!
-//! In: times, runs and positions behind the position loop. Out, one entry a sample: velocity and acceleration by
-//! differences within the run, the direction of the last real motion and the time of the last reversal.
+//! In: times, legs and positions behind the position loop. Out, one entry a sample: velocity and acceleration by
+//! differences within the leg, the direction of the last real motion and the time of the last reversal. Where a leg begins
+//! elsewhere than the last one ended, nobody knows how the axis came there: that is no motion and no reversal.
+
+use crate::legs::stretches;
 
 /// One axis over a whole recording; mm or rad, and s.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct History {
     /// The position behind the position loop.
     pub position: Vec<f64>,
-    /// The velocity: central differences, one-sided at the ends of a run.
+    /// The velocity: central differences, one-sided at the ends of a leg.
     pub velocity: Vec<f64>,
-    /// The acceleration: second differences; at the ends of a run that of the neighbour.
+    /// The acceleration: second differences; at the ends of a leg that of the neighbour.
     pub acceleration: Vec<f64>,
-    /// +1 or -1: the direction of the last real motion, +1 before the first.
+    /// +1 or -1: the direction of the last real motion, +1 before the first; that of a leg's own first motion where the leg
+    /// begins elsewhere than the last one ended.
     pub direction: Vec<f64>,
-    /// The time of the sample at which the direction turned last, s; NaN before the first reversal.
+    /// Whether a leg begins there, elsewhere than the last one ended.
+    pub displaced: Vec<bool>,
+    /// The time of the sample at which the direction turned last, s; NaN before the first reversal since
+    /// the axis was displaced.
     pub reversal: Vec<f64>,
 }
 
 impl History {
-    /// Follows an axis; a motion back by no more than `deadband` is no real motion.
-    pub fn of(time: &[f64], run: &[i64], position: Vec<f64>, deadband: f64) -> Self {
+    /// Follows an axis through its legs, numbered sample by sample; a motion back by no more than `deadband` is no real motion.
+    pub fn of(time: &[f64], legs: &[i64], position: Vec<f64>, deadband: f64) -> Self {
         let mut history = Self { position, ..Self::default() };
-        for (start, end) in stretches(run, history.position.len()) {
+        let mut tracker = Tracker::default();
+        let mut last = None;
+        for (start, end) in stretches(legs) {
             let time = time.get(start..end).unwrap_or_default();
             let position = history.position.get(start..end).unwrap_or_default();
             history.velocity.extend(velocities(time, position));
             history.acceleration.extend(accelerations(time, position));
-        }
-        let mut tracker = Tracker::default();
-        for (&time, &position) in time.iter().zip(&history.position) {
-            tracker.take(time, position, deadband);
-            history.direction.push(tracker.direction);
-            history.reversal.push(tracker.reversal);
+            let known: Vec<f64> = position.iter().copied().filter(|position| position.is_finite()).collect();
+            let way = known.first().zip(last).map_or(0.0, |(first, last): (&f64, f64)| first - last);
+            let displaced = way.abs() > deadband;
+            if displaced {
+                tracker = Tracker::displaced(&known, way, deadband);
+            }
+            last = known.last().copied().or(last);
+            for (&time, &position) in time.iter().zip(position) {
+                tracker.take(time, position, deadband);
+                history.direction.push(tracker.direction);
+                history.reversal.push(tracker.reversal);
+            }
+            history.displaced.resize(history.direction.len(), false);
+            if let Some(first) = history.displaced.get_mut(start) {
+                *first = displaced;
+            }
         }
         history
     }
-}
-
-/// The stretches of equal run number, as ranges of rows.
-fn stretches(run: &[i64], rows: usize) -> Vec<(usize, usize)> {
-    let mut found = Vec::new();
-    let mut start = 0;
-    for row in 1..=rows {
-        if row == rows || run.get(row) != run.get(row - 1) {
-            found.push((start, row));
-            start = row;
-        }
-    }
-    found.retain(|(start, end)| start < end);
-    found
 }
 
 fn slope(time: &[f64], position: &[f64], from: usize, to: usize) -> f64 {
@@ -94,6 +99,14 @@ impl Default for Tracker {
 }
 
 impl Tracker {
+    /// At the beginning of a leg with these positions, the first of which is so far from where the last leg ended. An axis that
+    /// does not move any more is likeliest to stand as it came.
+    fn displaced(known: &[f64], way: f64, deadband: f64) -> Self {
+        let first = known.first().copied().unwrap_or_default();
+        let motion = known.iter().map(|position| position - first).find(|gone| gone.abs() > deadband);
+        Self { direction: motion.unwrap_or(way).signum(), ..Self::default() }
+    }
+
     fn take(&mut self, time: f64, position: f64, deadband: f64) {
         if !position.is_finite() {
             return;

@@ -168,6 +168,12 @@ impl Piece {
                 amplitude * (TAU * state.position(axis) / period + phase).sin()
             }
             &Self::Lag { axis, loop_of } => {
+                if state.begins {
+                    memory.answered = Before::default();
+                }
+                if let Servo::Lead { time } = loop_of {
+                    return time * state.velocity(axis);
+                }
                 let position = state.position(axis);
                 loop_of.answer(&mut memory.answered, state.time, position) - position
             }
@@ -209,7 +215,7 @@ fn take_up(state: &State<'_>, axis: usize, wind_up: f64, memory: &mut Memory) ->
     if position.is_nan() {
         return f64::NAN;
     }
-    let moved = match memory.value {
+    let moved = match memory.value.filter(|_| !state.is_displaced(axis)) {
         None => state.direction(axis),
         Some(before) => (before + 2.0 * (position - memory.input) / wind_up).clamp(-1.0, 1.0),
     };

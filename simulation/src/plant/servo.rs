@@ -18,6 +18,12 @@ pub enum Servo {
         /// The damping D, greater than zero.
         damping: f64,
     },
+    /// `q = q_cmd + T v`: the drive leads, because its feed-forward is too large. The loop with a time constant below zero has no
+    /// stable solution; this is its steady state, with v the slope of the parabola through a sample and its neighbours.
+    Lead {
+        /// T, s, greater than zero.
+        time: f64,
+    },
 }
 
 /// Where a loop stands.
@@ -33,9 +39,11 @@ pub(super) struct Before(Option<(f64, f64, Stand)>);
 
 impl Servo {
     /// The loop with a steady lag of `slowness` times the velocity, s, and the squared reciprocal `inertia` of its natural
-    /// frequency, s^2; of first order where that is 0.
+    /// frequency, s^2; of first order where that is 0. With a lag below zero the drive leads.
     pub(super) fn of(slowness: f64, inertia: f64) -> Self {
-        if inertia > 0.0 {
+        if slowness < 0.0 {
+            Self::Lead { time: -slowness }
+        } else if inertia > 0.0 {
             let frequency = 1.0 / inertia.sqrt();
             Self::Second { frequency, damping: 0.5 * slowness * frequency }
         } else {
@@ -48,6 +56,7 @@ impl Servo {
         match self {
             Self::First { gain } => (1.0 / gain, 0.0),
             Self::Second { frequency, damping } => (2.0 * damping / frequency, 1.0 / (frequency * frequency)),
+            Self::Lead { time } => (-time, 0.0),
         }
     }
 
@@ -55,12 +64,16 @@ impl Servo {
     ///
     /// Where a command or a time is missing (NaN) the position is missing too, and the loop goes on from the last command.
     pub fn follow(self, time: &[f64], commands: &[f64]) -> Vec<f64> {
+        if let Self::Lead { time: ahead } = self {
+            let rows = commands.iter().zip(slopes(time, commands));
+            return rows.map(|(command, velocity)| command + ahead * velocity).collect();
+        }
         let mut before = Before::default();
         let samples = time.iter().zip(commands);
         samples.map(|(&time, &command)| self.answer(&mut before, time, command)).collect()
     }
 
-    /// What the loop makes of the next sample of its command.
+    /// What the loop makes of the next sample of its command; one that leads lets it pass, as it knows of no next one.
     pub(super) fn answer(self, before: &mut Before, time: f64, command: f64) -> f64 {
         if !command.is_finite() || !time.is_finite() {
             return f64::NAN;
@@ -79,8 +92,36 @@ impl Servo {
                 Stand { position: first_order(stand.position, from, to, gain * step), velocity: 0.0 }
             }
             Self::Second { frequency, damping } => second_order(stand, from, to, step, frequency, damping),
+            Self::Lead { .. } => Stand { position: to, velocity: 0.0 },
         }
     }
+}
+
+/// The slopes of the parabolas through each known value and its neighbours, one-sided at the ends; 0 where there is but one.
+fn slopes(time: &[f64], values: &[f64]) -> Vec<f64> {
+    let mut slopes = vec![f64::NAN; values.len()];
+    let samples = time.iter().zip(values).enumerate();
+    let known: Vec<(usize, f64, f64)> = samples
+        .filter(|(_, (_, value))| value.is_finite())
+        .map(|(row, (time, value))| (row, *time, *value))
+        .collect();
+    let chord = |from: (usize, f64, f64), to: (usize, f64, f64)| (to.2 - from.2) / (to.1 - from.1);
+    for (place, here) in known.iter().enumerate() {
+        let before = place.checked_sub(1).and_then(|place| known.get(place));
+        let slope = match (before, known.get(place + 1)) {
+            (Some(before), Some(after)) => {
+                let (come, go) = (chord(*before, *here), chord(*here, *after));
+                come + (go - come) * (here.1 - before.1) / (after.1 - before.1)
+            }
+            (Some(before), None) => chord(*before, *here),
+            (None, Some(after)) => chord(*here, *after),
+            (None, None) => 0.0,
+        };
+        if let Some(slot) = slopes.get_mut(here.0) {
+            *slot = slope;
+        }
+    }
+    slopes
 }
 
 /// A first-order filter over one step in which its input goes linearly `from` one value `to` another.
@@ -142,6 +183,7 @@ mod tests {
                     let command = ends[0] + (ends[1] - ends[0]) * share;
                     match servo {
                         Servo::First { gain } => [gain * (command - state[0]), 0.0],
+                        Servo::Lead { .. } => [f64::NAN; 2],
                         Servo::Second { frequency: w, damping: d } => {
                             [state[1], w * w * (command - state[0]) - 2.0 * d * w * state[1]]
                         }
@@ -187,6 +229,18 @@ mod tests {
         assert!((behind(Servo::First { gain: 25.0 }) - 12.0 / 25.0).abs() < 1e-9);
         let second = Servo::Second { frequency: 50.0, damping: 0.7 };
         assert!((behind(second) - 12.0 * 1.4 / 50.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_drive_that_leads_is_ahead_by_its_velocity() {
+        let time: Vec<f64> = (0..50).map(|row| 0.01 * f64::from(row * row)).collect();
+        let commands: Vec<f64> = time.iter().map(|time| 3.0 - 2.0 * time + 0.7 * time * time).collect();
+        let found = Servo::of(-0.02, 0.0).follow(&time, &commands);
+        // Of a parabola the slope is exact, whatever the steps.
+        for ((time, command), found) in time.iter().zip(&commands).zip(found).skip(1).take(48) {
+            assert!((found - command - 0.02 * (1.4 * time - 2.0)).abs() < 1e-9);
+        }
+        assert_eq!(Servo::of(-0.02, 1e-4), Servo::Lead { time: 0.02 });
     }
 
     #[test]

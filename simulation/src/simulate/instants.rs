@@ -54,6 +54,11 @@ pub(super) fn merge(commands: &Commands, looks: &Commands) -> (Commands, Vec<Pur
         let runs = if look { &looks.run } else { &commands.run };
         runs.get(row).copied().unwrap_or(1)
     };
+    let (own_legs, other_legs) = (commands.numbered_legs(), looks.numbered_legs());
+    let leg = |&(_, look, row): &(f64, bool, usize)| {
+        let legs = if look { &other_legs } else { &own_legs };
+        legs.get(row).copied().unwrap_or_default()
+    };
     let positions = commands.positions.iter().zip(&looks.positions);
     let merged = Commands {
         time: order.iter().map(|(time, ..)| *time).collect(),
@@ -62,6 +67,7 @@ pub(super) fn merge(commands: &Commands, looks: &Commands) -> (Commands, Vec<Pur
         temperatures: named(&commands.temperatures, &looks.temperatures),
         loads: named(&commands.loads, &looks.loads),
         recorded: Vec::new(),
+        legs: order.iter().map(leg).collect(),
     };
     (merged, purposes)
 }

@@ -126,7 +126,9 @@ fn every_parameter_of_every_term_must_be_there() {
 #[test]
 fn signs_are_checked() {
     refused("EXX: [{cyclic: {period: 0 mm, amplitude: 1 um, phase: 0 rad}}]", &[("E0419", "0 mm")]);
-    refused("EXX: [{lag: {gain: -1 1/s}}]", &[("E0419", "-1 1/s")]);
+    refused("EXX: [{lag: {gain: 0 1/s}}]", &[("E0419", "0 1/s")]);
+    // A drive that leads has no natural frequency.
+    refused("EXX: [{lag: {gain: -1 1/s, frequency: 5 Hz}}]", &[("E0419", "-1 1/s")]);
     refused("EXX: [{acceleration: {gain: -1 1/s/s}}]", &[("E0419", "-1 1/s/s")]);
     refused("EXX: [{reversal-spike: {height: 1 um, decay: 0 s}}]", &[("E0419", "0 s")]);
     refused("EXX: [{drift: {amplitude: 1 um, time_constant: -5 s}}]", &[("E0419", "-5 s")]);

@@ -150,6 +150,7 @@ fn every_other_term_is_read() {
             CalibratedTerm::Cyclic { axis: 0, period: 5.0, amplitude: 1e-3, phase: 1.0 },
         ),
         ("EXX: [{lag: {gain: 16.28 1/s}}]", CalibratedTerm::Lag { axis: 0, gain: 16.28, frequency: 0.0 }),
+        ("EXX: [{lag: {gain: -80 1/s}}]", CalibratedTerm::Lag { axis: 0, gain: -80.0, frequency: 0.0 }),
         ("EXX: [{acceleration: {gain: 400 1/s^2}}]", CalibratedTerm::Acceleration { axis: 0, gain: 400.0 }),
         (
             "EXX: [{drift: {amplitude: 2 um, time_constant: 10 min}}]",

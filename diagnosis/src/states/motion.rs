@@ -1,0 +1,135 @@
+//! Motion: which way an axis went, and when it turned.
+//!
+//! In: times, legs and positions of the rows. Out: the direction of the last real motion, the time since the last reversal, and
+//! where plays stand. How an axis came to the place where a leg begins elsewhere than the last one ended, nobody knows: that is
+//! no motion and no reversal, and its direction there is that of the leg's own first motion.
+
+use std::sync::Arc;
+
+use super::Shared;
+use crate::legs::stretches;
+
+/// What an axis did in each row.
+pub(super) struct Motion {
+    pub(super) direction: Shared,
+    /// Whether it begins a leg elsewhere than where it ended the last one; empty where it never does.
+    pub(super) displaced: Arc<[bool]>,
+    pub(super) since_reversal: Shared,
+    /// Whether it moves at all.
+    pub(super) moves: bool,
+}
+
+/// The motion so far.
+struct Tracker {
+    direction: f64,
+    moved: bool,
+    reversed: f64,
+    /// The furthest place in the present direction.
+    extreme: Option<f64>,
+}
+
+impl Tracker {
+    fn take(&mut self, time: f64, position: f64, resolution: f64) {
+        if !position.is_finite() {
+            return;
+        }
+        let gone = position - *self.extreme.get_or_insert(position);
+        if gone.abs() > resolution && (!self.moved || gone * self.direction < 0.0) {
+            if self.moved {
+                self.reversed = time;
+            }
+            self.direction = gone.signum();
+            self.moved = true;
+        }
+        if gone * self.direction > 0.0 {
+            self.extreme = Some(position);
+        }
+    }
+}
+
+impl Motion {
+    /// Follows an axis; to go back by no more than `resolution` is no motion.
+    pub(super) fn of(time: &[f64], legs: &[usize], position: &[f64], resolution: f64) -> Self {
+        let mut tracker =
+            Tracker { direction: 1.0, moved: false, reversed: f64::NEG_INFINITY, extreme: None };
+        let mut directions = Vec::with_capacity(position.len());
+        let mut since = Vec::with_capacity(position.len());
+        let mut displaced: Vec<bool> = Vec::new();
+        let mut moves = false;
+        let mut last: Option<f64> = None;
+        for rows in stretches(legs) {
+            let known = || position[rows.clone()].iter().copied().filter(|position| position.is_finite());
+            let way = known().next().zip(last).map_or(0.0, |(first, last)| first - last);
+            if way.abs() > resolution {
+                displaced.resize(position.len(), false);
+                displaced[rows.start] = true;
+                // Where it does not move any more, it is likeliest to stand as it came.
+                let direction = first_motion(known(), resolution).unwrap_or(way).signum();
+                tracker = Tracker { direction, moved: false, reversed: f64::NEG_INFINITY, extreme: None };
+                moves = true;
+            }
+            for row in rows.clone() {
+                tracker.take(time[row], position[row], resolution);
+                directions.push(tracker.direction);
+                since.push(time[row] - tracker.reversed);
+            }
+            moves |= tracker.moved;
+            last = known().last().or(last);
+        }
+        Self {
+            direction: directions.into(),
+            displaced: displaced.into(),
+            since_reversal: since.into(),
+            moves,
+        }
+    }
+}
+
+/// The first real motion through known positions, with its sign.
+fn first_motion(mut known: impl Iterator<Item = f64>, resolution: f64) -> Option<f64> {
+    let first = known.next()?;
+    known.map(|position| position - first).find(|gone| gone.abs() > resolution)
+}
+
+/// Where a play stands in each row.
+pub(super) fn followed(
+    position: &[f64],
+    direction: &[f64],
+    displaced: &[bool],
+    play: &mut Play,
+    width: f64,
+) -> Vec<f64> {
+    let anew = |row: usize| displaced.get(row) == Some(&true);
+    let rows = position.iter().zip(direction).enumerate();
+    rows.map(|(row, (position, direction))| {
+        if anew(row) {
+            *play = Play::default();
+        }
+        play.follow(*position, *direction, width)
+    })
+    .collect()
+}
+
+/// The play operator: where within [-1, 1] something stands that follows a position by 2 dq / width.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Play {
+    /// The last position that is known, and where it stood there.
+    last: Option<(f64, f64)>,
+}
+
+impl Play {
+    /// Where it stands at the next position; before anything is known, where the direction leaves it.
+    pub(crate) fn follow(&mut self, position: f64, direction: f64, width: f64) -> f64 {
+        let stands = match self.last {
+            None => direction,
+            Some((last, stood)) if position.is_finite() => {
+                (stood + 2.0 * (position - last) / width).clamp(-1.0, 1.0)
+            }
+            Some((_, stood)) => stood,
+        };
+        if position.is_finite() {
+            self.last = Some((position, stands));
+        }
+        stands
+    }
+}

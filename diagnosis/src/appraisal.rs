@@ -30,8 +30,9 @@ pub(crate) struct Appraisal {
     pub(crate) noises: Vec<Vec<Noise>>,
     /// What does not come back.
     pub(crate) floors: Vec<Vec<Noise>>,
-    /// The sum of squares of what comes back.
+    /// The sum of squares of what comes back, and the root mean square of what does not.
     pub(crate) returning: Vec<Vec<f64>>,
+    pub(crate) leftover: Vec<Vec<f64>>,
     /// Minus twice the log-likelihood of all channels.
     pub(crate) deviance: f64,
 }
@@ -42,6 +43,7 @@ struct Estimate {
     floor: Noise,
     weights: Noise,
     returning: f64,
+    leftover: f64,
     deviance: f64,
 }
 
@@ -64,6 +66,7 @@ impl Appraisal {
             noises: Vec::new(),
             floors: Vec::new(),
             returning: Vec::new(),
+            leftover: Vec::new(),
             deviance: 0.0,
         };
         for scene in 0..study.scenes.len() {
@@ -97,9 +100,15 @@ impl Appraisal {
         self.deviance += estimates.iter().map(|estimate| estimate.deviance).sum::<f64>();
         self.outliers.push(marks);
         self.floors.push(estimates.iter().map(|estimate| estimate.floor).collect());
+        self.leftover.push(estimates.iter().map(|estimate| estimate.leftover).collect());
         self.returning.push(estimates.iter().map(|estimate| estimate.returning).collect());
         self.noises.push(estimates.into_iter().map(|estimate| estimate.weights).collect());
         self.residuals.push(residuals);
+    }
+
+    /// Whether a model leaves more than noise of any channel.
+    pub(crate) fn lacks(&self) -> bool {
+        self.noises.iter().flatten().any(|noise| noise.alike > 1.0)
     }
 
     /// White noise of the same sizes.
@@ -136,21 +145,22 @@ fn estimate(
     let returning = (whole - alone).max(0.0);
     let floor =
         Noise { white: (factor * found.white).max(observed.rounding), wander: factor * found.wander, ..found };
+    let count = crate::number(valid.iter().filter(|valid| **valid).count()).max(1.0);
+    let leftover = (alone / count).sqrt();
     let plainly = match like {
         Some(like) => like.alike > 1.0,
         None => returning > MOSTLY * alone || moves(known, residual, valid),
     };
     if plainly {
         let alike = like.map_or_else(|| noise::alike(residual, valid), |like| like.alike);
-        let count = crate::number(valid.iter().filter(|valid| **valid).count()).max(1.0);
         let weights = Noise { alike: alike.max(MORE_THAN_ONE), ..Noise::white((whole / count).sqrt().max(floor.white)) };
         let deviance = noise::deviance(time, residual, valid, &weights);
-        return Estimate { floor, weights, returning, deviance };
+        return Estimate { floor, weights, returning, leftover, deviance };
     }
     // Where nothing comes back, the noise with the greatest likelihood is the floor itself.
     let same = returning == 0.0 && floor.white == found.white;
     let deviance = if same { deviance } else { noise::deviance(time, residual, valid, &floor) };
-    Estimate { floor, weights: floor, returning, deviance }
+    Estimate { floor, weights: floor, returning, leftover, deviance }
 }
 
 /// Samples of what a model leaves out never count for themselves.

@@ -5,6 +5,7 @@
 mod ceiling;
 mod decidable;
 mod findings;
+mod refuted;
 mod summary;
 mod unexplained;
 mod units;
@@ -77,15 +78,18 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
     }
     diagnosis.before = before;
     stand_or_fall(&mut study, &units, &mut found, diagnosis.before.holdout_rms);
-    let feature = explain_locally(&mut study, &mut found);
+    let mut feature = explain_locally(&mut study, &mut found);
+    progress(Progress { step: "comparing with other names", done: 0.95 });
+    let mut numbers = claims(&study, &mut found, &units, &mut diagnosis);
+    while let Some(weakest) = refuted::weakest(&diagnosis.findings) {
+        drop_effect(&mut study, &mut found, numbers[weakest]);
+        feature = explain_locally(&mut study, &mut found);
+        numbers = claims(&study, &mut found, &units, &mut diagnosis);
+    }
     diagnosis.undecided.extend(crossed(&study, &found.fit.model));
     let moving = if feature.is_none() { unsteady::moving(&study, &found.appraisal) } else { None };
-    progress(Progress { step: "comparing with other names", done: 0.95 });
-    zeros::free_held_out(&study, &mut found.fit.model);
-    diagnosis.after = units.residual(&study, &found.fit.model);
     let quiet = feature.as_ref().and_then(|feature| engine::beside(&study, &found, feature));
     diagnosis.noise = units.noise(&study, quiet.as_ref().unwrap_or(&found.appraisal));
-    let numbers = report(&study, &found, &units, &mut diagnosis);
     let counts = |kind| units.counts(&study, kind);
     diagnosis.pictures =
         drawn_before.map(|before| before.draw(&study, &found, (&counts, units.unit.0), &numbers));
@@ -93,6 +97,7 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
         Some(feature) => Some(unexplained::feature(&study, &found, &feature, &units)),
         None => unexplained::unsteady(&study, &found, moving, &units),
     };
+    diagnosis.unexplained = diagnosis.unexplained.or_else(|| unexplained::on_the_way(&study));
     diagnosis.repeatability = scattered.first().map(|scatter| repeats::describe(&study, scatter, units.unit));
     diagnosis.verdict = verdict(&diagnosis);
     diagnosis.candidates = found.pool.len();
@@ -138,6 +143,30 @@ fn stand_or_fall(study: &mut Study<'_>, units: &Units, found: &mut Found, before
         found.appraisal = Appraisal::new(study, &plain);
         found.fit.model = plain;
     }
+}
+
+/// Findings and settings as they would be told, and what the whole model leaves; the numbers of the model's effects that are the
+/// findings, in their order.
+fn claims(study: &Study<'_>, found: &mut Found, units: &Units, diagnosis: &mut Diagnosis) -> Vec<usize> {
+    if !found.claims() {
+        // Zeros that allow for a noise that wanders are no better than the plain ones where there is nothing beside them.
+        zeros::weigh_plainly(study, &mut found.fit.model, found.always, &found.appraisal.as_white());
+    }
+    zeros::free_held_out(study, &mut found.fit.model);
+    diagnosis.after = units.residual(study, &found.fit.model);
+    diagnosis.findings.clear();
+    diagnosis.settings.clear();
+    report(study, found, units, diagnosis)
+}
+
+/// Takes one effect back and fits the rest again.
+fn drop_effect(study: &mut Study<'_>, found: &mut Found, number: usize) {
+    let mut model = found.fit.model.clone();
+    model.remove(number);
+    crossing::follow(study, &model);
+    found.fit = fit::refine(study, model, &found.appraisal.noises, &found.travels);
+    found.appraisal = Appraisal::new(study, &found.fit.model);
+    found.appraisal.mark(study);
 }
 
 /// Takes all effects of the machine back.
@@ -202,7 +231,13 @@ fn fitted_runs(scene: &Scene<'_>) -> Vec<i64> {
 fn undecidable(mut diagnosis: Diagnosis, study: &Study<'_>, because: String) -> Diagnosis {
     let sentence = format!("Nothing can be decided from this recording, because {because}.");
     diagnosis.undecided.push(sentence.clone());
-    diagnosis.undecidable = Some(sentence);
+    diagnosis.unexplained = unexplained::on_the_way(study);
+    if diagnosis.unexplained.is_some() {
+        diagnosis.verdict = Verdict::Unexplained;
+    } else {
+        diagnosis.undecidable = Some(sentence);
+        diagnosis.verdict = Verdict::Undecided;
+    }
     let nothing = Residual { rms: f64::NAN, holdout_rms: None, unit: "mm" };
     (diagnosis.before, diagnosis.after) = (nothing, nothing);
     diagnosis.noise = NoiseSummary { value: f64::NAN, unit: "mm", ..NoiseSummary::default() };

@@ -102,7 +102,7 @@ pub(crate) fn active(fitted: &Fitted) -> Option<(f64, f64)> {
 fn smooth(effect: &Effect, travels: &[Travel]) -> Option<usize> {
     match effect.shape {
         Shape::Polynomial { axis, .. } | Shape::Table { axis, .. } => Some(axis),
-        Shape::Cyclic { axis, period } if period > LONG * travels[axis].range() => Some(axis),
+        Shape::Cyclic { axis, period, .. } if period > LONG * travels[axis].range() => Some(axis),
         _ => None,
     }
 }

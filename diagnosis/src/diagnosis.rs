@@ -67,6 +67,8 @@ pub struct Summary {
 /// The verdict of a diagnosis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Verdict {
+    /// The recordings, or how they were set up, cannot tell.
+    Undecided,
     /// Nothing systematic above the noise.
     #[default]
     Adequate,
@@ -82,6 +84,7 @@ impl Verdict {
     /// The word of the contract.
     pub fn word(self) -> &'static str {
         match self {
+            Self::Undecided => "undecided",
             Self::Adequate => "adequate",
             Self::LeftOutPhysics => "left-out-physics",
             Self::Unexplained => "unexplained",

@@ -21,6 +21,7 @@ use crate::model::{Effect, Fitted, Model, Place};
 use crate::noise::{self, Noise};
 use crate::observations;
 use crate::ranges::{Resolution, limit};
+use crate::revise::Revision;
 use crate::search::{Choice, rivals};
 use crate::side::Side;
 use crate::study::Study;
@@ -61,6 +62,7 @@ impl Found {
 pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dyn FnMut(f64)) -> Found {
     study.crossings.fill(0.0);
     let mut search = Search::new(study, always);
+    let places = search.places.clone();
     search.go_round(study, progress);
     search.cross_plays(study, progress);
     let mut fit = search.fit(study);
@@ -78,6 +80,8 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     }
     let Search { pool, travels, always, tries, .. } = search;
     let (mut fit, mut appraisal) = upheld(study, fit, always, &travels, tries);
+    let revision = Revision { always, pool: &pool, places: &places, travels: &travels, tries };
+    (fit, appraisal) = revision.revised(study, fit, appraisal);
     let bands = unsteady::take_bands(&mut fit.model, always);
     if !bands.is_empty() {
         let steady = fit::refine(study, fit.model, &appraisal.noises, &travels);
@@ -315,7 +319,7 @@ pub(crate) fn courses(study: &Study<'_>, model: &Model) -> Vec<Arc<Course>> {
     (0..study.scenes.len()).map(|scene| Course::new(study, scene, model)).collect()
 }
 
-fn all_residuals(
+pub(crate) fn all_residuals(
     study: &Study<'_>,
     model: &Model,
     noises: &[Vec<Noise>],
@@ -342,7 +346,7 @@ fn first_noises(study: &Study<'_>, model: &Model, courses: &[Arc<Course>]) -> Ve
 }
 
 /// The effects of the present model as they stand, the candidates, and waves.
-fn regressors(
+pub(crate) fn regressors(
     study: &Study<'_>,
     model: &Model,
     always: usize,

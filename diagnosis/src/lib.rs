@@ -34,6 +34,7 @@ mod repeats;
 pub mod report;
 mod rest;
 mod returns;
+mod revise;
 mod rounded;
 mod search;
 mod side;

@@ -4,8 +4,9 @@
 //! reading, or two in a row, that stand far from their neighbours *and* from the other passes at their place. What lasts longer is
 //! something that happened, and what comes back is something of the machine: both stay.
 
-/// How many robust standard deviations from its neighbours a reading must stand: normal noise of a million rows gives none.
-const FAR: f64 = 8.0;
+/// How many robust standard deviations of a step from row to row a reading must stand from its neighbours. For white noise, whose
+/// steps scatter by the root of two more, that is more than eight of a reading, which a million rows do not give.
+const FAR: f64 = 6.0;
 /// How many neighbours on each side are looked at: with two, one or two readings may stand apart from the rest.
 const NEIGHBOURS: usize = 2;
 /// In how many rows around a reading the scatter is looked at: where an axis moves it is another than where it stands.
@@ -20,11 +21,12 @@ pub(crate) fn mark(residual: &[f64], step: f64, apart: &dyn Fn(usize, f64) -> bo
     let known: Vec<usize> = (0..residual.len()).filter(|row| residual[*row].is_finite()).collect();
     let values: Vec<f64> = known.iter().map(|row| residual[*row]).collect();
     let distances: Vec<f64> = (0..values.len()).map(|at| from_neighbours(&values, at)).collect();
-    let Some(everywhere) = scatter(&distances) else { return none };
+    let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let Some(everywhere) = scatter(&steps) else { return none };
     let least = FAR * everywhere.max(step);
     let far: Vec<usize> = (0..distances.len())
         .filter(|at| distances[*at].abs() > least && least > 0.0)
-        .filter(|at| distances[*at].abs() > FAR * around(&distances, *at).max(step))
+        .filter(|at| distances[*at].abs() > FAR * around(&steps, *at).max(step))
         .filter(|at| apart(known[*at], distances[*at]))
         .collect();
     if far.len() * MOST > known.len() {
@@ -44,16 +46,19 @@ fn from_neighbours(values: &[f64], at: usize) -> f64 {
     values[at] - few[few.len() / 2]
 }
 
-/// The scatter of the readings around one, itself left out.
-fn around(distances: &[f64], at: usize) -> f64 {
+/// The scatter of the steps around a reading, those to it and from it left out.
+fn around(steps: &[f64], at: usize) -> f64 {
     let half = AROUND / 2;
-    let (from, to) = (at.saturating_sub(half), (at + half + 1).min(distances.len()));
-    scatter(&[&distances[from..at], &distances[at + 1..to]].concat()).unwrap_or_default()
+    let before = at.saturating_sub(half)..at.saturating_sub(1).min(steps.len());
+    let behind = (at + 1).min(steps.len())..(at + half).min(steps.len());
+    let before = steps.get(before).unwrap_or_default();
+    scatter(&[before, &steps[behind]].concat()).unwrap_or_default()
 }
 
-/// The standard deviation of normal numbers of the same median size.
-fn scatter(distances: &[f64]) -> Option<f64> {
-    let mut sizes: Vec<f64> = distances.iter().map(|distance| distance.abs()).collect();
+/// The standard deviation of normal numbers that lie as far from their median: a slope is no scatter.
+fn scatter(steps: &[f64]) -> Option<f64> {
+    let middle = crate::noise::middle(&mut steps.to_vec())?;
+    let mut sizes: Vec<f64> = steps.iter().map(|step| (step - middle).abs()).collect();
     crate::noise::middle(&mut sizes).map(|median| median / 0.6745)
 }
 

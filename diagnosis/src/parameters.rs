@@ -4,6 +4,8 @@
 //! compiler takes it. Amplitude and phase of a wave, the coefficients of a polynomial of the position and the gain of a loop
 //! are functions of what was fitted; their variances follow to first order.
 
+use std::f64::consts::TAU;
+
 use model_dsl::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, SeriesInput};
 use nalgebra::DVector;
 
@@ -241,6 +243,11 @@ impl<'f> Described<'f> {
         let (amplitude, phase) = (a.hypot(b), b.atan2(a));
         let square = (amplitude * amplitude).max(f64::MIN_POSITIVE);
         let (factor, unit) = self.motion_unit;
+        // Calibrations count the phase from position 0, where the period has gone on from the middle of the travel.
+        let back = match self.fitted.effect.shape {
+            Shape::Cyclic { period, center, .. } => TAU * center / period,
+            _ => 0.0,
+        };
         vec![
             Parameter::fitted(
                 "amplitude",
@@ -248,9 +255,24 @@ impl<'f> Described<'f> {
             ),
             Parameter::fitted(
                 "phase",
-                self.derived(phase, &[-b / square, a / square], (1.0, "rad".to_owned())),
+                self.phase(turned(phase - back), [-b / square, a / square]),
             ),
         ]
+    }
+
+    /// The phase of a wave of the period, or the frequency, that is told beside it: how well the wave is known where it was
+    /// measured. What an uncertain period turns a phase by on the way from there to position 0 is the period's uncertainty.
+    fn phase(&self, value: f64, gradient: [f64; 2]) -> Estimate {
+        let covariance = &self.certainty.covariance;
+        let part = |row: usize, column: usize| {
+            covariance.get((row, column)).copied().unwrap_or_default()
+        };
+        let along = gradient[0] * part(0, 2) + gradient[1] * part(1, 2);
+        let given = if part(2, 2) > 0.0 { along * along / part(2, 2) } else { 0.0 };
+        let whole = self.derived(value, &gradient, (1.0, "rad".to_owned()));
+        let half = (whole.ci95.1 - value) / WIDTH_95;
+        let half = WIDTH_95 * (half * half - given).max(0.0).sqrt();
+        Estimate { ci95: (value - half, value + half), ..whole }
     }
 
     /// 1 / coefficient; its interval is that of the coefficient turned over, since the gain itself is not near normal.
@@ -307,7 +329,8 @@ impl<'f> Described<'f> {
             Shape::ReversalSpike { axis, decay } => {
                 CalibratedTerm::ReversalSpike { axis: *axis, height: first, decay: *decay }
             }
-            Shape::Cyclic { axis, period } => {
+            Shape::Cyclic { axis, period, center } => {
+                let phase = turned(phase - TAU * center / period);
                 CalibratedTerm::Cyclic { axis: *axis, period: *period, amplitude, phase }
             }
             Shape::Lag { axis, inertia } => {
@@ -349,9 +372,14 @@ impl<'f> Described<'f> {
     }
 }
 
+/// A phase between -pi and pi.
+fn turned(phase: f64) -> f64 {
+    phase - TAU * (phase / TAU).round()
+}
+
 /// The natural frequency of a loop with the inertia 1/w^2, Hz; 0 for a loop of first order.
 fn natural(inertia: f64) -> f64 {
-    if inertia > 0.0 { 1.0 / (std::f64::consts::TAU * inertia.sqrt()) } else { 0.0 }
+    if inertia > 0.0 { 1.0 / (TAU * inertia.sqrt()) } else { 0.0 }
 }
 
 /// `mm/K`, `rad/mm^2`, `1/mm` for mm/mm^2; empty for mm/mm.

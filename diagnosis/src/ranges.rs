@@ -27,7 +27,7 @@ pub(crate) fn range(study: &Study<'_>, travels: &[Travel], shape: &Shape) -> (f6
         Shape::Backlash { .. } => (travel.step.min(WIND_UP * travel.range()), WIND_UP * travel.range()),
         Shape::ReversalSpike { .. } => (0.3 * step, DECAY * travel.between),
         // A part of a turn is a part of a turn: it is not fitted.
-        Shape::Cyclic { axis, period } if goes_round(study, *axis, &travel) => (*period, *period),
+        Shape::Cyclic { axis, period, .. } if goes_round(study, *axis, &travel) => (*period, *period),
         Shape::Cyclic { .. } => (2.0 * travel.step, travel.range() / PERIODS),
         Shape::Vibration { .. } => (CYCLES / observed, 0.5 / step),
         Shape::Drift { .. } => (5.0 * step, SETTLING * observed),
@@ -86,7 +86,7 @@ impl Resolution {
             (Shape::Vibration { frequency: a }, Shape::Vibration { frequency: b }) => {
                 (a - b).abs() < self.frequency
             }
-            (Shape::Cyclic { axis, period: a }, Shape::Cyclic { axis: other, period: b }) => {
+            (Shape::Cyclic { axis, period: a, .. }, Shape::Cyclic { axis: other, period: b, .. }) => {
                 axis == other && (1.0 / a - 1.0 / b).abs() < self.along[*axis]
             }
             _ => false,
@@ -100,7 +100,7 @@ pub(crate) fn holds(table: &Shape, other: &Shape) -> bool {
     let spacing = nodes.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
     match other {
         Shape::Polynomial { axis, .. } => axis == along,
-        Shape::Cyclic { axis, period } => axis == along && *period > SMOOTHED * spacing,
+        Shape::Cyclic { axis, period, .. } => axis == along && *period > SMOOTHED * spacing,
         _ => false,
     }
 }

@@ -50,8 +50,8 @@ pub(crate) enum Shape {
     Backlash { axis: usize, wind_up: f64 },
     /// -d exp(-(t - t_reversal) / decay).
     ReversalSpike { axis: usize, decay: f64 },
-    /// sin(2 pi q / period) and cos(2 pi q / period).
-    Cyclic { axis: usize, period: f64 },
+    /// Sine and cosine of 2 pi (q - center) / period: far from the travel a little of the period is much of the phase.
+    Cyclic { axis: usize, period: f64, center: f64 },
     /// The change of the position behind the position loop with its time constant 1/K, which is the coefficient; of second
     /// order where it has an inertia 1/w^2, s^2.
     Lag { axis: usize, inertia: f64 },
@@ -223,7 +223,7 @@ impl Shape {
             Self::ReversalSpike { axis, decay } => {
                 one(out, |out| reversal_spike::fill(rows, *axis, *decay, out))
             }
-            Self::Cyclic { axis, period } => cyclic::fill(rows, *axis, *period, out),
+            Self::Cyclic { axis, period, center } => cyclic::fill(rows, *axis, *period, *center, out),
             Self::Lag { axis, .. } => one(out, |out| lag::fill(rows, *axis, out)),
             Self::Acceleration { axis } => one(out, |out| acceleration::fill(rows, *axis, out)),
             Self::Expansion { axis, sensor, reference } => {

@@ -23,6 +23,11 @@ pub(crate) struct Travel {
 }
 
 impl Travel {
+    /// The middle of its positions.
+    pub(crate) fn center(&self) -> f64 {
+        (self.low + self.high) / 2.0
+    }
+
     /// The range of positions.
     pub(crate) fn range(&self) -> f64 {
         self.high - self.low

@@ -76,7 +76,7 @@ pub(crate) fn places(
             if let Some(axis) = along {
                 // Any period and any frequency tell which places are alike.
                 let period = travels[axis].range() / 3.7;
-                samples.push(Effect { place, shape: Shape::Cyclic { axis, period } });
+                samples.push(Effect { place, shape: Shape::Cyclic { axis, period, center: travels[axis].center() } });
             }
             if along.is_none_or(|axis| !steadily(study, axis)) {
                 samples.push(Effect { place, shape: Shape::Vibration { frequency: 7.3 / span } });
@@ -227,7 +227,8 @@ fn along(
     (shortest < range / 2.0).then_some(())?;
     let found = tops(&source.spectrum(&positions, low, range, shortest), PERIODS / range, OF_A_PLACE);
     let peak = |top: Top| {
-        let shape = Shape::Cyclic { axis, period: turned(study, axis, &travels[axis], 1.0 / top.frequency) };
+        let period = turned(study, axis, &travels[axis], 1.0 / top.frequency);
+        let shape = Shape::Cyclic { axis, period, center: travels[axis].center() };
         Peak { effect: effect(source, shape), gain: top.local }
     };
     Some(LookedAt { peaks: found.into_iter().map(peak).collect(), tried: range / shortest })

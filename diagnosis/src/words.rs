@@ -72,7 +72,7 @@ fn bare_detail(study: &Study<'_>, effect: &Effect) -> String {
         Shape::Constant => format!("follows {}", state(study, effect)),
         Shape::Polynomial { axis, .. } => format!("changes smoothly along {}", name(*axis)),
         Shape::Table { axis, .. } => format!("follows a curve along {}", name(*axis)),
-        Shape::Cyclic { axis, period } => {
+        Shape::Cyclic { axis, period, .. } => {
             let (factor, unit) = axis_unit(study, *axis);
             format!("repeats every {:.4} {unit} of {}", period * factor, name(*axis))
         }

@@ -3,6 +3,7 @@
 //! In: what the engine left: a feature at a place, an oscillation that is not steady, a residual that moves smoothly. Out:
 //! where it shows, how large it is, and what comes nearest to it.
 
+use super::ceiling;
 use super::units::Units;
 use nalgebra::DMatrix;
 
@@ -11,7 +12,9 @@ use crate::diagnosis::{Interval, IntervalOf, ParameterValue, Unexplained};
 use crate::engine::{self, Found};
 use crate::local::Feature;
 use crate::parameters::{Described, axis_unit, motion_unit};
-use crate::study::Study;
+use crate::noise;
+use crate::returns::Quantity;
+use crate::study::{Channel, Kind, Study};
 use crate::unsteady::{self, Band, Moving, Suspect};
 use crate::words;
 
@@ -60,8 +63,75 @@ pub(super) fn unsteady(
     }
 }
 
+/// How far axes are from commands that are end points, while they are on their way there: no model of the machine says it.
+pub(super) fn on_the_way(study: &Study<'_>) -> Option<Unexplained> {
+    study.scenes.iter().find_map(|scene| {
+        let axis = *scene.targets.axes.first()?;
+        let letter = &study.equations.axes[axis].letter;
+        let follows = |channel: &&Channel<'_>| match channel.kind {
+            Kind::Stage(own) | Kind::Drive(own) => own == axis,
+            Kind::Tip(direction) => ["X", "Y", "Z"][direction] == letter,
+            _ => false,
+        };
+        let channel = scene.channels.iter().find(follows)?;
+        let pairs = channel.values.iter().zip(scene.given.programmed[axis].iter()).zip(&scene.targets.on_the_way);
+        let away: Vec<f64> = pairs
+            .filter(|(_, on_the_way)| **on_the_way)
+            .map(|((value, command), _)| (value - command).powi(2))
+            .filter(|square| square.is_finite())
+            .collect();
+        let (factor, unit) = axis_unit(study, axis);
+        let rms = (away.iter().sum::<f64>() / crate::number(away.len().max(1))).sqrt();
+        Some(Unexplained {
+            link: Some(letter.clone()),
+            direction: channel.name.clone(),
+            state: "velocity",
+            interval: None,
+            rms: rms * factor,
+            unit,
+            detail: format!(
+                "the command of {letter} is the end point of its motion and not where it should be on the way: {} rows on the \
+                 way there tell nothing of the machine, and are left out",
+                away.len()
+            ),
+            table_of: None,
+        })
+    })
+}
+
+/// The state of which a function predicts most of what is left of a channel in units to which it was not fitted, in words, and its
+/// share.
+fn state_of_what_is_left(study: &Study<'_>, found: &Found, moving: &Moving) -> Option<(Quantity, f64)> {
+    let scene = &study.scenes[moving.scene];
+    let residual = &found.appraisal.residuals[moving.scene][moving.channel];
+    let outliers = &found.appraisal.outliers[moving.scene][moving.channel];
+    let valid: Vec<bool> =
+        residual.iter().zip(outliers).map(|(value, outlier)| value.is_finite() && !outlier).collect();
+    let noise =
+        noise::estimate(&scene.recording.time, residual, &valid, scene.channels[moving.channel].rounding).0;
+    let first = scene.returns.of(residual, &valid, noise).into_iter().next()?;
+    Some((scene.returns.quantity(first), first.share))
+}
+
 fn smoothly(study: &Study<'_>, found: &Found, moving: Moving, units: &Units) -> Unexplained {
     let channel = &study.scenes[moving.scene].channels[moving.channel];
+    if let Some((quantity, share)) = state_of_what_is_left(study, found, &moving) {
+        let state = ceiling::words(study, quantity);
+        return Unexplained {
+            link: quantity.axis().map(|axis| study.equations.axes[axis].letter.clone()),
+            direction: channel.name.clone(),
+            state: quantity.state(),
+            interval: None,
+            rms: moving.rms * units.unit.0,
+            unit: units.unit.1,
+            detail: format!(
+                "some function of the {state} predicts {:.0} % of it where it was not fitted; no term of the vocabulary has \
+                 this form",
+                100.0 * share
+            ),
+            table_of: None,
+        };
+    }
     let nearest = unsteady::suspect(study, found);
     let link = nearest.as_ref().and_then(|suspect| suspect.fitted.effect.motion());
     let near = nearest.as_ref().map_or_else(String::new, |suspect| near(study, suspect));

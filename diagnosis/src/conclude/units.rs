@@ -6,6 +6,7 @@
 use crate::appraisal::Appraisal;
 use crate::diagnosis::{NoiseSummary, Residual};
 use crate::model::Model;
+use crate::noise::Noise;
 use crate::parameters::axis_unit;
 use crate::study::{Kind, Study};
 use crate::zeros;
@@ -71,11 +72,11 @@ impl Units {
         let channels = study
             .scenes
             .iter()
-            .zip(&appraisal.floors)
-            .flat_map(|(scene, noises)| scene.channels.iter().zip(noises));
+            .zip(appraisal.floors.iter().zip(&appraisal.leftover))
+            .flat_map(|(scene, (floors, left))| scene.channels.iter().zip(floors.iter().zip(left)));
         let counted: Vec<_> = channels
             .filter(|(channel, _)| self.counts(study, channel.kind))
-            .map(|(_, noise)| *noise)
+            .map(|(channel, (floor, left))| seen(*floor, left.max(channel.rounding)))
             .collect();
         let count = crate::number(counted.len()).max(1.0);
         let mean = |part: &dyn Fn(&crate::noise::Noise) -> f64| {
@@ -86,6 +87,13 @@ impl Units {
         let time_constant = wandering.map(|noise| noise.time_constant).fold(0.0, f64::max);
         NoiseSummary { value: white.hypot(wander), unit: self.unit.1, white, wander, time_constant }
     }
+}
+
+/// A noise no larger than what was seen of it: one that wanders for longer than a recording lasts gets only so far.
+fn seen(noise: Noise, size: f64) -> Noise {
+    let white = noise.white.min(size);
+    let wander = noise.wander.min((size * size - white * white).max(0.0).sqrt());
+    Noise { white, wander, ..noise }
 }
 
 /// The size of what a model leaves of the channels that count, in a unit.

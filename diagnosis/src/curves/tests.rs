@@ -267,9 +267,9 @@ fn waves_that_are_long_are_part_of_a_curve_and_short_ones_are_not() {
     let travels = [travel(0.0, 100.0), travel(0.0, 10.0)];
     let place = Place::Motion { motion: 0, side: Side::After };
     let smooth = |shape: Shape| smooth(&Effect { place, shape }, &travels);
-    assert_eq!(smooth(Shape::Cyclic { axis: 0, period: 40.0 }), Some(0));
-    assert_eq!(smooth(Shape::Cyclic { axis: 0, period: 4.0 }), None);
-    assert_eq!(smooth(Shape::Cyclic { axis: 1, period: 4.0 }), Some(1));
+    assert_eq!(smooth(Shape::Cyclic { axis: 0, period: 40.0, center: 0.0 }), Some(0));
+    assert_eq!(smooth(Shape::Cyclic { axis: 0, period: 4.0, center: 0.0 }), None);
+    assert_eq!(smooth(Shape::Cyclic { axis: 1, period: 4.0, center: 0.0 }), Some(1));
     assert_eq!(smooth(Shape::Polynomial { axis: 1, degree: 2, center: 5.0, scale: 5.0 }), Some(1));
     assert_eq!(smooth(Shape::Backlash { axis: 0, wind_up: 0.0 }), None);
     assert_eq!(smooth(Shape::Vibration { frequency: 1.0 }), None);

@@ -43,7 +43,7 @@ pub(super) fn over_position(
 ) -> Vec<PositionSpectrum> {
     let found = |axis: usize| {
         sight.lines(|shape| match shape {
-            Shape::Cyclic { axis: of, period } if *of == axis => Some(*period),
+            Shape::Cyclic { axis: of, period, .. } if *of == axis => Some(*period),
             _ => None,
         })
     };

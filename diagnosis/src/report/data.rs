@@ -1,8 +1,8 @@
 //! What the diagnosis stands on. In: a diagnosis. Out: the noise, the residuals and the recordings, in words.
 
-use super::figure::size;
+use super::figure::{percent, size};
 use super::item::Item;
-use crate::diagnosis::{Diagnosis, NoiseSummary, Residual, Summary};
+use crate::diagnosis::{Diagnosis, NoiseSummary, Residual, Returning, Summary};
 
 /// The noise, and what the model leaves before and after.
 pub(super) fn figures(diagnosis: &Diagnosis) -> Vec<Item> {
@@ -14,6 +14,26 @@ pub(super) fn figures(diagnosis: &Diagnosis) -> Vec<Item> {
         ("with findings", vec![after]),
     ];
     vec![Item::new("Root mean square of the noise, and of what the model leaves".to_owned(), facts)]
+}
+
+/// What of each channel comes back with which state, before any name: that all of the findings could explain at most.
+pub(super) fn returns(diagnosis: &Diagnosis) -> Vec<String> {
+    // The last line of a channel holds the states of those before it.
+    let last = |number: usize, one: &Returning| {
+        let next = diagnosis.returns.get(number + 1);
+        next.is_none_or(|next| (next.recording, &next.channel) != (one.recording, &one.channel))
+    };
+    let lines = diagnosis.returns.iter().enumerate().filter(|(number, one)| last(*number, one));
+    lines.map(|(_, one)| returning(one)).collect()
+}
+
+fn returning(one: &Returning) -> String {
+    let Returning { channel, state, share, left, unit, .. } = one;
+    format!(
+        "{channel}: {} of the residual comes back with the {state}; what does not is {} (rms).",
+        percent(*share),
+        size(*left, unit)
+    )
 }
 
 fn noise(noise: &NoiseSummary) -> String {

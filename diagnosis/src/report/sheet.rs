@@ -45,6 +45,7 @@ pub(super) fn sheet(diagnosis: &Diagnosis) -> Sheet {
         items("Repeatability", remains::repeatability(diagnosis)),
     ];
     let open = [
+        list("What comes back", data::returns(diagnosis)),
         list("What to measure next", remains::next_measurements(diagnosis)),
         list("What these recordings cannot decide", diagnosis.undecided.clone()),
         items("Figures", if diagnosis.undecidable.is_some() { Vec::new() } else { data::figures(diagnosis) }),

@@ -33,10 +33,10 @@ impl Ink {
 
     /// The verdict, its first words set off.
     pub(super) fn verdict(self, diagnosis: &Diagnosis, text: &str) -> String {
-        let color = match (diagnosis.undecidable.is_some(), diagnosis.verdict) {
-            (false, Verdict::Adequate) => AnsiColor::Green,
-            (false, Verdict::LeftOutPhysics) => AnsiColor::Yellow,
-            (true, _) | (false, Verdict::Unexplained | Verdict::NotRepeatable) => AnsiColor::Magenta,
+        let color = match diagnosis.verdict {
+            Verdict::Adequate => AnsiColor::Green,
+            Verdict::LeftOutPhysics => AnsiColor::Yellow,
+            Verdict::Undecided | Verdict::Unexplained | Verdict::NotRepeatable => AnsiColor::Magenta,
         };
         match text.split_once(':') {
             Some((word, rest)) => self.set(color.on_default().bold(), word) + ":" + rest,

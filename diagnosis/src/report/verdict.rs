@@ -5,15 +5,18 @@ use super::remains::brief;
 use crate::diagnosis::{Diagnosis, Verdict};
 
 pub(super) fn sentence(diagnosis: &Diagnosis) -> String {
-    if let Some(sentence) = &diagnosis.undecidable {
-        return format!("undecided: {}", sentence.trim_end_matches('.'));
-    }
     match diagnosis.verdict {
+        Verdict::Undecided => undecided(diagnosis),
         Verdict::Adequate => adequate(diagnosis),
         Verdict::LeftOutPhysics => format!("left-out physics: {}", found(diagnosis)),
         Verdict::Unexplained => format!("unexplained: {}", unexplained(diagnosis)),
         Verdict::NotRepeatable => format!("not repeatable: {}", not_repeatable(diagnosis)),
     }
+}
+
+fn undecided(diagnosis: &Diagnosis) -> String {
+    let sentence = diagnosis.undecidable.as_deref().unwrap_or("These recordings cannot tell.");
+    format!("undecided: {}", sentence.trim_end_matches('.'))
 }
 
 fn adequate(diagnosis: &Diagnosis) -> String {

@@ -28,6 +28,34 @@ pub(crate) enum Quantity {
     Load(usize),
 }
 
+impl Quantity {
+    /// The axis of which it is a state, where it is that of one.
+    pub(crate) fn axis(self) -> Option<usize> {
+        match self {
+            Self::Position(axis)
+            | Self::Branch(axis)
+            | Self::Direction(axis)
+            | Self::Way(axis)
+            | Self::Velocity(axis)
+            | Self::Acceleration(axis) => Some(axis),
+            Self::Path | Self::Temperature(_) | Self::Load(_) => None,
+        }
+    }
+
+    /// The state's word in reports.
+    pub(crate) fn state(self) -> &'static str {
+        match self {
+            Self::Position(_) | Self::Branch(_) | Self::Path => "position",
+            Self::Direction(_) => "direction",
+            Self::Way(_) => "reversal",
+            Self::Velocity(_) => "velocity",
+            Self::Acceleration(_) => "acceleration",
+            Self::Temperature(_) => "temperature",
+            Self::Load(_) => "load",
+        }
+    }
+}
+
 /// A quantity in every row.
 pub(crate) struct State {
     pub(crate) quantity: Quantity,

@@ -23,7 +23,7 @@ fn effects(bench: &Bench) -> Vec<Effect> {
         Shape::Constant,
         Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 40.0 },
         Shape::Backlash { axis: 0, wind_up: 0.0 },
-        Shape::Cyclic { axis: 0, period: 7.0 },
+        Shape::Cyclic { axis: 0, period: 7.0, center: 0.0 },
     ];
     let others = shapes.map(|shape| Effect { place, shape });
     std::iter::once(Effect::setting(0, Setting::Offset { channel: 0 })).chain(others).collect()
@@ -75,7 +75,7 @@ fn what_is_one_piece_of_physics_stands_once() {
         place: Place::Motion { motion: bench.motion(motion), side: Side::After },
         shape,
     };
-    let wave = |period| on("EXX", Shape::Cyclic { axis: 0, period });
+    let wave = |period| on("EXX", Shape::Cyclic { axis: 0, period, center: 0.0 });
     let vibration = |frequency| on("EXX", Shape::Vibration { frequency });
     let coupling = |axis, degree| on("EXX", Shape::Coupling { axis, degree, scale: 1.0 });
     let play = |wind_up| on("EXX", Shape::Backlash { axis: 0, wind_up });
@@ -176,7 +176,7 @@ fn of_two_that_bend_alike_in_one_place_one_is_enough() {
     let nodes = vec![-40.0, -20.0, 0.0, 20.0, 40.0];
     let table = Shape::Table { axis: 0, nodes, directed: false };
     let bow = Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 40.0 };
-    let wave = |period| Shape::Cyclic { axis: 0, period };
+    let wave = |period| Shape::Cyclic { axis: 0, period, center: 0.0 };
     let effects = [
         on("EXX", table),
         on("EXX", bow.clone()),
@@ -237,7 +237,7 @@ fn two_effects_that_nearly_cancel_have_outgrown_what_they_explain() {
     let (period, bow) = (400.0, 0.04 / 1600.0);
     let bent = [
         ("EXX", Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 40.0 }),
-        ("EXX", Shape::Cyclic { axis: 0, period }),
+        ("EXX", Shape::Cyclic { axis: 0, period, center: 0.0 }),
     ];
     for (left, outgrow) in [(0.5, false), (0.25, false), (0.1, true)] {
         // The wave is turned up at 0, and bends downwards there by half its amplitude times the square of its angle.

@@ -1,5 +1,5 @@
 //! `cyclic`: an error that repeats with a screw's pitch, a gear's teeth or an encoder's lines. In: positions. Out: sine
-//! and cosine of 2 pi q / period.
+//! and cosine of 2 pi (q - center) / period.
 
 use super::wave;
 use crate::states::Rows;
@@ -9,6 +9,6 @@ pub(super) const MEANING: &str = "An error that repeats with travel: the lead of
     interpolation of an encoder, whose period then is its line spacing. Plausible: a few micrometres \
     at the pitch of the screw, or a fraction of one at the encoder's period.";
 
-pub(super) fn fill(rows: &Rows<'_>, axis: usize, period: f64, out: &mut [Vec<f64>]) {
-    wave(rows.axis(axis).position.iter().map(|position| position / period), out);
+pub(super) fn fill(rows: &Rows<'_>, axis: usize, period: f64, center: f64, out: &mut [Vec<f64>]) {
+    wave(rows.axis(axis).position.iter().map(|position| (position - center) / period), out);
 }

@@ -93,6 +93,8 @@ pub struct Motion {
     pub symbol: String,
     /// Whether it is an angle (rad) or a displacement (mm).
     pub angular: bool,
+    /// The direction along which it displaces, or about which it turns.
+    pub direction: Axis,
     /// Whether it is an alignment error of an axis.
     pub alignment: bool,
     /// Whether the machine file counts it against the ISO sense.
@@ -165,6 +167,19 @@ impl Equations {
         terms.iter().find(|term| term.motion == motion).map(|term| term.arm.clone()).unwrap_or_default()
     }
 
+    /// The axis whose own motion, actual minus commanded, an error motion is: X for EXX, C for ECC.
+    pub fn own_axis(&self, motion: &Motion) -> Option<usize> {
+        let number = motion.axis?;
+        let axis = self.axes.get(number)?;
+        let own = !motion.alignment && motion.angular == axis.rotary && motion.direction == axis.along;
+        own.then_some(number)
+    }
+
+    /// The number of the motion of an axis in its own direction: a displacement along a slide, a rotation about a rotary axis.
+    pub fn own_motion(&self, axis: usize) -> Option<usize> {
+        self.motions.iter().position(|motion| self.own_axis(motion) == Some(axis))
+    }
+
     /// For each axis, whether it never corrects; empty where all do.
     pub fn resting(&self) -> Vec<bool> {
         let rest: Vec<bool> = self.axes.iter().map(|axis| axis.effect.is_none()).collect();
@@ -212,6 +227,7 @@ impl Equations {
                     name: motion.name.clone(),
                     angular: motion.angular,
                     axis: motion.axis.and_then(axis_letter),
+                    own: self.own_axis(motion).is_some(),
                 })
                 .collect(),
         }

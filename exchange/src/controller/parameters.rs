@@ -4,7 +4,6 @@
 use std::collections::BTreeSet;
 
 use abbe_runtime::Direction;
-use model_dsl::calibration::{CalibratedTerm, SeriesInput};
 
 use super::geometry::Pose;
 use super::grid::Grid;
@@ -69,13 +68,8 @@ pub(super) fn gather(job: &Job<'_, '_>, model: &Volumetric, arguments: usize) ->
 fn arguments_of(job: &Job<'_, '_>, motion: usize) -> BTreeSet<usize> {
     let terms = job.geometry.calibration.terms(motion).iter();
     terms
-        .filter_map(|term| match &term.value {
-            CalibratedTerm::Polynomial { input: SeriesInput::Axis(axis), .. }
-            | CalibratedTerm::Coupling { axis, .. }
-            | CalibratedTerm::Cyclic { axis, .. }
-            | CalibratedTerm::Table { axis, .. } => Some(*axis),
-            _ => None,
-        })
+        .filter(|term| term.value.kind().entry().state.is_position())
+        .filter_map(|term| term.value.axis())
         .collect()
 }
 

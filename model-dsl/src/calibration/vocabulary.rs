@@ -87,6 +87,13 @@ pub enum State {
     Load,
 }
 
+impl State {
+    /// Whether it is where an axis stands.
+    pub fn is_position(self) -> bool {
+        matches!(self, Self::Position | Self::OtherPosition)
+    }
+}
+
 /// How the keys of a term belong together.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Form {

@@ -214,6 +214,18 @@ impl CalibratedTerm {
         }
     }
 
+    /// The term reading another sensor, where it reads one.
+    #[must_use]
+    pub fn with_sensor(mut self, number: usize) -> Self {
+        match &mut self {
+            Self::Polynomial { input: SeriesInput::Sensor(sensor), .. }
+            | Self::Expansion { sensor, .. }
+            | Self::Growth { sensor, .. } => *sensor = number,
+            _ => {}
+        }
+        self
+    }
+
     /// What stands behind a key; nothing where this term does not have it.
     pub fn part(&self, key: &str) -> Option<Part<'_>> {
         self.parts().into_iter().find(|(known, _)| *known == key).map(|(_, part)| part)

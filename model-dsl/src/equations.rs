@@ -239,3 +239,31 @@ impl fmt::Display for Axis {
         write!(f, "{}", self.letter())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::compile_word;
+    use crate::diagnostic::Diagnostics;
+
+    /// ISO 230-1 spells in a name what the fields say; an axis along itself has one motion of the kind that it programs.
+    #[test]
+    fn motions_are_what_their_names_say() {
+        for word in ["FX", "XYFZ", "CXYFZA"] {
+            let equations = compile_word(word, &mut Diagnostics::new()).unwrap().equations;
+            let names = equations.names();
+            for (motion, named) in equations.motions.iter().zip(&names.motions) {
+                let direction = motion.direction;
+                let letter = if motion.angular { direction.rotation_letter() } else { direction.letter() };
+                let zero = if motion.alignment { "0" } else { "" };
+                assert_eq!(motion.name, format!("E{letter}{zero}{}", motion.link));
+                assert_eq!(names.own_axis(named), equations.own_axis(motion), "{}", motion.name);
+            }
+            for (number, axis) in equations.axes.iter().enumerate() {
+                let own = equations.own_motion(number).map(|motion| equations.motions[motion].name.as_str());
+                let (letter, along) = (&axis.letter, axis.along);
+                let direction = if axis.rotary { along.rotation_letter() } else { along.letter() };
+                assert_eq!(own, Some(format!("E{direction}{letter}").as_str()), "{word}");
+            }
+        }
+    }
+}

@@ -9,7 +9,7 @@ use std::rc::Rc;
 
 use abbe_runtime::{Compensator, ErrorMotion, Limits, TermState, Work, states_needed};
 use csv::ByteRecord;
-use model_dsl::calibration::vocabulary::{Key, Kind, State};
+use model_dsl::calibration::vocabulary::{self, Key, Kind};
 use model_dsl::calibration::{CalibratedMotion, CalibratedTerm, Part};
 use model_dsl::program::Interpreter;
 
@@ -220,6 +220,6 @@ fn needs_time(term: &CalibratedTerm) -> bool {
     let is_time = |key: &str| entry.key(key).and_then(Key::kind) == Some(Kind::TIME);
     let follows =
         |(key, part): (&str, Part<'_>)| is_time(key) && matches!(part, Part::Number(time) if time > 0.0);
-    let needs = entry.state == State::Velocity || term.parts().into_iter().any(follows);
+    let needs = entry.state == vocabulary::State::Velocity || term.parts().into_iter().any(follows);
     needs && term.compensable()
 }

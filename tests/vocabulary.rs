@@ -83,7 +83,8 @@ fn a_term_is_its_entry_and_its_formulas() {
         let variant = format!("::{}", type_name(entry));
         let speaks = |text: &str| {
             let ends = |rest: &str| !rest.starts_with(|next: char| next.is_alphanumeric() || next == '_');
-            text.split(&variant).skip(1).any(ends)
+            // What a term depends on has a name of its own, at times the same.
+            text.replace("State::", "").split(&variant).skip(1).any(ends)
         };
         let files = sources.iter().filter(|(_, text)| speaks(text)).map(|(name, _)| name.as_str());
         let (known, other): (BTreeSet<&str>, BTreeSet<&str>) =

@@ -80,6 +80,7 @@ fn friction_is_not_called_play() {
     }
     let mut lag = cases::backlash("drive");
     (lag.term, lag.location.state) = ("lag", "velocity");
+    lag.calibrated = CalibratedTerm::Lag { axis: 1, gain: 30.0, frequency: 0.0 };
     assert!(!flat(&Diagnosis { findings: vec![lag], ..cases::two_findings() }).contains("friction"));
 }
 

@@ -63,7 +63,7 @@ impl<'n> Parameters<'_, 'n, '_> {
 
     /// The number of a key, which the vocabulary says the kind and the bound of; 0 where it may be left out and is.
     pub(super) fn number(&mut self, key: &Key, axis: Option<usize>) -> Option<f64> {
-        let Some(kind) = key.kind() else { return None };
+        let kind = key.kind()?;
         let node = match (key.given, self.fields.get(key.name)) {
             (Given::Optional(_), None) => return Some(0.0),
             _ => self.need(key.name)?,

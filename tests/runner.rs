@@ -50,6 +50,7 @@ mod simulate;
 mod snapshots;
 mod terminal;
 mod tidy;
+mod vocabulary;
 mod yaml;
 
 /// Every file beside this one is a module of this program.

@@ -14,8 +14,9 @@ pub type ConstantOfMachine = (&'static str, Option<f64>);
 /// The letter of an axis, and whether it is rotary (rad) rather than a slide (mm).
 pub type AxisOfMachine = (&'static str, bool);
 
-/// An error motion by its name, whether it is an angle (rad) rather than a length (mm), and the letter of its link's axis.
-pub type MotionOfMachine = (&'static str, bool, Option<&'static str>);
+/// An error motion by its name, whether it is an angle (rad) rather than a length (mm), the letter of its link's axis, and whether
+/// it is the motion of that axis along itself, or about itself.
+pub type MotionOfMachine = (&'static str, bool, Option<&'static str>, bool);
 
 /// A machine compiled to Rust. `abbe expand --c-abi` writes the implementation; nobody else needs one.
 pub trait CompiledMachine: Kinematics + Send + Sized + 'static {
@@ -48,8 +49,8 @@ pub(crate) fn names<M: CompiledMachine>() -> MachineNames {
     }
 }
 
-fn motion_name((name, angular, axis): MotionOfMachine) -> MotionName {
-    MotionName { name: name.to_owned(), angular, axis: axis.map(str::to_owned) }
+fn motion_name((name, angular, axis, own): MotionOfMachine) -> MotionName {
+    MotionName { name: name.to_owned(), angular, axis: axis.map(str::to_owned), own }
 }
 
 /// The names that C asks for.

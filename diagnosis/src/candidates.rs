@@ -49,11 +49,12 @@ pub(crate) fn candidates(study: &Study<'_>, travels: &[Travel]) -> Vec<Effect> {
         for shape in shapes(study, motion, travels, &grids) {
             let own = known.axis.is_some_and(|axis| study.own[axis] == Some(motion));
             let drive = own && known.axis.is_some_and(|axis| study.has_drive(axis));
-            if (drive && !answered(known.axis, &shape)) || (own && shape.name() == "lag") {
+            let lag = matches!(shape, Shape::Lag { .. });
+            if (drive && !answered(known.axis, &shape)) || (own && lag) {
                 let side = at_drive(known.axis, &shape);
                 effects.push(Effect { place: Place::Motion { motion, side }, shape: shape.clone() });
             }
-            if outside && shape.name() != "lag" {
+            if outside && !lag {
                 effects.push(Effect { place: Place::Motion { motion, side: Side::After }, shape });
             }
         }

@@ -24,6 +24,7 @@ use crate::repeats;
 use crate::rest;
 use crate::returns;
 use crate::study::{Scene, Study};
+use crate::terms::SettingKind;
 use crate::unsteady;
 use crate::zeros;
 use crate::{Inputs, Progress};
@@ -106,7 +107,8 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
 }
 
 fn verdict(diagnosis: &Diagnosis) -> Verdict {
-    let demanding = |setting: &SettingFinding| matches!(setting.term, "clock" | "cosine");
+    let demanding =
+        |setting: &SettingFinding| SettingKind::of_name(setting.term).is_some_and(SettingKind::is_physics);
     if diagnosis.repeatability.is_some() {
         Verdict::NotRepeatable
     } else if diagnosis.unexplained.is_some() {

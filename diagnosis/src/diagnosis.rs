@@ -1,6 +1,6 @@
 //! The diagnosis: what is said of a machine and its recordings, before it is put into words or JSON.
 
-use model_dsl::calibration::CalibratedTerm;
+use model_dsl::calibration::{CalibratedTerm, TermKind};
 
 use crate::pictures::Pictures;
 
@@ -165,6 +165,13 @@ pub struct Finding {
     pub calibrated: CalibratedTerm,
     /// The name of the sensor that it reads.
     pub sensor: Option<String>,
+}
+
+impl Finding {
+    /// Which term of the vocabulary it is.
+    pub fn kind(&self) -> TermKind {
+        self.calibrated.kind()
+    }
 }
 
 /// One parameter of a finding.

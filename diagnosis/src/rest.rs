@@ -8,10 +8,11 @@ use crate::course::Course;
 use crate::model::Model;
 use crate::observations::residuals;
 use crate::study::Study;
+use crate::terms::Shape;
 
 /// Decides it by what the calibration's loops explain better.
 pub(crate) fn tell(study: &mut Study<'_>) {
-    if !study.known.iter().any(|fitted| fitted.effect.shape.name() == "lag") {
+    if !study.known.iter().any(|fitted| matches!(fitted.effect.shape, Shape::Lag { .. })) {
         return;
     }
     for scene in 0..study.scenes.len() {

@@ -6,7 +6,6 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use model_dsl::algebra::Axis;
 use model_dsl::calibration::{Calibration, SensorReadings};
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
@@ -21,7 +20,7 @@ use crate::rounded;
 use crate::side::Side;
 use crate::states::{Given, Shared, behind_corners, unseen_turns};
 use crate::targets::Targets;
-use crate::terms;
+use crate::terms::{self, Shape};
 
 /// A machine, what is known of it, and what was recorded.
 pub(crate) struct Study<'a> {
@@ -204,14 +203,7 @@ fn load_names(recordings: &[&Recording]) -> Vec<(String, String)> {
 
 /// The motion of each axis in its own direction: a displacement along a slide, a rotation about a rotary axis.
 fn own_motions(equations: &Equations) -> Vec<Option<usize>> {
-    let own = |(number, axis): (usize, &model_dsl::equations::AxisInfo)| {
-        let letters = if axis.rotary { ['A', 'B', 'C'] } else { ['X', 'Y', 'Z'] };
-        let letter = Axis::ALL.iter().position(|direction| *direction == axis.along).map(|at| letters[at])?;
-        equations.motions.iter().position(|motion| {
-            motion.axis == Some(number) && !motion.alignment && motion.name.chars().nth(1) == Some(letter)
-        })
-    };
-    equations.axes.iter().enumerate().map(own).collect()
+    (0..equations.axes.len()).map(|axis| equations.own_motion(axis)).collect()
 }
 
 fn known(
@@ -231,7 +223,7 @@ fn known(
             let axis = own.iter().position(|own| *own == Some(motion));
             let side = match axis.filter(|_| listed.is_inside_loop(place)) {
                 Some(axis) => Side::Loop { axis },
-                None if shape.name() == "lag" => Side::Drive,
+                None if matches!(shape, Shape::Lag { .. }) => Side::Drive,
                 None => Side::After,
             };
             Some(Fitted { effect: Effect { place: Place::Motion { motion, side }, shape }, coefficients })

@@ -22,11 +22,13 @@ mod reversal_spike;
 mod table;
 mod vibration;
 
-pub(crate) use instrument::Setting;
+pub(crate) use instrument::{Setting, SettingKind};
 pub(crate) use known::known;
 pub use meaning::meaning;
 pub(crate) use plausible::oddity;
 pub(crate) use polynomial::in_position as polynomial_in_position;
+
+use model_dsl::calibration::TermKind;
 
 use crate::position_loop::Follower;
 use crate::side::Side;
@@ -94,24 +96,24 @@ pub(crate) struct Nonlinear {
 }
 
 impl Shape {
-    /// The term's name in calibration files.
+    /// The term's name in calibration files, or the setting's in reports.
     pub(crate) fn name(&self) -> &'static str {
         match self {
-            Self::Constant => "constant",
-            Self::Polynomial { .. } | Self::SensorPolynomial { .. } => "polynomial",
-            Self::Table { .. } => "table",
-            Self::Backlash { .. } => "backlash",
-            Self::ReversalSpike { .. } => "reversal-spike",
-            Self::Cyclic { .. } => "cyclic",
-            Self::Lag { .. } => "lag",
-            Self::Acceleration { .. } => "acceleration",
-            Self::Expansion { .. } => "expansion",
-            Self::Growth { .. } => "growth",
-            Self::Drift { .. } => "drift",
-            Self::Vibration { .. } => "vibration",
-            Self::Coupling { .. } => "coupling",
-            Self::Compliance { .. } => "compliance",
             Self::Instrument(setting) => setting.name(),
+            Self::Constant => TermKind::Constant.name(),
+            Self::Polynomial { .. } | Self::SensorPolynomial { .. } => TermKind::Polynomial.name(),
+            Self::Table { .. } => TermKind::Table.name(),
+            Self::Backlash { .. } => TermKind::Backlash.name(),
+            Self::ReversalSpike { .. } => TermKind::ReversalSpike.name(),
+            Self::Cyclic { .. } => TermKind::Cyclic.name(),
+            Self::Lag { .. } => TermKind::Lag.name(),
+            Self::Acceleration { .. } => TermKind::Acceleration.name(),
+            Self::Expansion { .. } => TermKind::Expansion.name(),
+            Self::Growth { .. } => TermKind::Growth.name(),
+            Self::Drift { .. } => TermKind::Drift.name(),
+            Self::Vibration { .. } => TermKind::Vibration.name(),
+            Self::Coupling { .. } => TermKind::Coupling.name(),
+            Self::Compliance { .. } => TermKind::Compliance.name(),
         }
     }
 

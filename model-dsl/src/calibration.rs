@@ -43,6 +43,7 @@ mod sensors;
 mod series;
 mod spelling;
 mod term;
+pub mod vocabulary;
 mod write;
 mod write_term;
 
@@ -50,7 +51,8 @@ pub use compiled_in::CompiledIn;
 pub use document::{machine_of, read};
 pub use names::{AxisName, MachineNames, MotionName};
 pub use sensors::{Sensor, SensorKind, SensorReadings, Sensors};
-pub use term::{CalibratedTerm, Curve, CurveNodes, CurveValues, NotCompensable, SeriesInput, TERM_NAMES};
+pub use term::{CalibratedTerm, Curve, CurveNodes, CurveValues, NotCompensable, Part, SeriesInput};
+pub use vocabulary::{TERM_NAMES, TermKind};
 pub use write::write;
 
 use abbe_runtime::Term;
@@ -185,12 +187,11 @@ impl Calibration {
     pub fn refuse_uncompensable(&self, names: &MachineNames, diagnostics: &mut Diagnostics) {
         for listed in &self.motions {
             let motion = names.motions.get(listed.motion).map_or("", |motion| &motion.name);
-            let refused = listed.terms.iter().filter(|term| !term.value.compensable());
-            for term in refused {
-                let message =
-                    format!("`{}` of {motion} cannot be compensated in real time", term.value.name());
-                let help =
-                    "no controller knows its state in time; take it out of the file that is compensated";
+            for term in &listed.terms {
+                let entry = term.value.kind().entry();
+                let Some(reason) = entry.not_compensable else { continue };
+                let message = format!("`{}` of {motion} cannot be compensated in real time", entry.name);
+                let help = format!("{reason}; take it out of the file that is compensated");
                 diagnostics.push(Diagnostic::error("E0425", term.span, message).help(help));
             }
         }

@@ -109,6 +109,7 @@ fn motion(machine: &Machine, number: usize) -> Motion {
         name: motion.name.clone(),
         symbol: motion.symbol.clone(),
         angular: motion.kind.angular(),
+        direction: motion.kind.axis(),
         alignment: motion.kind.alignment(),
         against_iso: motion.sign < 0,
         link: link.id.clone(),

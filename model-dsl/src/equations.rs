@@ -93,6 +93,8 @@ pub struct Motion {
     pub symbol: String,
     /// Whether it is an angle (rad) or a displacement (mm).
     pub angular: bool,
+    /// The direction along which it displaces, or about which it turns.
+    pub direction: Axis,
     /// Whether it is an alignment error of an axis.
     pub alignment: bool,
     /// Whether the machine file counts it against the ISO sense.
@@ -165,6 +167,19 @@ impl Equations {
         terms.iter().find(|term| term.motion == motion).map(|term| term.arm.clone()).unwrap_or_default()
     }
 
+    /// The axis whose own motion, actual minus commanded, an error motion is: X for EXX, C for ECC.
+    pub fn own_axis(&self, motion: &Motion) -> Option<usize> {
+        let number = motion.axis?;
+        let axis = self.axes.get(number)?;
+        let own = !motion.alignment && motion.angular == axis.rotary && motion.direction == axis.along;
+        own.then_some(number)
+    }
+
+    /// The number of the motion of an axis in its own direction: a displacement along a slide, a rotation about a rotary axis.
+    pub fn own_motion(&self, axis: usize) -> Option<usize> {
+        self.motions.iter().position(|motion| self.own_axis(motion) == Some(axis))
+    }
+
     /// For each axis, whether it never corrects; empty where all do.
     pub fn resting(&self) -> Vec<bool> {
         let rest: Vec<bool> = self.axes.iter().map(|axis| axis.effect.is_none()).collect();
@@ -212,6 +227,7 @@ impl Equations {
                     name: motion.name.clone(),
                     angular: motion.angular,
                     axis: motion.axis.and_then(axis_letter),
+                    own: self.own_axis(motion).is_some(),
                 })
                 .collect(),
         }
@@ -221,5 +237,33 @@ impl Equations {
 impl fmt::Display for Axis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.letter())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::compile_word;
+    use crate::diagnostic::Diagnostics;
+
+    /// ISO 230-1 spells in a name what the fields say; an axis along itself has one motion of the kind that it programs.
+    #[test]
+    fn motions_are_what_their_names_say() {
+        for word in ["FX", "XYFZ", "CXYFZA"] {
+            let equations = compile_word(word, &mut Diagnostics::new()).unwrap().equations;
+            let names = equations.names();
+            for (motion, named) in equations.motions.iter().zip(&names.motions) {
+                let direction = motion.direction;
+                let letter = if motion.angular { direction.rotation_letter() } else { direction.letter() };
+                let zero = if motion.alignment { "0" } else { "" };
+                assert_eq!(motion.name, format!("E{letter}{zero}{}", motion.link));
+                assert_eq!(names.own_axis(named), equations.own_axis(motion), "{}", motion.name);
+            }
+            for (number, axis) in equations.axes.iter().enumerate() {
+                let own = equations.own_motion(number).map(|motion| equations.motions[motion].name.as_str());
+                let (letter, along) = (&axis.letter, axis.along);
+                let direction = if axis.rotary { along.rotation_letter() } else { along.letter() };
+                assert_eq!(own, Some(format!("E{direction}{letter}").as_str()), "{word}");
+            }
+        }
     }
 }

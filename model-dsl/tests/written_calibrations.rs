@@ -26,6 +26,7 @@ fn names() -> MachineNames {
         name: name.to_owned(),
         angular,
         axis: axis.map(str::to_owned),
+        own: matches!(name, "EXX" | "EYY" | "ECC"),
     };
     MachineNames {
         machine: "mill".to_owned(),

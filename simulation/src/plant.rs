@@ -22,7 +22,7 @@ use std::sync::Arc;
 use model_dsl::calibration::{
     AxisName, Calibration, MachineNames, MotionName, SensorKind, SensorReadings, Sensors,
 };
-use model_dsl::machine::{Branch, LinkKind, Machine, MotionKind};
+use model_dsl::machine::{Branch, Link, LinkKind, Machine, MotionKind};
 use nalgebra::{Rotation3, Vector3};
 
 use crate::commands::Commands;
@@ -158,10 +158,14 @@ pub fn names_of(machine: &Machine) -> MachineNames {
     let letter = |kind: LinkKind| kind.letter().map(String::from);
     let axes = machine.axes();
     let constants = machine.constants.iter();
-    let motions = machine.motions.iter().map(|motion| MotionName {
-        name: motion.name.clone(),
-        angular: motion.kind.angular(),
-        axis: machine.links.get(motion.link).and_then(|link| letter(link.kind)),
+    let motions = machine.motions.iter().map(|motion| {
+        let link = machine.links.get(motion.link);
+        MotionName {
+            name: motion.name.clone(),
+            angular: motion.kind.angular(),
+            axis: link.and_then(|link| letter(link.kind)),
+            own: link.is_some_and(|link| is_own(link, motion.kind)),
+        }
     });
     MachineNames {
         machine: machine.name.clone(),
@@ -498,13 +502,17 @@ impl fmt::Debug for Plant {
 fn own_axis(machine: &Machine, names: &MachineNames, motion: &str) -> Option<usize> {
     let motion = machine.motions.iter().find(|known| known.name == motion)?;
     let link = machine.links.get(motion.link)?;
-    let own = match (link.kind, motion.kind) {
+    // Counted the other way, a lag would run ahead: then it is a term like any other.
+    let letter = link.kind.letter().filter(|_| is_own(link, motion.kind) && motion.sign > 0)?;
+    names.axis(letter.encode_utf8(&mut [0; 4]))
+}
+
+/// Whether a motion is that of its link along itself, or about itself.
+fn is_own(link: &Link, motion: MotionKind) -> bool {
+    match (link.kind, motion) {
         (LinkKind::Slide(_), MotionKind::Linear(axis)) | (LinkKind::Rotary(_), MotionKind::Angular(axis)) => {
             axis == link.along.axis
         }
         _ => false,
-    };
-    // Counted the other way, a lag would run ahead: then it is a term like any other.
-    let letter = link.kind.letter().filter(|_| own && motion.sign > 0)?;
-    names.axis(letter.encode_utf8(&mut [0; 4]))
+    }
 }

@@ -9,7 +9,8 @@ use std::rc::Rc;
 
 use abbe_runtime::{Compensator, ErrorMotion, Limits, TermState, Work, states_needed};
 use csv::ByteRecord;
-use model_dsl::calibration::{CalibratedMotion, CalibratedTerm};
+use model_dsl::calibration::vocabulary::{self, Key, Kind};
+use model_dsl::calibration::{CalibratedMotion, CalibratedTerm, Part};
 use model_dsl::program::Interpreter;
 
 use crate::arguments::Compensate;
@@ -206,12 +207,19 @@ fn wanted(calibrated: &Calibrated) -> Wanted<'_> {
 /// What of an error motion depends on the time between rows, in words.
 fn timed(motion: &CalibratedMotion) -> Option<String> {
     let terms = motion.terms.iter().enumerate();
-    let mut needing = terms.filter_map(|(place, term)| match &term.value {
-        CalibratedTerm::Growth { time_constant, .. } if *time_constant <= 0.0 => None,
-        term @ (CalibratedTerm::Lag { .. } | CalibratedTerm::Growth { .. }) => {
-            Some(format!("the term `{}` of the calibration", term.name()))
-        }
-        _ => (motion.ramp(place) > 0.0).then(|| "a `ramp` of the calibration".to_owned()),
+    let mut needing = terms.filter_map(|(place, term)| match needs_time(&term.value) {
+        true => Some(format!("the term `{}` of the calibration", term.value.name())),
+        false => (motion.ramp(place) > 0.0).then(|| "a `ramp` of the calibration".to_owned()),
     });
     needing.next()
+}
+
+/// Whether a term that is compensated reads a velocity, or follows something behind a time constant.
+fn needs_time(term: &CalibratedTerm) -> bool {
+    let entry = term.kind().entry();
+    let is_time = |key: &str| entry.key(key).and_then(Key::kind) == Some(Kind::TIME);
+    let follows =
+        |(key, part): (&str, Part<'_>)| is_time(key) && matches!(part, Part::Number(time) if time > 0.0);
+    let needs = entry.state == vocabulary::State::Velocity || term.parts().into_iter().any(follows);
+    needs && term.compensable()
 }

@@ -5,7 +5,8 @@
 //! lists the numbers of a term, for reading and for writing, so that no number can be read in one place and written in
 //! another.
 
-use model_dsl::calibration::{CalibratedTerm, Calibration, CurveValues, MachineNames, SeriesInput};
+use model_dsl::calibration::vocabulary::{Base, Form, Given, Holds, Key, Role, State};
+use model_dsl::calibration::{CalibratedTerm, Calibration, MachineNames, Part};
 
 use crate::update::Fixed;
 
@@ -49,7 +50,7 @@ pub(crate) fn coefficients(calibration: &Calibration, names: &MachineNames) -> C
             let values: Vec<(String, f64)> =
                 numbers(&mut own).into_iter().map(|(part, value)| (part, *value)).collect();
             // The values of a table belong together, every other number stands for itself.
-            let whole = matches!(term.value, CalibratedTerm::Table { .. });
+            let whole = term.value.kind().entry().form == Form::Curve;
             piece += usize::from(whole);
             for (number, (part, value)) in values.into_iter().enumerate() {
                 let name = format!("{head}{part}");
@@ -86,29 +87,36 @@ pub(crate) fn set(calibration: &mut Calibration, coefficient: &Coefficient, valu
 /// The numbers in which the value of a term is linear, each with its name behind that of the term; none for terms that no
 /// point of a part shows.
 fn numbers(term: &mut CalibratedTerm) -> Vec<(String, &mut f64)> {
-    match term {
-        CalibratedTerm::Constant { value } => vec![(String::new(), value)],
-        CalibratedTerm::Polynomial { coefficients, .. } => indexed(coefficients, 0, ""),
-        CalibratedTerm::Coupling { coefficients, .. } => indexed(coefficients, 1, ""),
-        CalibratedTerm::Table { curve, .. } => match &mut curve.values {
-            CurveValues::Both(values) => indexed(values, 0, ""),
-            CurveValues::Directed { forward, reverse } => {
-                let mut all = indexed(forward, 0, ".forward");
-                all.extend(indexed(reverse, 0, ".reverse"));
-                all
-            }
-        },
-        CalibratedTerm::Backlash { lost_motion, .. } => vec![(".lost_motion".to_owned(), lost_motion)],
-        CalibratedTerm::Cyclic { amplitude, .. } => vec![(".amplitude".to_owned(), amplitude)],
-        CalibratedTerm::Expansion { coefficient, .. } | CalibratedTerm::Growth { coefficient, .. } => {
-            vec![(".coefficient".to_owned(), coefficient)]
-        }
-        _ => Vec::new(),
+    let entry = term.kind().entry();
+    if unseen(entry.state).is_some() {
+        return Vec::new();
     }
+    let first = term.kind().first_power();
+    let lists = term.linear_mut().into_iter().flat_map(|(key, values)| {
+        let key = entry.key(key);
+        // What is the value of the term itself needs no name.
+        let word = key.filter(|key| key.role != Role::Value).map(|key| format!(".{}", key.name));
+        let is_list = key.is_some_and(|key| key.holds == Holds::Numbers);
+        let word = word.unwrap_or_default();
+        values.iter_mut().enumerate().map(move |(k, value)| {
+            let name = if is_list { format!("{word}[{}]", first + k) } else { word.clone() };
+            (name, value)
+        })
+    });
+    lists.collect()
 }
 
-fn indexed<'v>(values: &'v mut [f64], first: usize, word: &str) -> Vec<(String, &'v mut f64)> {
-    values.iter_mut().enumerate().map(|(k, value)| (format!("{word}[{}]", first + k), value)).collect()
+/// Why no point of a part shows what depends on this; nothing where one does.
+fn unseen(state: State) -> Option<&'static str> {
+    match state {
+        State::Velocity | State::Acceleration => Some("is left out, since points are taken at rest"),
+        State::Reversal | State::Time | State::Load => {
+            Some("is left out: only a recording over time shows it, see abbe diagnose")
+        }
+        State::Nothing | State::Position | State::OtherPosition | State::Direction | State::Temperature => {
+            None
+        }
+    }
 }
 
 fn unit_term(term: &CalibratedTerm, number: usize) -> CalibratedTerm {
@@ -121,25 +129,17 @@ fn unit_term(term: &CalibratedTerm, number: usize) -> CalibratedTerm {
 
 /// The numbers of a term that are not moved.
 fn stands(term: &CalibratedTerm, head: &str) -> Vec<Fixed> {
-    let shape = "shapes its term, which is not linear in it";
-    let at_rest = "is left out, since points are taken at rest";
-    let over_time = "is left out: only a recording over time shows it, see abbe diagnose";
-    let entries: Vec<(&str, &'static str)> = match term {
-        CalibratedTerm::Backlash { wind_up, .. } if *wind_up > 0.0 => vec![(".wind_up", shape)],
-        CalibratedTerm::Cyclic { .. } => vec![(".period", shape), (".phase", shape)],
-        CalibratedTerm::Expansion { .. } => vec![(".reference", shape)],
-        CalibratedTerm::Growth { time_constant, .. } if *time_constant > 0.0 => {
-            vec![(".reference", shape), (".time_constant", shape)]
-        }
-        CalibratedTerm::Growth { .. } => vec![(".reference", shape)],
-        CalibratedTerm::Lag { .. } | CalibratedTerm::Acceleration { .. } => vec![("", at_rest)],
-        CalibratedTerm::ReversalSpike { .. }
-        | CalibratedTerm::Drift { .. }
-        | CalibratedTerm::Vibration { .. }
-        | CalibratedTerm::Compliance { .. } => vec![("", over_time)],
-        _ => Vec::new(),
-    };
-    entries.into_iter().map(|(part, reason)| Fixed { name: format!("{head}{part}"), reason }).collect()
+    let entry = term.kind().entry();
+    if let Some(reason) = unseen(entry.state) {
+        return vec![Fixed { name: head.to_owned(), reason }];
+    }
+    let shapes = entry.keys.iter().filter(|key| key.role == Role::Shape).filter(|key| {
+        // A number that may be left out says nothing at 0.
+        let optional = matches!(key.given, Given::Optional(_));
+        term.part(key.name).is_some_and(|part| !(optional && part == Part::Number(0.0)))
+    });
+    let reason = "shapes its term, which is not linear in it";
+    shapes.map(|key| Fixed { name: format!("{head}.{}", key.name), reason }).collect()
 }
 
 /// What coefficients are named against.
@@ -155,7 +155,7 @@ impl Words<'_> {
         let motion = self.names.motions.get(self.motion);
         let own = motion.and_then(|motion| motion.axis.as_deref()).and_then(|letter| self.names.axis(letter));
         let sensor = term.sensor().and_then(|sensor| self.calibration.sensors.iter().nth(sensor));
-        let of = match (sensor, axis(term)) {
+        let of = match (sensor, term.axis()) {
             (Some(sensor), _) => format!("({})", sensor.name.value),
             (None, Some(axis)) if Some(axis) != own => {
                 format!("({})", self.names.axes.get(axis).map_or("?", |axis| &axis.letter))
@@ -169,16 +169,20 @@ impl Words<'_> {
         let angular = self.names.motions.get(self.motion).is_some_and(|motion| motion.angular);
         let unit = if angular { "rad" } else { "mm" };
         let rotary = |axis: usize| self.names.axes.get(axis).is_some_and(|axis| axis.rotary);
-        let of_axis = |axis: usize| if rotary(axis) { "rad" } else { "mm" };
-        match term {
-            CalibratedTerm::Polynomial { input: SeriesInput::Axis(axis), .. } => {
-                per(unit, of_axis(*axis), number)
+        let axis = term.axis().map_or("mm", |axis| if rotary(axis) { "rad" } else { "mm" });
+        let entry = term.kind().entry();
+        let (linear, of_axis) =
+            (entry.keys.iter().find(|key| key.role == Role::Linear), term.sensor().is_none());
+        match entry.form {
+            Form::Powers { first } => {
+                per(unit, if of_axis { axis } else { "K" }, usize::from(first) + number)
             }
-            CalibratedTerm::Polynomial { input: SeriesInput::Sensor(_), .. } => per(unit, "K", number),
-            CalibratedTerm::Coupling { axis, .. } => per(unit, of_axis(*axis), number + 1),
-            CalibratedTerm::Expansion { axis, .. } => format!("{unit}/{}/K", of_axis(*axis)),
-            CalibratedTerm::Growth { .. } => format!("{unit}/K"),
-            _ => unit.to_owned(),
+            Form::Curve => unit.to_owned(),
+            Form::Plain => {
+                let bases = linear.and_then(Key::kind).map_or(&[] as &[Base], |kind| kind.per);
+                let of = |base: &Base| if *base == Base::Position { axis } else { "K" };
+                bases.iter().fold(unit.to_owned(), |unit, base| per(&unit, of(base), 1))
+            }
         }
     }
 }
@@ -188,21 +192,6 @@ fn per(unit: &str, of: &str, power: usize) -> String {
         0 => unit.to_owned(),
         1 => format!("{unit}/{of}"),
         _ => format!("{unit}/{of}^{power}"),
-    }
-}
-
-/// The axis that a term reads.
-fn axis(term: &CalibratedTerm) -> Option<usize> {
-    match term {
-        CalibratedTerm::Polynomial { input: SeriesInput::Axis(axis), .. }
-        | CalibratedTerm::Table { axis, .. }
-        | CalibratedTerm::Backlash { axis, .. }
-        | CalibratedTerm::Cyclic { axis, .. }
-        | CalibratedTerm::Coupling { axis, .. }
-        | CalibratedTerm::Lag { axis, .. }
-        | CalibratedTerm::ReversalSpike { axis, .. }
-        | CalibratedTerm::Acceleration { axis, .. } => Some(*axis),
-        _ => None,
     }
 }
 

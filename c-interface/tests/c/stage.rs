@@ -42,7 +42,7 @@ impl CompiledMachine for Stage {
     const CONSTANTS: &'static [ConstantOfMachine] = &[("Xt", None), ("Yt", None), ("Zt", None)];
     const AXES: &'static [AxisOfMachine] = &[("X", false)];
     const MOTIONS: &'static [MotionOfMachine] =
-        &[("EXX", false, Some("X")), ("EBX", true, Some("X")), ("ECX", true, Some("X"))];
+        &[("EXX", false, Some("X"), true), ("EBX", true, Some("X"), false), ("ECX", true, Some("X"), false)];
     const EQUATIONS: &'static str = "what no machine file says";
 
     fn with_constants(constants: &[f64]) -> Option<Self> {

@@ -5,7 +5,6 @@ use textwrap::{Options, wrap};
 
 use super::figure::{change, percent};
 use super::parameter;
-use super::physics::first_power;
 use super::style::Ink;
 use crate::diagnosis::{Finding, Parameter, ParameterValue};
 
@@ -62,7 +61,7 @@ fn amount(finding: &Finding) -> String {
     };
     let main = MAIN.iter().find_map(named).or_else(|| finding.parameters.iter().find(fitted));
     let Some(main) = main else { return "-".to_owned() };
-    let lines = parameter::lines(std::slice::from_ref(main), first_power(finding.term));
+    let lines = parameter::lines(std::slice::from_ref(main), finding.kind().first_power());
     let Some(first) = lines.get(untold(&main.value)) else { return "-".to_owned() };
     // An angle is told in arcseconds below.
     let first = first.split(" = ").next().unwrap_or_default();

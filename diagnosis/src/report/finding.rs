@@ -3,7 +3,7 @@
 
 use super::figure::{change, percent};
 use super::item::Item;
-use super::physics::{ahead, first_power, friction, interval, left, pushed, removed, side, state, title};
+use super::physics::{ahead, friction, interval, left, pushed, removed, side, state, title};
 use super::{parameter, remains, told};
 use crate::diagnosis::{Alternative, Diagnosis, Evidence, Finding, Location};
 
@@ -26,7 +26,7 @@ fn item(finding: &Finding) -> Item {
         [
             ("where", vec![place(&finding.location)]),
             ("what", vec![what(finding)]),
-            ("how much", parameter::lines(&finding.parameters, first_power(finding.term))),
+            ("how much", parameter::lines(&finding.parameters, finding.kind().first_power())),
             ("evidence", vec![evidence(&finding.evidence)]),
             ("or else", alternatives(&finding.alternatives)),
             ("compensation", vec![removed.trim_end().to_owned()]),

@@ -5,6 +5,7 @@ use super::item::Item;
 use super::parameter;
 use super::physics::title;
 use crate::diagnosis::{Diagnosis, SettingFinding};
+use crate::terms::SettingKind;
 
 /// All settings, in order.
 pub(super) fn items(diagnosis: &Diagnosis) -> Vec<Item> {
@@ -29,13 +30,17 @@ fn item(setting: &SettingFinding, diagnosis: &Diagnosis) -> Item {
 }
 
 fn meaning(term: &str) -> &'static str {
-    match term {
-        "eccentricity" => {
+    match SettingKind::of_name(term) {
+        Some(SettingKind::Eccentricity) => {
             "The instrument's centre is not where the set-up says: true centre minus declared centre."
         }
-        "radius" => "The instrument is longer or shorter than the set-up says.",
-        "cosine" => "The beam stands at an angle to the motion, and reads every length too short.",
-        "clock" => "The instrument's clock is off: it shows at a time what was so before, by the offset.",
-        _ => "",
+        Some(SettingKind::Radius) => "The instrument is longer or shorter than the set-up says.",
+        Some(SettingKind::Cosine) => {
+            "The beam stands at an angle to the motion, and reads every length too short."
+        }
+        Some(SettingKind::Clock) => {
+            "The instrument's clock is off: it shows at a time what was so before, by the offset."
+        }
+        Some(SettingKind::Offset) | None => "",
     }
 }

@@ -1,6 +1,8 @@
 //! The words of the machine: sides, states, terms, and what compensation can do. In: names of the contract. Out: what a
 //! person at the machine says.
 
+use model_dsl::calibration::TermKind;
+
 use crate::diagnosis::{Finding, Interval, IntervalOf, ParameterValue};
 
 use super::figure::stretch;
@@ -38,11 +40,6 @@ pub(super) fn interval(interval: &Interval) -> String {
     format!("{what} from {}", stretch(interval.from, interval.to, interval.unit))
 }
 
-/// The power of the first coefficient.
-pub(super) fn first_power(term: &str) -> usize {
-    usize::from(term == "coupling")
-}
-
 /// A term's name as it begins a line.
 pub(super) fn title(term: &str) -> String {
     let mut letters = term.replace('-', " ").chars().collect::<Vec<_>>();
@@ -54,8 +51,8 @@ pub(super) fn title(term: &str) -> String {
 
 /// What the drive's own feedback says of an error that turns with the direction; nothing where that does not arise.
 pub(super) fn friction(finding: &Finding) -> Option<&'static str> {
-    let turns =
-        matches!(finding.term, "backlash" | "reversal-spike") || finding.location.state == "direction";
+    let turns = matches!(finding.kind(), TermKind::Backlash | TermKind::ReversalSpike)
+        || finding.location.state == "direction";
     (turns && finding.location.side == "drive").then_some(
         "The drive's own feedback shows it, so this is friction in the following error, not play: there is nothing to \
          tighten behind the motor.",
@@ -82,7 +79,7 @@ pub(super) fn ahead(finding: &Finding) -> Option<&'static str> {
 
 /// What a load does inside a position loop; nothing for other findings.
 pub(super) fn pushed(finding: &Finding) -> Option<&'static str> {
-    (finding.term == "compliance" && finding.location.inside_loop).then_some(
+    (finding.kind() == TermKind::Compliance && finding.location.inside_loop).then_some(
         "It pushes the drive itself, whose position loop yields until it pushes back: the size is that of the loop's \
          stiffness. Far more than a micrometre for each newton is a load in another unit than its column says.",
     )
@@ -96,34 +93,43 @@ pub(super) fn removed(finding: &Finding) -> &'static str {
     if friction(finding).is_some() {
         return "A correction at each reversal removes it; friction compensation in the drive is the better place.";
     }
-    match finding.term {
-        "constant" | "polynomial" | "table" | "coupling" => {
+    match finding.kind() {
+        TermKind::Constant | TermKind::Polynomial | TermKind::Table | TermKind::Coupling => {
             "A controller can compensate it in real time, wherever it was measured."
         }
-        "backlash" => "A controller can compensate it in real time: a step at each reversal.",
-        "cyclic" => "A controller can compensate it in real time, as long as the reference position stays.",
-        "lag" => {
+        TermKind::Backlash => "A controller can compensate it in real time: a step at each reversal.",
+        TermKind::Cyclic => {
+            "A controller can compensate it in real time, as long as the reference position stays."
+        }
+        TermKind::Lag => {
             "A controller can compensate it in real time; matched gains in the drives are the better place."
         }
-        "expansion" | "growth" => "A controller that reads the sensor can compensate it in real time.",
-        _ => "A controller can compensate it in real time.",
+        TermKind::Expansion | TermKind::Growth => {
+            "A controller that reads the sensor can compensate it in real time."
+        }
+        TermKind::ReversalSpike
+        | TermKind::Acceleration
+        | TermKind::Drift
+        | TermKind::Vibration
+        | TermKind::Compliance => "A controller can compensate it in real time.",
     }
 }
 
 /// What compensation leaves, or what helps in its place.
 pub(super) fn left(finding: &Finding) -> &'static str {
-    match finding.term {
-        "backlash" => "What stays is the moment in which the axis crosses over.",
-        "lag" => "What stays is what is faster than the position loop.",
-        "expansion" | "growth" => "What stays is the heat that the sensor does not see.",
-        "cyclic" => "What stays is what changes with wear and with heat along the screw.",
-        "table" => "What stays is what lies between the nodes and outside the stretch.",
-        "constant" | "polynomial" | "coupling" => "What stays is what changes after the measurement.",
-        "reversal-spike" => "Friction compensation in the drive is what helps.",
-        "acceleration" => "Acceleration feed-forward in the drive, or gentler motion, is what helps.",
-        "drift" => "Warming up, or a sensor at the source of the heat, is what helps.",
-        "vibration" => "Balancing, damping or isolating its source is what helps.",
-        "compliance" => "A stiffer set-up, or less force, is what helps.",
-        _ => "",
+    match finding.kind() {
+        TermKind::Backlash => "What stays is the moment in which the axis crosses over.",
+        TermKind::Lag => "What stays is what is faster than the position loop.",
+        TermKind::Expansion | TermKind::Growth => "What stays is the heat that the sensor does not see.",
+        TermKind::Cyclic => "What stays is what changes with wear and with heat along the screw.",
+        TermKind::Table => "What stays is what lies between the nodes and outside the stretch.",
+        TermKind::Constant | TermKind::Polynomial | TermKind::Coupling => {
+            "What stays is what changes after the measurement."
+        }
+        TermKind::ReversalSpike => "Friction compensation in the drive is what helps.",
+        TermKind::Acceleration => "Acceleration feed-forward in the drive, or gentler motion, is what helps.",
+        TermKind::Drift => "Warming up, or a sensor at the source of the heat, is what helps.",
+        TermKind::Vibration => "Balancing, damping or isolating its source is what helps.",
+        TermKind::Compliance => "A stiffer set-up, or less force, is what helps.",
     }
 }

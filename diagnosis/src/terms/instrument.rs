@@ -1,6 +1,46 @@
 //! Settings of the instrument: of the recording and not of the machine. They are always candidates, and never
 //! compensated. What they do to a reading stands with the reading, in `observations`.
 
+/// A setting of the instrument by its name.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum SettingKind {
+    /// The centre of the circle.
+    Eccentricity,
+    /// The length of the bar.
+    Radius,
+    /// The angle of the beam.
+    Cosine,
+    /// The time of the readings.
+    Clock,
+    /// The zero.
+    Offset,
+}
+
+impl SettingKind {
+    const ALL: [Self; 5] = [Self::Eccentricity, Self::Radius, Self::Cosine, Self::Clock, Self::Offset];
+
+    /// The name in reports.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Eccentricity => "eccentricity",
+            Self::Radius => "radius",
+            Self::Cosine => "cosine",
+            Self::Clock => "clock",
+            Self::Offset => "offset",
+        }
+    }
+
+    /// The setting of a name.
+    pub(crate) fn of_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// Whether it is physics that was left out, and no matter of putting the instrument in its place.
+    pub(crate) fn is_physics(self) -> bool {
+        matches!(self, Self::Cosine | Self::Clock)
+    }
+}
+
 /// A setting of the instrument. Directions are 0, 1, 2 for X, Y, Z of the part's frame.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) enum Setting {
@@ -26,14 +66,19 @@ impl Setting {
         matches!(self, Self::RunOffset { .. } | Self::RunEccentricity { .. })
     }
 
+    /// Which setting it is.
+    pub(crate) fn kind(self) -> SettingKind {
+        match self {
+            Self::Eccentricity { .. } | Self::RunEccentricity { .. } => SettingKind::Eccentricity,
+            Self::Radius => SettingKind::Radius,
+            Self::Cosine => SettingKind::Cosine,
+            Self::Clock => SettingKind::Clock,
+            Self::Offset { .. } | Self::RunOffset { .. } => SettingKind::Offset,
+        }
+    }
+
     /// The setting's name in reports.
     pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Eccentricity { .. } | Self::RunEccentricity { .. } => "eccentricity",
-            Self::Radius => "radius",
-            Self::Cosine => "cosine",
-            Self::Clock => "clock",
-            Self::Offset { .. } | Self::RunOffset { .. } => "offset",
-        }
+        self.kind().name()
     }
 }

@@ -1,6 +1,8 @@
 //! What the terms are, physically. In: a term's name in calibration files. Out: the sentences that a report says of it, so
 //! that whoever explains the vocabulary says the same.
 
+use model_dsl::calibration::TermKind;
+
 use super::{
     acceleration, backlash, coupling, cyclic, drift, expansion, growth, lag, load, polynomial,
     reversal_spike, table, vibration,
@@ -13,22 +15,21 @@ pub(super) const CONSTANT: &str = "An alignment: an axis that is not square to t
 /// What a term is physically, and how large it may well be: the words of the reports. `None` for a name that is no term of
 /// calibration files. A `polynomial` is one of positions; one of a temperature has the physics of `growth`.
 pub fn meaning(term: &str) -> Option<&'static str> {
-    let words = match term {
-        "constant" => CONSTANT,
-        "polynomial" => polynomial::MEANING,
-        "table" => table::MEANING,
-        "backlash" => backlash::MEANING,
-        "reversal-spike" => reversal_spike::MEANING,
-        "cyclic" => cyclic::MEANING,
-        "lag" => lag::MEANING,
-        "acceleration" => acceleration::MEANING,
-        "expansion" => expansion::MEANING,
-        "growth" => growth::MEANING,
-        "drift" => drift::MEANING,
-        "vibration" => vibration::MEANING,
-        "coupling" => coupling::MEANING,
-        "compliance" => load::MEANING,
-        _ => return None,
+    let words = match TermKind::of_name(term)? {
+        TermKind::Constant => CONSTANT,
+        TermKind::Polynomial => polynomial::MEANING,
+        TermKind::Table => table::MEANING,
+        TermKind::Backlash => backlash::MEANING,
+        TermKind::ReversalSpike => reversal_spike::MEANING,
+        TermKind::Cyclic => cyclic::MEANING,
+        TermKind::Lag => lag::MEANING,
+        TermKind::Acceleration => acceleration::MEANING,
+        TermKind::Expansion => expansion::MEANING,
+        TermKind::Growth => growth::MEANING,
+        TermKind::Drift => drift::MEANING,
+        TermKind::Vibration => vibration::MEANING,
+        TermKind::Coupling => coupling::MEANING,
+        TermKind::Compliance => load::MEANING,
     };
     Some(words)
 }

@@ -2,6 +2,7 @@
 
 use diagnosis::diagnosis::{Diagnosis, Estimate, Parameter, ParameterValue};
 use diagnosis::report;
+use model_dsl::calibration::{CalibratedTerm, SeriesInput};
 
 use crate::cases;
 
@@ -79,6 +80,7 @@ fn friction_is_not_called_play() {
     }
     let mut lag = cases::backlash("drive");
     (lag.term, lag.location.state) = ("lag", "velocity");
+    lag.calibrated = CalibratedTerm::Lag { axis: 1, gain: 30.0, frequency: 0.0 };
     assert!(!flat(&Diagnosis { findings: vec![lag], ..cases::two_findings() }).contains("friction"));
 }
 
@@ -126,16 +128,19 @@ fn a_lopsided_interval_shows_its_ends_and_a_missing_one_is_said() {
 
 #[test]
 fn powers_are_numbered_as_the_term_counts_them() {
-    let coefficients = |term| {
+    let coefficients = |term: CalibratedTerm| {
         let list = vec![cases::estimate(2e-5, 1e-6, ""), cases::estimate(3e-8, 1e-9, "1/mm")];
         let mut diagnosis = cases::two_findings();
-        diagnosis.findings[0].term = term;
+        diagnosis.findings[0].term = term.name();
+        diagnosis.findings[0].calibrated = term;
         diagnosis.findings[0].parameters =
             vec![Parameter { name: "coefficients", value: ParameterValue::List(list) }];
         flat(&diagnosis)
     };
-    assert!(coefficients("polynomial").contains("c_0 20.0 +- 1.0 ppm c_1 30.0 +- 1.0 ppm/m"));
-    assert!(coefficients("coupling").contains("c_1 20.0 +- 1.0 ppm c_2 30.0 +- 1.0 ppm/m"));
+    let polynomial = CalibratedTerm::Polynomial { input: SeriesInput::Axis(1), coefficients: Vec::new() };
+    assert!(coefficients(polynomial).contains("c_0 20.0 +- 1.0 ppm c_1 30.0 +- 1.0 ppm/m"));
+    let coupling = CalibratedTerm::Coupling { axis: 0, coefficients: Vec::new() };
+    assert!(coefficients(coupling).contains("c_1 20.0 +- 1.0 ppm c_2 30.0 +- 1.0 ppm/m"));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! What no table of positions holds. In: a term. Out: how large it is for a unit of what it depends on.
 
+use model_dsl::calibration::vocabulary::State;
 use model_dsl::calibration::{CalibratedTerm, SeriesInput};
 
 /// A term that is lost with any table of positions, or a part of one.
@@ -46,7 +47,16 @@ impl Beyond {
             CalibratedTerm::Drift { amplitude, .. } => lost(*amplitude, "in the end"),
             CalibratedTerm::Vibration { amplitude, .. } => lost(*amplitude, "as an amplitude"),
             CalibratedTerm::Compliance { coefficient, .. } => lost(*coefficient, "for each unit of its load"),
-            _ => None,
+            other => match other.kind().entry().state {
+                State::Nothing | State::Position | State::OtherPosition | State::Direction => None,
+                _ => Some(Self {
+                    motion,
+                    term: other.name(),
+                    size: None,
+                    per: "with more than positions",
+                    times: None,
+                }),
+            },
         }
     }
 }

@@ -117,10 +117,8 @@ pub(super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
     let model = Volumetric::new(job.geometry)?;
     let parameters::Gathered { mut parameters, mut left_out } = parameters::gather(job, &model, 1)?;
     parameters.retain(|parameter| {
-        let own = parameter.name.chars().last();
-        let over =
-            parameter.grid.arguments.first().and_then(|(axis, _)| job.geometry.equations.axes.get(*axis));
-        let fits = over.is_none_or(|info| info.letter.chars().next() == own);
+        let over = parameter.grid.arguments.first().map(|(axis, _)| *axis);
+        let fits = over.is_none() || over == parameter.axis;
         if !fits {
             left_out.push(format!("{}: it depends on another axis than its own", parameter.name));
         }

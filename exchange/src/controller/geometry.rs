@@ -4,6 +4,7 @@
 use abbe_runtime::{
     Compensator, Direction, ErrorMotion, Kinematics, Refusal, Sample, Term, TermState, Work, states_needed,
 };
+use model_dsl::calibration::vocabulary::State;
 use model_dsl::calibration::{CalibratedTerm, Calibration, CurveValues};
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
@@ -205,16 +206,14 @@ fn lasting<'c>(calibration: &'c Calibration, motion: usize, beyond: &mut Vec<Bey
 }
 
 fn is_changing(term: &CalibratedTerm) -> bool {
-    term.sensor().is_some() || matches!(term, CalibratedTerm::Lag { .. })
+    term.sensor().is_some() || term.kind().entry().state == State::Velocity
 }
 
 /// The axis whose direction a term reads.
 fn directed_axis(term: &CalibratedTerm) -> Option<usize> {
-    match term {
-        CalibratedTerm::Backlash { axis, .. } => Some(*axis),
-        CalibratedTerm::Table { axis, curve } => {
-            matches!(curve.values, CurveValues::Directed { .. }).then_some(*axis)
-        }
-        _ => None,
-    }
+    let directed = match term {
+        CalibratedTerm::Table { curve, .. } => matches!(curve.values, CurveValues::Directed { .. }),
+        other => other.kind().entry().state == State::Direction,
+    };
+    term.axis().filter(|_| directed)
 }

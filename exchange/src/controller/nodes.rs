@@ -1,7 +1,8 @@
 //! Where the values of a table stand. In: what the calibration's terms over an axis are, and the range. Out: nodes at which
 //! straight lines between them say the same, or say it closely.
 
-use model_dsl::calibration::{CalibratedTerm, Calibration, SeriesInput};
+use model_dsl::calibration::vocabulary::Form;
+use model_dsl::calibration::{CalibratedTerm, Calibration, Part};
 use model_dsl::equations::Equations;
 
 use super::refused::Refused;
@@ -175,12 +176,15 @@ fn nodes(term: &CalibratedTerm, axis: usize) -> Vec<f64> {
 
 /// Whether a term is no straight line over an axis, tables apart.
 fn is_curved(term: &CalibratedTerm, axis: usize) -> bool {
-    match term {
-        CalibratedTerm::Polynomial { input: SeriesInput::Axis(over), coefficients } => {
-            *over == axis && coefficients.len() > 2
-        }
-        CalibratedTerm::Coupling { axis: over, coefficients } => *over == axis && coefficients.len() > 1,
-        CalibratedTerm::Cyclic { axis: over, .. } => *over == axis,
-        _ => false,
-    }
+    let (kind, entry) = (term.kind(), term.kind().entry());
+    let curved = match entry.form {
+        // The last of them belongs to a power above 1.
+        Form::Powers { .. } => match term.part("coefficients") {
+            Some(Part::Numbers(coefficients)) => kind.first_power() + coefficients.len() > 2,
+            _ => false,
+        },
+        Form::Plain => entry.state.is_position(),
+        Form::Curve => false,
+    };
+    curved && term.axis() == Some(axis)
 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use abbe_runtime::Direction;
-use model_dsl::calibration::{CalibratedTerm, SeriesInput};
+use model_dsl::equations::Motion;
 
 use super::geometry::Pose;
 use super::grid::Grid;
@@ -21,6 +21,8 @@ const MOST_RECORDS: usize = 20_000;
 pub(super) struct Parameter {
     /// Its name there: `EXX`, `C0Y`.
     pub name: String,
+    /// The axis of its link.
+    pub axis: Option<usize>,
     /// Its values, mm or rad.
     pub grid: Grid,
 }
@@ -57,7 +59,7 @@ pub(super) fn gather(job: &Job<'_, '_>, model: &Volumetric, arguments: usize) ->
             continue;
         }
         let grid = grid(job, number, sign, axes)?;
-        gathered.parameters.push(Parameter { name: name_of(&motion.name), grid });
+        gathered.parameters.push(Parameter { name: name_of(motion), axis: motion.axis, grid });
     }
     gathered
         .parameters
@@ -69,13 +71,8 @@ pub(super) fn gather(job: &Job<'_, '_>, model: &Volumetric, arguments: usize) ->
 fn arguments_of(job: &Job<'_, '_>, motion: usize) -> BTreeSet<usize> {
     let terms = job.geometry.calibration.terms(motion).iter();
     terms
-        .filter_map(|term| match &term.value {
-            CalibratedTerm::Polynomial { input: SeriesInput::Axis(axis), .. }
-            | CalibratedTerm::Coupling { axis, .. }
-            | CalibratedTerm::Cyclic { axis, .. }
-            | CalibratedTerm::Table { axis, .. } => Some(*axis),
-            _ => None,
-        })
+        .filter(|term| term.value.kind().entry().state.is_position())
+        .filter_map(|term| term.value.axis())
         .collect()
 }
 
@@ -108,9 +105,9 @@ fn mean(job: &Job<'_, '_>, motion: usize, grid: &Grid, record: usize) -> f64 {
 }
 
 /// The name of an error motion in such files: `C0Y` for EC0Y.
-fn name_of(motion: &str) -> String {
-    let alignment = motion.strip_prefix('E').filter(|rest| rest.as_bytes().get(1) == Some(&b'0'));
-    alignment.unwrap_or(motion).to_owned()
+fn name_of(motion: &Motion) -> String {
+    let alignment = motion.name.strip_prefix('E').filter(|_| motion.alignment);
+    alignment.unwrap_or(&motion.name).to_owned()
 }
 
 /// The error motion of a name: EC0Y for `C0Y`; nothing for what is none.

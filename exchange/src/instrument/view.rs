@@ -46,13 +46,11 @@ impl<'e> View<'e> {
     /// The direction in which a motion is read, or about which: a unit vector of the part's frame. For an axis's own motion
     /// it is that of its positive travel.
     pub(super) fn direction(&self, motion: usize) -> Option<[f64; 3]> {
-        let names = self.equations.names();
-        let known = names.motions.get(motion)?;
-        if let Some(axis) = names.own_axis(known) {
-            return own_direction(self.equations, axis);
+        let known = self.equations.motions.get(motion)?;
+        match self.equations.own_axis(known) {
+            Some(axis) => own_direction(self.equations, axis),
+            None => unit(known.direction.index()),
         }
-        let letter = known.name.chars().nth(1)?;
-        unit("XYZABC".find(letter)? % 3)
     }
 
     /// What turns a deviation of the file into the motion: +1 or -1, from the sensor, the counting of the file and the branch of
@@ -76,8 +74,8 @@ impl<'e> View<'e> {
 
     /// Whether a motion is that of its axis: actual minus commanded.
     pub(super) fn is_own(&self, motion: usize) -> bool {
-        let names = self.equations.names();
-        names.motions.get(motion).is_some_and(|known| names.own_axis(known).is_some())
+        let known = self.equations.motions.get(motion);
+        known.is_some_and(|known| self.equations.own_axis(known).is_some())
     }
 
     /// What an instrument reads for each mm or rad of a motion.

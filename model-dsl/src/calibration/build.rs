@@ -1,6 +1,6 @@
 //! Calibrations made in memory. In: a calibration, and terms that it lacks. Out: the calibration with them.
 
-use super::{CalibratedMotion, CalibratedTerm, Calibration, Limits, Sensors, SeriesInput};
+use super::{CalibratedMotion, CalibratedTerm, Calibration, Limits, Sensors};
 use crate::source::{Span, Spanned};
 
 impl Calibration {
@@ -63,18 +63,6 @@ impl Calibration {
                 ramps: Vec::new(),
                 inside_loop: Vec::new(),
             }),
-        }
-    }
-}
-
-impl CalibratedTerm {
-    /// The number of the sensor that the term reads, if it reads one.
-    pub fn sensor(&self) -> Option<usize> {
-        match self {
-            Self::Polynomial { input: SeriesInput::Sensor(sensor), .. }
-            | Self::Expansion { sensor, .. }
-            | Self::Growth { sensor, .. } => Some(*sensor),
-            _ => None,
         }
     }
 }

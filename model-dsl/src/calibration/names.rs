@@ -33,6 +33,8 @@ pub struct MotionName {
     pub angular: bool,
     /// Letter of the axis of its link; none for a spindle or a fixed link.
     pub axis: Option<String>,
+    /// Whether it is the motion of that axis along itself, or about itself: EXX of X, ECC of C.
+    pub own: bool,
 }
 
 impl MachineNames {
@@ -52,16 +54,7 @@ impl MachineNames {
 
     /// The axis whose own motion, actual minus commanded, an error motion is: X for EXX, C for ECC.
     pub fn own_axis(&self, motion: &MotionName) -> Option<usize> {
-        let axis = self.axis(motion.axis.as_deref()?)?;
-        // ISO 841: U, V and W lie along X, Y and Z.
-        let along = match self.axes.get(axis)?.letter.chars().next()? {
-            'U' => 'X',
-            'V' => 'Y',
-            'W' => 'Z',
-            letter => letter,
-        };
-        let own = motion.name.chars().nth(1) == Some(along) && alignment_name(&motion.name).is_none();
-        own.then_some(axis)
+        motion.axis.as_deref().filter(|_| motion.own).and_then(|letter| self.axis(letter))
     }
 
     /// The kind of position that the axis of this index has.

@@ -3,11 +3,16 @@
 use super::fields::{Fields, parameters, word};
 use super::names::{MachineNames, MotionName};
 use super::sensors::Sensors;
+use super::vocabulary::{Base, Bound, Given, INSIDE_LOOP, Key};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::quantity::{self, Dimension};
 use crate::source::{Span, Spanned};
 use crate::suggest::nearest;
 use crate::yaml::Node;
+
+/// The kinds of loads that a deflection may be per.
+const LOADS: [Dimension; 5] =
+    [Dimension::FORCE, Dimension::VOLTAGE, Dimension::CURRENT, Dimension::PERCENT, Dimension::COUNT];
 
 /// What the terms of one error motion are read against.
 pub(super) struct Context<'a> {
@@ -56,34 +61,66 @@ impl<'n> Parameters<'_, 'n, '_> {
         quantity::read(node, kind, &words, self.context.diagnostics)
     }
 
-    /// A quantity that must be there and greater than zero.
-    pub(super) fn positive(&mut self, key: &str, kind: Dimension) -> Option<f64> {
-        let node = self.need(key)?;
-        self.greater(node, key, kind, |value| value > 0.0, "greater than zero")
-    }
-
-    /// A quantity that must be there, of either sign and not zero.
-    pub(super) fn not_zero(&mut self, key: &str, kind: Dimension) -> Option<f64> {
-        let node = self.need(key)?;
-        self.greater(node, key, kind, |value| value != 0.0, "less or greater than zero")
-    }
-
-    /// A quantity that may be left out, then 0, and must not be negative.
-    pub(super) fn not_negative(&mut self, key: &str, kind: Dimension) -> Option<f64> {
-        match self.fields.get(key) {
-            None => Some(0.0),
-            Some(node) => self.greater(node, key, kind, |value| value >= 0.0, "zero or greater"),
+    /// The number of a key, which the vocabulary says the kind and the bound of; 0 where it may be left out and is.
+    pub(super) fn number(&mut self, key: &Key, axis: Option<usize>) -> Option<f64> {
+        let kind = key.kind()?;
+        let node = match (key.given, self.fields.get(key.name)) {
+            (Given::Optional(_), None) => return Some(0.0),
+            _ => self.need(key.name)?,
+        };
+        if kind.per.contains(&Base::Load) {
+            return self.per_load(node, key.name);
         }
+        let position = axis.map(|axis| self.context.names.axis_dimension(axis));
+        let found = self.quantity_in(node, key.name, kind.dimension(self.motion(), position))?;
+        let must = match key.bound {
+            Bound::Positive if found.value <= 0.0 => "greater than zero",
+            Bound::NotNegative if found.value < 0.0 => "zero or greater",
+            Bound::PositiveBeside(other) if found.value <= 0.0 && self.fields.get(other).is_some() => {
+                "greater than zero"
+            }
+            Bound::NotZero | Bound::PositiveBeside(_) if found.value == 0.0 => "less or greater than zero",
+            _ => return Some(found.value),
+        };
+        let message = format!("{} must be {must}", self.words(key.name));
+        let help = format!("write a value that is {must}, or leave the term out");
+        self.report(Diagnostic::error("E0419", found.span, message).help(help));
+        None
+    }
+
+    /// A size for each unit of a load, whatever kind of load.
+    fn per_load(&mut self, node: &Node, key: &str) -> Option<f64> {
+        let quantity = node.text().and_then(|text| quantity::parse_quantity(text).ok());
+        let motion = self.motion();
+        if let Some(quantity) = quantity.filter(|quantity| !quantity.is_bare()) {
+            if LOADS.iter().any(|load| motion.per(*load) == quantity.dimension) {
+                return Some(quantity.value);
+            }
+            let message = format!(
+                "{} is {} per load, `{}` is {}",
+                self.words(key),
+                motion.name(),
+                quantity.written_unit(),
+                quantity.kind_name()
+            );
+            let unit = if motion == Dimension::ANGLE { "urad" } else { "um" };
+            let help = format!(
+                "use a unit such as `{unit}/N`, `{unit}/V`, `{unit}/A`, `{unit}/%` or `{unit}/count`"
+            );
+            self.report(Diagnostic::error("E0424", node.part(quantity.unit.clone()), message).help(help));
+            return None;
+        }
+        self.quantity_in(node, key, motion.per(Dimension::FORCE)).map(|found| found.value)
     }
 
     /// Whether the position loop of the motion's axis answers the term; left out, it does not.
     pub(super) fn inside_loop(&mut self) -> Option<bool> {
-        let Some(node) = self.fields.get("inside_loop") else { return Some(false) };
+        let Some(node) = self.fields.get(INSIDE_LOOP) else { return Some(false) };
         let inside = match node.text() {
             Some("true") => true,
             Some("false") => false,
             _ => {
-                let message = format!("{} is `true` or `false`", self.words("inside_loop"));
+                let message = format!("{} is `true` or `false`", self.words(INSIDE_LOOP));
                 let help = "write `inside_loop: true` where the axis's own position loop answers the term";
                 self.report(Diagnostic::error("E0427", node.span, message).help(help));
                 return None;
@@ -99,26 +136,6 @@ impl<'n> Parameters<'_, 'n, '_> {
             return None;
         }
         Some(inside)
-    }
-
-    fn greater(
-        &mut self,
-        node: &Node,
-        key: &str,
-        kind: Dimension,
-        holds: impl Fn(f64) -> bool,
-        must: &str,
-    ) -> Option<f64> {
-        let found = self.quantity_in(node, key, kind)?;
-        if holds(found.value) {
-            return Some(found.value);
-        }
-        let message = format!("{} must be {must}", self.words(key));
-        self.report(
-            Diagnostic::error("E0419", found.span, message)
-                .help(format!("write a value that is {must}, or leave the term out")),
-        );
-        None
     }
 
     /// The axis that is named, or the link's own where none is.
@@ -167,6 +184,12 @@ impl<'n> Parameters<'_, 'n, '_> {
     pub(super) fn named_sensor(&mut self, node: &Node) -> Option<usize> {
         let name = word(node, &self.words("sensor"), self.context.diagnostics)?;
         Some(self.context.sensors.reference(&name))
+    }
+
+    /// The load that must be named.
+    pub(super) fn load(&mut self) -> Option<String> {
+        let node = self.need("load")?;
+        word(node, &self.words("load"), self.context.diagnostics).map(|load| load.value)
     }
 
     /// Where a key stands, or the term's name where it is missing.

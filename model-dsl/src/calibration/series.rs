@@ -3,12 +3,23 @@
 use super::fields::filled_list;
 use super::parameters::Parameters;
 use super::term::{CalibratedTerm, SeriesInput};
+use super::vocabulary::{Holds, TermKind};
 use crate::diagnostic::Diagnostic;
 use crate::quantity::{self, Dimension, Unit};
 use crate::source::Spanned;
 use crate::yaml::Node;
 
-pub(super) fn read_polynomial(term: &mut Parameters<'_, '_, '_>) -> Option<CalibratedTerm> {
+/// Reads a list of coefficients, the first of them of this power: of another axis where the term is of one.
+pub(super) fn read_powers(
+    kind: TermKind,
+    first: u8,
+    term: &mut Parameters<'_, '_, '_>,
+) -> Option<CalibratedTerm> {
+    let of_another = kind.entry().keys.iter().any(|key| key.holds == Holds::OtherAxis);
+    if of_another { read_coupling(first, term) } else { read_polynomial(first, term) }
+}
+
+fn read_polynomial(first: u8, term: &mut Parameters<'_, '_, '_>) -> Option<CalibratedTerm> {
     let of_sensor = term.fields.get("sensor");
     if of_sensor.is_some() && term.fields.get("axis").is_some() {
         let message = format!("{} is of an axis or of a sensor, not of both", term.what);
@@ -24,15 +35,15 @@ pub(super) fn read_polynomial(term: &mut Parameters<'_, '_, '_>) -> Option<Calib
             (axis.map(SeriesInput::Axis), axis_scale(term, axis))
         }
     };
-    let coefficients = read_coefficients(term, per, 0);
+    let coefficients = read_coefficients(term, per, first);
     Some(CalibratedTerm::Polynomial { input: input?, coefficients: coefficients? })
 }
 
-pub(super) fn read_coupling(term: &mut Parameters<'_, '_, '_>) -> Option<CalibratedTerm> {
+fn read_coupling(first: u8, term: &mut Parameters<'_, '_, '_>) -> Option<CalibratedTerm> {
     let node = term.need("axis");
     let axis = node.and_then(|node| other_axis(term, node));
     let per = axis_scale(term, axis);
-    let coefficients = read_coefficients(term, per, 1);
+    let coefficients = read_coefficients(term, per, first);
     Some(CalibratedTerm::Coupling { axis: axis?, coefficients: coefficients? })
 }
 
@@ -113,7 +124,7 @@ pub(super) fn wrong_unit(
 }
 
 /// Reads `unit` and `coefficients` and converts them: c_k unit / per^k, k from `first`.
-fn read_coefficients(term: &mut Parameters<'_, '_, '_>, per: Option<f64>, first: i32) -> Option<Vec<f64>> {
+fn read_coefficients(term: &mut Parameters<'_, '_, '_>, per: Option<f64>, first: u8) -> Option<Vec<f64>> {
     let unit = read_motion_unit(term);
     let words = term.words("coefficients");
     let node = term.need("coefficients")?;
@@ -122,7 +133,7 @@ fn read_coefficients(term: &mut Parameters<'_, '_, '_>, per: Option<f64>, first:
     let numbers: Vec<Option<Spanned<f64>>> =
         items.iter().map(|item| quantity::read_number(item, &entry, term.context.diagnostics)).collect();
     let (unit, per) = (unit?, per?);
-    let powers = (first..).map(|power| per.powi(power));
+    let powers = (i32::from(first)..).map(|power| per.powi(power));
     let converted: Vec<Option<f64>> =
         numbers.into_iter().zip(powers).map(|(number, power)| scaled(term, number?, unit / power)).collect();
     converted.into_iter().collect()

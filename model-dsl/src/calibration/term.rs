@@ -1,25 +1,16 @@
 //! Terms with their numbers: one piece of physics each, added to one error motion.
 
-use abbe_runtime::{Input, Table, TableError, Term, Values};
+mod curve;
+mod parts;
+
+pub use curve::{Curve, CurveNodes, CurveValues};
+pub use parts::Part;
+pub(super) use parts::PlainParts;
+
+use abbe_runtime::{Input, TableError, Term};
 use std::fmt;
 
-/// The names of all terms as calibration files write them.
-pub const TERM_NAMES: [&str; 14] = [
-    "constant",
-    "polynomial",
-    "table",
-    "backlash",
-    "reversal-spike",
-    "cyclic",
-    "lag",
-    "acceleration",
-    "expansion",
-    "growth",
-    "drift",
-    "vibration",
-    "coupling",
-    "compliance",
-];
+use super::vocabulary::TermKind;
 
 /// One term of an error motion, in mm, rad, s and degC.
 ///
@@ -158,94 +149,11 @@ pub enum SeriesInput {
     Sensor(usize),
 }
 
-/// A measured curve over an axis.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Curve {
-    /// Where it was measured, in the axis's mm or rad.
-    pub nodes: CurveNodes,
-    /// What was measured there, mm or rad; one value a node.
-    pub values: CurveValues,
-}
-
-/// The positions at which a curve was measured.
-#[derive(Clone, PartialEq, Debug)]
-pub enum CurveNodes {
-    /// Equal steps; the step may be negative, but not zero.
-    Uniform {
-        /// The first node.
-        start: f64,
-        /// From one node to the next.
-        step: f64,
-    },
-    /// Any positions, strictly ascending.
-    At(Vec<f64>),
-}
-
-/// The values of a curve.
-#[derive(Clone, PartialEq, Debug)]
-pub enum CurveValues {
-    /// The same in both directions of motion.
-    Both(Vec<f64>),
-    /// One curve for each direction of motion, of equal length.
-    Directed {
-        /// While the axis moves in its positive direction.
-        forward: Vec<f64>,
-        /// While it moves in its negative direction.
-        reverse: Vec<f64>,
-    },
-}
-
-impl Curve {
-    /// The curve as the runtime reads it.
-    ///
-    /// # Errors
-    ///
-    /// What the runtime refuses; a curve read from a file without findings has none of it.
-    pub fn runtime(&self) -> Result<Table<'_>, TableError> {
-        let values = match &self.values {
-            CurveValues::Both(values) => Values::Both(values),
-            CurveValues::Directed { forward, reverse } => Values::Directed { forward, reverse },
-        };
-        match &self.nodes {
-            CurveNodes::Uniform { start, step } => Table::uniform(*start, *step, values),
-            CurveNodes::At(at) => Table::at(at, values),
-        }
-    }
-
-    /// The positions of its nodes, in the axis's mm or rad, in the order of the values.
-    pub fn positions(&self) -> Vec<f64> {
-        match &self.nodes {
-            CurveNodes::At(places) => places.clone(),
-            // Every step is one value further.
-            CurveNodes::Uniform { start, step } => {
-                let further = |place: &mut f64, _: &f64| Some(std::mem::replace(place, *place + step));
-                self.values.forward().iter().scan(*start, further).collect()
-            }
-        }
-    }
-
-    /// Its first and its last node; nothing where it has none.
-    pub fn ends(&self) -> Option<[f64; 2]> {
-        let positions = self.positions();
-        Some([*positions.first()?, *positions.last()?])
-    }
-}
-
-impl CurveValues {
-    /// The values while the axis moves in its positive direction.
-    pub fn forward(&self) -> &[f64] {
-        match self {
-            Self::Both(values) => values,
-            Self::Directed { forward, .. } => forward,
-        }
-    }
-}
-
 /// Why a term has no counterpart in the runtime.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum NotCompensable {
-    /// The term of this name depends on what a controller cannot know in time.
-    Term(&'static str),
+    /// The term depends on what a controller cannot know in time.
+    Term(TermKind),
     /// The table is not one that the runtime reads.
     Table(TableError),
 }
@@ -253,7 +161,7 @@ pub enum NotCompensable {
 impl fmt::Display for NotCompensable {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Term(name) => write!(formatter, "`{name}` cannot be compensated in real time"),
+            Self::Term(kind) => write!(formatter, "`{}` cannot be compensated in real time", kind.name()),
             Self::Table(error) => error.fmt(formatter),
         }
     }
@@ -262,40 +170,14 @@ impl fmt::Display for NotCompensable {
 impl std::error::Error for NotCompensable {}
 
 impl CalibratedTerm {
-    /// The term's name in calibration files, one of [`TERM_NAMES`].
+    /// The term's name in calibration files.
     pub fn name(&self) -> &'static str {
-        match self {
-            Self::Constant { .. } => "constant",
-            Self::Polynomial { .. } => "polynomial",
-            Self::Table { .. } => "table",
-            Self::Backlash { .. } => "backlash",
-            Self::ReversalSpike { .. } => "reversal-spike",
-            Self::Cyclic { .. } => "cyclic",
-            Self::Lag { .. } => "lag",
-            Self::Acceleration { .. } => "acceleration",
-            Self::Expansion { .. } => "expansion",
-            Self::Growth { .. } => "growth",
-            Self::Drift { .. } => "drift",
-            Self::Vibration { .. } => "vibration",
-            Self::Coupling { .. } => "coupling",
-            Self::Compliance { .. } => "compliance",
-        }
+        self.kind().name()
     }
 
     /// Whether a controller can compensate the term in real time.
     pub fn compensable(&self) -> bool {
-        self.refusal().is_none()
-    }
-
-    fn refusal(&self) -> Option<NotCompensable> {
-        match self {
-            Self::ReversalSpike { .. }
-            | Self::Acceleration { .. }
-            | Self::Drift { .. }
-            | Self::Vibration { .. }
-            | Self::Compliance { .. } => Some(NotCompensable::Term(self.name())),
-            _ => None,
-        }
+        self.kind().compensable()
     }
 
     /// The term as the runtime evaluates it, with the same indices of axes and sensors; of a backlash, the physics without
@@ -328,7 +210,7 @@ impl CalibratedTerm {
             &Self::Growth { sensor, coefficient, reference, time_constant } => {
                 Term::Growth { sensor, coefficient, reference, time_constant }
             }
-            _ => return Err(NotCompensable::Term(self.name())),
+            _ => return Err(NotCompensable::Term(self.kind())),
         };
         Ok(term)
     }

@@ -15,6 +15,7 @@ pub(super) fn names() -> MachineNames {
         name: name.to_owned(),
         angular,
         axis: axis.map(str::to_owned),
+        own: matches!(name, "EXX" | "EYY" | "ECC"),
     };
     MachineNames {
         machine: "test-mill".to_owned(),

@@ -4,6 +4,7 @@ use super::names::MachineNames;
 use super::sensors::{SensorKind, Sensors};
 use super::spelling::{Item, braces, brackets, quantity, sentence, term, word};
 use super::term::CalibratedTerm;
+use super::vocabulary::{INSIDE_LOOP, RAMP};
 use super::write_term::{Context, UNKNOWN, parameters};
 use super::{CalibratedMotion, Calibration, Limits};
 
@@ -86,10 +87,10 @@ fn motion(listed: &CalibratedMotion, calibration: &Calibration, names: &MachineN
                 let mut parameters = parameters(&one.value, &context);
                 let ramp = listed.ramp(place);
                 if ramp > 0.0 {
-                    parameters.push(("ramp", Item::One(quantity(ramp, "s"))));
+                    parameters.push((RAMP, Item::One(quantity(ramp, "s"))));
                 }
                 if listed.is_inside_loop(place) {
-                    parameters.push(("inside_loop", Item::One("true".to_owned())));
+                    parameters.push((INSIDE_LOOP, Item::One("true".to_owned())));
                 }
                 term(one.value.name(), &parameters)
             });

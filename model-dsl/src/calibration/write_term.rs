@@ -3,7 +3,8 @@
 use super::names::{MachineNames, MotionName};
 use super::sensors::Sensors;
 use super::spelling::{Item, number, quantity, word};
-use super::term::{CalibratedTerm, Curve, CurveNodes, CurveValues, SeriesInput};
+use super::term::{CalibratedTerm, Part};
+use super::vocabulary::{Base, Form, Given, Holds, Key};
 
 /// What stands for a motion or an axis that the machine lacks; no machine has one of this name.
 pub(super) const UNKNOWN: &str = "?";
@@ -19,105 +20,14 @@ pub(super) struct Context<'a> {
 
 /// The parameters of a term, in the order in which the manual lists them.
 pub(super) fn parameters(term: &CalibratedTerm, context: &Context<'_>) -> Parameters {
-    let motion = context.motion_unit();
-    let value = |value: f64| one(quantity(value, motion));
-    match term {
-        CalibratedTerm::Constant { value: constant } => vec![("value", value(*constant))],
-        CalibratedTerm::Polynomial { input, coefficients } => polynomial(*input, coefficients, context),
-        CalibratedTerm::Table { axis, curve } => table(*axis, curve, context),
-        CalibratedTerm::Coupling { axis, coefficients } => {
-            let input = SeriesInput::Axis(*axis);
-            polynomial(input, coefficients, context)
-        }
-        CalibratedTerm::Backlash { axis, lost_motion, wind_up } => {
-            let wind_up =
-                (*wind_up != 0.0).then(|| ("wind_up", one(quantity(*wind_up, context.axis_unit(*axis)))));
-            let parameters = vec![("lost_motion", value(*lost_motion))];
-            context.on_axis(*axis, parameters.into_iter().chain(wind_up).collect())
-        }
-        CalibratedTerm::ReversalSpike { axis, height, decay } => {
-            context.on_axis(*axis, vec![("height", value(*height)), ("decay", one(quantity(*decay, "s")))])
-        }
-        CalibratedTerm::Cyclic { axis, period, amplitude, phase } => {
-            let period = one(quantity(*period, context.axis_unit(*axis)));
-            let parameters =
-                vec![("period", period), ("amplitude", value(*amplitude)), ("phase", angle(*phase))];
-            context.on_axis(*axis, parameters)
-        }
-        CalibratedTerm::Lag { axis, gain, frequency } => {
-            let unit = ratio(context.axis_unit(*axis), motion, "s");
-            let frequency = (*frequency != 0.0).then(|| ("frequency", one(quantity(*frequency, "Hz"))));
-            let parameters = vec![("gain", one(quantity(*gain, &unit)))];
-            context.on_axis(*axis, parameters.into_iter().chain(frequency).collect())
-        }
-        CalibratedTerm::Acceleration { axis, gain } => {
-            let unit = ratio(context.axis_unit(*axis), motion, "s^2");
-            context.on_axis(*axis, vec![("gain", one(quantity(*gain, &unit)))])
-        }
-        CalibratedTerm::Expansion { axis, sensor, coefficient, reference } => {
-            let unit = ratio(motion, context.axis_unit(*axis), "K");
-            context.on_axis(*axis, thermal(context.sensor(*sensor), *coefficient, &unit, *reference))
-        }
-        CalibratedTerm::Growth { sensor, coefficient, reference, time_constant } => {
-            let unit = format!("{motion}/K");
-            let filter =
-                (*time_constant != 0.0).then(|| ("time_constant", one(quantity(*time_constant, "s"))));
-            let parameters = thermal(context.sensor(*sensor), *coefficient, &unit, *reference);
-            parameters.into_iter().chain(filter).collect()
-        }
-        CalibratedTerm::Drift { amplitude, time_constant } => {
-            vec![("amplitude", value(*amplitude)), ("time_constant", one(quantity(*time_constant, "s")))]
-        }
-        CalibratedTerm::Vibration { frequency, amplitude, phase } => {
-            let frequency = one(quantity(*frequency, "Hz"));
-            vec![("frequency", frequency), ("amplitude", value(*amplitude)), ("phase", angle(*phase))]
-        }
-        CalibratedTerm::Compliance { load, coefficient } => {
-            let coefficient = quantity(*coefficient, &format!("{motion}/N"));
-            vec![("load", one(word(load))), ("coefficient", one(coefficient))]
-        }
-    }
-}
-
-fn polynomial(input: SeriesInput, coefficients: &[f64], context: &Context<'_>) -> Parameters {
-    let mut parameters = match input {
-        SeriesInput::Axis(axis) => {
-            vec![("axis", context.axis(axis)), ("per", one(context.axis_unit(axis).to_owned()))]
-        }
-        SeriesInput::Sensor(sensor) => vec![("sensor", context.sensor(sensor))],
-    };
-    parameters.push(("unit", one(context.motion_unit().to_owned())));
-    parameters.push(("coefficients", numbers(coefficients)));
-    parameters
-}
-
-fn table(axis: usize, curve: &Curve, context: &Context<'_>) -> Parameters {
-    let unit = context.axis_unit(axis);
-    let mut parameters = vec![("axis", context.axis(axis))];
-    match &curve.nodes {
-        CurveNodes::Uniform { start, step } => {
-            parameters.push(("start", one(quantity(*start, unit))));
-            parameters.push(("step", one(quantity(*step, unit))));
-        }
-        CurveNodes::At(at) => {
-            parameters.push(("at", numbers(at)));
-            parameters.push(("per", one(unit.to_owned())));
-        }
-    }
-    parameters.push(("unit", one(context.motion_unit().to_owned())));
-    match &curve.values {
-        CurveValues::Both(values) => parameters.push(("values", numbers(values))),
-        CurveValues::Directed { forward, reverse } => {
-            parameters.push(("forward", numbers(forward)));
-            parameters.push(("reverse", numbers(reverse)));
-        }
-    }
-    parameters
-}
-
-fn thermal(sensor: Item, coefficient: f64, unit: &str, reference: f64) -> Parameters {
-    let coefficient = one(quantity(coefficient, unit));
-    vec![("sensor", sensor), ("coefficient", coefficient), ("reference", one(quantity(reference, "degC")))]
+    let (entry, parts, axis) = (term.kind().entry(), term.parts(), term.axis());
+    // A list has its axis beside it always: its units are that of the axis.
+    let own = axis.is_some_and(|axis| entry.form == Form::Plain && context.is_own(axis));
+    let written = entry.keys.iter().filter(|key| !(own && key.holds == Holds::OwnAxis)).filter_map(|key| {
+        let (_, part) = parts.iter().find(|(name, _)| *name == key.name)?;
+        Some((key.name, context.item(key, *part, axis)?))
+    });
+    written.collect()
 }
 
 impl Context<'_> {
@@ -138,12 +48,28 @@ impl Context<'_> {
         self.names.axes.get(axis).map_or(UNKNOWN, |axis| axis.letter.as_str())
     }
 
-    /// Parameters of a term on an axis, which is named where it is not that of the motion's own link.
-    fn on_axis(&self, axis: usize, mut parameters: Parameters) -> Parameters {
-        if self.motion.and_then(|motion| motion.axis.as_deref()) != Some(self.letter(axis)) {
-            parameters.push(("axis", self.axis(axis)));
+    /// What stands behind a key; nothing for a number that says what its absence says.
+    fn item(&self, key: &Key, part: Part<'_>, axis: Option<usize>) -> Option<Item> {
+        let motion = self.motion_unit();
+        let position = axis.map_or("mm", |axis| self.axis_unit(axis));
+        match (part, key.holds) {
+            (Part::Number(0.0), _) if matches!(key.given, Given::Optional(_)) => None,
+            (Part::Number(value), _) => {
+                let unit = key.kind().map(|kind| kind.unit(motion, position)).unwrap_or_default();
+                Some(one(quantity(value, &unit)))
+            }
+            (Part::Numbers(values), _) => Some(numbers(values)),
+            (Part::Unit, Holds::Unit(Base::Position)) => Some(one(position.to_owned())),
+            (Part::Unit, _) => Some(one(motion.to_owned())),
+            (Part::Axis(axis), _) => Some(self.axis(axis)),
+            (Part::Sensor(sensor), _) => Some(self.sensor(sensor)),
+            (Part::Load(load), _) => Some(one(word(load))),
         }
-        parameters
+    }
+
+    /// Whether an axis is that of the motion's own link.
+    fn is_own(&self, axis: usize) -> bool {
+        self.motion.and_then(|motion| motion.axis.as_deref()) == Some(self.letter(axis))
     }
 
     /// A sensor by its name. Any word would name one, so that what is not there is a list.
@@ -159,17 +85,8 @@ fn unit(angular: bool) -> &'static str {
     if angular { "rad" } else { "mm" }
 }
 
-/// A unit over another and over a third: `1/s` where the first two cancel, or `mm/rad/s`.
-fn ratio(above: &str, below: &str, rest: &str) -> String {
-    if above == below { format!("1/{rest}") } else { format!("{above}/{below}/{rest}") }
-}
-
 fn one(text: String) -> Item {
     Item::One(text)
-}
-
-fn angle(value: f64) -> Item {
-    one(quantity(value, "rad"))
 }
 
 fn numbers(values: &[f64]) -> Item {

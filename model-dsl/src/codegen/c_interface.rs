@@ -44,8 +44,9 @@ fn compiled_machine(equations: &Equations) -> TokenStream {
         quote! { (#letter, #rotary) }
     });
     let motions = motions.iter().map(|motion| {
-        let (name, angular, axis) = (&motion.name, motion.angular, optional(motion.axis.as_ref()));
-        quote! { (#name, #angular, #axis) }
+        let (name, angular, own) = (&motion.name, motion.angular, motion.own);
+        let axis = optional(motion.axis.as_ref());
+        quote! { (#name, #angular, #axis, #own) }
     });
     let json = CompiledIn::of_equations(equations);
     let measured = super::measured();

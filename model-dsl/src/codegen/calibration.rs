@@ -6,14 +6,15 @@
 
 use abbe_runtime::Term;
 use proc_macro2::{Ident, Literal, TokenStream};
-use quote::{format_ident, quote};
+use quote::{ToTokens, format_ident, quote};
 
 use super::body::number;
 use super::bundles::{Bundles, EvenNodes};
 use super::sensors::{self, Numbered};
 use super::{docs, measured};
+use crate::calibration::vocabulary::{RAMP, Role};
 use crate::calibration::{
-    CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Limits, NotCompensable, SeriesInput,
+    CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Limits, NotCompensable, Part, SeriesInput,
 };
 use crate::equations::{Equations, Motion};
 
@@ -304,14 +305,11 @@ fn method(
     }
 }
 
-/// A term with its numbers.
+/// A term with its numbers: the runtime calls its terms and their fields as the vocabulary does.
 fn term(term: &CalibratedTerm, ramp: f64, sensors: &Numbered) -> Result<TokenStream, NotCompensable> {
-    let sensor = |sensor: usize| Literal::usize_unsuffixed(sensors.number(sensor));
+    // What the runtime refuses, it would refuse where it is compiled too.
+    term.runtime()?;
     let fields = match term {
-        CalibratedTerm::Constant { value } => {
-            let value = number(*value);
-            quote! { Constant { value: #value } }
-        }
         CalibratedTerm::Polynomial { input, coefficients } => {
             let coefficients = numbers(coefficients);
             let input = match *input {
@@ -319,56 +317,50 @@ fn term(term: &CalibratedTerm, ramp: f64, sensors: &Numbered) -> Result<TokenStr
                     let axis = Literal::usize_unsuffixed(axis);
                     quote! { Axis(#axis) }
                 }
-                SeriesInput::Sensor(number) => {
-                    let number = sensor(number);
-                    quote! { Sensor(#number) }
+                SeriesInput::Sensor(sensor) => {
+                    let sensor = Literal::usize_unsuffixed(sensors.number(sensor));
+                    quote! { Sensor(#sensor) }
                 }
             };
-            quote! { Polynomial { input: ::abbe_runtime::Input::#input, coefficients: #coefficients } }
-        }
-        CalibratedTerm::Coupling { axis, coefficients } => {
-            let (axis, coefficients) = (Literal::usize_unsuffixed(*axis), numbers(coefficients));
-            quote! { Coupling { axis: #axis, coefficients: #coefficients } }
+            quote! { input: ::abbe_runtime::Input::#input, coefficients: #coefficients }
         }
         CalibratedTerm::Table { axis, curve } => {
-            curve.runtime().map_err(NotCompensable::Table)?;
             let (axis, table) = (Literal::usize_unsuffixed(*axis), table(curve));
-            quote! { Table { axis: #axis, table: #table } }
+            quote! { axis: #axis, table: #table }
         }
-        CalibratedTerm::Backlash { axis, lost_motion, wind_up } => {
-            let axis = Literal::usize_unsuffixed(*axis);
-            let [lost_motion, wind_up, ramp] = [*lost_motion, *wind_up, ramp].map(number);
-            quote! { Backlash { axis: #axis, lost_motion: #lost_motion, wind_up: #wind_up, ramp: #ramp } }
-        }
-        CalibratedTerm::Cyclic { axis, period, amplitude, phase } => {
-            let axis = Literal::usize_unsuffixed(*axis);
-            let [period, amplitude, phase] = [*period, *amplitude, *phase].map(number);
-            quote! { Cyclic { axis: #axis, period: #period, amplitude: #amplitude, phase: #phase } }
-        }
-        CalibratedTerm::Lag { axis, gain, frequency: _ } => {
-            let (axis, gain) = (Literal::usize_unsuffixed(*axis), number(*gain));
-            quote! { Lag { axis: #axis, gain: #gain } }
-        }
-        CalibratedTerm::Expansion { axis, sensor: of, coefficient, reference } => {
-            let (axis, of) = (Literal::usize_unsuffixed(*axis), sensor(*of));
-            let [coefficient, reference] = [*coefficient, *reference].map(number);
-            quote! { Expansion { axis: #axis, sensor: #of, coefficient: #coefficient, reference: #reference } }
-        }
-        CalibratedTerm::Growth { sensor: of, coefficient, reference, time_constant } => {
-            let of = sensor(*of);
-            let [coefficient, reference, time_constant] =
-                [*coefficient, *reference, *time_constant].map(number);
-            quote! {
-                Growth { sensor: #of, coefficient: #coefficient, reference: #reference, time_constant: #time_constant }
-            }
-        }
-        CalibratedTerm::ReversalSpike { .. }
-        | CalibratedTerm::Acceleration { .. }
-        | CalibratedTerm::Drift { .. }
-        | CalibratedTerm::Vibration { .. }
-        | CalibratedTerm::Compliance { .. } => return Err(NotCompensable::Term(term.name())),
+        plain => fields(plain, ramp, sensors),
     };
-    Ok(quote! { ::abbe_runtime::Term::#fields })
+    let name = type_name(term.name());
+    Ok(quote! { ::abbe_runtime::Term::#name { #fields } })
+}
+
+/// The name of a term as types are called: `ReversalSpike` for `reversal-spike`.
+fn type_name(name: &str) -> Ident {
+    let words = name.split('-').map(|word| {
+        let (first, rest) = word.split_at_checked(1).unwrap_or((word, ""));
+        first.to_ascii_uppercase() + rest
+    });
+    format_ident!("{}", words.collect::<String>())
+}
+
+/// The fields of a term that the runtime has as the calibration does, transients apart, and its ramp.
+fn fields(term: &CalibratedTerm, ramp: f64, sensors: &Numbered) -> TokenStream {
+    let entry = term.kind().entry();
+    let is_transient = |key: &str| entry.key(key).is_some_and(|key| key.role == Role::Transient);
+    let parts = term.parts().into_iter().filter(|(key, _)| !is_transient(key));
+    let ramp = entry.key(RAMP).map(|key| (key.name, Part::Number(ramp)));
+    let fields = parts.chain(ramp).filter_map(|(key, part)| {
+        let value = match part {
+            Part::Number(value) => number(value),
+            Part::Numbers(values) => numbers(values),
+            Part::Axis(axis) => Literal::usize_unsuffixed(axis).into_token_stream(),
+            Part::Sensor(sensor) => Literal::usize_unsuffixed(sensors.number(sensor)).into_token_stream(),
+            Part::Load(_) | Part::Unit => return None,
+        };
+        let key = format_ident!("{key}");
+        Some(quote! { #key: #value })
+    });
+    quote! { #(#fields),* }
 }
 
 /// A table that was checked here, and is checked once more where it is compiled.

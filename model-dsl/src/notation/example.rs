@@ -79,15 +79,9 @@ fn plain_angle(equations: &Equations, motion: &Motion) -> bool {
     let own = equations.links.iter().any(|link| {
         link.id == motion.link
             && matches!(link.kind, LinkKind::Rotary(_))
-            && Some(link.along.axis) == turned_about(motion)
+            && link.along.axis == motion.direction
     });
     motion.angular && !motion.alignment && !own
-}
-
-/// The direction about which an angular error motion turns, from its name: `EBX` about Y.
-pub(super) fn turned_about(motion: &Motion) -> Option<Axis> {
-    let letter = motion.name.chars().nth(1)?;
-    Axis::ALL.into_iter().find(|axis| axis.rotation_letter() == letter)
 }
 
 /// How many products a reader adds up.

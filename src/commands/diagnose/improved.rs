@@ -5,7 +5,7 @@ use std::path::Path;
 
 use diagnosis::diagnosis::{Diagnosis, Finding};
 use diagnosis::report;
-use model_dsl::calibration::{self, CalibratedTerm, Calibration, SeriesInput};
+use model_dsl::calibration::{self, Calibration};
 use similar::TextDiff;
 
 use super::files::Files;
@@ -68,7 +68,10 @@ fn known(target: &Path, recorded: &Recorded, files: &Files) -> Result<Calibratio
 fn improved(mut known: Calibration, findings: &[Finding]) -> Calibration {
     for finding in findings {
         let sensor = finding.sensor.as_ref().map(|name| known.sensor(name));
-        let (motion, term) = (finding.motion_number, reading(finding.calibrated.clone(), sensor));
+        let (motion, mut term) = (finding.motion_number, finding.calibrated.clone());
+        if let Some(sensor) = sensor {
+            term = term.with_sensor(sensor);
+        }
         known = if finding.location.inside_loop {
             known.with_inside_loop(motion, term)
         } else {
@@ -76,19 +79,6 @@ fn improved(mut known: Calibration, findings: &[Finding]) -> Calibration {
         };
     }
     known
-}
-
-/// The term with the number of its sensor in the calibration that it goes into.
-fn reading(mut term: CalibratedTerm, number: Option<usize>) -> CalibratedTerm {
-    if let Some(number) = number {
-        match &mut term {
-            CalibratedTerm::Polynomial { input: SeriesInput::Sensor(sensor), .. }
-            | CalibratedTerm::Expansion { sensor, .. }
-            | CalibratedTerm::Growth { sensor, .. } => *sensor = number,
-            _ => {}
-        }
-    }
-    term
 }
 
 /// Where the numbers come from, as comments at the top.

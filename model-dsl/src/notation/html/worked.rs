@@ -7,7 +7,7 @@ use pages::text::escape;
 
 use crate::algebra::Axis;
 use crate::equations::Equations;
-use crate::notation::example::{Example, turned_about};
+use crate::notation::example::Example;
 use crate::notation::mathml::{letter, worked};
 use crate::notation::sheet::Sheet;
 
@@ -46,7 +46,10 @@ pub(super) fn section(sheet: &Sheet, equations: &Equations, example: &Example) -
 
 /// By which hand what turns.
 fn sense(equations: &Equations, motion: &crate::equations::Motion) -> String {
-    let Some(about) = turned_about(motion) else { return String::new() };
+    if !motion.angular {
+        return String::new();
+    }
+    let about = motion.direction;
     let (from, to) = (about.next(), about.next().next());
     let (hand, from, to) = if motion.against_iso { ("left", to, from) } else { ("right", from, to) };
     let what = if equations.relative {

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use diagnosis::diagnosis::{Evidence, Location, Summary, Verdict};
-use model_dsl::calibration::SensorKind;
+use model_dsl::calibration::{CalibratedTerm, SensorKind, SeriesInput};
 
 use super::*;
 use crate::calibrated;

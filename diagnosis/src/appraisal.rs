@@ -149,7 +149,7 @@ fn estimate(
     let leftover = (alone / count).sqrt();
     let plainly = match like {
         Some(like) => like.alike > 1.0,
-        None => returning > MOSTLY * alone || moves(known, residual, valid),
+        None => returning > MOSTLY * alone || found.only_wanders(time) || moves(known, residual, valid),
     };
     if plainly {
         let alike = like.map_or_else(|| noise::alike(residual, valid), |like| like.alike);

@@ -134,8 +134,10 @@ fn loops(lag: &Fitted, step: f64) -> Vec<Shape> {
     if let Shape::Lag { axis, inertia: 0.0 } = lag.effect.shape {
         let time_constant: f64 = lag.coefficients.iter().sum();
         let roots = DAMPINGS.map(|damping| 0.5 * time_constant / damping);
+        // Rows resolve no ringing that is quicker than twice their step.
+        let roots = roots.into_iter().filter(|root| *root > step / std::f64::consts::PI);
         let swung = roots.map(|root| PositionLoop { time_constant, inertia: root * root });
-        let lasting = swung.into_iter().filter(|swung| swung.fading() * step < FADED);
+        let lasting = swung.filter(|swung| swung.fading() * step < FADED);
         shapes.extend(lasting.map(|swung| Shape::Lag { axis, inertia: swung.inertia }));
     }
     shapes

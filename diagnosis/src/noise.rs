@@ -34,6 +34,16 @@ impl Noise {
         self.white.hypot(self.wander)
     }
 
+    /// The least white part that a noise may have which wanders so in a recording of this length.
+    fn least_white(&self, span: f64) -> f64 {
+        ROUGH * self.wander * (1.0 - (-2.0 * STRETCH * span / self.time_constant).exp()).sqrt()
+    }
+
+    /// Whether it wanders without any white part of its own, as no sensor does.
+    pub(crate) fn only_wanders(&self, time: &[f64]) -> bool {
+        self.wander > 0.0 && self.white <= self.least_white(span(time))
+    }
+
     /// White noise of the same size.
     pub(crate) fn as_white(&self) -> Self {
         Self { white: self.size(), wander: 0.0, ..*self }
@@ -225,7 +235,7 @@ const FEWEST_APART: f64 = 12.0;
 /// `floor` is the least standard deviation of the white part: that of the rounding of the data.
 pub(crate) fn estimate(time: &[f64], residual: &[f64], valid: &[bool], floor: f64) -> (Noise, f64) {
     let step = typical_step(time);
-    let span = (time.last().unwrap_or(&1.0) - time.first().unwrap_or(&0.0)).max(step);
+    let span = span(time);
     let unit = |ratio: f64, time_constant: f64| Noise { white: 1.0, wander: ratio, time_constant, alike: 1.0 };
     let at = |point: [f64; 2]| unit(point[0].clamp(-12.0, 12.0).exp(), point[1].exp());
     // Between half a step and ten recordings, and a wandering from nothing to all there is.
@@ -250,10 +260,15 @@ pub(crate) fn estimate(time: &[f64], residual: &[f64], valid: &[bool], floor: f6
         let (ratio, time_constant) = (point[0].clamp(-12.0, 12.0).exp(), point[1].exp());
         let scale = alone(unit(ratio, time_constant)).1.sqrt();
         let wander = ratio * scale;
-        let reach = wander * (1.0 - (-2.0 * STRETCH * span / time_constant).exp()).sqrt();
-        return (Noise { white: scale.max(floor).max(ROUGH * reach), wander, time_constant, alike: 1.0 }, value);
+        let noise = Noise { white: scale.max(floor), wander, time_constant, alike: 1.0 };
+        return (Noise { white: noise.white.max(noise.least_white(span)), ..noise }, value);
     }
     (Noise { white: white.1.sqrt().max(floor), time_constant: span, ..Noise::white(1.0) }, white.0)
+}
+
+/// How long a recording lasts, s; one step at least.
+fn span(time: &[f64]) -> f64 {
+    (time.last().unwrap_or(&1.0) - time.first().unwrap_or(&0.0)).max(typical_step(time))
 }
 
 /// The best of some points to start from: short and long times, of which none is longer than the recording.

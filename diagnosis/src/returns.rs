@@ -125,8 +125,13 @@ impl Returns {
                 })
                 .max_by(|a, b| a.1.share.total_cmp(&b.1.share));
             let Some((state, prediction)) = best else { break };
+            let before = variance(&left, valid);
             prediction.take_from(&mut left);
             let variance = variance(&left, valid);
+            // What holds within units only says nothing of the whole.
+            if variance >= before {
+                break;
+            }
             let share = 1.0 - variance / whole.max(f64::MIN_POSITIVE);
             found.push(Return { state, share, left: variance.sqrt() });
             let (rows, kept) = self.thinned(&left, valid);
@@ -142,8 +147,10 @@ impl Returns {
         let mut factor = 1.0;
         for one in states {
             let Some(prediction) = self.predict(&self.states[one.state], &left, valid) else { continue };
-            if prediction.share > 0.0 {
-                prediction.take_from(&mut left);
+            let mut less = left.clone();
+            prediction.take_from(&mut less);
+            if prediction.share > 0.0 && variance(&less, valid) < variance(&left, valid) {
+                left = less;
                 factor *= (prediction.others / (prediction.others + 1.0)).sqrt();
             }
         }

@@ -27,12 +27,13 @@ const PATIENCE: f64 = 12.0;
 /// What an effect must take from the cost to be chosen: each parameter what it could gain by chance in so many samples,
 /// and what the best of so many tries would gain by chance; and a little for a complicated name.
 pub(crate) fn price(study: &Study<'_>, effect: &Effect, samples: f64, tries: f64, waves: f64) -> f64 {
-    // The period of a wave was looked for among all waves, which is what their number counts.
-    let searched = effect.shape.nonlinear().is_some() && !effect.shape.is_wave();
+    // The period of a wave is no further parameter: it was looked for among all waves of all motions, which their number counts.
+    let wave = effect.shape.is_wave();
+    let searched = effect.shape.nonlinear().is_some() && !wave;
     let parameters = effect.shape.columns() + usize::from(searched);
-    let waves = if effect.shape.is_wave() { waves.max(1.0).ln() } else { 0.0 };
+    let tried = if wave { waves.max(1.0).ln() } else { tries.ln() };
     (crate::number(parameters) - FIRST_SAVES) * parameter_price(samples)
-        + 2.0 * (tries.ln() + waves)
+        + 2.0 * tried
         + simplicity(study, effect)
 }
 

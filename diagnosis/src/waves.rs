@@ -184,11 +184,10 @@ pub(crate) fn peaks(
     travels: &[Travel],
     places: &[WavePlace],
 ) -> (Vec<Peak>, f64) {
-    let (mut peaks, mut tried, mut count) = (Vec::new(), 0.0, 0_usize);
+    let (mut peaks, mut tried) = (Vec::new(), 0.0);
     // A column for each row and place at a time is too much.
     for places in places.chunks(PLACES) {
         let sources = sources(study, model, courses, residuals, places);
-        count += sources.len();
         let spectra = parallel::counted(sources.len(), study.rows() * sources.len(), |number| {
             let source = &sources[number];
             [along(study, source, courses, travels), in_time(study, source, courses)]
@@ -198,7 +197,7 @@ pub(crate) fn peaks(
             peaks.extend(looked_at.peaks);
         }
     }
-    (peaks, tried / crate::number(count.max(1)))
+    (peaks, tried)
 }
 
 /// At how many places waves are looked for at a time.

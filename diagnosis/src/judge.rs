@@ -11,6 +11,7 @@ use crate::noise::Noise;
 use crate::parallel;
 use crate::search::{price, untold_price};
 use crate::study::Study;
+use crate::terms::Shape;
 use crate::sweep::Swept;
 use crate::travel::Travel;
 use crate::zeros;
@@ -81,6 +82,7 @@ fn weakest(
             || !returns(&design, &swept, number, scale)
             || !steady(&design, &swept, number)
             || noise_explains(study, &design, &swept, fit, appraisal, number, price)
+            || follows_a_state(study, &fit.model, (appraisal, &whole), number)
             || !pays(study, &design, &swept, fit, (appraisal, &whole), number, travels);
         fails.then_some((worth, number))
     };
@@ -139,6 +141,35 @@ fn pays(
 /// What an effect takes from the sum of squares must be at least this share of what still comes back without a name: less may be a
 /// piece of that.
 const APART: f64 = 1.0;
+
+/// Whether a wave in time is nothing but a function of a state, which strokes of equal length bring back at equal times: most of it
+/// goes where a state takes what comes back with it.
+fn follows_a_state(
+    study: &Study<'_>,
+    model: &Model,
+    (appraisal, whole): (&Appraisal, &[Vec<Vec<f64>>]),
+    number: usize,
+) -> bool {
+    if !matches!(model[number].effect.shape, Shape::Vibration { .. }) {
+        return false;
+    }
+    let mut bare = model.clone();
+    bare.remove(number);
+    let bare = zeros::residuals(study, &bare);
+    study.scenes.iter().enumerate().any(|(scene, known)| {
+        (0..known.channels.len()).any(|channel| {
+            let (bare, left) = (&bare[scene][channel], &whole[scene][channel]);
+            let outliers = &appraisal.outliers[scene][channel];
+            let valid: Vec<bool> =
+                bare.iter().zip(outliers).map(|(value, outlier)| value.is_finite() && !outlier).collect();
+            let signal: Vec<f64> = bare.iter().zip(left).map(|(bare, left)| bare - left).collect();
+            known.returns.stays(&signal, bare, &valid) < MOSTLY_STAYS
+        })
+    })
+}
+
+/// The share of a wave in time that no state may take.
+const MOSTLY_STAYS: f64 = 0.5;
 
 /// A model without an effect, in which the periods of other waves along the same axis follow: a slope beside a wave of two cycles
 /// draws its period, and without it the wave fits as well at its own.

@@ -157,6 +157,37 @@ impl Returns {
         (left, factor)
     }
 
+    /// The sum of squares that the best single state takes from a residual in other units; 0 where none takes any.
+    pub(crate) fn most(&self, residual: &[f64], valid: &[bool]) -> f64 {
+        let whole = variance(residual, valid);
+        let taken = |state: &State| {
+            let mut left = residual.to_vec();
+            self.predict(state, residual, valid)?.take_from(&mut left);
+            Some(whole - variance(&left, valid))
+        };
+        let most = self.states.iter().filter_map(taken).fold(0.0, f64::max);
+        most * crate::number(valid.iter().filter(|valid| **valid).count())
+    }
+
+    /// The share of a signal in a residual that stays where any single state takes what comes back with it: 1 for what no state
+    /// knows of, 0 for what is a function of one.
+    pub(crate) fn stays(&self, signal: &[f64], residual: &[f64], valid: &[bool]) -> f64 {
+        let product = |a: &[f64], b: &[f64]| -> f64 {
+            let rows = a.iter().zip(b).zip(valid).filter(|(_, valid)| **valid);
+            rows.map(|((a, b), _)| a * b).sum()
+        };
+        let whole = product(signal, residual);
+        if whole <= 0.0 {
+            return 1.0;
+        }
+        let left = |state: &State| {
+            let mut left = residual.to_vec();
+            self.predict(state, residual, valid).filter(|known| known.share > 0.0)?.take_from(&mut left);
+            Some(product(signal, &left) / whole)
+        };
+        self.states.iter().filter_map(left).fold(1.0, f64::min)
+    }
+
     fn thinned(&self, residual: &[f64], valid: &[bool]) -> (Vec<f64>, Vec<bool>) {
         self.rows.iter().map(|row| (residual[*row], valid[*row])).unzip()
     }

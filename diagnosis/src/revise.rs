@@ -69,10 +69,11 @@ impl Revision<'_> {
         if costs(&fitted) >= costs(fit) {
             return None;
         }
-        let count = fitted.model.len();
+        let (count, more) = (fitted.model.len(), fitted.model.len() > fit.model.len());
         let (kept, left) = judge::uphold(study, fitted, self.always, self.travels, self.tries);
         appraisal.mark(study);
-        (kept.model.len() == count).then_some((kept, left))
+        let stands = kept.model.len() == count && (!more || stands_apart(study, appraisal, &left));
+        stands.then_some((kept, left))
     }
 
     /// Models with another effect in the place of one, and with one more, the most promising first.
@@ -136,6 +137,25 @@ impl Revision<'_> {
         let candidates = engine::regressors(study, model, self.always, self.pool, peaks);
         candidates.into_iter().skip(model.len()).map(|regressor| regressor.effect).collect()
     }
+}
+
+/// Whether an effect takes at least as much as what comes back without a name beside it: less may be a piece of that, as a wave is
+/// of a dent.
+fn stands_apart(study: &Study<'_>, without: &Appraisal, with: &Appraisal) -> bool {
+    let (mut taken, mut returning) = (0.0, 0.0);
+    for (scene, known) in study.scenes.iter().enumerate() {
+        for channel in 0..known.channels.len() {
+            let outliers = with.outliers[scene][channel].iter().zip(&without.outliers[scene][channel]);
+            let [before, after] = [without, with].map(|one| &one.residuals[scene][channel]);
+            let valid: Vec<bool> =
+                outliers.zip(after).map(|((a, b), value)| !a && !b && value.is_finite()).collect();
+            let size = with.leftover[scene][channel].max(f64::MIN_POSITIVE);
+            let rows = || before.iter().zip(after).zip(&valid).filter(|(_, valid)| **valid);
+            taken += rows().map(|((before, after), _)| before * before - after * after).sum::<f64>() / (size * size);
+            returning += known.returns.most(after, &valid) / (size * size);
+        }
+    }
+    taken > returning
 }
 
 /// By how much an effect in the place of another one may fall short before its own parameter is fitted: half of a grid's step.

@@ -25,7 +25,7 @@ fn left(study: &Study<'_>, model: &Model) -> Vec<Vec<f64>> {
 /// The columns of regressors for one channel over all rows, the residual last.
 fn columns(study: &Study<'_>, channel: usize, model: &Model, regressors: &[Regressor]) -> DMatrix<f64> {
     let width = regressors.iter().map(Regressor::columns).sum();
-    let noise = Noise { white: 1.0, wander: 0.0, time_constant: 1.0 };
+    let noise = Noise { white: 1.0, wander: 0.0, time_constant: 1.0, alike: 1.0 };
     let course = Course::new(study, 0, model);
     let mut run = ChannelRun::new(study, 0, channel, model, noise, regressors, width);
     let rows = study.scenes[0].rows();
@@ -286,7 +286,7 @@ fn gappy(bench: &Bench) -> Recording {
     recording
 }
 
-const COLORED: Noise = Noise { white: 1e-3, wander: 2e-3, time_constant: 1.5 };
+const COLORED: Noise = Noise { white: 1e-3, wander: 2e-3, time_constant: 1.5, alike: 1.0 };
 
 #[test]
 fn products_are_those_of_whitened_columns() {

@@ -4,7 +4,7 @@ use super::*;
 use crate::model::{Effect, Place};
 use crate::recording::Recording;
 use crate::side::Side;
-use crate::terms::{Setting, Shape};
+use crate::terms::Setting;
 use crate::testing::{Bench, circle, normals, path, position, scenario};
 
 /// The lost motion of X where it acts with its whole strength, mm.
@@ -87,7 +87,7 @@ impl Case<'_> {
 
     fn pays(&self) -> bool {
         let whole = zeros::residuals(&self.study, &self.fit.model);
-        pays(&self.study, &self.design, &swept(&self.design), &self.fit, (&self.appraisal, &whole), PLAY)
+        pays(&self.study, &self.design, &swept(&self.design), &self.fit, (&self.appraisal, &whole), PLAY, &[])
     }
 }
 
@@ -210,7 +210,7 @@ fn falls(case: &Case<'_>, always: usize, share: f64) -> Option<usize> {
     let untried = price(&case.study, &case.fit.model[PLAY].effect, samples, 1.0, 1.0);
     assert!(untried < 0.5 * worth, "{untried} {worth}");
     let candidates = (0.5 * (share * worth - untried)).exp();
-    weakest(&case.study, &case.fit, &case.appraisal, always, Tries { candidates, waves: 1.0 })
+    weakest(&case.study, &case.fit, &case.appraisal, always, Tries { candidates, waves: 1.0 }, &[])
 }
 
 #[test]

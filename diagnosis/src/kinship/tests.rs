@@ -24,7 +24,7 @@ fn grouped(
     let study = Study::new(bench.equations(), None, &[recording]);
     let courses = [Course::new(&study, 0, &[])];
     let noises =
-        vec![vec![Noise { white: 1e-3, wander: 0.0, time_constant: 1.0 }; study.scenes[0].channels.len()]];
+        vec![vec![Noise { white: 1e-3, wander: 0.0, time_constant: 1.0, alike: 1.0 }; study.scenes[0].channels.len()]];
     let effect = |(name, shape): &(&str, Shape)| Effect {
         place: Place::Motion { motion: bench.motion(name), side: Side::After },
         shape: shape.clone(),
@@ -78,7 +78,7 @@ fn a_squareness_is_a_guide_that_leans_and_no_yaw() {
     // The simplest of the group stands for it.
     let recording = recorded(&bench, circle(60.0), "xy", &[-50.0]);
     let study = Study::new(bench.equations(), None, &[&recording]);
-    let noises = vec![vec![Noise { white: 1e-3, wander: 0.0, time_constant: 1.0 }; 2]];
+    let noises = vec![vec![Noise { white: 1e-3, wander: 0.0, time_constant: 1.0, alike: 1.0 }; 2]];
     let linear = Shape::Polynomial { axis: 1, degree: 1, center: 120.0, scale: 60.0 };
     let place = |name: &str| Place::Motion { motion: bench.motion(name), side: Side::After };
     let effects = vec![

@@ -24,9 +24,9 @@ fn covariance(noise: Noise, time: &[f64], valid: &[bool]) -> DMatrix<f64> {
 /// Uneven times with single gaps and a long one, and noise of three kinds.
 fn cases() -> Vec<(Noise, Vec<f64>, Vec<bool>)> {
     let noises = [
-        Noise { white: 0.7, wander: 0.0, time_constant: 3.0 },
-        Noise { white: 0.3, wander: 1.4, time_constant: 2.5 },
-        Noise { white: 1.0, wander: 40.0, time_constant: 900.0 },
+        Noise { white: 0.7, wander: 0.0, time_constant: 3.0, alike: 1.0 },
+        Noise { white: 0.3, wander: 1.4, time_constant: 2.5, alike: 1.0 },
+        Noise { white: 1.0, wander: 40.0, time_constant: 900.0, alike: 1.0 },
     ];
     let case = |(seed, noise): (u64, Noise)| {
         let time = uneven(seed, 90, 0.5);
@@ -106,7 +106,7 @@ fn columns_whitened_together_are_those_whitened_alone() {
 
 #[test]
 fn a_filter_that_has_settled_does_what_it_would_work_out() {
-    let noise = Noise { white: 0.7, wander: 1.3, time_constant: 5.0 };
+    let noise = Noise { white: 0.7, wander: 1.3, time_constant: 5.0, alike: 1.0 };
     let time: Vec<f64> = (0..400).map(|row| f64::from(row) * 0.25).collect();
     let valid: Vec<bool> = (0..400).map(|row| row % 97 != 3).collect();
     let mut filter = Whitening::new(noise);
@@ -129,7 +129,7 @@ fn a_filter_that_has_settled_does_what_it_would_work_out() {
 
 #[test]
 fn the_rounding_of_a_clock_is_no_step_of_its_own() {
-    let noise = Noise { white: 0.7, wander: 1.3, time_constant: 0.002 };
+    let noise = Noise { white: 0.7, wander: 1.3, time_constant: 0.002, alike: 1.0 };
     let exact: Vec<f64> = (0..400).map(|row| f64::from(row) * 6.0319e-5 / 1.7).collect();
     let clock: Vec<f64> = exact.iter().map(|time| (time * 1e9).round() / 1e9).collect();
     let steps = |time: &[f64]| Whitening::new(noise).steps(time, &[true; 400]);
@@ -184,7 +184,7 @@ fn the_deviance_holds_where_a_product_of_weights_would_leave_the_numbers() {
     // 4000 weights of 1e9: their product is far beyond 1e308.
     let rows = 4000;
     let time: Vec<f64> = (0..rows).map(crate::number).collect();
-    let noise = Noise { white: 1e-9, wander: 0.0, time_constant: 1.0 };
+    let noise = Noise { white: 1e-9, wander: 0.0, time_constant: 1.0, alike: 1.0 };
     let values: Vec<f64> = normals(16, rows).iter().map(|value| 1e-9 * value).collect();
     let squares: f64 = values.iter().map(|value| value * value / 1e-18).sum();
     let count = crate::number(rows);
@@ -197,9 +197,9 @@ fn the_deviance_holds_where_a_product_of_weights_would_leave_the_numbers() {
 fn likelihoods_worked_out_together_are_those_worked_out_alone() {
     let noises = [
         Noise::white(0.7),
-        Noise { white: 0.3, wander: 1.4, time_constant: 2.5 },
-        Noise { white: 1.0, wander: 40.0, time_constant: 900.0 },
-        Noise { white: 1e-3, wander: 1e-7, time_constant: 0.1 },
+        Noise { white: 0.3, wander: 1.4, time_constant: 2.5, alike: 1.0 },
+        Noise { white: 1.0, wander: 40.0, time_constant: 900.0, alike: 1.0 },
+        Noise { white: 1e-3, wander: 1e-7, time_constant: 0.1, alike: 1.0 },
     ];
     let bits = |(deviance, scale): (f64, f64)| [deviance.to_bits(), scale.to_bits()];
     let even: Vec<f64> = (0..300).map(|row| 0.25 * f64::from(row)).collect();
@@ -249,7 +249,7 @@ fn a_wandering_sensor_is_told_with_its_time_constant() {
     let time = uneven(2, 3000, 0.1);
     let correlated = Correlated { sigma: 1.5, time_constant: 2.0 };
     let kind = Drawn { white: 1.0, correlated: Some(correlated), ..Drawn::default() };
-    let truth = Noise { white: 1.0, wander: 1.5, time_constant: 2.0 };
+    let truth = Noise { white: 1.0, wander: 1.5, time_constant: 2.0, alike: 1.0 };
     let (mut logs, seeds) = ([0.0; 3], 6);
     for seed in 0..seeds {
         let values = drawn(kind, &time, seed);
@@ -345,6 +345,66 @@ fn the_typical_step_is_the_median() {
 
 #[test]
 fn white_noise_of_the_same_size_has_the_same_variance() {
-    let noise = Noise { white: 3.0, wander: 4.0, time_constant: 7.0 };
-    assert_eq!(noise.as_white(), Noise { white: 5.0, wander: 0.0, time_constant: 7.0 });
+    let noise = Noise { white: 3.0, wander: 4.0, time_constant: 7.0, alike: 1.0 };
+    assert_eq!(noise.as_white(), Noise { white: 5.0, wander: 0.0, time_constant: 7.0, alike: 1.0 });
+}
+
+#[test]
+fn stations_at_whole_steps_are_no_display() {
+    // Targets at whole millimetres, read with errors below a micrometre: the display shows tenths of one.
+    let read: Vec<f64> = (0..120).map(|row| f64::from(row % 12) + 1e-4 * f64::from(row / 12)).collect();
+    assert!((display_step(&read) / 1e-4 - 1.0).abs() < 1e-6, "{}", display_step(&read));
+    let further: Vec<f64> = read.iter().map(|value| value + 0.3).collect();
+    assert!((display_step(&further) / display_step(&read) - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn the_likelihood_of_a_given_noise_is_that_of_a_dense_covariance() {
+    for (noise, time, valid) in cases() {
+        let values = normals(31, time.len());
+        let covariance = covariance(noise, &time, &valid);
+        let known = kept(&values, &valid);
+        let factor = covariance.cholesky().unwrap();
+        let logs: f64 = factor.l().diagonal().iter().map(|value| 2.0 * value.ln()).sum();
+        let expected = known.dot(&factor.solve(&known)) + logs;
+        let found = super::deviance(&time, &values, &valid, &noise);
+        assert!((found - expected).abs() < 1e-8 * expected.abs(), "{found} {expected}");
+        // Ten samples that count for one say a tenth.
+        let shared = super::deviance(&time, &values, &valid, &Noise { alike: 10.0, ..noise });
+        assert!((shared - expected / 10.0).abs() < 1e-8 * expected.abs(), "{shared}");
+    }
+}
+
+#[test]
+fn samples_count_for_one_over_the_time_in_which_they_are_alike() {
+    let rows = 20_000;
+    let white = alike(&normals(32, rows), &vec![true; rows]);
+    assert!((1.0..1.5).contains(&white), "{white}");
+    // Of noise that decays by the factor e in tau rows, 2 tau rows count for one.
+    for tau in [5.0, 40.0] {
+        let time: Vec<f64> = (0..rows).map(crate::number).collect();
+        let correlated = Correlated { sigma: 1.0, time_constant: tau };
+        let kind = Drawn { white: 0.0, correlated: Some(correlated), ..Drawn::default() };
+        let found = alike(&drawn(kind, &time, 33), &vec![true; rows]);
+        assert!((found / (2.0 * tau) - 1.0).abs() < 0.35, "{tau}: {found}");
+    }
+    // However long it goes on, some stretches are told apart; and nothing at all is one sample.
+    let slope: Vec<f64> = (0..600).map(f64::from).collect();
+    assert!((alike(&slope, &[true; 600]) - 50.0).abs() < 1e-9);
+    assert_eq!(alike(&[], &[]), 1.0);
+    assert_eq!(alike(&[2.0; 9], &[true; 9]), 1.0);
+}
+
+#[test]
+fn what_wanders_without_a_white_part_is_no_sensor() {
+    let time: Vec<f64> = (0..2000).map(|row| 0.01 * f64::from(row)).collect();
+    let kind = |white: f64| Drawn {
+        white,
+        correlated: Some(Correlated { sigma: 1.0, time_constant: 3.0 }),
+        ..Drawn::default()
+    };
+    let found = |white: f64| estimate(&time, &drawn(kind(white), &time, 34), &all(&time), 0.0).0;
+    assert!(found(1e-6).only_wanders(&time));
+    assert!(!found(0.5).only_wanders(&time));
+    assert!(!Noise::white(1.0).only_wanders(&time));
 }

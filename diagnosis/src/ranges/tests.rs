@@ -191,7 +191,7 @@ fn vibration(frequency: f64) -> Shape {
 }
 
 fn wave(axis: usize, period: f64) -> Shape {
-    Shape::Cyclic { axis, period, .. }
+    Shape::Cyclic { axis, period, center: 0.0 }
 }
 
 #[test]

@@ -7,8 +7,10 @@ use simulation::noise::{Correlated, Noise as Drawn, Source, Walk};
 use super::*;
 use crate::candidates;
 use crate::engine;
+use crate::fit;
 use crate::judge::Tries;
 use crate::kinship;
+use crate::noise::Noise;
 use crate::recording::Recording;
 use crate::side::Side;
 use crate::terms::Setting;
@@ -343,49 +345,6 @@ fn what_is_in_the_model_is_not_suspected_again() {
     assert!(suspect(&study, &found).is_none());
 }
 
-/// Fits plainly for what keeps on for a time, s.
-fn plainly(study: &Study<'_>, time: f64) -> (Found, Moving) {
-    let mut found = found(study);
-    let mut moving = Moving { scene: 0, channel: 0, rms: 0.0, time };
-    fit_plainly(study, &mut found, &mut moving);
-    (found, moving)
-}
-
-#[test]
-fn a_stretch_that_keeps_on_counts_as_one_sample() {
-    let (bench, recording) = stage("{}", leftover);
-    let study = Study::new(bench.equations(), None, &[&recording]);
-    let (command, measured) = seen(&recording);
-    let errors: Vec<f64> = measured.iter().zip(command).map(|(seen, command)| seen - command).collect();
-    let count = crate::number(errors.len());
-    let mean = errors.iter().sum::<f64>() / count;
-    let variance = errors.iter().map(|error| (error - mean).powi(2)).sum::<f64>() / count;
-    // Rows are 0.05 s apart: that many in two times.
-    for (time, stretch) in [(0.01, 1.0), (0.05, 2.0), (0.25, 10.0), (0.5, 20.0)] {
-        let (found, moving) = plainly(&study, time);
-        let zero = found.fit.model[0].coefficients[0];
-        assert!((zero - mean).abs() < 1e-9, "each sample counts alike: {zero} {mean}");
-        let expected = variance / (count / stretch);
-        let found_variance = found.fit.covariances[0][(0, 0)];
-        assert!((found_variance / expected - 1.0).abs() < 1e-2, "{time}: {found_variance} {expected}");
-        assert_eq!(moving.time, time);
-    }
-}
-
-#[test]
-fn the_noise_is_told_apart_from_what_moves() {
-    let (bench, recording) = stage("{}", leftover);
-    let study = Study::new(bench.equations(), None, &[&recording]);
-    let (found, moving) = plainly(&study, 0.3);
-    let noise = found.appraisal.noises[0][0];
-    let residual = &found.appraisal.residuals[0][0];
-    assert!((moving.rms / rms(residual) - 1.0).abs() < 1e-3, "{}", moving.rms);
-    assert!((noise.wander / SMOOTH - 1.0).abs() < 0.15, "{noise:?}");
-    assert_eq!(noise.time_constant, 0.3);
-    // The sines go on by 0.1 um and more from row to row, beside 0.05 um of noise.
-    assert!(noise.white > 4e-5 && noise.white < 2e-4, "{noise:?}");
-}
-
 #[test]
 fn the_largest_channel_that_moves_is_named_and_outliers_do_not_hide_it() {
     let bench = Bench::of("FX");
@@ -401,7 +360,15 @@ fn the_largest_channel_that_moves_is_named_and_outliers_do_not_hide_it() {
     residuals[0] = smooth.iter().map(|value| 0.5 * value).collect();
     let none = vec![vec![vec![false; rows]; channels]];
     let noises = vec![vec![Noise::white(1.0); channels]];
-    let mut appraisal = Appraisal { residuals: vec![residuals], outliers: none, noises, deviance: 0.0 };
+    let mut appraisal = Appraisal {
+        residuals: vec![residuals],
+        outliers: none,
+        floors: noises.clone(),
+        noises,
+        returning: Vec::new(),
+        leftover: Vec::new(),
+        deviance: 0.0,
+    };
     // The larger channel is white.
     assert_eq!(moving(&study, &appraisal).unwrap().channel, 0);
     appraisal.residuals[0][1] = smooth.clone();

@@ -1,31 +1,51 @@
-//! The spectrum against sums written out, and its peaks.
+//! The spectrum against least squares written out, and its peaks.
 
 use std::f64::consts::TAU;
+
+use nalgebra::{DMatrix, DVector};
 
 use super::*;
 use crate::testing::{normals, uneven};
 
+/// The spectrum of a residual of rows that weigh alike.
+fn of(places: &[f64], residual: &[f64], low: f64, range: f64, shortest: f64) -> Vec<Line> {
+    let weights = vec![1.0; places.len()];
+    spectrum(&[Rows { places, weighted: residual, weights: &weights }], low, range, shortest)
+}
+
+/// By how much weighted least squares of a mean, a sine and a cosine leaves less than that of the mean alone.
+fn gained(places: &[f64], values: &[f64], weights: &[f64], frequency: f64) -> f64 {
+    let left = |columns: usize| {
+        let design = DMatrix::from_fn(places.len(), columns, |row, column| {
+            let (sine, cosine) = (TAU * frequency * places[row]).sin_cos();
+            [1.0, sine, cosine][column] * weights[row].sqrt()
+        });
+        let seen = DVector::from_fn(values.len(), |row, _| values[row] * weights[row].sqrt());
+        let fitted = design.clone().svd(true, true).solve(&seen, 1e-12).unwrap();
+        (seen - design * fitted).norm_squared()
+    };
+    left(1) - left(3)
+}
+
 #[test]
-fn the_spectrum_is_the_squared_fourier_sum_at_uneven_places() {
+fn each_line_is_what_least_squares_gains_beside_a_free_mean() {
     let (low, range, shortest) = (-40.0, 200.0, 4.0);
-    let places: Vec<f64> = uneven(71, 160, 1.2).iter().map(|place| low + place).collect();
+    // Half of the rows lie at one place, where the axis rests.
+    let moving = uneven(71, 80, 2.4).into_iter().map(|place| low + place);
+    let places: Vec<f64> = moving.chain(std::iter::repeat_n(low + 1.0, 80)).collect();
     assert!(places.iter().all(|place| (low..low + range).contains(place)));
-    let weights = normals(72, 160);
-    let weighted = std::slice::from_ref(&weights);
-    let found: Vec<(f64, f64)> = spectrum(weighted, &[&places], low, range, shortest).collect();
-    assert_eq!(found[0].0, 0.0);
+    let values: Vec<f64> = normals(72, 160).into_iter().map(|value| 3.0 + value).collect();
+    let weights: Vec<f64> = (0..160).map(|row| if row % 3 == 0 { 4.0 } else { 1.0 }).collect();
+    let weighted: Vec<f64> = values.iter().zip(&weights).map(|(value, weight)| value * weight).collect();
+    let rows = [Rows { places: &places, weighted: &weighted, weights: &weights }];
+    let found = spectrum(&rows, low, range, shortest);
     assert!((found.last().unwrap().0 - 1.0 / shortest).abs() < 1.0 / range);
-    let total: f64 = weights.iter().map(|weight| weight * weight).sum();
-    for (frequency, power) in found.iter().filter(|(frequency, _)| *frequency < 0.3 / shortest) {
-        let sum = |part: fn(f64) -> f64| -> f64 {
-            weights.iter().zip(&places).map(|(weight, place)| weight * part(TAU * frequency * place)).sum()
-        };
-        let expected = sum(f64::cos).powi(2) + sum(f64::sin).powi(2);
-        // Sorting into bins moves a place by half a bin on average the same, and by half a bin at most beside that.
-        assert!(
-            (power - expected).abs() < 0.6 * (expected * total).sqrt() + 0.05 * total,
-            "{frequency}: {power} {expected}"
-        );
+    let slow = found.iter().filter(|(frequency, _)| (2.0 / range..0.2 / shortest).contains(frequency));
+    let total: f64 = weights.iter().sum();
+    for (frequency, gain) in slow {
+        let expected = gained(&places, &values, &weights, *frequency);
+        // Sorting into bins moves a place by a sixtieth of a period at most.
+        assert!((gain - expected).abs() < 0.05 * (expected * total).sqrt() + 0.02 * total, "{frequency}: {gain} {expected}");
     }
 }
 
@@ -34,30 +54,59 @@ fn a_wave_stands_out_at_its_frequency_with_what_it_would_gain() {
     for period in [7.3, 12.0, 31.0] {
         let places: Vec<f64> = (0..900).map(|row| 0.37 * f64::from(row)).collect();
         let wave: Vec<f64> = places.iter().map(|place| (TAU * place / period + 0.7).sin()).collect();
-        let found = best(spectrum(&[wave], &[&places], 0.0, 333.0, 2.0), 2.0 / 333.0, 3);
-        let (frequency, power) = found[0];
-        assert!((frequency * period - 1.0).abs() < 0.1 * period / 333.0, "{period}: {}", 1.0 / frequency);
-        // (n / 2)^2, less what lies between two lines of the spectrum.
-        assert!(power > 0.8 * 450.0_f64.powi(2) && power < 1.02 * 450.0_f64.powi(2), "{period}: {power}");
-        assert!(found[1..].iter().all(|(_, other)| *other < 0.2 * power));
+        let found = tops(&of(&places, &wave, 0.0, 333.0, 2.0), 2.0 / 333.0, 3);
+        let top = found.iter().max_by(|a, b| a.gain.total_cmp(&b.gain)).unwrap();
+        assert!((top.frequency * period - 1.0).abs() < 0.1 * period / 333.0, "{period}: {}", 1.0 / top.frequency);
+        // n / 2, less what lies between two lines of the spectrum.
+        assert!(top.gain > 0.8 * 450.0 && top.gain < 1.02 * 450.0, "{period}: {}", top.gain);
     }
 }
 
 #[test]
+fn a_wave_is_found_beside_a_noise_that_is_louder_at_other_frequencies() {
+    // A walk: its slow lines are a thousand times as high as that of the wave.
+    let places: Vec<f64> = (0..2000).map(f64::from).collect();
+    let mut walked = 0.0;
+    let values: Vec<f64> = normals(73, 2000)
+        .into_iter()
+        .zip(&places)
+        .map(|(step, place)| {
+            walked += step;
+            walked + 1.5 * (TAU * place / 12.5).sin()
+        })
+        .collect();
+    let lines = of(&places, &values, 0.0, 2000.0, 2.2);
+    let found = tops(&lines, 1.6 / 2000.0, 3);
+    let near = |top: &&Top| (top.frequency * 12.5 - 1.0).abs() < 0.01;
+    let wave = found.iter().find(near).expect("the wave is among the peaks");
+    assert!(found.iter().all(|other| other.local <= wave.local), "{found:?}");
+    let loudest = lines.iter().fold(0.0, |most: f64, line| most.max(line.1));
+    assert!(loudest > 10.0 * wave.gain, "by its power alone it would not be looked at");
+}
+
+#[test]
+fn where_all_rows_see_one_phase_nothing_is_gained() {
+    let places = vec![5.0; 100];
+    assert!(of(&places, &normals(74, 100), 0.0, 10.0, 1.0).iter().all(|(_, gain)| *gain == 0.0));
+    assert!(of(&[], &[], 0.0, 10.0, 1.0).iter().all(|(_, gain)| *gain == 0.0));
+}
+
+#[test]
 fn peaks_are_tops_above_a_frequency() {
-    let spectrum: Vec<(f64, f64)> = [9.0, 4.0, 1.0, 4.0, 1.0, 0.0, 9.0, 16.0, 9.0, 0.0]
+    let spectrum: Vec<Line> = [9.0, 4.0, 1.0, 4.0, 1.0, 0.0, 9.0, 16.0, 9.0, 0.0]
         .into_iter()
         .enumerate()
-        .map(|(n, power)| (crate::number(n), power))
+        .map(|(n, gain)| (crate::number(n), gain))
         .collect();
-    let best = |above, count| best(spectrum.iter().copied(), above, count);
-    let found = best(2.0, 5);
-    assert_eq!(found, [(7.0, 16.0), (3.0, 4.0)]);
-    assert_eq!(best(5.0, 5), [(7.0, 16.0)]);
-    assert_eq!(best(2.0, 1).len(), 1);
-    assert!(super::best(std::iter::empty(), 0.0, 3).is_empty());
+    let places = |above: f64, count: usize| -> Vec<f64> {
+        tops(&spectrum, above, count).iter().map(|top| top.frequency).collect()
+    };
+    assert_eq!(places(2.0, 5), [7.0, 3.0]);
+    assert_eq!(places(5.0, 5), [7.0]);
+    assert_eq!(places(2.0, 1), [7.0]);
+    assert!(tops(&[], 0.0, 3).is_empty());
     // Between two lines the top leans to the higher one.
     let leaning = [(0.0, 0.0), (1.0, 9.0), (2.0, 16.0), (3.0, 1.0)];
-    let (place, _) = super::best(leaning.into_iter(), 0.5, 1)[0];
-    assert!((1.5..2.0).contains(&place), "{place}");
+    let top = tops(&leaning, 0.5, 1)[0];
+    assert!((1.5..2.0).contains(&top.frequency), "{top:?}");
 }

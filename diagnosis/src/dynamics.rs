@@ -11,7 +11,6 @@ use crate::fit::{self, Fit};
 use crate::judge::Tries;
 use crate::model::{Effect, Fitted, Model, Place};
 use crate::noise::Noise;
-use crate::position_loop::PositionLoop;
 use crate::ranges::shortest_step;
 use crate::side::Side;
 use crate::study::Study;
@@ -124,11 +123,7 @@ pub(crate) fn may_answer(model: &Model, always: usize) -> bool {
 /// Dampings from which a loop of second order is tried: one that rings for long, and some that hardly do.
 const DAMPINGS: [f64; 4] = [0.15, 0.3, 0.6, 1.2];
 
-/// How many times in the step between rows the answer of a loop may fade by the factor e: beyond it, less than a hundredth is
-/// left in the next row, and a loop of second order says what one of first order says.
-const FADED: f64 = 5.0;
-
-/// A loop as it stands; one of first order also with each of the dampings whose answer lasts from row to row.
+/// A loop as it stands; one of first order also with each of the dampings whose ringing the rows resolve.
 fn loops(lag: &Fitted, step: f64) -> Vec<Shape> {
     let mut shapes = vec![lag.effect.shape.clone()];
     if let Shape::Lag { axis, inertia: 0.0 } = lag.effect.shape {
@@ -136,9 +131,7 @@ fn loops(lag: &Fitted, step: f64) -> Vec<Shape> {
         let roots = DAMPINGS.map(|damping| 0.5 * time_constant / damping);
         // Rows resolve no ringing that is quicker than twice their step.
         let roots = roots.into_iter().filter(|root| *root > step / std::f64::consts::PI);
-        let swung = roots.map(|root| PositionLoop { time_constant, inertia: root * root });
-        let lasting = swung.filter(|swung| swung.fading() * step < FADED);
-        shapes.extend(lasting.map(|swung| Shape::Lag { axis, inertia: swung.inertia }));
+        shapes.extend(roots.map(|root| Shape::Lag { axis, inertia: root * root }));
     }
     shapes
 }

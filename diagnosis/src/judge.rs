@@ -82,7 +82,7 @@ fn weakest(
             || !returns(&design, &swept, number, scale)
             || !steady(&design, &swept, number)
             || noise_explains(study, &design, &swept, fit, appraisal, number, price)
-            || follows_a_state(study, &fit.model, (appraisal, &whole), number)
+            || imitates_a_state(study, &fit.model, (appraisal, &whole), number)
             || !pays(study, &design, &swept, fit, (appraisal, &whole), number, travels);
         fails.then_some((worth, number))
     };
@@ -142,9 +142,9 @@ fn pays(
 /// piece of that.
 const APART: f64 = 1.0;
 
-/// Whether a wave in time is nothing but a function of a state, which strokes of equal length bring back at equal times: most of it
-/// goes where a state takes what comes back with it.
-fn follows_a_state(
+/// Whether a wave in time is a piece of a function of a state, which strokes of equal length bring back at equal times: most of it
+/// goes where a state takes what comes back with it, and as much comes back beside it. A wave that is all that comes back is one.
+fn imitates_a_state(
     study: &Study<'_>,
     model: &Model,
     (appraisal, whole): (&Appraisal, &[Vec<Vec<f64>>]),
@@ -163,7 +163,11 @@ fn follows_a_state(
             let valid: Vec<bool> =
                 bare.iter().zip(outliers).map(|(value, outlier)| value.is_finite() && !outlier).collect();
             let signal: Vec<f64> = bare.iter().zip(left).map(|(bare, left)| bare - left).collect();
+            let squares = |values: &[f64]| -> f64 {
+                values.iter().zip(&valid).filter(|(_, valid)| **valid).map(|(value, _)| value * value).sum()
+            };
             known.returns.stays(&signal, bare, &valid) < MOSTLY_STAYS
+                && squares(bare) - squares(left) < known.returns.most(left, &valid)
         })
     })
 }

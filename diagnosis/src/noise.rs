@@ -325,13 +325,13 @@ pub(crate) fn display_step(values: &[f64]) -> f64 {
     let smallest = differences.fold(f64::INFINITY, f64::min);
     let units = [1.0, std::f64::consts::PI / 180.0, std::f64::consts::PI / 180.0 / 3600.0, 25.4];
     let decades = (0..10).map(|decade| 0.1_f64.powi(decade));
-    let mut steps = decades.flat_map(|decade| [decade, 0.5 * decade, 0.2 * decade]);
+    let steps = decades.flat_map(|decade| [decade, 0.5 * decade, 0.2 * decade]);
     let multiple = |step: f64| {
         step < ROUNDED * smallest
             && known.iter().all(|value| (value / step - (value / step).round()).abs() < MULTIPLE)
     };
-    let found = steps.find_map(|step| units.iter().map(|unit| step * unit).find(|step| multiple(*step)));
-    found.unwrap_or_default().max(least)
+    let possible = steps.flat_map(|step| units.map(|unit| step * unit)).filter(|step| multiple(*step));
+    possible.fold(least, f64::max)
 }
 
 /// A difference of one step may come out smaller by the rounding of the numbers themselves.

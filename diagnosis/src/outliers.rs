@@ -46,13 +46,14 @@ fn from_neighbours(values: &[f64], at: usize) -> f64 {
     values[at] - few[few.len() / 2]
 }
 
-/// The scatter of the steps around a reading, those to it and from it left out.
+/// The scatter of the steps before a reading or behind it, whichever is the larger, those to it and from it left out: where an
+/// axis sets out, it lies within the one and not within the other.
 fn around(steps: &[f64], at: usize) -> f64 {
     let half = AROUND / 2;
     let before = at.saturating_sub(half)..at.saturating_sub(1).min(steps.len());
     let behind = (at + 1).min(steps.len())..(at + half).min(steps.len());
-    let before = steps.get(before).unwrap_or_default();
-    scatter(&[before, &steps[behind]].concat()).unwrap_or_default()
+    let sides = [steps.get(before).unwrap_or_default(), &steps[behind]];
+    sides.into_iter().filter_map(scatter).fold(0.0, f64::max)
 }
 
 /// The standard deviation of normal numbers that lie as far from their median: a slope is no scatter.

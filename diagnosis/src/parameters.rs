@@ -4,7 +4,7 @@
 //! compiler takes it. Amplitude and phase of a wave, the coefficients of a polynomial of the position and the gain of a loop
 //! are functions of what was fitted; their variances follow to first order.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_4, TAU};
 
 use model_dsl::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, SeriesInput};
 use nalgebra::DVector;
@@ -244,9 +244,9 @@ impl<'f> Described<'f> {
         let square = (amplitude * amplitude).max(f64::MIN_POSITIVE);
         let (factor, unit) = self.motion_unit;
         // Calibrations count the phase from position 0, where the period has gone on from the middle of the travel.
-        let back = match self.fitted.effect.shape {
-            Shape::Cyclic { period, center, .. } => TAU * center / period,
-            _ => 0.0,
+        let (back, turning) = match self.fitted.effect.shape {
+            Shape::Cyclic { period, center, .. } => (TAU * center / period, TAU * center / (period * period)),
+            _ => (0.0, 0.0),
         };
         vec![
             Parameter::fitted(
@@ -255,21 +255,24 @@ impl<'f> Described<'f> {
             ),
             Parameter::fitted(
                 "phase",
-                self.phase(turned(phase - back), [-b / square, a / square]),
+                self.phase(turned(phase - back), [-b / square, a / square, turning]),
             ),
         ]
     }
 
-    /// The phase of a wave of the period, or the frequency, that is told beside it: how well the wave is known where it was
-    /// measured. What an uncertain period turns a phase by on the way from there to position 0 is the period's uncertainty.
-    fn phase(&self, value: f64, gradient: [f64; 2]) -> Estimate {
+    /// The phase of a wave. Where the period, or the frequency, is so uncertain that it alone leaves the phase at position 0 open,
+    /// the interval is that of the phase for the period as it is told: how well the wave is known where it was measured.
+    fn phase(&self, value: f64, gradient: [f64; 3]) -> Estimate {
         let covariance = &self.certainty.covariance;
         let part = |row: usize, column: usize| {
             covariance.get((row, column)).copied().unwrap_or_default()
         };
-        let along = gradient[0] * part(0, 2) + gradient[1] * part(1, 2);
+        let along = gradient[0] * part(0, 2) + gradient[1] * part(1, 2) + gradient[2] * part(2, 2);
         let given = if part(2, 2) > 0.0 { along * along / part(2, 2) } else { 0.0 };
         let whole = self.derived(value, &gradient, (1.0, "rad".to_owned()));
+        if whole.ci95.1 - value < FRAC_PI_4 {
+            return whole;
+        }
         let half = (whole.ci95.1 - value) / WIDTH_95;
         let half = WIDTH_95 * (half * half - given).max(0.0).sqrt();
         Estimate { ci95: (value - half, value + half), ..whole }

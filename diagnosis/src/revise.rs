@@ -13,9 +13,11 @@ use crate::fit::{self, Fit};
 use crate::judge::{self, Tries};
 use crate::kinship::Kin;
 use crate::model::{Effect, Fitted, Model};
+use crate::ranges::holds;
 use crate::search::{price, rivals};
 use crate::study::Study;
 use crate::sweep::Swept;
+use crate::terms::Shape;
 use crate::travel::Travel;
 use crate::waves::{self, WavePlace};
 
@@ -92,7 +94,10 @@ impl Revision<'_> {
         }
         let scale = (whole.remaining() / samples.max(1.0)).max(f64::MIN_POSITIVE);
         let mut trials: Vec<(f64, Model)> = Vec::new();
-        let places = std::iter::once(None).chain((self.always..model.len()).map(Some));
+        // A curve is made of what stood in for it: those are no better.
+        let tabled = |number: &usize| matches!(model[*number].effect.shape, Shape::Table { .. });
+        let places = std::iter::once(None)
+            .chain((self.always..model.len()).filter(|number| !tabled(number)).map(Some));
         for place in places {
             let mut swept = whole.clone();
             let mut kept = model.clone();
@@ -104,7 +109,7 @@ impl Revision<'_> {
             let spared =
                 place.map_or(0.0, |number| self.price(study, &model[number].effect, samples));
             let mut gains: Vec<(f64, usize)> = (0..open.len())
-                .filter(|number| !kept.iter().any(|known| rivals(&known.effect, &open[*number])))
+                .filter(|number| !kept.iter().any(|known| against(&known.effect, &open[*number])))
                 .map(|number| {
                     let columns: Vec<usize> = design.columns(model.len() + number).collect();
                     let gain = swept.promise(&columns).0 / scale - self.price(study, &open[number], samples);
@@ -137,6 +142,11 @@ impl Revision<'_> {
         let candidates = engine::regressors(study, model, self.always, self.pool, peaks);
         candidates.into_iter().skip(model.len()).map(|regressor| regressor.effect).collect()
     }
+}
+
+/// Whether an effect may not stand beside one of the model: it is the same in another form, or what a table leaves at its corners.
+fn against(known: &Effect, effect: &Effect) -> bool {
+    rivals(known, effect) || known.place == effect.place && holds(&known.shape, &effect.shape)
 }
 
 /// Whether an effect takes at least as much as what comes back without a name beside it: less may be a piece of that, as a wave is

@@ -24,15 +24,16 @@ fn lag(bench: &Bench, time_constant: f64) -> Fitted {
 }
 
 #[test]
-fn a_loop_is_tried_with_the_dampings_whose_ringing_lasts_to_the_next_row() {
+fn a_loop_is_tried_with_the_dampings_whose_ringing_rows_resolve() {
     let bench = bench();
     let count = |time_constant: f64| loops(&lag(&bench, time_constant), 0.01).len() - 1;
-    // Its ringing fades at 2 d^2 / time constant, d the damping: of 0.6, 0.3 and 0.15 by e^5 in 10 ms at these.
     assert_eq!(count(1e-2), 4);
-    assert_eq!(count(0.98 * 2.0 * 0.36 * 0.01 / 5.0), 2);
-    assert_eq!(count(1.02 * 2.0 * 0.09 * 0.01 / 5.0), 2);
-    assert_eq!(count(0.98 * 2.0 * 0.09 * 0.01 / 5.0), 1);
-    assert_eq!(count(0.98 * 2.0 * 0.0225 * 0.01 / 5.0), 0);
+    // Two rows of 10 ms in a period of 2 pi T / (2 d), d the damping.
+    for (number, damping) in [0.15, 0.3, 0.6, 1.2].into_iter().enumerate() {
+        let resolved = 2.0 * damping * 0.02 / std::f64::consts::TAU;
+        assert_eq!(count(1.02 * resolved), number + 1);
+        assert_eq!(count(0.98 * resolved), number);
+    }
 }
 
 #[test]

@@ -126,9 +126,9 @@ pub(super) fn tops(spectrum: &[Line], above: f64, count: usize) -> Vec<Top> {
 /// The median of what a wave gains from white noise of unit variance: 2 ln 2.
 const MEDIAN: f64 = 2.0 * std::f64::consts::LN_2;
 /// The spectrum around a line: this share of its frequency to either side, and so many lines at least. Fewer are a median of
-/// chance, more are another noise.
+/// chance, more are another noise, which falls with the square of the frequency where it wanders.
 const SHARE: f64 = 0.3;
-const LINES: usize = 24;
+const LINES: usize = 6;
 
 /// The median of the spectrum around each line.
 fn levels(spectrum: &[Line]) -> Vec<f64> {

@@ -45,6 +45,14 @@ pub(crate) fn stretches(legs: &[usize]) -> impl Iterator<Item = Range<usize>> {
     })
 }
 
+/// How far from the end of a leg the next one may begin as if it went on: as an axis comes from row to row within legs. The last row
+/// of a run is seldom its very end, and among points that are read at rest a new run is a new number.
+pub(crate) fn reach(legs: &[usize], position: &[f64]) -> f64 {
+    let pairs = legs.windows(2).zip(position.windows(2)).filter(|(legs, _)| legs[0] == legs[1]);
+    let steps = pairs.map(|(_, position)| (position[1] - position[0]).abs());
+    PAUSE * steps.filter(|step| step.is_finite()).fold(0.0, f64::max)
+}
+
 /// Whether the axes were driven on from the row before.
 fn goes_on(time: &[f64], run: &[i64], programmed: &[Shared], row: usize, typical: f64) -> bool {
     let (pause, same) = (time[row] - time[row - 1], run[row] == run[row - 1]);

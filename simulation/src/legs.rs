@@ -33,6 +33,16 @@ pub(crate) fn legs(time: &[f64], run: &[i64], positions: &[Vec<f64>]) -> Vec<i64
     (0..time.len()).map(number).collect()
 }
 
+/// How far from the end of a leg the next one may begin as if it went on: as an axis comes from sample to sample within legs. The
+/// last sample of a run is seldom its very end, and among points that are read at rest a new run is a new number.
+pub(crate) fn reach(legs: &[i64], position: &[f64]) -> f64 {
+    let step = |(first, end): (usize, usize)| {
+        let leg = position.get(first..end).unwrap_or_default();
+        leg.iter().zip(leg.iter().skip(1)).map(|(before, behind)| (behind - before).abs()).fold(0.0, f64::max)
+    };
+    PAUSE * stretches(legs).into_iter().map(step).fold(0.0, f64::max)
+}
+
 /// The samples of each leg, as ranges: first and end.
 pub(crate) fn stretches(legs: &[i64]) -> Vec<(usize, usize)> {
     let mut start = 0;

@@ -14,6 +14,9 @@ pub(crate) const GAP: f64 = 20.0;
 /// From one run to the next a step so many times as long is a pause: a number that changes in motion leaves out no row.
 const PAUSE: f64 = 1.5;
 
+/// The last row of a run may be one step from its very end, and the first row of the next one from its beginning.
+const REACH: f64 = 2.0;
+
 /// The share of its speed by which an axis may be off what its speeds before and behind a gap allow: as much as a path may turn
 /// without a sharp corner.
 const SLACK: f64 = crate::way::CORNER;
@@ -43,6 +46,14 @@ pub(crate) fn stretches(legs: &[usize]) -> impl Iterator<Item = Range<usize>> {
         start = rows.end;
         rows
     })
+}
+
+/// How far from the end of a leg the next one may begin as if it went on: [`REACH`] times as far as an axis comes from row to row
+/// within legs. Among points that are read at rest a new run is a new number.
+pub(crate) fn reach(legs: &[usize], position: &[f64]) -> f64 {
+    let pairs = legs.windows(2).zip(position.windows(2)).filter(|(legs, _)| legs[0] == legs[1]);
+    let steps = pairs.map(|(_, position)| (position[1] - position[0]).abs());
+    REACH * steps.filter(|step| step.is_finite()).fold(0.0, f64::max)
 }
 
 /// Whether the axes were driven on from the row before.

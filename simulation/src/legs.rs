@@ -7,6 +7,8 @@
 const GAP: f64 = 20.0;
 /// From one run to the next a step so many times as long is a pause.
 const PAUSE: f64 = 1.5;
+/// The last sample of a run may be one step from its very end, and the first of the next one from its beginning.
+const REACH: f64 = 2.0;
 /// How far an axis may be off what its speeds before and behind a gap allow, as a share of the way at its speed.
 const SLACK: f64 = 0.3;
 /// The rounding of a position, as a share of it.
@@ -31,6 +33,16 @@ pub(crate) fn legs(time: &[f64], run: &[i64], positions: &[Vec<f64>]) -> Vec<i64
         leg
     };
     (0..time.len()).map(number).collect()
+}
+
+/// How far from the end of a leg the next one may begin as if it went on: [`REACH`] times as far as an axis comes from sample to
+/// sample within legs. Among points that are read at rest a new run is a new number.
+pub(crate) fn reach(legs: &[i64], position: &[f64]) -> f64 {
+    let step = |(first, end): (usize, usize)| {
+        let leg = position.get(first..end).unwrap_or_default();
+        leg.iter().zip(leg.iter().skip(1)).map(|(before, behind)| (behind - before).abs()).fold(0.0, f64::max)
+    };
+    REACH * stretches(legs).into_iter().map(step).fold(0.0, f64::max)
 }
 
 /// The samples of each leg, as ranges: first and end.

@@ -3,6 +3,7 @@
 //! In: times, legs and programmed positions. Out: the rows behind a corner of the path that lies between two rows, and those in which
 //! it is not known from which side an axis came.
 
+use crate::legs::reach;
 use crate::way::CORNER;
 
 /// Rows in which it is not known from which side an axis came to its place: it stands where it stood in the row before, and leaves
@@ -11,12 +12,14 @@ use crate::way::CORNER;
 pub(crate) fn unseen_turns(legs: &[usize], position: &[f64]) -> Vec<bool> {
     let known = || position.iter().copied().filter(|position| position.is_finite());
     let range = known().fold(f64::NEG_INFINITY, f64::max) - known().fold(f64::INFINITY, f64::min);
+    let near = reach(legs, position);
     let mut unseen = vec![false; position.len()];
     let mut came = 0.0;
     let mut first = 0;
     for row in 1..position.len() {
         let step = position[row] - position[row - 1];
-        if legs[row] != legs[row - 1] && step.abs() > 1e-6 * range {
+        // How an axis came to a leg that begins elsewhere than the last one ended is not asked.
+        if legs[row] != legs[row - 1] && step.abs() > near {
             (came, first) = (0.0, row);
             continue;
         }

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use super::Shared;
-use crate::legs::stretches;
+use crate::legs::{reach, stretches};
 
 /// What an axis did in each row.
 pub(super) struct Motion {
@@ -56,11 +56,12 @@ impl Motion {
         let mut since = Vec::with_capacity(position.len());
         let mut displaced: Vec<bool> = Vec::new();
         let mut moves = false;
+        let near = reach(legs, position).max(resolution);
         let mut last: Option<f64> = None;
         for rows in stretches(legs) {
             let known = || position[rows.clone()].iter().copied().filter(|position| position.is_finite());
             let way = known().next().zip(last).map_or(0.0, |(first, last)| first - last);
-            if way.abs() > resolution {
+            if way.abs() > near {
                 displaced.resize(position.len(), false);
                 displaced[rows.start] = true;
                 // Where it does not move any more, it is likeliest to stand as it came.

@@ -4,7 +4,7 @@
 //! differences within the leg, the direction of the last real motion and the time of the last reversal. Where a leg begins
 //! elsewhere than the last one ended, nobody knows how the axis came there: that is no motion and no reversal.
 
-use crate::legs::stretches;
+use crate::legs::{reach, stretches};
 
 /// One axis over a whole recording; mm or rad, and s.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,6 +30,7 @@ impl History {
     pub fn of(time: &[f64], legs: &[i64], position: Vec<f64>, deadband: f64) -> Self {
         let mut history = Self { position, ..Self::default() };
         let mut tracker = Tracker::default();
+        let near = reach(legs, &history.position).max(deadband);
         let mut last = None;
         for (start, end) in stretches(legs) {
             let time = time.get(start..end).unwrap_or_default();
@@ -38,7 +39,7 @@ impl History {
             history.acceleration.extend(accelerations(time, position));
             let known: Vec<f64> = position.iter().copied().filter(|position| position.is_finite()).collect();
             let way = known.first().zip(last).map_or(0.0, |(first, last): (&f64, f64)| first - last);
-            let displaced = way.abs() > deadband;
+            let displaced = way.abs() > near;
             if displaced {
                 tracker = Tracker::displaced(&known, way, deadband);
             }

@@ -176,6 +176,34 @@ fn a_replay_of_a_path_is_that_path() {
 }
 
 #[test]
+fn every_run_begins_at_rest_whatever_was_driven_before_it() {
+    let plant = plant("FX", "{EXX: [{lag: {gain: 33.3 1/s}}, {backlash: {lost_motion: 8 um}}]}");
+    let linear = || Instrument::Linear { axis: 0, direction: [1.0, 0.0, 0.0], cosine: 0.0 };
+    let sweep = |row: u32| 0.3 * f64::from(row.clamp(10, 60) - 10);
+    // Two sweeps one way: as runs whose clocks were laid one behind another, and in one run with a gap.
+    let time =
+        |rows: u32, gap: f64| (0..rows).map(move |row| f64::from(row) * 0.02 + f64::from(row / 80) * gap);
+    for (second, gap) in [(2, 0.0), (2, 3.0), (1, 3.0)] {
+        for clock in [0.0, 0.013, -0.05, 0.4] {
+            let commands = Commands {
+                time: time(160, gap).collect(),
+                run: [[1; 80], [second; 80]].concat(),
+                positions: vec![(0..160).map(|row| sweep(row % 80)).collect()],
+                ..Commands::default()
+            };
+            let measurement = Measurement { clock, ..Measurement::perfect(linear()) };
+            let read = replay(&plant, &commands, &measurement).unwrap().readings[0].values.clone();
+            let (first, again) = read.split_at(80);
+            let apart = first.iter().zip(again).map(|(first, again)| (first - again).abs());
+            let worst = apart.fold(0.0, f64::max);
+            assert!(worst < 1e-9, "run {second}, gap {gap}, clock {clock}: {worst}");
+            // At rest where it stands: only the play of its first motion.
+            assert!((again[0] + 0.004).abs() < 1e-9, "{}", again[0]);
+        }
+    }
+}
+
+#[test]
 fn every_shape_stays_within_its_bounds_and_keeps_its_feed() {
     let shapes = [
         Shape::Diamond { plane: [0, 1], radius: 50.0 },

@@ -8,6 +8,7 @@ use std::ops::Range;
 use model_dsl::algebra::Axis;
 use model_dsl::calibration::{Calibration, SensorReadings};
 use model_dsl::equations::Equations;
+use model_dsl::exact::ExactProduct;
 use model_dsl::program::Interpreter;
 
 use crate::course::LastCourse;
@@ -22,6 +23,8 @@ use crate::terms;
 pub(crate) struct Study<'a> {
     pub(crate) equations: &'a Equations,
     pub(crate) interpreter: Interpreter,
+    /// The same machine without linearisation, for what the calibration says.
+    pub(crate) exact: ExactProduct,
     /// The names of all sensors: those of the calibration under its own numbers, then others that were recorded.
     pub(crate) sensors: Vec<String>,
     /// The names and units of all loads that were recorded.
@@ -125,12 +128,13 @@ impl<'a> Study<'a> {
         let own = own_motions(equations);
         let known = known(calibration, &loads, &own);
         let interpreter = Interpreter::new(equations, &constants);
+        let exact = ExactProduct::new(equations, &constants);
         let scenes = recordings
             .iter()
             .map(|recording| Scene::new(recording, equations, calibration, &sensors, &loads, &interpreter))
             .collect();
         let crossings = vec![0.0; own.len()];
-        Self { equations, interpreter, sensors, loads, scenes, known, own, crossings }
+        Self { equations, interpreter, exact, sensors, loads, scenes, known, own, crossings }
     }
 
     /// How many rows all recordings have together.

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use abbe_runtime::Kinematics;
 use model_dsl::diagnostic::{Diagnostics, render};
 use model_dsl::equations::Equations;
+use model_dsl::exact::{Columns, Displaced, ExactProduct};
 use model_dsl::program::Interpreter;
 use model_dsl::source::SourceFile;
 use proptest::prelude::*;
@@ -64,6 +65,16 @@ impl<'m> Case<'m> {
         let names = self.equations.motions.iter().map(|motion| motion.name.clone());
         let errors: BTreeMap<String, f64> = names.zip(errors.iter().map(|value| scale * value)).collect();
         State { errors, ..self.state.clone() }
+    }
+
+    /// What error motions do to the tool, by the product of finite matrices.
+    fn displaced(&self, errors: &[f64]) -> Displaced {
+        let constants = self.equations.constants.iter().map(|constant| self.state.constants[&*constant.name]);
+        let exact = ExactProduct::new(self.equations, &constants.collect::<Vec<_>>());
+        let positions: Vec<&[f64]> = self.position.chunks(1).collect();
+        let travels: Vec<&[f64]> = self.travel.chunks(1).collect();
+        let motions: Vec<Option<&[f64]>> = errors.chunks(1).map(Some).collect();
+        exact.displaced(&Columns { positions: &positions, travels: &travels, motions: &motions }, true)
     }
 
     fn sensitive(&self, vector: [f64; 3]) -> [f64; 3] {
@@ -220,6 +231,24 @@ pub(crate) fn turns_add(case: &Case<'_>, seed: u64) -> Result<(), TestCaseError>
     Ok(())
 }
 
+/// The product of finite matrices against the oracle's, number by number, with errors a hundred times what machines have.
+pub(crate) fn the_product_is_the_exact_machine(case: &Case<'_>, seed: u64) -> Result<(), TestCaseError> {
+    let errors: Vec<f64> = case.errors(seed).iter().map(|error| 100.0 * error).collect();
+    let real = case.with(&errors, 1.0);
+    let (tip, rest) = (exact::tip(case.machine, &real), exact::tip(case.machine, &case.state));
+    let tip = case.sensitive(std::array::from_fn(|axis| tip[axis] - rest[axis]));
+    let found = case.displaced(&errors);
+    for (found, expected) in found.tip.iter().zip(tip) {
+        let (found, allowed) = (found[0], Sizes::of(case.machine, &real).rounding());
+        prop_assert!((found - expected).abs() <= allowed, "{found} is not {expected} within {allowed:e}");
+    }
+    let turn = exact::turn_by_errors(case.machine, &real);
+    for (found, expected) in found.turn.iter().flatten().zip(turn) {
+        prop_assert!((found[0] - expected).abs() <= 1e-12, "turned by {}, not by {expected}", found[0]);
+    }
+    Ok(())
+}
+
 fn same(what: &str, found: [f64; 3], expected: [f64; 3], size: f64) -> Result<(), TestCaseError> {
     for (found, expected) in found.into_iter().zip(expected) {
         let near = (found - expected).abs() <= RELATIVE * size;
@@ -237,6 +266,7 @@ fn all_laws(machine: &Machine, text: &str, seed: u64) -> Result<(), TestCaseErro
     squares_are_those_of_the_directions(&case)?;
     turns_are_those_of_the_exact_machine(&case)?;
     turns_add(&case, seed)?;
+    the_product_is_the_exact_machine(&case, seed)?;
     remainder_is_of_second_order(&case, seed)
 }
 

@@ -450,6 +450,43 @@ mod replay {
         assert!((left("full.yaml") / 0.0002 - 1.0).abs() < 0.1);
     }
 
+    /// Known errors whose products with one another are larger than the noise: what is written leaves what is said to be left.
+    #[test]
+    fn large_known_errors_leave_what_is_said_to_be_left() {
+        let folder = folder("large");
+        let calibration = |play: &str| {
+            format!(
+                "calibration: 1\nmachine: FXYZ\nconstants: {{Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}}\nerrors: {{{play}EC0Y: 5 mrad, ECX: 1 mrad, EBY: -2 mrad}}\n"
+            )
+        };
+        let known = write(&folder, "known.yaml", &calibration(""));
+        let full = write(&folder, "full.yaml", &calibration("EXX: [{backlash: {lost_motion: 6 um}}], "));
+        let path = "path: 1\nat: {Z: -50 mm}\nline: {from: {X: 20 mm, Y: 250 mm}, to: {X: 180 mm, Y: 10 mm}}\nfeed: 40 mm/s\nrate: 10 Hz\nruns: 4\ninstrument: position\nnoise: 0.3 um\nseed: 5\n";
+        let path = write(&folder, "path.yaml", path);
+        simulated(&[&full, &path, "--known", &known], &folder);
+        let (recording, improved) = (joined(&folder, "recording.yaml"), joined(&folder, "improved.yaml"));
+        let run = done(abbe(
+            &["diagnose", &recording, "--format", "json", "--quiet", "--write-calibration", &improved],
+            "",
+        ));
+        let diagnosis = json(&run);
+        let findings = diagnosis["findings"].as_array().unwrap();
+        assert!(findings.len() == 1 && findings[0]["motion"] == "EXX", "{findings:?}");
+        assert_eq!(findings[0]["term"], "backlash");
+        let measured = text(&folder.join("data.csv"));
+        let (_, predicted) = simulated(&[&improved, &recording], &folder.join("predicted"));
+        // The zero of each channel is free.
+        let squares = |name: &str| {
+            let rows = column(&measured, name).into_iter().zip(column(&predicted, name));
+            let left: Vec<f64> = rows.map(|(measured, predicted)| measured - predicted).collect();
+            let mean = left.iter().sum::<f64>() / left.len() as f64;
+            left.iter().map(|left| (left - mean).powi(2)).sum::<f64>() / left.len() as f64
+        };
+        let left = (["x_meas", "y_meas", "z_meas"].map(squares).iter().sum::<f64>() / 3.0).sqrt();
+        let after = diagnosis["after"]["rms"].as_f64().unwrap();
+        assert!((left / after - 1.0).abs() < 0.02, "{left} is left, {after} is said to be");
+    }
+
     #[test]
     fn what_cannot_be_replayed_ends_with_status_two() {
         let folder = stage::recorded("refusals");

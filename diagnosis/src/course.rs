@@ -1,11 +1,12 @@
 //! The course of a recording: the states of all its rows under a model, and what the calibration says there.
 //!
 //! In: a scene and a model. Out: states as the instrument shows them and as the drives have them, the programmed positions,
-//! and the error that the calibration knows already, so that a model's own terms are all that is left to work out.
+//! and the error that the calibration knows already, exactly, so that a model's own terms are all that is left to work out.
 
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use model_dsl::exact::{Columns, Displaced};
 use model_dsl::program::Column;
 
 use crate::model::{Fitted, Model};
@@ -111,7 +112,8 @@ impl Course {
 }
 
 impl KnownError {
-    /// Adds up the calibration's terms. Its loops are in the states already.
+    /// Adds up the calibration's terms in every error motion, and goes through the machine with them: one product of finite
+    /// matrices a row. Its loops are in the states already.
     fn new(study: &Study<'_>, scene: usize, states: &States) -> Self {
         let channels = &study.scenes[scene].channels;
         let turning = channels.iter().any(|channel| matches!(channel.kind, Kind::Turn(_) | Kind::Stage(_)));
@@ -133,21 +135,47 @@ impl KnownError {
             let errors = parallel::counted(stretches.len(), batch.len() * motions.len(), |number| {
                 let rows = stretches[number].clone();
                 let motions = part(&motions, &(rows.start - batch.start..rows.end - batch.start));
-                let (positions, travels) = inputs(study, &states.rows(rows.clone()));
-                let tip = study.interpreter.lever_values(&positions, &travels);
-                let turn = turning.then(|| study.interpreter.turn_values(&positions, &travels));
-                let turn = turn.map(|turn| weighted_sum(&turn, &motions, rows.len()));
-                (weighted_sum(&tip, &motions, rows.len()), turn)
+                displaced(study, &states.rows(rows), &motions, turning)
             });
-            for (tip, turn) in errors {
-                append(&mut known.tip, tip);
-                if let (Some(all), Some(turn)) = (&mut known.turn, turn) {
+            for part in errors {
+                append(&mut known.tip, part.tip);
+                if let (Some(all), Some(turn)) = (&mut known.turn, part.turn) {
                     append(all, turn);
                 }
             }
         }
         known
     }
+}
+
+/// What known error motions do to the tool in a stretch of rows.
+///
+/// A motion that is not known in a row, as what a sensor says that was not recorded, counts as nothing in the product, and leaves
+/// those directions unknown that see it to first order: not the others, which would see no more than products of two errors.
+fn displaced(study: &Study<'_>, view: &Rows<'_>, motions: &[Option<&[f64]>], turning: bool) -> Displaced {
+    let (positions, travels) = inputs(study, view);
+    let product = |motions: &[Option<&[f64]>]| {
+        let columns = Columns { positions: &positions, travels: &travels, motions };
+        study.exact.displaced(&columns, turning)
+    };
+    let unknown =
+        |motion: &Option<&[f64]>| motion.is_some_and(|motion| motion.iter().any(|value| value.is_nan()));
+    if !motions.iter().any(unknown) {
+        return product(motions);
+    }
+    let each = |of: fn(f64) -> f64| -> Vec<Option<Vec<f64>>> {
+        let column = |motion: &[f64]| motion.iter().map(|value| of(*value)).collect();
+        motions.iter().map(|motion| motion.map(column)).collect()
+    };
+    let (known, gaps) = (each(|value| if value.is_nan() { 0.0 } else { value }), each(|value| 0.0 * value));
+    let all = 0..view.len();
+    let mut error = product(&part(&known, &all));
+    let (interpreter, gaps) = (&study.interpreter, part(&gaps, &all));
+    let seen = |of: &[[Column<'_>; 3]]| weighted_sum(of, &gaps, view.len());
+    error.tip = plus(error.tip, &seen(&interpreter.lever_values(&positions, &travels)), &all);
+    error.turn =
+        error.turn.map(|turn| plus(turn, &seen(&interpreter.turn_values(&positions, &travels)), &all));
+    error
 }
 
 /// Cuts rows into pieces of a size, the last of which may be shorter.
@@ -280,4 +308,12 @@ pub(crate) fn weighted_sum(
         }
     }
     error
+}
+
+/// Sums in three directions, with what is known of these rows added to them.
+pub(crate) fn plus(mut sums: [Vec<f64>; 3], known: &[Vec<f64>; 3], rows: &Range<usize>) -> [Vec<f64>; 3] {
+    for (sum, known) in sums.iter_mut().zip(known) {
+        sum.iter_mut().zip(&known[rows.clone()]).for_each(|(sum, known)| *sum += known);
+    }
+    sums
 }

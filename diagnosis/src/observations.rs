@@ -1,8 +1,8 @@
 //! Observations: what a model predicts for each channel, and how each channel sees each effect.
 //!
 //! In: the states in a stretch of rows and a model. Out: the residual of every channel, and for every error motion its
-//! gain there: the lever arm in the observed direction. A regressor is gain times term. The position behind a loop is
-//! taken exactly; error motions act to first order, as in the compensation.
+//! gain there: the lever arm in the observed direction. A regressor is gain times term. The position behind a loop and what
+//! the calibration says are taken exactly; error motions of the model act to first order, as in the compensation.
 
 mod passage;
 
@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use model_dsl::program::Column;
 
-use crate::course::{BATCH, Course, inputs, part, pieces, weighted_sum};
+use crate::course::{BATCH, Course, inputs, part, pieces, plus, weighted_sum};
 use crate::model::{Effect, Model, Place};
 use crate::parallel;
 use crate::side::Side;
@@ -333,13 +333,6 @@ fn lever(part: &Column<'_>, rows: usize) -> Option<Vec<f64>> {
 
 fn seen(gain: Vec<f64>) -> Option<Vec<f64>> {
     gain.iter().any(|gain| *gain != 0.0).then_some(gain)
-}
-
-fn plus(mut sums: [Vec<f64>; 3], known: &[Vec<f64>; 3], rows: &Range<usize>) -> [Vec<f64>; 3] {
-    for (sum, known) in sums.iter_mut().zip(known) {
-        sum.iter_mut().zip(&known[rows.clone()]).for_each(|(sum, known)| *sum += known);
-    }
-    sums
 }
 
 /// The direction about which a rotary axis's own motion counts +1.

@@ -48,17 +48,6 @@ impl PositionLoop {
         self.time_constant < 0.0
     }
 
-    /// The rate at which its answer to a change fades at last, 1/s; infinite without a loop.
-    pub(crate) fn fading(self) -> f64 {
-        if self.inertia <= 0.0 {
-            return 1.0 / self.time_constant;
-        }
-        let fading = 0.5 * self.time_constant / self.inertia;
-        let square = fading * fading - 1.0 / self.inertia;
-        // The slower of two modes, as a product of both: their difference would lose digits.
-        if square > 0.0 { 1.0 / self.inertia / (fading + square.sqrt()) } else { fading }
-    }
-
     /// Where the axis stands in the next row. In a row without a command nothing is known, and the loop goes on from the
     /// row before.
     pub(crate) fn follow(self, follower: &mut Follower, time: f64, command: f64) -> Stand {

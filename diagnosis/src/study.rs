@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use model_dsl::calibration::{Calibration, SensorReadings};
 use model_dsl::equations::Equations;
+use model_dsl::exact::ExactProduct;
 use model_dsl::program::Interpreter;
 
 use crate::course::{Course, LastCourse};
@@ -26,6 +27,8 @@ use crate::terms::{self, Shape};
 pub(crate) struct Study<'a> {
     pub(crate) equations: &'a Equations,
     pub(crate) interpreter: Interpreter,
+    /// The same machine without linearisation, for what the calibration says.
+    pub(crate) exact: ExactProduct,
     /// The names of all sensors: those of the calibration under its own numbers, then others that were recorded.
     pub(crate) sensors: Vec<String>,
     /// The names and units of all loads that were recorded.
@@ -142,12 +145,13 @@ impl<'a> Study<'a> {
         let own = own_motions(equations);
         let known = known(calibration, &loads, &own);
         let interpreter = Interpreter::new(equations, &constants);
+        let exact = ExactProduct::new(equations, &constants);
         let scenes = recordings
             .iter()
             .map(|recording| Scene::new(recording, equations, calibration, &sensors, &loads, &interpreter))
             .collect();
         let crossings = vec![0.0; own.len()];
-        let mut study = Self { equations, interpreter, sensors, loads, scenes, known, own, crossings };
+        let mut study = Self { equations, interpreter, exact, sensors, loads, scenes, known, own, crossings };
         for scene in 0..study.scenes.len() {
             let course = Course::new(&study, scene, &[]);
             study.scenes[scene].returns = Returns::new(&study, scene, &course.shown);

@@ -14,7 +14,7 @@ mod meaning;
 use crate::algebra::{Axis, FirstOrder, Htm, Name, Polynomial, Symbol};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::equations::{AxisInfo, ConstantInfo, Equations, Motion, Row, Term, TravelInfo};
-use crate::machine::{Branch, LinkKind, Machine};
+use crate::machine::{Branch, LinkKind, Machine, body_sign};
 
 pub use link_matrix::matrix as link_matrix;
 
@@ -26,6 +26,7 @@ pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
     warn_unseen(machine, &kept, diagnostics);
     let rows = rows(machine, tip, &kept);
     warn_undriven(machine, &rows, diagnostics);
+    let travels = travels(machine, &kept);
     Equations {
         machine: machine.name.clone(),
         title: machine.title.clone(),
@@ -33,9 +34,9 @@ pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
         links: machine.links.clone(),
         relative: machine.relative,
         axes: axes(machine, tip),
-        travels: travels(machine, &kept),
         constants: constants(machine),
-        motions: kept.iter().map(|number| motion(machine, *number)).collect(),
+        motions: kept.iter().map(|number| motion(machine, *number, &travels)).collect(),
+        travels,
         rows,
         turns: turn.each_ref().map(|entry| terms(machine, entry, &kept)),
     }
@@ -102,7 +103,7 @@ fn terms(machine: &Machine, entry: &FirstOrder, kept: &[usize]) -> Vec<Term> {
     terms
 }
 
-fn motion(machine: &Machine, number: usize) -> Motion {
+fn motion(machine: &Machine, number: usize, travels: &[TravelInfo]) -> Motion {
     let motion = &machine.motions[number];
     let link = &machine.links[motion.link];
     Motion {
@@ -114,6 +115,14 @@ fn motion(machine: &Machine, number: usize) -> Motion {
         against_iso: motion.sign < 0,
         link: link.id.clone(),
         axis: machine.axes().iter().position(|(axis, _)| *axis == motion.link),
+        body: motion.link,
+        kind: motion.kind,
+        sign: body_sign(motion, link, machine.relative),
+        travel: motion
+            .travel
+            .as_ref()
+            .and_then(|travel| travels.iter().position(|known| known.name == travel.value)),
+        rotates: motion.rotates,
         meaning: meaning::of(motion, link),
     }
 }

@@ -13,7 +13,7 @@ use std::fmt;
 
 use crate::algebra::{Axis, Name, Polynomial, to_f64};
 use crate::calibration::{AxisName, MachineNames, MotionName};
-use crate::machine::{Branch, Link};
+use crate::machine::{Branch, Link, MotionKind};
 
 /// The error equations of one machine.
 #[derive(Clone, Debug)]
@@ -103,6 +103,16 @@ pub struct Motion {
     pub link: String,
     /// The number in [`Equations::axes`] of that link, where a program moves it.
     pub axis: Option<usize>,
+    /// The number of that link in [`Equations::links`].
+    pub body: usize,
+    /// What it does to its link.
+    pub kind: MotionKind,
+    /// +1 or -1: the sign with which its value displaces or turns its link in bed directions.
+    pub sign: i64,
+    /// The number in [`Equations::travels`] of the free travel that stands in its lever for the position.
+    pub travel: Option<usize>,
+    /// Whether an alignment error of a slide turns the carriage too.
+    pub rotates: bool,
     /// What it is, in words.
     pub meaning: String,
 }

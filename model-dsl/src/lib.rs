@@ -4,6 +4,7 @@
 //! text -> yaml -> machine -> derivation -> equations -> notation: text, LaTeX, MathML, Maxima, JSON
 //!                                             |-> check: against published equations
 //!                                             |-> program -> codegen: tokens, or the interpreter
+//!                                             |-> exact: the product of finite matrices, in numbers
 //! text -> yaml -> calibration: the numbers of one machine, as terms of its error motions -> codegen: the same as constants
 //! ```
 //!
@@ -19,6 +20,7 @@ pub mod codegen;
 pub mod derivation;
 pub mod diagnostic;
 pub mod equations;
+pub mod exact;
 pub mod expression;
 pub mod fields;
 pub mod machine;

@@ -1,13 +1,14 @@
 //! Points: every reading of every part, with what each coefficient moves it by.
 //!
 //! In: recordings and the coefficients of a calibration. Out: for each reading its direction, its deviation and, for each
-//! coefficient A, the displacement along the direction that A itself makes there: `(n . L) phi A`. Their sum is what the
-//! calibration predicts, and a relative change dA of one adds dA times its own share. Rows are gone through in their
-//! order, also those without a reading: they show from where an axis came.
+//! coefficient A, the displacement along the direction that A itself makes there: `(n . L) phi A`. A relative change dA adds
+//! dA times that. What the calibration itself predicts is no sum of these, but the product of finite matrices. Rows are gone
+//! through in their order, also those without a reading: they show from where an axis came.
 
 use abbe_runtime::{Direction, DirectionTracker, Sample, Term, TermState};
 use model_dsl::calibration::{Calibration, SensorReadings};
 use model_dsl::equations::Equations;
+use model_dsl::exact::{Columns, ExactProduct};
 use model_dsl::program::Interpreter;
 use recording::{Instrument, Recording};
 
@@ -29,15 +30,10 @@ pub(crate) struct Point {
     pub(crate) deviation: f64,
     /// Whether it is kept for the test.
     pub(crate) held_out: bool,
+    /// What the calibration predicts there, mm.
+    pub(crate) predicted: f64,
     /// What each coefficient displaces it by, mm.
     pub(crate) shares: Vec<f64>,
-}
-
-impl Point {
-    /// What the calibration predicts there, mm.
-    pub(crate) fn predicted(&self) -> f64 {
-        self.shares.iter().sum()
-    }
 }
 
 /// All readings, and the parts that they are of.
@@ -57,6 +53,7 @@ impl Machine<'_> {
     /// The readings of all recordings.
     pub(crate) fn points(&self, recordings: &[&Recording]) -> Result<Points, UpdateError> {
         let interpreter = Interpreter::new(self.equations, &self.calibration.constants);
+        let exact = ExactProduct::new(self.equations, &self.calibration.constants);
         let mut all = Points { points: Vec::new(), parts: Vec::new() };
         let mut settings = 0;
         for (number, recording) in recordings.iter().enumerate() {
@@ -64,7 +61,7 @@ impl Machine<'_> {
                 return Err(UpdateError::Instrument { recording: number });
             }
             let course = Course::of(self, recording, number)?;
-            let (points, left_out) = course.points(&interpreter, settings);
+            let (points, left_out) = course.points(&interpreter, &exact, settings);
             settings += course.runs.len();
             all.parts.push(Part {
                 file: recording.file.clone(),
@@ -113,7 +110,12 @@ impl<'c> Course<'c> {
     }
 
     /// The readings, and how many could not be used because a position is missing in their row.
-    fn points(&self, interpreter: &Interpreter, settings: usize) -> (Vec<Point>, usize) {
+    fn points(
+        &self,
+        interpreter: &Interpreter,
+        exact: &ExactProduct,
+        settings: usize,
+    ) -> (Vec<Point>, usize) {
         let mut states = self.states();
         let (mut points, mut left_out) = (Vec::new(), 0);
         for row in 0..self.recording.time.len() {
@@ -127,13 +129,16 @@ impl<'c> Course<'c> {
             let travel: Vec<f64> =
                 self.machine.equations.travels.iter().map(|travel| cell(&position, travel.axis)).collect();
             let levers = interpreter.levers(&position, &travel);
+            let error = self.error(exact, &position, &travel, &values);
             let run = self.recording.run.get(row).copied().unwrap_or(1);
             let setting = settings + self.runs.iter().position(|known| *known == run).unwrap_or(0);
             let held_out = self.recording.holdout.as_ref().is_some_and(|runs| runs.contains(&run));
             for (direction, deviation) in readings {
                 let shares = self.shares(&values, &levers, direction);
-                if deviation.is_finite() && shares.iter().all(|share| share.is_finite()) {
-                    points.push(Point { setting, direction, deviation, held_out, shares });
+                let predicted = dot(direction, error);
+                let known = [deviation, predicted].iter().chain(&shares).all(|number| number.is_finite());
+                if known {
+                    points.push(Point { setting, direction, deviation, held_out, predicted, shares });
                 } else {
                     left_out += 1;
                 }
@@ -150,6 +155,22 @@ impl<'c> Course<'c> {
             gain * value * coefficient.value
         };
         coefficients.map(share).collect()
+    }
+
+    /// The error of the tip by all coefficients together, mm.
+    fn error(&self, exact: &ExactProduct, position: &[f64], travel: &[f64], values: &[f64]) -> [f64; 3] {
+        let mut motions: Vec<Option<f64>> = vec![None; self.machine.equations.motions.len()];
+        for (coefficient, value) in self.machine.coefficients.iter().zip(values) {
+            if let Some(motion) = motions.get_mut(coefficient.motion) {
+                *motion.get_or_insert(0.0) += coefficient.value * value;
+            }
+        }
+        let positions: Vec<&[f64]> = position.chunks(1).collect();
+        let travels: Vec<&[f64]> = travel.chunks(1).collect();
+        let motions: Vec<Option<&[f64]>> =
+            motions.iter().map(|motion| motion.as_ref().map(std::slice::from_ref)).collect();
+        let columns = Columns { positions: &positions, travels: &travels, motions: &motions };
+        exact.displaced(&columns, false).tip.map(|column| cell(&column, 0))
     }
 
     fn states(&self) -> States<'_> {

@@ -33,7 +33,7 @@ impl Problem {
         };
         let jacobian = DMatrix::from_fn(points.len(), coefficients.len(), share);
         let left =
-            points.iter().map(|point| point.deviation - if compensated { 0.0 } else { point.predicted() });
+            points.iter().map(|point| point.deviation - if compensated { 0.0 } else { point.predicted });
         let residual = DVector::from_iterator(points.len(), left);
         Self {
             jacobian: datum.without_columns(&jacobian),

@@ -89,25 +89,3 @@ fn a_missing_command_is_a_gap_and_no_more() {
     assert!(gap[1].position.is_nan());
     assert_eq!((gap[2].position, gap[2].velocity), (whole[1].position, whole[1].velocity));
 }
-
-#[test]
-fn an_answer_fades_at_the_rate_of_its_slowest_part() {
-    // Of first order; ringing, nearly critical and creeping. Thirty times the time in which it fades by e, and one more.
-    for inertia in [0.0, 4e-4, 1.1e-4, 2.5e-5] {
-        let one = PositionLoop { time_constant: 0.02, inertia };
-        let rate = one.fading();
-        let size = |time: f64| {
-            // The size of a swing is that of position and velocity together, whatever its phase.
-            let stand = one.step(Stand { position: 1.0, velocity: 0.0 }, 0.0, 0.0, time);
-            stand.position.hypot(stand.velocity / rate)
-        };
-        let period = if 1.0 / inertia > rate * rate && inertia > 0.0 {
-            std::f64::consts::TAU / (1.0 / inertia - rate * rate).sqrt()
-        } else {
-            1.0 / rate
-        };
-        let faded = (size(30.0 / rate) / size(30.0 / rate + period)).ln() / period;
-        assert!((faded / rate - 1.0).abs() < 1e-3, "{inertia}: {faded} {rate}");
-    }
-    assert!(PositionLoop::default().fading().is_infinite());
-}

@@ -10,6 +10,7 @@
 mod common;
 mod confusions;
 mod each_term;
+mod large;
 mod pictures;
 #[path = "../../src/testing.rs"]
 mod testing;

@@ -119,7 +119,8 @@ fn other_guise(study: &Study<'_>, effect: &Effect) -> Vec<Effect> {
     let shapes: Vec<(usize, Shape)> = match effect.shape {
         Shape::Vibration { frequency } => {
             let axes = (0..study.own.len()).filter_map(|axis| Some((axis, speed(study, axis)?)));
-            axes.map(|(axis, speed)| (axis, Shape::Cyclic { axis, period: speed / frequency, center: 0.0 })).collect()
+            axes.map(|(axis, speed)| (axis, Shape::Cyclic { axis, period: speed / frequency, center: 0.0 }))
+                .collect()
         }
         Shape::Cyclic { axis, period, .. } => speed(study, axis)
             .map(|speed| (axis, Shape::Vibration { frequency: speed / period }))

@@ -93,7 +93,8 @@ impl Appraisal {
             let marks = outliers::mark(residual, known.channels[channel].step(), &apart);
             let counts = |row: usize| fitted[row] && residual[row].is_finite() && !marks[row];
             let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
-            let estimate = estimate(known, channel, residual, &valid, weights.map(|weights| weights[channel]));
+            let estimate =
+                estimate(known, channel, residual, &valid, weights.map(|weights| weights[channel]));
             (marks, estimate)
         });
         let (marks, estimates): (Vec<Vec<bool>>, Vec<Estimate>) = results.into_iter().unzip();
@@ -143,8 +144,11 @@ fn estimate(
     let whole = squares(residual, valid);
     let alone = squares(&left, valid);
     let returning = (whole - alone).max(0.0);
-    let floor =
-        Noise { white: (factor * found.white).max(observed.rounding), wander: factor * found.wander, ..found };
+    let floor = Noise {
+        white: (factor * found.white).max(observed.rounding),
+        wander: factor * found.wander,
+        ..found
+    };
     let count = crate::number(valid.iter().filter(|valid| **valid).count()).max(1.0);
     let leftover = (alone / count).sqrt();
     let plainly = match like {
@@ -153,7 +157,10 @@ fn estimate(
     };
     if plainly {
         let alike = like.map_or_else(|| noise::alike(residual, valid), |like| like.alike);
-        let weights = Noise { alike: alike.max(MORE_THAN_ONE), ..Noise::white((whole / count).sqrt().max(floor.white)) };
+        let weights = Noise {
+            alike: alike.max(MORE_THAN_ONE),
+            ..Noise::white((whole / count).sqrt().max(floor.white))
+        };
         let deviance = noise::deviance(time, residual, valid, &weights);
         return Estimate { floor, weights, returning, leftover, deviance };
     }

@@ -13,7 +13,7 @@ use crate::terms::{Shape, oddity};
 use crate::travel::Travel;
 
 /// How many nodes are tried.
-const NODES: [usize; 3] = [8, 12, 20];
+const NODES: [usize; 4] = [8, 12, 20, 40];
 /// A wave of more than this share of the travel may be part of a curve.
 const LONG: f64 = 0.12;
 
@@ -28,15 +28,18 @@ pub(crate) fn try_tables(
 ) -> Fit {
     let mut places: Vec<(Place, usize)> = Vec::new();
     for fitted in &fit.model[always..] {
-        if let Some(axis) = smooth(&fitted.effect, travels)
+        if let Some(axis) = smooth(&fitted.effect, travels).or_else(|| wave_along(&fitted.effect))
             && !places.contains(&(fitted.effect.place, axis))
         {
             places.push((fitted.effect.place, axis));
         }
     }
     for (place, axis) in places {
-        let imitates =
-            |fitted: &Fitted| fitted.effect.place == place && smooth(&fitted.effect, travels) == Some(axis);
+        // Waves too: many of them draw any curve.
+        let imitates = |fitted: &Fitted| {
+            fitted.effect.place == place
+                && (smooth(&fitted.effect, travels) == Some(axis) || waves(fitted, axis))
+        };
         let parts: Vec<&Fitted> = fit.model.iter().filter(|fitted| imitates(fitted)).collect();
         let winding =
             |fitted: &&Fitted| matches!(fitted.effect.shape, Shape::Polynomial { degree, .. } if degree > 2);
@@ -107,6 +110,16 @@ fn smooth(effect: &Effect, travels: &[Travel]) -> Option<usize> {
     }
 }
 
+/// The axis along which an effect is a wave.
+fn wave_along(effect: &Effect) -> Option<usize> {
+    matches!(effect.shape, Shape::Cyclic { .. }).then(|| effect.shape.axis()).flatten()
+}
+
+/// Whether an effect is a wave along an axis, or in time, which strokes of equal length make one along it.
+fn waves(fitted: &Fitted, axis: usize) -> bool {
+    wave_along(&fitted.effect) == Some(axis) || matches!(fitted.effect.shape, Shape::Vibration { .. })
+}
+
 /// Tables of an axis: with nodes at its stations, where it stands at a few; else at equal steps, as long as there is something
 /// at every node.
 fn tables(study: &Study<'_>, axis: usize, travel: &Travel) -> Vec<Shape> {
@@ -164,12 +177,10 @@ fn held(nodes: &[f64], places: &[f64]) -> bool {
 
 /// What a fit costs: its misfit and the price of its effects.
 pub(crate) fn cost(study: &Study<'_>, fit: &Fit, always: usize, tries: Tries) -> f64 {
-    let prices = fit.model[always..]
-        .iter()
-        .map(|fitted| {
-            price(study, &fitted.effect, fit.samples, tries.candidates, tries.waves)
-                + oddity(&fitted.effect.shape, &fitted.coefficients)
-        });
+    let prices = fit.model[always..].iter().map(|fitted| {
+        price(study, &fitted.effect, fit.samples, tries.candidates, tries.waves)
+            + oddity(&fitted.effect.shape, &fitted.coefficients)
+    });
     fit.samples * (fit.remaining / fit.samples).ln() + prices.sum::<f64>()
 }
 

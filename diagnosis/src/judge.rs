@@ -11,8 +11,8 @@ use crate::noise::Noise;
 use crate::parallel;
 use crate::search::{price, untold_price};
 use crate::study::Study;
-use crate::terms::Shape;
 use crate::sweep::Swept;
+use crate::terms::Shape;
 use crate::travel::Travel;
 use crate::zeros;
 

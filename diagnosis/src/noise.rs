@@ -236,7 +236,8 @@ const FEWEST_APART: f64 = 12.0;
 pub(crate) fn estimate(time: &[f64], residual: &[f64], valid: &[bool], floor: f64) -> (Noise, f64) {
     let step = typical_step(time);
     let span = span(time);
-    let unit = |ratio: f64, time_constant: f64| Noise { white: 1.0, wander: ratio, time_constant, alike: 1.0 };
+    let unit =
+        |ratio: f64, time_constant: f64| Noise { white: 1.0, wander: ratio, time_constant, alike: 1.0 };
     let at = |point: [f64; 2]| unit(point[0].clamp(-12.0, 12.0).exp(), point[1].exp());
     // Between half a step and ten recordings, and a wandering from nothing to all there is.
     let outside = |point: [f64; 2]| {
@@ -327,7 +328,8 @@ pub(crate) fn display_step(values: &[f64]) -> f64 {
     let decades = (0..10).map(|decade| 0.1_f64.powi(decade));
     let steps = decades.flat_map(|decade| [decade, 0.5 * decade, 0.2 * decade]);
     let multiple = |step: f64| {
-        step < ROUNDED * smallest
+        scale > 0.5 * step
+            && step < ROUNDED * smallest
             && known.iter().all(|value| (value / step - (value / step).round()).abs() < MULTIPLE)
     };
     let possible = steps.flat_map(|step| units.map(|unit| step * unit)).filter(|step| multiple(*step));

@@ -253,10 +253,7 @@ impl<'f> Described<'f> {
                 "amplitude",
                 self.derived(amplitude, &[a / amplitude, b / amplitude], (factor, unit.to_owned())),
             ),
-            Parameter::fitted(
-                "phase",
-                self.phase(turned(phase - back), [-b / square, a / square, turning]),
-            ),
+            Parameter::fitted("phase", self.phase(turned(phase - back), [-b / square, a / square, turning])),
         ]
     }
 
@@ -264,9 +261,7 @@ impl<'f> Described<'f> {
     /// the interval is that of the phase for the period as it is told: how well the wave is known where it was measured.
     fn phase(&self, value: f64, gradient: [f64; 3]) -> Estimate {
         let covariance = &self.certainty.covariance;
-        let part = |row: usize, column: usize| {
-            covariance.get((row, column)).copied().unwrap_or_default()
-        };
+        let part = |row: usize, column: usize| covariance.get((row, column)).copied().unwrap_or_default();
         let along = gradient[0] * part(0, 2) + gradient[1] * part(1, 2) + gradient[2] * part(2, 2);
         let given = if part(2, 2) > 0.0 { along * along / part(2, 2) } else { 0.0 };
         let whole = self.derived(value, &gradient, (1.0, "rad".to_owned()));

@@ -33,7 +33,9 @@ pub(crate) fn range(study: &Study<'_>, travels: &[Travel], shape: &Shape) -> (f6
         Shape::Drift { .. } => (5.0 * step, SETTLING * observed),
         Shape::Growth { .. } => (step, SETTLING * observed),
         // A natural frequency that the rows resolve: half of theirs at most.
-        Shape::Lag { inertia, .. } if *inertia > 0.0 => ((step / std::f64::consts::PI).powi(2), f64::INFINITY),
+        Shape::Lag { inertia, .. } if *inertia > 0.0 => {
+            ((step / std::f64::consts::PI).powi(2), f64::INFINITY)
+        }
         _ => (f64::NEG_INFINITY, f64::INFINITY),
     }
 }

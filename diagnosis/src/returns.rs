@@ -217,12 +217,7 @@ impl Returns {
     }
 
     /// What a state predicts with the number of nodes that predicts best.
-    fn predict<'s>(
-        &'s self,
-        state: &'s State,
-        residual: &[f64],
-        valid: &[bool],
-    ) -> Option<Prediction<'s>> {
+    fn predict<'s>(&'s self, state: &'s State, residual: &[f64], valid: &[bool]) -> Option<Prediction<'s>> {
         let usable: Vec<usize> = self
             .rows
             .iter()
@@ -254,7 +249,8 @@ impl Places {
         let Some(state) = path.or_else(branch) else { return Self::default() };
         let grid = Grid::new(state, PLACES);
         let nearest = |(node, share): Place| node + usize::from(share > 0.5);
-        let of: Vec<Option<usize>> = (0..state.values.len()).map(|row| grid.place(row).map(nearest)).collect();
+        let of: Vec<Option<usize>> =
+            (0..state.values.len()).map(|row| grid.place(row).map(nearest)).collect();
         let count = of.iter().flatten().max().map_or(0, |most| most + 1);
         let mut rows = vec![Vec::new(); count];
         for (row, place) in of.iter().enumerate() {

@@ -48,7 +48,8 @@ impl Revision<'_> {
                 break;
             }
             let trials = self.trials(study, &fit, &appraisal);
-            let Some(better) = trials.into_iter().find_map(|trial| self.stands(study, trial, &fit, &appraisal))
+            let Some(better) =
+                trials.into_iter().find_map(|trial| self.stands(study, trial, &fit, &appraisal))
             else {
                 break;
             };
@@ -106,8 +107,7 @@ impl Revision<'_> {
                 kept.remove(number);
             }
             let lost = (swept.remaining() - whole.remaining()) / scale;
-            let spared =
-                place.map_or(0.0, |number| self.price(study, &model[number].effect, samples));
+            let spared = place.map_or(0.0, |number| self.price(study, &model[number].effect, samples));
             let mut gains: Vec<(f64, usize)> = (0..open.len())
                 .filter(|number| !kept.iter().any(|known| against(&known.effect, &open[*number])))
                 .map(|number| {
@@ -161,7 +161,8 @@ fn stands_apart(study: &Study<'_>, without: &Appraisal, with: &Appraisal) -> boo
                 outliers.zip(after).map(|((a, b), value)| !a && !b && value.is_finite()).collect();
             let size = with.leftover[scene][channel].max(f64::MIN_POSITIVE);
             let rows = || before.iter().zip(after).zip(&valid).filter(|(_, valid)| **valid);
-            taken += rows().map(|((before, after), _)| before * before - after * after).sum::<f64>() / (size * size);
+            taken += rows().map(|((before, after), _)| before * before - after * after).sum::<f64>()
+                / (size * size);
             returning += known.returns.most(after, &valid) / (size * size);
         }
     }

@@ -155,6 +155,7 @@ impl<'a> Study<'a> {
         for scene in 0..study.scenes.len() {
             let course = Course::new(&study, scene, &[]);
             study.scenes[scene].returns = Returns::new(&study, scene, &course.shown);
+            study.scenes[scene].last_course = LastCourse::default();
         }
         study
     }

@@ -76,7 +76,10 @@ pub(crate) fn places(
             if let Some(axis) = along {
                 // Any period and any frequency tell which places are alike.
                 let period = travels[axis].range() / 3.7;
-                samples.push(Effect { place, shape: Shape::Cyclic { axis, period, center: travels[axis].center() } });
+                samples.push(Effect {
+                    place,
+                    shape: Shape::Cyclic { axis, period, center: travels[axis].center() },
+                });
             }
             if along.is_none_or(|axis| !steadily(study, axis)) {
                 samples.push(Effect { place, shape: Shape::Vibration { frequency: 7.3 / span } });
@@ -266,8 +269,10 @@ fn sources(
     residuals: &[Vec<Weighted>],
     places: &[WavePlace],
 ) -> Vec<Source> {
-    let mut sources: Vec<Source> =
-        places.iter().map(|place| Source { place: *place, products: Vec::new(), weights: Vec::new() }).collect();
+    let mut sources: Vec<Source> = places
+        .iter()
+        .map(|place| Source { place: *place, products: Vec::new(), weights: Vec::new() })
+        .collect();
     for (scene, course) in courses.iter().enumerate() {
         for source in &mut sources {
             source.products.push(Vec::with_capacity(study.scenes[scene].rows()));

@@ -31,7 +31,8 @@ fn may_be_nothing(parameter: &Parameter) -> bool {
         // A polynomial is told from its power 1 on, and a table from any node: one that stands apart is enough.
         ParameterValue::List(list) => {
             let told: Vec<&Estimate> = list.iter().filter(|one| one.ci95 != (0.0, 0.0)).collect();
-            let slopes = if parameter.name == "coefficients" && told.len() > 1 { &told[1..] } else { &told[..] };
+            let slopes =
+                if parameter.name == "coefficients" && told.len() > 1 { &told[1..] } else { &told[..] };
             !slopes.is_empty() && slopes.iter().all(|one| holds_zero(one))
         }
         _ => false,
@@ -39,8 +40,7 @@ fn may_be_nothing(parameter: &Parameter) -> bool {
 }
 
 /// Parameters that say how large a term is.
-const SIZES: [&str; 7] =
-    ["lost_motion", "height", "amplitude", "coefficient", "gain", "value", "offset"];
+const SIZES: [&str; 7] = ["lost_motion", "height", "amplitude", "coefficient", "gain", "value", "offset"];
 
 fn holds_zero(estimate: &Estimate) -> bool {
     let (one, other) = estimate.ci95;

@@ -223,7 +223,10 @@ fn slopes_are_how_the_residual_falls_with_the_nonlinear_parameter() {
     let recording = recorded(&bench, position("xyz"), circle(60.0), false);
     let study = Study::new(bench.equations(), Some(&known), &[&recording]);
     let cases = [
-        (machine(&study, "EXX", Side::After, Shape::Cyclic { axis: 0, period: 13.0, center: 0.0 }), vec![0.01, -0.02]),
+        (
+            machine(&study, "EXX", Side::After, Shape::Cyclic { axis: 0, period: 13.0, center: 0.0 }),
+            vec![0.01, -0.02],
+        ),
         (machine(&study, "EYX", Side::After, Shape::ReversalSpike { axis: 0, decay: 0.5 }), vec![0.03]),
         (machine(&study, "EZZ", Side::After, Shape::Drift { time_constant: 8.0 }), vec![0.02]),
         (machine(&study, "EZX", Side::After, Shape::Vibration { frequency: 0.3 }), vec![0.02, 0.01]),

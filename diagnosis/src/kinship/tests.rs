@@ -23,8 +23,10 @@ fn grouped(
 ) -> Vec<Vec<(String, &'static str)>> {
     let study = Study::new(bench.equations(), None, &[recording]);
     let courses = [Course::new(&study, 0, &[])];
-    let noises =
-        vec![vec![Noise { white: 1e-3, wander: 0.0, time_constant: 1.0, alike: 1.0 }; study.scenes[0].channels.len()]];
+    let noises = vec![vec![
+        Noise { white: 1e-3, wander: 0.0, time_constant: 1.0, alike: 1.0 };
+        study.scenes[0].channels.len()
+    ]];
     let effect = |(name, shape): &(&str, Shape)| Effect {
         place: Place::Motion { motion: bench.motion(name), side: Side::After },
         shape: shape.clone(),

@@ -244,7 +244,12 @@ fn angles_of_a_rotary_axis_are_told_in_the_unit_of_the_recording() {
     recording.angle_unit = AngleUnit::Degree;
     let study = Study::new(bench.equations(), None, &[&recording]);
     let degree = PI / 180.0;
-    let wave = fitted(&study, "ECC", Shape::Cyclic { axis: 0, period: 30.0 * degree, center: 0.0 }, &[1e-3 * degree, 0.0]);
+    let wave = fitted(
+        &study,
+        "ECC",
+        Shape::Cyclic { axis: 0, period: 30.0 * degree, center: 0.0 },
+        &[1e-3 * degree, 0.0],
+    );
     let told =
         estimates(&Described::new(&study, &wave, &Certainty::linear(DMatrix::zeros(3, 3))).parameters());
     assert!((told[0].value - 30.0).abs() < 1e-9 && told[0].unit == "deg");

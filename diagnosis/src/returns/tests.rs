@@ -43,7 +43,10 @@ fn what_turns_with_the_direction_comes_back_with_it() {
         let residual: Vec<f64> = rows.map(|(direction, noise)| direction + 0.2 * noise).collect();
         let (quantity, share, _) = told(returns, &residual)[0];
         assert!(
-            matches!(quantity, Quantity::Direction(0) | Quantity::Branch(0) | Quantity::Velocity(0) | Quantity::Way(0)),
+            matches!(
+                quantity,
+                Quantity::Direction(0) | Quantity::Branch(0) | Quantity::Velocity(0) | Quantity::Way(0)
+            ),
             "{quantity:?}"
         );
         assert!(share > 0.9, "{share}");

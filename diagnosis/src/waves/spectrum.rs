@@ -30,7 +30,8 @@ pub(super) fn spectrum(rows: &[Rows<'_>], low: f64, range: f64, shortest: f64) -
         let mut bins = vec![0.0; size];
         for rows in rows {
             for (row, place) in rows.places.iter().enumerate() {
-                if let Some(target) = crate::index((place - low) / bin).and_then(|index| bins.get_mut(index)) {
+                if let Some(target) = crate::index((place - low) / bin).and_then(|index| bins.get_mut(index))
+                {
                     *target += column(rows, row);
                 }
             }
@@ -57,7 +58,7 @@ fn gain(residual: &[Complex<f64>], weights: &[Complex<f64>], number: usize) -> f
         return 0.0;
     }
     let once = weights[number];
-    let twice = weights.get(2 * number).copied().unwrap_or_default();
+    let twice = line(weights, 2 * number);
     let mean = residual[0].re / total;
     let cosine = residual[number].re - mean * once.re;
     let sine = residual[number].im - mean * once.im;
@@ -69,6 +70,12 @@ fn gain(residual: &[Complex<f64>], weights: &[Complex<f64>], number: usize) -> f
         return 0.0;
     }
     (sines * cosine * cosine + cosines * sine * sine - 2.0 * mixed * cosine * sine) / determinant
+}
+
+/// A line of the spectrum of bins, which comes round after as many lines as there are bins; the second half mirrors the first.
+fn line(lines: &[Complex<f64>], number: usize) -> Complex<f64> {
+    let half = lines.len() - 1;
+    if number <= half { lines[number] } else { lines[(2 * half).abs_diff(number)].conj() }
 }
 
 fn fourier(mut bins: Vec<f64>) -> Vec<Complex<f64>> {
@@ -137,7 +144,8 @@ fn levels(spectrum: &[Line]) -> Vec<f64> {
     let mut at = 0;
     while at < count {
         let half = crate::index(SHARE * crate::number(at)).unwrap_or_default().max(LINES);
-        let mut around: Vec<f64> = spectrum[at.saturating_sub(half).max(1).min(count - 1)..(at + half + 1).min(count)]
+        let mut around: Vec<f64> = spectrum
+            [at.saturating_sub(half).max(1).min(count - 1)..(at + half + 1).min(count)]
             .iter()
             .map(|line| line.1)
             .collect();

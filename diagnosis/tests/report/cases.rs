@@ -2,7 +2,8 @@
 
 use diagnosis::diagnosis::{
     Alternative, Diagnosis, Estimate, Evidence, Finding, Interval, IntervalOf, Location, NoiseSummary,
-    Parameter, ParameterValue, Repeatability, Residual, SettingFinding, Summary, Unexplained, Verdict,
+    Parameter, ParameterValue, Repeatability, Residual, Returning, SettingFinding, Summary, Unexplained,
+    Verdict,
 };
 use model_dsl::calibration::CalibratedTerm;
 
@@ -47,6 +48,12 @@ pub(crate) fn adequate() -> Diagnosis {
         after: residual(0.000_51, 0.000_5),
         ..Diagnosis::default()
     }
+}
+
+/// What comes back of Y.
+pub(crate) fn returning(state: &str, share: f64, left: f64) -> Returning {
+    let (channel, state) = ("measured.y".to_owned(), state.to_owned());
+    Returning { recording: 0, channel, state, share, left, unit: "mm" }
 }
 
 /// The backlash of the contract's example.

@@ -45,7 +45,10 @@ fn each_line_is_what_least_squares_gains_beside_a_free_mean() {
     for (frequency, gain) in slow {
         let expected = gained(&places, &values, &weights, *frequency);
         // Sorting into bins moves a place by a sixtieth of a period at most.
-        assert!((gain - expected).abs() < 0.05 * (expected * total).sqrt() + 0.02 * total, "{frequency}: {gain} {expected}");
+        assert!(
+            (gain - expected).abs() < 0.05 * (expected * total).sqrt() + 0.02 * total,
+            "{frequency}: {gain} {expected}"
+        );
     }
 }
 
@@ -56,7 +59,11 @@ fn a_wave_stands_out_at_its_frequency_with_what_it_would_gain() {
         let wave: Vec<f64> = places.iter().map(|place| (TAU * place / period + 0.7).sin()).collect();
         let found = tops(&of(&places, &wave, 0.0, 333.0, 2.0), 2.0 / 333.0, 3);
         let top = found.iter().max_by(|a, b| a.gain.total_cmp(&b.gain)).unwrap();
-        assert!((top.frequency * period - 1.0).abs() < 0.1 * period / 333.0, "{period}: {}", 1.0 / top.frequency);
+        assert!(
+            (top.frequency * period - 1.0).abs() < 0.1 * period / 333.0,
+            "{period}: {}",
+            1.0 / top.frequency
+        );
         // n / 2, less what lies between two lines of the spectrum.
         assert!(top.gain > 0.8 * 450.0 && top.gain < 1.02 * 450.0, "{period}: {}", top.gain);
     }
@@ -78,7 +85,8 @@ fn a_wave_is_found_beside_a_noise_that_is_louder_at_other_frequencies() {
     let lines = of(&places, &values, 0.0, 2000.0, 2.2);
     let found = tops(&lines, 1.6 / 2000.0, 3);
     let near = |top: &&Top| (top.frequency * 12.5 - 1.0).abs() < 0.01;
-    let wave = found.iter().find(near).expect("the wave is among the peaks");
+    let wave = found.iter().find(near);
+    let wave = wave.unwrap_or_else(|| panic!("the wave is none of the peaks: {found:?}"));
     assert!(found.iter().all(|other| other.local <= wave.local), "{found:?}");
     let loudest = lines.iter().fold(0.0, |most: f64, line| most.max(line.1));
     assert!(loudest > 10.0 * wave.gain, "by its power alone it would not be looked at");

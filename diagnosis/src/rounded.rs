@@ -64,7 +64,9 @@ fn step(time: &[f64], command: &[f64]) -> Option<f64> {
     let moves = steps.iter().map(|step| step.abs()).chain(steps.windows(2).map(bend));
     let step = moves.filter(|step| *step > ALIKE * (high - low)).fold(f64::INFINITY, f64::min);
     let whole = |place: f64| (place - (place / step).round() * step).abs() < 1e-3 * step;
-    if !(step > MATTERS * (high - low)) || !known().all(|place| whole(place - low)) {
+    // A command that stands has no step.
+    let matters = step.is_finite() && step > MATTERS * (high - low);
+    if !matters || !known().all(|place| whole(place - low)) {
         return None;
     }
     let moving = || {

@@ -318,7 +318,7 @@ fn as_programmed(
     let slope: Shared = slope.into();
     let acceleration = derivative(time, legs, &derivative(time, legs, &position)).into();
     let Motion { direction, displaced, since_reversal, moves } =
-        Motion::of(time, legs, &position, resolution);
+        Motion::of(time, legs, way.command(), &position, resolution);
     AxisStates {
         position,
         acceleration,
@@ -406,7 +406,7 @@ fn behind_loop(
     let position: Shared = stands.iter().map(|stand| stand.position).collect();
     let acceleration = derivative(&given.time, &given.legs, &velocity);
     let Motion { direction, displaced, since_reversal, moves } =
-        Motion::of(&given.time, &given.legs, &position, resolution);
+        Motion::of(&given.time, &given.legs, way.command(), &position, resolution);
     AxisStates {
         position,
         acceleration: acceleration.into(),

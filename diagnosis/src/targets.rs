@@ -25,9 +25,9 @@ const EXPLAINED: f64 = 0.15;
 /// Time constants of loops that are tried: from a part of the step between rows to so many steps, by this factor.
 const LOOPS: (f64, f64, f64) = (0.1, 100.0, 1.2);
 
-/// A target is reached within so many standard deviations of what is read, so many of its display's steps, and this share of the
-/// longest way: a loop never quite arrives.
-const REACHED: (f64, f64, f64) = (3.0, 2.0, 1e-3);
+/// A target is reached within so many standard deviations of what is read, half a step of its display: an axis that creeps its
+/// last step does not stand. And within this share of the longest way: a loop never quite arrives.
+const REACHED: (f64, f64, f64) = (3.0, 0.5, 1e-3);
 
 /// The share of its time at a target in which an axis must stand there, at the end, to have reached it.
 const AT_REST: f64 = 1.0 / REST_PART as f64;
@@ -159,9 +159,7 @@ impl<'p> Pair<'p> {
         (squares / count.max(1.0)).sqrt()
     }
 
-    /// The rows from each step of the command until the axis stands where it will stay; all of them where it does not. What is left
-    /// of a way that fades evenly falls, in half of the time in which it came into reach, by the root of what it fell by until
-    /// then: below what can be told.
+    /// The rows from each step of the command until the axis stands where it will stay; all of them where it does not.
     fn on_the_way(&self) -> Vec<bool> {
         let reached = self.resolution();
         let mut on_the_way = vec![false; self.command.len()];
@@ -174,8 +172,7 @@ impl<'p> Pair<'p> {
             let stays = end.is_finite() && rest >= AT_REST;
             // Where the axis did not stir, it is not known whether it did not have to.
             let stirred = last.is_some() || number == 0;
-            let settled = arrived + (arrived - rows.start) / 2;
-            let until = if stays && stirred { settled.min(rows.end) } else { rows.end };
+            let until = if stays && stirred { arrived } else { rows.end };
             on_the_way[rows.start..until].fill(true);
         }
         on_the_way

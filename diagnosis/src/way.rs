@@ -56,6 +56,11 @@ impl<'w> Way<'w> {
         change.is_nan() || change > CORNER * self.fastest
     }
 
+    /// The programmed positions.
+    pub(crate) fn command(&self) -> &[f64] {
+        self.command
+    }
+
     /// The highest programmed speed.
     pub(crate) fn fastest(&self) -> f64 {
         self.fastest

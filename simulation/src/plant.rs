@@ -455,7 +455,7 @@ impl Plant {
                 Some(servo) => followed(servo, command),
                 None => command.clone(),
             };
-            History::of(&commands.time, legs, position, self.deadband)
+            History::of(&commands.time, legs, command, position, self.deadband)
         });
         histories.collect()
     }

@@ -48,18 +48,25 @@ impl Tracker {
 }
 
 impl Motion {
-    /// Follows an axis; to go back by no more than `resolution` is no motion.
-    pub(super) fn of(time: &[f64], legs: &[usize], position: &[f64], resolution: f64) -> Self {
+    /// Follows an axis with its position behind the loop; to go back by no more than `resolution` is no motion. Where a leg begins is
+    /// a matter of what was programmed: what a loop had left to go is not asked.
+    pub(super) fn of(
+        time: &[f64],
+        legs: &[usize],
+        programmed: &[f64],
+        position: &[f64],
+        resolution: f64,
+    ) -> Self {
         let mut tracker =
             Tracker { direction: 1.0, moved: false, reversed: f64::NEG_INFINITY, extreme: None };
         let mut directions = Vec::with_capacity(position.len());
         let mut since = Vec::with_capacity(position.len());
         let mut displaced: Vec<bool> = Vec::new();
         let mut moves = false;
-        let near = reach(legs, position).max(resolution);
+        let near = reach(legs, programmed).max(resolution);
         let mut last: Option<f64> = None;
         for rows in stretches(legs) {
-            let known = || position[rows.clone()].iter().copied().filter(|position| position.is_finite());
+            let known = || programmed[rows.clone()].iter().copied().filter(|place| place.is_finite());
             let way = known().next().zip(last).map_or(0.0, |(first, last)| first - last);
             if way.abs() > near {
                 displaced.resize(position.len(), false);
@@ -75,7 +82,7 @@ impl Motion {
                 since.push(time[row] - tracker.reversed);
             }
             moves |= tracker.moved;
-            last = known().last().or(last);
+            last = known().next_back().or(last);
         }
         Self {
             direction: directions.into(),

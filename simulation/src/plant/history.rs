@@ -26,18 +26,20 @@ pub struct History {
 }
 
 impl History {
-    /// Follows an axis through its legs, numbered sample by sample; a motion back by no more than `deadband` is no real motion.
-    pub fn of(time: &[f64], legs: &[i64], position: Vec<f64>, deadband: f64) -> Self {
+    /// Follows an axis through its legs, numbered sample by sample, with the position behind its loop; a motion back by no more than
+    /// `deadband` is no real motion. Where a leg begins is a matter of its commands: what a loop had left to go is not asked.
+    pub fn of(time: &[f64], legs: &[i64], commands: &[f64], position: Vec<f64>, deadband: f64) -> Self {
         let mut history = Self { position, ..Self::default() };
         let mut tracker = Tracker::default();
-        let near = reach(legs, &history.position).max(deadband);
+        let near = reach(legs, commands).max(deadband);
         let mut last = None;
         for (start, end) in stretches(legs) {
             let time = time.get(start..end).unwrap_or_default();
             let position = history.position.get(start..end).unwrap_or_default();
             history.velocity.extend(velocities(time, position));
             history.acceleration.extend(accelerations(time, position));
-            let known: Vec<f64> = position.iter().copied().filter(|position| position.is_finite()).collect();
+            let told = commands.get(start..end).unwrap_or_default().iter().copied();
+            let known: Vec<f64> = told.filter(|command| command.is_finite()).collect();
             let way = known.first().zip(last).map_or(0.0, |(first, last): (&f64, f64)| first - last);
             let displaced = way.abs() > near;
             if displaced {
@@ -100,7 +102,7 @@ impl Default for Tracker {
 }
 
 impl Tracker {
-    /// At the beginning of a leg with these positions, the first of which is so far from where the last leg ended. An axis that
+    /// At the beginning of a leg with these commands, the first of which is so far from where the last leg ended. An axis that
     /// does not move any more is likeliest to stand as it came.
     fn displaced(known: &[f64], way: f64, deadband: f64) -> Self {
         let first = known.first().copied().unwrap_or_default();
@@ -141,7 +143,7 @@ mod tests {
     fn directions_turn_at_real_motions_only() {
         let time = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
         let positions = vec![5.0, 5.0, 4.0, 4.0 + 1e-7, 3.0, 3.5, 3.5];
-        let history = History::of(&time, &[1; 7], positions, 1e-6);
+        let history = History::of(&time, &[1; 7], &positions.clone(), positions, 1e-6);
         assert_eq!(history.direction, [1.0, 1.0, -1.0, -1.0, -1.0, 1.0, 1.0]);
         assert!(history.reversal[4].is_nan(), "the first motion is no reversal");
         assert_eq!(history.reversal[5..], [5.0, 5.0]);
@@ -152,7 +154,7 @@ mod tests {
         let time = [0.0, 1.0, 3.0, 10.0, 11.0, 12.0];
         let parabola = |t: f64| 2.0 * t * t;
         let positions: Vec<f64> = time.iter().map(|t| parabola(*t)).collect();
-        let history = History::of(&time, &[1, 1, 1, 2, 2, 2], positions, 0.0);
+        let history = History::of(&time, &[1, 1, 1, 2, 2, 2], &positions.clone(), positions, 0.0);
         assert_eq!(history.acceleration, [4.0; 6]);
         assert_eq!(history.velocity[0], 2.0);
         assert_eq!(history.velocity[4], 44.0);
@@ -160,8 +162,8 @@ mod tests {
 
     #[test]
     fn short_and_empty_runs_have_no_acceleration() {
-        assert_eq!(History::of(&[], &[], Vec::new(), 0.0), History::default());
-        let history = History::of(&[0.0, 1.0, 2.0], &[1, 2, 2], vec![0.0, 1.0, 3.0], 0.0);
+        assert_eq!(History::of(&[], &[], &[], Vec::new(), 0.0), History::default());
+        let history = History::of(&[0.0, 1.0, 2.0], &[1, 2, 2], &[0.0, 1.0, 3.0], vec![0.0, 1.0, 3.0], 0.0);
         assert_eq!(history.acceleration, [0.0; 3]);
         assert_eq!(history.velocity, [0.0, 2.0, 2.0]);
     }

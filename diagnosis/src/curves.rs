@@ -13,7 +13,9 @@ use crate::terms::{Shape, oddity};
 use crate::travel::Travel;
 
 /// How many nodes are tried.
-const NODES: [usize; 4] = [8, 12, 20, 40];
+const NODES: [usize; 3] = [8, 12, 20];
+/// And how many where waves draw the curve, short ones too.
+const MANY_NODES: usize = 40;
 /// A wave of more than this share of the travel may be part of a curve.
 const LONG: f64 = 0.12;
 
@@ -35,40 +37,69 @@ pub(crate) fn try_tables(
         }
     }
     for (place, axis) in places {
-        // Waves too: many of them draw any curve.
-        let imitates = |fitted: &Fitted| {
-            fitted.effect.place == place
-                && (smooth(&fitted.effect, travels) == Some(axis) || waves(fitted, axis))
-        };
-        let parts: Vec<&Fitted> = fit.model.iter().filter(|fitted| imitates(fitted)).collect();
+        let imitations = [false, true].map(|waving| Imitation { place, axis, waving });
+        for imitation in imitations {
+            fit = imitation.replaced(study, fit, always, noises, travels, tries);
+        }
+    }
+    fit
+}
+
+/// What may imitate a curve of a motion along an axis.
+struct Imitation {
+    place: Place,
+    axis: usize,
+    /// Whether waves of any length may, which together draw every curve.
+    waving: bool,
+}
+
+impl Imitation {
+    fn holds(&self, fitted: &Fitted, travels: &[Travel]) -> bool {
+        fitted.effect.place == self.place
+            && (smooth(&fitted.effect, travels) == Some(self.axis) || self.waving && waves(fitted, self.axis))
+    }
+
+    /// Whether there is enough of it for a table to be tried.
+    fn is_tried(&self, model: &Model, travels: &[Travel]) -> bool {
+        let parts: Vec<&Fitted> = model.iter().filter(|fitted| self.holds(fitted, travels)).collect();
         let winding =
             |fitted: &&Fitted| matches!(fitted.effect.shape, Shape::Polynomial { degree, .. } if degree > 2);
-        if parts.len() < 2 && !parts.iter().any(winding) {
-            continue;
+        if self.waving { parts.len() >= MANY } else { parts.len() > 1 || parts.iter().any(winding) }
+    }
+
+    /// The fit with a table in the place of it, where that says the same with less.
+    fn replaced(
+        &self,
+        study: &Study<'_>,
+        mut fit: Fit,
+        always: usize,
+        noises: &[Vec<Noise>],
+        travels: &[Travel],
+        tries: Tries,
+    ) -> Fit {
+        if !self.is_tried(&fit.model, travels) {
+            return fit;
         }
-        let kept: Model = fit.model.iter().filter(|fitted| !imitates(fitted)).cloned().collect();
-        for shape in tables(study, axis, &travels[axis]) {
+        let travel = &travels[self.axis];
+        let kept: Model = fit.model.iter().filter(|fitted| !self.holds(fitted, travels)).cloned().collect();
+        let drawn = self.waving && none_stands_out(&fit.model, self.place, self.axis);
+        for shape in tables(study, self.axis, travel, drawn) {
             let mut trial = kept.clone();
-            let effect = Effect { place, shape };
+            let effect = Effect { place: self.place, shape };
             trial.push(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
             let trial = fit::refine(study, trial, noises, travels);
             if cost(study, &trial, always, tries) >= cost(study, &fit, always, tries) {
                 continue;
             }
             // A curve that is flat but for one place is a place; that is looked for elsewhere, without imitations.
-            let local = trial
-                .model
-                .last()
-                .and_then(active)
-                .is_some_and(|(from, to)| to - from < BROAD * travels[axis].range());
-            if local {
-                fit = fit::refine(study, kept, noises, travels);
-                break;
+            let stretch = trial.model.last().and_then(active);
+            if stretch.is_some_and(|(from, to)| to - from < BROAD * travel.range()) {
+                return fit::refine(study, kept, noises, travels);
             }
             fit = trial;
         }
+        fit
     }
-    fit
 }
 
 /// The share of the travel from which on a feature is a curve, and below which it is a place.
@@ -120,13 +151,30 @@ fn waves(fitted: &Fitted, axis: usize) -> bool {
     wave_along(&fitted.effect) == Some(axis) || matches!(fitted.effect.shape, Shape::Vibration { .. })
 }
 
+/// Whether no wave stands out of those of a motion: a screw or a worm has one that does, and others beside it.
+fn none_stands_out(model: &Model, place: Place, axis: usize) -> bool {
+    let parts = model.iter().filter(|fitted| fitted.effect.place == place && waves(fitted, axis));
+    let energies: Vec<f64> =
+        parts.map(|fitted| fitted.coefficients.iter().map(|value| value * value).sum()).collect();
+    let largest = energies.iter().fold(0.0, |most: f64, energy| most.max(*energy));
+    largest < STANDS_OUT * energies.iter().sum::<f64>()
+}
+
+/// So many smooth terms and waves draw any curve; three may be a fundamental, a harmonic and a slope.
+const MANY: usize = 4;
+/// One stands out that has more than half of what all of them have.
+const STANDS_OUT: f64 = 0.5;
+
 /// Tables of an axis: with nodes at its stations, where it stands at a few; else at equal steps, as long as there is something
 /// at every node.
-fn tables(study: &Study<'_>, axis: usize, travel: &Travel) -> Vec<Shape> {
+fn tables(study: &Study<'_>, axis: usize, travel: &Travel, drawn: bool) -> Vec<Shape> {
     let places = places(study, axis);
     let nodes = match stations(&places, travel) {
         Some(stations) => vec![stations],
-        None => NODES.map(|count| even(travel, count)).into_iter().filter(|n| held(n, &places)).collect(),
+        None => {
+            let counts = NODES.into_iter().chain(drawn.then_some(MANY_NODES));
+            counts.map(|count| even(travel, count)).filter(|nodes| held(nodes, &places)).collect()
+        }
     };
     nodes.into_iter().map(|nodes| Shape::Table { axis, nodes, directed: false }).collect()
 }

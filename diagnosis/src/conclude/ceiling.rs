@@ -32,7 +32,7 @@ fn of_channel(
         lines.push(Returning {
             recording,
             channel: channel.name.clone(),
-            state: names.join("; "),
+            state: names.join(", "),
             share: one.share,
             left: one.left * factor,
             unit,

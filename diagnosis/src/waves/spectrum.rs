@@ -30,10 +30,12 @@ pub(super) fn spectrum(rows: &[Rows<'_>], low: f64, range: f64, shortest: f64) -
         let mut bins = vec![0.0; size];
         for rows in rows {
             for (row, place) in rows.places.iter().enumerate() {
-                if let Some(target) = crate::index((place - low) / bin).and_then(|index| bins.get_mut(index))
-                {
-                    *target += column(rows, row);
-                }
+                let along = (place - low) / bin;
+                let Some(index) = crate::index(along).filter(|index| index + 1 < size) else { continue };
+                // Shared out between two bins: rows that come evenly would beat with the bins.
+                let (share, value) = (along - crate::number(index), column(rows, row));
+                bins[index] += (1.0 - share) * value;
+                bins[index + 1] += share * value;
             }
         }
         fourier(bins)
@@ -57,11 +59,12 @@ fn gain(residual: &[Complex<f64>], weights: &[Complex<f64>], number: usize) -> f
     if total <= 0.0 {
         return 0.0;
     }
-    let once = weights[number];
+    let once = line(weights, number);
     let twice = line(weights, 2 * number);
+    let seen = line(residual, number);
     let mean = residual[0].re / total;
-    let cosine = residual[number].re - mean * once.re;
-    let sine = residual[number].im - mean * once.im;
+    let cosine = seen.re - mean * once.re;
+    let sine = seen.im - mean * once.im;
     let cosines = 0.5 * (total + twice.re) - once.re * once.re / total;
     let sines = 0.5 * (total - twice.re) - once.im * once.im / total;
     let mixed = 0.5 * twice.im - once.re * once.im / total;
@@ -72,10 +75,14 @@ fn gain(residual: &[Complex<f64>], weights: &[Complex<f64>], number: usize) -> f
     (sines * cosine * cosine + cosines * sine * sine - 2.0 * mixed * cosine * sine) / determinant
 }
 
-/// A line of the spectrum of bins, which comes round after as many lines as there are bins; the second half mirrors the first.
+/// A line of the spectrum of rows: that of bins, which comes round after as many lines as there are bins and whose second half
+/// mirrors the first, without what sharing a row out between two bins takes from it.
 fn line(lines: &[Complex<f64>], number: usize) -> Complex<f64> {
     let half = lines.len() - 1;
-    if number <= half { lines[number] } else { lines[(2 * half).abs_diff(number)].conj() }
+    let line = if number <= half { lines[number] } else { lines[(2 * half).abs_diff(number)].conj() };
+    let angle = std::f64::consts::PI * crate::number(number) / crate::number(2 * half);
+    let taken = if number == 0 { 1.0 } else { (angle.sin() / angle).powi(2) };
+    line / taken
 }
 
 fn fourier(mut bins: Vec<f64>) -> Vec<Complex<f64>> {

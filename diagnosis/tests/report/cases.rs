@@ -123,6 +123,10 @@ pub(crate) fn two_findings() -> Diagnosis {
         verdict: Verdict::LeftOutPhysics,
         before: residual(0.0123, 0.0125),
         after: residual(0.0005, 0.0006),
+        returns: vec![
+            returning("direction of Y", 0.83, 0.0051),
+            returning("direction of Y, temperature spindle", 0.981, 0.0017),
+        ],
         findings: vec![backlash("transmission"), expansion()],
         settings: vec![SettingFinding {
             recording: 0,

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path as File, PathBuf};
 use std::sync::Arc;
 
-use diagnosis::recording::{Recording, calibration_of, machine_of, read_header};
+use recording::{Recording, calibration_of, machine_of, read_header};
 use model_dsl::calibration::{self, CalibratedTerm, Calibration, MachineNames, SeriesInput};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
@@ -210,7 +210,7 @@ fn calibration_named(path: &File, names: &MachineNames) -> Result<Calibration, S
 
 #[cfg(test)]
 mod tests {
-    use diagnosis::recording::AxisChannels;
+    use recording::AxisChannels;
 
     use super::*;
 

@@ -1,7 +1,7 @@
 //! Cases. In: a recording and an effect that it allows. Out: the recording with the effect in it, at a size, and what the
 //! effect alone shows.
 
-use diagnosis::recording::Recording;
+use recording::Recording;
 use simulation::noise::Source;
 
 use crate::allowed::Allowed;

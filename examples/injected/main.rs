@@ -39,7 +39,7 @@ use std::thread;
 use std::time::Instant;
 
 use diagnosis::diagnosis::Diagnosis;
-use diagnosis::recording::Recording;
+use recording::Recording;
 use diagnosis::{Inputs, diagnose};
 
 use base::Base;

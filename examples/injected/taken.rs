@@ -1,7 +1,7 @@
 //! How a recording was taken. In: the recording. Out: the instrument and the commands as the simulation has them, where the
 //! readings stand, and what effects follow.
 
-use diagnosis::recording::{AxisChannels, Instrument as Recorder, Named, Recording};
+use recording::{AxisChannels, Instrument as Recorder, Named, Recording};
 use model_dsl::calibration::MachineNames;
 use simulation::{Column, Commands, Instrument, Normal};
 

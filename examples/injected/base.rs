@@ -7,11 +7,11 @@ use std::fs;
 use std::path::{Path as File, PathBuf};
 use std::sync::Arc;
 
-use recording::{Recording, calibration_of, machine_of, read_header};
 use model_dsl::calibration::{self, CalibratedTerm, Calibration, MachineNames, SeriesInput};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
 use model_dsl::{Compiled, compile, compile_word, yaml};
+use recording::{Recording, calibration_of, machine_of, read_header};
 use simulation::{Commands, Measurement, Plant, replay};
 
 use crate::columns::difference;

@@ -39,8 +39,8 @@ use std::thread;
 use std::time::Instant;
 
 use diagnosis::diagnosis::Diagnosis;
-use recording::Recording;
 use diagnosis::{Inputs, diagnose};
+use recording::Recording;
 
 use base::Base;
 use case::Case;

@@ -1,8 +1,8 @@
 //! How a recording was taken. In: the recording. Out: the instrument and the commands as the simulation has them, where the
 //! readings stand, and what effects follow.
 
-use recording::{AxisChannels, Instrument as Recorder, Named, Recording};
 use model_dsl::calibration::MachineNames;
+use recording::{AxisChannels, Instrument as Recorder, Named, Recording};
 use simulation::{Column, Commands, Instrument, Normal};
 
 use crate::columns::{difference, filled, rms, straightened};

@@ -18,7 +18,7 @@ const TABLE: &str = "model-dsl/src/calibration/vocabulary.rs";
 const TYPE: [&str; 2] = ["model-dsl/src/calibration/term.rs", "model-dsl/src/calibration/term/parts.rs"];
 
 /// Where words that are terms elsewhere mean something else.
-const OTHER_SENSES: [(&str, &str); 5] = [
+const OTHER_SENSES: [(&str, &str); 6] = [
     // What a calibration of an instrument writes of its table.
     ("exchange/src/instrument/report/json.rs", "table"),
     // A form of results in set-up files, beside `tables`.
@@ -27,6 +27,7 @@ const OTHER_SENSES: [(&str, &str); 5] = [
     ("simulation/src/file.rs", "acceleration"),
     // States, on which something depends.
     ("diagnosis/src/words.rs", "acceleration"),
+    ("diagnosis/src/returns/state.rs", "acceleration"),
     ("diagnosis/src/report/physics.rs", "constant"),
 ];
 

@@ -35,6 +35,8 @@ pub(crate) struct Appraisal {
     pub(crate) leftover: Vec<Vec<f64>>,
     /// Minus twice the log-likelihood of all channels.
     pub(crate) deviance: f64,
+    /// The same where what never comes back is a noise that wanders, whatever the weights.
+    pub(crate) wandering: f64,
 }
 
 /// What is known of one channel under a model.
@@ -45,6 +47,7 @@ struct Estimate {
     returning: f64,
     leftover: f64,
     deviance: f64,
+    wandering: f64,
 }
 
 impl Appraisal {
@@ -68,6 +71,7 @@ impl Appraisal {
             returning: Vec::new(),
             leftover: Vec::new(),
             deviance: 0.0,
+            wandering: 0.0,
         };
         for scene in 0..study.scenes.len() {
             let course = Course::new(study, scene, model);
@@ -99,6 +103,7 @@ impl Appraisal {
         });
         let (marks, estimates): (Vec<Vec<bool>>, Vec<Estimate>) = results.into_iter().unzip();
         self.deviance += estimates.iter().map(|estimate| estimate.deviance).sum::<f64>();
+        self.wandering += estimates.iter().map(|estimate| estimate.wandering).sum::<f64>();
         self.outliers.push(marks);
         self.floors.push(estimates.iter().map(|estimate| estimate.floor).collect());
         self.leftover.push(estimates.iter().map(|estimate| estimate.leftover).collect());
@@ -161,13 +166,16 @@ fn estimate(
             alike: alike.max(MORE_THAN_ONE),
             ..Noise::white((whole / count).sqrt().max(floor.white))
         };
-        let deviance = noise::deviance(time, residual, valid, &weights);
-        return Estimate { floor, weights, returning, leftover, deviance };
+        // Where nothing comes back, a noise that wanders may be all there is.
+        let again = !observed.returning.is_empty();
+        let plain = noise::deviance(time, residual, valid, &weights);
+        let wandering = if again { plain } else { deviance };
+        return Estimate { floor, weights, returning, leftover, deviance: plain, wandering };
     }
     // Where nothing comes back, the noise with the greatest likelihood is the floor itself.
     let same = returning == 0.0 && floor.white == found.white;
     let deviance = if same { deviance } else { noise::deviance(time, residual, valid, &floor) };
-    Estimate { floor, weights: floor, returning, leftover, deviance }
+    Estimate { floor, weights: floor, returning, leftover, deviance, wandering: deviance }
 }
 
 /// Samples of what a model leaves out never count for themselves.

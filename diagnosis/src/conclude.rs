@@ -28,7 +28,7 @@ use crate::terms::SettingKind;
 use crate::unsteady;
 use crate::zeros;
 use crate::{Inputs, Progress};
-use decidable::{astray, crossed, misplaced, too_little, undecided};
+use decidable::{astray, crossed, misplaced, no_circle, too_little, undecided};
 use findings::report;
 use summary::summary;
 use units::Units;
@@ -54,7 +54,7 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
     let units = Units::new(&study);
     let bare = bare_model(&mut study);
     diagnosis.returns = ceiling::ceiling(&study);
-    if let Some(reason) = astray(&study, &bare) {
+    if let Some(reason) = astray(&study, &bare).or_else(|| no_circle(&study, &bare)) {
         return undecidable(diagnosis, &study, reason);
     }
     let left = |study: &Study<'_>, bare: &Model| {

@@ -102,6 +102,30 @@ impl Imitation {
     }
 }
 
+/// A model without waves of a motion that are many and of which none stands out, where it has any: what they draw together is
+/// something else, which has no name here. A comb of vibrations is the answer to pulses, and waves of all lengths are a dent.
+pub(crate) fn without_lists(model: &Model, always: usize) -> Option<Model> {
+    let is_wave = |fitted: &Fitted| fitted.effect.shape.is_wave();
+    let places = model[always..].iter().filter(|fitted| is_wave(fitted)).map(|fitted| fitted.effect.place);
+    let listed = |place: &Place| {
+        let parts = model.iter().filter(|fitted| fitted.effect.place == *place && is_wave(fitted));
+        let energies: Vec<f64> = parts.map(energy).collect();
+        energies.len() >= MANY && !one_stands_out(&energies)
+    };
+    let place = places.into_iter().find(listed)?;
+    let kept = model.iter().filter(|fitted| !(is_wave(fitted) && fitted.effect.place == place));
+    Some(kept.cloned().collect())
+}
+
+fn energy(fitted: &Fitted) -> f64 {
+    fitted.coefficients.iter().map(|value| value * value).sum()
+}
+
+fn one_stands_out(energies: &[f64]) -> bool {
+    let largest = energies.iter().fold(0.0, |most: f64, energy| most.max(*energy));
+    largest >= STANDS_OUT * energies.iter().sum::<f64>()
+}
+
 /// The share of the travel from which on a feature is a curve, and below which it is a place.
 pub(crate) const BROAD: f64 = 0.3;
 
@@ -154,10 +178,7 @@ fn waves(fitted: &Fitted, axis: usize) -> bool {
 /// Whether no wave stands out of those of a motion: a screw or a worm has one that does, and others beside it.
 fn none_stands_out(model: &Model, place: Place, axis: usize) -> bool {
     let parts = model.iter().filter(|fitted| fitted.effect.place == place && waves(fitted, axis));
-    let energies: Vec<f64> =
-        parts.map(|fitted| fitted.coefficients.iter().map(|value| value * value).sum()).collect();
-    let largest = energies.iter().fold(0.0, |most: f64, energy| most.max(*energy));
-    largest < STANDS_OUT * energies.iter().sum::<f64>()
+    !one_stands_out(&parts.map(energy).collect::<Vec<f64>>())
 }
 
 /// So many smooth terms and waves draw any curve; three may be a fundamental, a harmonic and a slope.

@@ -33,8 +33,9 @@ use crate::waves::{self, WavePlace, Weighted};
 
 /// The most rounds.
 const ROUNDS: usize = 6;
-/// How many waves are added to the candidates in a round.
-const WAVES: usize = 8;
+/// How many waves are added to the candidates in a round by what they gain, and as many by what they gain at their own noise: the
+/// one is right where the noise is known, the other where it is not yet.
+const WAVES: usize = 6;
 
 /// What the engine found.
 pub(crate) struct Found {
@@ -82,6 +83,10 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     let (mut fit, mut appraisal) = upheld(study, fit, always, &travels, tries);
     let revision = Revision { always, pool: &pool, places: &places, travels: &travels, tries };
     (fit, appraisal) = revision.revised(study, fit, appraisal);
+    while let Some(model) = curves::without_lists(&fit.model, always) {
+        let rest = fit::refine(study, model, &appraisal.noises, &travels);
+        (fit, appraisal) = upheld(study, rest, always, &travels, tries);
+    }
     let bands = unsteady::take_bands(&mut fit.model, always);
     if !bands.is_empty() {
         let steady = fit::refine(study, fit.model, &appraisal.noises, &travels);
@@ -131,7 +136,7 @@ impl Search {
         let pool = candidates::candidates(study, &travels);
         let pool = kinship::groups(study, &courses, &noises, pool);
         let places = waves::places(study, &courses, &noises, &travels);
-        let tries = Tries { candidates: crate::number(pool.len() + WAVES), waves: 1.0 };
+        let tries = Tries { candidates: crate::number(pool.len() + 2 * WAVES), waves: 1.0 };
         Self { always: model.len(), model, noises, courses, travels, pool, places, tries }
     }
 
@@ -362,11 +367,14 @@ pub(crate) fn regressors(
     };
     effects.extend(candidates.filter(|effect| !chosen.iter().any(|known| stands(effect, &known.effect))));
     let simplicity = |peak: &waves::Peak| candidates::simplicity(study, &peak.effect);
-    peaks.sort_by(|a, b| b.gain.total_cmp(&a.gain).then(simplicity(a).total_cmp(&simplicity(b))));
     let mut added: Vec<Effect> = Vec::new();
-    for peak in peaks {
-        if added.len() < WAVES && !added.iter().any(|known| rivals(known, &peak.effect)) {
-            added.push(peak.effect);
+    for measure in [|peak: &waves::Peak| peak.gain, |peak: &waves::Peak| peak.local] {
+        peaks.sort_by(|a, b| measure(b).total_cmp(&measure(a)).then(simplicity(a).total_cmp(&simplicity(b))));
+        let most = added.len() + WAVES;
+        for peak in &peaks {
+            if added.len() < most && !added.iter().any(|known| rivals(known, &peak.effect)) {
+                added.push(peak.effect.clone());
+            }
         }
     }
     effects.extend(added);

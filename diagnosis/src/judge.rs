@@ -217,7 +217,11 @@ fn noise_explains(
     price: f64,
 ) -> bool {
     let without = without(design, swept, &fit.model, number);
-    Appraisal::beside(study, &without, appraisal).deviance - appraisal.deviance < price
+    let bare = Appraisal::beside(study, &without, appraisal);
+    // A walk draws any curve along a single pass. It knows nothing of reversals, speeds and temperatures.
+    let curve = matches!(fit.model[number].effect.shape, Shape::Polynomial { .. } | Shape::Table { .. });
+    let rise = if curve { bare.wandering - appraisal.wandering } else { bare.deviance - appraisal.deviance };
+    rise < price
 }
 
 /// The model without one effect, the linear coefficients of the others fitted again.

@@ -7,6 +7,7 @@
 
 mod spectrum;
 
+use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -29,6 +30,8 @@ pub(crate) struct Peak {
     pub(crate) effect: Effect,
     /// What it would take from the weighted sum of squares, roughly.
     pub(crate) gain: f64,
+    /// What it would take were the noise of all frequencies that around its own.
+    pub(crate) local: f64,
 }
 
 /// The residual of one channel, weighted by the inverse of the noise, which samples count, and their mean weight.
@@ -81,7 +84,7 @@ pub(crate) fn places(
                     shape: Shape::Cyclic { axis, period, center: travels[axis].center() },
                 });
             }
-            if along.is_none_or(|axis| !steadily(study, axis)) {
+            if along.is_none_or(|axis| !steadily(study, axis)) && !in_steps(study, travels) {
                 samples.push(Effect { place, shape: Shape::Vibration { frequency: 7.3 / span } });
             }
         }
@@ -121,6 +124,18 @@ fn speeds(scene: &Scene<'_>, axis: usize) -> Vec<f64> {
     let runs = scene.recording.runs().into_iter();
     runs.flat_map(|(rows, _)| of_run(rows)).filter(|speed| speed.is_finite()).collect()
 }
+
+/// Whether rows are stations: between two of them an axis goes a good part of its travel, and rows are far apart. Such a table
+/// shows no vibration, whatever its times say.
+fn in_steps(study: &Study<'_>, travels: &[Travel]) -> bool {
+    let steps = |travel: &Travel| travel.moves && travel.step > STATION * travel.range();
+    study.scenes.iter().all(Scene::sparse) && travels.iter().any(steps)
+}
+
+/// The share of the travel from station to station: with fifty and more, rows are a slow log.
+const STATION: f64 = 0.02;
+/// The line of a whole turn may come out a little below it.
+const NEARLY: f64 = 0.9;
 
 /// Speeds that differ by less than this share shift no wave by more than a part of a turn.
 const STEADY: f64 = 0.05;
@@ -227,11 +242,13 @@ fn along(
     let (low, range) = (travels[axis].low, travels[axis].range());
     let shortest = 2.2 * travels[axis].step;
     (shortest < range / 2.0).then_some(())?;
-    let found = tops(&source.spectrum(&positions, low, range, shortest), PERIODS / range, OF_A_PLACE);
+    // Of an axis that goes round, a turn is the longest period, and it has been there.
+    let longest = if goes_round(study, axis, &travels[axis]) { NEARLY / TAU } else { PERIODS / range };
+    let found = tops(&source.spectrum(&positions, low, range, shortest), longest, OF_A_PLACE);
     let peak = |top: Top| {
         let period = turned(study, axis, &travels[axis], 1.0 / top.frequency);
         let shape = Shape::Cyclic { axis, period, center: travels[axis].center() };
-        Peak { effect: effect(source, shape), gain: top.local }
+        Peak { effect: effect(source, shape), gain: top.gain, local: top.local }
     };
     Some(LookedAt { peaks: found.into_iter().map(peak).collect(), tried: range / shortest })
 }
@@ -246,15 +263,15 @@ fn in_time(study: &Study<'_>, source: &Source, courses: &[Arc<Course>]) -> Optio
     let found = tops(&source.spectrum(&times, 0.0, span, 2.0 * step), CYCLES / observed, OF_A_PLACE);
     let peak = |top: Top| Peak {
         effect: effect(source, Shape::Vibration { frequency: top.frequency }),
-        gain: top.local,
+        gain: top.gain,
+        local: top.local,
     };
     Some(LookedAt { peaks: found.into_iter().map(peak).collect(), tried: span / (2.0 * step) })
 }
 
 /// A period along an axis; of one that goes round the nearest whole part of a turn.
 fn turned(study: &Study<'_>, axis: usize, travel: &Travel, period: f64) -> f64 {
-    let turn = std::f64::consts::TAU;
-    if goes_round(study, axis, travel) { turn / (turn / period).round().max(1.0) } else { period }
+    if goes_round(study, axis, travel) { TAU / (TAU / period).round().max(1.0) } else { period }
 }
 
 fn effect(source: &Source, shape: Shape) -> Effect {

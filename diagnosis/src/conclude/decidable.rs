@@ -5,9 +5,10 @@
 
 use crate::answers::answers;
 use crate::crossing;
-use crate::model::Model;
+use crate::model::{Fitted, Model};
 use crate::recording::Instrument;
 use crate::study::{Scene, Study};
+use crate::terms::Setting;
 use crate::zeros;
 
 /// The fewest samples from which anything is claimed.
@@ -170,6 +171,26 @@ pub(super) fn misplaced(study: &Study<'_>) -> Option<String> {
         }
     }
     None
+}
+
+/// Why the path cannot be the circle that a ballbar was set up for, where that is so: fitted to it, the bar is longer or shorter
+/// than bars can read, or its ball stood elsewhere. Exchanged columns and wrong units do that.
+pub(super) fn no_circle(study: &Study<'_>, bare: &Model) -> Option<String> {
+    study.scenes.iter().enumerate().find_map(|(number, scene)| {
+        let Instrument::Ballbar { radius, .. } = scene.recording.instrument else { return None };
+        let setting = |fitted: &&Fitted| {
+            matches!(fitted.effect.setting_of(number), Some(Setting::Radius | Setting::Eccentricity { .. }))
+        };
+        let sizes = bare.iter().filter(setting).flat_map(|fitted| &fitted.coefficients);
+        let largest = sizes.fold(0.0, |most: f64, value| most.max(value.abs()));
+        (largest > BAR_READS + BAR_READS_OF_LENGTH * radius).then(|| {
+            format!(
+                "the readings of {} are no circle about the declared centre: fitted to them, centre or length of the bar are \
+                 off by {largest:.1} mm; look at the columns of the axes, which may be exchanged, at their signs and units",
+                scene.recording.file
+            )
+        })
+    })
 }
 
 /// How much longer or shorter than its nominal length a ballbar reads, mm, and as a share of its length.

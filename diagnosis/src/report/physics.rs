@@ -65,7 +65,7 @@ pub(super) fn ahead(finding: &Finding) -> Option<&'static str> {
         let parameter = finding.parameters.iter().find(|parameter| parameter.name == name);
         matches!(parameter.map(|known| &known.value), Some(ParameterValue::Fitted(estimate)) if estimate.ci95.1 < 0.0)
     };
-    if finding.term == "lag" {
+    if finding.kind() == TermKind::Lag {
         return below("gain").then_some(
             "Here it is below zero: the drive leads its command, by velocity over gain. Its feed-forward is too large, or the \
              loop is quicker than the calibration says.",

@@ -368,6 +368,7 @@ fn the_largest_channel_that_moves_is_named_and_outliers_do_not_hide_it() {
         returning: Vec::new(),
         leftover: Vec::new(),
         deviance: 0.0,
+        wandering: 0.0,
     };
     // The larger channel is white.
     assert_eq!(moving(&study, &appraisal).unwrap().channel, 0);

@@ -139,26 +139,28 @@ pub(super) fn tops(spectrum: &[Line], above: f64, count: usize) -> Vec<Top> {
 
 /// The median of what a wave gains from white noise of unit variance: 2 ln 2.
 const MEDIAN: f64 = 2.0 * std::f64::consts::LN_2;
-/// The spectrum around a line: this share of its frequency to either side, and so many lines at least. Fewer are a median of
-/// chance, more are another noise, which falls with the square of the frequency where it wanders.
-const SHARE: f64 = 0.3;
-const LINES: usize = 6;
+/// The spectrum around a line reaches from its frequency over a factor to its frequency times that: by equal shares down and up,
+/// since the noise of a walk falls with the square of the frequency. So many lines, since fewer are a median of chance and a peak
+/// is several lines wide; but no more than this factor, and no less than that.
+const AROUND: f64 = 48.0;
+const FACTORS: (f64, f64) = (1.3, 3.0);
 
 /// The median of the spectrum around each line.
 fn levels(spectrum: &[Line]) -> Vec<f64> {
     let count = spectrum.len();
     let mut levels = vec![0.0; count];
-    let mut at = 0;
+    let mut at = 1;
     while at < count {
-        let half = crate::index(SHARE * crate::number(at)).unwrap_or_default().max(LINES);
-        let mut around: Vec<f64> = spectrum
-            [at.saturating_sub(half).max(1).min(count - 1)..(at + half + 1).min(count)]
-            .iter()
-            .map(|line| line.1)
-            .collect();
+        let place = crate::number(at);
+        // The factor f by which f - 1/f times the place is so many lines.
+        let half = 0.5 * AROUND / place;
+        let factor = (half + half.hypot(1.0)).clamp(FACTORS.0, FACTORS.1);
+        let bound = |line: f64| crate::index(line).unwrap_or_default().clamp(1, count - 1);
+        let (from, to) = (bound(place / factor), bound((place * factor).ceil()));
+        let mut around: Vec<f64> = spectrum[from..=to].iter().map(|line| line.1).collect();
         let level = crate::noise::middle(&mut around).unwrap_or_default();
-        // Windows overlap for the most part: one serves for its middle quarter.
-        let next = (at + (half / 4).max(1)).min(count);
+        // Windows overlap for the most part: one serves for an eighth of its lines.
+        let next = (at + ((to - from) / 8).max(1)).min(count);
         levels[at..next].fill(level);
         at = next;
     }

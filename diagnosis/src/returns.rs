@@ -42,12 +42,18 @@ struct Places {
 /// What a function of a state predicts in other units.
 struct Prediction<'s> {
     grid: Grid<'s>,
-    /// For each group of units that was left out: the heights of the nodes by the others, and 1 where those say anything.
-    curves: Vec<(Vec<f64>, Vec<f64>)>,
+    curves: Vec<Curve>,
     /// The share of the residual's variance within units that it takes.
     share: f64,
     /// How many other units, in the mean, a row is predicted by.
     others: f64,
+}
+
+/// The curve of all units but those of one group.
+struct Curve {
+    heights: Vec<f64>,
+    /// 1 at nodes of which the others say anything, else 0.
+    known: Vec<f64>,
 }
 
 /// A state that predicts more than chance does, beside those before it.
@@ -318,8 +324,8 @@ impl<'s> Grid<'s> {
         }
     }
 
-    /// The curves of all groups of units, each fitted to the others.
-    fn curves(&self, residual: &[f64], usable: &[usize]) -> (Vec<(Vec<f64>, Vec<f64>)>, Vec<f64>) {
+    /// The curves of all groups of units, each fitted to the others; and how many groups came by each node.
+    fn curves(&self, residual: &[f64], usable: &[usize]) -> (Vec<Curve>, Vec<f64>) {
         let mut folds = vec![Sums::new(self.size()); self.folds];
         for row in usable {
             if let Some(place) = self.place(*row) {
@@ -333,7 +339,7 @@ impl<'s> Grid<'s> {
             let mut others = whole.clone();
             others.plus(sums, -1.0);
             let known = (0..self.size()).map(|node| if others.seen(node) { 1.0 } else { 0.0 });
-            (others.solve(&ends), known.collect())
+            Curve { known: known.collect(), heights: others.solve(&ends) }
         };
         let seen = |node: usize| crate::number(folds.iter().filter(|sums| sums.seen(node)).count());
         (folds.iter().map(curve).collect(), (0..self.size()).map(seen).collect())
@@ -375,7 +381,7 @@ impl Prediction<'_> {
     /// What other units predict in a row, and where on the grid that is.
     fn at(&self, row: usize) -> Option<(f64, Place)> {
         let place = self.grid.place(row)?;
-        let (heights, known) = &self.curves[self.grid.fold(row)];
+        let Curve { heights, known } = &self.curves[self.grid.fold(row)];
         (at(known, place) > 0.5).then(|| (at(heights, place), place))
     }
 

@@ -136,6 +136,6 @@ fn where_nothing_is_driven_twice_nothing_comes_back() {
     recording.measured.iter_mut().flatten().for_each(|measured| measured.truncate(end));
     let study = Study::new(bench.equations(), None, &[&recording]);
     let returns = &study.scenes[0].returns;
-    let residual: Vec<f64> = (0..end).map(|row| crate::number(row)).collect();
+    let residual: Vec<f64> = (0..end).map(crate::number).collect();
     assert!(told(returns, &residual).is_empty());
 }

@@ -109,14 +109,15 @@ fn the_mounts_have_the_waves_that_are_told_of_them() {
 
 /// What turns with a worm comes back in whole parts of its turn, and in no other.
 #[test]
-fn no_wave_of_the_first_mount_contradicts_its_worm() {
+fn the_strongest_waves_of_the_first_mount_are_its_worm_and_the_fifth_of_it() {
     let found = diagnosis("guided-mount-1");
-    assert_ne!(found["verdict"], "adequate", "ten arcsec of drift are not nothing");
-    for finding in found["findings"].as_array().unwrap().iter().filter(|one| one["term"] == "cyclic") {
-        let period = finding["parameters"]["period"]["value"].as_f64().unwrap();
-        let turns = WORM_TURN / period;
-        assert!((turns / turns.round() - 1.0).abs() < 0.01, "{turns} waves in a turn: {finding:#}");
-    }
+    let number = |finding: &Value, name: &str| finding["parameters"][name]["value"].as_f64().unwrap();
+    let waves = found["findings"].as_array().unwrap().iter().filter(|one| one["term"] == "cyclic");
+    let mut waves: Vec<(f64, f64)> =
+        waves.map(|wave| (number(wave, "amplitude"), WORM_TURN / number(wave, "period"))).collect();
+    waves.sort_by(|a, b| b.0.total_cmp(&a.0));
+    assert!(waves.len() > 1, "{waves:?}");
+    assert!((waves[0].1 - 1.0).abs() < 0.01 && (waves[1].1 - 5.0).abs() < 0.05, "{waves:?}");
 }
 
 #[test]

@@ -23,6 +23,7 @@ use crate::pictures;
 use crate::repeats;
 use crate::rest;
 use crate::returns;
+use crate::revise;
 use crate::study::{Scene, Study};
 use crate::terms::SettingKind;
 use crate::unsteady;
@@ -82,8 +83,11 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
     let mut feature = explain_locally(&mut study, &mut found);
     progress(Progress { step: "comparing with other names", done: 0.95 });
     let mut numbers = claims(&study, &mut found, &units, &mut diagnosis);
-    while let Some(weakest) = refuted::weakest(&diagnosis.findings) {
-        drop_effect(&mut study, &mut found, numbers[weakest]);
+    while let Some(weakest) = refuted::weakest(&diagnosis.findings)
+        .map(|weakest| numbers[weakest])
+        .or_else(|| piece_of_the_rest(&study, &found, &numbers))
+    {
+        drop_effect(&mut study, &mut found, weakest);
         feature = explain_locally(&mut study, &mut found);
         numbers = claims(&study, &mut found, &units, &mut diagnosis);
     }
@@ -159,6 +163,20 @@ fn claims(study: &Study<'_>, found: &mut Found, units: &Units, diagnosis: &mut D
     diagnosis.findings.clear();
     diagnosis.settings.clear();
     report(study, found, units, diagnosis)
+}
+
+/// The number of a wave that takes less than what comes back without a name beside it, the one of the least share of them: it may be
+/// a piece of that.
+fn piece_of_the_rest(study: &Study<'_>, found: &Found, numbers: &[usize]) -> Option<usize> {
+    let model = &found.fit.model;
+    let waves = numbers.iter().rev().copied().filter(|number| model[*number].effect.shape.is_wave());
+    waves.into_iter().find(|number| {
+        let mut rest = model.clone();
+        rest.remove(*number);
+        let rest = fit::refine(study, rest, &found.appraisal.noises, &found.travels);
+        let without = Appraisal::beside(study, &rest.model, &found.appraisal);
+        !revise::stands_apart(study, &without, &found.appraisal)
+    })
 }
 
 /// Takes one effect back and fits the rest again.

@@ -71,7 +71,24 @@ impl<'f> Described<'f> {
     fn linear(&self, number: usize, factor: f64, unit: String) -> Estimate {
         let mut gradient = vec![0.0; number + 1];
         gradient[number] = 1.0;
-        self.derived(self.coefficient(number), &gradient, (factor, unit))
+        let estimate = self.derived(self.coefficient(number), &gradient, (factor, unit));
+        match self.told_beside(number) {
+            true => estimate.of_one_sign(),
+            false => estimate,
+        }
+    }
+
+    /// Whether a coefficient is told from nothing for the nonlinear parameter as it was found.
+    fn told_beside(&self, number: usize) -> bool {
+        let covariance = &self.certainty.covariance;
+        let last = covariance.nrows() - 1;
+        if self.fitted.effect.shape.nonlinear().is_none() || number >= last || covariance[(last, last)] <= 0.0
+        {
+            return false;
+        }
+        let along = covariance[(number, last)];
+        let given = covariance[(number, number)] - along * along / covariance[(last, last)];
+        self.coefficient(number).abs() > WIDTH_95 * given.max(0.0).sqrt()
     }
 
     /// The same effect in the richer form that the data lean to.
@@ -397,6 +414,19 @@ fn axis_name(study: &Study<'_>, axis: usize) -> Parameter {
 
 fn sensor_name(study: &Study<'_>, sensor: usize) -> Parameter {
     Parameter { name: "sensor", value: ParameterValue::Name(study.sensors[sensor].clone()) }
+}
+
+impl Estimate {
+    /// Where the interval holds 0, the same width of the logarithm in its place: an amplitude grows with a time constant that
+    /// outlasts the recording, and does not change its sign with it.
+    fn of_one_sign(self) -> Self {
+        let half = (self.ci95.1 - self.value) / self.value.abs();
+        if half < 1.0 || !half.is_finite() {
+            return self;
+        }
+        let ends = [self.value * (-half).exp(), self.value * half.exp()];
+        Self { ci95: (ends[0].min(ends[1]), ends[0].max(ends[1])), ..self }
+    }
 }
 
 impl ParameterValue {

@@ -151,7 +151,7 @@ fn against(known: &Effect, effect: &Effect) -> bool {
 
 /// Whether an effect takes at least as much as what comes back without a name beside it: less may be a piece of that, as a wave is
 /// of a dent.
-fn stands_apart(study: &Study<'_>, without: &Appraisal, with: &Appraisal) -> bool {
+pub(crate) fn stands_apart(study: &Study<'_>, without: &Appraisal, with: &Appraisal) -> bool {
     let (mut taken, mut returning) = (0.0, 0.0);
     for (scene, known) in study.scenes.iter().enumerate() {
         for channel in 0..known.channels.len() {

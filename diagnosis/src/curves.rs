@@ -3,6 +3,8 @@
 //! In: a fitted model. Out: the same, or one in which a `table` of an error motion stands for the polynomial and the long
 //! waves of that motion, where it says the same with less.
 
+mod nodes;
+
 use crate::fit::{self, Fit};
 use crate::judge::Tries;
 use crate::model::{Effect, Fitted, Model, Place};
@@ -14,8 +16,6 @@ use crate::travel::Travel;
 
 /// How many nodes are tried.
 const NODES: [usize; 3] = [8, 12, 20];
-/// And how many where waves draw the curve, short ones too.
-const MANY_NODES: usize = 40;
 /// A wave of more than this share of the travel may be part of a curve.
 const LONG: f64 = 0.12;
 
@@ -82,8 +82,11 @@ impl Imitation {
         }
         let travel = &travels[self.axis];
         let kept: Model = fit.model.iter().filter(|fitted| !self.holds(fitted, travels)).cloned().collect();
-        let drawn = self.waving && none_stands_out(&fit.model, self.place, self.axis);
-        for shape in tables(study, self.axis, travel, drawn) {
+        let mut shapes = tables(study, self.axis, travel);
+        if self.waving {
+            shapes.extend(nodes::thinned(study, &kept, self.place, self.axis, travel, noises));
+        }
+        for shape in shapes {
             let mut trial = kept.clone();
             let effect = Effect { place: self.place, shape };
             trial.push(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
@@ -175,12 +178,6 @@ fn waves(fitted: &Fitted, axis: usize) -> bool {
     wave_along(&fitted.effect) == Some(axis) || matches!(fitted.effect.shape, Shape::Vibration { .. })
 }
 
-/// Whether no wave stands out of those of a motion: a screw or a worm has one that does, and others beside it.
-fn none_stands_out(model: &Model, place: Place, axis: usize) -> bool {
-    let parts = model.iter().filter(|fitted| fitted.effect.place == place && waves(fitted, axis));
-    !one_stands_out(&parts.map(energy).collect::<Vec<f64>>())
-}
-
 /// So many smooth terms and waves draw any curve; three may be a fundamental, a harmonic and a slope.
 const MANY: usize = 4;
 /// One stands out that has more than half of what all of them have.
@@ -188,14 +185,11 @@ const STANDS_OUT: f64 = 0.5;
 
 /// Tables of an axis: with nodes at its stations, where it stands at a few; else at equal steps, as long as there is something
 /// at every node.
-fn tables(study: &Study<'_>, axis: usize, travel: &Travel, drawn: bool) -> Vec<Shape> {
+fn tables(study: &Study<'_>, axis: usize, travel: &Travel) -> Vec<Shape> {
     let places = places(study, axis);
     let nodes = match stations(&places, travel) {
         Some(stations) => vec![stations],
-        None => {
-            let counts = NODES.into_iter().chain(drawn.then_some(MANY_NODES));
-            counts.map(|count| even(travel, count)).filter(|nodes| held(nodes, &places)).collect()
-        }
+        None => NODES.map(|count| even(travel, count)).into_iter().filter(|n| held(n, &places)).collect(),
     };
     nodes.into_iter().map(|nodes| Shape::Table { axis, nodes, directed: false }).collect()
 }

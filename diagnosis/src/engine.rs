@@ -35,7 +35,7 @@ use crate::waves::{self, WavePlace, Weighted};
 const ROUNDS: usize = 6;
 /// How many waves are added to the candidates in a round by what they gain, and as many by what they gain at their own noise: the
 /// one is right where the noise is known, the other where it is not yet.
-const WAVES: usize = 6;
+const WAVES: usize = 4;
 
 /// What the engine found.
 pub(crate) struct Found {

@@ -62,7 +62,7 @@ fn of_recording(bench: &Bench, recording: &Recording) -> Vec<Vec<f64>> {
         Shape::Table { axis: 0, nodes, directed: false } => nodes,
         other => panic!("{other:?}"),
     };
-    tables(&study, 0, &travels[0], false).into_iter().map(nodes).collect()
+    tables(&study, 0, &travels[0]).into_iter().map(nodes).collect()
 }
 
 #[test]

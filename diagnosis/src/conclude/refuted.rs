@@ -6,6 +6,8 @@
 
 use std::f64::consts::FRAC_PI_4;
 
+use model_dsl::calibration::TermKind;
+
 use crate::diagnosis::{Estimate, Finding, Parameter, ParameterValue};
 
 /// Held-out readings must lie nearer by this share of their rms: less is the rounding of a printed figure.
@@ -20,20 +22,19 @@ pub(super) fn weakest(findings: &[Finding]) -> Option<usize> {
 fn refuted(finding: &Finding) -> bool {
     let evidence = &finding.evidence;
     let pays = evidence.with < (1.0 - NEARER) * evidence.without;
-    !pays || finding.parameters.iter().any(may_be_nothing)
+    !pays || finding.parameters.iter().any(|parameter| may_be_nothing(finding.kind(), parameter))
 }
 
 /// Whether a parameter is not told apart from nothing.
-fn may_be_nothing(parameter: &Parameter) -> bool {
+fn may_be_nothing(term: TermKind, parameter: &Parameter) -> bool {
     match &parameter.value {
         ParameterValue::Fitted(estimate) if parameter.name == "phase" => half_width(estimate) > FRAC_PI_4,
         ParameterValue::Fitted(estimate) => SIZES.contains(&parameter.name) && holds_zero(estimate),
-        // A polynomial is told from its power 1 on, and a table from any node: one that stands apart is enough.
+        // A polynomial is told from its power 1 on, a coupling and a table from any number: one that stands apart is enough.
         ParameterValue::List(list) => {
-            let told: Vec<&Estimate> = list.iter().filter(|one| one.ci95 != (0.0, 0.0)).collect();
-            let slopes =
-                if parameter.name == "coefficients" && told.len() > 1 { &told[1..] } else { &told[..] };
-            !slopes.is_empty() && slopes.iter().all(|one| holds_zero(one))
+            let constants = usize::from(term == TermKind::Polynomial);
+            let mut told = list.iter().skip(constants).filter(|one| one.ci95 != (0.0, 0.0)).peekable();
+            told.peek().is_some() && told.all(holds_zero)
         }
         _ => false,
     }

@@ -1,5 +1,7 @@
 //! What refutes a claim, and what does not.
 
+use model_dsl::calibration::{CalibratedTerm, SeriesInput};
+
 use super::*;
 use crate::diagnosis::Evidence;
 
@@ -16,7 +18,7 @@ fn finding(with: f64, without: f64, parameters: Vec<Parameter>) -> Finding {
         alternatives: Vec::new(),
         explanation: String::new(),
         compensable: true,
-        calibrated: model_dsl::calibration::CalibratedTerm::Constant { value: 1.0 },
+        calibrated: CalibratedTerm::Constant { value: 1.0 },
         sensor: None,
     }
 }
@@ -61,10 +63,24 @@ fn a_phase_must_be_known_within_a_quarter_turn() {
 fn one_power_of_a_polynomial_that_stands_apart_is_enough() {
     let powers = |halves: [f64; 3]| {
         let list = halves.map(|half| estimate(1.0, half, "mm")).to_vec();
-        vec![Parameter { name: "coefficients", value: ParameterValue::List(list) }]
+        let parameters = vec![Parameter { name: "coefficients", value: ParameterValue::List(list) }];
+        let calibrated =
+            CalibratedTerm::Polynomial { input: SeriesInput::Axis(0), coefficients: vec![1.0; 3] };
+        Finding { calibrated, ..finding(1.0, 2.0, parameters) }
     };
-    assert!(!refuted(&finding(1.0, 2.0, powers([2.0, 0.5, 2.0]))));
-    assert!(refuted(&finding(1.0, 2.0, powers([0.5, 2.0, 2.0]))), "the power 0 is the zero of a channel");
+    assert!(!refuted(&powers([2.0, 0.5, 2.0])));
+    // The recordings say nothing of the power 0 where a zero of the channel is free.
+    assert!(!refuted(&powers([0.0, 0.5, 2.0])));
+    assert!(refuted(&powers([0.5, 2.0, 2.0])), "the power 0 is the zero of a channel");
+    assert!(refuted(&powers([0.0, 2.0, 2.0])));
+}
+
+#[test]
+fn a_coupling_begins_with_a_power_that_counts() {
+    let list = [0.5, 2.0].map(|half| estimate(1.0, half, "mm")).to_vec();
+    let parameters = vec![Parameter { name: "coefficients", value: ParameterValue::List(list) }];
+    let calibrated = CalibratedTerm::Coupling { axis: 1, coefficients: vec![1.0; 2] };
+    assert!(!refuted(&Finding { calibrated, ..finding(1.0, 2.0, parameters) }));
 }
 
 #[test]

@@ -78,8 +78,8 @@ const FOLDS: usize = 12;
 const MOST: usize = 4;
 /// How many residuals of mere noise tell what chance predicts.
 const DRAWS: u64 = 12;
-/// A state predicts more than chance does where its share lies so many standard deviations above the mean of those: by chance one
-/// in ten thousand states.
+/// A state predicts more than chance does where the logarithm of what it leaves lies so many standard deviations below the mean of
+/// those: by chance one in ten thousand states.
 const BEYOND: f64 = 4.0;
 /// The least share of the rows that other units must say something of.
 const COVERED: f64 = 0.2;
@@ -127,7 +127,8 @@ impl Returns {
                 .filter_map(|(number, state)| {
                     let prediction = self.predict(state, &left, valid)?;
                     let (mean, deviation) = chances[number];
-                    (prediction.share > mean.max(0.0) + BEYOND * deviation).then_some((number, prediction))
+                    let beyond = prediction.left() < mean.min(0.0) - BEYOND * deviation;
+                    beyond.then_some((number, prediction))
                 })
                 .max_by(|a, b| a.1.share.total_cmp(&b.1.share));
             let Some((state, prediction)) = best else { break };
@@ -198,7 +199,7 @@ impl Returns {
         self.rows.iter().map(|row| (residual[*row], valid[*row])).unzip()
     }
 
-    /// Mean and standard deviation of the share that each state predicts of mere noise.
+    /// Mean and standard deviation of the logarithm of what each state leaves of mere noise.
     fn chances(&self, valid: &[bool], noise: &Noise) -> Vec<(f64, f64)> {
         let rows = valid.len();
         let draws: Vec<Vec<f64>> = (0..DRAWS)
@@ -210,13 +211,13 @@ impl Returns {
             })
             .collect();
         let of = |state: &State| {
-            let shares: Vec<f64> = draws
+            let left: Vec<f64> = draws
                 .iter()
-                .filter_map(|residual| Some(self.predict(state, residual, valid)?.share))
+                .filter_map(|residual| Some(self.predict(state, residual, valid)?.left()))
                 .collect();
-            let count = crate::number(shares.len().max(1));
-            let mean = shares.iter().sum::<f64>() / count;
-            let squares = shares.iter().map(|share| (share - mean).powi(2)).sum::<f64>();
+            let count = crate::number(left.len().max(1));
+            let mean = left.iter().sum::<f64>() / count;
+            let squares = left.iter().map(|left| (left - mean).powi(2)).sum::<f64>();
             (mean, (squares / (count - 1.0).max(1.0)).sqrt())
         };
         self.states.iter().map(of).collect()
@@ -378,6 +379,12 @@ impl<'s> Grid<'s> {
 }
 
 impl Prediction<'_> {
+    /// The logarithm of the share of the variance that it leaves: of two units a share has one limit above and none below, and a
+    /// mean of it is that of its worst.
+    fn left(&self) -> f64 {
+        (1.0 - self.share).max(f64::MIN_POSITIVE).ln()
+    }
+
     /// What other units predict in a row, and where on the grid that is.
     fn at(&self, row: usize) -> Option<(f64, Place)> {
         let place = self.grid.place(row)?;

@@ -59,7 +59,13 @@ fn emps_yields_to_pulses_as_its_control_law_says() {
     let yields = number(pulses, "coefficient");
     assert!(within(yields, whole, 0.05), "{yields} mm, {whole} mm from the control law");
     distances.push(off("pulses, of 25.64 um/V by the control law", pulses, "coefficient", whole));
-    only(&found, &[("EXX", "lag"), ("EXX", "compliance"), ("EXX", "backlash")]);
+    // Below the law there is a smooth curve along the axis, alike in both directions: a plain least-squares fit of the law and a
+    // parabola to the strokes above 20 mm/s has it at 2.2 um. It is no part of the owner's documents, and small beside the friction.
+    only(&found, &[("EXX", "lag"), ("EXX", "compliance"), ("EXX", "backlash"), ("EXX", "polynomial")]);
+    for curve in findings(&found).iter().filter(|finding| finding["term"] == "polynomial") {
+        let gained = curve["evidence_rms"]["without"].as_f64().unwrap() - held_out(&found);
+        assert!(gained < 0.1 * 1e3 * COULOMB / STIFFNESS, "{curve:#}");
+    }
     // The drive's voltage is the answer of the loop to its following error.
     not_a_cause(&found, "drive");
     figures("emps-pulses", "recording", "emps-pulses", &found, &distances);

@@ -117,6 +117,21 @@ impl Appraisal {
         self.noises.iter().flatten().any(|noise| noise.alike > 1.0)
     }
 
+    /// By how much the held-out samples are off, squared, in units of what another appraisal leaves of each channel.
+    pub(crate) fn held_out(&self, study: &Study<'_>, other: &Self) -> f64 {
+        let mut sum = 0.0;
+        for (scene, known) in study.scenes.iter().enumerate() {
+            let fitted = known.fitted_rows();
+            for (channel, residual) in self.residuals[scene].iter().enumerate() {
+                let outliers = &self.outliers[scene][channel];
+                let counts = |row: &usize| !fitted[*row] && !outliers[*row] && residual[*row].is_finite();
+                let squares: f64 = (0..residual.len()).filter(counts).map(|row| residual[row].powi(2)).sum();
+                sum += squares / other.leftover[scene][channel].max(f64::MIN_POSITIVE).powi(2);
+            }
+        }
+        sum
+    }
+
     /// White noise of the same sizes.
     pub(crate) fn as_white(&self) -> Vec<Vec<Noise>> {
         self.noises.iter().map(|channels| channels.iter().map(Noise::as_white).collect()).collect()

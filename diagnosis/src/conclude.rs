@@ -13,7 +13,6 @@ mod units;
 use crate::appraisal::Appraisal;
 use crate::candidates;
 use crate::crossing;
-use crate::curves::BROAD;
 use crate::diagnosis::{Diagnosis, NoiseSummary, Residual, SettingFinding, Verdict};
 use crate::engine::{self, Found};
 use crate::fit;
@@ -88,7 +87,8 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
         .or_else(|| piece_of_the_rest(&study, &found, &numbers))
     {
         drop_effect(&mut study, &mut found, weakest);
-        feature = explain_locally(&mut study, &mut found);
+        // A table that was refuted is not made again.
+        feature = strongest(&study, &found);
         numbers = claims(&study, &mut found, &units, &mut diagnosis);
     }
     diagnosis.undecided.extend(crossed(&study, &found.fit.model));
@@ -224,20 +224,21 @@ fn bare_model(study: &mut Study<'_>) -> Model {
     model
 }
 
-/// Looks for what remains at one place of an axis; what covers much of the travel becomes a `table`, and the search goes on.
+/// Looks for what remains at one place of an axis. It becomes a `table` where that stands up, and the search goes on.
 fn explain_locally(study: &mut Study<'_>, found: &mut Found) -> Option<Feature> {
     for _ in 0..TABLES {
-        let courses = engine::courses(study, &found.fit.model);
-        let feature = local::strongest(study, &found.appraisal, &found.fit.model, &courses, &found.travels)?;
-        if feature.extent(&found.travels[feature.axis]) < BROAD {
-            return Some(feature);
-        }
+        let feature = strongest(study, found)?;
         match engine::with_table(study, found, &feature) {
             Some(better) => *found = better,
             None => return Some(feature),
         }
     }
-    None
+    strongest(study, found)
+}
+
+fn strongest(study: &Study<'_>, found: &Found) -> Option<Feature> {
+    let courses = engine::courses(study, &found.fit.model);
+    local::strongest(study, &found.appraisal, &found.fit.model, &courses, &found.travels)
 }
 
 /// The most tables that are added.

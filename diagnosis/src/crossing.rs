@@ -6,15 +6,12 @@
 //! something that holds the slide and lets go. So wherever such a thing was chosen, the play of that axis is tried as one that
 //! is crossed over its own length, which takes no parameter.
 
-use crate::curves::cost;
-use crate::fit::{self, Fit};
-use crate::judge::Tries;
+use crate::conditions::Conditions;
+use crate::fit::Fit;
 use crate::model::{Effect, Model, Place};
-use crate::noise::Noise;
 use crate::side::Side;
 use crate::study::Study;
 use crate::terms::Shape;
-use crate::travel::Travel;
 
 /// The most fits until a play that is fitted and the way over which it is crossed agree.
 const AGREEING: usize = 6;
@@ -22,29 +19,23 @@ const AGREEING: usize = 6;
 const AGREED: f64 = 0.01;
 
 /// Tries crossed plays on every axis that something seems to hold after a reversal; `None` where none is better.
-pub(crate) fn try_plays(
-    study: &mut Study<'_>,
-    model: &Model,
-    always: usize,
-    noises: &[Vec<Noise>],
-    travels: &[Travel],
-    tries: Tries,
-) -> Option<Model> {
+pub(crate) fn try_plays(study: &mut Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Option<Model> {
+    let always = conditions.always;
     let held = |axis: &usize| model[always..].iter().any(|fitted| holds(&fitted.effect, *axis));
     let held: Vec<usize> = (0..study.own.len()).filter(held).collect();
     if held.is_empty() {
         return None;
     }
-    let now = fit::refine(study, model.clone(), noises, travels);
-    let mut best = (cost(study, &now, always, tries), study.crossings.clone());
+    let now = conditions.refine(study, model.clone());
+    let mut best = (conditions.cost(study, &now), study.crossings.clone());
     let mut chosen = None;
     for axis in held {
         let start = chosen.clone().unwrap_or_else(|| now.model.clone());
         let before = best.1.clone();
         for trial in without_holds(study, &start, always, axis) {
             study.crossings.clone_from(&before);
-            let Some(fit) = crossed(study, trial, axis, noises, travels) else { continue };
-            let cost = cost(study, &fit, always, tries);
+            let Some(fit) = crossed(study, trial, axis, conditions) else { continue };
+            let cost = conditions.cost(study, &fit);
             if cost < best.0 {
                 best = (cost, study.crossings.clone());
                 chosen = Some(fit.model);
@@ -76,19 +67,13 @@ pub(crate) fn crossing_only(study: &Study<'_>, model: &Model) -> Vec<usize> {
 }
 
 /// The model fitted with the play of an axis crossed over its own length; `None` where the axis has none.
-fn crossed(
-    study: &mut Study<'_>,
-    mut model: Model,
-    axis: usize,
-    noises: &[Vec<Noise>],
-    travels: &[Travel],
-) -> Option<Fit> {
+fn crossed(study: &mut Study<'_>, mut model: Model, axis: usize, conditions: &Conditions<'_>) -> Option<Fit> {
     study.crossings[axis] = play(study, &model, axis);
     for _ in 0..AGREEING {
         if study.crossings[axis] <= 0.0 {
             return None;
         }
-        let fit = fit::refine(study, model, noises, travels);
+        let fit = conditions.refine(study, model);
         if !follow(study, &fit.model) {
             return Some(fit);
         }

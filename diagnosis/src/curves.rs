@@ -5,13 +5,11 @@
 
 mod nodes;
 
-use crate::fit::{self, Fit};
-use crate::judge::Tries;
+use crate::conditions::Conditions;
+use crate::fit::Fit;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::noise::Noise;
-use crate::search::price;
 use crate::study::Study;
-use crate::terms::{Shape, oddity};
+use crate::terms::Shape;
 use crate::travel::Travel;
 
 /// How many nodes are tried.
@@ -20,14 +18,8 @@ const NODES: [usize; 3] = [8, 12, 20];
 const LONG: f64 = 0.12;
 
 /// Tries tables for every motion of which two or more smooth terms are in the model, or a polynomial of a high power.
-pub(crate) fn try_tables(
-    study: &Study<'_>,
-    mut fit: Fit,
-    always: usize,
-    noises: &[Vec<Noise>],
-    travels: &[Travel],
-    tries: Tries,
-) -> Fit {
+pub(crate) fn try_tables(study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> Fit {
+    let Conditions { always, travels, .. } = *conditions;
     let mut places: Vec<(Place, usize)> = Vec::new();
     for fitted in &fit.model[always..] {
         if let Some(axis) = smooth(&fitted.effect, travels).or_else(|| wave_along(&fitted.effect))
@@ -39,7 +31,7 @@ pub(crate) fn try_tables(
     for (place, axis) in places {
         let imitations = [false, true].map(|waving| Imitation { place, axis, waving });
         for imitation in imitations {
-            fit = imitation.replaced(study, fit, always, noises, travels, tries);
+            fit = imitation.replaced(study, fit, conditions);
         }
     }
     fit
@@ -68,15 +60,8 @@ impl Imitation {
     }
 
     /// The fit with a table in the place of it, where that says the same with less.
-    fn replaced(
-        &self,
-        study: &Study<'_>,
-        mut fit: Fit,
-        always: usize,
-        noises: &[Vec<Noise>],
-        travels: &[Travel],
-        tries: Tries,
-    ) -> Fit {
+    fn replaced(&self, study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> Fit {
+        let Conditions { noises, travels, .. } = *conditions;
         if !self.is_tried(&fit.model, travels) {
             return fit;
         }
@@ -90,14 +75,14 @@ impl Imitation {
             let mut trial = kept.clone();
             let effect = Effect { place: self.place, shape };
             trial.push(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
-            let trial = fit::refine(study, trial, noises, travels);
-            if cost(study, &trial, always, tries) >= cost(study, &fit, always, tries) {
+            let trial = conditions.refine(study, trial);
+            if conditions.cost(study, &trial) >= conditions.cost(study, &fit) {
                 continue;
             }
             // A curve that is flat but for one place is a place; that is looked for elsewhere, without imitations.
             let stretch = trial.model.last().and_then(active);
             if stretch.is_some_and(|(from, to)| to - from < BROAD * travel.range()) {
-                return fit::refine(study, kept, noises, travels);
+                return conditions.refine(study, kept);
             }
             fit = trial;
         }
@@ -138,9 +123,7 @@ const ACTIVE: f64 = 0.2;
 /// Where a table differs from its median: from the last quiet node before to the first one behind.
 pub(crate) fn active(fitted: &Fitted) -> Option<(f64, f64)> {
     let Shape::Table { nodes, .. } = &fitted.effect.shape else { return None };
-    let mut sorted = fitted.coefficients.clone();
-    sorted.sort_by(f64::total_cmp);
-    let median = *sorted.get(sorted.len() / 2)?;
+    let median = median_along(nodes, &fitted.coefficients)?;
     let height = fitted.coefficients.iter().map(|value| (value - median).abs()).fold(0.0, f64::max);
     if height == 0.0 {
         return None;
@@ -157,6 +140,21 @@ pub(crate) fn active(fitted: &Fitted) -> Option<(f64, f64)> {
     let from = nodes.get(first.saturating_sub(1))?;
     let to = nodes.get((last + 1).min(nodes.len() - 1))?;
     Some((*from, *to))
+}
+
+/// The median of a table's values along its axis: each counts for the travel that is nearest to its node.
+fn median_along(nodes: &[f64], values: &[f64]) -> Option<f64> {
+    let last = nodes.len().checked_sub(1)?;
+    let length = |at: usize| (nodes[(at + 1).min(last)] - nodes[at.saturating_sub(1)]) / 2.0;
+    let mut sorted: Vec<(f64, f64)> =
+        values.iter().enumerate().map(|(at, value)| (*value, length(at % nodes.len()))).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half = sorted.iter().map(|(_, length)| length).sum::<f64>() / 2.0;
+    let mut passed = 0.0;
+    sorted.into_iter().find_map(|(value, length)| {
+        passed += length;
+        (passed >= half).then_some(value)
+    })
 }
 
 /// The axis along which an effect is a smooth curve.
@@ -236,15 +234,6 @@ fn held(nodes: &[f64], places: &[f64]) -> bool {
         let from = places.partition_point(|place| *place < node - half);
         places.get(from).is_some_and(|place| *place <= node + half)
     })
-}
-
-/// What a fit costs: its misfit and the price of its effects.
-pub(crate) fn cost(study: &Study<'_>, fit: &Fit, always: usize, tries: Tries) -> f64 {
-    let prices = fit.model[always..].iter().map(|fitted| {
-        price(study, &fitted.effect, fit.samples, tries.candidates, tries.waves)
-            + oddity(&fitted.effect.shape, &fitted.coefficients)
-    });
-    fit.samples * (fit.remaining / fit.samples).ln() + prices.sum::<f64>()
 }
 
 #[cfg(test)]

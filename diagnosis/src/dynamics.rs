@@ -6,11 +6,9 @@
 //! could be mistaken for. So are loops that ring, and friction inside a loop, which only the right loop brings out.
 
 use crate::candidates::geometric;
-use crate::curves::cost;
-use crate::fit::{self, Fit};
-use crate::judge::Tries;
+use crate::conditions::Conditions;
+use crate::fit::Fit;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::noise::Noise;
 use crate::ranges::shortest_step;
 use crate::side::Side;
 use crate::study::Study;
@@ -18,14 +16,8 @@ use crate::terms::{Setting, Shape};
 use crate::travel::Travel;
 
 /// Tries loops on all moving axes in the place of what they could be mistaken for.
-pub(crate) fn try_loops(
-    study: &Study<'_>,
-    model: Model,
-    always: usize,
-    noises: &[Vec<Noise>],
-    travels: &[Travel],
-    tries: Tries,
-) -> Model {
+pub(crate) fn try_loops(study: &Study<'_>, model: Model, conditions: &Conditions<'_>) -> Model {
+    let Conditions { always, travels, .. } = *conditions;
     let lacking: Vec<usize> = (0..travels.len())
         .filter(|axis| travels[*axis].moves && study.own[*axis].is_some())
         // The drive's own feedback shows its loop to the linear choice.
@@ -36,9 +28,7 @@ pub(crate) fn try_loops(
     if lacking.is_empty() || !suspicious {
         return model;
     }
-    let now = fit::refine(study, model, noises, travels);
-    let mut best = cost(study, &now, always, tries);
-    let mut chosen = now.model.clone();
+    let now = conditions.refine(study, model);
     let kept: Model = now
         .model
         .iter()
@@ -47,49 +37,33 @@ pub(crate) fn try_loops(
         .map(|(_, fitted)| fitted.clone())
         .collect();
     let step = shortest_step(study);
-    for time_constant in geometric(0.5 * step, (40.0 * step).min(0.3), 2.0) {
-        let trial = with_loops(study, &kept, &now.model, time_constant, travels);
-        let fit = fit::refine(study, trial, noises, travels);
-        let fit = without_idle(study, fit, always, noises, travels);
-        let cost = cost(study, &fit, always, tries);
-        if cost < best {
-            best = cost;
-            chosen = fit.model;
-        }
-    }
-    chosen
+    let known = now.model.clone();
+    let trials = geometric(0.5 * step, (40.0 * step).min(0.3), 2.0).into_iter().map(|time_constant| {
+        let trial = with_loops(study, &kept, &known, time_constant, travels);
+        without_idle(study, conditions.refine(study, trial), conditions)
+    });
+    conditions.cheapest(study, now, trials).model
 }
 
 /// Tries what a loop of first order, and what acts at once, cannot say: loops that ring, and friction on the drive, which the
 /// loop answers.
-pub(crate) fn try_drives(
-    study: &Study<'_>,
-    model: Model,
-    always: usize,
-    noises: &[Vec<Noise>],
-    travels: &[Travel],
-    tries: Tries,
-) -> Model {
+pub(crate) fn try_drives(study: &Study<'_>, model: Model, conditions: &Conditions<'_>) -> Model {
+    let always = conditions.always;
     if !model[always..].iter().any(|fitted| lag_of(&fitted.effect.shape).is_some()) {
         return model;
     }
-    let now = fit::refine(study, model, noises, travels);
-    let mut best = (cost(study, &now, always, tries), now.model);
+    let mut best = conditions.refine(study, model);
     for axis in 0..study.own.len() {
-        let Some(held) = best.1[always..].iter().find(|fitted| lag_of(&fitted.effect.shape) == Some(axis))
+        let Some(held) =
+            best.model[always..].iter().find(|fitted| lag_of(&fitted.effect.shape) == Some(axis))
         else {
             continue;
         };
         let loops = loops(held, shortest_step(study));
-        for trial in drives(study, &best.1, always, axis, &loops) {
-            let fit = fit::refine(study, trial, noises, travels);
-            let cost = cost(study, &fit, always, tries);
-            if cost < best.0 {
-                best = (cost, fit.model);
-            }
-        }
+        let trials = drives(study, &best.model, always, axis, &loops).into_iter();
+        best = conditions.cheapest(study, best, trials.map(|trial| conditions.refine(study, trial)));
     }
-    best.1
+    best.model
 }
 
 /// Other models of how an axis is driven: with each of these loops, with and without what imitates its ringing, with friction
@@ -210,15 +184,9 @@ fn with_loops(
 }
 
 /// Drops loops that came out as good as immediate.
-fn without_idle(
-    study: &Study<'_>,
-    fit: Fit,
-    always: usize,
-    noises: &[Vec<Noise>],
-    travels: &[Travel],
-) -> Fit {
+fn without_idle(study: &Study<'_>, fit: Fit, conditions: &Conditions<'_>) -> Fit {
     let idle = |number: usize, fitted: &Fitted| {
-        number >= always
+        number >= conditions.always
             && matches!(fitted.effect.shape, Shape::Lag { .. })
             && fitted.coefficients.iter().all(|lag| *lag < 1e-6)
     };
@@ -230,7 +198,7 @@ fn without_idle(
         .filter(|(number, fitted)| !idle(*number, fitted))
         .map(|(_, f)| f.clone())
         .collect();
-    if model.len() < before { fit::refine(study, model, noises, travels) } else { fit }
+    if model.len() < before { conditions.refine(study, model) } else { fit }
 }
 
 #[cfg(test)]

@@ -8,13 +8,14 @@ use std::sync::Arc;
 
 use crate::appraisal::Appraisal;
 use crate::candidates;
+use crate::conditions::{Conditions, Tries};
 use crate::course::Course;
 use crate::crossing;
-use crate::curves;
+use crate::curves::{self, BROAD};
 use crate::design::{Design, Regressor};
 use crate::dynamics;
 use crate::fit::{self, Fit};
-use crate::judge::{self, Tries};
+use crate::judge;
 use crate::kinship::{self, Kin};
 use crate::local::Feature;
 use crate::model::{Effect, Fitted, Model, Place};
@@ -29,7 +30,7 @@ use crate::sweep::Swept;
 use crate::terms::Shape;
 use crate::travel::{self, Travel};
 use crate::unsteady::{self, Band};
-use crate::waves::{self, WavePlace, Weighted};
+use crate::waves::{self, WavePlace};
 
 /// The most rounds.
 const ROUNDS: usize = 6;
@@ -57,6 +58,12 @@ impl Found {
     pub(crate) fn claims(&self) -> bool {
         self.fit.model.len() > self.always
     }
+
+    /// The conditions under which its model stands.
+    pub(crate) fn conditions(&self) -> Conditions<'_> {
+        let noises = &self.appraisal.noises;
+        Conditions { always: self.always, noises, travels: &self.travels, tries: self.tries }
+    }
 }
 
 /// Looks for the model. `always` are the settings that are fitted whatever else is.
@@ -67,8 +74,7 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     search.go_round(study, progress);
     search.cross_plays(study, progress);
     let mut fit = search.fit(study);
-    let curved =
-        curves::try_tables(study, fit.clone(), search.always, &search.noises, &search.travels, search.tries);
+    let curved = curves::try_tables(study, fit.clone(), &search.conditions());
     if same_effects(&curved.model, &fit.model) {
         fit = curved;
     } else {
@@ -79,44 +85,75 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
         search.cross_plays(study, progress);
         fit = search.fit(study);
     }
-    let Search { pool, travels, always, tries, .. } = search;
-    let (mut fit, mut appraisal) = upheld(study, fit, always, &travels, tries);
-    let revision = Revision { always, pool: &pool, places: &places, travels: &travels, tries };
+    let (mut fit, mut appraisal) = upheld(study, fit, &search.conditions());
+    let Search { pool, travels, always, tries, richer, noises, .. } = search;
+    let conditions = Conditions { always, noises: &noises, travels: &travels, tries };
+    for model in richer {
+        if fit.model.len() == always && appraisal.lacks() {
+            (fit, appraisal) = cheaper(study, (fit, appraisal), model, &conditions);
+        }
+    }
+    let revision = Revision { pool: &pool, places: &places, conditions };
     (fit, appraisal) = revision.revised(study, fit, appraisal);
     while let Some(model) = curves::without_lists(&fit.model, always) {
-        let rest = fit::refine(study, model, &appraisal.noises, &travels);
-        (fit, appraisal) = upheld(study, rest, always, &travels, tries);
+        let rest = conditions.under(&appraisal.noises).refine(study, model);
+        (fit, appraisal) = upheld(study, rest, &conditions);
     }
     let bands = unsteady::take_bands(&mut fit.model, always);
     if !bands.is_empty() {
-        let steady = fit::refine(study, fit.model, &appraisal.noises, &travels);
-        (fit, appraisal) = upheld(study, steady, always, &travels, tries);
+        let steady = conditions.under(&appraisal.noises).refine(study, fit.model);
+        (fit, appraisal) = upheld(study, steady, &conditions);
     }
     Found { fit, appraisal, pool, travels, bands, always, tries, plain_zeros: false }
 }
 
 /// What the judge upholds. A play that it drops is no longer crossed, and one that the rest is fitted to anew is crossed over
 /// its new length; what stands up beside that is asked again.
-fn upheld(
-    study: &mut Study<'_>,
-    mut fit: Fit,
-    always: usize,
-    travels: &[Travel],
-    tries: Tries,
-) -> (Fit, Appraisal) {
+fn upheld(study: &mut Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> (Fit, Appraisal) {
     for _ in 0..ROUNDS {
-        let (kept, appraisal) = judge::uphold(study, fit, always, travels, tries);
+        let (kept, appraisal) = judge::uphold(study, fit, conditions);
         if !crossing::follow(study, &kept.model) {
             return (kept, appraisal);
         }
-        fit = fit::refine(study, kept.model, &appraisal.noises, travels);
+        fit = conditions.under(&appraisal.noises).refine(study, kept.model);
     }
-    judge::uphold(study, fit, always, travels, tries)
+    judge::uphold(study, fit, conditions)
+}
+
+/// What the judge upholds of another model in the place of what stands, where it costs less under the noise that it leaves itself and
+/// the held-out samples come nearer to it.
+fn cheaper(
+    study: &mut Study<'_>,
+    stands: (Fit, Appraisal),
+    model: Model,
+    conditions: &Conditions<'_>,
+) -> (Fit, Appraisal) {
+    let crossings = study.crossings.clone();
+    let noises = Appraisal::new(study, &model).noises;
+    let other = conditions.under(&noises).refine(study, model);
+    let other = upheld(study, other, conditions);
+    let conditions = conditions.under(&other.1.noises);
+    let cost = |study: &Study<'_>, fit: &Fit| {
+        conditions.cost_at(fit, &conditions.prices(study, &fit.model, fit.samples))
+    };
+    let new = cost(study, &other.0);
+    let crossings_of_other = std::mem::replace(&mut study.crossings, crossings);
+    let old = cost(study, &conditions.refine(study, stands.0.model.clone()));
+    let nearer = other.1.held_out(study, &other.1) < stands.1.held_out(study, &other.1);
+    if nearer && new < old && !same_effects(&stands.0.model, &other.0.model) {
+        study.crossings = crossings_of_other;
+        return other;
+    }
+    stands.1.mark(study);
+    stands
 }
 
 /// A search on its way.
 struct Search {
     model: Model,
+    /// Models of earlier rounds with more effects than a later one. Where much is left, a round that takes an effect less leaves more
+    /// to the noise, and the next takes less still: so a search can run down to nothing past what would have stood up.
+    richer: Vec<Model>,
     noises: Vec<Vec<Noise>>,
     courses: Vec<Arc<Course>>,
     travels: Vec<Travel>,
@@ -137,7 +174,12 @@ impl Search {
         let pool = kinship::groups(study, &courses, &noises, pool);
         let places = waves::places(study, &courses, &noises, &travels);
         let tries = Tries { candidates: crate::number(pool.len() + 2 * WAVES), waves: 1.0 };
-        Self { always: model.len(), model, noises, courses, travels, pool, places, tries }
+        Self { always: model.len(), model, richer: Vec::new(), noises, courses, travels, pool, places, tries }
+    }
+
+    /// The conditions of the present round.
+    fn conditions(&self) -> Conditions<'_> {
+        Conditions { always: self.always, noises: &self.noises, travels: &self.travels, tries: self.tries }
     }
 
     /// Chooses anew, with a better idea of the noise each time, until nothing changes.
@@ -145,17 +187,18 @@ impl Search {
         for round in 0..ROUNDS {
             progress(crate::number(round + 1) / crate::number(ROUNDS + 2));
             let next = self.choose(study);
-            let mut next = fit::refine(study, next, &self.noises, &self.travels).model;
+            let mut next = self.conditions().refine(study, next).model;
             let mut settled = same_effects(&self.model, &next);
             if settled || round + 1 == ROUNDS {
-                next = dynamics::try_loops(study, next, self.always, &self.noises, &self.travels, self.tries);
-                next =
-                    dynamics::try_drives(study, next, self.always, &self.noises, &self.travels, self.tries);
+                next = dynamics::try_loops(study, next, &self.conditions());
+                next = dynamics::try_drives(study, next, &self.conditions());
                 settled = same_effects(&self.model, &next);
             } else if round > 0 && dynamics::may_answer(&next, self.always) {
                 // Not in a first round, whose choice serves to know the noise: at the very first, all of it is taken as white.
-                next =
-                    dynamics::try_drives(study, next, self.always, &self.noises, &self.travels, self.tries);
+                next = dynamics::try_drives(study, next, &self.conditions());
+            }
+            if next.len() < self.model.len() {
+                self.richer.push(self.model.clone());
             }
             self.model = next;
             self.courses = courses(study, &self.model);
@@ -171,9 +214,7 @@ impl Search {
 
     /// Lets axes cross their plays where that says as much as what seems to hold them after reversals, and goes on from there.
     fn cross_plays(&mut self, study: &mut Study<'_>, progress: &mut dyn FnMut(f64)) {
-        let crossed =
-            crossing::try_plays(study, &self.model, self.always, &self.noises, &self.travels, self.tries);
-        let Some(crossed) = crossed else { return };
+        let Some(crossed) = crossing::try_plays(study, &self.model, &self.conditions()) else { return };
         self.model = crossed;
         for _ in 0..ROUNDS {
             self.courses = courses(study, &self.model);
@@ -186,15 +227,15 @@ impl Search {
 
     /// The best set of effects under the present noise, by linear least squares.
     fn choose(&mut self, study: &Study<'_>) -> Model {
-        let residuals = all_residuals(study, &self.model, &self.noises, &self.courses);
+        let residuals = waves::all_weighted(study, &self.model, &self.noises, &self.courses);
         let (peaks, waves) =
             waves::peaks(study, &self.model, &self.courses, &residuals, &self.travels, &self.places);
         self.tries.waves = self.tries.waves.max(waves);
-        let others = other_peaks(study, &self.model, &self.noises, &self.travels);
+        let others = other_peaks(study, &self.model, &self.conditions());
         // One course of states at a time is enough for the memory.
         drop((std::mem::take(&mut self.courses), residuals));
         let mut regressors = regressors(study, &self.model, self.always, &self.pool, peaks);
-        regressors.extend(others.into_iter().map(Regressor::of));
+        regressors.extend(others);
         let mut design = Design::new(study, &self.model, &self.noises, regressors);
         design.rebase(&self.model);
         let (products, samples) = design.fitted();
@@ -207,7 +248,7 @@ impl Search {
 
     /// Fits the model; what has run to the end of its range becomes what it is there.
     fn fit(&self, study: &Study<'_>) -> Fit {
-        let mut fit = fit::refine(study, self.model.clone(), &self.noises, &self.travels);
+        let mut fit = self.conditions().refine(study, self.model.clone());
         let mut model: Model = Vec::new();
         for fitted in &fit.model {
             let mut fitted = fitted.clone();
@@ -220,7 +261,7 @@ impl Search {
             }
         }
         if !same_effects(&model, &fit.model) {
-            fit = fit::refine(study, model, &self.noises, &self.travels);
+            fit = self.conditions().refine(study, model);
         }
         fit
     }
@@ -241,8 +282,8 @@ pub(crate) fn with_table(study: &mut Study<'_>, found: &Found, feature: &Feature
     let coefficients = vec![0.0; effect.shape.columns()];
     model.push(Fitted { effect: effect.clone(), coefficients });
     let crossings = study.crossings.clone();
-    let fit = fit::refine(study, model, &found.appraisal.noises, &found.travels);
-    let (fit, appraisal) = upheld(study, fit, found.always, &found.travels, found.tries);
+    let fit = found.conditions().refine(study, model);
+    let (fit, appraisal) = upheld(study, fit, &found.conditions());
     if !fit.model.iter().any(|fitted| fitted.effect == effect) {
         study.crossings = crossings;
         return None;
@@ -258,7 +299,7 @@ pub(crate) fn beside(study: &Study<'_>, found: &Found, feature: &Feature) -> Opt
     let mut model = found.fit.model.clone();
     model.push(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
     let noises = found.appraisal.as_white();
-    Some(Appraisal::new(study, &fit::refine(study, model, &noises, &found.travels).model))
+    Some(Appraisal::new(study, &found.conditions().under(&noises).refine(study, model).model))
 }
 
 /// The motion of which a table would explain most of a feature.
@@ -266,14 +307,35 @@ pub(crate) fn table_motion(study: &Study<'_>, found: &Found, feature: &Feature) 
     table(study, found, feature).and_then(|effect| effect.motion())
 }
 
+/// The nodes of a table for a feature: over all of the travel where it covers much of it; else over its place, and the ends of the
+/// travel, so that the table is straight beside it.
+fn nodes(feature: &Feature, travel: &Travel) -> Vec<f64> {
+    let even = |from: f64, to: f64, count: usize| {
+        let at = move |node: usize| from + (to - from) * crate::number(node) / crate::number(count - 1);
+        (0..count).map(at).collect::<Vec<f64>>()
+    };
+    if feature.extent(travel) >= BROAD {
+        return even(travel.low, travel.high, NODES.min(feature.profile.len() / 2).max(2));
+    }
+    let beside = FOOT * (feature.to - feature.from);
+    let (from, to) = ((feature.from - beside).max(travel.low), (feature.to + beside).min(travel.high));
+    let mut nodes = even(from, to, OF_A_PLACE);
+    nodes.insert(0, travel.low);
+    nodes.push(travel.high);
+    nodes.dedup();
+    nodes
+}
+
+/// How many nodes a place gets: of a bell, straight lines between them leave a thirtieth of its height.
+const OF_A_PLACE: usize = 13;
+/// A feature is told down to a quarter of its height; the foot of a bell reaches this share of that width farther on each side.
+const FOOT: f64 = 0.4;
+
 /// The table of that motion of the feature's axis that lowers the weighted sum of squares most; simpler names first.
 fn table(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Effect> {
-    let travel = found.travels[feature.axis];
-    let nodes = NODES.min(feature.profile.len() / 2).max(2);
-    let at = |node: usize| travel.low + travel.range() * crate::number(node) / crate::number(nodes - 1);
     let shape = Shape::Table {
         axis: feature.axis,
-        nodes: (0..nodes).map(at).collect(),
+        nodes: nodes(feature, &found.travels[feature.axis]),
         directed: feature.direction != 0.0,
     };
     let motions = study.equations.motions.iter().enumerate();
@@ -304,34 +366,23 @@ fn table(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Effect> 
 
 /// For each wave of the model: the highest peak in its neighbourhood when it is taken out. Runs with long pauses between them
 /// give every wave neighbours of nearly its height, and a first fit may stand on one of them.
-fn other_peaks(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], travels: &[Travel]) -> Vec<Effect> {
-    let mut effects = Vec::new();
+fn other_peaks(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Vec<Regressor> {
+    let mut regressors = Vec::new();
     for (number, fitted) in model.iter().enumerate().filter(|(_, fitted)| fitted.effect.shape.is_wave()) {
-        let mut without = model.clone();
-        without.remove(number);
-        let courses = courses(study, &without);
-        let residuals = all_residuals(study, &without, noises, &courses);
-        let place = waves::WavePlace::of(&fitted.effect);
-        let (mut peaks, _) = waves::peaks(study, &without, &courses, &residuals, travels, place.as_slice());
+        let mut peaks = waves::around(study, model, number, conditions.noises, conditions.travels);
         peaks.retain(|peak| rivals(&peak.effect, &fitted.effect) && peak.effect != fitted.effect);
         peaks.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        effects.extend(peaks.into_iter().take(1).map(|peak| peak.effect));
+        // Its own line as the spectrum has it now, and the highest of the others.
+        let own =
+            |peak: &&waves::Peak| waves::same_line(study, &peak.effect, &fitted.effect, conditions.travels);
+        let highest = peaks.iter().find(own).into_iter().chain(peaks.iter().find(|peak| !own(peak)));
+        regressors.extend(highest.map(|peak| Regressor::of(peak.effect.clone())));
     }
-    effects
+    regressors
 }
 
 pub(crate) fn courses(study: &Study<'_>, model: &Model) -> Vec<Arc<Course>> {
     (0..study.scenes.len()).map(|scene| Course::new(study, scene, model)).collect()
-}
-
-pub(crate) fn all_residuals(
-    study: &Study<'_>,
-    model: &Model,
-    noises: &[Vec<Noise>],
-    courses: &[Arc<Course>],
-) -> Vec<Vec<Weighted>> {
-    let each = courses.iter().enumerate();
-    each.map(|(scene, course)| waves::weighted(study, scene, model, &noises[scene], course)).collect()
 }
 
 /// White noise of the size of the differences from row to row.
@@ -351,34 +402,43 @@ fn first_noises(study: &Study<'_>, model: &Model, courses: &[Arc<Course>]) -> Ve
 }
 
 /// The effects of the present model as they stand, the candidates, and waves.
-pub(crate) fn regressors(
+fn regressors(
     study: &Study<'_>,
     model: &Model,
     always: usize,
     pool: &[Kin],
-    mut peaks: Vec<waves::Peak>,
+    peaks: Vec<waves::Peak>,
 ) -> Vec<Regressor> {
     let mut effects: Vec<Effect> = model.iter().map(|fitted| fitted.effect.clone()).collect();
-    let chosen = &model[always..];
-    let candidates = pool.iter().map(|kin| kin.effect.clone());
+    effects.extend(open_candidates(&model[always..], pool));
+    effects.extend(highest(study, peaks).into_iter().map(|peak| peak.effect));
+    effects.into_iter().map(Regressor::of).collect()
+}
+
+/// The candidates that are not chosen already.
+pub(crate) fn open_candidates(chosen: &[Fitted], pool: &[Kin]) -> Vec<Effect> {
+    let lags = |shape: &Shape| matches!(shape, Shape::Lag { .. });
     let stands = |effect: &Effect, known: &Effect| {
-        let lags = |shape: &Shape| matches!(shape, Shape::Lag { .. });
         known == effect || (known.place == effect.place && lags(&known.shape) && lags(&effect.shape))
     };
-    effects.extend(candidates.filter(|effect| !chosen.iter().any(|known| stands(effect, &known.effect))));
+    let candidates = pool.iter().map(|kin| &kin.effect);
+    candidates.filter(|effect| !chosen.iter().any(|known| stands(effect, &known.effect))).cloned().collect()
+}
+
+/// The waves to try: the highest by what they gain, and by what they gain at their own noise.
+pub(crate) fn highest(study: &Study<'_>, mut peaks: Vec<waves::Peak>) -> Vec<waves::Peak> {
     let simplicity = |peak: &waves::Peak| candidates::simplicity(study, &peak.effect);
-    let mut added: Vec<Effect> = Vec::new();
+    let mut highest: Vec<waves::Peak> = Vec::new();
     for measure in [|peak: &waves::Peak| peak.gain, |peak: &waves::Peak| peak.local] {
         peaks.sort_by(|a, b| measure(b).total_cmp(&measure(a)).then(simplicity(a).total_cmp(&simplicity(b))));
-        let most = added.len() + WAVES;
+        let most = highest.len() + WAVES;
         for peak in &peaks {
-            if added.len() < most && !added.iter().any(|known| rivals(known, &peak.effect)) {
-                added.push(peak.effect.clone());
+            if highest.len() < most && !highest.iter().any(|known| rivals(&known.effect, &peak.effect)) {
+                highest.push(peak.clone());
             }
         }
     }
-    effects.extend(added);
-    effects.into_iter().map(Regressor::of).collect()
+    highest
 }
 
 fn same_effects(a: &Model, b: &Model) -> bool {

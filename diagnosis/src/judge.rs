@@ -4,26 +4,17 @@
 //! give, that does not come back in the held-out data as it was fitted, or that rests on a few stretches only.
 
 use crate::appraisal::Appraisal;
+use crate::conditions::Conditions;
 use crate::design::{Design, Products, Regressor};
-use crate::fit::{self, Fit};
+use crate::fit::Fit;
 use crate::model::{Fitted, Model};
 use crate::noise::Noise;
 use crate::parallel;
-use crate::search::{price, untold_price};
+use crate::search::untold_price;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
-use crate::travel::Travel;
 use crate::zeros;
-
-/// How much was tried before this model was chosen.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Tries {
-    /// Candidates that differ.
-    pub(crate) candidates: f64,
-    /// Independent waves.
-    pub(crate) waves: f64,
-}
 
 /// The share of its fitted strength with which an effect must come back in the held-out data, at least.
 const RETURNS: f64 = 0.4;
@@ -35,23 +26,18 @@ const STEADY: f64 = 3.5;
 const FEW_BLOCKS: usize = 5;
 
 /// Drops what does not stand up, one effect at a time, and fits the rest again.
-pub(crate) fn uphold(
-    study: &mut Study<'_>,
-    mut fit: Fit,
-    always: usize,
-    travels: &[Travel],
-    tries: Tries,
-) -> (Fit, Appraisal) {
+pub(crate) fn uphold(study: &mut Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> (Fit, Appraisal) {
     loop {
         let appraisal = Appraisal::new(study, &fit.model);
         appraisal.mark(study);
-        let Some(weakest) = weakest(study, &fit, &appraisal, always, tries, travels) else {
-            let fit = fit::refine(study, fit.model, &appraisal.noises, travels);
+        let conditions = conditions.under(&appraisal.noises);
+        let Some(weakest) = weakest(study, &fit, &appraisal, &conditions) else {
+            let fit = conditions.refine(study, fit.model);
             return (fit, appraisal);
         };
         let mut model = fit.model.clone();
         model.remove(weakest);
-        fit = fit::refine(study, model, &appraisal.noises, travels);
+        fit = conditions.refine(study, model);
     }
 }
 
@@ -60,10 +46,9 @@ fn weakest(
     study: &Study<'_>,
     fit: &Fit,
     appraisal: &Appraisal,
-    always: usize,
-    tries: Tries,
-    travels: &[Travel],
+    conditions: &Conditions<'_>,
 ) -> Option<usize> {
+    let always = conditions.always;
     let design = design(study, &fit.model, &appraisal.noises);
     let (products, samples) = design.fitted();
     let mut swept = Swept::new(&products);
@@ -76,14 +61,14 @@ fn weakest(
         let columns: Vec<usize> = design.columns(number).collect();
         let worth = swept.worth(&columns) / scale;
         let told = columns.iter().filter(|column| swept.has(**column)).count();
-        let price = price(study, &fit.model[number].effect, samples, tries.candidates, tries.waves)
+        let price = conditions.price(study, &fit.model[number].effect, samples)
             - untold_price(columns.len() - told, samples);
-        let fails = worth < price
+        let weak = worth < price || noise_explains(study, &design, &swept, fit, appraisal, number, price);
+        let fails = weak && !conditions.stands_out(study, &fit.model, number, price)
             || !returns(&design, &swept, number, scale)
             || !steady(&design, &swept, number)
-            || noise_explains(study, &design, &swept, fit, appraisal, number, price)
             || imitates_a_state(study, &fit.model, (appraisal, &whole), number)
-            || !pays(study, &design, &swept, fit, (appraisal, &whole), number, travels);
+            || !pays(study, &design, &swept, fit, (appraisal, &whole), number, conditions);
         fails.then_some((worth, number))
     };
     let count = fit.model.len() - always;
@@ -103,12 +88,12 @@ fn pays(
     fit: &Fit,
     left: (&Appraisal, &[Vec<Vec<f64>>]),
     number: usize,
-    travels: &[Travel],
+    conditions: &Conditions<'_>,
 ) -> bool {
     let (appraisal, whole) = left;
     let mut bare = fit.model.clone();
     bare.remove(number);
-    let others = followed(study, without(design, swept, &fit.model, number), fit, appraisal, number, travels);
+    let others = followed(study, without(design, swept, &fit.model, number), fit, number, conditions);
     let [bare, others] = [&bare, &others].map(|model| zeros::residuals(study, model));
     let (mut gained, mut expected, mut peak) = (0.0, 0.0, 0.0_f64);
     let (mut taken, mut returning) = (0.0, 0.0);
@@ -181,9 +166,8 @@ fn followed(
     study: &Study<'_>,
     others: Model,
     fit: &Fit,
-    appraisal: &Appraisal,
     number: usize,
-    travels: &[Travel],
+    conditions: &Conditions<'_>,
 ) -> Model {
     let dropped = &fit.model[number].effect;
     let draws = |fitted: &Fitted| {
@@ -192,7 +176,7 @@ fn followed(
             && fitted.effect.motion() == dropped.motion()
     };
     let drawn = dropped.shape.axis().is_some() && others.iter().any(draws);
-    if drawn { fit::refine(study, others, &appraisal.noises, travels).model } else { others }
+    if drawn { conditions.refine(study, others).model } else { others }
 }
 
 /// An effect must reach this share of the noise of a sample somewhere.

@@ -9,6 +9,7 @@ mod appraisal;
 mod candidates;
 mod certainty;
 mod conclude;
+mod conditions;
 mod course;
 mod crossing;
 mod curves;

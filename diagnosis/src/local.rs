@@ -66,9 +66,9 @@ pub(crate) fn strongest(
     for (scene, known) in study.scenes.iter().enumerate() {
         let angular = |channel: usize| known.channels[channel].kind.angular(study.equations);
         for (channel, observed) in known.channels.iter().enumerate() {
-            if unsteady::answers_motion(study, appraisal, model, scene, channel) {
-                continue;
-            }
+            // What a loop answers to strokes has the sign of their direction: only what is alike in both may be a place.
+            let answers = unsteady::answers_motion(study, appraisal, model, scene, channel);
+            let directions: &[f64] = if answers { &[0.0] } else { &[0.0, 1.0, -1.0] };
             let alike = (0..known.channels.len()).filter(|other| angular(*other) == angular(channel));
             let loudest = alike.map(|other| appraisal.noises[scene][other].size()).fold(0.0, f64::max);
             for (axis, travel) in travels.iter().enumerate().filter(|(_, travel)| travel.moves) {
@@ -78,7 +78,7 @@ pub(crate) fn strongest(
                 let valid =
                     |row: usize| residual[row].is_finite() && !appraisal.outliers[scene][channel][row];
                 let passes = passes(position, moves, &known.recording.run);
-                for direction in [0.0, 1.0, -1.0] {
+                for direction in directions.iter().copied() {
                     let chosen: Vec<&Range<usize>> = passes
                         .iter()
                         .filter(|(_, d)| direction == 0.0 || *d == direction)

@@ -6,19 +6,18 @@
 //! it is compared, and nothing is added that the judge would drop.
 
 use crate::appraisal::Appraisal;
-use crate::curves::cost;
+use crate::conditions::Conditions;
 use crate::design::{Design, Regressor};
-use crate::engine::{self, all_residuals, courses};
-use crate::fit::{self, Fit};
-use crate::judge::{self, Tries};
+use crate::engine::{self, courses};
+use crate::fit::Fit;
+use crate::judge;
 use crate::kinship::Kin;
 use crate::model::{Effect, Fitted, Model};
 use crate::ranges::holds;
-use crate::search::{price, rivals};
+use crate::search::rivals;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
-use crate::travel::Travel;
 use crate::waves::{self, WavePlace};
 
 /// The most effects that are added.
@@ -28,11 +27,9 @@ const TRIED: usize = 4;
 
 /// What a revision works with.
 pub(crate) struct Revision<'r> {
-    pub(crate) always: usize,
     pub(crate) pool: &'r [Kin],
     pub(crate) places: &'r [WavePlace],
-    pub(crate) travels: &'r [Travel],
-    pub(crate) tries: Tries,
+    pub(crate) conditions: Conditions<'r>,
 }
 
 impl Revision<'_> {
@@ -47,9 +44,12 @@ impl Revision<'_> {
             if !appraisal.lacks() {
                 break;
             }
-            let trials = self.trials(study, &fit, &appraisal);
+            let conditions = self.conditions.under(&appraisal.noises);
+            let prices = conditions.prices(study, &fit.model, fit.samples);
+            let cost = conditions.cost_at(&fit, &prices);
+            let trials = self.trials(study, &fit, &prices, &appraisal);
             let Some(better) =
-                trials.into_iter().find_map(|trial| self.stands(study, trial, &fit, &appraisal))
+                trials.into_iter().find_map(|trial| self.stands(study, trial, cost, &fit, &appraisal))
             else {
                 break;
             };
@@ -63,29 +63,30 @@ impl Revision<'_> {
     fn stands(
         &self,
         study: &mut Study<'_>,
-        trial: Model,
+        trial: Trial,
+        cost: f64,
         fit: &Fit,
         appraisal: &Appraisal,
     ) -> Option<(Fit, Appraisal)> {
-        let fitted = fit::refine(study, trial, &appraisal.noises, self.travels);
-        let costs = |fit: &Fit| cost(study, fit, self.always, self.tries);
-        if costs(&fitted) >= costs(fit) {
+        let conditions = self.conditions.under(&appraisal.noises);
+        let fitted = conditions.refine(study, trial.model);
+        if conditions.cost_at(&fitted, &trial.prices) >= cost {
             return None;
         }
         let (count, more) = (fitted.model.len(), fitted.model.len() > fit.model.len());
-        let (kept, left) = judge::uphold(study, fitted, self.always, self.travels, self.tries);
+        let (kept, left) = judge::uphold(study, fitted, &self.conditions);
         appraisal.mark(study);
         let stands = kept.model.len() == count && (!more || stands_apart(study, appraisal, &left));
         stands.then_some((kept, left))
     }
 
     /// Models with another effect in the place of one, and with one more, the most promising first.
-    fn trials(&self, study: &Study<'_>, fit: &Fit, appraisal: &Appraisal) -> Vec<Model> {
+    fn trials(&self, study: &Study<'_>, fit: &Fit, prices: &[f64], appraisal: &Appraisal) -> Vec<Trial> {
         let model = &fit.model;
-        let open = self.open(study, model, appraisal);
+        let open = self.open(study, model, appraisal, fit.samples);
         let mut regressors: Vec<Regressor> =
             model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
-        regressors.extend(open.iter().cloned().map(Regressor::of));
+        regressors.extend(open.iter().map(|open| Regressor::of(open.effect.clone())));
         let mut design = Design::new(study, model, &appraisal.noises, regressors);
         design.rebase(model);
         let (products, samples) = design.fitted();
@@ -94,25 +95,26 @@ impl Revision<'_> {
             whole.take(column);
         }
         let scale = (whole.remaining() / samples.max(1.0)).max(f64::MIN_POSITIVE);
-        let mut trials: Vec<(f64, Model)> = Vec::new();
+        let mut trials: Vec<Trial> = Vec::new();
         // A curve is made of what stood in for it: those are no better.
         let tabled = |number: &usize| matches!(model[*number].effect.shape, Shape::Table { .. });
         let places = std::iter::once(None)
-            .chain((self.always..model.len()).filter(|number| !tabled(number)).map(Some));
+            .chain((self.conditions.always..model.len()).filter(|number| !tabled(number)).map(Some));
         for place in places {
             let mut swept = whole.clone();
-            let mut kept = model.clone();
+            let (mut kept, mut prices) = (model.clone(), prices.to_vec());
+            let mut spared = 0.0;
             if let Some(number) = place {
                 design.columns(number).for_each(|column| swept.drop(column));
                 kept.remove(number);
+                spared = prices.remove(number);
             }
             let lost = (swept.remaining() - whole.remaining()) / scale;
-            let spared = place.map_or(0.0, |number| self.price(study, &model[number].effect, samples));
             let mut gains: Vec<(f64, usize)> = (0..open.len())
-                .filter(|number| !kept.iter().any(|known| against(&known.effect, &open[*number])))
+                .filter(|number| !kept.iter().any(|known| against(&known.effect, &open[*number].effect)))
                 .map(|number| {
                     let columns: Vec<usize> = design.columns(model.len() + number).collect();
-                    let gain = swept.promise(&columns).0 / scale - self.price(study, &open[number], samples);
+                    let gain = swept.promise(&columns).0 / scale - open[number].price;
                     (gain - lost + spared, number)
                 })
                 .collect();
@@ -121,27 +123,47 @@ impl Revision<'_> {
             let least = if place.is_some() { -LEEWAY } else { 0.0 };
             for (gain, number) in gains.into_iter().filter(|(gain, _)| *gain > least).take(TRIED) {
                 let mut trial = kept.clone();
-                let coefficients = vec![0.0; open[number].shape.columns()];
-                trial.push(Fitted { effect: open[number].clone(), coefficients });
-                trials.push((gain, trial));
+                let coefficients = vec![0.0; open[number].effect.shape.columns()];
+                trial.push(Fitted { effect: open[number].effect.clone(), coefficients });
+                let mut prices = prices.clone();
+                prices.push(open[number].price);
+                trials.push(Trial { model: trial, prices, gain });
             }
         }
-        trials.sort_by(|a, b| b.0.total_cmp(&a.0));
-        trials.into_iter().map(|(_, model)| model).take(2 * TRIED).collect()
-    }
-
-    fn price(&self, study: &Study<'_>, effect: &Effect, samples: f64) -> f64 {
-        price(study, effect, samples, self.tries.candidates, self.tries.waves)
+        trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        trials.truncate(2 * TRIED);
+        trials
     }
 
     /// Effects that are not in the model: candidates, and waves of what it leaves.
-    fn open(&self, study: &Study<'_>, model: &Model, appraisal: &Appraisal) -> Vec<Effect> {
+    fn open(&self, study: &Study<'_>, model: &Model, appraisal: &Appraisal, samples: f64) -> Vec<Open> {
+        let conditions = self.conditions.under(&appraisal.noises);
         let courses = courses(study, model);
-        let residuals = all_residuals(study, model, &appraisal.noises, &courses);
-        let (peaks, _) = waves::peaks(study, model, &courses, &residuals, self.travels, self.places);
-        let candidates = engine::regressors(study, model, self.always, self.pool, peaks);
-        candidates.into_iter().skip(model.len()).map(|regressor| regressor.effect).collect()
+        let residuals = waves::all_weighted(study, model, &appraisal.noises, &courses);
+        let (peaks, _) = waves::peaks(study, model, &courses, &residuals, conditions.travels, self.places);
+        let candidates = engine::open_candidates(&model[conditions.always..], self.pool);
+        let candidates = candidates
+            .into_iter()
+            .map(|effect| Open { price: conditions.price(study, &effect, samples), effect });
+        let waves = engine::highest(study, peaks);
+        let waves = waves
+            .into_iter()
+            .map(|peak| Open { price: conditions.price_of_peak(study, &peak, samples), effect: peak.effect });
+        candidates.chain(waves).collect()
     }
+}
+
+/// An effect that is not in the model, and its price.
+struct Open {
+    effect: Effect,
+    price: f64,
+}
+
+/// A model to try, the prices of its effects, and what it promises.
+struct Trial {
+    model: Model,
+    prices: Vec<f64>,
+    gain: f64,
 }
 
 /// Whether an effect may not stand beside one of the model: it is the same in another form, or what a table leaves at its corners.

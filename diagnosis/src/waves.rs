@@ -218,6 +218,71 @@ pub(crate) fn peaks(
     (peaks, tried)
 }
 
+/// The peaks around a wave of a model when it is taken out: within half a cycle over the range of its axis, or over the recording.
+pub(crate) fn around(
+    study: &Study<'_>,
+    model: &Model,
+    number: usize,
+    noises: &[Vec<Noise>],
+    travels: &[Travel],
+) -> Vec<Peak> {
+    let wave = &model[number].effect;
+    let mut without = model.clone();
+    without.remove(number);
+    let courses: Vec<Arc<Course>> =
+        (0..study.scenes.len()).map(|scene| Course::new(study, scene, &without)).collect();
+    let residuals = all_weighted(study, &without, noises, &courses);
+    let place = WavePlace::of(wave);
+    let (mut peaks, _) = peaks(study, &without, &courses, &residuals, travels, place.as_slice());
+    let observed = observed(study);
+    let near = |peak: &Peak| cycles_apart(&peak.effect.shape, &wave.shape, travels, observed);
+    peaks.retain(|peak| near(peak).is_some_and(|cycles| cycles < AROUND));
+    peaks
+}
+
+/// Whether two waves are one line of a spectrum: over all of it, pauses included, they differ by less than a quarter of a cycle.
+pub(crate) fn same_line(study: &Study<'_>, a: &Effect, b: &Effect, travels: &[Travel]) -> bool {
+    let span = longest(study, |scene| scene.given.time.last().copied().unwrap_or_default());
+    cycles_apart(&a.shape, &b.shape, travels, span).is_some_and(|cycles| cycles < ONE_LINE)
+}
+
+/// How long the longest recording was observed, pauses left out, s.
+pub(crate) fn observed(study: &Study<'_>) -> f64 {
+    longest(study, |scene| scene.observed)
+}
+
+fn longest(study: &Study<'_>, of: impl Fn(&Scene<'_>) -> f64) -> f64 {
+    study.scenes.iter().map(of).fold(0.0, f64::max)
+}
+
+/// By how many cycles two waves differ over the range of their axis, or over this time.
+fn cycles_apart(a: &Shape, b: &Shape, travels: &[Travel], time: f64) -> Option<f64> {
+    match (a, b) {
+        (Shape::Cyclic { axis, period: a, .. }, Shape::Cyclic { axis: along, period: b, .. })
+            if axis == along =>
+        {
+            Some((1.0 / a - 1.0 / b).abs() * travels[*axis].range())
+        }
+        (Shape::Vibration { frequency: a }, Shape::Vibration { frequency: b }) => Some((a - b).abs() * time),
+        _ => None,
+    }
+}
+
+/// Waves that differ by less than so many cycles over all that was observed, pauses left out, are neighbours.
+const AROUND: f64 = 0.5;
+/// Peaks of a spectrum lie a cycle apart; half of that is nearer to the other one.
+const ONE_LINE: f64 = 0.25;
+/// The weighted residuals of all scenes under a model.
+pub(crate) fn all_weighted(
+    study: &Study<'_>,
+    model: &Model,
+    noises: &[Vec<Noise>],
+    courses: &[Arc<Course>],
+) -> Vec<Vec<Weighted>> {
+    let each = courses.iter().enumerate();
+    each.map(|(scene, course)| weighted(study, scene, model, &noises[scene], course)).collect()
+}
+
 /// At how many places waves are looked for at a time.
 const PLACES: usize = 8;
 /// How many waves of each kind are taken from one place.
@@ -259,7 +324,7 @@ fn in_time(study: &Study<'_>, source: &Source, courses: &[Arc<Course>]) -> Optio
     let span = times.iter().filter_map(|time| time.last()).copied().fold(0.0, f64::max);
     let step = shortest_step(study);
     (source.place.vibration && span > 10.0 * step).then_some(())?;
-    let observed = study.scenes.iter().map(|scene| scene.observed).fold(0.0, f64::max);
+    let observed = observed(study);
     let found = tops(&source.spectrum(&times, 0.0, span, 2.0 * step), CYCLES / observed, OF_A_PLACE);
     let peak = |top: Top| Peak {
         effect: effect(source, Shape::Vibration { frequency: top.frequency }),

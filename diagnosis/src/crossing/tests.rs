@@ -1,7 +1,9 @@
 //! How far plays are crossed, and which are tried.
 
 use super::*;
+use crate::conditions::Tries;
 use crate::model::Fitted;
+use crate::noise::Noise;
 use crate::recording::Recording;
 use crate::testing::{Bench, circle, distance, noisy, path, peak, position, together};
 use crate::zeros;
@@ -104,11 +106,12 @@ fn nothing_is_tried_where_nothing_holds_an_axis() {
     let tries = Tries { candidates: 50.0, waves: 100.0 };
     let noises = vec![vec![Noise::white(1e-4); 2]];
     let travels = crate::travel::travels(&study, &crate::engine::courses(&study, &Model::new()));
+    let conditions = Conditions { always: 0, noises: &noises, travels: &travels, tries };
     let model = vec![at_once(&bench, 1, LOST[1])];
-    assert!(try_plays(&mut study, &model, 0, &noises, &travels, tries).is_none());
+    assert!(try_plays(&mut study, &model, &conditions).is_none());
     // With something that does, the known play explains what that seemed to.
     let spiked = vec![own(&bench, 0, Shape::ReversalSpike { axis: 0, decay: 0.05 }, 0.003), model[0].clone()];
-    let chosen = try_plays(&mut study, &spiked, 0, &noises, &travels, tries).unwrap();
+    let chosen = try_plays(&mut study, &spiked, &conditions).unwrap();
     assert!(distance(&study.crossings, &[LOST[0], 0.0]) < 1e-12);
     assert_eq!(chosen.len(), 1);
     assert_eq!(crossing_only(&study, &chosen), [0]);

@@ -1,7 +1,9 @@
 //! Curves: nodes where something was observed, and a stage whose curve no polynomial follows.
 
 use super::*;
+use crate::conditions::Tries;
 use crate::engine;
+use crate::noise::Noise;
 use crate::recording::Recording;
 use crate::side::Side;
 use crate::terms::Setting;
@@ -168,10 +170,11 @@ fn tried(bench: &Bench, recording: &Recording, degrees: &[usize]) -> (Model, [f6
     let travels = crate::travel::travels(&study, &engine::courses(&study, &model));
     let noises = vec![vec![Noise::white(NOISE)]];
     let tries = Tries { candidates: 40.0, waves: 40.0 };
-    let before = fit::refine(&study, model, &noises, &travels);
-    let costs = cost(&study, &before, 1, tries);
-    let mut after = try_tables(&study, before, 1, &noises, &travels, tries);
-    let costs = [costs, cost(&study, &after, 1, tries)];
+    let conditions = Conditions { always: 1, noises: &noises, travels: &travels, tries };
+    let before = conditions.refine(&study, model);
+    let costs = conditions.cost(&study, &before);
+    let mut after = try_tables(&study, before, &conditions);
+    let costs = [costs, conditions.cost(&study, &after)];
     (after.model.split_off(1), costs)
 }
 

@@ -1,6 +1,7 @@
 //! What the judge asks of an effect, one question at a time.
 
 use super::*;
+use crate::conditions::Tries;
 use crate::model::{Effect, Place};
 use crate::recording::Recording;
 use crate::side::Side;
@@ -48,7 +49,7 @@ fn fitted<'a>(bench: &'a Bench, recordings: &[&'a Recording], noise: f64) -> Cas
     let effects = [Effect::setting(0, Setting::Offset { channel: 0 }), Effect { place, shape }];
     let model = effects.map(|effect| Fitted { effect, coefficients: vec![0.0] }).to_vec();
     let noises = vec![vec![Noise::white(noise)]; recordings.len()];
-    let fit = fit::refine(&study, model, &noises, &[]);
+    let fit = crate::fit::refine(&study, model, &noises, &[]);
     let design = design(&study, &fit.model, &noises);
     let appraisal = Appraisal::new(&study, &fit.model);
     appraisal.mark(&mut study);
@@ -87,7 +88,10 @@ impl Case<'_> {
 
     fn pays(&self) -> bool {
         let whole = zeros::residuals(&self.study, &self.fit.model);
-        pays(&self.study, &self.design, &swept(&self.design), &self.fit, (&self.appraisal, &whole), PLAY, &[])
+        let tries = Tries { candidates: 1.0, waves: 1.0 };
+        let conditions = Conditions { always: 1, noises: &self.appraisal.noises, travels: &[], tries };
+        let left = (&self.appraisal, &*whole);
+        pays(&self.study, &self.design, &swept(&self.design), &self.fit, left, PLAY, &conditions)
     }
 }
 
@@ -207,10 +211,12 @@ fn falls(case: &Case<'_>, always: usize, share: f64) -> Option<usize> {
     let squares = swept.worth(&columns) * samples / swept.remaining();
     let bare = Appraisal::new(&case.study, &without(&design, &swept, &case.fit.model, PLAY));
     let worth = squares.min(bare.deviance - case.appraisal.deviance);
-    let untried = price(&case.study, &case.fit.model[PLAY].effect, samples, 1.0, 1.0);
+    let untried = crate::search::price(&case.study, &case.fit.model[PLAY].effect, samples, 1.0, 1.0);
     assert!(untried < 0.5 * worth, "{untried} {worth}");
     let candidates = (0.5 * (share * worth - untried)).exp();
-    weakest(&case.study, &case.fit, &case.appraisal, always, Tries { candidates, waves: 1.0 }, &[])
+    let noises = &case.appraisal.noises;
+    let conditions = Conditions { always, noises, travels: &[], tries: Tries { candidates, waves: 1.0 } };
+    weakest(&case.study, &case.fit, &case.appraisal, &conditions)
 }
 
 #[test]

@@ -6,9 +6,9 @@ use simulation::noise::{Correlated, Noise as Drawn, Source, Walk};
 
 use super::*;
 use crate::candidates;
+use crate::conditions::Tries;
 use crate::engine;
 use crate::fit;
-use crate::judge::Tries;
 use crate::kinship;
 use crate::noise::Noise;
 use crate::recording::Recording;

@@ -120,10 +120,10 @@ pub(super) fn tops(spectrum: &[Line], above: f64, count: usize) -> Vec<Top> {
         .filter(|at| spectrum[*at].0 >= above)
         .filter(|at| spectrum[*at].1 >= spectrum[at - 1].1 && spectrum[*at].1 > spectrum[at + 1].1)
         .map(|at| {
-            let gain = spectrum[at].1;
+            let (frequency, gain) = vertex(&spectrum[at - 1..=at + 1]);
             // The median of a sum of two squares is that of an exponential number: ln 2 times its mean, which is 2.
             let local = gain * MEDIAN / level[at].max(f64::MIN_POSITIVE);
-            Top { frequency: vertex(&spectrum[at - 1..=at + 1]), gain, local }
+            Top { frequency, gain, local }
         })
         .collect();
     all.sort_by(|a, b| b.local.total_cmp(&a.local));
@@ -167,12 +167,14 @@ fn levels(spectrum: &[Line]) -> Vec<f64> {
     levels
 }
 
-/// The place of the top of the parabola through three points of the spectrum.
-fn vertex(three: &[Line]) -> f64 {
+/// The top of the parabola through three points of the spectrum, whose roots are amplitudes. Between lines a peak is a fifth higher
+/// than at the next of them, so that of neighbours of nearly one height, as pauses make them, another would be taken.
+fn vertex(three: &[Line]) -> Line {
     let (left, middle, right) = (three[0].1.sqrt(), three[1].1.sqrt(), three[2].1.sqrt());
     let curvature = left - 2.0 * middle + right;
     let shift = if curvature < 0.0 { 0.5 * (left - right) / curvature } else { 0.0 };
-    three[1].0 + shift * (three[1].0 - three[0].0)
+    let height = middle - 0.25 * (left - right) * shift;
+    (three[1].0 + shift * (three[1].0 - three[0].0), height * height)
 }
 
 #[cfg(test)]

@@ -1,0 +1,130 @@
+//! Conditions: all that a fit and its cost depend on beside the recordings and the model.
+//!
+//! In: the noises, how far the axes travel, and how much was looked through. Out: fits, what they cost, and the cheapest of several
+//! trials. Models are compared under the same conditions, so that a cost is always a cost beside another one.
+
+use crate::fit::{self, Fit};
+use crate::model::{Effect, Model};
+use crate::noise::Noise;
+use crate::search::price;
+use crate::study::Study;
+use crate::terms::{Shape, oddity};
+use crate::travel::Travel;
+use crate::waves::{self, Peak};
+
+/// How much was tried before a model was chosen.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tries {
+    /// Candidates that differ.
+    pub(crate) candidates: f64,
+    /// Independent waves.
+    pub(crate) waves: f64,
+}
+
+/// The conditions under which models are fitted and compared.
+#[derive(Clone, Copy)]
+pub(crate) struct Conditions<'c> {
+    /// How many of a model's first effects are settings that are always fitted.
+    pub(crate) always: usize,
+    /// How samples weigh, for each scene and channel.
+    pub(crate) noises: &'c [Vec<Noise>],
+    pub(crate) travels: &'c [Travel],
+    pub(crate) tries: Tries,
+}
+
+impl<'c> Conditions<'c> {
+    /// The same with other weights.
+    pub(crate) fn under<'n>(&self, noises: &'n [Vec<Noise>]) -> Conditions<'n>
+    where
+        'c: 'n,
+    {
+        Conditions { noises, ..*self }
+    }
+
+    /// Fits all parameters of a model, from where it stands.
+    pub(crate) fn refine(&self, study: &Study<'_>, model: Model) -> Fit {
+        fit::refine(study, model, self.noises, self.travels)
+    }
+
+    /// What a fit costs: its misfit and the price of its effects.
+    pub(crate) fn cost(&self, study: &Study<'_>, fit: &Fit) -> f64 {
+        let prices: Vec<f64> =
+            fit.model.iter().map(|fitted| self.price(study, &fitted.effect, fit.samples)).collect();
+        self.cost_at(fit, &prices)
+    }
+
+    /// What a fit costs where its effects have these prices.
+    pub(crate) fn cost_at(&self, fit: &Fit, prices: &[f64]) -> f64 {
+        let paid: f64 = fit.model[self.always..]
+            .iter()
+            .zip(&prices[self.always..])
+            .map(|(fitted, price)| price + oddity(&fitted.effect.shape, &fitted.coefficients))
+            .sum();
+        fit.samples * (fit.remaining / fit.samples).ln() + paid
+    }
+
+    /// The price of an effect among so many samples.
+    pub(crate) fn price(&self, study: &Study<'_>, effect: &Effect, samples: f64) -> f64 {
+        price(study, effect, samples, self.tries.candidates, self.tries.waves)
+    }
+
+    /// The prices of the effects of a model, where waves that stand out at their own noise have paid.
+    pub(crate) fn prices(&self, study: &Study<'_>, model: &Model, samples: f64) -> Vec<f64> {
+        let price = |number: usize| {
+            let price = self.price(study, &model[number].effect, samples);
+            if self.stands_out(study, model, number, price) { PAID } else { price }
+        };
+        (0..model.len()).map(price).collect()
+    }
+
+    /// The price of a wave of a spectrum.
+    pub(crate) fn price_of_peak(&self, study: &Study<'_>, peak: &Peak, samples: f64) -> f64 {
+        let price = self.price(study, &peak.effect, samples);
+        let counts = self.own_noise_counts(study, &peak.effect.shape);
+        if counts && peak.local >= OUTSTANDING * price { PAID } else { price }
+    }
+
+    /// The cheapest of a fit and of trials beside it.
+    pub(crate) fn cheapest(&self, study: &Study<'_>, fit: Fit, trials: impl IntoIterator<Item = Fit>) -> Fit {
+        let mut best = (self.cost(study, &fit), fit);
+        for trial in trials {
+            let cost = self.cost(study, &trial);
+            if cost < best.0 {
+                best = (cost, trial);
+            }
+        }
+        best.1
+    }
+
+    /// Whether an effect of a model is a wave that stands out at its own noise, beyond this price.
+    pub(crate) fn stands_out(&self, study: &Study<'_>, model: &Model, number: usize, price: f64) -> bool {
+        self.own_noise_counts(study, &model[number].effect.shape) && {
+            let around = waves::around(study, model, number, self.noises, self.travels);
+            around.iter().any(|peak| peak.local >= OUTSTANDING * price)
+        }
+    }
+
+    /// Whether a wave is judged by the noise around its own frequency: where samples weigh alike, since the model lacks something, a
+    /// wave beyond its price there stands out, however little of the whole it takes. Where they count for themselves the weights say the
+    /// same, and a long wave has no neighbours that are not a part of the curve that it may be.
+    fn own_noise_counts(&self, study: &Study<'_>, shape: &Shape) -> bool {
+        let alike = self.noises.iter().flatten().any(|noise| noise.alike > 1.0);
+        let cycles = match shape {
+            Shape::Cyclic { axis, period, .. } => self.travels[*axis].range() / period,
+            Shape::Vibration { frequency } => frequency * waves::observed(study),
+            _ => 0.0,
+        };
+        alike && cycles > MANY_CYCLES
+    }
+}
+
+/// A wave of fewer cycles over the travel may be part of a curve.
+const MANY_CYCLES: f64 = 8.0;
+
+/// A wave stands out that gains so many times its price at its own noise. The noise there is the median of what others gain around it,
+/// which knows nothing of how they scatter: lines between which it falls away may stand beside each other.
+const OUTSTANDING: f64 = 2.0;
+
+/// The price of a wave that stands out at its own noise: what two parameters of chance take on average, which it must still take of
+/// the whole.
+const PAID: f64 = 2.0;

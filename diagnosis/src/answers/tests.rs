@@ -37,6 +37,15 @@ fn what_error_and_velocity_give_is_an_answer() {
 }
 
 #[test]
+fn an_output_that_follows_the_motion_is_an_answer_whatever_else_the_feedback_is_off_by() {
+    let mut recording = recorded(|error, velocity, _| 0.24 * (35.0 * error - 0.4 * velocity));
+    // A wave of a fifth of a millimetre in the feedback, of which the loop knows nothing.
+    let actual = recording.axes[0].actual.as_mut().unwrap();
+    actual.iter_mut().for_each(|actual| *actual += 0.2 * (*actual / 3.0).sin());
+    assert_eq!(of(&recording).len(), 1);
+}
+
+#[test]
 fn a_load_from_outside_is_none() {
     let time = |row: usize| 0.005 * crate::number(row);
     assert_eq!(of(&recorded(|_, _, row| 5.0 * (7.0 * time(row)).sin())), []);

@@ -167,8 +167,8 @@ fn levels(spectrum: &[Line]) -> Vec<f64> {
     levels
 }
 
-/// The top of the parabola through three points of the spectrum, whose roots are amplitudes. Between lines a peak is a fifth higher
-/// than at the next of them, so that of neighbours of nearly one height, as pauses make them, another would be taken.
+/// The top of the parabola through three points of the spectrum, whose roots are amplitudes. Between lines a peak is up to a
+/// fifth higher than at the next of them, and of neighbours of nearly one height, as pauses make them, another would be taken.
 fn vertex(three: &[Line]) -> Line {
     let (left, middle, right) = (three[0].1.sqrt(), three[1].1.sqrt(), three[2].1.sqrt());
     let curvature = left - 2.0 * middle + right;

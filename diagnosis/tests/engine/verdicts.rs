@@ -327,3 +327,28 @@ fn what_stands_still_and_what_runs_once_is_said_to_be_undecided() {
     assert!(undecided.iter().any(|sentence| sentence.contains("one run")), "{undecided:?}");
     assert!(undecided.iter().all(|sentence| sentence.ends_with('.')));
 }
+
+#[test]
+fn a_wave_is_found_under_what_has_no_name() {
+    let bench = Bench::of("FX");
+    let known = bench.calibration(STAGE);
+    let truth = together(
+        &known,
+        &bench.calibration("{EXX: [{cyclic: {period: 9 mm, amplitude: 2 um, phase: 40 deg}}]}"),
+    );
+    let mut recording = bench.record(&truth, &noisy(stage_path(), position("x"), 0.000_3, 11));
+    // Three times as large, and faster each time: neither a wave in time nor one along the axis.
+    let last = recording.time.last().copied().unwrap();
+    let time = recording.time.clone();
+    let spoilt = |value: &mut f64, time: f64| *value += 0.006 * (40.0 * (time / last).powi(2)).sin();
+    for axis in &mut recording.axes {
+        let measured = axis.measured.iter_mut().flatten();
+        measured.zip(&time).for_each(|(value, time)| spoilt(value, *time));
+    }
+    let diagnosis = diagnosed(&bench, &known, &[&recording]);
+    let waves: Vec<_> = diagnosis.findings.iter().filter(|finding| finding.term == "cyclic").collect();
+    let [wave] = waves.as_slice() else { panic!("{:?}", found(&diagnosis)) };
+    assert!((numbers(wave, "period")[0].value - 9.0).abs() < 0.05, "{wave:?}");
+    assert!((numbers(wave, "amplitude")[0].value - 0.002).abs() < 0.000_6, "{wave:?}");
+    assert_ne!(diagnosis.verdict, Verdict::Adequate);
+}

@@ -120,8 +120,8 @@ fn upheld(study: &mut Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> (
     judge::uphold(study, fit, conditions)
 }
 
-/// What the judge upholds of another model in the place of what stands, where it costs less under the noise that it leaves itself and
-/// the held-out samples come nearer to it.
+/// What the judge upholds of another model in the place of what stands, where it costs less under the noise that it leaves itself, the
+/// held-out samples come nearer to it, and a noise that wanders is no explanation of as much.
 fn cheaper(
     study: &mut Study<'_>,
     stands: (Fit, Appraisal),
@@ -140,6 +140,10 @@ fn cheaper(
     let crossings_of_other = std::mem::replace(&mut study.crossings, crossings);
     let old = cost(study, &conditions.refine(study, stands.0.model.clone()));
     let nearer = other.1.held_out(study, &other.1) < stands.1.held_out(study, &other.1);
+    // A walk draws curves and waves together as well as each of them alone.
+    let prices: f64 =
+        conditions.prices(study, &other.0.model, other.0.samples)[conditions.always..].iter().sum();
+    let nearer = nearer && stands.1.wandering - other.1.wandering > prices;
     if nearer && new < old && !same_effects(&stands.0.model, &other.0.model) {
         study.crossings = crossings_of_other;
         return other;

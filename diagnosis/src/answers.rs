@@ -25,9 +25,9 @@ const GIVEN: f64 = 0.99;
 /// The motion of the axis alone gives at least so much: an output carries friction and inertia. A load from outside may well
 /// follow from the error that it makes, and does not follow from the motion.
 const CARRIES: f64 = 0.5;
-/// From this share on the motion alone tells an output: where the feedback is off by more than the loop knows of, its error is not
-/// that which the loop answers. What is left of such a load beside the motion would be no cause that could be told from friction and
-/// inertia.
+/// With this share the motion alone shows that a load is an output. Following error need not give it: a feedback that is itself wrong
+/// shows another error than the loop answered. At three quarters the load's coefficient has a variance inflation of 4 beside the
+/// terms of the motion, friction and inertia: it is collinear with them, and no cause that could be told apart.
 const MOSTLY: f64 = 0.75;
 
 /// The loads that the loops put out, as all recordings that hold both show.

@@ -3,6 +3,7 @@
 //! In: the noises, how far the axes travel, and how much was looked through. Out: fits, what they cost, and the cheapest of several
 //! trials. Models are compared under the same conditions, so that a cost is always a cost beside another one.
 
+use crate::curves::LONG;
 use crate::fit::{self, Fit};
 use crate::model::{Effect, Model};
 use crate::noise::Noise;
@@ -63,7 +64,7 @@ impl<'c> Conditions<'c> {
         fit.samples * (fit.remaining / fit.samples).ln() + paid
     }
 
-    /// The price of an effect among so many samples.
+    /// The price of an effect in a fit to this number of samples.
     pub(crate) fn price(&self, study: &Study<'_>, effect: &Effect, samples: f64) -> f64 {
         price(study, effect, samples, self.tries.candidates, self.tries.waves)
     }
@@ -104,9 +105,9 @@ impl<'c> Conditions<'c> {
         }
     }
 
-    /// Whether a wave is judged by the noise around its own frequency: where samples weigh alike, since the model lacks something, a
-    /// wave beyond its price there stands out, however little of the whole it takes. Where they count for themselves the weights say the
-    /// same, and a long wave has no neighbours that are not a part of the curve that it may be.
+    /// Whether a wave is judged by the noise around its own frequency. It is where samples weigh alike because the model lacks
+    /// something: there a slow residual would hide it. Elsewhere the weights know the noise of each frequency already. A long wave is
+    /// never judged so: its neighbours may be parts of the same curve.
     fn own_noise_counts(&self, study: &Study<'_>, shape: &Shape) -> bool {
         let alike = self.noises.iter().flatten().any(|noise| noise.alike > 1.0);
         let cycles = match shape {
@@ -114,17 +115,16 @@ impl<'c> Conditions<'c> {
             Shape::Vibration { frequency } => frequency * waves::observed(study),
             _ => 0.0,
         };
-        alike && cycles > MANY_CYCLES
+        alike && cycles * LONG > 1.0
     }
 }
 
-/// A wave of fewer cycles over the travel may be part of a curve.
-const MANY_CYCLES: f64 = 8.0;
-
-/// A wave stands out that gains so many times its price at its own noise. The noise there is the median of what others gain around it,
-/// which knows nothing of how they scatter: lines between which it falls away may stand beside each other.
+/// A wave stands out if its gain at its own noise is this many times its price. The price allows for white noise of a known level; here
+/// the level is a median over neighbouring frequencies, which says nothing of their scatter. Of waves, oscillations and drifts injected
+/// into real recordings of a rotary arm, 1, 2 and 4 find 0.70, 0.67 and 0.63, with 0.10, 0.07 and 0.03 other claims a case. Simulated
+/// recordings come out alike.
 const OUTSTANDING: f64 = 2.0;
 
-/// The price of a wave that stands out at its own noise: what two parameters of chance take on average, which it must still take of
-/// the whole.
+/// The price of a wave that stands out: on average its two coefficients take 2 from noise alone. So much it must still take from the
+/// whole.
 const PAID: f64 = 2.0;

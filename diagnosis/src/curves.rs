@@ -15,7 +15,7 @@ use crate::travel::Travel;
 /// How many nodes are tried.
 const NODES: [usize; 3] = [8, 12, 20];
 /// A wave of more than this share of the travel may be part of a curve.
-const LONG: f64 = 0.12;
+pub(crate) const LONG: f64 = 0.12;
 
 /// Tries tables for every motion of which two or more smooth terms are in the model, or a polynomial of a high power.
 pub(crate) fn try_tables(study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> Fit {
@@ -187,13 +187,18 @@ fn tables(study: &Study<'_>, axis: usize, travel: &Travel) -> Vec<Shape> {
     let places = places(study, axis);
     let nodes = match stations(&places, travel) {
         Some(stations) => vec![stations],
-        None => NODES.map(|count| even(travel, count)).into_iter().filter(|n| held(n, &places)).collect(),
+        None => NODES
+            .map(|count| even(travel.low, travel.high, count))
+            .into_iter()
+            .filter(|n| held(n, &places))
+            .collect(),
     };
     nodes.into_iter().map(|nodes| Shape::Table { axis, nodes, directed: false }).collect()
 }
 
-fn even(travel: &Travel, count: usize) -> Vec<f64> {
-    let at = |node: usize| travel.low + travel.range() * crate::number(node) / crate::number(count - 1);
+/// Nodes at equal steps from one place to another, both included.
+pub(crate) fn even(from: f64, to: f64, count: usize) -> Vec<f64> {
+    let at = |node: usize| from + (to - from) * crate::number(node) / crate::number(count - 1);
     (0..count).map(at).collect()
 }
 

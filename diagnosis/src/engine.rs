@@ -90,7 +90,7 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     let conditions = Conditions { always, noises: &noises, travels: &travels, tries };
     for model in richer {
         if fit.model.len() == always && appraisal.lacks() {
-            (fit, appraisal) = cheaper(study, (fit, appraisal), model, &conditions);
+            (fit, appraisal) = better(study, (fit, appraisal), model, &conditions);
         }
     }
     let revision = Revision { pool: &pool, places: &places, conditions };
@@ -120,9 +120,10 @@ fn upheld(study: &mut Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> (
     judge::uphold(study, fit, conditions)
 }
 
-/// What the judge upholds of another model in the place of what stands, where it costs less under the noise that it leaves itself, the
-/// held-out samples come nearer to it, and a noise that wanders is no explanation of as much.
-fn cheaper(
+/// What the judge upholds of another model, where that is better than what stands: it costs less under the noise that it leaves itself,
+/// held-out samples lie nearer to it, and a wandering noise does not explain as much. A walk draws curves and waves together as
+/// well as each of them alone.
+fn better(
     study: &mut Study<'_>,
     stands: (Fit, Appraisal),
     model: Model,
@@ -133,18 +134,15 @@ fn cheaper(
     let other = conditions.under(&noises).refine(study, model);
     let other = upheld(study, other, conditions);
     let conditions = conditions.under(&other.1.noises);
-    let cost = |study: &Study<'_>, fit: &Fit| {
-        conditions.cost_at(fit, &conditions.prices(study, &fit.model, fit.samples))
-    };
-    let new = cost(study, &other.0);
+    let new = conditions.prices(study, &other.0.model, other.0.samples);
+    let taken = stands.1.wandering - other.1.wandering;
+    let gains = taken > new[conditions.always..].iter().sum()
+        && other.1.held_out(study, &other.1) < stands.1.held_out(study, &other.1);
+    let new = conditions.cost_at(&other.0, &new);
     let crossings_of_other = std::mem::replace(&mut study.crossings, crossings);
-    let old = cost(study, &conditions.refine(study, stands.0.model.clone()));
-    let nearer = other.1.held_out(study, &other.1) < stands.1.held_out(study, &other.1);
-    // A walk draws curves and waves together as well as each of them alone.
-    let prices: f64 =
-        conditions.prices(study, &other.0.model, other.0.samples)[conditions.always..].iter().sum();
-    let nearer = nearer && stands.1.wandering - other.1.wandering > prices;
-    if nearer && new < old && !same_effects(&stands.0.model, &other.0.model) {
+    let old = conditions.refine(study, stands.0.model.clone());
+    let old = conditions.cost_at(&old, &conditions.prices(study, &old.model, old.samples));
+    if gains && new < old {
         study.crossings = crossings_of_other;
         return other;
     }
@@ -314,25 +312,21 @@ pub(crate) fn table_motion(study: &Study<'_>, found: &Found, feature: &Feature) 
 /// The nodes of a table for a feature: over all of the travel where it covers much of it; else over its place, and the ends of the
 /// travel, so that the table is straight beside it.
 fn nodes(feature: &Feature, travel: &Travel) -> Vec<f64> {
-    let even = |from: f64, to: f64, count: usize| {
-        let at = move |node: usize| from + (to - from) * crate::number(node) / crate::number(count - 1);
-        (0..count).map(at).collect::<Vec<f64>>()
-    };
     if feature.extent(travel) >= BROAD {
-        return even(travel.low, travel.high, NODES.min(feature.profile.len() / 2).max(2));
+        return curves::even(travel.low, travel.high, NODES.min(feature.profile.len() / 2).max(2));
     }
     let beside = FOOT * (feature.to - feature.from);
     let (from, to) = ((feature.from - beside).max(travel.low), (feature.to + beside).min(travel.high));
-    let mut nodes = even(from, to, OF_A_PLACE);
+    let mut nodes = curves::even(from, to, OF_A_PLACE);
     nodes.insert(0, travel.low);
     nodes.push(travel.high);
     nodes.dedup();
     nodes
 }
 
-/// How many nodes a place gets: of a bell, straight lines between them leave a thirtieth of its height.
+/// How many nodes a place gets: straight lines between them leave a thirtieth of the height of a bell, by its curvature at the top.
 const OF_A_PLACE: usize = 13;
-/// A feature is told down to a quarter of its height; the foot of a bell reaches this share of that width farther on each side.
+/// A feature is told down to a quarter of its height. A bell falls to a hundredth of it this share of that width farther on.
 const FOOT: f64 = 0.4;
 
 /// The table of that motion of the feature's axis that lowers the weighted sum of squares most; simpler names first.
@@ -368,8 +362,8 @@ fn table(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Effect> 
     (0..tables.len()).max_by(|a, b| gain(*a).total_cmp(&gain(*b))).map(|best| tables[best].clone())
 }
 
-/// For each wave of the model: the highest peak in its neighbourhood when it is taken out. Runs with long pauses between them
-/// give every wave neighbours of nearly its height, and a first fit may stand on one of them.
+/// For each wave of the model, when it is taken out: the peak of its own line, and the highest peak beside it. Runs with long pauses
+/// between them give every wave neighbours of nearly its height, and a first fit may stand on one of them.
 fn other_peaks(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Vec<Regressor> {
     let mut regressors = Vec::new();
     for (number, fitted) in model.iter().enumerate().filter(|(_, fitted)| fitted.effect.shape.is_wave()) {

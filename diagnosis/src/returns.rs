@@ -78,8 +78,8 @@ const FOLDS: usize = 12;
 const MOST: usize = 4;
 /// How many residuals of mere noise tell what chance predicts.
 const DRAWS: u64 = 12;
-/// A state predicts more than chance does where the logarithm of what it leaves lies so many standard deviations below the mean of
-/// those: by chance one in ten thousand states.
+/// A state predicts more than chance if the logarithm of what it leaves lies this many standard deviations below the mean over the
+/// draws of noise. By chance one state in ten thousand does.
 const BEYOND: f64 = 4.0;
 /// The least share of the rows that other units must say something of.
 const COVERED: f64 = 0.2;

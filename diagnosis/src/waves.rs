@@ -268,9 +268,11 @@ fn cycles_apart(a: &Shape, b: &Shape, travels: &[Travel], time: f64) -> Option<f
     }
 }
 
-/// Waves that differ by less than so many cycles over all that was observed, pauses left out, are neighbours.
+/// Two waves are neighbours if they differ by less than this many cycles over the time observed, without pauses: half of the width of
+/// a line.
 const AROUND: f64 = 0.5;
-/// Peaks of a spectrum lie a cycle apart; half of that is nearer to the other one.
+/// Peaks of a spectrum lie about a cycle apart over its whole length. A wave within a quarter of a cycle is nearer to this peak than to
+/// any other.
 const ONE_LINE: f64 = 0.25;
 /// The weighted residuals of all scenes under a model.
 pub(crate) fn all_weighted(

@@ -59,7 +59,8 @@ pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
         let (name, axis) = (&study.loads[answer.load].0, &study.equations.axes[answer.axis].letter);
         format!(
             "What the load {name} does to the drive of {axis} cannot be decided from this recording, because it is what the \
-             position loop of {axis} puts out: following error, velocity and programmed motion give {:.1} % of it. It answers the error.",
+             position loop of {axis} puts out: following error, velocity and programmed motion give {:.1} % of it. It \
+             answers the error.",
             (1000.0 * answer.share).floor() / 10.0
         )
     }));

@@ -27,7 +27,7 @@ pub(super) fn thinned(
     travel: &Travel,
     noises: &[Vec<Noise>],
 ) -> Option<Shape> {
-    let all = even(travel, NODES);
+    let all = even(travel.low, travel.high, NODES);
     let shape = |nodes: Vec<f64>| Shape::Table { axis, nodes, directed: false };
     let mut regressors: Vec<Regressor> =
         kept.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();

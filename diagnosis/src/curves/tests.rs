@@ -277,3 +277,14 @@ fn waves_that_are_long_are_part_of_a_curve_and_short_ones_are_not() {
     assert_eq!(smooth(Shape::Backlash { axis: 0, wind_up: 0.0 }), None);
     assert_eq!(smooth(Shape::Vibration { frequency: 1.0 }), None);
 }
+
+#[test]
+fn a_table_with_nodes_at_one_place_is_active_there_alone() {
+    // Most of the nodes lie on the dent, and most of the travel beside it.
+    let nodes = vec![0.0, 100.0, 104.0, 108.0, 112.0, 116.0, 300.0];
+    let shape = Shape::Table { axis: 0, nodes, directed: false };
+    let place = Place::Motion { motion: 0, side: Side::After };
+    let coefficients = vec![0.002, 0.002, 0.007, 0.012, 0.007, 0.002, 0.002];
+    let table = Fitted { effect: Effect { place, shape }, coefficients };
+    assert_eq!(active(&table), Some((100.0, 116.0)));
+}

@@ -352,3 +352,27 @@ fn a_wave_is_found_under_what_has_no_name() {
     assert!((numbers(wave, "amplitude")[0].value - 0.002).abs() < 0.000_6, "{wave:?}");
     assert_ne!(diagnosis.verdict, Verdict::Adequate);
 }
+
+#[test]
+fn a_walk_of_the_sensor_is_nothing_of_the_machine() {
+    let bench = Bench::of("FX");
+    let known = bench.calibration(STAGE);
+    let pass = path(line(0, 0.0, 300.0), 20.0, 60.0);
+    let scenario = noisy(pass, position("x"), 0.000_1, 21);
+    for seed in 1..=20 {
+        let mut recording = bench.record(&known, &scenario);
+        let steps = normals(seed, recording.time.len());
+        let walk = steps.iter().scan(0.0, |place, step| {
+            *place += 0.000_5 * step;
+            Some(*place)
+        });
+        let walk: Vec<f64> = walk.collect();
+        for axis in &mut recording.axes {
+            let measured = axis.measured.iter_mut().flatten();
+            measured.zip(&walk).for_each(|(value, walk)| *value += walk);
+        }
+        let diagnosis = diagnosed(&bench, &known, &[&recording]);
+        assert!(diagnosis.findings.is_empty(), "{seed}: {:?}", found(&diagnosis));
+        assert_eq!(diagnosis.recordings[0].outliers, 0, "{seed}");
+    }
+}

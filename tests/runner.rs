@@ -26,6 +26,7 @@ mod experiments;
 mod explain;
 mod export;
 mod files;
+mod found;
 mod generated;
 mod guide;
 mod hostile;

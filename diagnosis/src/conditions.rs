@@ -128,3 +128,6 @@ const OUTSTANDING: f64 = 2.0;
 /// The price of a wave that stands out: on average its two coefficients take 2 from noise alone. So much it must still take from the
 /// whole.
 const PAID: f64 = 2.0;
+
+#[cfg(test)]
+mod tests;

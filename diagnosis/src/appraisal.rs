@@ -4,7 +4,8 @@
 //! come back of the residual. The weights are those of that noise, as long as noise is most of what is left. Where more comes
 //! back than does not, or the residual moves as no sensor's noise does, the model lacks something: then every sample weighs the
 //! same, and a stretch over which the residual keeps its direction counts for one. Weights of a walk would look at its steps, and
-//! not at how far the machine is off.
+//! not at how far the machine is off. Recordings of the same channel that lack something share that weight: a diagonal on which
+//! two errors cancel says no more of each of them than one on which they add up.
 //!
 //! Two models are compared by their likelihoods, each with the noise that suits it best: an effect that a wandering sensor
 //! explains as well is then worth nothing.
@@ -48,6 +49,10 @@ struct Estimate {
     leftover: f64,
     deviance: f64,
     wandering: f64,
+    /// Which samples count, how many they are, and the sum of their squares about the mean.
+    valid: Vec<bool>,
+    count: f64,
+    whole: f64,
 }
 
 impl Appraisal {
@@ -63,53 +68,31 @@ impl Appraisal {
     }
 
     fn under(study: &Study<'_>, model: &Model, other: Option<&Self>) -> Self {
-        let mut appraisal = Self {
-            residuals: Vec::new(),
-            outliers: Vec::new(),
-            noises: Vec::new(),
-            floors: Vec::new(),
-            returning: Vec::new(),
-            leftover: Vec::new(),
-            deviance: 0.0,
-            wandering: 0.0,
-        };
+        let (mut residuals, mut outliers, mut estimates) = (Vec::new(), Vec::new(), Vec::new());
         for scene in 0..study.scenes.len() {
             let course = Course::new(study, scene, model);
-            let residuals = observations::residuals(study, scene, model, &course);
-            appraisal.add(study, scene, residuals, other.map(|other| &other.noises[scene]));
+            let left = observations::residuals(study, scene, model, &course);
+            let weights = other.map(|other| &other.noises[scene]);
+            let (marks, found) = estimated(&study.scenes[scene], &left, weights).into_iter().unzip();
+            residuals.push(left);
+            outliers.push(marks);
+            estimates.push(found);
         }
-        appraisal
+        share_weights(study, &residuals, &mut estimates);
+        Self::of(residuals, outliers, &estimates)
     }
 
-    fn add(
-        &mut self,
-        study: &Study<'_>,
-        scene: usize,
-        residuals: Vec<Vec<f64>>,
-        weights: Option<&Vec<Noise>>,
-    ) {
-        let known = &study.scenes[scene];
-        let fitted = known.fitted_rows();
-        let work = residuals.len() * known.rows() * ESTIMATES;
-        let results = parallel::counted(residuals.len(), work, |channel| {
-            let residual = &residuals[channel];
-            let apart = |row: usize, distance: f64| known.returns.apart(residual, row, distance);
-            let marks = outliers::mark(residual, known.channels[channel].step(), &apart);
-            let counts = |row: usize| fitted[row] && residual[row].is_finite() && !marks[row];
-            let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
-            let estimate =
-                estimate(known, channel, residual, &valid, weights.map(|weights| weights[channel]));
-            (marks, estimate)
-        });
-        let (marks, estimates): (Vec<Vec<bool>>, Vec<Estimate>) = results.into_iter().unzip();
-        self.deviance += estimates.iter().map(|estimate| estimate.deviance).sum::<f64>();
-        self.wandering += estimates.iter().map(|estimate| estimate.wandering).sum::<f64>();
-        self.outliers.push(marks);
-        self.floors.push(estimates.iter().map(|estimate| estimate.floor).collect());
-        self.leftover.push(estimates.iter().map(|estimate| estimate.leftover).collect());
-        self.returning.push(estimates.iter().map(|estimate| estimate.returning).collect());
-        self.noises.push(estimates.into_iter().map(|estimate| estimate.weights).collect());
-        self.residuals.push(residuals);
+    fn of(residuals: Vec<Vec<Vec<f64>>>, outliers: Vec<Vec<Vec<bool>>>, estimates: &[Vec<Estimate>]) -> Self {
+        Self {
+            residuals,
+            outliers,
+            noises: each(estimates, |estimate| estimate.weights),
+            floors: each(estimates, |estimate| estimate.floor),
+            returning: each(estimates, |estimate| estimate.returning),
+            leftover: each(estimates, |estimate| estimate.leftover),
+            deviance: estimates.iter().flatten().map(|estimate| estimate.deviance).sum(),
+            wandering: estimates.iter().flatten().map(|estimate| estimate.wandering).sum(),
+        }
     }
 
     /// Whether a model leaves more than noise of any channel.
@@ -147,6 +130,80 @@ impl Appraisal {
     }
 }
 
+/// Something of every channel of every scene.
+fn each<T>(estimates: &[Vec<Estimate>], of: impl Fn(&Estimate) -> T) -> Vec<Vec<T>> {
+    estimates.iter().map(|channels| channels.iter().map(&of).collect()).collect()
+}
+
+/// Outliers and estimate of every channel of a scene; `weights` are those with which these are to be compared.
+fn estimated(
+    known: &Scene<'_>,
+    residuals: &[Vec<f64>],
+    weights: Option<&Vec<Noise>>,
+) -> Vec<(Vec<bool>, Estimate)> {
+    let fitted = known.fitted_rows();
+    let work = residuals.len() * known.rows() * ESTIMATES;
+    parallel::counted(residuals.len(), work, |channel| {
+        let residual = &residuals[channel];
+        let apart = |row: usize, distance: f64| known.returns.apart(residual, row, distance);
+        let marks = outliers::mark(residual, known.channels[channel].step(), &apart);
+        let counts = |row: usize| fitted[row] && residual[row].is_finite() && !marks[row];
+        let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
+        let estimate = estimate(known, channel, residual, valid, weights.map(|weights| weights[channel]));
+        (marks, estimate)
+    })
+}
+
+/// Gives recordings of the same channel one weight where the model lacks something in one of them: what all of them leave.
+fn share_weights(study: &Study<'_>, residuals: &[Vec<Vec<f64>>], estimates: &mut [Vec<Estimate>]) {
+    let known = estimates.to_vec();
+    for (scene, channels) in estimates.iter_mut().enumerate() {
+        for (channel, estimate) in channels.iter_mut().enumerate() {
+            let same = like(study, &known, (scene, channel));
+            let Some(lacking) = same.iter().find(|estimate| estimate.lacks()) else { continue };
+            let [whole, count] = [|one: &Estimate| one.whole, |one: &Estimate| one.count]
+                .map(|of| same.iter().map(|estimate| of(estimate)).sum::<f64>());
+            if same.len() > 1 {
+                let time = &study.scenes[scene].recording.time;
+                estimate.weigh(
+                    time,
+                    &residuals[scene][channel],
+                    (whole / count).sqrt(),
+                    lacking.weights.alike,
+                );
+            }
+        }
+    }
+}
+
+/// The estimates of a channel in all recordings that read it.
+fn like<'e>(study: &Study<'_>, estimates: &'e [Vec<Estimate>], channel: (usize, usize)) -> Vec<&'e Estimate> {
+    let kind = |(scene, channel): (usize, usize)| study.scenes[scene].channels[channel].kind;
+    let all = estimates.iter().enumerate();
+    let all = all.flat_map(|(scene, channels)| (0..channels.len()).map(move |number| (scene, number)));
+    all.filter(|one| *one == channel || one.0 != channel.0 && kind(*one).reads_as(kind(channel)))
+        .map(|(scene, number)| &estimates[scene][number])
+        .collect()
+}
+
+impl Estimate {
+    /// Whether the model lacks something in the channel.
+    fn lacks(&self) -> bool {
+        self.weights.alike > 1.0
+    }
+
+    /// Weighs the samples by another noise of the same kind.
+    fn weigh(&mut self, time: &[f64], residual: &[f64], white: f64, alike: f64) {
+        let plain = self.deviance;
+        let alike = if self.lacks() { self.weights.alike } else { alike };
+        self.weights = Noise { alike, ..Noise::white(white.max(self.floor.white)) };
+        self.deviance = noise::deviance(time, residual, &self.valid, &self.weights);
+        if self.wandering == plain {
+            self.wandering = self.deviance;
+        }
+    }
+}
+
 /// What comes back must be so many times what does not for every sample to weigh the same: from there on it is most of it.
 const MOSTLY: f64 = 1.0;
 
@@ -155,14 +212,14 @@ fn estimate(
     known: &Scene<'_>,
     channel: usize,
     residual: &[f64],
-    valid: &[bool],
+    valid: Vec<bool>,
     like: Option<Noise>,
 ) -> Estimate {
     let (time, observed) = (&known.recording.time, &known.channels[channel]);
-    let (left, factor) = known.returns.beside(&observed.returning, residual, valid);
-    let (found, deviance) = noise::estimate(time, &left, valid, observed.rounding);
-    let whole = squares(residual, valid);
-    let alone = squares(&left, valid);
+    let (left, factor) = known.returns.beside(&observed.returning, residual, &valid);
+    let (found, deviance) = noise::estimate(time, &left, &valid, observed.rounding);
+    let whole = squares(residual, &valid);
+    let alone = squares(&left, &valid);
     let returning = (whole - alone).max(0.0);
     let floor = Noise {
         white: (factor * found.white).max(observed.rounding),
@@ -173,24 +230,44 @@ fn estimate(
     let leftover = (alone / count).sqrt();
     let plainly = match like {
         Some(like) => like.alike > 1.0,
-        None => returning > MOSTLY * alone || found.only_wanders(time) || moves(known, residual, valid),
+        None => returning > MOSTLY * alone || found.only_wanders(time) || moves(known, residual, &valid),
     };
     if plainly {
-        let alike = like.map_or_else(|| noise::alike(residual, valid), |like| like.alike);
+        let alike = like.map_or_else(|| noise::alike(residual, &valid), |like| like.alike);
         let weights = Noise {
             alike: alike.max(MORE_THAN_ONE),
             ..Noise::white((whole / count).sqrt().max(floor.white))
         };
         // Where nothing comes back, a noise that wanders may be all there is.
         let again = !observed.returning.is_empty();
-        let plain = noise::deviance(time, residual, valid, &weights);
+        let plain = noise::deviance(time, residual, &valid, &weights);
         let wandering = if again { plain } else { deviance };
-        return Estimate { floor, weights, returning, leftover, deviance: plain, wandering };
+        return Estimate {
+            floor,
+            weights,
+            returning,
+            leftover,
+            deviance: plain,
+            wandering,
+            valid,
+            count,
+            whole,
+        };
     }
     // Where nothing comes back, the noise with the greatest likelihood is the floor itself.
     let same = returning == 0.0 && floor.white == found.white;
-    let deviance = if same { deviance } else { noise::deviance(time, residual, valid, &floor) };
-    Estimate { floor, weights: floor, returning, leftover, deviance, wandering: deviance }
+    let deviance = if same { deviance } else { noise::deviance(time, residual, &valid, &floor) };
+    Estimate {
+        floor,
+        weights: floor,
+        returning,
+        leftover,
+        deviance,
+        wandering: deviance,
+        valid,
+        count,
+        whole,
+    }
 }
 
 /// Samples of what a model leaves out never count for themselves.

@@ -100,7 +100,8 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
         drawn_before.map(|before| before.draw(&study, &found, (&counts, units.unit.0), &numbers));
     diagnosis.unexplained = match feature {
         Some(feature) => Some(unexplained::feature(&study, &found, &feature, &units)),
-        None => unexplained::unsteady(&study, &found, moving, &units),
+        None => unexplained::unsteady(&study, &found, moving, &units)
+            .or_else(|| unexplained::returning(&study, &found, &units)),
     };
     diagnosis.unexplained = diagnosis.unexplained.or_else(|| unexplained::on_the_way(&study));
     diagnosis.repeatability = scattered.first().map(|scatter| repeats::describe(&study, scatter, units.unit));

@@ -5,11 +5,11 @@
 
 use crate::curves::LONG;
 use crate::fit::{self, Fit};
-use crate::model::{Effect, Model};
+use crate::model::{Effect, Fitted, Model};
 use crate::noise::Noise;
 use crate::search::price;
 use crate::study::Study;
-use crate::terms::{Shape, oddity};
+use crate::terms::{Shape, oddity, plausible};
 use crate::travel::Travel;
 use crate::waves::{self, Peak};
 
@@ -51,15 +51,15 @@ impl<'c> Conditions<'c> {
     pub(crate) fn cost(&self, study: &Study<'_>, fit: &Fit) -> f64 {
         let prices: Vec<f64> =
             fit.model.iter().map(|fitted| self.price(study, &fitted.effect, fit.samples)).collect();
-        self.cost_at(fit, &prices)
+        self.cost_at(study, fit, &prices)
     }
 
     /// What a fit costs where its effects have these prices.
-    pub(crate) fn cost_at(&self, fit: &Fit, prices: &[f64]) -> f64 {
+    pub(crate) fn cost_at(&self, study: &Study<'_>, fit: &Fit, prices: &[f64]) -> f64 {
         let paid: f64 = fit.model[self.always..]
             .iter()
             .zip(&prices[self.always..])
-            .map(|(fitted, price)| price + oddity(&fitted.effect.shape, &fitted.coefficients))
+            .map(|(fitted, price)| price + odd(study, fitted))
             .sum();
         fit.samples * (fit.remaining / fit.samples).ln() + paid
     }
@@ -128,6 +128,11 @@ const OUTSTANDING: f64 = 2.0;
 /// The price of a wave that stands out: on average its two coefficients take 2 from noise alone. So much it must still take from the
 /// whole.
 const PAID: f64 = 2.0;
+
+/// What the size of an effect costs beyond what its physics allows.
+fn odd(study: &Study<'_>, fitted: &Fitted) -> f64 {
+    oddity(plausible(study, &fitted.effect), &fitted.effect.shape, &fitted.coefficients)
+}
 
 #[cfg(test)]
 mod tests;

@@ -17,32 +17,49 @@ use crate::travel::Travel;
 
 /// Tries loops on all moving axes in the place of what they could be mistaken for.
 pub(crate) fn try_loops(study: &Study<'_>, model: Model, conditions: &Conditions<'_>) -> Model {
-    let Conditions { always, travels, .. } = *conditions;
-    let lacking: Vec<usize> = (0..travels.len())
-        .filter(|axis| travels[*axis].moves && study.own[*axis].is_some())
-        // The drive's own feedback shows its loop to the linear choice.
-        .filter(|axis| !study.has_drive(*axis))
-        .filter(|axis| !model.iter().any(|fitted| lag_of(&fitted.effect.shape) == Some(*axis)))
-        .collect();
-    let suspicious = model[always..].iter().any(|fitted| mistakable(&fitted.effect));
-    if lacking.is_empty() || !suspicious {
+    if !may_lag(study, &model, conditions) {
         return model;
     }
     let now = conditions.refine(study, model);
-    let kept: Model = now
-        .model
-        .iter()
-        .enumerate()
-        .filter(|(number, fitted)| *number < always || !mistakable(&fitted.effect))
-        .map(|(_, fitted)| fitted.clone())
-        .collect();
+    let stays =
+        |(number, fitted): &(usize, &Fitted)| *number < conditions.always || !mistakable(&fitted.effect);
+    let kept: Model = now.model.iter().enumerate().filter(stays).map(|(_, fitted)| fitted.clone()).collect();
+    let trials = looped(study, &kept, &now.model, conditions);
+    conditions.cheapest(study, now, trials.into_iter()).model
+}
+
+/// Loops on all moving axes beside nothing but the settings, where something of the model could be mistaken for them. Beside what
+/// was chosen in their place they may not pay: only a search that begins with them shows what they leave.
+pub(crate) fn loops_alone(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Option<Model> {
+    if !may_lag(study, model, conditions) {
+        return None;
+    }
+    let kept = model[..conditions.always].to_vec();
+    let trials = looped(study, &kept, model, conditions).into_iter();
+    let cheapest =
+        trials.min_by(|one, other| conditions.cost(study, one).total_cmp(&conditions.cost(study, other)));
+    cheapest.map(|fit| fit.model)
+}
+
+/// Whether loops are missing on moving axes, and something stands in the model that could be mistaken for them.
+fn may_lag(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> bool {
+    let Conditions { always, travels, .. } = *conditions;
+    let lacks = |axis: usize| {
+        // The drive's own feedback shows its loop to the linear choice.
+        let hidden = travels[axis].moves && study.own[axis].is_some() && !study.has_drive(axis);
+        hidden && !model.iter().any(|fitted| lag_of(&fitted.effect.shape) == Some(axis))
+    };
+    (0..travels.len()).any(lacks) && model[always..].iter().any(|fitted| mistakable(&fitted.effect))
+}
+
+/// Models with loops on all moving axes beside what is kept, fitted from several time constants.
+fn looped(study: &Study<'_>, kept: &Model, known: &Model, conditions: &Conditions<'_>) -> Vec<Fit> {
     let step = shortest_step(study);
-    let known = now.model.clone();
-    let trials = geometric(0.5 * step, (40.0 * step).min(0.3), 2.0).into_iter().map(|time_constant| {
-        let trial = with_loops(study, &kept, &known, time_constant, travels);
+    let trial = |time_constant: f64| {
+        let trial = with_loops(study, kept, known, time_constant, conditions.travels);
         without_idle(study, conditions.refine(study, trial), conditions)
-    });
-    conditions.cheapest(study, now, trials).model
+    };
+    geometric(0.5 * step, (40.0 * step).min(0.3), 2.0).into_iter().map(trial).collect()
 }
 
 /// Tries what a loop of first order, and what acts at once, cannot say: loops that ring, and friction on the drive, which the

@@ -74,6 +74,9 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     search.go_round(study, progress);
     search.cross_plays(study, progress);
     let mut fit = search.fit(study);
+    if let Some(loops) = dynamics::loops_alone(study, &fit.model, &search.conditions()) {
+        (search, fit) = from_loops(study, (search, fit), loops, progress);
+    }
     let curved = curves::try_tables(study, fit.clone(), &search.conditions());
     if same_effects(&curved.model, &fit.model) {
         fit = curved;
@@ -107,6 +110,28 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     Found { fit, appraisal, pool, travels, bands, always, tries, plain_zeros: false }
 }
 
+/// A search that begins with loops alone, where it comes to a better end than the one that did not.
+fn from_loops(
+    study: &mut Study<'_>,
+    (search, fit): (Search, Fit),
+    loops: Model,
+    progress: &mut dyn FnMut(f64),
+) -> (Search, Fit) {
+    let crossings = study.crossings.clone();
+    let known = search.worth(study, &fit);
+    let mut other = search.clone();
+    other.begin(study, loops);
+    other.go_round(study, progress);
+    other.cross_plays(study, progress);
+    let better = other.fit(study);
+    if other.worth(study, &better) < known {
+        return (other, better);
+    }
+    study.crossings = crossings;
+    Appraisal::new(study, &fit.model).mark(study);
+    (search, fit)
+}
+
 /// What the judge upholds. A play that it drops is no longer crossed, and one that the rest is fitted to anew is crossed over
 /// its new length; what stands up beside that is asked again.
 fn upheld(study: &mut Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> (Fit, Appraisal) {
@@ -138,10 +163,10 @@ fn better(
     let taken = stands.1.wandering - other.1.wandering;
     let gains = taken > new[conditions.always..].iter().sum()
         && other.1.held_out(study, &other.1) < stands.1.held_out(study, &other.1);
-    let new = conditions.cost_at(&other.0, &new);
+    let new = conditions.cost_at(study, &other.0, &new);
     let crossings_of_other = std::mem::replace(&mut study.crossings, crossings);
     let old = conditions.refine(study, stands.0.model.clone());
-    let old = conditions.cost_at(&old, &conditions.prices(study, &old.model, old.samples));
+    let old = conditions.cost_at(study, &old, &conditions.prices(study, &old.model, old.samples));
     if gains && new < old {
         study.crossings = crossings_of_other;
         return other;
@@ -151,6 +176,7 @@ fn better(
 }
 
 /// A search on its way.
+#[derive(Clone)]
 struct Search {
     model: Model,
     /// Models of earlier rounds with more effects than a later one. Where much is left, a round that takes an effect less leaves more
@@ -177,6 +203,26 @@ impl Search {
         let places = waves::places(study, &courses, &noises, &travels);
         let tries = Tries { candidates: crate::number(pool.len() + 2 * WAVES), waves: 1.0 };
         Self { always: model.len(), model, richer: Vec::new(), noises, courses, travels, pool, places, tries }
+    }
+
+    /// Begins anew with a model.
+    fn begin(&mut self, study: &mut Study<'_>, model: Model) {
+        study.crossings.fill(0.0);
+        let appraisal = Appraisal::new(study, &model);
+        appraisal.mark(study);
+        self.noises = appraisal.noises;
+        self.courses = courses(study, &model);
+        self.model = model;
+    }
+
+    /// What its end costs beside that of another search: minus twice the likelihood, each with the noise that suits it best, and its
+    /// prices.
+    fn worth(&self, study: &Study<'_>, fit: &Fit) -> f64 {
+        let appraisal = Appraisal::new(study, &fit.model);
+        let conditions = self.conditions();
+        let conditions = conditions.under(&appraisal.noises);
+        let paid = conditions.cost(study, fit) - conditions.cost_at(study, fit, &vec![0.0; fit.model.len()]);
+        appraisal.deviance + paid
     }
 
     /// The conditions of the present round.
@@ -272,6 +318,23 @@ impl Search {
 /// How many nodes a table gets, at most.
 const NODES: usize = 24;
 
+/// Nodes where the axis was read, each at the row nearest to where it would be: between stations nothing tells of a curve.
+fn at_rows(study: &Study<'_>, found: &Found, feature: &Feature, nodes: Vec<f64>) -> Vec<f64> {
+    let courses = courses(study, &found.fit.model);
+    let kind = study.scenes[feature.scene].channels[feature.channel].kind;
+    let position = &courses[feature.scene].states(kind).axes[feature.axis].position;
+    let residual = &found.appraisal.residuals[feature.scene][feature.channel];
+    let read: Vec<f64> =
+        position.iter().zip(residual).filter(|(_, left)| left.is_finite()).map(|row| *row.0).collect();
+    let nearest = |node: f64| {
+        let rows = read.iter().copied().filter(|position| position.is_finite());
+        rows.min_by(|one, other| (one - node).abs().total_cmp(&(other - node).abs())).unwrap_or(node)
+    };
+    let mut nodes: Vec<f64> = nodes.into_iter().map(nearest).collect();
+    nodes.dedup();
+    nodes
+}
+
 /// The model with a table for a feature that covers much of an axis, where the judge upholds it.
 pub(crate) fn with_table(study: &mut Study<'_>, found: &Found, feature: &Feature) -> Option<Found> {
     let effect = table(study, found, feature)?;
@@ -333,7 +396,7 @@ const FOOT: f64 = 0.4;
 fn table(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Effect> {
     let shape = Shape::Table {
         axis: feature.axis,
-        nodes: nodes(feature, &found.travels[feature.axis]),
+        nodes: at_rows(study, found, feature, nodes(feature, &found.travels[feature.axis])),
         directed: feature.direction != 0.0,
     };
     let motions = study.equations.motions.iter().enumerate();

@@ -10,6 +10,7 @@ use crate::fit::Fit;
 use crate::model::{Fitted, Model};
 use crate::noise::Noise;
 use crate::parallel;
+use crate::rounded;
 use crate::search::untold_price;
 use crate::study::Study;
 use crate::sweep::Swept;
@@ -97,6 +98,7 @@ fn pays(
     let [bare, others] = [&bare, &others].map(|model| zeros::residuals(study, model));
     let (mut gained, mut expected, mut peak) = (0.0, 0.0, 0.0_f64);
     let (mut taken, mut returning) = (0.0, 0.0);
+    let mut told = !fit.model[number].effect.shape.is_wave();
     for (scene, known) in study.scenes.iter().enumerate() {
         let fitted = known.fitted_rows();
         for channel in 0..known.channels.len() {
@@ -109,7 +111,9 @@ fn pays(
             let effect = |row: usize| (bare[row] - left[row]) / size;
             let mut everywhere: Vec<f64> = rows.iter().map(|row| effect(*row)).collect();
             zeros::center(&mut everywhere);
-            peak = everywhere.iter().fold(peak, |peak, value| peak.max(value.abs()));
+            let highest = everywhere.iter().fold(0.0, |highest: f64, value| highest.max(value.abs()));
+            peak = peak.max(highest);
+            told |= highest * size > rounded::beat(known.channels[channel].rounding, size);
             let nearer = |row: usize| (others[row] * others[row] - left[row] * left[row]) / (size * size);
             taken += rows.iter().map(|row| nearer(*row)).sum::<f64>();
             returning += appraisal.returning[scene][channel] / (size * size);
@@ -120,7 +124,7 @@ fn pays(
             gained += held().map(nearer).sum::<f64>();
         }
     }
-    peak > MATERIAL && (expected < TELLING || gained > 0.0) && taken > APART * returning
+    told && peak > MATERIAL && (expected < TELLING || gained > 0.0) && taken > APART * returning
 }
 
 /// What an effect takes from the sum of squares must be at least this share of what still comes back without a name: less may be a

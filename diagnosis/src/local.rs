@@ -10,6 +10,7 @@ use std::sync::Arc;
 use crate::appraisal::Appraisal;
 use crate::course::Course;
 use crate::model::Model;
+use crate::rounded;
 use crate::study::Study;
 use crate::travel::Travel;
 use crate::unsteady;
@@ -86,7 +87,10 @@ pub(crate) fn strongest(
                         .collect();
                     let noise = appraisal.noises[scene][channel].size();
                     let profile = Profile::new(residual, position, &chosen, &valid, travel);
-                    let feature = profile.and_then(|profile| profile.feature(noise.max(BESIDE * loudest)));
+                    // In every pass over the same place a display is off by as much.
+                    let least =
+                        noise.max(BESIDE * loudest).max(rounded::beat(observed.rounding, noise) / MATERIAL);
+                    let feature = profile.and_then(|profile| profile.feature(least));
                     if let Some(found) = feature
                         && best.as_ref().is_none_or(|best| found.strength > 1.2 * best.strength)
                     {
@@ -135,7 +139,7 @@ impl Profile {
             .filter(|rows| covered(&position[(**rows).clone()]) > 0.5 * travel.range())
             .collect();
         let samples: usize = full.iter().map(|rows| rows.len()).sum();
-        let places = (samples / full.len().max(1) / 2).min(MOST_PLACES);
+        let places = places(samples / full.len().max(1));
         if full.len() < PASSES || places < PLACES {
             return None;
         }
@@ -190,6 +194,12 @@ impl Profile {
             profile: (0..self.means.len()).map(|place| (self.center(place), self.means[place])).collect(),
         })
     }
+}
+
+/// At how many places a pass with so many samples is looked at: at half as many, so that none is empty; where these are few, at as
+/// many, since an axis that stops at few stations stops at the same ones in every pass.
+fn places(samples: usize) -> usize {
+    if samples / 2 < PLACES { samples } else { (samples / 2).min(MOST_PLACES) }
 }
 
 fn covered(position: &[f64]) -> f64 {

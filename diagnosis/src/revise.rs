@@ -46,7 +46,7 @@ impl Revision<'_> {
             }
             let conditions = self.conditions.under(&appraisal.noises);
             let prices = conditions.prices(study, &fit.model, fit.samples);
-            let cost = conditions.cost_at(&fit, &prices);
+            let cost = conditions.cost_at(study, &fit, &prices);
             let trials = self.trials(study, &fit, &prices, &appraisal);
             let Some(better) =
                 trials.into_iter().find_map(|trial| self.stands(study, trial, cost, &fit, &appraisal))
@@ -70,7 +70,7 @@ impl Revision<'_> {
     ) -> Option<(Fit, Appraisal)> {
         let conditions = self.conditions.under(&appraisal.noises);
         let fitted = conditions.refine(study, trial.model);
-        if conditions.cost_at(&fitted, &trial.prices) >= cost {
+        if conditions.cost_at(study, &fitted, &trial.prices) >= cost {
             return None;
         }
         let (count, more) = (fitted.model.len(), fitted.model.len() > fit.model.len());

@@ -4,6 +4,7 @@
 //! of a command is noise of what is predicted; a tool that steps by 0.1 mm is no tool that moves. Within a leg an axis mostly moves
 //! straight on, so that a line through many rows is nearer to the way than each of them.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
 /// A step smaller than this share of the travel is none that matters: a good machine errs by as much, 10 um in a metre.
@@ -37,13 +38,29 @@ pub(crate) fn deviation(step: f64) -> f64 {
     step / 12f64.sqrt()
 }
 
+/// The step to which was rounded what has this standard deviation.
+pub(crate) fn step(deviation: f64) -> f64 {
+    deviation * 12f64.sqrt()
+}
+
+/// How far rounding is off, at most, in a way that comes back: an axis at constant speed passes the steps of a display in a steady
+/// beat, and at one place a display is off by as much in every pass. `rounding` is its standard deviation, `noise` that of a reading.
+/// What the noise is beside it tells one step from the next and blurs the beat, as its characteristic function says.
+pub(crate) fn beat(rounding: f64, noise: f64) -> f64 {
+    if rounding <= 0.0 {
+        return 0.0;
+    }
+    let beside = (noise.powi(2) - rounding.powi(2)).max(0.0) / step(rounding).powi(2);
+    0.5 * step(rounding) * (-2.0 * PI * PI * beside).exp()
+}
+
 /// Looks at the command of an axis; `None` where nothing speaks for rounding. `legs` are those of the rows.
 pub(crate) fn unrounded(
     time: &[f64],
     command: &[f64],
     legs: impl Iterator<Item = Range<usize>>,
 ) -> Option<Rounded> {
-    let step = step(time, command)?;
+    let step = step_of(time, command)?;
     let mut way = command.to_vec();
     for rows in legs.filter(|rows| command[rows.clone()].iter().all(|place| place.is_finite())) {
         for row in rows.clone() {
@@ -54,7 +71,7 @@ pub(crate) fn unrounded(
 }
 
 /// The step to which a command in motion was rounded.
-fn step(time: &[f64], command: &[f64]) -> Option<f64> {
+fn step_of(time: &[f64], command: &[f64]) -> Option<f64> {
     let steps: Vec<f64> = command.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let known = || command.iter().copied().filter(|place| place.is_finite());
     let (low, high) =

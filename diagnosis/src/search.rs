@@ -13,7 +13,7 @@ use crate::model::Effect;
 use crate::ranges::{Resolution, holds};
 use crate::study::Study;
 use crate::sweep::Swept;
-use crate::terms::{Setting, Shape, oddity};
+use crate::terms::{Range, Setting, Shape, oddity, plausible};
 
 /// How many sets are carried along.
 const BEAM: usize = 8;
@@ -63,6 +63,8 @@ pub(crate) struct Choice<'d> {
     zeroed: Swept,
     /// Whether each regressor is a rotation of a body that should not turn, in rad for a coefficient of 1.
     rotations: Vec<bool>,
+    /// The plausible sizes of each regressor.
+    plausible: Vec<Option<Range>>,
     /// Regressors that may be chosen.
     open: Vec<usize>,
     prices: Vec<f64>,
@@ -98,8 +100,10 @@ impl<'d> Choice<'d> {
         let prices = design.regressors.iter().map(|regressor| price(&regressor.effect)).collect();
         let zeroed = zeroed(design, &products, always);
         let rotations = design.regressors.iter().map(|regressor| rotates(study, &regressor.effect)).collect();
+        let plausible =
+            design.regressors.iter().map(|regressor| plausible(study, &regressor.effect)).collect();
         let always = (0..fixed).collect();
-        Self { design, always, zeroed, rotations, open, prices, samples, products, resolution }
+        Self { design, always, zeroed, rotations, plausible, open, prices, samples, products, resolution }
     }
 
     /// The best set found, by numbers of regressors.
@@ -235,7 +239,11 @@ impl<'d> Choice<'d> {
         let size = |regressor: &usize| {
             let coefficients: Vec<f64> =
                 self.design.columns(*regressor).map(|column| set.swept.coefficient(column)).collect();
-            oddity(&self.design.regressors[*regressor].effect.shape, &coefficients)
+            oddity(
+                self.plausible[*regressor],
+                &self.design.regressors[*regressor].effect.shape,
+                &coefficients,
+            )
         };
         set.chosen.iter().map(size).sum()
     }

@@ -19,7 +19,7 @@ use crate::rounded::unrounded;
 use crate::way::Way;
 use motion::{Motion, followed};
 
-pub(crate) use corners::{behind_corners, unseen_turns};
+pub(crate) use corners::{behind_corners, beside_reversals, unseen_turns};
 pub(crate) use motion::Play;
 
 /// A column of one entry a row, held once wherever it is needed: a recording has many rows.

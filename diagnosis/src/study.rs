@@ -19,7 +19,7 @@ use crate::recording::{Instrument, Recording};
 use crate::returns::{Return, Returns};
 use crate::rounded;
 use crate::side::Side;
-use crate::states::{Given, Shared, behind_corners, unseen_turns};
+use crate::states::{Given, Shared, behind_corners, beside_reversals, unseen_turns};
 use crate::targets::Targets;
 use crate::terms::{self, Shape};
 
@@ -85,7 +85,7 @@ pub(crate) struct Channel<'a> {
 impl Channel<'_> {
     /// The step of its display.
     pub(crate) fn step(&self) -> f64 {
-        self.rounding * 12f64.sqrt()
+        rounded::step(self.rounding)
     }
 }
 
@@ -112,6 +112,21 @@ impl Kind {
     /// Whether an instrument outside the drive reads it.
     pub(crate) fn outside(self) -> bool {
         !matches!(self, Self::Drive(_))
+    }
+
+    /// Whether two channels, of different recordings, read the same: one axis, or one direction of the part's frame, or in any
+    /// direction what one instrument is made for.
+    pub(crate) fn reads_as(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Tip(one), Self::Tip(two))
+            | (Self::Stage(one), Self::Stage(two))
+            | (Self::Drive(one), Self::Drive(two)) => one == two,
+            (Self::Radius { .. }, Self::Radius { .. })
+            | (Self::Along(_), Self::Along(_))
+            | (Self::Normal, Self::Normal)
+            | (Self::Turn(_), Self::Turn(_)) => true,
+            _ => false,
+        }
     }
 
     /// Whether it is an angle.
@@ -304,17 +319,21 @@ impl<'a> Scene<'a> {
 
 fn corners(recording: &Recording, given: &Given) -> Vec<bool> {
     let rows = recording.time.len();
-    let any = |each: &dyn Fn(&[f64]) -> Vec<bool>, most: usize| {
+    let any = |each: &dyn Fn(usize, &[f64]) -> Vec<bool>, most: usize| {
         let mut marked = vec![false; rows];
-        for position in &*given.programmed {
-            marked.iter_mut().zip(each(position)).for_each(|(mark, here)| *mark |= here);
+        for (axis, position) in given.programmed.iter().enumerate() {
+            marked.iter_mut().zip(each(axis, position)).for_each(|(mark, here)| *mark |= here);
         }
         // A path of such rows only is one that was recorded so; nothing would be left.
         if marked.iter().filter(|mark| **mark).count() > rows / most { vec![false; rows] } else { marked }
     };
-    let mut corners = any(&|position| behind_corners(&recording.time, &given.legs, position), MOST_CORNERS);
+    let at_corners = |axis: usize, position: &[f64]| {
+        let of = if given.rounded[axis] > 0.0 { beside_reversals } else { behind_corners };
+        of(&recording.time, &given.legs, position)
+    };
+    let mut corners = any(&at_corners, MOST_CORNERS);
     if given.step > SPARSE {
-        let turns = any(&|position| unseen_turns(&given.legs, position), MOST_TURNS);
+        let turns = any(&|_, position| unseen_turns(&given.legs, position), MOST_TURNS);
         corners.iter_mut().zip(turns).for_each(|(corner, turn)| *corner |= turn);
     }
     corners

@@ -25,7 +25,7 @@ mod vibration;
 pub(crate) use instrument::{Setting, SettingKind};
 pub(crate) use known::known;
 pub use meaning::meaning;
-pub(crate) use plausible::oddity;
+pub(crate) use plausible::{Range, oddity, plausible};
 pub(crate) use polynomial::in_position as polynomial_in_position;
 
 use model_dsl::calibration::TermKind;

@@ -120,6 +120,25 @@ pub(crate) fn moving(study: &Study<'_>, appraisal: &Appraisal) -> Option<Moving>
     found
 }
 
+/// The channel of which more comes back than does not, although nothing in it moves smoothly: stations far apart, say. The largest of
+/// them.
+pub(crate) fn returning(study: &Study<'_>, appraisal: &Appraisal) -> Option<Moving> {
+    let scenes = study.scenes.iter().enumerate();
+    let channels =
+        scenes.flat_map(|(scene, known)| (0..known.channels.len()).map(move |channel| (scene, channel)));
+    let rest = channels.filter_map(|(scene, channel)| {
+        let residual = accepted(appraisal, scene, channel);
+        let fitted = study.scenes[scene].fitted_rows();
+        let counts = |row: &usize| fitted[*row] && residual[*row].is_finite();
+        let count = crate::number((0..residual.len()).filter(counts).count());
+        let alone = count * appraisal.leftover[scene][channel].powi(2);
+        let returning = appraisal.returning[scene][channel];
+        let time = study.scenes[scene].given.step;
+        (returning > alone).then(|| Moving { scene, channel, rms: (returning / count).sqrt(), time })
+    });
+    rest.max_by(|one, other| one.rms.total_cmp(&other.rms))
+}
+
 /// Whether what is left of a channel is the drive's own feedback behind a loop that was found, and moves smoothly: that is the
 /// loop's answer to something. Strokes that are all alike bring it back at the same places, and no place has made it.
 pub(crate) fn answers_motion(

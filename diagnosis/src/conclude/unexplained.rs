@@ -54,8 +54,8 @@ pub(super) fn unsteady(
     units: &Units,
 ) -> Option<Unexplained> {
     let counted = |moving: &Moving| {
-        let kind = study.scenes[moving.scene].channels[moving.channel].kind;
-        units.counts(study, kind)
+        let channel = &study.scenes[moving.scene].channels[moving.channel];
+        units.counts(study, channel.kind) && above_display(study, moving)
     };
     match moving.filter(counted) {
         Some(moving) => Some(smoothly(study, found, moving, units)),
@@ -113,25 +113,42 @@ fn state_of_what_is_left(study: &Study<'_>, found: &Found, moving: &Moving) -> O
     Some((scene.returns.quantity(first), first.share))
 }
 
+/// What comes back with a state although no effect was found for it, where nothing moves smoothly: a model that leaves it is not adequate.
+pub(super) fn returning(study: &Study<'_>, found: &Found, units: &Units) -> Option<Unexplained> {
+    let rest = unsteady::returning(study, &found.appraisal)?;
+    if above_display(study, &rest) { by_state(study, found, &rest, units) } else { None }
+}
+
+/// Whether more is left than rounding leaves, which comes back wherever an axis passes the steps of a display alike.
+fn above_display(study: &Study<'_>, moving: &Moving) -> bool {
+    moving.rms > study.scenes[moving.scene].channels[moving.channel].rounding
+}
+
+/// What is left, with the state that takes most of it; `None` where no state does.
+fn by_state(study: &Study<'_>, found: &Found, moving: &Moving, units: &Units) -> Option<Unexplained> {
+    let (quantity, share) = state_of_what_is_left(study, found, moving)?;
+    let state = ceiling::words(study, quantity);
+    Some(Unexplained {
+        link: quantity.axis().map(|axis| study.equations.axes[axis].letter.clone()),
+        direction: study.scenes[moving.scene].channels[moving.channel].name.clone(),
+        state: quantity.state(),
+        interval: None,
+        rms: moving.rms * units.unit.0,
+        unit: units.unit.1,
+        detail: format!(
+            "some function of the {state} predicts {:.0} % of it where it was not fitted; no term of the vocabulary has \
+             this form",
+            100.0 * share
+        ),
+        table_of: None,
+    })
+}
+
 fn smoothly(study: &Study<'_>, found: &Found, moving: Moving, units: &Units) -> Unexplained {
-    let channel = &study.scenes[moving.scene].channels[moving.channel];
-    if let Some((quantity, share)) = state_of_what_is_left(study, found, &moving) {
-        let state = ceiling::words(study, quantity);
-        return Unexplained {
-            link: quantity.axis().map(|axis| study.equations.axes[axis].letter.clone()),
-            direction: channel.name.clone(),
-            state: quantity.state(),
-            interval: None,
-            rms: moving.rms * units.unit.0,
-            unit: units.unit.1,
-            detail: format!(
-                "some function of the {state} predicts {:.0} % of it where it was not fitted; no term of the vocabulary has \
-                 this form",
-                100.0 * share
-            ),
-            table_of: None,
-        };
+    if let Some(by_state) = by_state(study, found, &moving, units) {
+        return by_state;
     }
+    let channel = &study.scenes[moving.scene].channels[moving.channel];
     let nearest = unsteady::suspect(study, found);
     let link = nearest.as_ref().and_then(|suspect| suspect.fitted.effect.motion());
     let near = nearest.as_ref().map_or_else(String::new, |suspect| near(study, suspect));

@@ -2,12 +2,24 @@
 //! the play operator, where u within [-1, 1] follows q by 2 dq / w.
 
 use super::Memory;
+use super::plausible::{Body, Range};
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
 pub(super) const MEANING: &str = "Play between the drive and what it moves, or friction that gives way only after the axis has \
     turned: after each reversal the axis stays behind by the lost motion. Plausible: up to some tens \
-    of micrometres on a slide.";
+    of micrometres on a slide, and a degree on a rotary axis.";
+
+/// The plausible lost motion. A tenth of a millimetre is a slide whose nut is worn out; as a rotation it moves what is a metre
+/// away by as much. A rotary axis on gears may lose a degree.
+pub(super) fn plausible(body: Body) -> Option<Range> {
+    match body {
+        Body::Displaced => Some((0.0, 0.1)),
+        Body::Rotary => Some((0.0, 1f64.to_radians())),
+        Body::Tilted => Some((0.0, 1e-4)),
+        Body::Aligned => None,
+    }
+}
 
 pub(super) fn fill(rows: &Rows<'_>, axis: usize, wind_up: f64, memory: &mut Memory, out: &mut Vec<f64>) {
     let axis = rows.axis(axis);

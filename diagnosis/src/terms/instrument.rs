@@ -1,6 +1,11 @@
 //! Settings of the instrument: of the recording and not of the machine. They are always candidates, and never
 //! compensated. What they do to a reading stands with the reading, in `observations`.
 
+use super::plausible::Range;
+
+/// The plausible cosine error, half the square of the angle: a beam that is set up by eye stands within two degrees.
+pub(super) const COSINE: Range = (0.0, 6.1e-4);
+
 /// A setting of the instrument by its name.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum SettingKind {

@@ -150,6 +150,47 @@ pub(super) fn astray(study: &Study<'_>, bare: &Model) -> Option<String> {
     None
 }
 
+/// Why no machine can have gone the programmed path, where that is so: farther or faster than any axis goes. Metres for millimetres
+/// and milliseconds for seconds do that.
+pub(super) fn unmade(study: &Study<'_>) -> Option<String> {
+    for scene in &study.scenes {
+        for (axis, position) in study.equations.axes.iter().zip(scene.given.programmed.iter()) {
+            let (farthest, fastest, unit) =
+                if axis.rotary { (f64::INFINITY, FASTEST.1, "rad") } else { (FARTHEST, FASTEST.0, "mm") };
+            let (travel, speed) = (range(position), speed(&scene.given.time, position));
+            if travel <= farthest && speed <= fastest {
+                continue;
+            }
+            let does = if travel > farthest {
+                format!("goes {:.0} m", 1e-3 * travel)
+            } else {
+                format!("moves at {speed:.0} {unit}/s")
+            };
+            return Some(format!(
+                "the command of {} in {} {does}, as no machine does; look at the units of its column and of time",
+                axis.letter, scene.recording.file
+            ));
+        }
+    }
+    None
+}
+
+/// The speed of an axis in the middle of the rows in which it moves. A single jump says nothing of it.
+fn speed(time: &[f64], position: &[f64]) -> f64 {
+    let steps = time.windows(2).zip(position.windows(2));
+    let mut speeds: Vec<f64> = steps
+        .map(|(time, place)| ((place[1] - place[0]) / (time[1] - time[0])).abs())
+        .filter(|speed| speed.is_finite() && *speed > 0.0)
+        .collect();
+    speeds.sort_by(f64::total_cmp);
+    speeds.get(speeds.len() / 2).copied().unwrap_or_default()
+}
+
+/// The longest travel, mm: the beds of the longest gantry mills have a hundred metres.
+const FARTHEST: f64 = 2e5;
+/// The highest speed, mm/s and rad/s: linear motors reach 5 m/s, a lathe's spindle as an axis 10 000 turns a minute.
+const FASTEST: (f64, f64) = (1e4, 2e3);
+
 /// Why a ballbar cannot have stood where its set-up says, where that is so: the programmed path keeps another distance from its
 /// centre than the bar is long, by more than bars can read.
 pub(super) fn misplaced(study: &Study<'_>) -> Option<String> {

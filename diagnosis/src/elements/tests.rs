@@ -42,9 +42,8 @@ fn all_that_fit_are_named_the_lower_harmonic_first() {
     assert_eq!(along(5.0, 0.001).named(&[SCREW, MOTOR]), [(MOTOR, 1), (SCREW, 2)]);
 }
 
-/// Of periods between 1 and 200 mm, as likely in each octave as in another, an interval of 1 % about 10, 5, 3.3 and 2.5 mm
-/// covers 4 % / ln 200, and the four of a width that is the same in periods over the travel half as much: under one per cent.
-/// An interval of half the period covers more than a twentieth.
+/// Looked for from 1 to 200 mm, as likely in each octave as in another: an interval 1 % wide at 10 mm is half a per cent wide at
+/// 5 mm, and so on. One a fifth wide covers more than a twentieth of the range with the four of them.
 #[test]
 fn an_interval_that_many_periods_would_share_names_nothing() {
     let chance = along(10.0, 0.005).chance(&SCREW);

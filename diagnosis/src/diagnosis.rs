@@ -1,6 +1,7 @@
 //! The diagnosis: what is said of a machine and its recordings, before it is put into words or JSON.
 
 use model_dsl::calibration::{CalibratedTerm, TermKind};
+use model_dsl::machine::ElementKind;
 
 use crate::pictures::Pictures;
 
@@ -159,6 +160,8 @@ pub struct Finding {
     pub alternatives: Vec<Alternative>,
     /// What the term is, physically: one or two sentences.
     pub explanation: String,
+    /// Of a wave along an axis: the elements of the axis whose period, or a whole fraction of it, is the wave's.
+    pub repeats_with: Vec<Repeats>,
     /// Whether a controller can compensate it in real time.
     pub compensable: bool,
     /// The term as the calibration takes it; its sensor is a number into [`Finding::sensor`].
@@ -172,6 +175,19 @@ impl Finding {
     pub fn kind(&self) -> TermKind {
         self.calibrated.kind()
     }
+}
+
+/// An element of an axis that a wave repeats with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Repeats {
+    /// What it is.
+    pub element: ElementKind,
+    /// The travel for one turn of it, or from line to line.
+    pub period: f64,
+    /// `mm`, `deg` or `rad`.
+    pub unit: &'static str,
+    /// How often the wave comes in that: 1, 2, ...
+    pub harmonic: u32,
 }
 
 /// One parameter of a finding.

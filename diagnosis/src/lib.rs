@@ -16,6 +16,7 @@ mod curves;
 mod design;
 pub mod diagnosis;
 mod dynamics;
+mod elements;
 mod engine;
 mod fit;
 mod judge;

@@ -3,6 +3,8 @@
 //! In: a term and what the axes did. Out: the least and the greatest value of its nonlinear parameter. Beyond it a wave is a
 //! slope, a decay is a step and a settling is a jump: the fit would follow whatever the noise does there and give it a name.
 
+use std::f64::consts::TAU;
+
 use crate::study::Study;
 use crate::terms::Shape;
 use crate::travel::Travel;
@@ -28,7 +30,7 @@ pub(crate) fn range(study: &Study<'_>, travels: &[Travel], shape: &Shape) -> (f6
         Shape::ReversalSpike { .. } => (0.3 * step, DECAY * travel.between),
         // A part of a turn is a part of a turn: it is not fitted.
         Shape::Cyclic { axis, period, .. } if goes_round(study, *axis, &travel) => (*period, *period),
-        Shape::Cyclic { .. } => (2.0 * travel.step, travel.range() / PERIODS),
+        Shape::Cyclic { axis, .. } => periods(study, *axis, &travel),
         Shape::Vibration { .. } => (CYCLES / observed, 0.5 / step),
         Shape::Drift { .. } => (5.0 * step, SETTLING * observed),
         Shape::Growth { .. } => (step, SETTLING * observed),
@@ -40,10 +42,16 @@ pub(crate) fn range(study: &Study<'_>, travels: &[Travel], shape: &Shape) -> (f6
     }
 }
 
+/// The periods of a wave along an axis that recordings show, from the shortest to the longest.
+pub(crate) fn periods(study: &Study<'_>, axis: usize, travel: &Travel) -> (f64, f64) {
+    let longest = if goes_round(study, axis, travel) { TAU } else { travel.range() / PERIODS };
+    (2.0 * travel.step, longest)
+}
+
 /// Whether an axis is a rotary one that has gone round. It comes back to where it was: its errors repeat in whole parts of a turn,
 /// and no other period is possible.
 pub(crate) fn goes_round(study: &Study<'_>, axis: usize, travel: &Travel) -> bool {
-    study.equations.axes[axis].rotary && travel.range() > ROUND * std::f64::consts::TAU
+    study.equations.axes[axis].rotary && travel.range() > ROUND * TAU
 }
 
 /// The share of a turn from which on a rotary axis has gone round, and parts of a turn are told apart.

@@ -12,6 +12,7 @@
 
 mod brief;
 mod data;
+mod element;
 mod figure;
 mod finding;
 mod html;

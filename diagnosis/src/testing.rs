@@ -40,6 +40,14 @@ impl Bench {
         Self { compiled, names, name: name.to_owned() }
     }
 
+    /// The machine of a topology word whose machine file says this of its drives.
+    pub(crate) fn driven(word: &str, drive: &str) -> Self {
+        let text = format!("abbe: 1\nname: bench\ntopology: {word}\ndrive: {drive}\n");
+        let compiled = compile(&SourceFile::new(word, text), &mut Diagnostics::new()).unwrap();
+        let names = compiled.equations.names();
+        Self { compiled, names, name: word.to_owned() }
+    }
+
     pub(crate) fn equations(&self) -> &Equations {
         &self.compiled.equations
     }

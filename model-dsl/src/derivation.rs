@@ -11,10 +11,12 @@
 mod link_matrix;
 mod meaning;
 
+use std::f64::consts::TAU;
+
 use crate::algebra::{Axis, FirstOrder, Htm, Name, Polynomial, Symbol};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::equations::{AxisInfo, ConstantInfo, Equations, Motion, Row, Term, TravelInfo};
-use crate::machine::{Branch, LinkKind, Machine, body_sign};
+use crate::machine::{Branch, Element, ElementKind, Link, LinkKind, Machine, body_sign};
 
 pub use link_matrix::matrix as link_matrix;
 
@@ -168,9 +170,19 @@ fn axes(machine: &Machine, tip: &[FirstOrder; 3]) -> Vec<AxisInfo> {
             along: link.along.axis,
             branch: link.branch,
             effect: corrects.then_some(effect),
+            elements: elements(machine, link),
         });
     }
     axes
+}
+
+/// What repeats along the travel of an axis.
+fn elements(machine: &Machine, link: &Link) -> Vec<Element> {
+    let rotary = matches!(link.kind, LinkKind::Rotary(_));
+    let itself = rotary.then_some(Element { kind: ElementKind::Axis, period: TAU });
+    let letter = link.kind.letter().map(String::from);
+    let drives = machine.drives.iter().filter(|drive| Some(&drive.axis.value) == letter.as_ref());
+    itself.into_iter().chain(drives.flat_map(|drive| drive.elements.iter().copied())).collect()
 }
 
 /// The nominal displacement of the tip for each mm of a slide, zero in insensitive directions.

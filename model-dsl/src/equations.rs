@@ -13,7 +13,7 @@ use std::fmt;
 
 use crate::algebra::{Axis, Name, Polynomial, to_f64};
 use crate::calibration::{AxisName, MachineNames, MotionName};
-use crate::machine::{Branch, Link, MotionKind};
+use crate::machine::{Branch, Element, Link, MotionKind};
 
 /// The error equations of one machine.
 #[derive(Clone, Debug)]
@@ -62,6 +62,8 @@ pub struct AxisInfo {
     /// in the part's frame, zero in insensitive directions; `None` where the axis does not
     /// correct errors: a rotary axis, or a second slide in the direction of another.
     pub effect: Option<[Polynomial; 3]>,
+    /// What repeats along its travel: a rotary axis itself, then what the machine file says of the drive.
+    pub elements: Vec<Element>,
 }
 
 /// A free travel in the lever of an alignment error.

@@ -7,6 +7,7 @@
 mod chain;
 mod constants;
 mod draft;
+mod drive;
 mod fields;
 mod header;
 mod link;
@@ -19,6 +20,7 @@ mod usual_motions;
 mod words;
 
 pub use constants::Constant;
+pub use drive::{Drive, Element, ElementKind};
 pub use link::{Along, Branch, Link, LinkKind, Reference};
 pub(crate) use motion::body_sign;
 pub use motion::{Motion, MotionKind, MotionName, parse_name};
@@ -52,6 +54,8 @@ pub struct Machine {
     pub links: Vec<Link>,
     /// The error motions: by axis, then by direction, alignment errors last.
     pub motions: Vec<Motion>,
+    /// What the file says of the drives of axes.
+    pub drives: Vec<Drive>,
 }
 
 impl Machine {
@@ -73,7 +77,7 @@ impl Machine {
 pub fn from_word(word: &str, span: Span, diagnostics: &mut Diagnostics) -> Option<Machine> {
     let chain = topology::expand(word, span, diagnostics)?;
     let header = header::Header::bare(word);
-    let mut machine = build(header, chain, constants::Declared::None, diagnostics)?;
+    let mut machine = build(header, chain, constants::Declared::None, Vec::new(), diagnostics)?;
     if machine.axes().len() == 1 {
         machine.constants.iter_mut().for_each(|constant| constant.default = Some(0.0));
     }
@@ -99,13 +103,14 @@ fn read_node(root: &Node, diagnostics: &mut Diagnostics) -> Option<Machine> {
     let fields = fields::open(root, "a machine file", &KEYS, diagnostics)?;
     let header = header::read(fields, diagnostics);
     let declared = constants::declared(fields.get("constants"), diagnostics);
+    let drives = drive::read(fields.get("drive"), diagnostics);
     let chain = chain::read(root, fields, header.reference, diagnostics);
-    let machine = build(header, chain?, declared, diagnostics)?;
+    let machine = build(header, chain?, declared, drives, diagnostics)?;
     (!diagnostics.has_errors()).then_some(machine)
 }
 
 /// The keys of a machine file.
-const KEYS: [&str; 10] = [
+const KEYS: [&str; 11] = [
     "abbe",
     "name",
     "title",
@@ -116,16 +121,19 @@ const KEYS: [&str; 10] = [
     "constants",
     "topology",
     "chain",
+    "drive",
 ];
 
 fn build(
     header: header::Header,
     chain: draft::Chain<'_>,
     declared: constants::Declared,
+    drives: Vec<Drive>,
     diagnostics: &mut Diagnostics,
 ) -> Option<Machine> {
     let motions = read_motion::collect(&chain, diagnostics);
     let constants = constants::settle(declared, &chain, diagnostics);
+    drive::settle(&drives, &chain, diagnostics);
     let links_are_distinct = !diagnostics.iter().any(|known| matches!(known.code, "E0123" | "E0124"));
     if links_are_distinct {
         names::check_names(&motions, &constants, &chain, diagnostics);
@@ -144,5 +152,6 @@ fn build(
         constants,
         links: chain.links.into_iter().map(|drafted| drafted.link).collect(),
         motions,
+        drives,
     })
 }

@@ -123,6 +123,7 @@ fn made(series: &str, count: &str) -> Result<Machine, Box<dyn Error>> {
         constants: Vec::new(),
         links: Vec::new(),
         motions: Vec::new(),
+        drives: Vec::new(),
     };
     for joint in 0..count {
         // Slides and turns go round X, Y, Z, so that neighbours never share a direction.

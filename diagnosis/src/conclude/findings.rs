@@ -7,6 +7,7 @@ use super::units::Units;
 use crate::alternatives;
 use crate::certainty::{self, WIDTH_95};
 use crate::diagnosis::{Alternative, Diagnosis, Evidence, Finding, Parameter, Residual, SettingFinding};
+use crate::elements;
 use crate::engine::Found;
 use crate::judge;
 use crate::model::{Effect, Model};
@@ -54,12 +55,14 @@ pub(super) fn report(
         zeros::free_held_out(study, &mut reduced);
         let known = &study.equations.motions[motion];
         let calibrated = described.calibrated();
+        let parameters = described.parameters();
         diagnosis.findings.push(Finding {
             motion: known.name.clone(),
             motion_number: motion,
             motion_meaning: known.meaning.clone(),
             term: fitted.effect.shape.name(),
-            parameters: described.parameters(),
+            repeats_with: elements::repeating(study, &found.travels, &fitted.effect.shape, &parameters),
+            parameters,
             share: shares[number],
             location: words::location(study, fitted, names),
             evidence: evidence(study, units, &fitted.effect, (&found.fit.model, diagnosis.after), &reduced),

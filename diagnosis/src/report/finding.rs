@@ -1,6 +1,7 @@
 //! Findings in words. In: the findings of a diagnosis. Out: an item each: where, what, how much, on what evidence, what
 //! else it could be, and what compensation does about it.
 
+use super::element::repeats;
 use super::figure::{change, percent};
 use super::item::Item;
 use super::physics::{ahead, friction, interval, left, pushed, removed, side, state, title};
@@ -45,8 +46,10 @@ fn place(location: &Location) -> String {
 
 fn what(finding: &Finding) -> String {
     let friction = friction(finding).filter(|_| !finding.explanation.contains("not play"));
+    let repeats = repeats(finding);
     let sentences = [
         finding.explanation.as_str(),
+        repeats.as_deref().unwrap_or_default(),
         friction.unwrap_or_default(),
         ahead(finding).unwrap_or_default(),
         pushed(finding).unwrap_or_default(),

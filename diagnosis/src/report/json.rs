@@ -8,7 +8,7 @@ use super::figure::change;
 use super::told;
 use crate::diagnosis::{
     Alternative, Diagnosis, Estimate, Evidence, Finding, Interval, IntervalOf, NoiseSummary, Parameter,
-    ParameterValue, Repeatability, Residual, Returning, SettingFinding, Summary, Unexplained,
+    ParameterValue, Repeatability, Repeats, Residual, Returning, SettingFinding, Summary, Unexplained,
 };
 
 /// The diagnosis as one JSON object with the schema `abbe-diagnosis/1`.
@@ -81,7 +81,17 @@ struct FindingJson<'d> {
     evidence_rms: EvidenceJson,
     explanation: &'d str,
     compensable: bool,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    repeats_with: Vec<RepeatsJson>,
     indistinguishable_from: Vec<AlternativeJson<'d>>,
+}
+
+/// An element of the axis that a wave repeats with.
+#[derive(Serialize)]
+struct RepeatsJson {
+    element: &'static str,
+    period: AmountJson,
+    harmonic: u32,
 }
 
 #[derive(Serialize)]
@@ -275,8 +285,14 @@ fn finding(finding: &Finding) -> FindingJson<'_> {
         evidence_rms: EvidenceJson { with, without, unit },
         explanation: &finding.explanation,
         compensable: finding.compensable,
+        repeats_with: finding.repeats_with.iter().map(repeats).collect(),
         indistinguishable_from: alternatives(&finding.alternatives),
     }
+}
+
+fn repeats(one: &Repeats) -> RepeatsJson {
+    let &Repeats { element, period, unit, harmonic } = one;
+    RepeatsJson { element: element.word(), period: AmountJson { value: period, unit }, harmonic }
 }
 
 /// What the finding does to the held-out data, as a sentence without its end.

@@ -10,6 +10,7 @@
 
 mod common;
 mod confusions;
+mod drives;
 mod each_term;
 mod large;
 mod pictures;

@@ -2,10 +2,11 @@
 
 use diagnosis::diagnosis::{
     Alternative, Diagnosis, Estimate, Evidence, Finding, Interval, IntervalOf, Location, NoiseSummary,
-    Parameter, ParameterValue, Repeatability, Residual, Returning, SettingFinding, Summary, Unexplained,
-    Verdict,
+    Parameter, ParameterValue, Repeatability, Repeats, Residual, Returning, SettingFinding, Summary,
+    Unexplained, Verdict,
 };
 use model_dsl::calibration::CalibratedTerm;
+use model_dsl::machine::ElementKind;
 
 pub(crate) fn estimate(value: f64, half: f64, unit: &str) -> Estimate {
     Estimate { value, ci95: (value - half, value + half), unit: unit.to_owned() }
@@ -78,6 +79,7 @@ pub(crate) fn backlash(side: &'static str) -> Finding {
         explanation:
             "The axis stops short of each position by half of the lost motion, on the side it comes from."
                 .to_owned(),
+        repeats_with: Vec::new(),
         compensable: true,
         calibrated: CalibratedTerm::Backlash { axis: 1, lost_motion: 0.0098, wind_up: 0.0 },
         sensor: None,
@@ -112,10 +114,55 @@ pub(crate) fn expansion() -> Finding {
         evidence: Evidence { with: 0.0006, without: 0.0012, unit: "mm", drive: None },
         alternatives: names.map(other).to_vec(),
         explanation: "The scale of X grows with its temperature.".to_owned(),
+        repeats_with: Vec::new(),
         compensable: true,
         calibrated: CalibratedTerm::Expansion { axis: 0, sensor: 0, coefficient: 7.18e-6, reference: 20.0 },
         sensor: Some("scale".to_owned()),
     }
+}
+
+/// A wave along an axis that repeats with these elements.
+pub(crate) fn wave(repeats_with: Vec<Repeats>) -> Diagnosis {
+    let cyclic = Finding {
+        motion: "ECC".to_owned(),
+        motion_number: 11,
+        motion_meaning: "positioning error of C".to_owned(),
+        term: "cyclic",
+        parameters: vec![
+            fitted("period", 2.0001, 0.0004, "deg"),
+            fitted("amplitude", 0.0021, 0.0002, "deg"),
+            fitted("phase", 1.02, 0.09, "rad"),
+        ],
+        location: Location {
+            link: "C".to_owned(),
+            side: "transmission",
+            state: "position",
+            detail: "repeats every 2.0001 deg of c".to_owned(),
+            ..Location::default()
+        },
+        explanation: diagnosis::meaning("cyclic").unwrap().to_owned(),
+        calibrated: CalibratedTerm::Cyclic { axis: 3, period: 0.0349, amplitude: 36.7e-6, phase: 1.02 },
+        repeats_with,
+        ..backlash("transmission")
+    };
+    Diagnosis {
+        machine: "table".to_owned(),
+        verdict: Verdict::LeftOutPhysics,
+        before: residual(0.0051, 0.0051),
+        after: residual(0.0006, 0.0006),
+        findings: vec![cyclic],
+        ..adequate()
+    }
+}
+
+/// The element of a table that repeats after so many degrees, of which the wave is this harmonic.
+pub(crate) fn repeats(element: ElementKind, period: f64, harmonic: u32) -> Repeats {
+    Repeats { element, period, unit: "deg", harmonic }
+}
+
+/// The wave of a worm.
+pub(crate) fn worm() -> Diagnosis {
+    wave(vec![repeats(ElementKind::Worm { teeth: 180 }, 2.0, 1)])
 }
 
 pub(crate) fn two_findings() -> Diagnosis {
@@ -206,5 +253,6 @@ pub(crate) fn all() -> Vec<(&'static str, Diagnosis)> {
         ("unexplained", unexplained()),
         ("not-repeatable", not_repeatable()),
         ("clock-only", clock_only()),
+        ("wave-of-a-worm", worm()),
     ]
 }

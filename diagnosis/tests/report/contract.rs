@@ -113,6 +113,17 @@ fn a_finding_that_is_confined_has_its_interval_and_others_have_none() {
 }
 
 #[test]
+fn a_wave_has_the_elements_that_it_repeats_with_and_other_findings_have_none() {
+    let contract = json!({"findings": [{"term": "cyclic", "repeats_with": [
+        {"element": "worm", "period": {"value": 2.0, "unit": "deg"}, "harmonic": 1}]}]});
+    holds(&parsed(&cases::worm()), &contract, "");
+    for diagnosis in [cases::wave(Vec::new()), cases::two_findings()] {
+        let found = parsed(&diagnosis);
+        assert!(found["findings"][0].get("repeats_with").is_none());
+    }
+}
+
+#[test]
 fn runs_that_disagree_and_a_clock() {
     let contract = json!({"verdict": "not-repeatable", "findings": [],
         "repeatability": {"between_runs": 0.0071, "expected": 0.0001, "unit": "mm"}});

@@ -1,8 +1,9 @@
 //! The text for a terminal: what must stand in it, and the whole of each case, pinned after it was read.
 
-use diagnosis::diagnosis::{Diagnosis, Estimate, Parameter, ParameterValue};
+use diagnosis::diagnosis::{Diagnosis, Estimate, Parameter, ParameterValue, Repeats};
 use diagnosis::report;
 use model_dsl::calibration::{CalibratedTerm, SeriesInput};
+use model_dsl::machine::ElementKind;
 
 use crate::cases;
 
@@ -66,6 +67,45 @@ fn one_measurement_that_separates_several_names_stands_once() {
     }
     let names = "expansion of EXX, expansion of EZZ, expansion of EXZ, expansion of EYX; to separate: record at two heights";
     assert!(flat(&diagnosis).contains(names));
+}
+
+/// A person at the machine looks for the part that turns so often, and for its size on the drawing.
+#[test]
+fn a_wave_is_named_after_what_it_repeats_with() {
+    let worm = ElementKind::Worm { teeth: 180 };
+    let encoder = ElementKind::Encoder { lines: 18_000 };
+    let millimetres = |element, period, harmonic| Repeats { element, period, unit: "mm", harmonic };
+    for (repeats_with, sentence) in [
+        (vec![cases::repeats(worm, 2.0, 1)], "Here the period is a turn of the worm (180 teeth, 2 deg)."),
+        (
+            vec![cases::repeats(worm, 2.0, 3)],
+            "Here the period is a third of a turn of the worm (180 teeth, 2 deg).",
+        ),
+        (
+            vec![cases::repeats(encoder, 0.02, 4)],
+            "Here the period is a quarter of a line of the encoder (18000 a turn, 0.02 deg).",
+        ),
+        (vec![cases::repeats(ElementKind::Axis, 360.0, 1)], "Here it comes once a turn of the axis."),
+        (
+            vec![cases::repeats(ElementKind::Axis, 360.0, 4), cases::repeats(ElementKind::Motor, 90.0, 1)],
+            "Here it comes 4 times a turn of the axis, and the period is a turn of the motor (90 deg).",
+        ),
+        (
+            vec![millimetres(ElementKind::Motor, 5.0, 1), millimetres(ElementKind::Screw, 10.0, 2)],
+            "Here the period is a turn of the motor (5 mm), or half the pitch of the screw (10 mm).",
+        ),
+        (
+            vec![millimetres(ElementKind::Scale, 0.02, 1)],
+            "Here the period is the grating of the scale (20 um).",
+        ),
+    ] {
+        let said = flat(&cases::wave(repeats_with.clone()));
+        assert!(said.contains(sentence), "{said}");
+        // The page sets units in its own way.
+        let page = report::html(&cases::wave(repeats_with), &report::Origin::default());
+        assert!(page.contains(sentence.split(" (").next().unwrap()), "{page}");
+    }
+    assert!(!flat(&cases::wave(Vec::new())).contains(" Here "));
 }
 
 #[test]

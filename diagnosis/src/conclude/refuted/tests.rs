@@ -17,6 +17,7 @@ fn finding(with: f64, without: f64, parameters: Vec<Parameter>) -> Finding {
         evidence: Evidence { with, without, unit: "mm", drive: None },
         alternatives: Vec::new(),
         explanation: String::new(),
+        repeats_with: Vec::new(),
         compensable: true,
         calibrated: CalibratedTerm::Constant { value: 1.0 },
         sensor: None,

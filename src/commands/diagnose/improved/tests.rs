@@ -67,6 +67,7 @@ fn finding(recorded: &Recorded, motion: &str, calibrated: CalibratedTerm, sensor
         evidence: Evidence::default(),
         alternatives: Vec::new(),
         explanation: String::new(),
+        repeats_with: Vec::new(),
         compensable: calibrated.compensable(),
         calibrated,
         sensor: sensor.map(str::to_owned),

@@ -286,3 +286,6 @@ fn squares(residual: &[f64], valid: &[bool]) -> f64 {
     let mean = known().sum::<f64>() / crate::number(known().count()).max(1.0);
     known().map(|value| (value - mean).powi(2)).sum()
 }
+
+#[cfg(test)]
+mod tests;

@@ -318,23 +318,6 @@ impl Search {
 /// How many nodes a table gets, at most.
 const NODES: usize = 24;
 
-/// Nodes where the axis was read, each at the row nearest to where it would be: between stations nothing tells of a curve.
-fn at_rows(study: &Study<'_>, found: &Found, feature: &Feature, nodes: Vec<f64>) -> Vec<f64> {
-    let courses = courses(study, &found.fit.model);
-    let kind = study.scenes[feature.scene].channels[feature.channel].kind;
-    let position = &courses[feature.scene].states(kind).axes[feature.axis].position;
-    let residual = &found.appraisal.residuals[feature.scene][feature.channel];
-    let read: Vec<f64> =
-        position.iter().zip(residual).filter(|(_, left)| left.is_finite()).map(|row| *row.0).collect();
-    let nearest = |node: f64| {
-        let rows = read.iter().copied().filter(|position| position.is_finite());
-        rows.min_by(|one, other| (one - node).abs().total_cmp(&(other - node).abs())).unwrap_or(node)
-    };
-    let mut nodes: Vec<f64> = nodes.into_iter().map(nearest).collect();
-    nodes.dedup();
-    nodes
-}
-
 /// The model with a table for a feature that covers much of an axis, where the judge upholds it.
 pub(crate) fn with_table(study: &mut Study<'_>, found: &Found, feature: &Feature) -> Option<Found> {
     let effect = table(study, found, feature)?;
@@ -373,18 +356,45 @@ pub(crate) fn table_motion(study: &Study<'_>, found: &Found, feature: &Feature) 
 }
 
 /// The nodes of a table for a feature: over all of the travel where it covers much of it; else over its place, and the ends of the
-/// travel, so that the table is straight beside it.
-fn nodes(feature: &Feature, travel: &Travel) -> Vec<f64> {
-    if feature.extent(travel) >= BROAD {
-        return curves::even(travel.low, travel.high, NODES.min(feature.profile.len() / 2).max(2));
-    }
-    let beside = FOOT * (feature.to - feature.from);
-    let (from, to) = ((feature.from - beside).max(travel.low), (feature.to + beside).min(travel.high));
-    let mut nodes = curves::even(from, to, OF_A_PLACE);
-    nodes.insert(0, travel.low);
-    nodes.push(travel.high);
+/// travel, so that the table is straight beside it. They are where the axis was read: between stations nothing tells of a curve.
+fn nodes(feature: &Feature, travel: &Travel, read: &[f64]) -> Vec<f64> {
+    let mut nodes = if feature.extent(travel) >= BROAD {
+        curves::even(travel.low, travel.high, NODES.min(feature.profile.len() / 2).max(2))
+    } else {
+        let beside = FOOT * (feature.to - feature.from);
+        let from = last_before(read, feature.from - beside).unwrap_or(travel.low);
+        let to = first_behind(read, feature.to + beside).unwrap_or(travel.high);
+        let mut nodes = curves::even(from, to, OF_A_PLACE);
+        nodes.insert(0, travel.low);
+        nodes.push(travel.high);
+        nodes
+    };
+    nodes.iter_mut().for_each(|node| *node = nearest(read, *node));
     nodes.dedup();
     nodes
+}
+
+/// The places at which the axis of a feature stood where the channel that shows it was read.
+fn places_read(study: &Study<'_>, found: &Found, feature: &Feature) -> Vec<f64> {
+    let courses = courses(study, &found.fit.model);
+    let kind = study.scenes[feature.scene].channels[feature.channel].kind;
+    let position = &courses[feature.scene].states(kind).axes[feature.axis].position;
+    let residual = &found.appraisal.residuals[feature.scene][feature.channel];
+    let rows = position.iter().zip(residual).filter(|(place, left)| place.is_finite() && left.is_finite());
+    rows.map(|(place, _)| *place).collect()
+}
+
+fn last_before(read: &[f64], at: f64) -> Option<f64> {
+    read.iter().copied().filter(|place| *place <= at).reduce(f64::max)
+}
+
+fn first_behind(read: &[f64], at: f64) -> Option<f64> {
+    read.iter().copied().filter(|place| *place >= at).reduce(f64::min)
+}
+
+fn nearest(read: &[f64], node: f64) -> f64 {
+    let nearer = |one: f64, other: f64| if (other - node).abs() < (one - node).abs() { other } else { one };
+    read.iter().copied().reduce(nearer).unwrap_or(node)
 }
 
 /// How many nodes a place gets: straight lines between them leave a thirtieth of the height of a bell, by its curvature at the top.
@@ -396,7 +406,7 @@ const FOOT: f64 = 0.4;
 fn table(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Effect> {
     let shape = Shape::Table {
         axis: feature.axis,
-        nodes: at_rows(study, found, feature, nodes(feature, &found.travels[feature.axis])),
+        nodes: nodes(feature, &found.travels[feature.axis], &places_read(study, found, feature)),
         directed: feature.direction != 0.0,
     };
     let motions = study.equations.motions.iter().enumerate();

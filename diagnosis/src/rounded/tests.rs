@@ -56,3 +56,23 @@ fn programs_are_not_rounded() {
     let noise = normals(1, 90);
     assert!(unrounded(&clock(90), &noise, std::iter::once(0..90)).is_none());
 }
+
+#[test]
+fn the_beat_of_a_display_is_half_a_step_and_noise_blurs_it() {
+    let step_of = deviation(0.1);
+    assert!((super::beat(step_of, step_of) - 0.05).abs() < 1e-12);
+    assert_eq!(super::beat(0.0, 1.0), 0.0);
+    // The mean of many readings of one place: rounded after noise was added, it is off by less than is said, at the worst place.
+    for sigma in [0.01, 0.03, 0.06] {
+        let noise = normals(7, 20_000);
+        let off = |place: f64| {
+            let sum: f64 =
+                noise.iter().map(|noise| ((place + sigma * noise) / 0.1).round() * 0.1 - place).sum();
+            (sum / crate::number(noise.len())).abs()
+        };
+        let worst = (0..40).map(|part| off(0.0025 * f64::from(part))).fold(0.0, f64::max);
+        let said = super::beat(step_of, sigma.hypot(step_of));
+        assert!(worst < said + 3.0 * sigma / 20_000f64.sqrt(), "{sigma}: {worst} of {said}");
+        assert!(said < 0.05);
+    }
+}

@@ -237,6 +237,19 @@ fn what_turned_between_two_rows_at_one_place_is_not_known() {
     assert_eq!(turns(&[0.0, 9.0, 11.0, 9.0, 0.0, -2.0, 0.0, 9.0]), [0; 0]);
 }
 
+#[test]
+fn a_sharp_reversal_of_a_rounded_way_is_known_to_no_row_beside_it() {
+    let beside = |position: &[f64]| -> Vec<usize> {
+        let time: Vec<f64> = (0..position.len()).map(crate::number).collect();
+        let marked = beside_reversals(&time, &vec![0; position.len()], position);
+        (0..position.len()).filter(|row| marked[*row]).collect()
+    };
+    assert_eq!(beside(&[0.0, 6.0, 12.0, 18.0, 12.0, 6.0, 0.0]), [3, 4]);
+    // A start, a stop and a slow turn are seen as they are.
+    assert_eq!(beside(&[0.0, 0.0, 6.0, 12.0, 12.0, 12.0]), [0; 0]);
+    assert_eq!(beside(&[0.0, 6.0, 9.0, 9.5, 9.0, 6.0, 0.0]), [0; 0]);
+}
+
 /// Sweeps as recorders store them: each run with a clock of its own, laid behind the last; and one that is the last of them alone.
 fn sweeps() -> (Recording, Recording) {
     let speeds = [20.0, -35.0, 50.0];

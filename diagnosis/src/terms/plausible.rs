@@ -74,3 +74,44 @@ pub(crate) fn oddity(plausible: Option<Range>, shape: &Shape, coefficients: &[f6
     let times = (least / size).ln().max((size / most).ln()).max(0.0);
     (times / BEYOND).powi(2)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Place;
+    use crate::side::Side;
+    use crate::testing::{Bench, programmed};
+
+    /// What an effect of this size costs on a mill with a rotary table.
+    fn cost(motion: &str, shape: &Shape, size: f64) -> f64 {
+        let bench = Bench::of("CYXFZ");
+        let recording = programmed(&[0.0, 1.0], &vec![vec![0.0, 1.0]; 4]);
+        let study = Study::new(bench.equations(), None, &[&recording]);
+        let place = Place::Motion { motion: bench.motion(motion), side: Side::After };
+        let effect = Effect { place, shape: shape.clone() };
+        oddity(plausible(&study, &effect), shape, &[size])
+    }
+
+    #[test]
+    fn what_no_machine_has_needs_more_evidence_the_larger_it_is() {
+        let play = Shape::Backlash { axis: 0, wind_up: 0.0 };
+        // 20 um on a slide, half a degree on a rotary axis, 50 urad of yaw at reversals: seen every day.
+        for (motion, size) in [("EXX", 0.02), ("EXX", -0.02), ("ECC", 0.0087), ("ECX", 5e-5)] {
+            assert_eq!(cost(motion, &play, size), 0.0, "{motion}");
+        }
+        // Twice what is plausible costs what two standard deviations of its logarithm cost, ten times as much nearly forbids it.
+        for (motion, most) in [("EXX", 0.1), ("ECX", 1e-4), ("ECC", 1f64.to_radians())] {
+            assert!((cost(motion, &play, 2.0 * most) - 3.92).abs() < 0.01, "{motion}");
+            assert!(cost(motion, &play, -10.0 * most) > 40.0, "{motion}");
+        }
+    }
+
+    #[test]
+    fn a_loop_is_judged_by_its_gain_and_a_squareness_not_at_all() {
+        let lag = Shape::Lag { axis: 0, inertia: 0.0 };
+        assert_eq!(cost("EXX", &lag, 1.0 / 50.0), 0.0);
+        assert!(cost("EXX", &lag, 1.0 / 45_000.0) > 100.0);
+        assert_eq!(cost("EC0Y", &Shape::Constant, 0.02), 0.0);
+        assert_eq!(cost("EXX", &lag, 0.0), 0.0);
+    }
+}

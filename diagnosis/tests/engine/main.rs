@@ -12,6 +12,7 @@ mod common;
 mod confusions;
 mod drives;
 mod each_term;
+mod evidence;
 mod large;
 mod pictures;
 #[path = "../../src/testing.rs"]

@@ -1,0 +1,155 @@
+//! Evidence: small recordings that are easily misread. Displays, few stations, lengths alone, equal loops, units that cannot be.
+//!
+//! In: recordings made here, by the exact machine or by hand. Out: what is claimed of them, and what is not.
+
+use diagnosis::diagnosis::{Diagnosis, Verdict};
+use simulation::Path;
+
+use crate::common::*;
+use crate::recording::{Instrument, Line, Recording};
+use crate::testing::*;
+
+fn alone(bench: &Bench, recordings: &[&Recording]) -> Diagnosis {
+    diagnosed(bench, &bench.calibration("{}"), recordings)
+}
+
+/// A length that calipers measure five times, from one corner of a square of 100 mm to another: zero, then how much too long it is.
+fn length(from: [f64; 2], to: [f64; 2], excess: f64, seed: u64) -> Recording {
+    let noise = normals(seed, 5);
+    let columns = |which: usize| -> Vec<f64> { (0..5).flat_map(|_| [from[which], to[which]]).collect() };
+    let [x, y] = [columns(0), columns(1)];
+    let mut recording =
+        programmed(&(0..10_i32).map(|row| 10.0 * f64::from(row)).collect::<Vec<f64>>(), &[x, y]);
+    recording.run = (1..=5).flat_map(|run| [run, run]).collect();
+    let step = [to[0] - from[0], to[1] - from[1]];
+    let distance = step[0].hypot(step[1]);
+    recording.instrument =
+        Instrument::Linear(Line { axis: None, direction: [step[0] / distance, step[1] / distance, 0.0] });
+    recording.deviation = Some(noise.iter().flat_map(|noise| [0.0, excess + 0.005 * noise]).collect());
+    recording
+}
+
+#[test]
+fn lengths_of_a_square_show_its_squareness_and_its_scale_and_no_impossible_play() {
+    // A plate carried by X on Y, both before the bed: what is too short in Y, and not square.
+    let bench = Bench::of("XYF");
+    for (scale, square) in [(-3.8e-3, 3.5e-3), (2.5e-3, -1.5e-3), (-2e-3, -0.8e-3)] {
+        // The line of Y turns about Z: the tool goes by -angle times y along X.
+        let excess = |dx: f64, dy: f64| {
+            let moved = [-square * dy, scale * dy];
+            (dx * moved[0] + dy * moved[1]) / dx.hypot(dy)
+        };
+        let lengths = [
+            length([0.0, 0.0], [100.0, 100.0], excess(100.0, 100.0), 1),
+            length([100.0, 0.0], [0.0, 100.0], excess(-100.0, 100.0), 2),
+            length([0.0, 0.0], [100.0, 0.0], excess(100.0, 0.0), 3),
+        ];
+        let lengths: Vec<&Recording> = lengths.iter().collect();
+        let diagnosis = alone(&bench, &lengths);
+        let mut names = found(&diagnosis);
+        names.sort();
+        assert_eq!(names, ["EC0Y constant", "EYY polynomial"], "{scale} {square}");
+        let angle = &numbers(called(&diagnosis, "EC0Y constant"), "value")[0];
+        let slope = &numbers(called(&diagnosis, "EYY polynomial"), "coefficients")[1];
+        assert!((angle.value.abs() - square.abs()).abs() < 1.5e-4, "{angle:?}");
+        assert!((slope.value - scale).abs() < 1.5e-4, "{slope:?}");
+    }
+}
+
+/// A recording whose readings and commands were kept to a step.
+fn rounded(mut recording: Recording, step: f64) -> Recording {
+    let keep =
+        |values: &mut Vec<f64>| values.iter_mut().for_each(|value| *value = (*value / step).round() * step);
+    for axis in &mut recording.axes {
+        axis.command.iter_mut().chain(&mut axis.actual).for_each(keep);
+    }
+    recording.measured.iter_mut().flatten().for_each(keep);
+    recording
+}
+
+#[test]
+fn the_beat_of_a_display_is_no_wave_of_the_machine() {
+    let bench = Bench::of("FX");
+    let truth = bench.calibration("{EXX: [{lag: {gain: 100 1/s}}]}");
+    for (from, feed, step) in [(60.0, 6.1, 0.1), (10.3, 7.3, 0.1), (0.0, 3.07, 0.05)] {
+        let strokes = Path { runs: 4, pause: 0.1, ..path(line(0, from, from + 80.0), feed, 10.0) };
+        let recording = rounded(bench.record(&truth, &scenario(strokes, position("x"))), step);
+        let diagnosis = alone(&bench, &[&recording]);
+        let names = found(&diagnosis);
+        assert_eq!(names.len(), 1, "{names:?}");
+        // At one speed a loop, a clock and play are one.
+        assert!(["EXX lag", "EXX backlash"].contains(&&*names[0]), "{names:?}");
+    }
+}
+
+#[test]
+fn a_station_that_is_off_in_every_approach_is_a_place() {
+    let bench = Bench::of("FX");
+    for (bad, seed) in [(3, 1), (6, 2), (8, 3)] {
+        let there: Vec<f64> = (0..11_i32).map(|station| 50.0 * f64::from(station)).collect();
+        let mut x: Vec<f64> = Vec::new();
+        for _ in 0..3 {
+            x.extend(there.iter().chain([525.0].iter()).chain(there.iter().rev()).chain([-25.0].iter()));
+        }
+        let noise = normals(seed, x.len());
+        let read = x.iter().zip(noise).map(|(x, noise)| {
+            let overrun = !(0.0..=500.0).contains(x);
+            let off = if (x - there[bad]).abs() < 1.0 { 0.01 } else { 0.0 };
+            if overrun { f64::NAN } else { x + off + 1.5e-4 * noise }
+        });
+        let read: Vec<f64> = read.collect();
+        let time: Vec<f64> = (0..72_i32).map(|row| 5.0 * f64::from(row)).collect();
+        let mut recording = programmed(&time, &[x]);
+        recording.measured[0] = Some(read);
+        recording.run = (0..72).map(|row| 1 + row / 24).collect();
+        let diagnosis = alone(&bench, &[&recording]);
+        assert_eq!(found(&diagnosis), ["EXX table"], "{bad}");
+        let values = numbers(&diagnosis.findings[0], "values");
+        let highest = values.iter().map(|one| one.value).fold(f64::NEG_INFINITY, f64::max);
+        assert!((highest - 0.01).abs() < 5e-4, "{values:?}");
+        assert!(values.iter().all(|one| one.value.abs() < 0.011), "{values:?}");
+    }
+}
+
+#[test]
+fn equal_loops_are_told_from_the_length_of_the_bar_by_how_a_circle_starts() {
+    let bench = Bench::of("XFY");
+    let truth = bench.calibration("{EXX: [{lag: {gain: 30 1/s}}], EYY: [{lag: {gain: 30 1/s}}]}");
+    for seed in 0..3 {
+        let circles = Path { runs: 3, acceleration: Some(300.0), ..path(circle(80.0), 40.0, 100.0) };
+        let recording = bench.record(&truth, &noisy(circles, ballbar([0.0; 3]), 3e-4, seed));
+        let diagnosis = alone(&bench, &[&recording]);
+        let mut names = found(&diagnosis);
+        names.sort();
+        assert_eq!(names, ["EXX lag", "EYY lag"], "{seed}");
+        for finding in &diagnosis.findings {
+            let gain = &numbers(finding, "gain")[0];
+            assert!(off(gain, 30.0) < FAR, "{seed}: {gain:?}");
+        }
+    }
+}
+
+#[test]
+fn units_that_make_an_axis_faster_or_longer_than_any_are_told_before_anything_is_found() {
+    let bench = Bench::of("FX");
+    let truth = bench.calibration("{EXX: [{backlash: {lost_motion: 5 um}}]}");
+    let strokes = Path { runs: 3, ..path(line(0, 0.0, 300.0), 40.0, 50.0) };
+    let recording = bench.record(&truth, &noisy(strokes, position("x"), 5e-4, 4));
+    assert_eq!(found(&alone(&bench, &[&recording])), ["EXX backlash"]);
+    // Milliseconds that were read as seconds would be slow; seconds read as milliseconds are too fast.
+    let mut hurried = recording.clone();
+    hurried.time.iter_mut().for_each(|time| *time *= 1e-3);
+    let mut stretched = recording;
+    stretched.axes[0].command.iter_mut().flatten().for_each(|place| *place *= 1e3);
+    stretched.measured[0].iter_mut().flatten().for_each(|place| *place *= 1e3);
+    for (recording, words) in [(hurried, "moves at"), (stretched, "goes 300 m")] {
+        let diagnosis = alone(&bench, &[&recording]);
+        assert_eq!(diagnosis.verdict, Verdict::Undecided);
+        assert!(diagnosis.findings.is_empty());
+        assert!(
+            diagnosis.undecided.iter().any(|sentence| sentence.contains(words)),
+            "{:?}",
+            diagnosis.undecided
+        );
+    }
+}

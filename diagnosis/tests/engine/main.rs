@@ -13,6 +13,7 @@ mod beside;
 mod common;
 mod confusions;
 mod each_term;
+mod invariances;
 mod large;
 mod pictures;
 #[path = "../../src/testing.rs"]

@@ -258,7 +258,13 @@ fn the_page_of_every_shipped_recording_begins_as_its_text_begins() {
         let (summary, rest) = body.split_once("<section>").unwrap();
         // All that stands above the first heading.
         let (above, _) = text.split_once("\nWhat comes back\n---").unwrap();
-        assert_eq!(words(&format!("<h1>{summary}")), words(&above.replace('<', "&lt;")), "{recording}");
+        let page = words(&format!("<h1>{summary}"));
+        let text = words(&above.replace('<', "&lt;").replace('>', "&gt;"));
+        let verdict = |words: &[String]| words.split(|word| word == "motion").next().unwrap().to_vec();
+        assert_eq!(verdict(&page), verdict(&text), "{recording}");
+        // A cell of the table that is too wide for the text goes on below: the same words in another order.
+        let [page, text] = [page, text].map(sorted);
+        assert_eq!(page, text, "{recording}");
         // The first plot has every share of the JSON.
         let json: Value = serde_json::from_str(&said("json")).unwrap();
         let returns = json["returns"].as_array().unwrap();
@@ -268,6 +274,11 @@ fn the_page_of_every_shipped_recording_begins_as_its_text_begins() {
         let last = returns.last().map(|last| format!("does not come back: {}", percent(1.0 - share(last))));
         assert!(last.is_none_or(|last| first.contains(&last)), "{recording}: {first}");
     }
+}
+
+fn sorted(mut words: Vec<String>) -> Vec<String> {
+    words.sort();
+    words
 }
 
 fn share(returning: &Value) -> f64 {

@@ -54,7 +54,7 @@ impl Random {
 /// A case of an even seed is a stage that goes there and back, one of an odd seed a mill that goes round.
 fn case(seed: u64) -> Case {
     let mut random = Random(Source::new(seed, "invariances"));
-    if seed % 2 == 0 { stage(&mut random, seed) } else { mill(&mut random, seed) }
+    if seed.is_multiple_of(2) { stage(&mut random, seed) } else { mill(&mut random, seed) }
 }
 
 fn stage(random: &mut Random, seed: u64) -> Case {

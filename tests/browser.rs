@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
+use crate::beside::skipped;
 use crate::cli::abbe;
 use crate::shipped::root;
 
@@ -56,13 +57,17 @@ window.addEventListener('load', () => setTimeout(() => {
 </script>
 "#;
 
-/// The browser's program, where one is installed.
+/// The browser's program; nothing, with a line, where none is installed.
 fn chromium() -> Option<&'static str> {
     let runs = |name: &&str| {
         let run = Command::new(name).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
         run.is_ok_and(|status| status.success())
     };
-    ["chromium", "chromium-browser", "google-chrome"].into_iter().find(runs)
+    let installed = ["chromium", "chromium-browser", "google-chrome"].into_iter().find(runs);
+    if installed.is_none() {
+        skipped("no Chromium is installed (on Debian: apt-get install chromium)");
+    }
+    installed
 }
 
 /// What a browser shows of a page, and what it complains of.
@@ -151,10 +156,7 @@ fn stations(folder: &Path) -> String {
 
 #[test]
 fn every_page_is_laid_out_on_a_telephone_and_asks_nobody() {
-    let Some(browser) = chromium() else {
-        println!("skipped: no Chromium is installed (on Debian: apt-get install chromium)");
-        return;
-    };
+    let Some(browser) = chromium() else { return };
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("browser");
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
@@ -190,10 +192,7 @@ fn every_page_is_laid_out_on_a_telephone_and_asks_nobody() {
 /// The measuring itself: a page in which everything is wrong at once.
 #[test]
 fn what_is_wrong_with_a_page_is_seen() {
-    let Some(browser) = chromium() else {
-        println!("skipped: no Chromium is installed (on Debian: apt-get install chromium)");
-        return;
-    };
+    let Some(browser) = chromium() else { return };
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("browser-faults");
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();

@@ -14,8 +14,8 @@ use model_dsl::source::SourceFile;
 use model_dsl::yaml::{self, Node};
 use serde_json::Value;
 
+use crate::beside::listed;
 use crate::cli::abbe;
-use crate::shipped::root;
 
 /// A motion and a term.
 type Name = (String, String);
@@ -53,12 +53,9 @@ struct Verdict {
 
 #[test]
 fn concealed_effects_are_found_and_nothing_else() {
-    let examples = root().join("../shared/concealed");
-    if !examples.is_dir() {
-        println!("no examples in {}: nothing is checked", examples.display());
-        return;
-    }
-    let verdicts = verdicts(&examples);
+    let Some(folders) = listed("concealed") else { return };
+    let verdicts = verdicts(folders);
+    assert!(!verdicts.is_empty(), "no folder has a truth");
     let wrong: Vec<String> = verdicts
         .iter()
         .flat_map(|verdict| verdict.wrong.iter().map(|wrong| format!("{}: {wrong}", verdict.folder)))
@@ -77,11 +74,8 @@ fn concealed_effects_are_found_and_nothing_else() {
 }
 
 /// The diagnoses of all examples held against their truths; on as many cores as there are.
-fn verdicts(examples: &Path) -> Vec<Verdict> {
-    let entries = fs::read_dir(examples).unwrap();
-    let mut folders: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+fn verdicts(mut folders: Vec<PathBuf>) -> Vec<Verdict> {
     folders.retain(|folder| folder.join("truth.yaml").is_file());
-    folders.sort();
     folders.reverse();
     let (left, done) = (Mutex::new(folders), Mutex::new(Vec::new()));
     let next = || left.lock().unwrap().pop();

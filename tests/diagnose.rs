@@ -238,6 +238,66 @@ fn every_format_says_the_same_each_time() {
     assert_eq!(done(abbe(&["diagnose", &recording], "")).out, plain, "text is the default");
 }
 
+/// The words of a page or a text, without marks and the ends of sentences; signs of print as a terminal shows them.
+fn words(text: &str) -> Vec<String> {
+    let plain = text.split('<').map(|piece| piece.split_once('>').map_or(piece, |(_, text)| text));
+    let plain = plain.collect::<Vec<_>>().join(" ");
+    let signs = [("&lt;", "<"), ("&gt;", ">"), ("&amp;", "&"), ("\u{b1}", "+-"), ("\u{b5}", "u")];
+    let plain = signs.iter().fold(plain, |plain, (sign, letters)| plain.replace(sign, letters));
+    plain.split_whitespace().map(|word| word.trim_end_matches('.').to_owned()).collect()
+}
+
+#[test]
+fn the_page_of_every_shipped_recording_begins_as_its_text_begins() {
+    let recordings = ["postech-ballbar", "servo-rest", "guided-mount-1", "guided-mount-2"];
+    for recording in recordings.map(|name| format!("recordings/{name}/recording.yaml")) {
+        let said =
+            |format: &str| done(abbe(&["diagnose", &recording, "--format", format, "--quiet"], "")).out;
+        let (page, text) = (said("html"), said("text"));
+        let (_, body) = page.split_once("<h1>").unwrap();
+        let (summary, rest) = body.split_once("<section>").unwrap();
+        // All that stands above the first heading.
+        let (above, _) = text.split_once("\nWhat comes back\n---").unwrap();
+        let page = words(&format!("<h1>{summary}"));
+        let text = words(&above.replace('<', "&lt;").replace('>', "&gt;"));
+        let verdict = |words: &[String]| words.split(|word| word == "motion").next().unwrap().to_vec();
+        assert_eq!(verdict(&page), verdict(&text), "{recording}");
+        // A cell of the table that is too wide for the text goes on below: the same words in another order.
+        let [page, text] = [page, text].map(sorted);
+        assert_eq!(page, text, "{recording}");
+        // The first plot has every share of the JSON.
+        let json: Value = serde_json::from_str(&said("json")).unwrap();
+        let returns = json["returns"].as_array().unwrap();
+        let (first, _) = rest.split_once("</section>").unwrap();
+        assert!(first.starts_with("\n<h2>What comes back</h2>"), "{recording}");
+        assert_eq!(first.matches("<figure>").count(), usize::from(!returns.is_empty()), "{recording}");
+        let last = returns.last().map(|last| format!("does not come back: {}", percent(1.0 - share(last))));
+        assert!(last.is_none_or(|last| first.contains(&last)), "{recording}: {first}");
+    }
+}
+
+fn sorted(mut words: Vec<String>) -> Vec<String> {
+    words.sort();
+    words
+}
+
+fn share(returning: &Value) -> f64 {
+    returning["share"].as_f64().unwrap()
+}
+
+/// A share with three digits that count.
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    let places = if percent < 1.0 {
+        3
+    } else if percent < 10.0 {
+        2
+    } else {
+        1
+    };
+    format!("{percent:.places$} %")
+}
+
 /// The page of the shipped recording says what the JSON and the written calibration say.
 #[test]
 fn a_page_holds_every_finding_its_plots_the_change_and_its_command() {

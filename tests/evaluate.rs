@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
+use crate::beside::shared;
 use crate::cli::{Run, abbe};
-use crate::shipped::root;
 
 const CALIBRATION: &str = "calibration: 1\nmachine: xyfz-mill\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}\nerrors:\n  EXX: [{polynomial: {per: mm, unit: um, coefficients: [0, 0.05]}}, {backlash: {lost_motion: 6 um}}]\n  EC0Y: 40 urad\n";
 
@@ -122,11 +122,7 @@ fn what_gives_no_figure_ends_with_status_one_and_the_reason() {
 /// 28.31 um, after a ratio of -1.00357 that he fitted and that is not in the recording. Which samples of a dwell count is his.
 #[test]
 fn a_real_cycle_agrees_with_its_owner_s_report() {
-    let recording = root().join("../shared/recordings/target-drive-x/recording.yaml");
-    if !recording.is_file() {
-        println!("skipped: {} is missing", recording.display());
-        return;
-    }
+    let Some(recording) = shared("recordings/target-drive-x/recording.yaml") else { return };
     let run = abbe(&["evaluate", recording.to_str().unwrap(), "--format", "json"], "");
     assert_eq!(run.status, 0, "{}", run.err);
     let all: Value = serde_json::from_str(&run.out).unwrap();

@@ -5,17 +5,12 @@
 
 use serde_json::Value;
 
+use crate::beside::shared;
 use crate::cli::abbe;
-use crate::shipped::root;
 
 /// The diagnosis of a recording of the folder, where it is.
-#[expect(clippy::print_stdout, reason = "whoever runs the tests is told what was not checked")]
 fn diagnosis(file: &str) -> Option<Value> {
-    let path = root().join("../shared/found").join(file);
-    if !path.is_file() {
-        println!("skipped: there is no {}", path.display());
-        return None;
-    }
+    let path = shared(&format!("found/{file}"))?;
     let run = abbe(&["diagnose", "--format", "json", "--quiet", &path.display().to_string()], "");
     assert_eq!(run.status, 0, "{file}: {}", run.err);
     Some(serde_json::from_str(&run.out).unwrap())

@@ -14,6 +14,7 @@ use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::beside::skipped;
 use crate::shipped::root;
 
 /// What a comment asks of the block behind it.
@@ -149,10 +150,9 @@ fn follow(chapter: &str) {
 }
 
 /// Follows one page in a folder of its own.
-#[expect(clippy::print_stdout, reason = "a test that is skipped says so")]
 fn follow_page(chapter: &str, page: &str) {
     if Command::new("bash").args(["--norc", "-c", "true"]).status().is_err() {
-        println!("skipped: there is no bash");
+        skipped("there is no bash");
         return;
     }
     let folder = table().join(chapter);

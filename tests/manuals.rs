@@ -5,6 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
+use crate::beside::skipped;
 use crate::cli::abbe;
 
 /// The commands as the program's help lists them.
@@ -60,7 +61,7 @@ fn bash_reads_its_completions() {
     );
     match Command::new("bash").args(["--norc", "-c", &text]).output() {
         Ok(output) => assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "--write-calibration"),
-        Err(_) => println!("skipped: there is no bash"),
+        Err(_) => skipped("there is no bash"),
     }
 }
 

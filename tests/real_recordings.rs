@@ -9,8 +9,8 @@ mod figures;
 use figures::Distance;
 use serde_json::Value;
 
+use crate::beside::shared;
 use crate::cli::abbe;
-use crate::shipped::root;
 
 /// EMPS: the gain of the position loop, 1/s.
 const KP: f64 = 160.18;
@@ -42,7 +42,7 @@ const PINION_TURN: f64 = 400.0 * 360.0 * 8.101_446_73e-5;
 
 #[test]
 fn emps_follows_its_documented_position_loop() {
-    let Some(found) = diagnosis("emps", &["emps/recording.yaml"]) else { return };
+    let Some(found) = diagnosis(&["emps/recording.yaml"]) else { return };
     let distances = documented_loop(&found);
     only(&found, &[("EXX", "lag"), ("EXX", "backlash")]);
     not_a_cause(&found, "drive");
@@ -51,7 +51,7 @@ fn emps_follows_its_documented_position_loop() {
 
 #[test]
 fn emps_yields_to_pulses_as_its_control_law_says() {
-    let Some(found) = diagnosis("emps-pulses", &["emps-pulses/recording.yaml"]) else { return };
+    let Some(found) = diagnosis(&["emps-pulses/recording.yaml"]) else { return };
     let mut distances = documented_loop(&found);
     // A pulse of one volt on the drive is as much as a following error of 1/(kp kv) at standstill, and pushes forwards.
     let whole = 1e3 / (KP * KV);
@@ -108,7 +108,7 @@ fn not_a_cause(found: &Value, load: &str) {
 
 #[test]
 fn target_drive_reverses_as_its_owner_reports() {
-    let Some(found) = diagnosis("target-drive-x", &["target-drive-x/recording.yaml"]) else { return };
+    let Some(found) = diagnosis(&["target-drive-x/recording.yaml"]) else { return };
     let backlash = finding(&found, "EXX", "backlash", "transmission");
     let play = number(backlash, "lost_motion");
     assert!(within(play, MEAN_REVERSAL, 0.15), "{play} mm, the owner has {MEAN_REVERSAL} mm");
@@ -141,7 +141,7 @@ fn target_drive_reverses_as_its_owner_reports() {
 
 #[test]
 fn target_drive_under_its_step_counter_is_not_called_adequate() {
-    let Some(found) = diagnosis("target-drive-x", &["target-drive-x/recording-moving.yaml"]) else { return };
+    let Some(found) = diagnosis(&["target-drive-x/recording-moving.yaml"]) else { return };
     assert_ne!(found["verdict"], "adequate");
     assert!(held_out(&found) < rms(&found, "before"), "the findings help");
     figures("target-drive-x", "recording-moving", "target-drive-x, moves included", &found, &[]);
@@ -150,7 +150,7 @@ fn target_drive_under_its_step_counter_is_not_called_adequate() {
 #[test]
 fn tank_arm_has_the_documented_play() {
     let files = ["vac-tank-reversal-0/recording.yaml", "vac-tank-reversal-20/recording.yaml"];
-    let Some(found) = diagnosis("vac-tank-reversal-0", &files) else { return };
+    let Some(found) = diagnosis(&files) else { return };
     let backlash = finding(&found, "ECC", "backlash", "unknown");
     let play = number(backlash, "lost_motion");
     assert!((0.02..=0.03).contains(&play), "{play} deg, the owner has 0.02 to 0.03 deg");
@@ -164,7 +164,7 @@ fn tank_arm_has_the_documented_play() {
 fn one_reversal_of_the_tank_arm_proves_nothing() {
     for (place, row) in [("0", "vac-tank-reversal-0"), ("20", "vac-tank-reversal-20")] {
         let page = format!("vac-tank-reversal-{place}");
-        let Some(found) = diagnosis(&page, &[&format!("{page}/recording.yaml")]) else { return };
+        let Some(found) = diagnosis(&[&format!("{page}/recording.yaml")]) else { return };
         // The play is there, by the owner's report, so that nothing found may not mean nothing there.
         assert_ne!(found["verdict"], "adequate");
         only(&found, &[("ECC", "backlash")]);
@@ -174,7 +174,7 @@ fn one_reversal_of_the_tank_arm_proves_nothing() {
 
 #[test]
 fn tank_sweep_has_waves_within_the_documented_bound() {
-    let Some(found) = diagnosis("vac-tank-sweep", &["vac-tank-sweep/recording.yaml"]) else { return };
+    let Some(found) = diagnosis(&["vac-tank-sweep/recording.yaml"]) else { return };
     let wave = finding(&found, "ECC", "cyclic", "unknown");
     let (period, amplitude) = (number(wave, "period"), number(wave, "amplitude"));
     assert!(period < 5.0, "{period} deg is not shorter than the oscillation of 5 to 6 deg");
@@ -192,7 +192,7 @@ fn tank_sweep_has_waves_within_the_documented_bound() {
 
 #[test]
 fn warm_up_of_the_rotor_grows_with_a_temperature() {
-    let Some(found) = diagnosis("galicia-warmup", &["galicia-warmup/recording.yaml"]) else { return };
+    let Some(found) = diagnosis(&["galicia-warmup/recording.yaml"]) else { return };
     let growth = finding(&found, "EXC", "growth", "structure");
     let sensor = growth["parameters"]["sensor"].as_str().unwrap();
     assert!(["upper_bearing", "lower_bearing", "motor"].contains(&sensor), "{sensor}");
@@ -203,21 +203,16 @@ fn warm_up_of_the_rotor_grows_with_a_temperature() {
 
 #[test]
 fn middle_of_the_rotor_s_sweep_does_not_grow() {
-    let Some(found) = diagnosis("galicia-warmup", &["galicia-warmup/recording-mid.yaml"]) else { return };
+    let Some(found) = diagnosis(&["galicia-warmup/recording-mid.yaml"]) else { return };
     let growths = findings(&found).iter().filter(|finding| finding["term"] == "growth").count();
     assert_eq!(growths, 0, "both edges move apart or together; the middle stays");
     figures("galicia-warmup", "recording-mid", "galicia-warmup, middle", &found, &[]);
 }
 
 /// The diagnosis of recordings of one machine, where they are.
-#[expect(clippy::print_stdout, reason = "whoever runs the tests is told what was not checked")]
-fn diagnosis(page: &str, files: &[&str]) -> Option<Value> {
-    let folder = root().join("../shared/recordings");
-    if !folder.is_dir() {
-        println!("no recordings in {}: nothing of {page} is checked", folder.display());
-        return None;
-    }
-    let files: Vec<String> = files.iter().map(|file| folder.join(file).display().to_string()).collect();
+fn diagnosis(files: &[&str]) -> Option<Value> {
+    let paths = files.iter().map(|file| shared(&format!("recordings/{file}")));
+    let files = paths.map(|path| Some(path?.display().to_string())).collect::<Option<Vec<String>>>()?;
     let mut arguments = vec!["diagnose", "--format", "json", "--quiet"];
     arguments.extend(files.iter().map(String::as_str));
     let run = abbe(&arguments, "");

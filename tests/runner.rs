@@ -10,6 +10,7 @@
 )]
 
 mod agreement;
+mod beside;
 mod bounded;
 mod browser;
 mod calibrate;

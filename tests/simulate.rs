@@ -9,10 +9,11 @@ use model_dsl::source::{SourceFile, Span};
 use proptest::prelude::*;
 use simulation::{Plant, names_of};
 
+use crate::beside::listed;
 use crate::cli::{abbe, column};
 use crate::oracle::{self, Sizes, draw, exact};
 use crate::random::{machines, of_word, state, words};
-use crate::shipped::{SHIPPED, root};
+use crate::shipped::SHIPPED;
 use crate::yaml;
 
 /// A machine of the compiler and its description, with errors of finite size on every error motion.
@@ -190,14 +191,9 @@ fn mistakes_end_with_status_two_and_write_nothing() {
 /// must leave nothing but the noise that the truth states.
 #[test]
 fn another_simulation_agrees_but_for_its_noise() {
-    let Ok(entries) = fs::read_dir(root().join("../shared/concealed")) else {
-        println!("skipped: ../shared/concealed is not there");
-        return;
-    };
-    let mut folders: Vec<PathBuf> =
-        entries.map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()).collect();
-    folders.sort();
-    for folder in folders {
+    let Some(folders) = listed("concealed") else { return };
+    let mut seen = 0;
+    for folder in folders.into_iter().filter(|path| path.is_dir()) {
         let case = concealed::Case::read(&folder);
         if !matches!(case.word("verdict").as_str(), "left-out-physics" | "adequate") {
             continue;
@@ -205,7 +201,9 @@ fn another_simulation_agrees_but_for_its_noise() {
         let left = case.left_over();
         let noise: f64 = case.word("noise_rms").parse().unwrap();
         assert!((left / noise - 1.0).abs() < 0.005, "{}: {left} is left, {noise} is noise", folder.display());
+        seen += 1;
     }
+    assert!(seen > 0, "no example is to be explained");
 }
 
 /// Reading the examples of another simulation.

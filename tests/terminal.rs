@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::{env, fs};
 
+use crate::beside::skipped;
 use crate::cli::abbe;
 use crate::shipped::root;
 
@@ -13,11 +14,10 @@ const RECORDING: &str = "recordings/postech-ballbar/recording.yaml";
 /// A command at a terminal of 60 columns, which the program `script` makes; standard output and error as the terminal got
 /// them. Of the environment it sees only where programs are: what a CI or a user sets there also decides about colour.
 /// Nothing where there is no such program.
-#[expect(clippy::print_stdout, reason = "a test that is skipped says so")]
 fn at_terminal(words: &str, environment: &[(&str, &str)]) -> Option<String> {
     let there = Command::new("script").arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
     if !there.is_ok_and(|status| status.success()) {
-        println!("skipped: the program `script` is not installed");
+        skipped("the program `script` is not installed");
         return None;
     }
     let command = format!("stty cols 60 rows 40; {} {words}", env!("CARGO_BIN_EXE_abbe"));

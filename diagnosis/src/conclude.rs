@@ -54,6 +54,7 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
     let units = Units::new(&study);
     let bare = bare_model(&mut study);
     diagnosis.returns = ceiling::ceiling(&study);
+    diagnosis.nothing_returns = ceiling::nothing(&study);
     if let Some(reason) = astray(&study, &bare).or_else(|| no_circle(&study, &bare)) {
         return undecidable(diagnosis, &study, reason);
     }

@@ -26,6 +26,8 @@ pub struct Diagnosis {
     /// What of the calibration's residual comes back, before any name: for each channel the states that predict it in units to
     /// which they were not fitted.
     pub returns: Vec<Returning>,
+    /// The channels of which nothing comes back.
+    pub nothing_returns: Vec<NothingReturns>,
     /// The physics that was left out, in order of share.
     pub findings: Vec<Finding>,
     /// Settings of the instruments that the data demand, the zeros apart.
@@ -135,6 +137,17 @@ pub struct Returning {
     pub left: f64,
     /// `mm`, `rad` or `deg`.
     pub unit: &'static str,
+}
+
+/// A channel of which nothing comes back.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct NothingReturns {
+    /// The recording, by number.
+    pub recording: usize,
+    /// The channel's name in it.
+    pub channel: String,
+    /// Whether any state comes by more than once: where none does, it cannot be told.
+    pub driven_twice: bool,
 }
 
 /// A term of an error motion that the calibration lacks.

@@ -106,6 +106,11 @@ impl Returns {
         middle.is_none_or(|middle| (residual[row] - middle).abs() > 0.5 * distance.abs())
     }
 
+    /// Whether any state comes by in more than one unit.
+    pub(crate) fn driven_twice(&self) -> bool {
+        !self.states.is_empty()
+    }
+
     /// What a state is a state of.
     pub(crate) fn quantity(&self, one: Return) -> Quantity {
         self.states[one.state].quantity

@@ -8,6 +8,7 @@
 //! Axis, Series, Band, Line -> Cartesian -\
 //! Trace                    -> Polar     --> Drawing: inline in a page, or a file with style()
 //! Bar                      -> Bars      -/
+//! Whole, Part              -> Shares    -/
 //! Steps                    -> Histogram (a Cartesian)
 //! ```
 //!
@@ -24,6 +25,7 @@ mod path;
 mod polar;
 mod scale;
 mod series;
+mod shares;
 mod style;
 pub mod thin;
 mod ticks;
@@ -37,6 +39,7 @@ pub use histogram::{Steps, histogram};
 pub use look::{Look, Tone};
 pub use polar::{Polar, Trace};
 pub use series::{Draw, Series};
+pub use shares::{Part, Shares, Whole};
 pub use style::{RULES, style};
 pub use unit::Unit;
 

@@ -20,6 +20,7 @@ pub struct Drawing {
     width: f64,
     height: f64,
     title: String,
+    description: String,
     body: String,
 }
 
@@ -32,7 +33,12 @@ pub fn number(value: f64) -> String {
 impl Drawing {
     /// An empty drawing of a size; the title is what a reader without sight is told.
     pub fn new(width: f64, height: f64, title: &str) -> Self {
-        Self { width, height, title: title.to_owned(), body: String::new() }
+        Self { width, height, title: title.to_owned(), description: String::new(), body: String::new() }
+    }
+
+    /// What a reader without sight is told besides: what the drawing shows, in words.
+    pub fn describe(&mut self, description: &str) {
+        description.clone_into(&mut self.description);
     }
 
     /// Adds an element without content; attribute values are escaped.
@@ -77,9 +83,13 @@ impl Drawing {
 
     fn head(&self, namespace: &str) -> String {
         let (width, height, title) = (number(self.width), number(self.height), escape(&self.title));
+        let described = match self.description.as_str() {
+            "" => String::new(),
+            description => format!("<desc>{}</desc>\n", escape(description)),
+        };
         format!(
             "<svg{namespace} viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\">\n\
-             <title>{title}</title>\n"
+             <title>{title}</title>\n{described}"
         )
     }
 }

@@ -1,9 +1,10 @@
 //! The ceiling: what comes back of each channel, before any name, in words.
 //!
 //! In: a study in which returns were told. Out: for each channel the states that predict it in units to which they were not
-//! fitted, one more in each line, with the share that they predict together and what they leave.
+//! fitted, one more in each line, with the share that they predict together and what they leave; and the channels of which nothing
+//! comes back.
 
-use crate::diagnosis::Returning;
+use crate::diagnosis::{NothingReturns, Returning};
 use crate::parameters::axis_unit;
 use crate::returns::Quantity;
 use crate::study::{Channel, Kind, Scene, Study};
@@ -16,6 +17,18 @@ pub(super) fn ceiling(study: &Study<'_>) -> Vec<Returning> {
             scene.channels.iter().flat_map(move |channel| of_channel(study, recording, scene, channel))
         })
         .collect()
+}
+
+/// The channels of all recordings of which nothing comes back.
+pub(super) fn nothing(study: &Study<'_>) -> Vec<NothingReturns> {
+    let scenes = study.scenes.iter().enumerate();
+    scenes.flat_map(|(recording, scene)| nothing_of(recording, scene)).collect()
+}
+
+fn nothing_of(recording: usize, scene: &Scene<'_>) -> impl Iterator<Item = NothingReturns> {
+    let driven_twice = scene.returns.driven_twice();
+    let channels = scene.channels.iter().filter(|channel| channel.returning.is_empty());
+    channels.map(move |channel| NothingReturns { recording, channel: channel.name.clone(), driven_twice })
 }
 
 fn of_channel(

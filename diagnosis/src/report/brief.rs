@@ -1,5 +1,5 @@
-//! The findings at a glance. In: the findings of a diagnosis and a width. Out: a table with a line each: the motion, the term,
-//! its main parameter with its interval, its share, and what the held-out data say.
+//! The findings at a glance. In: the findings of a diagnosis. Out: a row each: the motion, the term, its main parameter with its
+//! interval, its share, and what the held-out data say; and the rows as a table of a width.
 
 use textwrap::{Options, wrap};
 
@@ -8,8 +8,11 @@ use super::parameter;
 use super::style::Ink;
 use crate::diagnosis::{Finding, Parameter, ParameterValue};
 
+/// What the columns hold of one finding.
+pub(super) type Row = [String; 5];
+
 /// The columns' names.
-const TITLES: [&str; 5] = ["motion", "term", "how much", "share", "held-out rms"];
+pub(super) const TITLES: [&str; 5] = ["motion", "term", "how much", "share", "held-out rms"];
 
 /// The column that is broken into lines where the table is too wide.
 const AMOUNT: usize = 2;
@@ -24,13 +27,17 @@ const GAP: usize = 2;
 const MAIN: [&str; 7] =
     ["lost_motion", "height", "amplitude", "coefficient", "gain", "value", "coefficients"];
 
+/// The rows of the findings, in their order.
+pub(super) fn rows(findings: &[Finding]) -> Vec<Row> {
+    findings.iter().map(row).collect()
+}
+
 /// The table with an empty line before it; nothing where nothing was found.
-pub(super) fn table(findings: &[Finding], width: usize, ink: Ink) -> String {
-    if findings.is_empty() {
+pub(super) fn table(rows: &[Row], width: usize, ink: Ink) -> String {
+    if rows.is_empty() {
         return String::new();
     }
-    let rows: Vec<[String; 5]> = findings.iter().map(row).collect();
-    let (widths, shown) = fitted(&rows, width);
+    let (widths, shown) = fitted(rows, width);
     let head = line(&TITLES.map(str::to_owned), &widths, shown, &|_, cell| ink.quiet(cell));
     let rows = rows.iter().map(|row| {
         line(row, &widths, shown, &|column, cell| if column == 0 { ink.name(cell) } else { cell.to_owned() })
@@ -38,7 +45,7 @@ pub(super) fn table(findings: &[Finding], width: usize, ink: Ink) -> String {
     format!("\n{head}{}", rows.collect::<String>())
 }
 
-fn row(finding: &Finding) -> [String; 5] {
+fn row(finding: &Finding) -> Row {
     let evidence = &finding.evidence;
     let change = change(evidence.without, evidence.with, evidence.unit);
     let change = change.map_or_else(
@@ -79,7 +86,7 @@ fn untold(value: &ParameterValue) -> usize {
 
 /// The width of each column, and how many columns are shown: the last ones give way where the amount would not be legible,
 /// since all they say stands with each finding.
-fn fitted(rows: &[[String; 5]], width: usize) -> ([usize; 5], usize) {
+fn fitted(rows: &[Row], width: usize) -> ([usize; 5], usize) {
     let mut widths = TITLES.map(str::len);
     for row in rows {
         for (width, cell) in widths.iter_mut().zip(row) {
@@ -98,12 +105,7 @@ fn fitted(rows: &[[String; 5]], width: usize) -> ([usize; 5], usize) {
 }
 
 /// A row of the table, of as many lines as its amount has; `set` sets cells off without changing their width.
-fn line(
-    cells: &[String; 5],
-    widths: &[usize; 5],
-    shown: usize,
-    set: &dyn Fn(usize, &str) -> String,
-) -> String {
+fn line(cells: &Row, widths: &[usize; 5], shown: usize, set: &dyn Fn(usize, &str) -> String) -> String {
     let amounts = wrap(&cells[AMOUNT], Options::new(widths[AMOUNT]).break_words(false));
     let mut text = String::new();
     for number in 0..amounts.len().max(1) {

@@ -2,7 +2,7 @@
 
 use super::figure::{percent, size};
 use super::item::Item;
-use crate::diagnosis::{Diagnosis, NoiseSummary, Residual, Returning, Summary};
+use crate::diagnosis::{Diagnosis, NoiseSummary, NothingReturns, Residual, Returning, Summary};
 
 /// The noise, and what the model leaves before and after.
 pub(super) fn figures(diagnosis: &Diagnosis) -> Vec<Item> {
@@ -16,24 +16,52 @@ pub(super) fn figures(diagnosis: &Diagnosis) -> Vec<Item> {
     vec![Item::new("Root mean square of the noise, and of what the model leaves".to_owned(), facts)]
 }
 
-/// What of each channel comes back with which state, before any name: that all of the findings could explain at most.
+/// What of each channel comes back with which state, before any name: that all of the findings could explain at most; and of which
+/// channels nothing does, and why.
 pub(super) fn returns(diagnosis: &Diagnosis) -> Vec<String> {
-    // The last line of a channel holds the states of those before it.
-    let last = |number: usize, one: &Returning| {
-        let next = diagnosis.returns.get(number + 1);
-        next.is_none_or(|next| (next.recording, &next.channel) != (one.recording, &one.channel))
-    };
-    let lines = diagnosis.returns.iter().enumerate().filter(|(number, one)| last(*number, one));
-    lines.map(|(_, one)| returning(one)).collect()
+    let mut lines: Vec<String> =
+        by_channel(diagnosis).filter_map(<[Returning]>::last).map(|one| returning(diagnosis, one)).collect();
+    lines.extend([true, false].into_iter().filter_map(|twice| nothing(diagnosis, twice)));
+    if lines.is_empty() && diagnosis.undecidable.is_some() {
+        lines.push("It was not looked for: these recordings decide nothing.".to_owned());
+    }
+    lines
 }
 
-fn returning(one: &Returning) -> String {
-    let Returning { channel, state, share, left, unit, .. } = one;
+/// The lines of each channel: the last one holds the states of those before it.
+pub(super) fn by_channel(diagnosis: &Diagnosis) -> impl Iterator<Item = &[Returning]> {
+    diagnosis.returns.chunk_by(|one, next| (one.recording, &one.channel) == (next.recording, &next.channel))
+}
+
+/// A channel by its name, with its recording where there are several.
+pub(super) fn named(diagnosis: &Diagnosis, recording: usize, channel: &str) -> String {
+    match diagnosis.recordings.get(recording) {
+        Some(summary) if diagnosis.recordings.len() > 1 => format!("{channel} of {}", summary.file),
+        _ => channel.to_owned(),
+    }
+}
+
+fn returning(diagnosis: &Diagnosis, one: &Returning) -> String {
     format!(
-        "{channel}: {} of the residual comes back with the {state}; what does not is {} (rms).",
-        percent(*share),
-        size(*left, unit)
+        "{}: {} of the residual comes back with the {}; what does not is {} (rms).",
+        named(diagnosis, one.recording, &one.channel),
+        percent(one.share),
+        one.state,
+        size(one.left, one.unit)
     )
+}
+
+/// The channels of which nothing comes back, since nothing is driven twice or though something is.
+fn nothing(diagnosis: &Diagnosis, driven_twice: bool) -> Option<String> {
+    let of = diagnosis.nothing_returns.iter().filter(|one| one.driven_twice == driven_twice);
+    let names: Vec<String> =
+        of.map(|NothingReturns { recording, channel, .. }| named(diagnosis, *recording, channel)).collect();
+    let names = (!names.is_empty()).then(|| names.join(", "))?;
+    Some(if driven_twice {
+        format!("{names}: nothing comes back; no state predicts more of the residual than chance gives.")
+    } else {
+        format!("{names}: what comes back is not known; nothing was driven twice.")
+    })
 }
 
 fn noise(noise: &NoiseSummary) -> String {

@@ -1,13 +1,16 @@
 //! The report as a page. In: a diagnosis, and where it comes from. Out: one HTML file with its style inside: no script,
-//! nothing fetched. Findings in words stand first, plots of them next, then what is open.
+//! nothing fetched. It begins with the summary that the text begins with and with what comes back; findings in words stand next,
+//! plots of them after that, then what is open.
 
+use super::brief;
 use super::item::{Fact, Item};
 use super::markup::escape;
 use super::plots;
-use super::sheet::{Body, Section, sheet};
+use super::sheet::{Body, Section, Summary, sheet};
 use crate::diagnosis::Diagnosis;
 
 const STYLE: &str = "\
+.brief { margin-top: 1rem; }
 .verdict { margin: 0; padding: .7rem 1rem; background: var(--band); border-left: .25rem solid var(--line); font-size: 1.08rem; }
 dl { display: grid; grid-template-columns: 8rem 1fr; gap: .25rem 1rem; margin: 0; }
 dt { color: var(--quiet); }
@@ -36,19 +39,43 @@ pub struct Origin<'t> {
 /// The diagnosis as one self-contained page; with plots where it has [`Diagnosis::pictures`].
 pub fn html(diagnosis: &Diagnosis, origin: &Origin<'_>) -> String {
     let sheet = sheet(diagnosis);
-    let sections = |sections: &[Section]| sections.iter().map(section).collect::<String>();
+    let sections = |sections: &[Section]| sections.iter().map(|one| section(one, "")).collect::<String>();
+    let returns = sheet.returns.iter().map(|one| section(one, &plots::returns(diagnosis)));
     let body = format!(
-        "<h1>{}</h1>\n<p class=\"verdict\" data-verdict=\"{}\">{}.</p>\n{}{}{}{}{}",
-        escape(&sheet.title),
-        diagnosis.verdict.word(),
-        escape(&sheet.verdict),
+        "{}{}{}{}{}{}{}",
+        summary(diagnosis, &sheet.summary),
+        returns.collect::<String>(),
         sections(&sheet.found),
         plots::sections(diagnosis),
         sections(&sheet.open),
         change(origin),
         command(origin),
     );
-    pages::shell::page(&sheet.title, &format!("{}{STYLE}", pages::plot::RULES), &body)
+    pages::shell::page(&sheet.summary.title, &format!("{}{STYLE}", pages::plot::RULES), &body)
+}
+
+/// What the text begins with: machine, verdict, a line for each finding.
+fn summary(diagnosis: &Diagnosis, summary: &Summary) -> String {
+    let word = diagnosis.verdict.word();
+    let [title, verdict] = [&summary.title, &summary.verdict].map(|text| escape(text));
+    let findings = table(&summary.findings);
+    format!("<h1>{title}</h1>\n<p class=\"verdict\" data-verdict=\"{word}\">{verdict}.</p>\n{findings}")
+}
+
+/// A line for each finding; nothing where nothing was found. In a window that is too narrow the table alone is moved.
+fn table(rows: &[brief::Row]) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let row = |cells: &[String], mark: &str| {
+        let cells = cells.iter().map(|cell| format!("<{mark}>{}</{mark}>", escape(cell)));
+        format!("<tr>{}</tr>\n", cells.collect::<String>())
+    };
+    let head = row(&brief::TITLES.map(str::to_owned), "th");
+    let rows: String = rows.iter().map(|cells| row(cells, "td")).collect();
+    format!(
+        "<div class=\"wide\">\n<table class=\"brief\">\n<thead>\n{head}</thead>\n<tbody>\n{rows}</tbody>\n</table>\n</div>\n"
+    )
 }
 
 /// What the findings change in the calibration.
@@ -85,7 +112,8 @@ fn command(origin: &Origin<'_>) -> String {
     )
 }
 
-fn section(section: &Section) -> String {
+/// A section: its heading, plots of it, and what it says.
+fn section(section: &Section, plots: &str) -> String {
     let body = match &section.body {
         Body::Items(items) => items.iter().map(item).collect::<String>(),
         Body::List(lines) => {
@@ -93,7 +121,7 @@ fn section(section: &Section) -> String {
             format!("<ol>\n{lines}</ol>\n")
         }
     };
-    format!("<section>\n<h2>{}</h2>\n{body}</section>\n", escape(section.heading))
+    format!("<section>\n<h2>{}</h2>\n{plots}{body}</section>\n", escape(section.heading))
 }
 
 fn item(item: &Item) -> String {

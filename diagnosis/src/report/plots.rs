@@ -1,9 +1,10 @@
-//! Plots of a diagnosis. In: its pictures. Out: sections of the page: what each finding does, then what each recording shows,
-//! every plot with a caption that tells what is to be seen in it.
+//! Plots of a diagnosis. In: what comes back, and its pictures. Out: the first plot of the page, of what comes back; sections of
+//! the page: what each finding does, then what each recording shows; every plot with a caption that tells what is to be seen in it.
 
 mod circle;
 mod over;
 mod position;
+mod returns;
 mod sizes;
 mod spectrum;
 
@@ -33,7 +34,12 @@ impl Figure {
     }
 }
 
-/// All plots; nothing where there are no pictures.
+/// What comes back; nothing where nothing does.
+pub(super) fn returns(diagnosis: &Diagnosis) -> String {
+    grid(&returns::figures(diagnosis))
+}
+
+/// All other plots; nothing where there are no pictures.
 pub(super) fn sections(diagnosis: &Diagnosis) -> String {
     let Some(pictures) = &diagnosis.pictures else { return String::new() };
     let mut captions = Captions::default();

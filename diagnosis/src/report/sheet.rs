@@ -2,19 +2,29 @@
 //! labelled facts or with plain sentences.
 
 use super::item::Item;
-use super::{data, finding, instrument, remains, verdict};
+use super::{brief, data, finding, instrument, remains, verdict};
 use crate::diagnosis::Diagnosis;
 
 /// The whole report.
 pub(super) struct Sheet {
-    /// The machine.
-    pub(super) title: String,
-    /// The verdict, a sentence without its end.
-    pub(super) verdict: String,
+    /// What it begins with.
+    pub(super) summary: Summary,
+    /// What comes back, before anything has a name.
+    pub(super) returns: Option<Section>,
     /// What was found.
     pub(super) found: Vec<Section>,
     /// What is open, and what all this stands on.
     pub(super) open: Vec<Section>,
+}
+
+/// The report at a glance.
+pub(super) struct Summary {
+    /// The machine.
+    pub(super) title: String,
+    /// The verdict, a sentence without its end.
+    pub(super) verdict: String,
+    /// A line of the table for each finding.
+    pub(super) findings: Vec<brief::Row>,
 }
 
 /// A part of it under one heading.
@@ -45,15 +55,18 @@ pub(super) fn sheet(diagnosis: &Diagnosis) -> Sheet {
         items("Repeatability", remains::repeatability(diagnosis)),
     ];
     let open = [
-        list("What comes back", data::returns(diagnosis)),
         list("What to measure next", remains::next_measurements(diagnosis)),
         list("What these recordings cannot decide", diagnosis.undecided.clone()),
         items("Figures", if diagnosis.undecidable.is_some() { Vec::new() } else { data::figures(diagnosis) }),
         items("Recordings", data::recordings(diagnosis)),
     ];
     Sheet {
-        title: format!("Diagnosis of {}", diagnosis.machine),
-        verdict: verdict::sentence(diagnosis),
+        summary: Summary {
+            title: format!("Diagnosis of {}", diagnosis.machine),
+            verdict: verdict::sentence(diagnosis),
+            findings: brief::rows(&diagnosis.findings),
+        },
+        returns: list("What comes back", data::returns(diagnosis)),
         found: found.into_iter().flatten().collect(),
         open: open.into_iter().flatten().collect(),
     }

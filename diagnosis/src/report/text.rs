@@ -4,7 +4,7 @@
 use super::brief;
 use super::item::{Fact, Item};
 use super::lines::{WIDTH, paragraph};
-use super::sheet::{Body, Section, sheet};
+use super::sheet::{Body, Section, Summary, sheet};
 use super::style::Ink;
 use crate::diagnosis::Diagnosis;
 
@@ -35,15 +35,17 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     text_on(diagnosis, Terminal::default())
 }
 
-/// The diagnosis as text for a person: the verdict, the findings as a table, then all about each of them.
+/// The diagnosis as text for a person: the verdict, the findings as a table, what comes back, then all about each finding.
 pub fn text_on(diagnosis: &Diagnosis, terminal: Terminal) -> String {
     let page = Page { width: terminal.columns.clamp(NARROWEST, WIDTH), ink: Ink::new(terminal.color) };
     let sheet = sheet(diagnosis);
-    let title = paragraph(page.width, &sheet.title, "", "");
-    let verdict = page.ink.verdict(diagnosis, &paragraph(page.width, &sheet.verdict, "", ""));
+    let Summary { title, verdict, findings } = &sheet.summary;
+    let title = paragraph(page.width, title, "", "");
+    let verdict = page.ink.verdict(diagnosis, &paragraph(page.width, verdict, "", ""));
     let mut text = format!("{}\n{verdict}", page.ink.strong(&title));
-    text += &brief::table(&diagnosis.findings, page.width, page.ink);
-    text.extend(sheet.found.iter().chain(&sheet.open).map(|section| page.section(section)));
+    text += &brief::table(findings, page.width, page.ink);
+    let sections = sheet.returns.iter().chain(&sheet.found).chain(&sheet.open);
+    text.extend(sections.map(|section| page.section(section)));
     text
 }
 

@@ -6,13 +6,16 @@
     clippy::panic,
     reason = "a panic is the report of a test, also from a function that tests share"
 )]
-#![expect(clippy::print_stdout, reason = "a test says that it skips recordings that are not there")]
 
+#[path = "../../../tests/beside.rs"]
+#[expect(dead_code, reason = "tests of other crates use the rest")]
+mod beside;
 mod common;
 mod confusions;
 mod drives;
 mod each_term;
 mod evidence;
+mod invariances;
 mod large;
 mod pictures;
 #[path = "../../src/testing.rs"]

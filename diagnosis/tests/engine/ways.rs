@@ -1,7 +1,6 @@
 //! Where the axes were: runs that begin anew, drives that lead, commands that are end points.
 
 use std::fs;
-use std::path::Path as FilePath;
 
 use diagnosis::diagnosis::Diagnosis;
 use model_dsl::diagnostic::Diagnostics;
@@ -9,17 +8,15 @@ use model_dsl::source::SourceFile;
 use model_dsl::yaml;
 use simulation::Path;
 
+use crate::beside::shared;
 use crate::common::*;
 use crate::recording::{Recording, read_header};
 use crate::testing::*;
 
 /// A recording that was found in the world, beside the repository; `None`, with a line, where it is not there.
 fn found_in(file: &str, bench: &Bench) -> Option<Recording> {
-    let path = FilePath::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/found").join(file);
-    let Ok(text) = fs::read_to_string(&path) else {
-        println!("skipped: there is no file {}", path.display());
-        return None;
-    };
+    let path = shared(&format!("found/{file}"))?;
+    let text = fs::read_to_string(&path).unwrap();
     let mut findings = Diagnostics::new();
     let root = yaml::read(&SourceFile::new(file, text), &mut findings).unwrap();
     let header = read_header(&root, bench.equations(), &mut findings).unwrap();

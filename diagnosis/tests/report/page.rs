@@ -1,14 +1,18 @@
-//! The page: what the text says, in well-formed HTML that fetches nothing.
+//! The page: what the text says, in well-formed HTML that fetches nothing; it begins as the text begins, and its first plot is of
+//! what comes back.
 
-use diagnosis::diagnosis::Diagnosis;
+use diagnosis::diagnosis::{Diagnosis, NothingReturns, Returning, Summary};
 use diagnosis::pictures::*;
 use diagnosis::report::{self, Origin};
 
 use crate::cases;
 
-/// The page without its marks, each run of white space as one space.
+/// The page without its plots and marks, each run of white space as one space.
 fn read(page: &str) -> String {
     let body = page.split("<body>").nth(1).unwrap();
+    let mut pieces = body.split("<figure>");
+    let first = pieces.next().unwrap().to_owned();
+    let body = pieces.fold(first, |body, piece| body + piece.split_once("</figure>").unwrap().1);
     let text: String = body
         .split('<')
         .map(|piece| piece.split_once('>').map_or(piece, |(_, text)| text))
@@ -18,12 +22,10 @@ fn read(page: &str) -> String {
     text.replace('\u{b1}', "+-").replace('\u{b5}', "u").split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The words of the text without the rules, the numbers of lists and the table that says again what stands below it.
+/// The words of the text without the rules and the numbers of lists.
 fn words(text: &str) -> Vec<&str> {
-    let table = |part: &&str| part.starts_with("motion ");
     let numbered = |word: &str| word.strip_suffix('.').is_some_and(|word| word.parse::<usize>().is_ok());
-    let words = text.split("\n\n").filter(|part| !table(part)).flat_map(str::split_whitespace);
-    words.filter(|word| !word.starts_with("---") && !numbered(word)).collect()
+    text.split_whitespace().filter(|word| !word.starts_with("---") && !numbered(word)).collect()
 }
 
 #[test]
@@ -34,6 +36,108 @@ fn the_page_says_what_the_text_says() {
         let text: Vec<&str> = words(&text).into_iter().map(|word| word.trim_end_matches('.')).collect();
         assert_eq!(page, text, "{name}");
     }
+}
+
+#[test]
+fn the_page_begins_with_the_summary_of_the_text() {
+    for (name, diagnosis) in drawn() {
+        let (page, text) = (report::html(&diagnosis, &Origin::default()), report::text(&diagnosis));
+        let (summary, _) = page.split_once("<section>").unwrap();
+        // Everything above the first heading, which is the line above the first rule.
+        let (above, _) = text.split_once("\n---").unwrap();
+        let (above, _) = above.rsplit_once('\n').unwrap();
+        let words = |text: &str| -> Vec<String> {
+            text.split_whitespace().map(|word| word.trim_end_matches('.').to_owned()).collect()
+        };
+        assert_eq!(words(&read(summary)), words(above), "{name}");
+    }
+}
+
+/// The numbers that the bars of a drawing have for an attribute.
+fn of_bars(drawing: &str, name: &str) -> Vec<f64> {
+    let bars = drawing.split('<').filter(|mark| mark.starts_with("rect class=\"m "));
+    let number = |mark: &str| {
+        let (_, rest) = mark.split_once(&format!(" {name}=\"")).unwrap();
+        rest.split_once('"').unwrap().0.parse::<f64>().unwrap()
+    };
+    bars.map(number).collect()
+}
+
+#[test]
+fn the_first_plot_shows_the_shares_of_the_json() {
+    let diagnosis = Diagnosis { pictures: Some(pictures(0.0015)), ..cases::two_findings() };
+    let page = report::html(&diagnosis, &Origin::default());
+    let first = page.split("<figure>").nth(1).unwrap().split("</figure>").next().unwrap();
+    let json: serde_json::Value = serde_json::from_str(&report::json(&diagnosis)).unwrap();
+    let shares: Vec<f64> =
+        json["returns"].as_array().unwrap().iter().map(|one| one["share"].as_f64().unwrap()).collect();
+    assert_eq!(shares.len(), 2);
+    let (from, wide) = (of_bars(first, "x"), of_bars(first, "width"));
+    let whole = from[2] + wide[2] - from[0];
+    for (bar, share) in shares.iter().enumerate() {
+        let end = (from[bar] + wide[bar] - from[0]) / whole;
+        assert!(
+            (end - share).abs() < 1e-3 && (from[bar + 1] - from[bar] - wide[bar]).abs() < 0.03,
+            "{first}"
+        );
+    }
+    // 83 %, then 15.1 % more, which leaves 1.9 %: 1.7 um.
+    for said in [
+        "<title>What comes back</title>",
+        "<desc>measured.y: direction of Y 83.0 %; temperature spindle 15.1 %; does not come back 1.90 %, 1.7 \u{b5}m rms.</desc>",
+        ">direction of Y: 83.0 %</text>",
+        ">temperature spindle: 15.1 %</text>",
+        ">does not come back: 1.90 %, 1.7 \u{b5}m rms</text>",
+        ">share of the residual's variance, %</text>",
+    ] {
+        let first = first.replace("&#39;", "'");
+        assert!(first.contains(said), "{said}: {first}");
+    }
+}
+
+#[test]
+fn where_nothing_comes_back_a_sentence_says_why_and_nothing_is_drawn() {
+    let nothing = |channel: &str, driven_twice| NothingReturns {
+        recording: 0,
+        channel: channel.to_owned(),
+        driven_twice,
+    };
+    let of = |nothing_returns, undecidable: Option<&str>| {
+        let undecidable = undecidable.map(str::to_owned);
+        report::html(&Diagnosis { nothing_returns, undecidable, ..cases::adequate() }, &Origin::default())
+    };
+    let cases = [
+        (
+            of(vec![nothing("measured.x", true), nothing("measured.z", true)], None),
+            "measured.x, measured.z: nothing comes back; no state predicts more of the residual than chance gives.",
+        ),
+        (
+            of(vec![nothing("deviation", false)], None),
+            "deviation: what comes back is not known; nothing was driven twice.",
+        ),
+        (
+            of(Vec::new(), Some("A clock stands still.")),
+            "It was not looked for: these recordings decide nothing.",
+        ),
+    ];
+    for (page, sentence) in cases {
+        assert!(page.contains(sentence) && !page.contains("<figure>"), "{sentence}: {page}");
+    }
+}
+
+#[test]
+fn with_several_recordings_a_channel_is_told_with_its_recording() {
+    let mut diagnosis = cases::two_findings();
+    diagnosis.recordings.push(Summary { file: "second.yaml".to_owned(), ..Summary::default() });
+    diagnosis.returns.push(Returning { recording: 1, ..cases::returning("velocity of Y", 0.4, 0.002) });
+    let page = report::html(&diagnosis, &Origin::default());
+    assert_eq!(page.matches(">measured.y of second.yaml</text>").count(), 1);
+    assert!(
+        page.contains("measured.y of second.yaml: 40 % of the residual comes back with the velocity of Y")
+    );
+    diagnosis.returns =
+        (0..20).map(|recording| Returning { recording, ..diagnosis.returns[0].clone() }).collect();
+    assert!(report::html(&diagnosis, &Origin::default()).contains("8 more channels are told in words alone"));
 }
 
 /// Pictures with all that can be drawn: numbers as they are, and numbers that no page may show.

@@ -1,8 +1,8 @@
 //! Plots as a whole. In: series with known numbers, and hostile ones. Out: that places are right, and markup is sound.
 
 use super::{
-    Axis, Band, Bar, Bars, Cartesian, Draw, Line, Look, Plot, Polar, Series, Steps, Trace, histogram, panels,
-    style,
+    Axis, Band, Bar, Bars, Cartesian, Draw, Line, Look, Part, Plot, Polar, Series, Shares, Steps, Tone,
+    Trace, Whole, histogram, panels, style,
 };
 
 /// The numbers that an attribute has in all elements of a kind and class.
@@ -105,6 +105,7 @@ fn nothing_that_is_not_finite_reaches_the_markup() {
     drawings.push(all(axis().logarithmic()).draw().inline());
     let bar = |value: &f64| Bar { label: "l".to_owned(), value: *value, further: Some(*value) };
     drawings.push(Bars::new("bars", "", axis(), hostile.iter().map(bar).collect()).draw().inline());
+    drawings.extend(hostile.map(|value| shares(&[value, value]).draw().inline()));
     for radius in hostile {
         let trace =
             Trace { name: "t".to_owned(), look: Look::of(0), draw: Draw::MarkedLine, points: points.clone() };
@@ -121,6 +122,7 @@ fn a_plot_without_numbers_says_so() {
         Cartesian::new("nothing", Axis::new("x", "mm"), Axis::new("y", "mm")).draw(),
         Polar::new("nothing", ["+X", "+Y"], 100.0, "mm").draw(),
         Bars::new("nothing", "", Axis::new("x", "mm"), Vec::new()).draw(),
+        Shares::new("nothing", "all", Vec::new()).draw(),
     ];
     assert!(empty.iter().all(|drawing| drawing.inline().contains("no data")));
     assert!(!diagonal().draw().inline().contains("no data"));
@@ -139,6 +141,41 @@ fn a_distribution_stands_on_zero() {
     assert!(first.1 == last.1 && first.1 > highest.1);
     // The second class is three times as high as the first.
     assert!(((first.1 - highest.1) / (first.1 - places[1].1) - 3.0).abs() < 0.02);
+}
+
+fn shares(parts: &[f64]) -> Shares {
+    let part = |(number, share): (usize, &f64)| Part {
+        label: format!("part {number}"),
+        share: *share,
+        note: "2 µm <rms>".to_owned(),
+        tone: Tone::One,
+    };
+    let parts = parts.iter().enumerate().map(part).collect();
+    Shares::new("parts", "the whole", vec![Whole { label: "whole".to_owned(), parts }])
+}
+
+#[test]
+fn each_part_begins_where_the_one_before_it_ends() {
+    let markup = shares(&[0.5, 0.3, 0.2]).draw().inline();
+    let numbers = |name: &str| -> Vec<f64> {
+        attributes(&markup, "rect class=\"m c1\"", name).iter().map(|text| text.parse().unwrap()).collect()
+    };
+    let (from, wide, below) = (numbers("x"), numbers("width"), numbers("y"));
+    let whole: f64 = wide.iter().sum();
+    for (number, (begun, part)) in [(0.0, 0.5), (0.5, 0.3), (0.8, 0.2)].into_iter().enumerate() {
+        assert!((from[number] - from[0] - begun * whole).abs() < 0.03, "{from:?} {wide:?}");
+        assert!((wide[number] - part * whole).abs() < 0.03, "{wide:?}");
+    }
+    assert!(below[0] < below[1] && below[1] < below[2], "{below:?}");
+    // Where the axis says 0 and 100 %.
+    let lines: Vec<f64> = attributes(&markup, "path class=\"", "d")
+        .iter()
+        .map(|path| path[1..].split(' ').next().unwrap().parse().unwrap())
+        .collect();
+    assert!((lines[0] - from[0]).abs() < 0.03 && (lines[lines.len() - 1] - from[0] - whole).abs() < 0.06);
+    assert!(markup.contains(">share of the whole, %</text>"));
+    let words = "part 0 50.0 %, 2 µm &lt;rms&gt;; part 1 30.0 %, 2 µm &lt;rms&gt;; part 2 20.0 %";
+    assert!(markup.contains(&format!("<desc>whole: {words}")), "{markup}");
 }
 
 #[test]

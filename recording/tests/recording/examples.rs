@@ -8,22 +8,21 @@ use model_dsl::source::SourceFile;
 use model_dsl::{Compiled, compile, compile_word, yaml};
 use recording::{ChannelKind, Header, Recording, machine_of, read_header};
 
+use crate::beside::listed;
+
 /// The recording files of the examples; none where the folder is missing.
 fn examples() -> Vec<PathBuf> {
-    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared");
     let mut found = Vec::new();
     for kind in ["concealed", "recordings"] {
-        let Ok(folders) = fs::read_dir(shared.join(kind)) else {
-            println!("skipped: there is no folder {}", shared.join(kind).display());
-            continue;
-        };
-        let files =
-            folders.flatten().filter_map(|folder| fs::read_dir(folder.path()).ok()).flatten().flatten();
+        let Some(folders) = listed(kind) else { continue };
+        let before = found.len();
+        let files = folders.iter().filter_map(|folder| fs::read_dir(folder).ok()).flatten().flatten();
         let files = files.map(|file| file.path());
         found.extend(files.filter(|path| {
             let name = path.file_name().unwrap().to_string_lossy();
             name.starts_with("recording") && name.ends_with(".yaml")
         }));
+        assert!(found.len() > before, "no recording in {kind}");
     }
     found.sort();
     found

@@ -3,11 +3,12 @@
 #![expect(
     clippy::unwrap_used,
     clippy::panic,
-    clippy::print_stdout,
-    reason = "a panic is the report of a test, also from a function that tests share; what is skipped is printed"
+    reason = "a panic is the report of a test, also from a function that tests share"
 )]
 
 mod arbitrary;
+#[path = "../../../tests/beside.rs"]
+mod beside;
 mod common;
 mod data;
 mod examples;

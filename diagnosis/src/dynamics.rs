@@ -12,7 +12,7 @@ use crate::model::{Effect, Fitted, Model, Place};
 use crate::ranges::shortest_step;
 use crate::side::Side;
 use crate::study::Study;
-use crate::terms::{Setting, Shape};
+use crate::terms::{Setting, Shape, oddity, plausible};
 use crate::travel::Travel;
 
 /// Tries loops on all moving axes in the place of what they could be mistaken for.
@@ -25,7 +25,7 @@ pub(crate) fn try_loops(study: &Study<'_>, model: Model, conditions: &Conditions
         |(number, fitted): &(usize, &Fitted)| *number < conditions.always || !mistakable(&fitted.effect);
     let kept: Model = now.model.iter().enumerate().filter(stays).map(|(_, fitted)| fitted.clone()).collect();
     let trials = looped(study, &kept, &now.model, conditions);
-    conditions.cheapest(study, now, trials.into_iter()).model
+    conditions.cheapest(study, now, trials).model
 }
 
 /// Loops on all moving axes beside nothing but the settings, where something of the model could be mistaken for them. Beside what
@@ -41,7 +41,8 @@ pub(crate) fn loops_alone(study: &Study<'_>, model: &Model, conditions: &Conditi
     cheapest.map(|fit| fit.model)
 }
 
-/// Whether loops are missing on moving axes, and something stands in the model that could be mistaken for them.
+/// Whether loops are missing on moving axes, and something stands in the model that could be mistaken for them, or is larger than
+/// its physics allows.
 fn may_lag(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> bool {
     let Conditions { always, travels, .. } = *conditions;
     let lacks = |axis: usize| {
@@ -49,7 +50,11 @@ fn may_lag(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> boo
         let hidden = travels[axis].moves && study.own[axis].is_some() && !study.has_drive(axis);
         hidden && !model.iter().any(|fitted| lag_of(&fitted.effect.shape) == Some(axis))
     };
-    (0..travels.len()).any(lacks) && model[always..].iter().any(|fitted| mistakable(&fitted.effect))
+    let suspicious = |fitted: &Fitted| {
+        mistakable(&fitted.effect)
+            || oddity(plausible(study, &fitted.effect), &fitted.effect.shape, &fitted.coefficients) > 0.0
+    };
+    (0..travels.len()).any(lacks) && model[always..].iter().any(suspicious)
 }
 
 /// Models with loops on all moving axes beside what is kept, fitted from several time constants.

@@ -18,6 +18,19 @@ pub(crate) type Range = (f64, f64);
 /// The plausible tilt of a carriage on its way, to either side: 1 mrad bends a guide of a metre by a quarter of a millimetre.
 const GUIDE: Range = (0.0, 1e-3);
 
+/// The plausible sizes of a smooth curve along a slide, whose parameters are those of so many mm.
+fn along_a_guide(body: Body, over: f64) -> Option<Range> {
+    match body {
+        Body::Tilted => Some(GUIDE),
+        Body::Displaced => Some((0.0, SLOPE * over)),
+        Body::Rotary | Body::Aligned => None,
+    }
+}
+
+/// The plausible slope of a displacement. Scales and guides of a mill are off by a ten-thousandth, those of a printer or of a small
+/// stage by up to five thousandths.
+const SLOPE: f64 = 5e-3;
+
 /// What moves: what a size is measured in, and what is large there.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Body {
@@ -53,9 +66,10 @@ pub(crate) fn plausible(study: &Study<'_>, effect: &Effect) -> Option<Range> {
         Shape::Expansion { .. } => Some(expansion::PLAUSIBLE),
         Shape::Backlash { .. } => backlash::plausible(Body::of(study, effect)),
         Shape::ReversalSpike { .. } => reversal_spike::plausible(Body::of(study, effect)),
-        Shape::Polynomial { .. } | Shape::Coupling { .. } | Shape::Table { .. } | Shape::Cyclic { .. } => {
-            (Body::of(study, effect) == Body::Tilted).then_some(GUIDE)
+        Shape::Polynomial { scale, .. } | Shape::Coupling { scale, .. } => {
+            along_a_guide(Body::of(study, effect), scale.abs())
         }
+        Shape::Table { .. } | Shape::Cyclic { .. } => along_a_guide(Body::of(study, effect), f64::INFINITY),
         Shape::Instrument(Setting::Cosine) => Some(instrument::COSINE),
         _ => None,
     }
@@ -64,15 +78,28 @@ pub(crate) fn plausible(study: &Study<'_>, effect: &Effect) -> Option<Range> {
 /// What a size costs beyond its plausible range.
 pub(crate) fn oddity(plausible: Option<Range>, shape: &Shape, coefficients: &[f64]) -> f64 {
     let Some((least, most)) = plausible else { return 0.0 };
-    let sum: f64 = coefficients.iter().map(|coefficient| coefficient.abs()).sum();
-    // Loops are printed as gains, and fitted as what they lose.
-    let loops = matches!(shape, Shape::Lag { .. } | Shape::Acceleration { .. });
-    let size = if loops { sum.recip() } else { sum };
+    let size = size(shape, coefficients);
     if !size.is_finite() || size <= 0.0 {
         return 0.0;
     }
     let times = (least / size).ln().max((size / most).ln()).max(0.0);
     (times / BEYOND).powi(2)
+}
+
+/// How large an effect is: the gain of a loop, half of what a curve goes through, else what its coefficients make together. What does
+/// not change along a curve is a zero.
+fn size(shape: &Shape, coefficients: &[f64]) -> f64 {
+    let sum = |coefficients: &[f64]| coefficients.iter().map(|coefficient| coefficient.abs()).sum::<f64>();
+    match shape {
+        Shape::Lag { .. } | Shape::Acceleration { .. } => sum(coefficients).recip(),
+        Shape::Polynomial { .. } => sum(coefficients.get(1..).unwrap_or_default()),
+        Shape::Table { .. } => {
+            let highest = coefficients.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let lowest = coefficients.iter().copied().fold(f64::INFINITY, f64::min);
+            0.5 * (highest - lowest)
+        }
+        _ => sum(coefficients),
+    }
 }
 
 #[cfg(test)]
@@ -104,6 +131,26 @@ mod tests {
             assert!((cost(motion, &play, 2.0 * most) - 3.92).abs() < 0.01, "{motion}");
             assert!(cost(motion, &play, -10.0 * most) > 40.0, "{motion}");
         }
+    }
+
+    #[test]
+    fn a_curve_is_as_large_as_what_it_goes_through_and_not_as_its_zero() {
+        let polynomial = Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 100.0 };
+        assert_eq!(size(&polynomial, &[7.0, -0.2, 0.1]), 0.2 + 0.1);
+        let table = Shape::Table { axis: 0, nodes: vec![0.0, 1.0, 2.0], directed: false };
+        assert_eq!(size(&table, &[5.0, 5.5, 4.5]), 0.5);
+        // A slope of 4 thousandths over a slide is a printer's, of 4 hundredths nobody's.
+        let along_x = |size: f64| {
+            let polynomial = Shape::Polynomial { axis: 0, degree: 1, center: 0.0, scale: 100.0 };
+            let bench = Bench::of("FX");
+            let recording = programmed(&[0.0, 1.0], &[vec![0.0, 1.0]]);
+            let study = Study::new(bench.equations(), None, &[&recording]);
+            let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
+            let effect = Effect { place, shape: polynomial.clone() };
+            oddity(plausible(&study, &effect), &polynomial, &[0.0, size])
+        };
+        assert_eq!(along_x(0.4), 0.0);
+        assert!(along_x(4.0) > 30.0);
     }
 
     #[test]

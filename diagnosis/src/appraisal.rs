@@ -156,22 +156,20 @@ fn estimated(
 
 /// Gives recordings of the same channel one weight where the model lacks something in one of them: what all of them leave.
 fn share_weights(study: &Study<'_>, residuals: &[Vec<Vec<f64>>], estimates: &mut [Vec<Estimate>]) {
+    if estimates.len() < 2 {
+        return;
+    }
     let known = estimates.to_vec();
     for (scene, channels) in estimates.iter_mut().enumerate() {
         for (channel, estimate) in channels.iter_mut().enumerate() {
             let same = like(study, &known, (scene, channel));
-            let Some(lacking) = same.iter().find(|estimate| estimate.lacks()) else { continue };
-            let [whole, count] = [|one: &Estimate| one.whole, |one: &Estimate| one.count]
-                .map(|of| same.iter().map(|estimate| of(estimate)).sum::<f64>());
-            if same.len() > 1 {
-                let time = &study.scenes[scene].recording.time;
-                estimate.weigh(
-                    time,
-                    &residuals[scene][channel],
-                    (whole / count).sqrt(),
-                    lacking.weights.alike,
-                );
+            if same.len() < 2 || !same.iter().any(|estimate| estimate.lacks()) {
+                continue;
             }
+            let whole: f64 = same.iter().map(|estimate| estimate.whole).sum();
+            let count: f64 = same.iter().map(|estimate| estimate.count).sum();
+            let time = &study.scenes[scene].recording.time;
+            estimate.weigh(time, &residuals[scene][channel], (whole / count).sqrt());
         }
     }
 }
@@ -192,13 +190,14 @@ impl Estimate {
         self.weights.alike > 1.0
     }
 
-    /// Weighs the samples by another noise of the same kind.
-    fn weigh(&mut self, time: &[f64], residual: &[f64], white: f64, alike: f64) {
-        let plain = self.deviance;
-        let alike = if self.lacks() { self.weights.alike } else { alike };
-        self.weights = Noise { alike, ..Noise::white(white.max(self.floor.white)) };
+    /// Weighs the samples as those of which a model leaves so much.
+    fn weigh(&mut self, time: &[f64], residual: &[f64], white: f64) {
+        let known = self.deviance;
+        let alike = if self.lacks() { self.weights.alike } else { noise::alike(residual, &self.valid) };
+        let white = white.max(self.floor.white);
+        self.weights = Noise { alike: alike.max(MORE_THAN_ONE), ..Noise::white(white) };
         self.deviance = noise::deviance(time, residual, &self.valid, &self.weights);
-        if self.wandering == plain {
+        if self.wandering == known {
             self.wandering = self.deviance;
         }
     }

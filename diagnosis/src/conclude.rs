@@ -28,7 +28,7 @@ use crate::terms::SettingKind;
 use crate::unsteady;
 use crate::zeros;
 use crate::{Inputs, Progress};
-use decidable::{astray, crossed, misplaced, no_circle, too_little, undecided, unmade};
+use decidable::{astray, crossed, impossible, misplaced, no_circle, too_little, undecided};
 use findings::report;
 use summary::summary;
 use units::Units;
@@ -48,7 +48,7 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
         undecided: undecided(&study),
         ..Diagnosis::default()
     };
-    if let Some(reason) = too_little(&study).or_else(|| unmade(&study)).or_else(|| misplaced(&study)) {
+    if let Some(reason) = too_little(&study).or_else(|| impossible(&study)).or_else(|| misplaced(&study)) {
         return undecidable(diagnosis, &study, reason);
     }
     let units = Units::new(&study);

@@ -152,7 +152,7 @@ pub(super) fn astray(study: &Study<'_>, bare: &Model) -> Option<String> {
 
 /// Why no machine can have gone the programmed path, where that is so: farther or faster than any axis goes. Metres for millimetres
 /// and milliseconds for seconds do that.
-pub(super) fn unmade(study: &Study<'_>) -> Option<String> {
+pub(super) fn impossible(study: &Study<'_>) -> Option<String> {
     for scene in &study.scenes {
         for (axis, position) in study.equations.axes.iter().zip(scene.given.programmed.iter()) {
             let (farthest, fastest, unit) =

@@ -19,6 +19,7 @@ use crate::fit;
 use crate::local::{self, Feature};
 use crate::model::{Fitted, Model};
 use crate::pictures;
+use crate::places;
 use crate::repeats;
 use crate::rest;
 use crate::returns;
@@ -94,7 +95,7 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
     }
     diagnosis.undecided.extend(crossed(&study, &found.fit.model));
     let moving = if feature.is_none() { unsteady::moving(&study, &found.appraisal) } else { None };
-    let quiet = feature.as_ref().and_then(|feature| engine::beside(&study, &found, feature));
+    let quiet = feature.as_ref().and_then(|feature| places::beside(&study, &found, feature));
     diagnosis.noise = units.noise(&study, quiet.as_ref().unwrap_or(&found.appraisal));
     let counts = |kind| units.counts(&study, kind);
     diagnosis.pictures =
@@ -230,7 +231,7 @@ fn bare_model(study: &mut Study<'_>) -> Model {
 fn explain_locally(study: &mut Study<'_>, found: &mut Found) -> Option<Feature> {
     for _ in 0..TABLES {
         let feature = strongest(study, found)?;
-        match engine::with_table(study, found, &feature) {
+        match places::with_table(study, found, &feature) {
             Some(better) => *found = better,
             None => return Some(feature),
         }

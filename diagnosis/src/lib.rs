@@ -30,6 +30,7 @@ mod outliers;
 mod parallel;
 mod parameters;
 pub mod pictures;
+mod places;
 mod position_loop;
 mod ranges;
 mod repeats;

@@ -196,8 +196,8 @@ impl Profile {
     }
 }
 
-/// At how many places a pass with so many samples is looked at: at half as many, so that none is empty; where these are few, at as
-/// many, since an axis that stops at few stations stops at the same ones in every pass.
+/// The number of places at which a pass is looked at: half the number of its samples, so that no place is empty. A pass with few
+/// samples stops at stations, the same ones in every pass: then each sample is a place.
 fn places(samples: usize) -> usize {
     if samples / 2 < PLACES { samples } else { (samples / 2).min(MOST_PLACES) }
 }

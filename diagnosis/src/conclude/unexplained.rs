@@ -9,10 +9,11 @@ use nalgebra::DMatrix;
 
 use crate::certainty::Certainty;
 use crate::diagnosis::{Interval, IntervalOf, ParameterValue, Unexplained};
-use crate::engine::{self, Found};
+use crate::engine::Found;
 use crate::local::Feature;
 use crate::noise;
 use crate::parameters::{Described, axis_unit, motion_unit};
+use crate::places;
 use crate::returns::Quantity;
 use crate::study::{Channel, Kind, Study};
 use crate::unsteady::{self, Band, Moving, Suspect};
@@ -29,7 +30,7 @@ pub(super) fn feature(study: &Study<'_>, found: &Found, feature: &Feature, units
         d if d < 0.0 => "while it moves backward",
         _ => "in both directions of motion",
     };
-    let table_of = engine::table_motion(study, found, feature)
+    let table_of = places::table_motion(study, found, feature)
         .map(|motion| study.equations.motions[motion].name.clone());
     Unexplained {
         link: Some(axis.letter.clone()),

@@ -18,7 +18,7 @@ pub(crate) type Range = (f64, f64);
 /// The plausible tilt of a carriage on its way, to either side: 1 mrad bends a guide of a metre by a quarter of a millimetre.
 const GUIDE: Range = (0.0, 1e-3);
 
-/// The plausible sizes of a smooth curve along a slide, whose parameters are those of so many mm.
+/// The plausible sizes of a curve along a slide. `over` is the length in mm to which its coefficients refer.
 fn along_a_guide(body: Body, over: f64) -> Option<Range> {
     match body {
         Body::Tilted => Some(GUIDE),

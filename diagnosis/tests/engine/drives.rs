@@ -33,7 +33,7 @@ fn slide() -> Path {
     path(line(0, 0.0, 120.0), 20.0, 20.0)
 }
 
-/// A table, in steps of so many degrees, through an angle in rad.
+/// A path of a rotary table through an angle in rad, with a step in degrees.
 fn table(through: f64, step: f64) -> Path {
     path(line(0, 0.0, through), 0.1, 0.1 / step.to_radians())
 }

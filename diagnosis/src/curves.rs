@@ -90,20 +90,39 @@ impl Imitation {
     }
 }
 
-/// A model without waves of a motion that are many and of which none stands out, where it has any: what they draw together is
-/// something else, which has no name here. A comb of vibrations is the answer to pulses, and waves of all lengths are a dent.
-pub(crate) fn without_lists(model: &Model, always: usize) -> Option<Model> {
-    let is_wave = |fitted: &Fitted| fitted.effect.shape.is_wave();
-    let places = model[always..].iter().filter(|fitted| is_wave(fitted)).map(|fitted| fitted.effect.place);
-    let listed = |place: &Place| {
-        let parts = model.iter().filter(|fitted| fitted.effect.place == *place && is_wave(fitted));
-        let energies: Vec<f64> = parts.map(energy).collect();
+/// A model without the vibrations of a motion of which many are multiples of one frequency and none of those stands out, where it has
+/// any: they draw pulses that come at equal times, which have no name here. Waves along an axis are kept: the elements of one drive
+/// repeat in multiples of each other.
+pub(crate) fn without_combs(model: &Model, always: usize) -> Option<Model> {
+    let vibrations: Vec<(&Fitted, f64)> = model[always..].iter().filter_map(vibration).collect();
+    let is_comb = |(lowest, of): &&(&Fitted, f64)| {
+        let same = vibrations.iter().filter(|(other, _)| other.effect.place == lowest.effect.place);
+        let teeth = same.filter(|(_, frequency)| is_multiple(*frequency, *of));
+        let energies: Vec<f64> = teeth.map(|(tooth, _)| energy(tooth)).collect();
         energies.len() >= MANY && !one_stands_out(&energies)
     };
-    let place = places.into_iter().find(listed)?;
-    let kept = model.iter().filter(|fitted| !(is_wave(fitted) && fitted.effect.place == place));
+    let place = vibrations.iter().find(is_comb)?.0.effect.place;
+    let kept = model.iter().filter(|fitted| fitted.effect.place != place || vibration(fitted).is_none());
     Some(kept.cloned().collect())
 }
+
+/// A vibration with its frequency.
+fn vibration(fitted: &Fitted) -> Option<(&Fitted, f64)> {
+    match fitted.effect.shape {
+        Shape::Vibration { frequency } => Some((fitted, frequency)),
+        _ => None,
+    }
+}
+
+/// Whether a frequency is a multiple of another one.
+fn is_multiple(frequency: f64, of: f64) -> bool {
+    let times = frequency / of;
+    times.round() >= 1.0 && (times / times.round() - 1.0).abs() < COMB
+}
+
+/// A frequency may be off from its multiple by this share: what comes at equal times by a clock of switches and warm-up wanders by as
+/// much. Three frequencies within one decade are multiples of a fourth in so narrow a band once in some two hundred times.
+const COMB: f64 = 0.02;
 
 fn energy(fitted: &Fitted) -> f64 {
     fitted.coefficients.iter().map(|value| value * value).sum()

@@ -96,7 +96,7 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     }
     let revision = Revision { pool: &pool, places: &places, conditions };
     (fit, appraisal) = revision.revised(study, fit, appraisal);
-    while let Some(model) = curves::without_lists(&fit.model, always) {
+    while let Some(model) = curves::without_combs(&fit.model, always) {
         let rest = conditions.under(&appraisal.noises).refine(study, model);
         (fit, appraisal) = upheld(study, rest, &conditions);
     }

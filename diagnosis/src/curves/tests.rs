@@ -288,3 +288,43 @@ fn a_table_with_nodes_at_one_place_is_active_there_alone() {
     let table = Fitted { effect: Effect { place, shape }, coefficients };
     assert_eq!(active(&table), Some((100.0, 116.0)));
 }
+
+fn vibrating(motion: usize, frequency: f64, amplitude: f64) -> Fitted {
+    let effect =
+        Effect { place: Place::Motion { motion, side: Side::After }, shape: Shape::Vibration { frequency } };
+    Fitted { effect, coefficients: vec![amplitude, 0.0] }
+}
+
+#[test]
+fn vibrations_in_multiples_of_one_are_pulses_unless_one_stands_out() {
+    let model = |teeth: &[(f64, f64)]| -> Model {
+        let mut model: Model =
+            teeth.iter().map(|(frequency, amplitude)| vibrating(0, *frequency, *amplitude)).collect();
+        model.push(vibrating(1, 3.0, 1e-3));
+        model
+    };
+    let comb = [(1.01, 1e-3), (2.0, 0.9e-3), (3.02, 1.1e-3), (4.97, 0.8e-3)];
+    // What else vibrates in that motion goes with them, another motion keeps its own.
+    let mut more = comb.to_vec();
+    more.push((7.4, 1e-3));
+    assert_eq!(without_combs(&model(&more), 0), Some(model(&[])));
+    // A rotation and its harmonics, and frequencies that have nothing to do with each other.
+    let turning = [(1.01, 5e-3), (2.0, 0.9e-3), (3.02, 1.1e-3), (4.97, 0.8e-3)];
+    let apart = [(1.0, 1e-3), (1.43, 0.9e-3), (3.33, 1.1e-3), (4.71, 0.8e-3)];
+    assert_eq!(without_combs(&model(&turning), 0), None);
+    assert_eq!(without_combs(&model(&apart), 0), None);
+    assert_eq!(without_combs(&model(&comb[..3]), 0), None);
+}
+
+#[test]
+fn waves_along_an_axis_are_kept_in_multiples_too() {
+    let wave = |period: f64| Fitted {
+        effect: Effect {
+            place: Place::Motion { motion: 0, side: Side::After },
+            shape: Shape::Cyclic { axis: 0, period, center: 0.0 },
+        },
+        coefficients: vec![1e-3, 0.0],
+    };
+    let model: Model = [10.0, 5.0, 2.5, 1.25, 1.0].map(wave).to_vec();
+    assert_eq!(without_combs(&model, 0), None);
+}

@@ -89,12 +89,12 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     let (mut fit, mut appraisal) = upheld(study, fit, &search.conditions());
     let Search { pool, travels, always, tries, richer, noises, .. } = search;
     let conditions = Conditions { always, noises: &noises, travels: &travels, tries };
+    let revision = Revision { pool: &pool, places: &places, conditions };
     for model in richer {
         if fit.model.len() == always && appraisal.lacks() {
-            (fit, appraisal) = better(study, (fit, appraisal), model, &conditions);
+            (fit, appraisal) = better(study, (fit, appraisal), model, &revision);
         }
     }
-    let revision = Revision { pool: &pool, places: &places, conditions };
     (fit, appraisal) = revision.revised(study, fit, appraisal);
     while let Some(model) = curves::without_combs(&fit.model, always) {
         let rest = conditions.under(&appraisal.noises).refine(study, model);
@@ -143,22 +143,24 @@ pub(crate) fn upheld(study: &mut Study<'_>, mut fit: Fit, conditions: &Condition
     judge::uphold(study, fit, conditions)
 }
 
-/// What the judge upholds of another model, where that is better than what stands: it costs less under the noise that it leaves itself,
-/// held-out samples lie nearer to it, and a wandering noise does not explain as much. A walk draws curves and waves together as
-/// well as each of them alone.
+/// What the judge upholds of another model, its effects exchanged for better ones, where that is better than what stands: it costs
+/// less under the noise that it leaves itself, held-out samples lie nearer to it, and a wandering noise does not explain as much. A
+/// walk draws curves and waves together as well as each of them alone. Nothing is added: a few waves draw any place together.
 fn better(
     study: &mut Study<'_>,
     stands: (Fit, Appraisal),
     model: Model,
-    conditions: &Conditions<'_>,
+    revision: &Revision<'_>,
 ) -> (Fit, Appraisal) {
+    let conditions = &revision.conditions;
     let crossings = study.crossings.clone();
     let noises = Appraisal::new(study, &model).noises;
     let other = conditions.under(&noises).refine(study, model);
-    let other = upheld(study, other, conditions);
+    let kept = upheld(study, other, conditions);
+    let other = revision.exchanged(study, kept.0, kept.1);
     let conditions = conditions.under(&other.1.noises);
     let new = conditions.prices(study, &other.0.model, other.0.samples);
-    let taken = stands.1.wandering - other.1.wandering;
+    let taken = taken_from_walk(study, &stands.1, &other, conditions.always);
     let gains = taken > new[conditions.always..].iter().sum()
         && other.1.held_out(study, &other.1) < stands.1.held_out(study, &other.1);
     let new = conditions.cost_at(study, &other.0, &new);
@@ -171,6 +173,18 @@ fn better(
     }
     stands.1.mark(study);
     stands
+}
+
+/// What the effects of another model take from minus twice the log-likelihood of a noise that wanders. The fit of greatest likelihood
+/// under that noise would take more: the one figure keeps the coefficients, the other the noise. Waves keep their coefficients.
+fn taken_from_walk(study: &Study<'_>, stands: &Appraisal, other: &(Fit, Appraisal), always: usize) -> f64 {
+    let (Fit { model, .. }, appraisal) = other;
+    let as_fitted = stands.wandering - appraisal.wandering;
+    if model.iter().any(|fitted| fitted.effect.shape.is_wave()) {
+        return as_fitted;
+    }
+    let effects: Vec<usize> = (always..model.len()).collect();
+    as_fitted.max(judge::worth_in(study, model, &stands.floors, &effects))
 }
 
 /// A search on its way.

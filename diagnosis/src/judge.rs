@@ -210,15 +210,15 @@ fn noise_explains(
     let curve = matches!(fit.model[number].effect.shape, Shape::Polynomial { .. } | Shape::Table { .. });
     let rise = if curve {
         // Both are less than the fit of greatest likelihood would give: the one keeps the coefficients, the other the noise.
-        (bare.wandering - appraisal.wandering).max(worth_in(study, &fit.model, &bare.floors, number))
+        (bare.wandering - appraisal.wandering).max(worth_in(study, &fit.model, &bare.floors, &[number]))
     } else {
         bare.deviance - appraisal.deviance
     };
     rise < price
 }
 
-/// What an effect of a model takes from minus twice the log-likelihood where this is the noise.
-fn worth_in(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], number: usize) -> f64 {
+/// What effects of a model take together from minus twice the log-likelihood where this is the noise.
+pub(crate) fn worth_in(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], effects: &[usize]) -> f64 {
     let design = design(study, model, noises);
     let (products, samples) = design.fitted();
     let mut swept = Swept::new(&products);
@@ -226,7 +226,8 @@ fn worth_in(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], number: usi
         swept.take(column);
     }
     let scale = (swept.remaining() / samples.max(1.0)).max(f64::MIN_POSITIVE);
-    swept.worth(&design.columns(number).collect::<Vec<usize>>()) / scale
+    let columns: Vec<usize> = effects.iter().flat_map(|number| design.columns(*number)).collect();
+    swept.worth(&columns) / scale
 }
 
 /// The model without one effect, the linear coefficients of the others fitted again.

@@ -34,11 +34,27 @@ pub(crate) struct Revision<'r> {
 
 impl Revision<'_> {
     /// Exchanges and adds effects until nothing is better.
-    pub(crate) fn revised(
+    pub(crate) fn revised(&self, study: &mut Study<'_>, fit: Fit, appraisal: Appraisal) -> (Fit, Appraisal) {
+        self.revised_to(study, (fit, appraisal), usize::MAX)
+    }
+
+    /// Exchanges effects until nothing is better.
+    pub(crate) fn exchanged(
         &self,
         study: &mut Study<'_>,
-        mut fit: Fit,
-        mut appraisal: Appraisal,
+        fit: Fit,
+        appraisal: Appraisal,
+    ) -> (Fit, Appraisal) {
+        let count = fit.model.len();
+        self.revised_to(study, (fit, appraisal), count)
+    }
+
+    /// Exchanges effects, and adds some as long as there are no more than `most`, until nothing is better.
+    fn revised_to(
+        &self,
+        study: &mut Study<'_>,
+        (mut fit, mut appraisal): (Fit, Appraisal),
+        most: usize,
     ) -> (Fit, Appraisal) {
         for _ in 0..ADDED {
             if !appraisal.lacks() {
@@ -47,7 +63,8 @@ impl Revision<'_> {
             let conditions = self.conditions.under(&appraisal.noises);
             let prices = conditions.prices(study, &fit.model, fit.samples);
             let cost = conditions.cost_at(study, &fit, &prices);
-            let trials = self.trials(study, &fit, &prices, &appraisal);
+            let mut trials = self.trials(study, &fit, &prices, &appraisal);
+            trials.retain(|trial| trial.model.len() <= most);
             let Some(better) =
                 trials.into_iter().find_map(|trial| self.stands(study, trial, cost, &fit, &appraisal))
             else {

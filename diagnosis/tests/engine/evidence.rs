@@ -153,3 +153,30 @@ fn units_that_make_an_axis_faster_or_longer_than_any_are_told_before_anything_is
         );
     }
 }
+
+#[test]
+fn waves_of_like_size_along_one_axis_are_all_told() {
+    // A screw, half its pitch, a motor and a gear: none of them is half of what all of them are.
+    let bench = Bench::of("FX");
+    let periods = [20.0, 10.0, 6.4, 3.3];
+    let terms: Vec<String> = periods
+        .iter()
+        .enumerate()
+        .map(|(number, period)| {
+            format!("{{cyclic: {{period: {period} mm, amplitude: 3 um, phase: {number} rad}}}}")
+        })
+        .collect();
+    let truth = bench.calibration(&format!("{{EXX: [{}]}}", terms.join(", ")));
+    for seed in 0..3 {
+        let strokes = Path { runs: 3, ..path(line(0, 0.0, 120.0), 20.0, 50.0) };
+        let recording = bench.record(&truth, &noisy(strokes, position("x"), 1e-3, seed));
+        let diagnosis = alone(&bench, &[&recording]);
+        assert_eq!(found(&diagnosis), ["EXX cyclic"; 4], "{seed}");
+        let mut told: Vec<f64> =
+            diagnosis.findings.iter().map(|finding| numbers(finding, "period")[0].value).collect();
+        told.sort_by(|a, b| b.total_cmp(a));
+        for (told, period) in told.iter().zip(periods) {
+            assert!((told / period - 1.0).abs() < 5e-3, "{seed}: {told} {period}");
+        }
+    }
+}

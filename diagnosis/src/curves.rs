@@ -120,8 +120,9 @@ fn is_multiple(frequency: f64, of: f64) -> bool {
     times.round() >= 1.0 && (times / times.round() - 1.0).abs() < COMB
 }
 
-/// A frequency may be off from its multiple by this share: what comes at equal times by a clock of switches and warm-up wanders by as
-/// much. Three frequencies within one decade are multiples of a fourth in so narrow a band once in some two hundred times.
+/// A frequency may be off from its multiple by this share. Pulses of a real warm-up, the one recording that holds any, are off by up
+/// to as much: they do not come at exactly equal times. Three frequencies within a decade above a fourth are all multiples of it in
+/// so narrow a band by chance once in 250 times.
 const COMB: f64 = 0.02;
 
 fn energy(fitted: &Fitted) -> f64 {

@@ -23,7 +23,8 @@ pub(crate) struct Calibrated {
     pub(crate) equations: Equations,
     /// Its numbers.
     pub(crate) calibration: Calibration,
-    source: SourceFile,
+    /// Its file.
+    pub(crate) source: SourceFile,
 }
 
 /// Reads a calibration file and compiles the machine that it names.

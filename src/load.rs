@@ -18,6 +18,8 @@ use crate::shipped;
 pub(crate) struct Loaded {
     /// The file's name for people: its path, or the shipped file's.
     pub(crate) origin: String,
+    /// The file itself; none of a bare word.
+    pub(crate) source: Option<SourceFile>,
     /// The compiled machine.
     pub(crate) compiled: Compiled,
     /// The equations that were published about it, where the program has them.
@@ -103,7 +105,8 @@ fn from_source(source: &SourceFile) -> Result<Loaded, Failure> {
             show(source, &diagnostics);
             let published = shipped::published(source.text());
             let published = published.map(|(name, text)| SourceFile::new(name, text));
-            Ok(Loaded { origin: source.name().to_owned(), compiled, published })
+            let origin = source.name().to_owned();
+            Ok(Loaded { origin, source: Some(source.clone()), compiled, published })
         }
         None => Err(Failure::Wrong(rendered(source, &diagnostics))),
     }
@@ -114,7 +117,7 @@ fn from_word(word: &str) -> Result<Loaded, Failure> {
     let mut diagnostics = Diagnostics::new();
     let compiled = compile_word(word, &mut diagnostics);
     let compiled = compiled.ok_or_else(|| Failure::Wrong(rendered(&source, &diagnostics)))?;
-    Ok(Loaded { origin: format!("the topology {word}"), compiled, published: None })
+    Ok(Loaded { origin: format!("the topology {word}"), source: None, compiled, published: None })
 }
 
 fn unknown(name: &str) -> String {

@@ -17,6 +17,7 @@ mod positions;
 mod progress;
 mod recorded;
 mod shipped;
+mod topology;
 mod written;
 
 use std::process::ExitCode;

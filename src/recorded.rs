@@ -14,6 +14,7 @@ use crate::failure::Failure;
 use crate::load;
 use crate::output::{rendered, show, warn};
 use crate::progress::Progress;
+use crate::topology::Topology;
 
 /// A recording and all that it names.
 pub(crate) struct Recorded {
@@ -21,6 +22,8 @@ pub(crate) struct Recorded {
     pub(crate) source: SourceFile,
     /// The equations of the machine that was recorded.
     pub(crate) equations: Equations,
+    /// Where they come from a topology word: the word, and its file.
+    pub(crate) topology: Option<Topology>,
     /// What is already known of it, where the recording names a calibration.
     pub(crate) calibration: Option<Calibrated>,
     /// The data.
@@ -46,6 +49,7 @@ pub(crate) fn read(path: &Path, quiet: bool) -> Result<Recorded, Failure> {
     let name = recording::machine_of(&root, &mut diagnostics).ok_or_else(|| wrong(&source, &diagnostics))?;
     let loaded = load::machine(&name.value, folder)
         .map_err(|failure| unusable(&source, "E0622", "machine", &name, failure))?;
+    let topology = Topology::of(&loaded);
     let equations = loaded.compiled.equations;
     let header = recording::read_header(&root, &equations, &mut diagnostics);
     let header = header.filter(|_| !diagnostics.has_errors()).ok_or_else(|| wrong(&source, &diagnostics))?;
@@ -54,7 +58,7 @@ pub(crate) fn read(path: &Path, quiet: bool) -> Result<Recorded, Failure> {
     let calibration = read_calibration(&source, &header, calibration_path.as_deref(), &equations)?;
     let recording = read_data(&header, folder, &source, quiet)?;
     let named = Named { machine: name.span, calibration: header.calibration.map(|name| name.span) };
-    Ok(Recorded { source, equations, calibration, recording, calibration_path, named })
+    Ok(Recorded { source, equations, topology, calibration, recording, calibration_path, named })
 }
 
 /// Reads several recordings of one machine with one calibration.

@@ -392,6 +392,113 @@ fn a_calibration_is_written_whole_and_replaces_what_was_there() {
     assert_eq!(errors(&text(Path::new(&again))), errors(&improved));
 }
 
+mod wrong_files {
+    use super::*;
+
+    /// A mill with curves that the order of its axes takes to different places.
+    const ERRORS: &str = "errors:
+  EXX: [{table: {axis: X, start: 0 mm, step: 100 mm, unit: um, values: [0, 9, -6, 12, 3, -8]}}]
+  EBX: [{table: {axis: X, start: 0 mm, step: 100 mm, unit: urad, values: [0, 60, -20, -50, 10, 40]}}]
+  ECX: [{table: {axis: X, start: 0 mm, step: 100 mm, unit: urad, values: [0, -30, 40, 70, 20, -60]}}]
+  EAY: [{table: {axis: Y, start: 0 mm, step: 100 mm, unit: urad, values: [0, 45, -35, 25]}}]
+";
+    const PATH: &str = "path: 1
+points: [{X: 20 mm, Y: 20 mm, Z: -90 mm}, {X: 480 mm}, {Y: 280 mm}, {X: 20 mm}, {Z: -10 mm}, {X: 480 mm}, {Y: 20 mm}, {X: 20 mm}]
+feed: 50 mm/s
+rate: 5 Hz
+runs: 3
+instrument: {position: [x, y, z]}
+noise: {white: 0.5 um}
+seed: 4
+";
+
+    fn calibration(machine: &str, errors: &str) -> String {
+        format!("calibration: 1\nmachine: {machine}\nconstants: {{Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}}\n{errors}")
+    }
+
+    /// A recording of an XFYZ with these errors, beside files that say `machine` and `errors`.
+    fn recorded(test: &str, machine: &str, errors: &str) -> PathBuf {
+        let folder = folder(test);
+        let truth = write(&folder, "truth.yaml", &calibration("XFYZ", ERRORS));
+        let path = write(&folder, "path.yaml", PATH);
+        let known = write(&folder, "known.yaml", &calibration(machine, errors));
+        simulated(&[&truth, &path, "--known", &truth], &folder);
+        let recording = joined(&folder, "recording.yaml");
+        let wrong = text(Path::new(&recording)).replace("XFYZ", machine).replace("truth.yaml", "known.yaml");
+        fs::write(&recording, wrong).unwrap();
+        assert!(Path::new(&known).exists());
+        folder
+    }
+
+    /// The diagnosis with its improved calibration.
+    fn improved(folder: &Path) -> (Value, String) {
+        let [recording, target] = ["recording.yaml", "improved.yaml"].map(|name| joined(folder, name));
+        let run =
+            done(abbe(&["diagnose", &recording, "--format", "json", "--write-calibration", &target], ""));
+        (json(&run), text(Path::new(&target)))
+    }
+
+    #[test]
+    fn a_wrong_sign_is_told_with_its_line_and_mended() {
+        let wrong = ERRORS.replace("[0, -30, 40, 70, 20, -60]", "[0, 30, -40, -70, -20, 60]");
+        let folder = recorded("wrong-sign", "XFYZ", &wrong);
+        let (found, written) = improved(&folder);
+        let change = &found["model"][0];
+        assert_eq!((&change["path"], &change["change"]), (&"errors.ECX".into(), &"sign".into()), "{found}");
+        assert!(change["file"].as_str().unwrap().ends_with("known.yaml"));
+        let known = text(&folder.join("known.yaml"));
+        let line = known.lines().position(|line| line.contains("ECX")).unwrap() + 1;
+        assert_eq!(change["line"], line);
+        assert_eq!(found["findings"], serde_json::json!([]));
+        // With the mended file nothing is wrong.
+        let next = text(&folder.join("recording.yaml")).replace("known.yaml", "improved.yaml");
+        let next = write(&folder, "next.yaml", &next);
+        let again = json(&done(abbe(&["diagnose", &next, "--format", "json"], "")));
+        assert_eq!((&again["verdict"], &again["model"]), (&"adequate".into(), &serde_json::json!([])));
+        assert_eq!(again["before"], found["after"]);
+        assert!(written.contains("# Mended: ECX has the wrong sign."), "{written}");
+    }
+
+    #[test]
+    fn a_word_in_the_wrong_order_is_mended_and_what_it_says_can_be_replayed() {
+        let folder = recorded("wrong-word", "FXYZ", ERRORS);
+        let (found, written) = improved(&folder);
+        let change = &found["model"][0];
+        assert_eq!((&change["path"], &change["with"]), (&"topology".into(), &"XFYZ".into()), "{found}");
+        assert!(written.contains("machine: XFYZ"), "{written}");
+        // The recording still says the wrong word: the same axes in another order are replayed, with a warning.
+        let [target, recording, out] =
+            ["improved.yaml", "recording.yaml", "out"].map(|name| joined(&folder, name));
+        let run = done(abbe(&["simulate", &target, &recording, "--output", &out], ""));
+        assert!(run.err.contains("the same axes in another order"), "{}", run.err);
+    }
+
+    #[test]
+    fn a_machine_file_is_written_beside_and_never_over() {
+        let folder = recorded("wrong-file", "FXYZ", ERRORS);
+        let machine = "# a mill of ours\nabbe: 1\nname: mill\ntopology: FXYZ # as drawn\n";
+        write(&folder, "mill.yaml", machine);
+        for name in ["known.yaml", "recording.yaml"] {
+            let text = text(&folder.join(name)).replace("machine: FXYZ", "machine: mill.yaml");
+            write(&folder, name, &text);
+        }
+        let (found, written) = improved(&folder);
+        assert!(found["model"][0]["file"].as_str().unwrap().ends_with("mill.yaml"), "{found}");
+        assert!(written.contains("machine: improved-XFYZ.yaml"), "{written}");
+        assert_eq!(text(&folder.join("mill.yaml")), machine);
+        assert_eq!(text(&folder.join("improved-XFYZ.yaml")), machine.replace("FXYZ", "XFYZ"));
+        // What is there already is not written over, and then nothing is written at all.
+        let kept = "something else\n";
+        write(&folder, "other-XFYZ.yaml", kept);
+        let [recording, target] = ["recording.yaml", "other.yaml"].map(|name| joined(&folder, name));
+        let run = abbe(&["diagnose", &recording, "--write-calibration", &target], "");
+        assert_eq!(run.status, 2, "{}", run.err);
+        assert!(run.err.contains("never written over"), "{}", run.err);
+        assert!(!Path::new(&target).exists());
+        assert_eq!(text(&folder.join("other-XFYZ.yaml")), kept);
+    }
+}
+
 #[test]
 fn data_that_cannot_be_read_end_with_status_one_and_a_wrong_file_with_two() {
     let folder = stage::recorded("statuses");

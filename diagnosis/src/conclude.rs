@@ -6,22 +6,22 @@ mod ceiling;
 mod decidable;
 mod findings;
 mod refuted;
+mod searched;
 mod summary;
 mod unexplained;
 mod units;
 
 use crate::appraisal::Appraisal;
+use crate::audit;
 use crate::candidates;
 use crate::crossing;
-use crate::diagnosis::{Diagnosis, NoiseSummary, Residual, SettingFinding, Verdict};
+use crate::diagnosis::{Change, Diagnosis, Mended, NoiseSummary, Residual, SettingFinding, Verdict};
 use crate::engine::{self, Found};
 use crate::fit;
 use crate::local::{self, Feature};
 use crate::model::{Fitted, Model};
-use crate::pictures;
 use crate::places;
 use crate::repeats;
-use crate::rest;
 use crate::returns;
 use crate::revise;
 use crate::study::{Scene, Study};
@@ -29,58 +29,78 @@ use crate::terms::SettingKind;
 use crate::unsteady;
 use crate::zeros;
 use crate::{Inputs, Progress};
-use decidable::{astray, crossed, impossible, misplaced, no_circle, too_little, undecided};
+use decidable::crossed;
 use findings::report;
+use searched::{Opening, Searched};
 use summary::summary;
 use units::Units;
 
 /// Finds what the model leaves out; with the numbers behind plots of it where `drawn` is set.
 pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMut(Progress)) -> Diagnosis {
-    let recordings: Vec<_> = inputs.recordings.iter().copied().chain(inputs.holdout).collect();
-    let mut study = Study::new(inputs.equations, inputs.calibration, &recordings);
-    rest::tell(&mut study);
-    if inputs.holdout.is_some()
-        && let Some(scene) = study.scenes.last_mut()
-    {
-        scene.blocks.iter_mut().for_each(|block| block.held_out = true);
+    match Searched::new(inputs, drawn, progress) {
+        Ok((searched, opening)) => audited(searched, inputs, opening, Vec::new(), progress),
+        Err(undecidable) => *undecidable,
     }
-    let mut diagnosis = Diagnosis {
-        machine: inputs.equations.machine.clone(),
-        undecided: undecided(&study),
-        ..Diagnosis::default()
+}
+
+/// Audits the files of what was searched. Where one of them is better changed, what is searched with the change is audited again.
+fn audited(
+    mut searched: Searched<'_>,
+    inputs: &Inputs<'_>,
+    opening: Opening,
+    mut changes: Vec<Change>,
+    progress: &mut dyn FnMut(Progress),
+) -> Diagnosis {
+    let suspects = match changes.len() < audit::MOST {
+        true => audit::suspects(&searched.study, &searched.found, inputs),
+        false => Vec::new(),
     };
-    if let Some(reason) = too_little(&study).or_else(|| impossible(&study)).or_else(|| misplaced(&study)) {
-        return undecidable(diagnosis, &study, reason);
-    }
-    let units = Units::new(&study);
-    let bare = bare_model(&mut study);
-    diagnosis.returns = ceiling::ceiling(&study);
-    diagnosis.nothing_returns = ceiling::nothing(&study);
-    if let Some(reason) = astray(&study, &bare).or_else(|| no_circle(&study, &bare)) {
-        return undecidable(diagnosis, &study, reason);
-    }
-    let left = |study: &Study<'_>, bare: &Model| {
-        (units.residual(study, bare), drawn.then(|| pictures::Before::new(study, bare)))
-    };
-    let (mut before, mut drawn_before) = left(&study, &bare);
-    let mut step = |done: f64| progress(Progress { step: "looking for left-out physics", done: 0.9 * done });
-    let always = candidates::always(&study);
-    let mut found = engine::find(&mut study, always, &mut step);
-    let scattered = repeats::scatter(&mut study, &found.fit.model);
-    if !scattered.is_empty() {
-        let mut always = candidates::always(&study);
-        for scatter in &scattered {
-            let fitted: Vec<i64> = fitted_runs(&study.scenes[scatter.scene]);
-            always.extend(repeats::run_zeros(scatter.scene, &study.scenes[scatter.scene], &fitted));
+    for suspect in suspects {
+        let mut next = Some(suspect);
+        for _ in 0..audit::CORRECTIONS {
+            let Some(suspect) = next.take() else { break };
+            let Some(changed) = suspect.changed(inputs) else { break };
+            let with = changed.inputs(inputs);
+            let Ok((trial, _)) = Searched::new(&with, false, progress) else { break };
+            let rest = match audit::judged(&suspect, searched.trial(inputs), trial.trial(&with)) {
+                audit::Verdict::Holds(rest) if suspect.named || trial.is_explained() => rest,
+                audit::Verdict::Again(corrected) => {
+                    next = Some(corrected);
+                    continue;
+                }
+                _ => break,
+            };
+            let noise = searched.units.noise(&trial.study, &trial.found.appraisal).value;
+            let sizes = [searched.left_by(&trial), trial.left_by(&trial)];
+            changes.push(audit::change(&suspect, rest, inputs, (sizes, noise)));
+            drop(searched);
+            return audited(trial, &with, opening, changes, progress);
         }
-        found = engine::find(&mut study, always, &mut step);
     }
-    if study.crosses() {
-        (before, drawn_before) = with_known_crossings(&mut study, &bare, left);
-        found.appraisal.mark(&mut study);
-    }
-    diagnosis.before = before;
-    stand_or_fall(&mut study, &units, &mut found, diagnosis.before.holdout_rms);
+    searched.before = opening.before;
+    let mended = (!changes.is_empty()).then(|| mended(inputs)).flatten();
+    let diagnosis = Diagnosis { model: changes, mended, ..Diagnosis::default() };
+    concluded(searched, opening, diagnosis, progress)
+}
+
+fn mended(inputs: &Inputs<'_>) -> Option<Mended> {
+    let calibration = inputs.calibration?.clone();
+    let word = inputs.chains.map(|chains| chains.word.to_owned());
+    Some(Mended { calibration, equations: inputs.equations.clone(), word })
+}
+
+/// What is told of what was searched.
+fn concluded(
+    searched: Searched<'_>,
+    opening: Opening,
+    mut diagnosis: Diagnosis,
+    progress: &mut dyn FnMut(Progress),
+) -> Diagnosis {
+    let Searched { mut study, units, mut found, scattered, before } = searched;
+    diagnosis.machine = study.equations.machine.clone();
+    (diagnosis.before, diagnosis.undecided) = (opening.before, opening.undecided);
+    (diagnosis.returns, diagnosis.nothing_returns) = (opening.returns, opening.nothing_returns);
+    stand_or_fall(&mut study, &units, &mut found, before.holdout_rms);
     let mut feature = explain_locally(&mut study, &mut found);
     progress(Progress { step: "comparing with other names", done: 0.95 });
     let mut numbers = claims(&study, &mut found, &units, &mut diagnosis);
@@ -94,12 +114,13 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
         numbers = claims(&study, &mut found, &units, &mut diagnosis);
     }
     diagnosis.undecided.extend(crossed(&study, &found.fit.model));
+    diagnosis.undecided.extend(diagnosis.model.iter().map(decidable::since_when));
     let moving = if feature.is_none() { unsteady::moving(&study, &found.appraisal) } else { None };
     let quiet = feature.as_ref().and_then(|feature| places::beside(&study, &found, feature));
     diagnosis.noise = units.noise(&study, quiet.as_ref().unwrap_or(&found.appraisal));
     let counts = |kind| units.counts(&study, kind);
     diagnosis.pictures =
-        drawn_before.map(|before| before.draw(&study, &found, (&counts, units.unit.0), &numbers));
+        opening.drawn.map(|before| before.draw(&study, &found, (&counts, units.unit.0), &numbers));
     diagnosis.unexplained = match feature {
         Some(feature) => Some(unexplained::feature(&study, &found, &feature, &units)),
         None => unexplained::unsteady(&study, &found, moving, &units)
@@ -120,7 +141,9 @@ fn verdict(diagnosis: &Diagnosis) -> Verdict {
         Verdict::NotRepeatable
     } else if diagnosis.unexplained.is_some() {
         Verdict::Unexplained
-    } else if !diagnosis.findings.is_empty() || diagnosis.settings.iter().any(demanding) {
+    } else if !(diagnosis.model.is_empty() && diagnosis.findings.is_empty())
+        || diagnosis.settings.iter().any(demanding)
+    {
         Verdict::LeftOutPhysics
     } else {
         Verdict::Adequate

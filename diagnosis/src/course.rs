@@ -246,7 +246,8 @@ impl<'m> Terms<'m> {
         Self::of(model.iter())
     }
 
-    fn of(fitted: impl Iterator<Item = &'m Fitted>) -> Self {
+    /// Some terms, at the beginning of a recording.
+    pub(crate) fn of(fitted: impl Iterator<Item = &'m Fitted>) -> Self {
         let mut motions: Vec<(usize, Vec<(&Fitted, Memory)>)> = Vec::new();
         for fitted in fitted {
             let Some(motion) = fitted.effect.motion() else { continue };

@@ -83,6 +83,34 @@ impl Design {
         Self { regressors, first, width, blocks }
     }
 
+    /// The columns of a channel before whitening, in some rows; the residual is the column after the last.
+    pub(crate) fn columns_in(
+        study: &Study<'_>,
+        (scene, channel): (usize, usize),
+        model: &Model,
+        regressors: &[Regressor],
+        rows: &[usize],
+    ) -> DMatrix<f64> {
+        let width = regressors.iter().map(Regressor::columns).sum();
+        let noise = Noise::white(1.0);
+        let course = Course::new(study, scene, model);
+        let mut run = ChannelRun::new(study, scene, channel, model, noise, regressors, width);
+        let mut passage = Passage::new(study, scene, model);
+        let mut chosen = DMatrix::zeros(rows.len(), width + 1);
+        let mut next = 0;
+        for stretch in pieces(0..study.scenes[scene].rows(), STRETCH) {
+            let moved = passage.moved(study, &course, stretch.clone());
+            let frame = Frame::new(study, &course, &moved, stretch.clone());
+            let view = course.states(study.scenes[scene].channels[channel].kind).rows(stretch.clone());
+            let columns = run.raw_columns(&[frame], &view);
+            while let Some(row) = rows.get(next).filter(|row| stretch.contains(row)) {
+                chosen.row_mut(next).copy_from(&columns.row(row - stretch.start));
+                next += 1;
+            }
+        }
+        chosen
+    }
+
     /// Adds back to the residual what the effects of the present model take from it, so that all effects stand on one line:
     /// those of the model can be kept, changed or dropped like any other.
     pub(crate) fn rebase(&mut self, model: &Model) {

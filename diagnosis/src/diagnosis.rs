@@ -1,6 +1,7 @@
 //! The diagnosis: what is said of a machine and its recordings, before it is put into words or JSON.
 
-use model_dsl::calibration::{CalibratedTerm, TermKind};
+use model_dsl::calibration::{CalibratedTerm, Calibration, TermKind};
+use model_dsl::equations::Equations;
 use model_dsl::machine::ElementKind;
 
 use crate::pictures::Pictures;
@@ -28,6 +29,10 @@ pub struct Diagnosis {
     pub returns: Vec<Returning>,
     /// The channels of which nothing comes back.
     pub nothing_returns: Vec<NothingReturns>,
+    /// Faults of the files, in the order in which they were found; everything that follows is said with them mended.
+    pub model: Vec<Change>,
+    /// The files with the faults mended, where there are any.
+    pub mended: Option<Mended>,
     /// The physics that was left out, in order of share.
     pub findings: Vec<Finding>,
     /// Settings of the instruments that the data demand, the zeros apart.
@@ -148,6 +153,59 @@ pub struct NothingReturns {
     pub channel: String,
     /// Whether any state comes by more than once: where none does, it cannot be told.
     pub driven_twice: bool,
+}
+
+/// A fault of a file: what to change in it.
+#[derive(Clone, Debug)]
+pub struct Change {
+    /// The file that is wrong.
+    pub file: WrongFile,
+    /// Its name.
+    pub name: String,
+    /// The line where the fault stands, counted from 1, where it is known.
+    pub line: Option<usize>,
+    /// Where in the file: `errors.EBX`, `constants.Zt`, `topology`.
+    pub path: String,
+    /// What kind of change it is: `sign`, `unit`, `size`, `mirror`, `shift`, `axis`, `directions`, `exchange`, `motion`, `value`,
+    /// `order`, `reference`, `sensors`, `scale`.
+    pub change: &'static str,
+    /// The other place, where two are exchanged or one is moved: `errors.EZX`.
+    pub with: Option<String>,
+    /// What seems to be wrong, a clause: `EBX in the calibration has the wrong sign`.
+    pub fault: String,
+    /// What to do about it, a clause.
+    pub remedy: String,
+    /// The number that the recordings give: a factor, a shift, a constant.
+    pub amount: Option<Parameter>,
+    /// The share that it explains of what the files as they are leave above the noise beside the physics that is found with them
+    /// changed.
+    pub share: f64,
+    /// The held-out rms with the change, and without it when that physics is fitted again.
+    pub evidence: Evidence,
+    /// Other faults that explain as much.
+    pub alternatives: Vec<String>,
+}
+
+/// A file that is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WrongFile {
+    /// The machine file, or the topology word.
+    Machine,
+    /// The calibration.
+    Calibration,
+    /// A recording, by number: its channels or its instrument.
+    Recording(usize),
+}
+
+/// The files with their faults mended.
+#[derive(Clone, Debug)]
+pub struct Mended {
+    /// The calibration.
+    pub calibration: Calibration,
+    /// The equations that it is for.
+    pub equations: Equations,
+    /// The topology word of the machine, where that is another one.
+    pub word: Option<String>,
 }
 
 /// A term of an error motion that the calibration lacks.

@@ -6,6 +6,7 @@
 mod alternatives;
 mod answers;
 mod appraisal;
+mod audit;
 mod candidates;
 mod certainty;
 mod conclude;
@@ -55,8 +56,11 @@ mod way;
 mod words;
 mod zeros;
 
+use std::fmt;
+
 use model_dsl::calibration::Calibration;
 use model_dsl::equations::Equations;
+use model_dsl::source::SourceFile;
 
 use diagnosis::Diagnosis;
 // Recordings are a crate of their own; the modules know it by this name.
@@ -76,6 +80,27 @@ pub struct Inputs<'a> {
     pub recordings: Vec<&'a Recording>,
     /// A recording that is held out as a whole, beside what the others hold out.
     pub holdout: Option<&'a Recording>,
+    /// The calibration's file, to tell where in it something is wrong.
+    pub calibration_file: Option<&'a SourceFile>,
+    /// Where the machine is that of a topology word: the same in another order. Without it no other order is looked for.
+    pub chains: Option<Chains<'a>>,
+}
+
+/// A machine in other orders of its topology word.
+#[derive(Clone, Copy)]
+pub struct Chains<'a> {
+    /// The file that has the word, or the word itself.
+    pub file: &'a str,
+    /// The word as the machine has it.
+    pub word: &'a str,
+    /// The equations of the machine with another word; `None` where that is no machine.
+    pub derive: &'a dyn Fn(&str) -> Option<Equations>,
+}
+
+impl fmt::Debug for Chains<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_struct("Chains").field("word", &self.word).finish_non_exhaustive()
+    }
 }
 
 /// How far a diagnosis has come.

@@ -19,6 +19,13 @@ use crate::terms::Setting;
 
 pub(crate) use passage::{Moved, Passage};
 
+/// In which direction a channel sees the tip, or about which it sees it turn, in every row of a stretch.
+pub(crate) struct Sight {
+    /// Whether it sees the rotation, and not the displacement.
+    pub(crate) turning: bool,
+    pub(crate) directions: Vec<[f64; 3]>,
+}
+
 /// Everything about a stretch of rows that the channels share.
 pub(crate) struct Frame<'c> {
     rows: Range<usize>,
@@ -167,31 +174,44 @@ impl<'c> Frame<'c> {
         side: Side,
     ) -> Vec<Option<Vec<f64>>> {
         let rows = self.len();
-        let along = |of: &[[Column<'_>; 3]], directions: &[[f64; 3]]| -> Vec<Option<Vec<f64>>> {
-            of.iter().map(|parts| projected(parts, directions)).collect()
-        };
-        match channel.kind {
-            Kind::Tip(d) => self.levers.iter().map(|parts| lever(&parts[d], rows)).collect(),
+        if let Kind::Tip(d) = channel.kind {
+            return self.levers.iter().map(|parts| lever(&parts[d], rows)).collect();
+        }
+        if let Kind::Drive(axis) = channel.kind {
+            let own = study.own[axis].filter(|_| side.at_drive());
+            let gain = |motion: usize| (Some(motion) == own).then(|| vec![1.0; rows]);
+            return (0..self.levers.len()).map(gain).collect();
+        }
+        let Sight { turning, directions } = self.sight(study, scene, channel, model);
+        let of = if turning { &self.turns } else { &self.levers };
+        of.iter().map(|parts| projected(parts, &directions)).collect()
+    }
+
+    /// What a channel sees of the tip, or of its rotation; nothing of either where it is a drive's own feedback.
+    pub(crate) fn sight(
+        &self,
+        study: &Study<'_>,
+        scene: usize,
+        channel: &Channel<'_>,
+        model: &Model,
+    ) -> Sight {
+        let everywhere = |direction: [f64; 3]| vec![direction; self.len()];
+        let directions = match channel.kind {
+            Kind::Tip(d) => everywhere([0, 1, 2].map(|other| if other == d { 1.0 } else { 0.0 })),
             Kind::Radius { center, radius } => {
                 let leans = study.scenes[scene].leans;
                 let mut directions = self.spokes(ballbar(scene, model, center, radius).0);
                 for (d, _) in leans.iter().enumerate().filter(|(_, leans)| !**leans) {
                     directions.iter_mut().for_each(|direction| direction[d] = 0.0);
                 }
-                along(&self.levers, &directions)
+                directions
             }
-            Kind::Along(n) => along(&self.levers, &vec![n; rows]),
-            Kind::Normal => {
-                let normals: Vec<[f64; 3]> = (0..rows).map(|row| self.normal(study, scene, row)).collect();
-                along(&self.levers, &normals)
-            }
-            Kind::Turn(about) => along(&self.turns, &vec![about; rows]),
-            Kind::Stage(axis) => along(&self.turns, &vec![stage_direction(study, axis, &self.turns); rows]),
-            Kind::Drive(axis) => {
-                let own = study.own[axis].filter(|_| side.at_drive());
-                (0..self.levers.len()).map(|motion| (Some(motion) == own).then(|| vec![1.0; rows])).collect()
-            }
-        }
+            Kind::Along(n) | Kind::Turn(n) => everywhere(n),
+            Kind::Normal => (0..self.len()).map(|row| self.normal(study, scene, row)).collect(),
+            Kind::Stage(axis) => everywhere(stage_direction(study, axis, &self.turns)),
+            Kind::Drive(_) => everywhere([0.0; 3]),
+        };
+        Sight { turning: matches!(channel.kind, Kind::Turn(_) | Kind::Stage(_)), directions }
     }
 
     /// Unit vectors from the centre to the tip.

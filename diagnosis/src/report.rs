@@ -14,6 +14,7 @@ mod brief;
 mod data;
 mod element;
 mod figure;
+mod files;
 mod finding;
 mod html;
 mod instrument;

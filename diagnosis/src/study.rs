@@ -226,7 +226,8 @@ fn own_motions(equations: &Equations) -> Vec<Option<usize>> {
     (0..equations.axes.len()).map(|axis| equations.own_motion(axis)).collect()
 }
 
-fn known(
+/// The terms of a calibration, as far as the recordings hold the states they read.
+pub(crate) fn known(
     calibration: Option<&Calibration>,
     loads: &[(String, String)],
     own: &[Option<usize>],

@@ -159,6 +159,8 @@ fn judge(case: &Case) -> (diagnosis::diagnosis::Diagnosis, Score) {
         calibration: case.told(),
         recordings: recordings.iter().collect(),
         holdout: None,
+        calibration_file: None,
+        chains: None,
     };
     let diagnosis = diagnose(&inputs, &mut |_| {});
     let score = Score::of(case, &diagnosis, begun.elapsed().as_secs_f64());

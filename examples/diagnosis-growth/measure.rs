@@ -86,6 +86,8 @@ fn diagnosed(path: &Path) -> (f64, usize, usize) {
         calibration: Some(&known),
         recordings: vec![&recording],
         holdout: None,
+        calibration_file: None,
+        chains: None,
     };
     let diagnosis = diagnosis::diagnose(&inputs, &mut |_| {});
     (begun.elapsed().as_secs_f64(), diagnosis.candidates, diagnosis.findings.len())

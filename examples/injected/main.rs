@@ -167,6 +167,8 @@ fn diagnosed(base: &Base, recording: &Recording) -> Option<Diagnosis> {
         calibration: base.calibration.as_ref(),
         recordings: vec![recording],
         holdout: None,
+        calibration_file: None,
+        chains: None,
     };
     let done = catch_unwind(AssertUnwindSafe(|| diagnose(&inputs, &mut |_| {})));
     done.inspect_err(|_| eprintln!("{}: the diagnosis failed", base.name)).ok()

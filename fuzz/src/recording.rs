@@ -57,6 +57,8 @@ fn studied(machine: &Compiled, recording: &Recording) {
             calibration: None,
             recordings: vec![recording],
             holdout: None,
+            calibration_file: None,
+            chains: None,
         };
         let diagnosis = diagnosis::diagnose_with_pictures(&inputs, &mut |_| ());
         says_numbers(&report::text(&diagnosis));

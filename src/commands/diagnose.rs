@@ -7,9 +7,9 @@ pub(super) mod origin;
 
 use std::path::PathBuf;
 
-use diagnosis::Inputs;
 use diagnosis::diagnosis::Diagnosis;
 use diagnosis::report::{self, Origin};
+use diagnosis::{Chains, Inputs};
 
 use crate::arguments::{Diagnose, ReportFormat};
 use crate::failure::Failure;
@@ -60,11 +60,18 @@ fn page(
 fn diagnosed(arguments: &Diagnose, recorded: &[Recorded]) -> Result<Diagnosis, Failure> {
     let (fitted, held_out) = recorded.split_at(arguments.recordings.len().min(recorded.len()));
     let Some(first) = fitted.first() else { return Ok(Diagnosis::default()) };
+    let derive = first.topology.as_ref().map(|topology| |word: &str| topology.derive(word));
     let inputs = Inputs {
         equations: &first.equations,
         calibration: first.calibration.as_ref().map(|known| &known.calibration),
         recordings: fitted.iter().map(|recorded| &recorded.recording).collect(),
         holdout: held_out.first().map(|recorded| &recorded.recording),
+        calibration_file: first.calibration.as_ref().map(|known| &known.source),
+        chains: first.topology.as_ref().zip(derive.as_ref()).map(|(topology, derive)| Chains {
+            file: &topology.file,
+            word: &topology.word,
+            derive,
+        }),
     };
     let progress = Progress::new(arguments.quiet, "reading the machine");
     let mut show = |now: diagnosis::Progress| progress.part(now.step, now.done);

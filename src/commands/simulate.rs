@@ -22,7 +22,7 @@ use crate::failure::Failure;
 use crate::load;
 use crate::output::{rendered, show, warn};
 use crate::progress::Progress;
-use crate::recorded;
+use crate::recorded::{self, Recorded};
 use crate::written;
 
 /// Runs the command.
@@ -101,7 +101,14 @@ fn replayed(command: &Simulate, calibrated: &Calibrated, names: &MachineNames) -
         return Err(Failure::Wrong(format!("error: {} is a recording\n{help}", command.path.display())));
     }
     let recorded = recorded::read(&command.path, command.quiet)?;
-    if recorded.equations.names() != *names {
+    if is_reordered(&recorded, names) {
+        warn(&format!(
+            "warning: {} is a recording of {}; what is simulated is {}, which has the same axes in another order",
+            command.path.display(),
+            recorded.equations.machine,
+            names.machine
+        ));
+    } else if recorded.equations.names() != *names {
         return Err(Failure::Wrong(format!(
             "error: {} is a recording of {}, {} a calibration of {}\nhelp: give both for the same machine",
             command.path.display(),
@@ -115,6 +122,21 @@ fn replayed(command: &Simulate, calibrated: &Calibrated, names: &MachineNames) -
     let simulated = replay::replayed(plant, &recorded.recording);
     drop(progress);
     simulated.map_err(|reason| wrong(&reason))
+}
+
+/// Whether a calibration is for the machine of a recording with the letters of its topology word in another order, as `abbe diagnose`
+/// writes one where the word was wrong.
+fn is_reordered(recorded: &Recorded, names: &MachineNames) -> bool {
+    let known = recorded.equations.names();
+    let letters = |word: &str| {
+        let mut letters: Vec<char> = word.chars().collect();
+        letters.sort_unstable();
+        letters
+    };
+    known.machine != names.machine
+        && recorded.topology.as_ref().is_some_and(|topology| topology.word == known.machine)
+        && letters(&known.machine) == letters(&names.machine)
+        && (&known.axes, &known.constants) == (&names.axes, &names.constants)
 }
 
 fn plant(calibrated: &Calibrated, names: &MachineNames) -> Result<Plant, Failure> {

@@ -5,6 +5,7 @@
 
 use crate::answers::answers;
 use crate::crossing;
+use crate::diagnosis::Change;
 use crate::model::{Fitted, Model};
 use crate::recording::Instrument;
 use crate::study::{Scene, Study};
@@ -95,6 +96,14 @@ pub(super) fn crossed(study: &Study<'_>, model: &Model) -> Vec<String> {
         )
     })
     .collect()
+}
+
+/// What is open where a file seems to be wrong.
+pub(super) fn since_when(change: &Change) -> String {
+    format!(
+        "Whether {} was wrong from the start, or the machine was changed since, cannot be decided from these recordings; only that {}.",
+        change.name, change.fault
+    )
 }
 
 /// Why nothing at all can be claimed, where that is so.

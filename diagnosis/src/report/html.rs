@@ -42,8 +42,9 @@ pub fn html(diagnosis: &Diagnosis, origin: &Origin<'_>) -> String {
     let sections = |sections: &[Section]| sections.iter().map(|one| section(one, "")).collect::<String>();
     let returns = sheet.returns.iter().map(|one| section(one, &plots::returns(diagnosis)));
     let body = format!(
-        "{}{}{}{}{}{}{}",
+        "{}{}{}{}{}{}{}{}",
         summary(diagnosis, &sheet.summary),
+        sheet.files.iter().map(|one| section(one, "")).collect::<String>(),
         returns.collect::<String>(),
         sections(&sheet.found),
         plots::sections(diagnosis),

@@ -7,8 +7,9 @@ use serde::{Serialize, Serializer};
 use super::figure::change;
 use super::told;
 use crate::diagnosis::{
-    Alternative, Diagnosis, Estimate, Evidence, Finding, Interval, IntervalOf, NoiseSummary, Parameter,
-    ParameterValue, Repeatability, Repeats, Residual, Returning, SettingFinding, Summary, Unexplained,
+    Alternative, Change, Diagnosis, Estimate, Evidence, Finding, Interval, IntervalOf, NoiseSummary,
+    Parameter, ParameterValue, Repeatability, Repeats, Residual, Returning, SettingFinding, Summary,
+    Unexplained,
 };
 
 /// The diagnosis as one JSON object with the schema `abbe-diagnosis/1`.
@@ -28,6 +29,8 @@ struct ReportJson<'d> {
     before: ResidualJson,
     after: ResidualJson,
     returns: Vec<ReturnsJson<'d>>,
+    /// What to change in the files; everything after it is said with the files mended.
+    model: Vec<ChangeJson<'d>>,
     findings: Vec<FindingJson<'d>>,
     instrument: Vec<SettingJson<'d>>,
     unexplained: Option<UnexplainedJson<'d>>,
@@ -60,6 +63,26 @@ struct ReturnsJson<'d> {
     share: f64,
     left: AmountJson,
     recording: Option<&'d str>,
+}
+
+/// A fault of a file.
+#[derive(Serialize)]
+struct ChangeJson<'d> {
+    file: &'d str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    line: Option<usize>,
+    path: &'d str,
+    change: &'static str,
+    /// The other place, where two are exchanged or one is moved.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    with: Option<&'d str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    parameters: Option<Parameters<'d>>,
+    fault: &'d str,
+    remedy: &'d str,
+    share: f64,
+    evidence_rms: EvidenceJson,
+    indistinguishable_from: &'d [String],
 }
 
 /// A number that was not fitted, with its unit.
@@ -236,6 +259,7 @@ fn report(diagnosis: &Diagnosis) -> ReportJson<'_> {
         before: residual(&diagnosis.before),
         after: residual(&diagnosis.after),
         returns: diagnosis.returns.iter().map(|one| returning(one, diagnosis)).collect(),
+        model: diagnosis.model.iter().map(change_of_file).collect(),
         findings: diagnosis.findings.iter().map(finding).collect(),
         instrument: diagnosis.settings.iter().map(|one| setting(one, diagnosis)).collect(),
         unexplained: diagnosis.unexplained.as_ref().map(unexplained),
@@ -262,6 +286,23 @@ fn returning<'d>(one: &'d Returning, diagnosis: &'d Diagnosis) -> ReturnsJson<'d
         share: one.share,
         left: AmountJson { value: one.left, unit: one.unit },
         recording: diagnosis.recordings.get(one.recording).map(|recording| recording.file.as_str()),
+    }
+}
+
+fn change_of_file(change: &Change) -> ChangeJson<'_> {
+    let &Evidence { with, without, unit, .. } = &change.evidence;
+    ChangeJson {
+        file: &change.name,
+        line: change.line,
+        path: &change.path,
+        change: change.change,
+        with: change.with.as_deref(),
+        parameters: change.amount.as_ref().map(|_| Parameters(change.amount.as_slice())),
+        fault: &change.fault,
+        remedy: &change.remedy,
+        share: change.share,
+        evidence_rms: EvidenceJson { with, without, unit },
+        indistinguishable_from: &change.alternatives,
     }
 }
 

@@ -53,8 +53,8 @@ fn stretch(places: &[f64], unit: &str) -> String {
 /// How a parameter's unit is read.
 fn kind(name: &str) -> Kind {
     match name {
-        "gain" => Kind::Plain,
-        "period" | "wind_up" | "phase" | "frequency" | "start" | "step" | "at" => Kind::Travel,
+        "gain" | "factor" => Kind::Plain,
+        "period" | "wind_up" | "phase" | "frequency" | "start" | "step" | "at" | "shift" => Kind::Travel,
         _ => Kind::Error,
     }
 }

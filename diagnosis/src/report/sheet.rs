@@ -2,13 +2,15 @@
 //! labelled facts or with plain sentences.
 
 use super::item::Item;
-use super::{brief, data, finding, instrument, remains, verdict};
+use super::{brief, data, files, finding, instrument, remains, verdict};
 use crate::diagnosis::Diagnosis;
 
 /// The whole report.
 pub(super) struct Sheet {
     /// What it begins with.
     pub(super) summary: Summary,
+    /// What is wrong with the files, before anything is said of the machine.
+    pub(super) files: Option<Section>,
     /// What comes back, before anything has a name.
     pub(super) returns: Option<Section>,
     /// What was found.
@@ -66,6 +68,7 @@ pub(super) fn sheet(diagnosis: &Diagnosis) -> Sheet {
             verdict: verdict::sentence(diagnosis),
             findings: brief::rows(&diagnosis.findings),
         },
+        files: items("Your files", files::items(diagnosis)),
         returns: list("What comes back", data::returns(diagnosis)),
         found: found.into_iter().flatten().collect(),
         open: open.into_iter().flatten().collect(),

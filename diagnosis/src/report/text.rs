@@ -44,7 +44,7 @@ pub fn text_on(diagnosis: &Diagnosis, terminal: Terminal) -> String {
     let verdict = page.ink.verdict(diagnosis, &paragraph(page.width, verdict, "", ""));
     let mut text = format!("{}\n{verdict}", page.ink.strong(&title));
     text += &brief::table(findings, page.width, page.ink);
-    let sections = sheet.returns.iter().chain(&sheet.found).chain(&sheet.open);
+    let sections = sheet.files.iter().chain(&sheet.returns).chain(&sheet.found).chain(&sheet.open);
     text.extend(sections.map(|section| page.section(section)));
     text
 }

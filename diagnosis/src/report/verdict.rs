@@ -8,7 +8,7 @@ pub(super) fn sentence(diagnosis: &Diagnosis) -> String {
     match diagnosis.verdict {
         Verdict::Undecided => undecided(diagnosis),
         Verdict::Adequate => adequate(diagnosis),
-        Verdict::LeftOutPhysics => format!("left-out physics: {}", found(diagnosis)),
+        Verdict::LeftOutPhysics => format!("{}: {}", subject(diagnosis), found(diagnosis)),
         Verdict::Unexplained => format!("unexplained: {}", unexplained(diagnosis)),
         Verdict::NotRepeatable => format!("not repeatable: {}", not_repeatable(diagnosis)),
     }
@@ -29,6 +29,15 @@ fn adequate(diagnosis: &Diagnosis) -> String {
         remaining(diagnosis),
         noise(diagnosis)
     )
+}
+
+/// What was wrong: the physics, or the files.
+fn subject(diagnosis: &Diagnosis) -> &'static str {
+    match (diagnosis.model.is_empty(), diagnosis.findings.is_empty()) {
+        (true, _) => "left-out physics",
+        (false, true) => "wrong files",
+        (false, false) => "wrong files, and left-out physics",
+    }
 }
 
 fn found(diagnosis: &Diagnosis) -> String {
@@ -72,14 +81,19 @@ fn not_repeatable(diagnosis: &Diagnosis) -> String {
     }
 }
 
-/// How many findings there are, and how much they explain together; nothing without findings.
+/// How many findings and faults of files there are, and how much they explain together; nothing without any.
 fn effects(diagnosis: &Diagnosis) -> Option<String> {
-    let together = percent(together(diagnosis));
-    match diagnosis.findings.len() {
+    let (effects, faults) = (diagnosis.findings.len(), diagnosis.model.len());
+    let counted = |count: usize, name: &str| match count {
         0 => None,
-        1 => Some(format!("1 effect explains {together} of what the model missed")),
-        count => Some(format!("{count} effects explain {together} of what the model missed")),
-    }
+        1 => Some(format!("1 {name}")),
+        count => Some(format!("{count} {name}s")),
+    };
+    let names: Vec<String> =
+        [counted(faults, "fault"), counted(effects, "effect")].into_iter().flatten().collect();
+    let verb = if effects + faults == 1 { "explains" } else { "explain" };
+    let together = percent(together(diagnosis));
+    (!names.is_empty()).then(|| format!("{} {verb} {together} of what the model missed", names.join(" and ")))
 }
 
 /// By how much the variance above the noise has come down, of the held-out data where there are any. The shares of the

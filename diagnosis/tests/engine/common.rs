@@ -33,6 +33,8 @@ pub(crate) fn with_holdout(
         calibration: Some(known),
         recordings: recordings.to_vec(),
         holdout,
+        calibration_file: None,
+        chains: None,
     };
     let mut done = 0.0;
     let diagnosis = diagnose(&inputs, &mut |progress| {

@@ -7,6 +7,7 @@
     reason = "a panic is the report of a test, also from a function that tests share"
 )]
 
+mod audit;
 #[path = "../../../tests/beside.rs"]
 #[expect(dead_code, reason = "tests of other crates use the rest")]
 mod beside;

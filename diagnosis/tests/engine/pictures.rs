@@ -18,6 +18,8 @@ fn drawn(bench: &Bench, known: &Calibration, recording: &Recording) -> (Diagnosi
         calibration: Some(known),
         recordings: vec![recording],
         holdout: None,
+        calibration_file: None,
+        chains: None,
     };
     let mut diagnosis = diagnose_with_pictures(&inputs, &mut |_| {});
     let pictures = diagnosis.pictures.take().unwrap();

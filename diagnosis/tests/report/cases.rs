@@ -1,9 +1,9 @@
 //! Diagnoses by hand: one for each verdict, and the kinds of parameters.
 
 use diagnosis::diagnosis::{
-    Alternative, Diagnosis, Estimate, Evidence, Finding, Interval, IntervalOf, Location, NoiseSummary,
-    Parameter, ParameterValue, Repeatability, Repeats, Residual, Returning, SettingFinding, Summary,
-    Unexplained, Verdict,
+    Alternative, Change, Diagnosis, Estimate, Evidence, Finding, Interval, IntervalOf, Location,
+    NoiseSummary, Parameter, ParameterValue, Repeatability, Repeats, Residual, Returning, SettingFinding,
+    Summary, Unexplained, Verdict, WrongFile,
 };
 use model_dsl::calibration::CalibratedTerm;
 use model_dsl::machine::ElementKind;
@@ -246,6 +246,46 @@ pub(crate) fn clock_only() -> Diagnosis {
     }
 }
 
+/// A sign and an order that are wrong, and the contract's backlash beside them.
+pub(crate) fn wrong_files() -> Diagnosis {
+    Diagnosis { model: vec![sign(), order()], ..two_findings() }
+}
+
+/// A table of the calibration with the wrong sign.
+pub(crate) fn sign() -> Change {
+    Change {
+        file: WrongFile::Calibration,
+        name: "calibration.yaml".to_owned(),
+        line: Some(14),
+        path: "errors.EBX".to_owned(),
+        change: "sign",
+        with: None,
+        fault: "EBX has the wrong sign".to_owned(),
+        remedy: "turn the sign of its values".to_owned(),
+        amount: Some(fitted("factor", -0.998, 0.012, "")),
+        share: 0.97,
+        evidence: Evidence { with: 0.0006, without: 0.0031, unit: "mm", drive: None },
+        alternatives: vec!["what is read in circle.yaml has the wrong sign".to_owned()],
+    }
+}
+
+fn order() -> Change {
+    Change {
+        file: WrongFile::Machine,
+        name: "FXYZ".to_owned(),
+        line: None,
+        path: "topology".to_owned(),
+        change: "order",
+        with: Some("XFYZ".to_owned()),
+        fault: "the chain is XFYZ, and not FXYZ".to_owned(),
+        remedy: "write the topology XFYZ".to_owned(),
+        amount: None,
+        share: f64::NAN,
+        alternatives: Vec::new(),
+        ..sign()
+    }
+}
+
 pub(crate) fn all() -> Vec<(&'static str, Diagnosis)> {
     vec![
         ("adequate", adequate()),
@@ -254,5 +294,6 @@ pub(crate) fn all() -> Vec<(&'static str, Diagnosis)> {
         ("not-repeatable", not_repeatable()),
         ("clock-only", clock_only()),
         ("wave-of-a-worm", worm()),
+        ("wrong-files", wrong_files()),
     ]
 }

@@ -80,6 +80,21 @@ fn nothing_left_out_is_said_with_empty_lists() {
 }
 
 #[test]
+fn a_fault_of_a_file_says_where_and_what_to_change() {
+    let contract = json!({"model": [
+        {"file": "calibration.yaml", "line": 14, "path": "errors.EBX", "change": "sign",
+         "parameters": {"factor": {"value": -0.998, "ci95": [-1.01, -0.986], "unit": ""}}, "share": 0.97,
+         "fault": "EBX has the wrong sign", "remedy": "turn the sign of its values",
+         "evidence_rms": {"with": 0.0006, "without": 0.0031, "unit": "mm"},
+         "indistinguishable_from": ["what is read in circle.yaml has the wrong sign"]},
+        {"file": "FXYZ", "path": "topology", "change": "order", "with": "XFYZ", "share": null}]});
+    let found = parsed(&cases::wrong_files());
+    holds(&found, &contract, "");
+    assert!(found["model"][1].get("line").is_none() && found["model"][1].get("parameters").is_none());
+    assert_eq!(parsed(&cases::two_findings())["model"], json!([]));
+}
+
+#[test]
 fn what_is_unexplained_says_where() {
     let interval = json!({"axis": "X", "from": 174.67, "to": 200.98, "unit": "mm"});
     let contract = json!({"verdict": "unexplained", "findings": [], "unexplained": {
@@ -189,6 +204,7 @@ fn the_manual_shows_every_key() {
     let mut diagnosis = cases::two_findings();
     diagnosis.findings[0].alternatives = cases::clock_only().settings[0].alternatives.clone();
     diagnosis.settings[0].parameters.truncate(1);
+    diagnosis.model = vec![cases::sign()];
     let (mut shown, mut written) = (Vec::new(), Vec::new());
     keys(&serde_json::from_str(example).unwrap(), "", &mut shown);
     keys(&parsed(&diagnosis), "", &mut written);

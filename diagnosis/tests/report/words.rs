@@ -41,6 +41,9 @@ fn the_verdict_stands_in_one_line_of_plain_words() {
         "left-out physics: 2 effects explain more than 99 % of what the model missed; held-out rms falls from 12.5 um to \
          0.60 um, noise 0.50 um"
     );
+    assert!(said(cases::wrong_files()).starts_with(
+        "wrong files, and left-out physics: 2 faults and 2 effects explain more than 99 % of what the model missed"
+    ));
     assert!(said(cases::clock_only()).contains("of the instruments and not of the machine (clock)"));
     assert!(said(cases::unexplained()).contains("in measured.z, x from 174.7 to 201.0 mm"));
     assert!(said(cases::not_repeatable()).contains("differ by 7.1 um where the noise gives 0.10 um"));

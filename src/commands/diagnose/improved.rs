@@ -1,11 +1,13 @@
-//! The improved calibration. In: what was known of a machine, and a diagnosis. Out: a calibration file with the findings
-//! added, which reads back as it was meant.
+//! The improved calibration. In: what was known of a machine, and a diagnosis. Out: a calibration file with the faults of the files
+//! mended and the findings added, which reads back as it was meant; and a machine file beside it where the chain has another order.
 
-use std::path::Path;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
-use diagnosis::diagnosis::{Diagnosis, Finding};
+use diagnosis::diagnosis::{Diagnosis, Finding, WrongFile};
 use diagnosis::report;
 use model_dsl::calibration::{self, Calibration};
+use model_dsl::source::SourceFile;
 use similar::TextDiff;
 
 use super::files::Files;
@@ -15,33 +17,81 @@ use crate::output::warn;
 use crate::recorded::Recorded;
 use crate::written::{self, comment, folder};
 
-/// Writes the known calibration with the findings added; without findings it is written as it is, with a warning.
+/// Writes the known calibration mended, with the findings added; without either it is written as it is, with a warning.
 pub(super) fn write(
     target: &Path,
     recorded: &Recorded,
     files: &Files,
     diagnosis: &Diagnosis,
 ) -> Result<(), Failure> {
-    let names = recorded.equations.names();
-    let improved = improved(known(target, recorded, files)?, &diagnosis.findings);
-    let text = comments(recorded, files, diagnosis) + &calibration::write(&improved, &names);
-    written::calibration(target, &text, &recorded.equations)?;
+    let equations = diagnosis.mended.as_ref().map_or(&recorded.equations, |mended| &mended.equations);
+    let machine = machine_file(target, recorded, diagnosis);
+    if let Some((path, _)) = &machine
+        && path.exists()
+    {
+        return Err(Failure::Wrong(format!(
+            "error: {} is there already, and a machine file is never written over\nhelp: take it away, or give \
+             --write-calibration another name",
+            path.display()
+        )));
+    }
+    let improved = improved(mended(target, recorded, files, diagnosis)?, &diagnosis.findings);
+    let text = comments(recorded, files, diagnosis) + &calibration::write(&improved, &equations.names());
+    let beside = machine
+        .map(|(path, source)| {
+            let staged = written::staged(&path, |file| file.write_all(source.text().as_bytes()))?;
+            Ok::<_, Failure>((path, staged))
+        })
+        .transpose()?;
+    written::calibration(target, &text, equations)?;
+    if let Some((path, staged)) = beside {
+        staged.keep().map_err(|error| written::cannot_write(&path, &error))?;
+    }
     tell(target, diagnosis);
     Ok(())
+}
+
+/// The machine file that is written beside the calibration, where the chain has another order than the file says.
+fn machine_file(target: &Path, recorded: &Recorded, diagnosis: &Diagnosis) -> Option<(PathBuf, SourceFile)> {
+    let topology = recorded.topology.as_ref()?;
+    let word = diagnosis.mended.as_ref()?.word.as_ref().filter(|word| **word != topology.word)?;
+    let source = topology.file_with(word)?;
+    let stem = target.file_stem()?.to_str()?;
+    Some((folder(target).join(format!("{stem}-{word}.yaml")), source))
 }
 
 /// What the findings change in the known calibration, both as they would be written beside the recording: a unified diff.
 /// Empty where there are none.
 pub(super) fn change(recorded: &Recorded, files: &Files, diagnosis: &Diagnosis) -> Result<String, Failure> {
-    if diagnosis.findings.is_empty() {
+    if diagnosis.findings.is_empty() && diagnosis.model.is_empty() {
         return Ok(String::new());
     }
-    let names = recorded.equations.names();
-    let known = known(&files.recording, recorded, files)?;
-    let before = calibration::write(&known, &names);
-    let after = calibration::write(&improved(known, &diagnosis.findings), &names);
+    let equations = diagnosis.mended.as_ref().map_or(&recorded.equations, |mended| &mended.equations);
+    let before = calibration::write(&known(&files.recording, recorded, files)?, &recorded.equations.names());
+    let mended = mended(&files.recording, recorded, files, diagnosis)?;
+    let after = calibration::write(&improved(mended, &diagnosis.findings), &equations.names());
     let difference = TextDiff::from_lines(&before, &after);
     Ok(difference.unified_diff().context_radius(3).header("known", "with the findings").to_string())
+}
+
+/// The same with the faults of the files mended.
+fn mended(
+    target: &Path,
+    recorded: &Recorded,
+    files: &Files,
+    diagnosis: &Diagnosis,
+) -> Result<Calibration, Failure> {
+    let known = known(target, recorded, files)?;
+    let Some(mended) = &diagnosis.mended else { return Ok(known) };
+    let mut calibration = mended.calibration.clone();
+    calibration.machine = known.machine;
+    let word = recorded.topology.as_ref().zip(mended.word.as_ref());
+    if let Some((_, word)) = word.filter(|(topology, word)| topology.word != **word) {
+        let beside = machine_file(target, recorded, diagnosis)
+            .and_then(|(path, _)| path.file_name()?.to_str().map(str::to_owned));
+        calibration.machine.value = beside.unwrap_or_else(|| word.clone());
+    }
+    Ok(calibration)
 }
 
 /// What is known of the machine, its machine file named from the target's folder.
@@ -94,14 +144,18 @@ fn comments(recorded: &Recorded, files: &Files, diagnosis: &Diagnosis) -> String
         || "nothing was; constants that the machine file does not give are 0".to_owned(),
         |path| path.display().to_string(),
     );
-    let lines = [
+    let mended = diagnosis.model.iter().map(|change| change.fault.as_str()).collect::<Vec<_>>().join("; ");
+    let mut lines = vec![
         format!("Written by abbe diagnose from {}.", recordings.collect::<Vec<_>>().join(", ")),
         format!("Verdict: {}.", report::verdict(diagnosis)),
         rms(diagnosis),
         format!("Known before: {known}."),
-        format!("Added: {added}."),
     ];
-    lines.map(|line| comment(&line)).concat()
+    if !mended.is_empty() {
+        lines.push(format!("Mended: {mended}."));
+    }
+    lines.push(format!("Added: {added}."));
+    lines.iter().map(|line| comment(line)).collect()
 }
 
 /// What the model leaves, before and after, in the units of the diagnosis.
@@ -123,7 +177,10 @@ fn rms(diagnosis: &Diagnosis) -> String {
 /// What whoever uses the file should know.
 fn tell(target: &Path, diagnosis: &Diagnosis) {
     let target = target.display();
-    if diagnosis.findings.is_empty() {
+    for change in diagnosis.model.iter().filter(|change| matches!(change.file, WrongFile::Recording(_))) {
+        warn(&format!("note: {target} does not mend {}: {}; {}", change.name, change.fault, change.remedy));
+    }
+    if diagnosis.findings.is_empty() && diagnosis.model.is_empty() {
         warn(&format!("warning: no term was found: {target} holds what was known before, and nothing more"));
     }
     for finding in diagnosis.findings.iter().filter(|finding| !finding.compensable) {

@@ -1,0 +1,140 @@
+//! A search with the files as they are, or as they would be.
+//!
+//! In: what the user gives. Out: the study with what the engine found in it, and what is told of the recordings before anything is found;
+//! or the whole diagnosis where nothing can be decided.
+
+use super::decidable::{astray, impossible, misplaced, no_circle, too_little, undecided};
+use super::units::Units;
+use super::{bare_model, ceiling, fitted_runs, strongest, undecidable, with_known_crossings};
+use crate::audit::Trial;
+use crate::candidates;
+use crate::diagnosis::{Diagnosis, NothingReturns, Residual, Returning};
+use crate::engine::{self, Found};
+use crate::fit;
+use crate::model::{Fitted, Model, Place};
+use crate::pictures;
+use crate::repeats::{self, Scatter};
+use crate::rest;
+use crate::study::Study;
+use crate::zeros;
+use crate::{Inputs, Progress};
+
+/// A study that was searched.
+pub(super) struct Searched<'s> {
+    pub(super) study: Study<'s>,
+    pub(super) units: Units,
+    pub(super) found: Found,
+    /// The recordings whose runs do not repeat.
+    pub(super) scattered: Vec<Scatter>,
+    /// What the files leave.
+    pub(super) before: Residual,
+}
+
+/// What is told of recordings before anything is found in them.
+pub(super) struct Opening {
+    pub(super) before: Residual,
+    pub(super) drawn: Option<pictures::Before>,
+    pub(super) returns: Vec<Returning>,
+    pub(super) nothing_returns: Vec<NothingReturns>,
+    pub(super) undecided: Vec<String>,
+}
+
+impl<'s> Searched<'s> {
+    /// Searches recordings; the whole diagnosis where nothing can be decided from them.
+    pub(super) fn new(
+        inputs: &Inputs<'s>,
+        drawn: bool,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<(Self, Opening), Box<Diagnosis>> {
+        let mut study = study(inputs);
+        let mut opened = Diagnosis {
+            machine: inputs.equations.machine.clone(),
+            undecided: undecided(&study),
+            ..Diagnosis::default()
+        };
+        if let Some(reason) = too_little(&study).or_else(|| impossible(&study)).or_else(|| misplaced(&study))
+        {
+            return Err(Box::new(undecidable(opened, &study, reason)));
+        }
+        let units = Units::new(&study);
+        let bare = bare_model(&mut study);
+        opened.returns = ceiling::ceiling(&study);
+        opened.nothing_returns = ceiling::nothing(&study);
+        if let Some(reason) = astray(&study, &bare).or_else(|| no_circle(&study, &bare)) {
+            return Err(Box::new(undecidable(opened, &study, reason)));
+        }
+        let left = |study: &Study<'_>, bare: &Model| {
+            (units.residual(study, bare), drawn.then(|| pictures::Before::new(study, bare)))
+        };
+        let (mut before, mut drawn) = left(&study, &bare);
+        let (found, scattered) = search(&mut study, progress);
+        if study.crosses() {
+            (before, drawn) = with_known_crossings(&mut study, &bare, left);
+            found.appraisal.mark(&mut study);
+        }
+        let Diagnosis { returns, nothing_returns, undecided, .. } = opened;
+        let opening = Opening { before, drawn, returns, nothing_returns, undecided };
+        Ok((Self { study, units, found, scattered, before }, opening))
+    }
+
+    /// Whether nothing stands out at any place beside what was found: a number that has no name may only be changed if all is explained
+    /// then.
+    pub(super) fn is_explained(&self) -> bool {
+        strongest(&self.study, &self.found).is_none()
+    }
+
+    /// What the effects that were found in a trial leave here, fitted again.
+    pub(super) fn left_by(&self, trial: &Searched<'_>) -> Residual {
+        let (from, to) = (trial.study.equations, self.study.equations);
+        let place = |motion: usize| {
+            let name = &from.motions[motion].name;
+            to.motions.iter().position(|motion| motion.name == *name)
+        };
+        let here = |fitted: &Fitted| {
+            let mut fitted = fitted.clone();
+            if let Place::Motion { motion, .. } = &mut fitted.effect.place {
+                *motion = place(*motion)?;
+            }
+            Some(fitted)
+        };
+        let Found { fit, appraisal, travels, .. } = &trial.found;
+        let model = fit.model.iter().filter_map(here).collect();
+        let mut model = fit::refine(&self.study, model, &appraisal.noises, travels).model;
+        zeros::free_held_out(&self.study, &mut model);
+        self.units.residual(&self.study, &model)
+    }
+
+    /// The same as the audit takes it.
+    pub(super) fn trial<'t>(&'t self, inputs: &'t Inputs<'t>) -> Trial<'t, 's> {
+        Trial { study: &self.study, found: &self.found, inputs }
+    }
+}
+
+fn study<'s>(inputs: &Inputs<'s>) -> Study<'s> {
+    let recordings: Vec<_> = inputs.recordings.iter().copied().chain(inputs.holdout).collect();
+    let mut study = Study::new(inputs.equations, inputs.calibration, &recordings);
+    rest::tell(&mut study);
+    if inputs.holdout.is_some()
+        && let Some(scene) = study.scenes.last_mut()
+    {
+        scene.blocks.iter_mut().for_each(|block| block.held_out = true);
+    }
+    study
+}
+
+/// What the engine finds, and the recordings whose runs do not repeat.
+fn search(study: &mut Study<'_>, progress: &mut dyn FnMut(Progress)) -> (Found, Vec<Scatter>) {
+    let mut step = |done: f64| progress(Progress { step: "looking for left-out physics", done: 0.9 * done });
+    let always = candidates::always(study);
+    let mut found = engine::find(study, always, &mut step);
+    let scattered = repeats::scatter(study, &found.fit.model);
+    if !scattered.is_empty() {
+        let mut always = candidates::always(study);
+        for scatter in &scattered {
+            let fitted: Vec<i64> = fitted_runs(&study.scenes[scatter.scene]);
+            always.extend(repeats::run_zeros(scatter.scene, &study.scenes[scatter.scene], &fitted));
+        }
+        found = engine::find(study, always, &mut step);
+    }
+    (found, scattered)
+}

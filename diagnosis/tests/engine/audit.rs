@@ -1,0 +1,261 @@
+//! The audit: recordings of the exact machine beside files that are wrong in one place.
+//!
+//! In: the right files of a mill, and the same with a fault. Out: what to change, with the right value; nothing where the files are
+//! right, and nothing beside it.
+
+use diagnosis::diagnosis::{Change, Diagnosis, ParameterValue, Verdict};
+use diagnosis::{Chains, Inputs, diagnose};
+use model_dsl::calibration::Calibration;
+use model_dsl::compile_word;
+use model_dsl::diagnostic::Diagnostics;
+use simulation::path::Shape;
+use simulation::{Path, Scenario};
+
+use crate::common::*;
+use crate::recording::Recording;
+use crate::testing::*;
+
+/// A measured curve: its motion, the axis that it is written for, the place of its first node and its values, um or urad.
+#[derive(Clone, Copy)]
+struct Curve {
+    motion: &'static str,
+    axis: &'static str,
+    start: f64,
+    values: [f64; 6],
+}
+
+const STEP: f64 = 100.0;
+
+const fn curve(motion: &'static str, axis: &'static str, values: [f64; 6]) -> Curve {
+    Curve { motion, axis, start: 0.0, values }
+}
+
+/// The curves of a mill: displacements of some 10 um, angles of some 50 urad.
+const CURVES: [Curve; 8] = [
+    curve("EXX", "X", [0.0, 9.0, -6.0, 12.0, 3.0, -8.0]),
+    curve("EYX", "X", [0.0, -7.0, 2.0, 8.0, -5.0, -11.0]),
+    curve("EBX", "X", [0.0, 60.0, -20.0, -50.0, 10.0, 40.0]),
+    curve("ECX", "X", [0.0, -30.0, 40.0, 70.0, 20.0, -60.0]),
+    curve("EYY", "Y", [0.0, 10.0, 4.0, -9.0, 0.0, 0.0]),
+    curve("EXY", "Y", [0.0, -6.0, 9.0, 2.0, 0.0, 0.0]),
+    curve("EAY", "Y", [0.0, 45.0, -35.0, 25.0, 0.0, 0.0]),
+    curve("ECY", "Y", [0.0, -20.0, 50.0, -40.0, 0.0, 0.0]),
+];
+
+/// The errors of a mill with these curves, and the squareness of its table in urad.
+fn errors(curves: &[Curve], square: f64) -> String {
+    let written = curves.iter().map(|curve| {
+        let unit = if curve.motion.contains(['A', 'B', 'C']) { "urad" } else { "um" };
+        format!(
+            "{}: [{{table: {{axis: {}, start: {} mm, step: {STEP} mm, unit: {unit}, values: {:?}}}}}]",
+            curve.motion, curve.axis, curve.start, curve.values
+        )
+    });
+    let written: Vec<String> = written.chain([format!("EC0Y: {square} urad")]).collect();
+    format!("{{{}}}", written.join(", "))
+}
+
+const SQUARE: f64 = 80.0;
+
+fn right(bench: &Bench) -> Calibration {
+    bench.calibration(&errors(&CURVES, SQUARE))
+}
+
+/// The curves with one of them changed.
+fn with(motion: &str, change: impl Fn(&mut Curve)) -> Vec<Curve> {
+    let mut curves = CURVES.to_vec();
+    curves.iter_mut().filter(|curve| curve.motion == motion).for_each(change);
+    curves
+}
+
+/// Three runs through the room of a mill: X and Y in turn, at two heights.
+fn through_the_room(seed: u64) -> Scenario {
+    let round = |height: f64| {
+        let corners = [(0, 480.0), (1, 280.0), (0, 20.0), (1, 150.0), (0, 480.0), (1, 20.0), (0, 20.0)];
+        std::iter::once(vec![(2, height)]).chain(corners.map(|corner| vec![corner]))
+    };
+    let start = vec![(0, 20.0), (1, 20.0), (2, -90.0)];
+    let points = std::iter::once(start).chain(round(-90.0)).chain(round(-10.0));
+    let path = Path { runs: 3, ..path(Shape::Points(points.collect()), 50.0, 4.0) };
+    noisy(path, position("xyz"), 0.5e-3, seed)
+}
+
+/// The diagnosis with the machine's word open to doubt.
+fn audited(bench: &Bench, known: &Calibration, recording: &Recording) -> Diagnosis {
+    let derive = |word: &str| compile_word(word, &mut Diagnostics::new()).map(|compiled| compiled.equations);
+    let word = &bench.equations().machine;
+    let inputs = Inputs {
+        equations: bench.equations(),
+        calibration: Some(known),
+        recordings: vec![recording],
+        holdout: None,
+        calibration_file: None,
+        chains: Some(Chains { file: word, word, derive: &derive }),
+    };
+    diagnose(&inputs, &mut |_| {})
+}
+
+/// The only change that is told, and no physics beside it.
+#[track_caller]
+fn only_change(diagnosis: &Diagnosis) -> &Change {
+    assert_eq!(found(diagnosis), Vec::<String>::new(), "{:?}", diagnosis.model);
+    let [change] = diagnosis.model.as_slice() else {
+        panic!("{:?}, {:?}", diagnosis.model, diagnosis.before)
+    };
+    assert_eq!(diagnosis.verdict, Verdict::LeftOutPhysics);
+    assert!(change.evidence.with < change.evidence.without, "{change:?}");
+    change
+}
+
+/// The number that a change gives.
+#[track_caller]
+fn amount(change: &Change) -> &diagnosis::diagnosis::Estimate {
+    match change.amount.as_ref().map(|amount| &amount.value) {
+        Some(ParameterValue::Fitted(estimate)) => estimate,
+        other => panic!("{other:?} of {change:?}"),
+    }
+}
+
+#[test]
+fn right_files_are_left_alone() {
+    let bench = Bench::of("FXYZ");
+    let known = right(&bench);
+    for seed in 1..=5 {
+        let diagnosis = audited(&bench, &known, &bench.record(&known, &through_the_room(seed)));
+        assert!(diagnosis.model.is_empty(), "{:?}", diagnosis.model);
+        assert_eq!(diagnosis.verdict, Verdict::Adequate, "{:?}", found(&diagnosis));
+        assert!(diagnosis.mended.is_none());
+    }
+}
+
+#[test]
+fn a_factor_is_told_by_its_name() {
+    let bench = Bench::of("FXYZ");
+    let recording = bench.record(&right(&bench), &through_the_room(11));
+    let arcsecond = 4.848_136_811;
+    for (motion, wrong, change, factor) in [
+        ("ECX", -1.0, "sign", -1.0),
+        ("EXX", -1.0, "sign", -1.0),
+        ("EBX", 1.0 / arcsecond, "unit", arcsecond),
+        ("EAY", arcsecond, "unit", 1.0 / arcsecond),
+        ("EYY", 1.0 / 1.4, "size", 1.4),
+    ] {
+        let known = with(motion, |curve| curve.values = curve.values.map(|value| wrong * value));
+        let diagnosis = audited(&bench, &bench.calibration(&errors(&known, SQUARE)), &recording);
+        let told = only_change(&diagnosis);
+        assert_eq!((told.path.as_str(), told.change), (format!("errors.{motion}").as_str(), change));
+        assert!(off(amount(told), factor) < FAR, "{told:?}");
+    }
+}
+
+#[test]
+fn a_turned_squareness_is_told_though_another_one_would_do() {
+    let bench = Bench::of("FXYZ");
+    let recording = bench.record(&right(&bench), &through_the_room(12));
+    let turned = audited(&bench, &bench.calibration(&errors(&CURVES, -SQUARE)), &recording);
+    assert_eq!(only_change(&turned).path, "errors.EC0Y");
+    assert_eq!(only_change(&turned).change, "sign");
+    // One that is another by any other number is a machine that has changed.
+    let other = audited(&bench, &bench.calibration(&errors(&CURVES, 0.3 * SQUARE)), &recording);
+    assert!(other.model.is_empty(), "{:?}", other.model);
+    assert_eq!(found(&other), ["EC0Y constant"]);
+}
+
+#[test]
+fn a_curve_at_a_wrong_place_is_told_with_the_place() {
+    let bench = Bench::of("FXYZ");
+    let recording = bench.record(&right(&bench), &through_the_room(13));
+    let turned = with("ECX", |curve| curve.values.reverse());
+    let slipped = with("EXX", |curve| curve.start = -STEP);
+    let misread = with("ECX", |curve| curve.axis = "Y");
+    for (curves, path, change) in
+        [(turned, "errors.ECX", "mirror"), (slipped, "errors.EXX", "shift"), (misread, "errors.ECX", "axis")]
+    {
+        let diagnosis = audited(&bench, &bench.calibration(&errors(&curves, SQUARE)), &recording);
+        let told = only_change(&diagnosis);
+        assert_eq!((told.path.as_str(), told.change), (path, change), "{told:?}");
+    }
+    let shifted = with("ECX", |curve| curve.start = 30.0);
+    let diagnosis = audited(&bench, &bench.calibration(&errors(&shifted, SQUARE)), &recording);
+    let told = only_change(&diagnosis);
+    assert_eq!((told.path.as_str(), told.change), ("errors.ECX", "shift"));
+    assert!(off(amount(told), -30.0) < FAR, "{told:?}");
+}
+
+#[test]
+fn curves_under_the_wrong_motion_are_told_with_both() {
+    let bench = Bench::of("FXYZ");
+    let recording = bench.record(&right(&bench), &through_the_room(14));
+    let mut swapped = CURVES.to_vec();
+    (swapped[0].values, swapped[1].values) = (swapped[1].values, swapped[0].values);
+    let told = audited(&bench, &bench.calibration(&errors(&swapped, SQUARE)), &recording);
+    let told = only_change(&told);
+    assert_eq!((told.path.as_str(), told.change), ("errors.EXX", "exchange"));
+    assert_eq!(told.with.as_deref(), Some("errors.EYX"));
+    let moved = with("EBX", |curve| curve.motion = "EAX");
+    let told = audited(&bench, &bench.calibration(&errors(&moved, SQUARE)), &recording);
+    let told = only_change(&told);
+    assert_eq!((told.path.as_str(), told.change), ("errors.EAX", "motion"));
+    assert_eq!(told.with.as_deref(), Some("errors.EBX"));
+}
+
+#[test]
+fn a_tool_of_another_length_is_told_with_its_length() {
+    let bench = Bench::of("FXYZ");
+    let truth = right(&bench);
+    let recording = bench.record(&truth, &through_the_room(15));
+    let mut known = truth.clone();
+    let tool = bench.names.constants.iter().position(|(name, _)| name == "Zt").unwrap();
+    known.constants[tool] -= 20.0;
+    let diagnosis = audited(&bench, &known, &recording);
+    let told = only_change(&diagnosis);
+    assert_eq!((told.path.as_str(), told.change), ("constants.Zt", "value"));
+    assert!(off(amount(told), truth.constants[tool]) < FAR, "{told:?}");
+    let mended = diagnosis.mended.as_ref().unwrap();
+    assert!((mended.calibration.constants[tool] - truth.constants[tool]).abs() < 2.0);
+}
+
+#[test]
+fn a_chain_of_another_order_is_told_by_its_word() {
+    let truth = Bench::of("XFYZ");
+    let recording = truth.record(&right(&truth), &through_the_room(16));
+    let bench = Bench::of("FXYZ");
+    let diagnosis = audited(&bench, &right(&bench), &recording);
+    let told = only_change(&diagnosis);
+    assert_eq!((told.path.as_str(), told.change, told.with.as_deref()), ("topology", "order", Some("XFYZ")));
+    let mended = diagnosis.mended.as_ref().unwrap();
+    assert_eq!(mended.word.as_deref(), Some("XFYZ"));
+    assert_eq!(mended.equations.names(), truth.names);
+}
+
+#[test]
+fn physics_is_found_beside_a_fault_of_the_files() {
+    let bench = Bench::of("FXYZ");
+    let truth = together(&right(&bench), &bench.calibration("{EYY: [{backlash: {lost_motion: 6 um}}]}"));
+    let recording = bench.record(&truth, &through_the_room(17));
+    let known = with("ECX", |curve| curve.values = curve.values.map(|value| -value));
+    let diagnosis = audited(&bench, &bench.calibration(&errors(&known, SQUARE)), &recording);
+    assert_eq!(found(&diagnosis), ["EYY backlash"]);
+    let [change] = diagnosis.model.as_slice() else { panic!("{:?}", diagnosis.model) };
+    assert_eq!((change.path.as_str(), change.change), ("errors.ECX", "sign"));
+    let play = &numbers(called(&diagnosis, "EYY backlash"), "lost_motion")[0];
+    assert!(off(play, 6e-3) < FAR, "{play:?}");
+}
+
+#[test]
+fn physics_alone_is_no_fault_of_the_files() {
+    let bench = Bench::of("FXYZ");
+    let known = right(&bench);
+    for (name, concealed) in [
+        ("EXX polynomial", "{EXX: [{polynomial: {axis: X, per: mm, unit: um, coefficients: [0, 0.02]}}]}"),
+        ("EYY backlash", "{EYY: [{backlash: {lost_motion: 6 um}}]}"),
+        ("ECX cyclic", "{ECX: [{cyclic: {axis: X, period: 90 mm, amplitude: 15 urad, phase: 20 deg}}]}"),
+        ("EBX polynomial", "{EBX: [{polynomial: {axis: X, per: mm, unit: urad, coefficients: [0, 0.2]}}]}"),
+    ] {
+        let truth = together(&known, &bench.calibration(concealed));
+        let diagnosis = audited(&bench, &known, &bench.record(&truth, &through_the_room(18)));
+        assert!(diagnosis.model.is_empty(), "{name}: {:?}", diagnosis.model);
+        assert_eq!(diagnosis.findings.len(), 1, "{name}: {:?}", found(&diagnosis));
+        called(&diagnosis, name);
+    }
+}

@@ -16,6 +16,7 @@ mod changed;
 mod columns;
 mod contest;
 mod fault;
+pub(crate) mod gross;
 mod verdict;
 mod words;
 

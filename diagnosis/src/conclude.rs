@@ -278,7 +278,8 @@ fn fitted_runs(scene: &Scene<'_>) -> Vec<i64> {
 fn undecidable(mut diagnosis: Diagnosis, study: &Study<'_>, because: String) -> Diagnosis {
     let sentence = format!("Nothing can be decided from this recording, because {because}.");
     diagnosis.undecided.push(sentence.clone());
-    diagnosis.unexplained = unexplained::on_the_way(study);
+    // An axis that is read wrongly is not on its way anywhere.
+    diagnosis.unexplained = if diagnosis.model.is_empty() { unexplained::on_the_way(study) } else { None };
     if diagnosis.unexplained.is_some() {
         diagnosis.verdict = Verdict::Unexplained;
     } else {

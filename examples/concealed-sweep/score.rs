@@ -105,18 +105,16 @@ impl Score {
         if case.expected == Expected::Dent {
             dent(case, diagnosis, &mut effects, &mut right);
         }
-        let wrong = claims
-            .iter()
-            .zip(&right)
-            .filter(|(_, right)| !**right)
-            .map(|(claim, _)| weighed(case, claim))
-            .collect();
+        let false_ones = claims.iter().zip(&right).filter(|(_, right)| !**right);
+        // The files are right.
+        let faults = diagnosis.model.iter().map(|change| format!("{} {}", change.path, change.change));
+        let wrong: Vec<String> = false_ones.map(|(claim, _)| weighed(case, claim)).chain(faults).collect();
         let mut score = Self {
             verdict: diagnosis.verdict.word(),
             verdict_right: verdict_right(case, diagnosis),
             energies: signals.iter().map(|signal| case.energy(signal)).collect(),
             effects,
-            findings: claims.len(),
+            findings: claims.len() + diagnosis.model.len(),
             wrong,
             held: Vec::new(),
             misnamed: 0,

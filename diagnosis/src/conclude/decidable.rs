@@ -4,11 +4,12 @@
 //! the reason why nothing can be claimed from them, where that is so.
 
 use crate::answers::answers;
+use crate::audit::gross;
 use crate::crossing;
 use crate::diagnosis::Change;
 use crate::model::{Fitted, Model};
 use crate::recording::Instrument;
-use crate::study::{Scene, Study};
+use crate::study::{Channel, Scene, Study};
 use crate::terms::Setting;
 use crate::zeros;
 
@@ -134,20 +135,41 @@ pub(super) fn too_little(study: &Study<'_>) -> Option<String> {
     Some(because)
 }
 
+/// A channel that is read wrongly.
+pub(super) struct Misread {
+    pub(super) reason: String,
+    /// What would bring it back.
+    pub(super) change: Change,
+}
+
+/// A channel that lies far off and would not if one thing of its set-up were other. That is asked before anything: an axis that seems
+/// to move while its command stands may be another axis.
+pub(super) fn misread(study: &Study<'_>) -> Option<Misread> {
+    let scenes = study.scenes.iter().enumerate();
+    let channels =
+        scenes.flat_map(|(scene, known)| (0..known.channels.len()).map(move |number| (scene, number)));
+    channels.into_iter().find_map(|(scene, number)| {
+        let channel = &study.scenes[scene].channels[number];
+        let change = gross::change(study, (scene, number), far_off(study, scene, channel))?;
+        let file = &study.scenes[scene].recording.file;
+        let reason = format!(
+            "`{}` of {file} does not follow the programmed path, and it seems that {}",
+            channel.name, change.fault
+        );
+        Some(Misread { reason, change })
+    })
+}
+
 /// Why what was observed cannot be this machine on this path, where that is so: half of the samples of a channel lie far off,
 /// against the travel. No error of a machine is as large; a wrong unit, a wrong column and a wrong axis are.
 pub(super) fn astray(study: &Study<'_>, bare: &Model) -> Option<String> {
     for (scene, residuals) in zeros::residuals(study, bare).into_iter().enumerate() {
-        let travel =
-            study.scenes[scene].recording.axes.iter().filter_map(|axis| axis.command.as_deref()).map(range);
-        let travel = travel.fold(0.0, f64::max);
         for (channel, residual) in study.scenes[scene].channels.iter().zip(residuals) {
             let mut sizes: Vec<f64> =
                 residual.iter().map(|value| value.abs()).filter(|size| size.is_finite()).collect();
             sizes.sort_by(f64::total_cmp);
             let median = sizes.get(sizes.len() / 2).copied().unwrap_or_default();
-            let slack = if channel.kind.angular(study.equations) { FAR_OFF.1 } else { FAR_OFF.0 };
-            if median > slack + FAR_OFF_OF_TRAVEL * travel {
+            if median > far_off(study, scene, channel) {
                 return Some(format!(
                     "`{}` of {} does not follow the programmed path: half of its samples are off by more than {median:.3}; \
                      look at its column, its unit and the axes",
@@ -157,6 +179,14 @@ pub(super) fn astray(study: &Study<'_>, bare: &Model) -> Option<String> {
         }
     }
     None
+}
+
+/// How far off is too far for an error of a machine, mm or rad.
+fn far_off(study: &Study<'_>, scene: usize, channel: &Channel<'_>) -> f64 {
+    let axes = study.scenes[scene].recording.axes.iter();
+    let travel = axes.filter_map(|axis| axis.command.as_deref()).map(range).fold(0.0, f64::max);
+    let slack = if channel.kind.angular(study.equations) { FAR_OFF.1 } else { FAR_OFF.0 };
+    slack + FAR_OFF_OF_TRAVEL * travel
 }
 
 /// Why no machine can have gone the programmed path, where that is so: farther or faster than any axis goes. Metres for millimetres

@@ -3,7 +3,7 @@
 //! In: what the user gives. Out: the study with what the engine found in it, and what is told of the recordings before anything is found;
 //! or the whole diagnosis where nothing can be decided.
 
-use super::decidable::{astray, impossible, misplaced, no_circle, too_little, undecided};
+use super::decidable::{Misread, astray, impossible, misplaced, misread, no_circle, too_little, undecided};
 use super::units::Units;
 use super::{bare_model, ceiling, fitted_runs, strongest, undecidable, with_known_crossings};
 use crate::audit::Trial;
@@ -52,6 +52,11 @@ impl<'s> Searched<'s> {
             undecided: undecided(&study),
             ..Diagnosis::default()
         };
+        if let Some(Misread { reason, change }) = misread(&study) {
+            opened.undecided.clear();
+            opened.model.push(change);
+            return Err(Box::new(undecidable(opened, &study, reason)));
+        }
         if let Some(reason) = too_little(&study).or_else(|| impossible(&study)).or_else(|| misplaced(&study))
         {
             return Err(Box::new(undecidable(opened, &study, reason)));

@@ -259,3 +259,34 @@ fn physics_alone_is_no_fault_of_the_files() {
         called(&diagnosis, name);
     }
 }
+
+#[test]
+fn columns_that_are_swapped_turned_or_in_another_unit_are_named_before_anything_is_diagnosed() {
+    let bench = Bench::of("FXYZ");
+    let known = right(&bench);
+    let recording = bench.record(&known, &through_the_room(19));
+    let mut swapped = recording.clone();
+    swapped.measured.swap(0, 1);
+    let mut turned = recording.clone();
+    turned.measured[1].iter_mut().flatten().for_each(|value| *value = -*value);
+    let mut inches = recording.clone();
+    inches.measured[0].iter_mut().flatten().for_each(|value| *value /= 25.4);
+    for (recording, path, change, with) in [
+        (swapped, "channels.measured.x", "columns", Some("channels.measured.y")),
+        (turned, "channels.measured.y", "sign", None),
+        (inches, "channels.measured.x", "unit", None),
+    ] {
+        let diagnosis = audited(&bench, &known, &recording);
+        assert_eq!(
+            diagnosis.verdict,
+            Verdict::Undecided,
+            "{path} {change}: {:?} {:?}",
+            diagnosis.undecided,
+            diagnosis.unexplained
+        );
+        let [told] = diagnosis.model.as_slice() else { panic!("{:?}", diagnosis.model) };
+        assert_eq!((told.path.as_str(), told.change, told.with.as_deref()), (path, change, with));
+        assert!(diagnosis.undecided.iter().any(|sentence| sentence.contains(&told.fault)), "{told:?}");
+        assert!(told.evidence.with < 0.1 && told.evidence.without > 1.0, "{told:?}");
+    }
+}

@@ -15,6 +15,9 @@ const WAYS: [(f64, &str); 5] = [
     (-1.0, "the sign of {} is wrong"),
 ];
 
+/// A channel follows where half of its samples are off by no more than this share of what half of the path goes.
+const FOLLOWS: f64 = 0.1;
+
 /// What would make a channel of a position follow the path, so that half of its samples are off by less than `slack` (mm). `None` where
 /// it does follow, and where nothing would make it, or more than one thing.
 pub(crate) fn change(study: &Study<'_>, (scene, channel): (usize, usize), slack: f64) -> Option<Change> {
@@ -37,6 +40,9 @@ pub(crate) fn change(study: &Study<'_>, (scene, channel): (usize, usize), slack:
     }
     let off = |values: &[f64]| typical_distance(values, &nominal[direction]);
     let before = off(own).filter(|before| *before > slack)?;
+    // What goes nowhere follows any path that stands, and anything divided by a thousand does.
+    let way = typical_distance(&nominal[direction], &vec![0.0; nominal[direction].len()])?;
+    let slack = slack.min(FOLLOWS * way);
     let mut fitting = ways.into_iter().filter_map(|way| Some((off(&way.0)?, way)));
     let mut fitting = fitting.by_ref().filter(|(off, _)| *off < slack);
     let (after, (_, fault, kind, with)) = fitting.next()?;

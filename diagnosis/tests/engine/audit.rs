@@ -9,7 +9,7 @@ use model_dsl::calibration::Calibration;
 use model_dsl::compile_word;
 use model_dsl::diagnostic::Diagnostics;
 use simulation::path::Shape;
-use simulation::{Path, Scenario};
+use simulation::{Instrument as Reads, Path, Scenario};
 
 use crate::common::*;
 use crate::recording::Recording;
@@ -289,4 +289,49 @@ fn columns_that_are_swapped_turned_or_in_another_unit_are_named_before_anything_
         assert!(diagnosis.undecided.iter().any(|sentence| sentence.contains(&told.fault)), "{told:?}");
         assert!(told.evidence.with < 0.1 && told.evidence.without > 1.0, "{told:?}");
     }
+}
+
+/// Thermal errors that read two sensors, and a reference temperature in degC.
+fn thermal(scale: &str, head: &str, reference: f64) -> String {
+    let expansion = |motion: &str, axis: &str, coefficient: f64| {
+        format!(
+            "{motion}: [{{expansion: {{axis: {axis}, sensor: {scale}, coefficient: {coefficient} um/m/K, reference: {reference} degC}}}}]"
+        )
+    };
+    let growth =
+        format!("EZZ: [{{growth: {{sensor: {head}, coefficient: 3 um/K, reference: {reference} degC}}}}]");
+    format!("{{{}, {}, {growth}}}", expansion("EXX", "X", 9.0), expansion("EYY", "Y", 12.0))
+}
+
+#[test]
+fn temperatures_that_are_read_wrongly_are_told() {
+    let bench = Bench::of("FXYZ");
+    let mut scenario = through_the_room(20);
+    scenario.temperatures = vec![warming("scale", 4.0, 100.0), warming("head", 9.0, 40.0)];
+    let recording = bench.record(&bench.calibration(&thermal("scale", "head", 20.0)), &scenario);
+    let right = audited(&bench, &bench.calibration(&thermal("scale", "head", 20.0)), &recording);
+    assert!(right.model.is_empty() && right.findings.is_empty(), "{:?}", right.model);
+    let swapped = audited(&bench, &bench.calibration(&thermal("head", "scale", 20.0)), &recording);
+    let told = only_change(&swapped);
+    assert_eq!((told.change, told.path.starts_with("channels.temperature.")), ("sensors", true), "{told:?}");
+    // The zeros of the readings take what a reference shifts by the same everywhere: two scales remain that are wrong alike.
+    let shifted = audited(&bench, &bench.calibration(&thermal("scale", "head", 23.0)), &recording);
+    let told = only_change(&shifted);
+    assert_eq!((told.path.as_str(), told.change), ("errors", "reference"), "{told:?}");
+    assert!(off(amount(told), -3.0) < FAR, "{told:?}");
+}
+
+#[test]
+fn an_instrument_that_was_set_up_the_wrong_way_is_told() {
+    let bench = Bench::of("FXYZ");
+    let known = right(&bench);
+    let strokes = Path { runs: 3, ..path(line(0, 10.0, 490.0), 50.0, 4.0) };
+    let reads = Reads::Straightness { axis: 0, direction: [0.0, 1.0, 0.0] };
+    let mut recording = bench.record(&known, &noisy(strokes, reads, 0.3e-3, 21));
+    recording.deviation.iter_mut().flatten().for_each(|reading| *reading = -*reading);
+    let diagnosis = audited(&bench, &known, &recording);
+    let told = only_change(&diagnosis);
+    assert_eq!((told.path.as_str(), told.change), ("channels.deviation", "sign"), "{told:?}");
+    // Along one axis the sign of its straightness would do as well.
+    assert!(told.alternatives.iter().any(|other| other.contains("EYX")), "{told:?}");
 }

@@ -64,7 +64,8 @@ pub(crate) fn suspects(study: &Study<'_>, found: &Found, inputs: &Inputs<'_>) ->
         return Vec::new();
     }
     let versions = Versions::new(study, &found.fit.model, inputs, faults);
-    let suspects = Contest::new(study, found, &versions).suspects();
+    let mut suspects = Contest::new(study, found, &versions).suspects();
+    suspects.retain(|suspect| suspect.named || !catalogue::is_a_finding(inputs, &suspect.fault));
     let mut left = TRIALS;
     let tried = |suspect: &Suspect| {
         let left = if suspect.named { &mut left.0 } else { &mut left.1 };

@@ -57,6 +57,14 @@ fn sizes(known: &Calibration, equations: &Equations) -> Vec<Fault> {
     scopes.into_iter().map(Fault::Size).collect()
 }
 
+/// Whether numbers of another size are what a finding of the same term says: a squareness or a play that is another one. Only a curve
+/// has a form that no finding comes to have by chance.
+pub(super) fn is_a_finding(inputs: &Inputs<'_>, fault: &Fault) -> bool {
+    let (Fault::Size(Scope::Term(at)), Some(known)) = (fault, inputs.calibration) else { return false };
+    let mut of_place = terms(known).filter(|(place, _)| place == at);
+    of_place.next().is_some_and(|(_, term)| !matches!(term, CalibratedTerm::Table { .. }))
+}
+
 /// What may be wrong with one term beside its size.
 fn of_term(at: TermAt, term: &CalibratedTerm, equations: &Equations) -> Vec<Fault> {
     let mut faults = Vec::new();

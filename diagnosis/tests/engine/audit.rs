@@ -335,3 +335,18 @@ fn an_instrument_that_was_set_up_the_wrong_way_is_told() {
     // Along one axis the sign of its straightness would do as well.
     assert!(told.alternatives.iter().any(|other| other.contains("EYX")), "{told:?}");
 }
+
+#[test]
+fn a_play_of_another_size_is_a_finding_and_no_wrong_file() {
+    let bench = Bench::of("FXYZ");
+    let curves = errors(&CURVES, SQUARE);
+    let with_play = |play: f64| {
+        let beside = format!("EYY: [{{backlash: {{lost_motion: {play} um}}}}, ");
+        bench.calibration(&curves.replace("EYY: [", &beside))
+    };
+    let recording = bench.record(&with_play(9.0), &through_the_room(22));
+    let diagnosis = audited(&bench, &with_play(4.0), &recording);
+    assert!(diagnosis.model.is_empty(), "{:?}", diagnosis.model);
+    let play = &numbers(called(&diagnosis, "EYY backlash"), "lost_motion")[0];
+    assert!(off(play, 5e-3) < FAR, "{play:?}");
+}

@@ -1,14 +1,15 @@
 //! The audit: may a file be wrong, and not the physics missing?
 //!
-//! In: a study that was searched, what was found in it, and the files as they were read. Out: suspects, the likeliest first: single
-//! faults of the machine file, of the calibration or of the recording's set-up, each with the files as they would be without it.
+//! In: a study that was searched, what was found in it, and the files as they were read. Out: suspects, the likeliest first. A suspect
+//! is one fault of the machine file, of the calibration or of a recording's set-up.
+//!
 //! A wrong file makes errors that many small effects together imitate: a table with the wrong sign, a tool that is 20 mm longer, an
-//! axis on the other branch. So every fault is one candidate, in competition with all that was found:
+//! axis on the other branch. So every fault is a candidate and competes with all that was found:
 //!
 //! ```text
-//! catalogue: every fault that these files may have -> columns: how the prediction changes with it
-//!     -> contest: what it costs to explain the recordings with it and without what it makes needless
-//!     -> suspects -> the files changed, and searched anew -> verdict: told, or not
+//! catalogue: every fault that these files may have -> columns: how the prediction changes with each
+//!     -> contest: the cost of a model with the fault, beside the cost of what was found -> suspects
+//!     -> changed: the files without the fault, which are searched again -> verdict -> words
 //! ```
 
 mod catalogue;
@@ -31,33 +32,35 @@ use fault::Fault;
 pub(crate) use verdict::{Rest, Trial, Verdict, judged};
 pub(crate) use words::change;
 
-/// The most faults that are told of one set of files: who has more of them has to look through the files.
+/// The most faults that are told of one set of files. Each takes a search of its own, and files with more faults need to be read
+/// through by a person.
 pub(crate) const MOST: usize = 3;
 
-/// How many faults with a name, and how many without one, are tried by a search of their own. Where one without a name is not right,
-/// others that explain less hardly are.
+/// How many suspects with a named amount, and how many without one, get a search of their own. Several names can fit the same data.
+/// Of amounts without a name only the one that explains most is worth the time.
 const TRIALS: (usize, usize) = (2, 1);
 
-/// How often the amount of a fault is corrected, at most.
+/// The most searches for one suspect. Each corrects the amount by what the search before left of it. Only the shift of a table is not
+/// linear, and each correction brings it nearer by the share of a node step that was missing.
 pub(crate) const CORRECTIONS: usize = 3;
 
 /// A fault that explains the recordings better than what was found.
 #[derive(Clone, Debug)]
 pub(crate) struct Suspect {
     pub(crate) fault: Fault,
-    /// How much of it there is, in the fault's own unit; 1 of one that there is or is not.
+    /// The amount of the fault, in its own unit. It is 1 for a fault that is either there or not.
     pub(crate) amount: f64,
-    /// Whether the amount is one that a fault with a name has.
+    /// Whether the amount has a name: the fault is either there or not, or it is a known factor.
     pub(crate) named: bool,
-    /// What it saves of the cost, its own price paid.
+    /// By how much it lowers the cost, after its own price.
     pub(crate) gain: f64,
-    /// What of that is due to an amount that would be unlikely without the fault.
+    /// The part of the gain for an exact reversal, which is unlikely without a wrong sign.
     pub(crate) chance: f64,
     /// Faults that explain as much, each with its amount.
     pub(crate) others: Vec<(Fault, f64)>,
 }
 
-/// The faults that are worth a search of their own, the likeliest first.
+/// The suspects that get a search of their own, the likeliest first.
 pub(crate) fn suspects(study: &Study<'_>, found: &Found, inputs: &Inputs<'_>) -> Vec<Suspect> {
     let faults = catalogue::faults(inputs);
     if faults.is_empty() {
@@ -82,7 +85,7 @@ impl Suspect {
         Changed::new(inputs, &self.fault, self.amount)
     }
 
-    /// The same with more of it, of what is left where so much was taken out: factors multiply, all else adds up.
+    /// The same with the amount that is left once this amount is taken out. Factors multiply, all other amounts add up.
     fn with(&self, more: f64) -> Self {
         let each = if self.fault.is_factor() { 1.0 + self.amount } else { 1.0 };
         Self { amount: self.amount + each * more, ..self.clone() }

@@ -43,9 +43,10 @@ pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMu
     }
 }
 
-/// Audits the files of what was searched. Where one of them is better changed, what is searched with the change is audited again.
+/// Audits the files of a search. If a change of one of them holds, the search with the change is audited in its turn; if none does, the
+/// search is concluded. `opening` is of the files as they were read.
 fn audited(
-    mut searched: Searched<'_>,
+    searched: Searched<'_>,
     inputs: &Inputs<'_>,
     opening: Opening,
     mut changes: Vec<Change>,
@@ -73,11 +74,11 @@ fn audited(
             let noise = searched.units.noise(&trial.study, &trial.found.appraisal).value;
             let sizes = [searched.left_by(&trial), trial.left_by(&trial)];
             changes.push(audit::change(&suspect, rest, inputs, (sizes, noise)));
+            // One search at a time is enough for the memory.
             drop(searched);
             return audited(trial, &with, opening, changes, progress);
         }
     }
-    searched.before = opening.before;
     let mended = (!changes.is_empty()).then(|| mended(inputs)).flatten();
     let diagnosis = Diagnosis { model: changes, mended, ..Diagnosis::default() };
     concluded(searched, opening, diagnosis, progress)
@@ -89,7 +90,7 @@ fn mended(inputs: &Inputs<'_>) -> Option<Mended> {
     Some(Mended { calibration, equations: inputs.equations.clone(), word })
 }
 
-/// What is told of what was searched.
+/// What is told of a search. `diagnosis` holds the faults of the files already.
 fn concluded(
     searched: Searched<'_>,
     opening: Opening,

@@ -29,7 +29,7 @@ pub struct Diagnosis {
     pub returns: Vec<Returning>,
     /// The channels of which nothing comes back.
     pub nothing_returns: Vec<NothingReturns>,
-    /// Faults of the files, in the order in which they were found; everything that follows is said with them mended.
+    /// Faults of the files, in the order in which they were found. All that follows is worked out with them mended.
     pub model: Vec<Change>,
     /// The files with the faults mended, where there are any.
     pub mended: Option<Mended>,
@@ -167,7 +167,7 @@ pub struct Change {
     /// Where in the file: `errors.EBX`, `constants.Zt`, `topology`.
     pub path: String,
     /// What kind of change it is: `sign`, `unit`, `size`, `mirror`, `shift`, `axis`, `directions`, `exchange`, `motion`, `value`,
-    /// `order`, `reference`, `sensors`, `scale`.
+    /// `order`, `reference`, `sensors`, `scale`, `columns`.
     pub change: &'static str,
     /// The other place, where two are exchanged or one is moved: `errors.EZX`.
     pub with: Option<String>,
@@ -177,10 +177,9 @@ pub struct Change {
     pub remedy: String,
     /// The number that the recordings give: a factor, a shift, a constant.
     pub amount: Option<Parameter>,
-    /// The share that it explains of what the files as they are leave above the noise beside the physics that is found with them
-    /// changed.
+    /// The share of the variance above the noise that the change explains, beside the physics that is found with it.
     pub share: f64,
-    /// The held-out rms with the change, and without it when that physics is fitted again.
+    /// The held-out rms with the change, and without it, the same physics fitted to both.
     pub evidence: Evidence,
     /// Other faults that explain as much.
     pub alternatives: Vec<String>,
@@ -204,7 +203,7 @@ pub struct Mended {
     pub calibration: Calibration,
     /// The equations that it is for.
     pub equations: Equations,
-    /// The topology word of the machine, where that is another one.
+    /// The topology word of the machine, if it has one.
     pub word: Option<String>,
 }
 

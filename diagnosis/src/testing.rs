@@ -19,6 +19,7 @@ use simulation::{
 };
 
 use crate::recording::{AxisChannels, Instrument, Line, Named, Recording};
+use crate::{Chains, Inputs};
 
 /// A machine that can be calibrated and recorded.
 pub(crate) struct Bench {
@@ -73,6 +74,25 @@ impl Bench {
         read
     }
 
+    /// What a diagnosis of recordings starts from. Nothing is held out as a whole, and the machine's word is not in doubt.
+    pub(crate) fn inputs<'i>(&'i self, known: &'i Calibration, recordings: &[&'i Recording]) -> Inputs<'i> {
+        Inputs {
+            equations: self.equations(),
+            calibration: Some(known),
+            recordings: recordings.to_vec(),
+            holdout: None,
+            calibration_file: None,
+            chains: None,
+        }
+    }
+
+    /// The same of the machine of a topology word that may be wrong.
+    pub(crate) fn audited<'i>(&'i self, known: &'i Calibration, recording: &'i Recording) -> Inputs<'i> {
+        let word = self.equations().machine.as_str();
+        let chains = Some(Chains { file: word, word, derive: &derive });
+        Inputs { chains, ..self.inputs(known, &[recording]) }
+    }
+
     /// The number of an error motion.
     pub(crate) fn motion(&self, name: &str) -> usize {
         self.names.motion(name).unwrap()
@@ -97,6 +117,11 @@ impl Bench {
         let simulated = simulation::simulate(&self.plant(truth), scenario).unwrap();
         simulated.readings.into_iter().map(|reading| reading.clean).collect()
     }
+}
+
+/// The equations of a topology word.
+fn derive(word: &str) -> Option<Equations> {
+    compile_word(word, &mut Diagnostics::new()).map(|compiled| compiled.equations)
 }
 
 /// A calibration with the terms of another one too.

@@ -1,18 +1,18 @@
 //! The catalogue: every fault that files may have.
 //!
-//! In: the files as they were read. Out: faults, each of which changes some number that the recordings could show.
+//! In: the files as they were read. Out: all faults that they may have, whether the recordings can show them or not.
 
-use model_dsl::calibration::{CalibratedTerm, Calibration, CurveValues, SeriesInput};
+use model_dsl::calibration::{CalibratedMotion, CalibratedTerm, Calibration, CurveValues, TermKind};
 use model_dsl::equations::Equations;
 
 use super::fault::{Fault, Scope, TermAt};
 use crate::Inputs;
 
-/// All faults. Without a calibration there are none: a machine of which nothing is known predicts no error, whatever its chain is.
+/// All faults. Without a calibration there are none: the prediction has no error then, whatever the chain is.
 pub(super) fn faults(inputs: &Inputs<'_>) -> Vec<Fault> {
     let Some(known) = inputs.calibration.filter(|known| !known.motions.is_empty()) else { return Vec::new() };
     let equations = inputs.equations;
-    // Of those that explain as much, the first is told: an instrument that was set up the wrong way before all numbers that were.
+    // Of faults that explain as much, the first is told. One instrument set up the wrong way is likelier than many wrong numbers.
     let recordings = inputs.recordings.iter().enumerate();
     let deviating = recordings.filter(|(_, recording)| recording.deviation.is_some());
     let mut faults: Vec<Fault> = deviating.map(|(recording, _)| Fault::Scale { recording }).collect();
@@ -33,9 +33,10 @@ fn terms(known: &Calibration) -> impl Iterator<Item = (TermAt, &CalibratedTerm)>
     })
 }
 
-/// Factors of numbers: of each term, and of what is entered together where that is more than one.
+/// Wrong factors: of each term, and of all numbers that may have been entered together.
 fn sizes(known: &Calibration, equations: &Equations) -> Vec<Fault> {
-    let mut scopes: Vec<Scope> = terms(known).map(|(at, _)| Scope::Term(at)).collect();
+    let sized = terms(known).filter(|(_, term)| !is_of_a_drive(term));
+    let mut scopes: Vec<Scope> = sized.map(|(at, _)| Scope::Term(at)).collect();
     let several = known.motions.iter().filter(|listed| listed.terms.len() > 1);
     scopes.extend(several.map(|listed| Scope::Motion(listed.motion)));
     let motions = || {
@@ -57,15 +58,15 @@ fn sizes(known: &Calibration, equations: &Equations) -> Vec<Fault> {
     scopes.into_iter().map(Fault::Size).collect()
 }
 
-/// Whether numbers of another size are what a finding of the same term says: a squareness or a play that is another one. Only a curve
-/// has a form that no finding comes to have by chance.
+/// Whether a wrong size is the same as a finding of that term: another squareness, another play. A table is not: its form is too
+/// particular for a finding to have it by chance.
 pub(super) fn is_a_finding(inputs: &Inputs<'_>, fault: &Fault) -> bool {
     let (Fault::Size(Scope::Term(at)), Some(known)) = (fault, inputs.calibration) else { return false };
     let mut of_place = terms(known).filter(|(place, _)| place == at);
     of_place.next().is_some_and(|(_, term)| !matches!(term, CalibratedTerm::Table { .. }))
 }
 
-/// What may be wrong with one term beside its size.
+/// The faults of one term other than its size.
 fn of_term(at: TermAt, term: &CalibratedTerm, equations: &Equations) -> Vec<Fault> {
     let mut faults = Vec::new();
     if let CalibratedTerm::Table { curve, .. } = term {
@@ -76,15 +77,7 @@ fn of_term(at: TermAt, term: &CalibratedTerm, equations: &Equations) -> Vec<Faul
             faults.push(Fault::Directions(at));
         }
     }
-    let reads = match term {
-        CalibratedTerm::Table { axis, .. }
-        | CalibratedTerm::Coupling { axis, .. }
-        | CalibratedTerm::Backlash { axis, .. }
-        | CalibratedTerm::Cyclic { axis, .. }
-        | CalibratedTerm::Polynomial { input: SeriesInput::Axis(axis), .. } => Some(*axis),
-        _ => None,
-    };
-    if let Some(axis) = reads {
+    if let Some(axis) = term.axis().filter(|_| !is_of_a_drive(term)) {
         let others = (0..equations.axes.len()).filter(|other| *other != axis);
         // Numbers per mm mean something else per rad.
         let alike = others.filter(|other| equations.axes[*other].rotary == equations.axes[axis].rotary);
@@ -93,14 +86,28 @@ fn of_term(at: TermAt, term: &CalibratedTerm, equations: &Equations) -> Vec<Faul
     faults
 }
 
-/// Numbers under the wrong error motion: two of one kind exchanged, or moved to one that has none.
+/// Whether a term is what the drive of an axis does, which has its place in the axis's own motion.
+fn is_of_a_drive(term: &CalibratedTerm) -> bool {
+    matches!(term.kind(), TermKind::Lag | TermKind::Acceleration)
+}
+
+/// Whether a motion holds anything of the drive of its axis.
+fn has_a_drive(listed: &CalibratedMotion) -> bool {
+    !listed.inside_loop.is_empty() || listed.terms.iter().any(|term| is_of_a_drive(&term.value))
+}
+
+/// Numbers under the wrong error motion: two of one kind exchanged, or moved to one that has none. A motion with anything of a drive
+/// stands where it belongs.
 fn places(known: &Calibration, equations: &Equations) -> Vec<Fault> {
-    let listed: Vec<usize> = known.motions.iter().map(|listed| listed.motion).collect();
+    let driven =
+        |motion: usize| known.motions.iter().any(|listed| listed.motion == motion && has_a_drive(listed));
+    let listed: Vec<usize> =
+        known.motions.iter().map(|listed| listed.motion).filter(|motion| !driven(*motion)).collect();
     let mut faults = Vec::new();
     for (number, from) in listed.iter().enumerate() {
         for to in 0..equations.motions.len() {
             let (one, other) = (&equations.motions[*from], &equations.motions[to]);
-            if one.angular != other.angular || one.alignment != other.alignment {
+            if driven(to) || one.angular != other.angular || one.alignment != other.alignment {
                 continue;
             }
             if !listed.contains(&to) {
@@ -113,8 +120,7 @@ fn places(known: &Calibration, equations: &Equations) -> Vec<Fault> {
     faults
 }
 
-/// Other orders of the chain: every order of a word of up to four letters, and of a longer one those in which two letters that stand
-/// side by side are exchanged.
+/// Other orders of the topology word. Of a word of up to four letters these are all; of a longer one those with two neighbours exchanged.
 fn orders(inputs: &Inputs<'_>) -> Vec<String> {
     let Some(chains) = inputs.chains else { return Vec::new() };
     let letters: Vec<char> = chains.word.chars().collect();
@@ -123,7 +129,7 @@ fn orders(inputs: &Inputs<'_>) -> Vec<String> {
     words.filter(|word| word != chains.word).collect()
 }
 
-/// The most letters of which every order is tried: five have 120.
+/// The longest word of which every order is tried. Four letters have 24 orders, five have 120, and each has to be derived.
 const ALL_ORDERS: usize = 4;
 
 fn permutations(letters: &[char]) -> Vec<Vec<char>> {

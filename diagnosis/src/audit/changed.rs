@@ -2,26 +2,26 @@
 //!
 //! In: the files as they were read, a fault and how much of it there is. Out: the files as they would be without it.
 
-use model_dsl::calibration::{
-    CalibratedMotion, CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, SeriesInput,
-};
+use model_dsl::calibration::{CalibratedMotion, CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues};
 use model_dsl::equations::{ConstantInfo, Equations};
 
 use super::fault::{Fault, Scope, TermAt};
 use crate::Inputs;
 use crate::recording::Recording;
 
-/// What of the inputs is other than it was read.
+/// The parts of the inputs that differ from what was read.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Changed {
-    pub(super) equations: Option<Equations>,
+    equations: Option<Equations>,
     word: Option<String>,
-    pub(super) calibration: Option<Calibration>,
-    recording: Option<(usize, Recording)>,
+    calibration: Option<Calibration>,
+    /// Recordings by their numbers, and the one that is held out as a whole.
+    recordings: Vec<(usize, Recording)>,
+    holdout: Option<Recording>,
 }
 
 impl Changed {
-    /// The inputs without so much of a fault; `None` where the files cannot be so.
+    /// The inputs with an amount of a fault taken out; `None` if the fault does not fit them.
     pub(super) fn new(inputs: &Inputs<'_>, fault: &Fault, amount: f64) -> Option<Self> {
         let known = inputs.calibration?;
         let mut changed = Self::default();
@@ -34,14 +34,21 @@ impl Changed {
             }
             Fault::Scale { recording } => {
                 let scaled = scaled(inputs.recordings.get(*recording)?, 1.0 / (1.0 + amount));
-                changed.recording = Some((*recording, scaled));
+                changed.recordings.push((*recording, scaled));
+            }
+            Fault::Sensors { one, other } => {
+                let names = [*one, *other].map(|number| sensor(known, number));
+                let swapped = |recording: &Recording| swapped(recording, names);
+                let all = inputs.recordings.iter().enumerate();
+                changed.recordings = all.map(|(number, recording)| (number, swapped(recording))).collect();
+                changed.holdout = inputs.holdout.map(swapped);
             }
             _ => changed.calibration = Some(calibration(known, inputs.equations, fault, amount)?),
         }
         Some(changed)
     }
 
-    /// The inputs with what is other.
+    /// The inputs with the changed parts.
     pub(crate) fn inputs<'c>(&'c self, of: &Inputs<'c>) -> Inputs<'c> {
         let mut inputs = of.clone();
         inputs.equations = self.equations.as_ref().unwrap_or(of.equations);
@@ -49,16 +56,16 @@ impl Changed {
         if let (Some(chains), Some(word)) = (&mut inputs.chains, &self.word) {
             chains.word = word;
         }
-        if let Some((number, recording)) = &self.recording
-            && let Some(known) = inputs.recordings.get_mut(*number)
-        {
-            *known = recording;
+        for (number, recording) in &self.recordings {
+            inputs.recordings[*number] = recording;
         }
+        inputs.holdout = self.holdout.as_ref().or(of.holdout);
         inputs
     }
 }
 
-/// The calibration without so much of a fault.
+/// The calibration with an amount of a fault taken out; `None` if the fault is not one of its numbers. For sensors that are exchanged in
+/// the recordings, the terms read each other's sensor: that predicts the same.
 pub(super) fn calibration(
     known: &Calibration,
     equations: &Equations,
@@ -75,7 +82,10 @@ pub(super) fn calibration(
             let step = node_step(curve)?;
             shift(curve, f64::from(*nodes) * step);
         }
-        Fault::Axis { of, read, .. } => read_axis(term(&mut changed, *of)?, *read),
+        Fault::Axis { of, read, .. } => {
+            let term = term(&mut changed, *of)?;
+            *term = term.clone().with_axis(*read);
+        }
         Fault::Directions(at) => match &mut curve(&mut changed, *at)?.values {
             CurveValues::Directed { forward, reverse } => std::mem::swap(forward, reverse),
             CurveValues::Both(_) => return None,
@@ -114,10 +124,9 @@ fn curve(known: &mut Calibration, at: TermAt) -> Option<&mut Curve> {
     }
 }
 
-/// The curve of a table.
+/// The curve of a table, to be read.
 pub(super) fn table(known: &Calibration, at: TermAt) -> Option<&Curve> {
-    let listed = known.motions.iter().find(|listed| listed.motion == at.motion)?;
-    match &listed.terms.get(at.place)?.value {
+    match &known.terms(at.motion).get(at.place)?.value {
         CalibratedTerm::Table { curve, .. } => Some(curve),
         _ => None,
     }
@@ -171,17 +180,6 @@ fn shift(curve: &mut Curve, amount: f64) {
     }
 }
 
-fn read_axis(term: &mut CalibratedTerm, other: usize) {
-    match term {
-        CalibratedTerm::Table { axis, .. }
-        | CalibratedTerm::Coupling { axis, .. }
-        | CalibratedTerm::Backlash { axis, .. }
-        | CalibratedTerm::Cyclic { axis, .. }
-        | CalibratedTerm::Polynomial { input: SeriesInput::Axis(axis), .. } => *axis = other,
-        _ => {}
-    }
-}
-
 /// Gives each of two error motions the numbers of the other. What reads the axis of one then reads that of the other: a table is
 /// entered under a motion together with its axis.
 fn exchange(known: &mut Calibration, equations: &Equations, one: usize, other: usize) {
@@ -201,7 +199,7 @@ fn reread(listed: &mut CalibratedMotion, from: Option<usize>, to: Option<usize>)
     let (Some(from), Some(to)) = (from, to) else { return };
     for term in &mut listed.terms {
         if term.value.axis() == Some(from) {
-            read_axis(&mut term.value, to);
+            term.value = term.value.clone().with_axis(to);
         }
     }
 }
@@ -225,6 +223,24 @@ fn translated(known: &Calibration, from: &Equations, to: &Equations) -> Option<C
     };
     other.constants = to.constants.iter().map(value).collect::<Option<_>>()?;
     Some(other)
+}
+
+/// The name of a sensor of a calibration.
+pub(super) fn sensor(known: &Calibration, number: usize) -> &str {
+    known.sensors.iter().nth(number).map_or("", |sensor| sensor.name.value.as_str())
+}
+
+/// A recording in which two sensors have each other's readings.
+fn swapped(recording: &Recording, [one, other]: [&str; 2]) -> Recording {
+    let mut swapped = recording.clone();
+    for channel in &mut swapped.temperatures {
+        if channel.name == one {
+            other.clone_into(&mut channel.name);
+        } else if channel.name == other {
+            one.clone_into(&mut channel.name);
+        }
+    }
+    swapped
 }
 
 fn scaled(recording: &Recording, factor: f64) -> Recording {

@@ -1,10 +1,8 @@
 //! Columns: how the prediction of every channel changes with a fault.
 //!
 //! In: a study, the files as they were read, and faults. Out: for each fault a column of every channel, in rows that are spread over
-//! the recordings. Error motions act to first order here, which is enough to compare faults with one another; what is told of a fault
-//! comes from a search with the files changed.
-
-use std::borrow::Cow;
+//! the recordings. Error motions act to first order here. That is enough to compare faults: what is told of one comes from a search with
+//! the files changed.
 
 use model_dsl::calibration::Calibration;
 use model_dsl::equations::Equations;
@@ -19,8 +17,8 @@ use crate::observations::{self, Sight};
 use crate::parallel;
 use crate::study::{self, Study};
 
-/// The rows of a recording that are looked at, at most. A fault as large as the noise stands out of so many by the root of their
-/// number, 70 times.
+/// The most rows of a recording that are compared. A fault as large as the noise then stands 70 standard deviations out, the square
+/// root of this number, and one of a tenth of it 7.
 const ROWS: usize = 5000;
 
 /// A fault with its columns: for each scene and channel a number for each row that is looked at.
@@ -59,15 +57,15 @@ impl Versions {
             let seen = columns.iter().flatten().flatten().any(|value| *value != 0.0);
             file.fault.filter(|_| seen).map(|fault| Suspected { fault, columns })
         });
-        let mut suspected: Vec<Suspected> = suspected.collect();
+        let suspected: Vec<Suspected> = suspected.collect();
         let lost: Vec<bool> = suspected.iter().map(|one| is_lost(one, &suspected)).collect();
-        let mut lost = lost.into_iter();
-        suspected.retain(|_| !lost.next().unwrap_or_default());
-        Self { suspected, rows }
+        let kept = suspected.into_iter().zip(lost).filter(|(_, lost)| !lost);
+        Self { suspected: kept.map(|(one, _)| one).collect(), rows }
     }
 }
 
-/// Whether nothing is seen any more of numbers that are moved elsewhere: that they are missing says nothing of where they belong.
+/// Whether numbers that are moved elsewhere are not seen there. The recordings then show only that they are missing, and not where they
+/// belong.
 fn is_lost(one: &Suspected, all: &[Suspected]) -> bool {
     let sizes: Vec<Scope> = match one.fault {
         Fault::Moved { from, .. } => {
@@ -86,7 +84,8 @@ fn is_lost(one: &Suspected, all: &[Suspected]) -> bool {
     })
 }
 
-/// Of what is lost by moving numbers elsewhere, so little may be seen there: the square of a thousandth.
+/// Numbers are not seen where their sum of squares is below this share of what it was: a thousandth of the size, squared, is far below
+/// any noise.
 const LOST: f64 = 1e-6;
 
 /// Rows in equal steps, not more than are looked at.
@@ -97,16 +96,16 @@ fn spread(rows: usize) -> Vec<usize> {
 /// Files, as far as a prediction needs them.
 #[derive(Default)]
 struct Files {
-    /// The fault that they are without; `None` where they are as they were read.
+    /// The fault that is taken out; `None` for the files as they were read.
     fault: Option<Fault>,
-    /// How much of it was taken out.
+    /// The amount of it that was changed.
     step: f64,
-    /// The machine where its equations or constants are others; of another chain also the numbers of the known motions in it.
+    /// The machine, if its equations or constants are changed.
     interpreter: Option<Interpreter>,
-    /// How many error motions it has, and the axes of its free travels.
+    /// The number of its error motions, and the axes of its free travels.
     motions: usize,
     travels: Vec<usize>,
-    /// The error motions with terms, and these by their numbers among all that are worked out.
+    /// Pairs of an error motion and the number of a term in it.
     terms: Vec<(usize, usize)>,
 }
 
@@ -118,7 +117,7 @@ impl Files {
         Self { motions, travels, terms: numbers, ..Self::default() }
     }
 
-    /// The files without a step of a fault; `None` where they cannot be so.
+    /// The files with one step of a fault taken out; `None` if the fault does not fit them.
     fn without(
         study: &Study<'_>,
         inputs: &Inputs<'_>,
@@ -126,51 +125,49 @@ impl Files {
         terms: &mut Vec<Fitted>,
     ) -> Option<Self> {
         let step = step(inputs, &fault);
-        let changed = Changed::new(inputs, &fault, step)?;
-        let calibration = changed.calibration.as_ref().or(inputs.calibration)?;
-        let equations = changed.equations.as_ref().unwrap_or(study.equations);
-        let own = own_motions(study, changed.equations.as_ref());
-        let other = changed.equations.is_some() || matches!(fault, Fault::Constant(_));
-        let (motions, travels) = shape(equations);
+        let known = inputs.calibration?;
+        let numbers = changed::calibration(known, inputs.equations, &fault, step);
+        // The readings of an instrument change no prediction: the contest is told what they would be.
+        let other = match fault {
+            Fault::Order(_) => Some(Changed::new(inputs, &fault, step)?),
+            _ => None,
+        };
+        let with = other.as_ref().map_or_else(|| inputs.clone(), |other| other.inputs(inputs));
+        let calibration = numbers.as_ref().or(with.calibration)?;
+        let other_arms = other.is_some() || matches!(fault, Fault::Constant(_));
+        let own: Vec<Option<usize>> =
+            (0..with.equations.axes.len()).map(|axis| with.equations.own_motion(axis)).collect();
+        let (motions, travels) = shape(with.equations);
         Some(Self {
             step,
-            interpreter: other.then(|| Interpreter::new(equations, &calibration.constants)),
+            interpreter: other_arms.then(|| Interpreter::new(with.equations, &calibration.constants)),
             motions,
             travels,
             terms: numbered(study, calibration, &own, terms),
             fault: Some(fault),
         })
     }
-}
 
-impl Files {
     /// The same without any error motion.
     fn nominal(&self) -> Self {
         Self { motions: self.motions, travels: self.travels.clone(), ..Self::default() }
     }
 }
 
-/// How many error motions there are, and the axes of the free travels.
+/// The number of error motions, and the axes of the free travels.
 fn shape(equations: &Equations) -> (usize, Vec<usize>) {
     (equations.motions.len(), equations.travels.iter().map(|travel| travel.axis).collect())
 }
 
-fn own_motions<'s>(study: &'s Study<'_>, equations: Option<&Equations>) -> Cow<'s, [Option<usize>]> {
-    match equations {
-        None => Cow::Borrowed(&study.own),
-        Some(other) => Cow::Owned((0..other.axes.len()).map(|axis| other.own_motion(axis)).collect()),
-    }
-}
-
-/// How much of a fault is taken out to see what changes: all of one that there is or is not; one unit of others, to whose size the
-/// prediction is in proportion; of a shift about as much as it is to be.
+/// The step by which a fault is changed to see what the prediction does. It is 1, since the prediction is proportional to every amount
+/// but that of a shift; a shift takes the step that its fault names.
 fn step(inputs: &Inputs<'_>, fault: &Fault) -> f64 {
     let Fault::Shift { at, quarters } = fault else { return 1.0 };
     let table = inputs.calibration.and_then(|known| changed::table(known, *at));
     table.and_then(changed::node_step).map_or(1.0, |step| f64::from(*quarters) / 4.0 * step.abs())
 }
 
-/// The terms of a calibration by motion, each with its number among all that are worked out: those that are not there yet are added.
+/// The terms of a calibration, as pairs of a motion and the number of a term in `terms`. Terms that are not in that list yet are added.
 fn numbered(
     study: &Study<'_>,
     calibration: &Calibration,
@@ -275,7 +272,7 @@ impl Seen {
         Predicted { tip: plus(error, &interpreter.nominal_columns(&positions), &(0..rows)), turn }
     }
 
-    /// How the prediction of every channel changes for a whole unit of the fault that files are without.
+    /// How the prediction of every channel changes for each unit of the fault.
     fn columns(&self, study: &Study<'_>, files: &Files, base: &Predicted) -> Vec<Vec<f64>> {
         let (from, to) = match files.fault {
             // All that is predicted beside the nominal path, in one recording.
@@ -289,8 +286,8 @@ impl Seen {
     }
 }
 
-/// What of a change a channel sees, for each unit of a step; nothing where it is not known. What is the same in every row is taken
-/// out: it is a zero of the instrument, or its centre.
+/// The change that a channel sees, per unit of the fault; 0 where it is not known. A change that is the same in every row is taken out: it
+/// is a zero of the instrument, or its centre.
 fn change(sight: &Sight, from: &Predicted, to: &Predicted, step: f64) -> Vec<f64> {
     let (from, to) = if sight.turning { (&from.turn, &to.turn) } else { (&from.tip, &to.tip) };
     let changes = |d: usize| to[d].iter().zip(&from[d]).map(|(to, from)| to - from);

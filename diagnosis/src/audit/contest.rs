@@ -1,7 +1,8 @@
 //! The contest: every fault against what was found.
 //!
-//! In: what was found, and the columns of faults. Out: suspects. Under the noise that the search ended with, what was found is cut
-//! down to what is worth its price, once by itself and once beside each fault. A fault that makes most of it needless costs less.
+//! In: what was found, and the columns of faults. Out: suspects. All models are compared under the noise that the search ended with.
+//! Each consists of a fault and of those effects found that are still worth their price beside it. It is compared with the model
+//! without a fault. A fault that makes most effects needless lowers the cost.
 
 use std::ops::Range;
 
@@ -22,20 +23,20 @@ use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 
-/// A fault must cost so much less than what was found: Schwarz's criterion then gives it odds of 150 to 1.
+/// A fault must lower the cost by this much. The cost is that of Schwarz's criterion, and the odds are then 150 to 1.
 pub(super) const DECISIVE: f64 = 10.0;
 
-/// A fault that there is or is not, and a factor that has a name, are tried where the amount is so near to theirs, as a share of it,
-/// or within its interval: the errors of the first order, and what was found with the wrong files, move it. With the files changed,
-/// the interval must be as narrow as this for the name to be told.
+/// An amount has a name if it differs from that of the name by no more than this share, or if its interval holds it. Effects that were
+/// found with the wrong files bias the amount. Once the files are changed, the interval must be no wider than this on either side. The
+/// named factors lie a factor of 2 apart or more, so an interval of 10 % holds one of them at most.
 pub(super) const NEAR: f64 = 0.1;
 
-/// What was found and each fault, as products of their columns with one another and with what they are to explain.
+/// Products of the columns of what was found, of the faults, and of the response that both have to explain.
 pub(super) struct Contest<'v> {
     suspected: &'v [Suspected],
-    /// For each fault its products with the columns of what was found, with itself, and with what is to be explained.
+    /// For each fault its products with the columns of what was found, with itself, and with the response.
     products: Vec<Vec<f64>>,
-    /// The products of what was found; what is to be explained is last.
+    /// The products of what was found, the response last.
     known: DMatrix<f64>,
     effects: Vec<Member>,
     samples: f64,
@@ -43,13 +44,13 @@ pub(super) struct Contest<'v> {
     tried: f64,
 }
 
-/// An effect of the model: its columns, and what it costs; settings that are always fitted cost nothing and stay.
+/// An effect of the model: its columns and its price. Settings that are always fitted have no price and stay.
 struct Member {
     columns: Range<usize>,
     price: Option<f64>,
 }
 
-/// What it costs to explain the recordings.
+/// The cheapest model with a fault, or without any.
 struct Outcome {
     cost: f64,
     /// The coefficient of the fault, and its standard deviation; 0 without one.
@@ -57,11 +58,11 @@ struct Outcome {
     deviation: f64,
 }
 
-/// What is taken in.
+/// Effects of a model, and the products with their columns swept in.
 type Set<'m> = (Swept, Vec<&'m Member>);
 
 impl<'v> Contest<'v> {
-    /// Brings what was found and the faults together.
+    /// Works out the products over all recordings.
     pub(super) fn new(study: &Study<'_>, found: &Found, versions: &'v Versions) -> Self {
         let model = &found.fit.model;
         let regressors: Vec<Regressor> =
@@ -149,7 +150,7 @@ impl<'v> Contest<'v> {
             .filter_map(|(number, suspected)| {
                 let outcome = self.outcome(Some(number));
                 let fault = suspected.fault.clone();
-                let (amount, named) = entitled(&fault, &outcome)?;
+                let (amount, named) = amount_to_try(&fault, &outcome)?;
                 let parameter = if named { 0.0 } else { self.samples.max(2.0).ln() };
                 let chance =
                     if named && amount == TURNED { turned_by_chance(outcome.deviation) } else { 0.0 };
@@ -166,13 +167,13 @@ impl<'v> Contest<'v> {
         suspects
     }
 
-    /// How much there is of the first fault beside all that was found.
+    /// The amount of the first fault beside what was found.
     pub(super) fn rest(&self) -> Option<Rest> {
         let outcome = self.suspected.first().map(|_| self.outcome(Some(0)))?;
         Some(Rest { amount: outcome.amount, deviation: outcome.deviation })
     }
 
-    /// The cheapest way to explain the recordings with a fault, or without any, and with as much of what was found as is worth it.
+    /// The cheapest model with a fault, or without any, and with those effects found that are worth their price.
     fn outcome(&self, fault: Option<usize>) -> Outcome {
         let width = self.known.ncols() - 1;
         let mut bare = Swept::new(&self.matrix(fault));
@@ -183,8 +184,8 @@ impl<'v> Contest<'v> {
         if fault.is_some() {
             bare.take(width);
         }
-        // What was found with wrong files stands in for the fault, and each part of it may seem worth its price beside the others:
-        // so it is taken in one by one as well.
+        // Effects that stand in for the fault may each seem worth their price beside the others. So they are also taken in one by one,
+        // from none.
         let others = || self.effects.iter().filter(|member| member.price.is_some()).collect::<Vec<_>>();
         let whole = self.cut_down((bare.clone(), Vec::new()), others());
         let built = self.built_up((bare, Vec::new()), others());
@@ -197,7 +198,7 @@ impl<'v> Contest<'v> {
         }
     }
 
-    /// All effects taken in, and those dropped again that are not worth their price; with what it costs.
+    /// Takes all effects in, then drops those that are not worth their price. The cost stands beside.
     fn cut_down<'m>(&self, (mut swept, mut kept): Set<'m>, others: Vec<&'m Member>) -> (Swept, f64) {
         for column in others.iter().flat_map(|member| member.columns.clone()) {
             swept.take(column);
@@ -211,7 +212,7 @@ impl<'v> Contest<'v> {
         (swept, cost)
     }
 
-    /// Effects taken in one by one while one is worth its price, the worthiest first; then cut down.
+    /// Takes effects in one by one, the most worth first, while one is worth its price. Then drops those that no longer are.
     fn built_up<'m>(&self, (mut swept, mut kept): Set<'m>, mut others: Vec<&'m Member>) -> (Swept, f64) {
         let worth = |swept: &Swept, member: &Member| {
             let columns: Vec<usize> = member.columns.clone().collect();
@@ -230,7 +231,7 @@ impl<'v> Contest<'v> {
         }
     }
 
-    /// The effect without which the recordings are explained more cheaply, where there is one.
+    /// The effect whose removal lowers the cost most, if any does.
     fn needless(&self, swept: &Swept, kept: &[&Member]) -> Option<usize> {
         let saved = |member: &Member| {
             let columns: Vec<usize> = member.columns.clone().collect();
@@ -245,7 +246,7 @@ impl<'v> Contest<'v> {
         self.samples * (remaining.max(f64::MIN_POSITIVE) / self.samples.max(1.0)).ln()
     }
 
-    /// The products with those of a fault before what is to be explained.
+    /// The products, those of a fault inserted before the response.
     fn matrix(&self, fault: Option<usize>) -> DMatrix<f64> {
         let Some(fault) = fault else { return self.known.clone() };
         let width = self.known.ncols() - 1;
@@ -259,16 +260,16 @@ impl<'v> Contest<'v> {
     }
 }
 
-/// What the zero of one run costs; `None` of what is no such zero. Runs that do not repeat may be those of a machine whose files are
-/// wrong.
+/// The price of the zero of one run; `None` for any other effect. A search always fits these zeros where runs do not repeat. Here they
+/// have a price, since wrong files can make runs differ.
 pub(super) fn price_of_a_run(effect: &Effect, samples: f64) -> Option<f64> {
     let is_one = matches!(effect.shape, Shape::Instrument(setting) if setting.of_a_run());
     is_one.then(|| untold_price(1, samples))
 }
 
-/// The amount by which a fault is tried, and whether it is one that has a name; `None` where it is none at all.
-fn entitled(fault: &Fault, outcome: &Outcome) -> Option<(f64, bool)> {
-    // A number that may as well be nothing is no number times a factor.
+/// The amount to try, and whether it has a name. `None` if the fault cannot have the amount that was fitted.
+fn amount_to_try(fault: &Fault, outcome: &Outcome) -> Option<(f64, bool)> {
+    // An interval that holds 0 for the number itself tells no factor.
     let half = WIDTH_95 * outcome.deviation;
     let near = |from: f64, value: f64| from.abs() <= f64::max(NEAR * value.abs(), half) && half < value.abs();
     if fault.is_whole() {
@@ -278,7 +279,7 @@ fn entitled(fault: &Fault, outcome: &Outcome) -> Option<(f64, bool)> {
     let named = FACTORS.iter().filter(|factor| fault.is_factor() && near(from(factor), factor.value));
     match named.min_by(|a, b| from(a).abs().total_cmp(&from(b).abs())) {
         Some(factor) => Some((factor.value - 1.0, true)),
-        // Numbers that are taken away altogether, or turned to what has no name, are physics.
+        // A factor of 0 or below that is not -1 is no size that a number could have had: it is physics.
         None if fault.is_factor() && outcome.amount <= -1.0 => None,
         None => Some((outcome.amount, false)),
     }
@@ -287,14 +288,14 @@ fn entitled(fault: &Fault, outcome: &Outcome) -> Option<(f64, bool)> {
 /// The amount of a wrong sign.
 pub(super) const TURNED: f64 = -2.0;
 
-/// Twice the logarithm of how unlikely it is that a number which changed by itself comes within the interval of its own reversal. A
-/// change from -3 to 1 times the number is taken to be as likely as any other.
+/// Twice the log of how unlikely it is that a number came to be its own reversal by chance, within this standard deviation. All changes
+/// from -3 to +1 times the number are taken to be equally likely: that range is 4 wide, with the reversal, -2, inside.
 fn turned_by_chance(deviation: f64) -> f64 {
     let interval = 2.0 * WIDTH_95 * deviation;
     2.0 * (4.0 / interval.clamp(1e-3, 4.0)).ln()
 }
 
-/// Adds what an effect of the model takes from the residual, which is last, back to it.
+/// Adds what the effects of the model explain back to the residual, which is the last column.
 fn add_back(columns: &mut DMatrix<f64>, coefficients: &[f64]) {
     let width = columns.ncols() - 1;
     for (column, coefficient) in coefficients.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Faults: what may be wrong with a file.
 //!
-//! In: nothing. Out: the list of faults, each with what is known of its size before anything is measured.
+//! In: nothing. Out: the kinds of faults, and the factors by which numbers are wrong when something was mixed up.
 
 /// One term of a calibration: the number of its motion, and its place among the motion's terms.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -9,15 +9,15 @@ pub(crate) struct TermAt {
     pub(crate) place: usize,
 }
 
-/// Which numbers of a calibration have one factor.
+/// Numbers of a calibration that are wrong by one factor.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Scope {
     Term(TermAt),
     /// All terms of an error motion.
     Motion(usize),
-    /// All error motions of an axis, its alignments apart: these are measured by other means.
+    /// All error motions of an axis but its alignments, which are measured by other means.
     Axis(usize),
-    /// All angular error motions, alignments apart.
+    /// All angular error motions but the alignments.
     Angles,
     /// All numbers.
     Everything,
@@ -26,14 +26,14 @@ pub(crate) enum Scope {
 /// What may be wrong.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) enum Fault {
-    /// Numbers of the calibration are too small by a factor, which is 1 plus the amount: -2 is a wrong sign.
+    /// Numbers of the calibration have to be multiplied by 1 plus the amount. An amount of -2 is a wrong sign.
     Size(Scope),
-    /// A table was entered from its other end.
+    /// The values of a table are in reverse order.
     Mirror(TermAt),
-    /// A table stands too low on its axis, by the amount, in mm or rad, which is near so many quarters of the step between its nodes:
-    /// the way from node to node is straight, so that a large shift is not many small ones.
+    /// The amount, mm or rad, has to be added to the nodes of a table. It is expected near this many quarters of a node step. A table is
+    /// straight between its nodes, so a large shift does something else than many small ones.
     Shift { at: TermAt, quarters: i8 },
-    /// The values of a table stand so many nodes too low.
+    /// This many node steps have to be added to the nodes of a table.
     Slip { at: TermAt, nodes: i8 },
     /// A term reads another axis than the one that it names.
     Axis { of: TermAt, named: usize, read: usize },
@@ -43,20 +43,20 @@ pub(crate) enum Fault {
     Exchange { one: usize, other: usize },
     /// The numbers of an error motion belong to another one.
     Moved { from: usize, to: usize },
-    /// A constant of the machine is too small, by the amount, in mm.
+    /// The amount, mm, has to be added to a constant of the machine.
     Constant(usize),
     /// The chain has another order.
     Order(String),
-    /// The reference temperature of all thermal terms is too low, by the amount, in K.
+    /// The amount, K, has to be added to the reference temperature of all thermal terms.
     Reference,
-    /// Two temperature sensors are exchanged.
+    /// Two temperature sensors are exchanged: each has the readings of the other.
     Sensors { one: usize, other: usize },
-    /// The readings of a recording are too large by a factor, which is 1 plus the amount: -2 is a wrong sign.
+    /// The readings of a recording are too large by a factor of 1 plus the amount. An amount of -2 is a wrong sign.
     Scale { recording: usize },
 }
 
 impl Fault {
-    /// Whether there is such a fault or not: the amount is then 1. Others have any amount.
+    /// Whether the fault is either there or not, so that its amount is 1. The others have any amount.
     pub(crate) fn is_whole(&self) -> bool {
         !matches!(
             self,
@@ -64,7 +64,8 @@ impl Fault {
         )
     }
 
-    /// The fault that makes files what they were before they were changed to be without this one; `word` is the order of the chain then.
+    /// The fault that turns the change back: in files that were changed to be without this fault, it makes what was read. `word` is the
+    /// topology word that was read.
     pub(crate) fn turned_back(&self, word: Option<&str>) -> Self {
         match self {
             Self::Moved { from, to } => Self::Moved { from: *to, to: *from },
@@ -90,7 +91,7 @@ pub(crate) struct Factor {
     pub(crate) meaning: &'static str,
 }
 
-/// The factors by which numbers are wrong when something was mixed up.
+/// The factors by which numbers have to be multiplied when something was mixed up. With each one the list holds its inverse.
 pub(crate) const FACTORS: [Factor; 11] = [
     Factor { value: -1.0, name: "sign", meaning: "the sign is wrong" },
     Factor { value: 2.0, name: "size", meaning: "halves were entered for wholes" },

@@ -1,13 +1,13 @@
 //! Gross faults: columns that are exchanged, turned, or in another unit.
 //!
-//! In: a channel that does not follow the programmed path. Out: what of its set-up would make it follow, where there is one such
-//! thing. Millimetres are wrong here, and no model is needed to tell.
+//! In: a channel of a position. Out: if it does not follow the programmed path, the one thing of its set-up that would make it follow.
+//! It is off by millimetres then, and no model is needed to tell.
 
 use crate::diagnosis::{Change, Evidence, WrongFile};
-use crate::study::{Kind, Study};
+use crate::study::{Channel, Kind, Scene, Study};
 
-/// Factors that are tried: metres, micrometres and inches for millimetres, and the other way; and the other sign.
-const WAYS: [(f64, &str); 5] = [
+/// Factors to try: metres, micrometres and inches for millimetres and the other way round, and the wrong sign.
+const FACTORS: [(f64, &str); 5] = [
     (1e3, "the unit of {} is a thousand times too small"),
     (1e-3, "the unit of {} is a thousand times too large"),
     (25.4, "{} is in inches"),
@@ -15,46 +15,41 @@ const WAYS: [(f64, &str); 5] = [
     (-1.0, "the sign of {} is wrong"),
 ];
 
-/// A channel follows where half of its samples are off by no more than this share of what half of the path goes.
+/// A channel follows its path if half of its samples are off by no more than this share of the typical distance that the path goes. No
+/// error of a machine is a tenth of the travel, and half of the path of another axis hardly lies that near.
 const FOLLOWS: f64 = 0.1;
 
-/// What would make a channel of a position follow the path, so that half of its samples are off by less than `slack` (mm). `None` where
-/// it does follow, and where nothing would make it, or more than one thing.
+/// One thing that may be wrong with a channel, and the readings without it.
+struct Way {
+    readings: Vec<f64>,
+    fault: String,
+    change: &'static str,
+    with: Option<String>,
+}
+
+/// The one thing that would make a channel of a position follow its path. `None` if it follows (half of its samples are off by less than
+/// `slack`, mm), if nothing would make it follow, or if more than one thing would.
 pub(crate) fn change(study: &Study<'_>, (scene, channel): (usize, usize), slack: f64) -> Option<Change> {
     let known = &study.scenes[scene];
-    let Kind::Tip(direction) = known.channels[channel].kind else { return None };
+    let observed = &known.channels[channel];
+    let Kind::Tip(direction) = observed.kind else { return None };
     let positions: Vec<&[f64]> = known.given.programmed.iter().map(|position| &position[..]).collect();
-    let nominal = study.interpreter.nominal_columns(&positions);
-    let own = known.channels[channel].values;
-    let tip = |channel: &&crate::study::Channel<'_>| matches!(channel.kind, Kind::Tip(of) if of != direction);
-    let mut ways: Vec<(Vec<f64>, String, &'static str, Option<String>)> = Vec::new();
-    let name = |direction: usize| format!("measured.{}", ["x", "y", "z"][direction]);
-    for (factor, fault) in &WAYS {
-        let values = own.iter().map(|value| value * factor).collect();
-        let kind = if *factor < 0.0 { "sign" } else { "unit" };
-        ways.push((values, fault.replace("{}", &name(direction)), kind, None));
-    }
-    for other in known.channels.iter().filter(tip) {
-        let fault = format!("the columns of {} and {} are swapped", name(direction), other.name);
-        ways.push((other.values.to_vec(), fault, "columns", Some(format!("channels.{}", other.name))));
-    }
-    let off = |values: &[f64]| typical_distance(values, &nominal[direction]);
-    let before = off(own).filter(|before| *before > slack)?;
-    // What goes nowhere follows any path that stands, and anything divided by a thousand does.
-    let way = typical_distance(&nominal[direction], &vec![0.0; nominal[direction].len()])?;
-    let slack = slack.min(FOLLOWS * way);
-    let mut fitting = ways.into_iter().filter_map(|way| Some((off(&way.0)?, way)));
-    let mut fitting = fitting.by_ref().filter(|(off, _)| *off < slack);
-    let (after, (_, fault, kind, with)) = fitting.next()?;
+    let nominal = &study.interpreter.nominal_columns(&positions)[direction];
+    let before = typical_distance(observed.values, nominal).filter(|before| *before > slack)?;
+    // A channel that stands still follows a path that stands still, and anything divided by a thousand stands still.
+    let slack = slack.min(FOLLOWS * typical_distance(nominal, &vec![0.0; nominal.len()])?);
+    let off = |way: Way| Some((typical_distance(&way.readings, nominal)?, way));
+    let mut fitting = ways(known, observed).into_iter().filter_map(off).filter(|(off, _)| *off < slack);
+    let (after, way) = fitting.next()?;
     fitting.next().is_none().then(|| Change {
         file: WrongFile::Recording(scene),
         name: known.recording.file.clone(),
         line: None,
-        path: format!("channels.{}", name(direction)),
-        change: kind,
-        with,
+        path: format!("channels.{}", observed.name),
+        change: way.change,
+        with: way.with,
         remedy: "correct it in the recording file; nothing else can be told before".to_owned(),
-        fault,
+        fault: way.fault,
         amount: None,
         share: 1.0 - (after / before).powi(2),
         evidence: Evidence { with: after, without: before, unit: "mm", drive: None },
@@ -62,7 +57,26 @@ pub(crate) fn change(study: &Study<'_>, (scene, channel): (usize, usize), slack:
     })
 }
 
-/// Half of the samples are farther from a path than this, a zero left free.
+/// What may be wrong with a channel of a position: its unit, its sign, or its column.
+fn ways(known: &Scene<'_>, observed: &Channel<'_>) -> Vec<Way> {
+    let scaled = FACTORS.iter().map(|(factor, fault)| Way {
+        readings: observed.values.iter().map(|value| value * factor).collect(),
+        fault: fault.replace("{}", &observed.name),
+        change: if *factor < 0.0 { "sign" } else { "unit" },
+        with: None,
+    });
+    let others = known.channels.iter();
+    let others = others.filter(|other| matches!(other.kind, Kind::Tip(_)) && other.name != observed.name);
+    let swapped = others.map(|other| Way {
+        readings: other.values.to_vec(),
+        fault: format!("the columns of {} and {} are swapped", observed.name, other.name),
+        change: "columns",
+        with: Some(format!("channels.{}", other.name)),
+    });
+    scaled.chain(swapped).collect()
+}
+
+/// The median distance of samples from a path, their zero left free.
 fn typical_distance(values: &[f64], nominal: &[f64]) -> Option<f64> {
     let mut away: Vec<f64> = values
         .iter()

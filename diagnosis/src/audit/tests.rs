@@ -1,9 +1,9 @@
 //! Laws of faults: what is changed and turned back is what was read; a column is what the exact machine does differently.
 
-use model_dsl::calibration::Calibration;
-use model_dsl::compile_word;
-use model_dsl::diagnostic::Diagnostics;
-use model_dsl::equations::Equations;
+use model_dsl::calibration::{self, Calibration};
+use model_dsl::diagnostic::{Diagnostics, render};
+use model_dsl::source::SourceFile;
+use model_dsl::yaml;
 use simulation::Path;
 use simulation::path::Shape;
 
@@ -24,13 +24,9 @@ const ERRORS: &str = "{EXX: [{table: {axis: X, start: 0 mm, step: 100 mm, unit: 
     EYX: [{table: {axis: X, start: 0 mm, step: 100 mm, unit: um, forward: [0, 4, -3, 8, 5, 1], reverse: [1, 6, -1, 9, 3, 2]}}], \
     EBX: [{polynomial: {axis: X, per: mm, unit: urad, coefficients: [0, 0.1, -2e-4]}}], \
     ECX: [{table: {axis: X, start: 0 mm, step: 100 mm, unit: urad, values: [0, -30, 40, 70, 20, -60]}}], \
-    EYY: [{backlash: {lost_motion: 4 um}}, {expansion: {axis: Y, sensor: scale, coefficient: 8 um/m/K, reference: 20 degC}}], \
+    EYY: [{lag: {gain: 60 1/s}}, {backlash: {lost_motion: 4 um, inside_loop: true}}, {backlash: {lost_motion: 3 um}}, {expansion: {axis: Y, sensor: scale, coefficient: 8 um/m/K, reference: 20 degC}}], \
     EAY: [{table: {axis: Y, start: 0 mm, step: 100 mm, unit: urad, values: [0, 45, -35, 25]}}], \
     EZZ: [{growth: {sensor: head, coefficient: 3 um/K, reference: 20 degC}}], EC0Y: 60 urad}";
-
-fn derive(word: &str) -> Option<Equations> {
-    compile_word(word, &mut Diagnostics::new()).map(|compiled| compiled.equations)
-}
 
 fn recorded(bench: &Bench, known: &Calibration) -> Recording {
     let corners = [(0, 480.0), (1, 280.0), (2, -10.0), (0, 20.0), (1, 20.0), (0, 300.0)];
@@ -39,18 +35,6 @@ fn recorded(bench: &Bench, known: &Calibration) -> Recording {
     let mut scenario = scenario(Path { runs: 2, ..path(Shape::Points(points), 50.0, 4.0) }, position("xyz"));
     scenario.temperatures = vec![warming("scale", 4.0, 60.0), warming("head", 9.0, 20.0)];
     bench.record(known, &scenario)
-}
-
-fn inputs<'i>(bench: &'i Bench, known: &'i Calibration, recording: &'i Recording) -> Inputs<'i> {
-    let word = bench.equations().machine.as_str();
-    Inputs {
-        equations: bench.equations(),
-        calibration: Some(known),
-        recordings: vec![recording],
-        holdout: None,
-        calibration_file: None,
-        chains: Some(Chains { file: word, word, derive: &derive }),
-    }
 }
 
 /// About one unit of a fault, so small that it is one.
@@ -91,12 +75,40 @@ fn same(one: &Calibration, other: &Calibration) -> bool {
     digits(one) == digits(other)
 }
 
+/// What a fault may change of a recording: its temperatures by name, in order.
+fn readings(inputs: &Inputs<'_>) -> Vec<(String, Vec<f64>)> {
+    let temperatures = inputs.recordings.iter().flat_map(|recording| &recording.temperatures);
+    let mut all: Vec<_> =
+        temperatures.map(|channel| (channel.name.clone(), channel.values.clone())).collect();
+    all.sort_by(|one, other| one.0.cmp(&other.0));
+    all
+}
+
+#[test]
+fn what_is_changed_is_written_and_read_again() {
+    let bench = Bench::of("FXYZ");
+    let known = bench.calibration(ERRORS);
+    let recording = recorded(&bench, &known);
+    let inputs = bench.audited(&known, &recording);
+    for fault in catalogue::faults(&inputs) {
+        let changed = Changed::new(&inputs, &fault, amount(&fault)).unwrap();
+        let with = changed.inputs(&inputs);
+        let names = with.equations.names();
+        let text = calibration::write(with.calibration.unwrap(), &names);
+        let source = SourceFile::new("changed.yaml", text);
+        let mut findings = Diagnostics::new();
+        let tree = yaml::read(&source, &mut findings).unwrap();
+        let read = calibration::read(&tree, &names, &mut findings);
+        assert!(read.is_some(), "{fault:?}: {}", render(&source, &findings, false));
+    }
+}
+
 #[test]
 fn what_is_changed_and_turned_back_is_what_was_read() {
     let bench = Bench::of("FXYZ");
     let known = bench.calibration(ERRORS);
     let recording = recorded(&bench, &known);
-    let inputs = inputs(&bench, &known, &recording);
+    let inputs = bench.audited(&known, &recording);
     let faults = catalogue::faults(&inputs);
     assert!(faults.len() > 100, "{}", faults.len());
     for fault in faults {
@@ -106,8 +118,11 @@ fn what_is_changed_and_turned_back_is_what_was_read() {
         let again = Changed::new(&with, &turned, back(&fault, amount(&fault))).unwrap();
         let again = again.inputs(&with);
         assert!(same(again.calibration.unwrap(), &known), "{fault:?}");
+        assert_eq!(readings(&again), readings(&inputs), "{fault:?}");
         assert_eq!(again.equations.names(), bench.names, "{fault:?}");
-        let other = !same(with.calibration.unwrap(), &known) || with.equations.names() != bench.names;
+        let other = !same(with.calibration.unwrap(), &known)
+            || with.equations.names() != bench.names
+            || readings(&with) != readings(&inputs);
         assert!(other, "{fault:?} changes nothing");
     }
 }
@@ -117,7 +132,7 @@ fn a_column_is_what_the_exact_machine_does_differently() {
     let bench = Bench::of("FXYZ");
     let known = bench.calibration(ERRORS);
     let recording = recorded(&bench, &known);
-    let inputs = inputs(&bench, &known, &recording);
+    let inputs = bench.audited(&known, &recording);
     let study = Study::new(inputs.equations, inputs.calibration, &inputs.recordings);
     let versions = Versions::new(&study, &Vec::new(), &inputs, catalogue::faults(&inputs));
     assert!(versions.suspected.len() > 50, "{}", versions.suspected.len());
@@ -156,7 +171,7 @@ fn words_are_tried_in_every_order_or_with_neighbours_exchanged() {
     let bench = Bench::of("FXYZ");
     let known = bench.calibration(ERRORS);
     let recording = recorded(&bench, &known);
-    let mut inputs = inputs(&bench, &known, &recording);
+    let mut inputs = bench.audited(&known, &recording);
     let orders = |inputs: &Inputs<'_>| {
         let faults = catalogue::faults(inputs).into_iter();
         faults
@@ -188,7 +203,7 @@ fn numbers_that_are_moved_out_of_sight_are_no_suspects() {
     // What moves Y and Z is not seen.
     recording.measured[1] = None;
     recording.measured[2] = None;
-    let inputs = inputs(&bench, &known, &recording);
+    let inputs = bench.audited(&known, &recording);
     let study = Study::new(inputs.equations, inputs.calibration, &inputs.recordings);
     let versions = Versions::new(&study, &Vec::new(), &inputs, catalogue::faults(&inputs));
     let moved: Vec<&Fault> = versions

@@ -9,12 +9,12 @@ use model_dsl::source::SourceFile;
 use model_dsl::yaml;
 
 use super::fault::{FACTORS, Factor, Fault, Scope, TermAt};
-use super::{Rest, Suspect};
+use super::{Rest, Suspect, changed};
 use crate::Inputs;
 use crate::certainty::WIDTH_95;
 use crate::diagnosis::{Change, Estimate, Evidence, Parameter, ParameterValue, Residual, WrongFile};
 
-/// What is told of a suspect of which so much was left. `sizes` are what the findings leave without the change and with it, and the
+/// What is told of a suspect. `rest` is the amount of it that was left, `sizes` are the residuals without the change and with it, and the
 /// noise is that of the recordings.
 pub(crate) fn change(
     suspect: &Suspect,
@@ -49,7 +49,7 @@ pub(crate) fn change(
     }
 }
 
-/// The factor with a name that an amount is, where it is one.
+/// The named factor of an amount, if it has one.
 fn factor(fault: &Fault, amount: f64) -> Option<Factor> {
     let same = |factor: &&Factor| fault.is_factor() && (factor.value - 1.0 - amount).abs() < 1e-9;
     FACTORS.iter().find(same).copied()
@@ -97,11 +97,17 @@ impl Words<'_> {
             Fault::Scale { recording } => {
                 let file =
                     self.inputs.recordings.get(*recording).map_or("", |recording| recording.file.as_str());
-                self.sized(&format!("what is read in {file}"), named, 1.0 / (1.0 + amount) - 1.0)
+                // Readings that are too large by a factor have to be multiplied by the other one.
+                let mended = 1.0 / (1.0 + amount) - 1.0;
+                self.sized(
+                    &format!("the reading of {file}"),
+                    named.and_then(|_| factor(fault, mended)),
+                    mended,
+                )
             }
             Fault::Mirror(at) => (
                 format!("{} is entered from the wrong end", self.term(*at)),
-                "turn the order of its values".to_owned(),
+                "reverse the order of its values".to_owned(),
             ),
             Fault::Shift { at, .. } => (
                 format!("{} stands at the wrong place of its axis", self.term(*at)),
@@ -109,16 +115,16 @@ impl Words<'_> {
             ),
             Fault::Slip { at, nodes } => {
                 let (where_to, how) =
-                    if *nodes > 0 { ("low", "a step more") } else { ("high", "a step less") };
+                    if *nodes > 0 { ("low", "one step higher") } else { ("high", "one step lower") };
                 (
-                    format!("the values of {} stand one node too {where_to}", self.term(*at)),
-                    format!("begin its nodes {how} than where they do"),
+                    format!("the values of {} stand one node too {where_to} on the axis", self.term(*at)),
+                    format!("start its nodes {how}"),
                 )
             }
             Fault::Axis { of, named, read } => {
                 let [named, read] = [*named, *read].map(|axis| &self.equations.axes[axis].letter);
                 (
-                    format!("{} reads {named}, and follows {read}", self.term(*of)),
+                    format!("{} names the axis {named}, and its values follow {read}", self.term(*of)),
                     format!("write `axis: {read}` in it"),
                 )
             }
@@ -136,7 +142,7 @@ impl Words<'_> {
             Fault::Moved { from, to } => {
                 let [from, to] = [*from, *to].map(|motion| &self.equations.motions[motion].name);
                 (
-                    format!("what stands under {from} stands under the wrong error motion: it is {to}"),
+                    format!("the terms of {from} stand under the wrong error motion: they belong to {to}"),
                     format!("write {to} in the place of {from}"),
                 )
             }
@@ -148,7 +154,7 @@ impl Words<'_> {
                 let old = self.inputs.chains.map_or("", |chains| chains.word);
                 (
                     format!(
-                        "the chain is {word}, and not {old}: the topology has its axes in the wrong order, or on the wrong branch"
+                        "the topology is {word}, not {old}: an axis of the chain has the wrong place or the wrong branch"
                     ),
                     format!("write the topology {word}"),
                 )
@@ -161,7 +167,10 @@ impl Words<'_> {
                 let [one, other] = [*one, *other].map(|sensor| self.sensor(sensor));
                 (
                     format!("the temperature sensors {one} and {other} are swapped"),
-                    format!("swap the columns of temperature.{one} and temperature.{other}"),
+                    format!(
+                        "swap the columns of temperature.{one} and temperature.{other} in the recordings; where the calibration has \
+                         the names the wrong way round, swap them there instead"
+                    ),
                 )
             }
         }
@@ -171,7 +180,7 @@ impl Words<'_> {
     fn sized(&self, what: &str, named: Option<Factor>, amount: f64) -> (String, String) {
         match named {
             Some(Factor { name: "sign", .. }) => {
-                (format!("{what} has the wrong sign"), "turn the sign of its values".to_owned())
+                (format!("{what} has the wrong sign"), "change the sign of its values".to_owned())
             }
             Some(factor) => (
                 format!("{what} has the wrong {}: {}", factor.name, factor.meaning),
@@ -188,8 +197,8 @@ impl Words<'_> {
         match scope {
             Scope::Term(at) => self.term(at),
             Scope::Motion(motion) => self.equations.motions[motion].name.clone(),
-            Scope::Axis(axis) => format!("everything of axis {}", self.equations.axes[axis].letter),
-            Scope::Angles => "every angle".to_owned(),
+            Scope::Axis(axis) => format!("every error motion of {}", self.equations.axes[axis].letter),
+            Scope::Angles => "every angular error motion".to_owned(),
             Scope::Everything => "every number".to_owned(),
         }
     }
@@ -212,8 +221,7 @@ impl Words<'_> {
     }
 
     fn sensor(&self, number: usize) -> &str {
-        let sensor = self.known.and_then(|known| known.sensors.iter().nth(number));
-        sensor.map_or("", |sensor| sensor.name.value.as_str())
+        self.known.map_or("", |known| changed::sensor(known, number))
     }
 
     /// Where in its file the fault stands.

@@ -99,10 +99,11 @@ pub(super) fn crossed(study: &Study<'_>, model: &Model) -> Vec<String> {
     .collect()
 }
 
-/// What is open where a file seems to be wrong.
+/// What a fault of a file leaves open.
 pub(super) fn since_when(change: &Change) -> String {
     format!(
-        "Whether {} was wrong from the start, or the machine was changed since, cannot be decided from these recordings; only that {}.",
+        "Whether {} was wrong from the start or the machine was changed since cannot be decided from these recordings. They show that \
+         {}.",
         change.name, change.fault
     )
 }
@@ -135,20 +136,20 @@ pub(super) fn too_little(study: &Study<'_>) -> Option<String> {
     Some(because)
 }
 
-/// A channel that is read wrongly.
+/// Why nothing can be claimed: a channel is read wrongly.
 pub(super) struct Misread {
     pub(super) reason: String,
-    /// What would bring it back.
+    /// The change that would make it follow its path.
     pub(super) change: Change,
 }
 
-/// A channel that lies far off and would not if one thing of its set-up were other. That is asked before anything: an axis that seems
-/// to move while its command stands may be another axis.
+/// A channel that lies far off its path and would follow it if one thing of its set-up were changed. This is asked first: an axis that
+/// seems to move while its command stands may be another axis.
 pub(super) fn misread(study: &Study<'_>) -> Option<Misread> {
     let scenes = study.scenes.iter().enumerate();
-    let channels =
+    let mut channels =
         scenes.flat_map(|(scene, known)| (0..known.channels.len()).map(move |number| (scene, number)));
-    channels.into_iter().find_map(|(scene, number)| {
+    channels.find_map(|(scene, number)| {
         let channel = &study.scenes[scene].channels[number];
         let change = gross::change(study, (scene, number), far_off(study, scene, channel))?;
         let file = &study.scenes[scene].recording.file;

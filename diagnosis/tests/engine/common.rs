@@ -28,14 +28,7 @@ pub(crate) fn with_holdout(
     recordings: &[&Recording],
     holdout: Option<&Recording>,
 ) -> Diagnosis {
-    let inputs = Inputs {
-        equations: bench.equations(),
-        calibration: Some(known),
-        recordings: recordings.to_vec(),
-        holdout,
-        calibration_file: None,
-        chains: None,
-    };
+    let inputs = Inputs { holdout, ..bench.inputs(known, recordings) };
     let mut done = 0.0;
     let diagnosis = diagnose(&inputs, &mut |progress| {
         assert!((0.0..=1.0).contains(&progress.done), "{progress:?}");

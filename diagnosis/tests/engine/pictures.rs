@@ -2,9 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use diagnosis::diagnose_with_pictures;
 use diagnosis::diagnosis::Diagnosis;
 use diagnosis::pictures::{ChannelPicture, Pictures};
-use diagnosis::{Inputs, diagnose_with_pictures};
 use model_dsl::calibration::Calibration;
 use simulation::Path;
 
@@ -13,15 +13,7 @@ use crate::recording::Recording;
 use crate::testing::*;
 
 fn drawn(bench: &Bench, known: &Calibration, recording: &Recording) -> (Diagnosis, Pictures) {
-    let inputs = Inputs {
-        equations: bench.equations(),
-        calibration: Some(known),
-        recordings: vec![recording],
-        holdout: None,
-        calibration_file: None,
-        chains: None,
-    };
-    let mut diagnosis = diagnose_with_pictures(&inputs, &mut |_| {});
+    let mut diagnosis = diagnose_with_pictures(&bench.inputs(known, &[recording]), &mut |_| {});
     let pictures = diagnosis.pictures.take().unwrap();
     (diagnosis, pictures)
 }

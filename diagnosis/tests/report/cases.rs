@@ -261,11 +261,11 @@ pub(crate) fn sign() -> Change {
         change: "sign",
         with: None,
         fault: "EBX has the wrong sign".to_owned(),
-        remedy: "turn the sign of its values".to_owned(),
+        remedy: "change the sign of its values".to_owned(),
         amount: Some(fitted("factor", -0.998, 0.012, "")),
         share: 0.97,
         evidence: Evidence { with: 0.0006, without: 0.0031, unit: "mm", drive: None },
-        alternatives: vec!["what is read in circle.yaml has the wrong sign".to_owned()],
+        alternatives: vec!["the reading of circle.yaml has the wrong sign".to_owned()],
     }
 }
 
@@ -277,7 +277,7 @@ fn order() -> Change {
         path: "topology".to_owned(),
         change: "order",
         with: Some("XFYZ".to_owned()),
-        fault: "the chain is XFYZ, and not FXYZ".to_owned(),
+        fault: "the topology is XFYZ, not FXYZ".to_owned(),
         remedy: "write the topology XFYZ".to_owned(),
         amount: None,
         share: f64::NAN,

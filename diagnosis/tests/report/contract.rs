@@ -84,9 +84,9 @@ fn a_fault_of_a_file_says_where_and_what_to_change() {
     let contract = json!({"model": [
         {"file": "calibration.yaml", "line": 14, "path": "errors.EBX", "change": "sign",
          "parameters": {"factor": {"value": -0.998, "ci95": [-1.01, -0.986], "unit": ""}}, "share": 0.97,
-         "fault": "EBX has the wrong sign", "remedy": "turn the sign of its values",
+         "fault": "EBX has the wrong sign", "remedy": "change the sign of its values",
          "evidence_rms": {"with": 0.0006, "without": 0.0031, "unit": "mm"},
-         "indistinguishable_from": ["what is read in circle.yaml has the wrong sign"]},
+         "indistinguishable_from": ["the reading of circle.yaml has the wrong sign"]},
         {"file": "FXYZ", "path": "topology", "change": "order", "with": "XFYZ", "share": null}]});
     let found = parsed(&cases::wrong_files());
     holds(&found, &contract, "");

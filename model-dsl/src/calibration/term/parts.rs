@@ -226,6 +226,29 @@ impl CalibratedTerm {
         self
     }
 
+    /// The term reading another axis, where it reads one. Its numbers stay, whether they are per mm or per rad of it.
+    #[must_use]
+    pub fn with_axis(mut self, number: usize) -> Self {
+        match &mut self {
+            Self::Polynomial { input: SeriesInput::Axis(axis), .. }
+            | Self::Coupling { axis, .. }
+            | Self::Table { axis, .. }
+            | Self::Backlash { axis, .. }
+            | Self::ReversalSpike { axis, .. }
+            | Self::Cyclic { axis, .. }
+            | Self::Lag { axis, .. }
+            | Self::Acceleration { axis, .. }
+            | Self::Expansion { axis, .. } => *axis = number,
+            Self::Constant { .. }
+            | Self::Polynomial { .. }
+            | Self::Growth { .. }
+            | Self::Drift { .. }
+            | Self::Vibration { .. }
+            | Self::Compliance { .. } => {}
+        }
+        self
+    }
+
     /// What stands behind a key; nothing where this term does not have it.
     pub fn part(&self, key: &str) -> Option<Part<'_>> {
         self.parts().into_iter().find(|(known, _)| *known == key).map(|(_, part)| part)

@@ -73,11 +73,11 @@ impl Calibrated {
         let motions = self.equations.motions.iter().enumerate();
         motions
             .map(|(number, motion)| {
-                let terms = self.calibration.runtime(number).filter_map(|term| match term {
-                    Ok(term) => Some(term),
+                let terms = self.calibration.runtime(number).flat_map(|term| match term {
+                    Ok(with_factors) => with_factors,
                     Err(reason) => {
                         left_out(format!("warning: left out of {}: {reason}", motion.name));
-                        None
+                        Vec::new()
                     }
                 });
                 terms.collect()

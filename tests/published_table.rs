@@ -38,7 +38,7 @@ fn real(equations: &Equations, calibration: &Calibration, command: [f64; 3]) -> 
     }
     for (number, motion) in equations.motions.iter().enumerate() {
         let terms: Vec<Term<'_>> =
-            calibration.terms(number).iter().map(|term| term.value.runtime().unwrap()).collect();
+            calibration.terms(number).iter().flat_map(|term| term.value.runtime().unwrap()).collect();
         let memory = vec![TermState::default(); terms.len()];
         state.errors.insert(motion.name.clone(), ErrorMotion { terms: &terms }.value(&sample, &memory));
     }

@@ -7,7 +7,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-use model_dsl::calibration::vocabulary::{Base, Entry, Form, Given, Holds, Key, Kind, Role, VOCABULARY};
+use model_dsl::calibration::factor::vocabulary::{FACTORS, FactorHolds, FactorKey, Limit, Measure};
+use model_dsl::calibration::vocabulary::{
+    Base, Entry, Form, Given, Holds, Key, Kind, Role, TIMES, VOCABULARY,
+};
 use serde_json::Value;
 
 use crate::shipped::root;
@@ -102,7 +105,9 @@ fn a_term_is_its_entry_and_its_formulas() {
 fn definition(entry: &Entry, key: &Key) -> Option<&'static str> {
     Some(match key.holds {
         Holds::Quantity(Kind { of, per: [] }) => match of {
-            Base::Motion | Base::Position => "size",
+            // With factors it is no length and no angle.
+            Base::Motion => "sizeOfMotion",
+            Base::Position => "size",
             Base::Angle => "angle",
             Base::Time => "time",
             Base::Frequency => "frequency",
@@ -117,6 +122,7 @@ fn definition(entry: &Entry, key: &Key) -> Option<&'static str> {
         Holds::Unit(_) => "unitOfPosition",
         Holds::OwnAxis | Holds::OtherAxis => "axis",
         Holds::Sensor | Holds::Load => "word",
+        Holds::Factors => "factors",
         Holds::Quantities(_) | Holds::Flag => return None,
     })
 }
@@ -145,7 +151,9 @@ fn the_schemas_have_the_terms_and_the_keys_of_the_table() {
             assert_eq!(term["description"], format!("{}{rest}.", first.to_uppercase()), "{form} {name}");
             let properties = term["properties"].as_object().unwrap();
             let keys: BTreeSet<&str> = properties.keys().map(String::as_str).collect();
-            assert_eq!(keys, names(entry.keys), "{form} {name}");
+            let mut known = names(entry.keys);
+            known.extend(entry.kind.takes_factors().then_some(TIMES));
+            assert_eq!(keys, known, "{form} {name}");
             let required = term["required"].as_array().unwrap().iter().filter_map(Value::as_str);
             let always = entry.keys.iter().filter(|key| key.given == Given::Required);
             assert_eq!(required.collect::<BTreeSet<_>>(), names(always), "{form} {name}");

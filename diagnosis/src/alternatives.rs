@@ -4,6 +4,8 @@
 //! becoming clearly less likely, all other effects fitted again: the null space of the joint design, and its surroundings as
 //! far as the noise hides the difference. A clock is also held against loops on all axes at once.
 
+use model_dsl::calibration::Factor;
+
 use crate::candidates::simplicity;
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
@@ -261,6 +263,37 @@ fn states_of(study: &Study<'_>, this: &Effect, other: &Effect) -> String {
     if a == b { format!("{a} of the two links") } else { format!("{a} and {b}") }
 }
 
+/// The state that a factor is, in words.
+pub(crate) fn factor_state(study: &Study<'_>, factor: &Factor<usize>) -> String {
+    let of = |axis: usize| study.equations.axes[axis].letter.to_lowercase();
+    match *factor {
+        Factor::Position { axis, .. } | Factor::Turn { axis, .. } | Factor::Curve { axis, .. } => {
+            format!("the position of {}", of(axis))
+        }
+        Factor::Direction { axis } => format!("the direction of {}", of(axis)),
+        Factor::Velocity { axis, .. } => format!("the velocity of {}", of(axis)),
+        Factor::Speed { axis, .. } | Factor::Fading { axis, .. } => format!("the speed of {}", of(axis)),
+        Factor::Acceleration { axis, .. } => format!("the acceleration of {}", of(axis)),
+        Factor::Temperature { sensor, .. } | Factor::Play { sensor, .. } => {
+            format!("temperature {}", study.sensors[sensor])
+        }
+        Factor::Warmth { axis, .. } => format!("the warmth that the motion of {} makes", of(axis)),
+        Factor::Load { load, .. } | Factor::Half { load, .. } | Factor::Spin { load, .. } => {
+            format!("load {}", study.loads[load].0)
+        }
+        Factor::After { .. } => "time".to_owned(),
+    }
+}
+
+/// `a`, `a and b`, `a, b and c`.
+pub(crate) fn listed(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [alone] => alone.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
 /// The state that an effect depends on, in words.
 pub(crate) fn state(study: &Study<'_>, effect: &Effect) -> String {
     let of = |axis: usize| study.equations.axes[axis].letter.to_lowercase();
@@ -284,6 +317,16 @@ pub(crate) fn state(study: &Study<'_>, effect: &Effect) -> String {
         }
         Shape::Drift { .. } | Shape::Vibration { .. } => "time".to_owned(),
         Shape::Compliance { load } => format!("load {}", study.loads[*load].0),
+        Shape::Delay { axis, .. } => format!("the velocity of {}", of(*axis)),
+        Shape::Step { .. } => "time".to_owned(),
+        Shape::Times { core, factors } => {
+            let factors = factors.iter().map(|factor| factor_state(study, factor));
+            let core = match **core {
+                Shape::Constant => None,
+                _ => Some(state(study, &Effect { place: effect.place, shape: (**core).clone() })),
+            };
+            listed(&core.into_iter().chain(factors).collect::<Vec<_>>())
+        }
         Shape::Instrument(setting) => format!("the instrument's {}", setting.name()),
     }
 }

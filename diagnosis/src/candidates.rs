@@ -209,7 +209,7 @@ fn recorded(study: &Study<'_>) -> Vec<usize> {
 /// How much a term must bring beyond its parameters to stand before a simpler one: in units of minus twice the
 /// log-likelihood. It decides between names for what the data cannot tell apart.
 pub(crate) fn simplicity(study: &Study<'_>, effect: &Effect) -> f64 {
-    let shape = match &effect.shape {
+    let shape = match effect.shape.core() {
         Shape::Constant | Shape::Lag { .. } => 0.0,
         Shape::Backlash { wind_up, .. } => {
             if *wind_up > 0.0 {
@@ -228,7 +228,12 @@ pub(crate) fn simplicity(study: &Study<'_>, effect: &Effect) -> f64 {
         Shape::Drift { .. } => 15.0,
         Shape::SensorPolynomial { .. } => 10.0,
         Shape::Table { .. } => 4.0,
+        Shape::Delay { .. } => 1.0,
+        Shape::Step { .. } => 2.0,
+        // Factors of factors there are none.
+        Shape::Times { .. } => 0.0,
     };
+    let shape = shape + FACTOR * effect.shape.factors().len() as f64;
     let rests = matches!(
         effect.shape,
         Shape::Lag { .. } | Shape::Acceleration { .. } | Shape::Instrument(Setting::Clock)
@@ -237,6 +242,9 @@ pub(crate) fn simplicity(study: &Study<'_>, effect: &Effect) -> f64 {
     let shape = if sparse { shape + UNSEEN_MOTION } else { shape };
     shape + effect.motion().map_or(0.0, |motion| place(study, motion, &effect.shape))
 }
+
+/// What each factor must bring: e to this half is how many times less likely a form with one more factor is, before anything is seen.
+const FACTOR: f64 = 2.0;
 
 /// What a term that needs the motion between rows must bring beyond others where rows are far apart: the axes may well be at
 /// rest in every row.

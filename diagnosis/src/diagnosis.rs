@@ -234,16 +234,38 @@ pub struct Finding {
     pub repeats_with: Vec<Repeats>,
     /// Whether a controller can compensate it in real time.
     pub compensable: bool,
-    /// The term as the calibration takes it; its sensor is a number into [`Finding::sensor`].
+    /// The term as the calibration takes it; its sensors go by the numbers in [`Finding::sensors`].
     pub calibrated: CalibratedTerm,
-    /// The name of the sensor that it reads.
-    pub sensor: Option<String>,
+    /// The sensors that it and its factors read: their numbers in [`Finding::calibrated`], and their names.
+    pub sensors: Vec<(usize, String)>,
 }
 
 impl Finding {
     /// Which term of the vocabulary it is.
     pub fn kind(&self) -> TermKind {
         self.calibrated.kind()
+    }
+
+    /// The name of the sensor that the term itself reads.
+    pub fn sensor(&self) -> Option<&str> {
+        let number = self.calibrated.sensor()?;
+        self.sensors.iter().find(|(known, _)| *known == number).map(|(_, name)| name.as_str())
+    }
+
+    /// The term with each of its sensors under the number that another calibration gives to its name.
+    pub fn calibrated_in(&self, known: &mut Calibration) -> CalibratedTerm {
+        let numbers: Vec<(usize, usize)> =
+            self.sensors.iter().map(|(number, name)| (*number, known.sensor(name))).collect();
+        let renumbered =
+            |sensor: usize| numbers.iter().find(|(old, _)| *old == sensor).map_or(sensor, |(_, new)| *new);
+        let mut term = self.calibrated.clone();
+        if let Some(sensor) = term.sensor() {
+            term = term.with_sensor(renumbered(sensor));
+        }
+        term.with_factors(|factor| match factor.sensor() {
+            Some(sensor) => factor.with_sensor(renumbered(sensor)),
+            None => factor,
+        })
     }
 }
 

@@ -184,7 +184,7 @@ const STUDENT: f64 = 1.5;
 
 /// How far a nonlinear parameter may go in one step: a wave must not slip by a cycle.
 fn furthest(shape: &Shape, travels: &[Travel]) -> f64 {
-    match shape {
+    match shape.core() {
         Shape::Cyclic { axis, period, .. } => 0.3 * period * period / travels[*axis].range().max(*period),
         _ => f64::INFINITY,
     }

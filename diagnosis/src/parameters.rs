@@ -6,9 +6,15 @@
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
-use model_dsl::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, SeriesInput};
+use model_dsl::calibration::factor::dimension_of;
+use model_dsl::calibration::vocabulary::{Role, TIMES};
+use model_dsl::calibration::{
+    CalibratedTerm, Curve, CurveNodes, CurveValues, Factor, MotionName, SeriesInput,
+};
+use model_dsl::quantity::Dimension;
 use nalgebra::DVector;
 
+use crate::alternatives::factor_state;
 use crate::certainty::{Certainty, WIDTH_95};
 use crate::diagnosis::{Estimate, Parameter, ParameterValue};
 use crate::model::Fitted;
@@ -119,6 +125,53 @@ impl<'f> Described<'f> {
     /// The parameters, in the order of calibration files. Where the data lean to a richer form, the intervals hold its numbers
     /// too.
     pub(crate) fn parameters(&self) -> Vec<Parameter> {
+        match self.fitted.effect.shape.factors() {
+            [] => self.of_form(),
+            factors => self.scaled(factors),
+        }
+    }
+
+    /// The parameters of a term with factors: in mm, rad and s, its linear numbers for each unit of the factors.
+    fn scaled(&self, factors: &[Factor<usize>]) -> Vec<Parameter> {
+        let names = self.study.equations.names();
+        let motion = self.fitted.effect.motion().and_then(|motion| names.motions.get(motion));
+        let own = motion.map_or(Dimension::LENGTH, MotionName::dimension).per(dimension_of(factors, &names));
+        let entry = self.calibrated().kind().entry();
+        let is_linear =
+            |name: &str| entry.key(name).is_some_and(|key| matches!(key.role, Role::Linear | Role::Value));
+        let internal = Self { motion_unit: (1.0, ""), ..*self };
+        let mut parameters = internal.of_form();
+        // The numbers of a list belong to powers of the position.
+        let (first, per) = match self.fitted.effect.shape.core() {
+            Shape::Polynomial { axis, .. } => (0, names.axis_dimension(*axis)),
+            Shape::Coupling { axis, .. } => (1, names.axis_dimension(*axis)),
+            Shape::SensorPolynomial { .. } => (0, Dimension::TEMPERATURE),
+            Shape::Expansion { axis, .. } => (1, names.axis_dimension(*axis).times(Dimension::TEMPERATURE)),
+            Shape::Growth { .. } => (1, Dimension::TEMPERATURE),
+            Shape::Compliance { .. } => (1, Dimension::FORCE),
+            _ => (0, Dimension::NONE),
+        };
+        let unit = |place: i8| match own.per(per.power(place.saturating_add(first))) {
+            Dimension::NONE => String::new(),
+            known => known.internal_unit(),
+        };
+        for parameter in parameters.iter_mut().filter(|parameter| is_linear(parameter.name)) {
+            match &mut parameter.value {
+                ParameterValue::Fitted(estimate) => estimate.unit = unit(0),
+                ParameterValue::List(estimates) => {
+                    (0..).zip(estimates).for_each(|(place, estimate)| estimate.unit = unit(place));
+                }
+                _ => {}
+            }
+        }
+        let words = factors.iter().map(|factor| factor_state(self.study, factor));
+        let words = ParameterValue::Name(words.collect::<Vec<_>>().join(" * "));
+        parameters.push(Parameter { name: TIMES, value: words });
+        parameters
+    }
+
+    /// The parameters of the form that was fitted, and of a richer one.
+    fn of_form(&self) -> Vec<Parameter> {
         let mut parameters = self.as_fitted();
         let richer = self.richer().map(|richer| richer.as_fitted()).unwrap_or_default();
         for parameter in &mut parameters {
@@ -133,7 +186,7 @@ impl<'f> Described<'f> {
         let (factor, unit) = self.motion_unit;
         let study = self.study;
         let plain = |name, number| Parameter::fitted(name, self.linear(number, factor, unit.to_owned()));
-        match &self.fitted.effect.shape {
+        match self.fitted.effect.shape.core() {
             Shape::Constant => vec![plain("value", 0)],
             Shape::Polynomial { axis, .. } => {
                 vec![
@@ -228,6 +281,12 @@ impl<'f> Described<'f> {
                     Parameter::fitted("coefficient", self.linear(0, factor, self.per(load_unit, 1))),
                 ]
             }
+            Shape::Delay { axis, time } => {
+                vec![axis_name(study, *axis), Parameter::given("time", *time, "s")]
+            }
+            Shape::Step { time } => vec![Parameter::given("time", *time, "s"), plain("size", 0)],
+            // Factors of factors there are none.
+            Shape::Times { .. } => Vec::new(),
             Shape::Instrument(_) => vec![plain("offset", 0)],
         }
     }
@@ -235,7 +294,7 @@ impl<'f> Described<'f> {
     /// The rows that turn coefficients into those of powers of the position or temperature itself, from power 0 on. Where
     /// the recordings' free zeros hold the power 0, it is nothing that could be told.
     fn power_rows(&self) -> Vec<Vec<f64>> {
-        let mut rows = polynomial_in_position(&self.fitted.effect.shape);
+        let mut rows = polynomial_in_position(self.fitted.effect.shape.core());
         let untold = self.coefficient(0) == 0.0 && self.certainty.covariance[(0, 0)] == 0.0;
         if let (true, Some(row)) = (untold, rows.first_mut()) {
             row.fill(0.0);
@@ -261,7 +320,7 @@ impl<'f> Described<'f> {
         let square = (amplitude * amplitude).max(f64::MIN_POSITIVE);
         let (factor, unit) = self.motion_unit;
         // Calibrations count the phase from position 0, where the period has gone on from the middle of the travel.
-        let (back, turning) = match self.fitted.effect.shape {
+        let (back, turning) = match *self.fitted.effect.shape.core() {
             Shape::Cyclic { period, center, .. } => (TAU * center / period, TAU * center / (period * period)),
             _ => (0.0, 0.0),
         };
@@ -311,6 +370,15 @@ impl<'f> Described<'f> {
 
     /// The term as calibration files have it, in mm, rad, s and degC; a sensor under its number in the study.
     pub(crate) fn calibrated(&self) -> CalibratedTerm {
+        let named = |factor: &Factor<usize>| {
+            factor.clone().with_load(|load| self.study.loads.get(load).map(|(name, _)| name.clone()))
+        };
+        let factors = self.fitted.effect.shape.factors().iter().filter_map(named);
+        self.calibrated_core().times(factors.collect())
+    }
+
+    /// The term without its factors.
+    fn calibrated_core(&self) -> CalibratedTerm {
         let first = self.coefficient(0);
         let in_position = || {
             let rows = self.power_rows();
@@ -318,8 +386,11 @@ impl<'f> Described<'f> {
             rows.iter().map(value).collect::<Vec<f64>>()
         };
         let (amplitude, phase) = (first.hypot(self.coefficient(1)), self.coefficient(1).atan2(first));
-        match &self.fitted.effect.shape {
-            Shape::Constant | Shape::Instrument(_) => CalibratedTerm::Constant { value: first },
+        match self.fitted.effect.shape.core() {
+            // Factors of factors there are none.
+            Shape::Constant | Shape::Times { .. } | Shape::Instrument(_) => {
+                CalibratedTerm::Constant { value: first }
+            }
             Shape::Polynomial { axis, .. } => {
                 CalibratedTerm::Polynomial { input: SeriesInput::Axis(*axis), coefficients: in_position() }
             }
@@ -370,6 +441,8 @@ impl<'f> Described<'f> {
             Shape::Vibration { frequency } => {
                 CalibratedTerm::Vibration { frequency: *frequency, amplitude, phase }
             }
+            Shape::Delay { axis, time } => CalibratedTerm::Delay { axis: *axis, time: *time },
+            Shape::Step { time } => CalibratedTerm::Step { time: *time, size: first },
             Shape::Compliance { load } => {
                 CalibratedTerm::Compliance { load: self.study.loads[*load].0.clone(), coefficient: first }
             }

@@ -25,7 +25,7 @@ pub(crate) fn range(study: &Study<'_>, travels: &[Travel], shape: &Shape) -> (f6
     let step = shortest_step(study);
     let observed = study.scenes.iter().map(|scene| scene.observed).fold(0.0, f64::max);
     let travel = shape.axis().and_then(|axis| travels.get(axis)).copied().unwrap_or_default();
-    match shape {
+    match shape.core() {
         Shape::Backlash { .. } => (travel.step.min(WIND_UP * travel.range()), WIND_UP * travel.range()),
         Shape::ReversalSpike { .. } => (0.3 * step, DECAY * travel.between),
         // A part of a turn is a part of a turn: it is not fitted.

@@ -344,6 +344,8 @@ fn rotates(study: &Study<'_>, effect: &Effect) -> bool {
             | Shape::Expansion { .. }
             | Shape::Growth { .. }
             | Shape::Compliance { .. }
+            | Shape::Delay { .. }
+            | Shape::Times { .. }
             | Shape::Instrument(_)
     );
     by_coefficient && effect.motion().is_some_and(turns)
@@ -384,6 +386,9 @@ pub(crate) fn rivals(a: &Effect, b: &Effect) -> bool {
         | (Shape::Growth { sensor: a, .. }, Shape::Growth { sensor: b, .. }) => a == b,
         (Shape::Compliance { load: a }, Shape::Compliance { load: b }) => a == b,
         (Shape::Instrument(a), Shape::Instrument(b)) => a == b,
+        // A play that grows along a travel is one that does not, and one that grows from nothing.
+        (Shape::Times { factors: a, .. }, Shape::Times { factors: b, .. }) => a == b,
+        (Shape::Times { .. }, _) | (_, Shape::Times { .. }) => false,
         _ => true,
     }
 }

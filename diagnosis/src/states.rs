@@ -94,6 +94,7 @@ pub(crate) struct States {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct AxisStates {
     pub(crate) position: Shared,
+    pub(crate) velocity: Shared,
     pub(crate) acceleration: Shared,
     /// +1 or -1: that of the last real motion; +1 before the first. A leg that begins where none ended begins with the direction
     /// of its own first motion.
@@ -136,6 +137,7 @@ pub(crate) struct Rows<'s> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AxisRows<'s> {
     pub(crate) position: &'s [f64],
+    pub(crate) velocity: &'s [f64],
     pub(crate) acceleration: &'s [f64],
     pub(crate) direction: &'s [f64],
     /// Empty where the axis is displaced in none of them.
@@ -171,6 +173,7 @@ impl<'s> Rows<'s> {
         let rows = self.first..self.end;
         AxisRows {
             position: &axis.position[rows.clone()],
+            velocity: &axis.velocity[rows.clone()],
             acceleration: &axis.acceleration[rows.clone()],
             direction: &axis.direction[rows.clone()],
             displaced: axis.displaced.get(rows.clone()).unwrap_or_default(),
@@ -185,6 +188,26 @@ impl<'s> Rows<'s> {
     pub(crate) fn begins(&self, row: usize) -> bool {
         let (legs, row) = (&self.states.given.legs, self.first + row);
         row > 0 && legs[row] != legs[row - 1]
+    }
+
+    /// Where an axis was a time before each row, straight between rows; before its leg where that begins, and behind it where it ends.
+    pub(crate) fn earlier(&self, axis: usize, time: f64) -> Vec<f64> {
+        let (given, position) = (&self.states.given, &self.states.axes[axis].position);
+        let mut leg = 0..0;
+        let earlier = |row: usize| {
+            if !leg.contains(&row) {
+                leg = leg_of(&given.legs, row);
+            }
+            let (times, places) = (&given.time[leg.clone()], &position[leg.clone()]);
+            let wanted = given.time[row] - time;
+            let after = times.partition_point(|known| *known <= wanted);
+            if after == 0 || after == times.len() {
+                return places[after.saturating_sub(1)];
+            }
+            let share = (wanted - times[after - 1]) / (times[after] - times[after - 1]);
+            places[after - 1] + share * (places[after] - places[after - 1])
+        };
+        (self.first..self.end).map(earlier).collect()
     }
 
     /// The position loop of an axis.
@@ -230,6 +253,12 @@ impl States {
     }
 }
 
+/// The rows of the leg that a row belongs to. The numbers of legs rise.
+fn leg_of(legs: &[usize], row: usize) -> Range<usize> {
+    let leg = legs[row];
+    legs.partition_point(|other| *other < leg)..legs.partition_point(|other| *other <= leg)
+}
+
 /// Whether an axis is at one place in every row.
 fn stands(programmed: &[f64]) -> bool {
     programmed.first().is_some_and(|first| first.is_finite() && programmed.iter().all(|q| q == first))
@@ -244,6 +273,7 @@ impl Standing {
     fn at(&self, position: &Shared) -> AxisStates {
         AxisStates {
             position: position.clone(),
+            velocity: self.zero.clone(),
             acceleration: self.zero.clone(),
             direction: self.forward.clone(),
             displaced: Arc::default(),
@@ -316,11 +346,13 @@ fn as_programmed(
     let mut slope = curve.earlier(clock + step);
     slope.iter_mut().zip(position.iter()).for_each(|(earlier, now)| *earlier = (*earlier - now) / step);
     let slope: Shared = slope.into();
-    let acceleration = derivative(time, legs, &derivative(time, legs, &position)).into();
+    let velocity: Shared = derivative(time, legs, &position).into();
+    let acceleration = derivative(time, legs, &velocity).into();
     let Motion { direction, displaced, since_reversal, moves } =
         Motion::of(time, legs, way.command(), &position, resolution);
     AxisStates {
         position,
+        velocity,
         acceleration,
         flank: direction.clone(),
         direction,
@@ -409,6 +441,8 @@ fn behind_loop(
         Motion::of(&given.time, &given.legs, way.command(), &position, resolution);
     AxisStates {
         position,
+        clock_slope: velocity.iter().map(|velocity| -velocity).collect(),
+        velocity: velocity.into(),
         acceleration: acceleration.into(),
         flank: direction.clone(),
         direction,
@@ -417,7 +451,6 @@ fn behind_loop(
         position_loop: driven.position_loop,
         lag_slope,
         inertia_slope,
-        clock_slope: velocity.iter().map(|velocity| -velocity).collect(),
         moves,
     }
 }

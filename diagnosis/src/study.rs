@@ -239,7 +239,7 @@ pub(crate) fn known(
             listed.terms.iter().enumerate().map(move |(place, term)| (listed, place, &term.value))
         })
         .filter_map(|(listed, place, term)| {
-            let (shape, coefficients) = terms::known(term, load)?;
+            let (shape, coefficients) = terms::known(term, &load)?;
             let motion = listed.motion;
             let axis = own.iter().position(|own| *own == Some(motion));
             let side = match axis.filter(|_| listed.is_inside_loop(place)) {

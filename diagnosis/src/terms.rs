@@ -8,8 +8,10 @@ mod acceleration;
 mod backlash;
 mod coupling;
 mod cyclic;
+mod delay;
 mod drift;
 mod expansion;
+mod factor;
 mod growth;
 mod instrument;
 mod known;
@@ -19,6 +21,7 @@ mod meaning;
 mod plausible;
 mod polynomial;
 mod reversal_spike;
+mod step;
 mod table;
 mod vibration;
 
@@ -28,8 +31,9 @@ pub use meaning::meaning;
 pub(crate) use plausible::{Range, oddity, plausible};
 pub(crate) use polynomial::in_position as polynomial_in_position;
 
-use model_dsl::calibration::TermKind;
+use model_dsl::calibration::{Factor, TermKind};
 
+use self::factor::FactorMemory;
 use crate::position_loop::Follower;
 use crate::side::Side;
 use crate::states::{Play, Rows};
@@ -71,12 +75,18 @@ pub(crate) enum Shape {
     Coupling { axis: usize, degree: usize, scale: f64 },
     /// The load.
     Compliance { load: usize },
+    /// q(t - time) - q(t).
+    Delay { axis: usize, time: f64 },
+    /// 0 before a time, 1 from it on.
+    Step { time: f64 },
+    /// Each column of another shape times factors.
+    Times { core: Box<Shape>, factors: Vec<Factor<usize>> },
     /// A setting of the instrument.
     Instrument(Setting),
 }
 
 /// What a shape remembers from one stretch of rows to the next.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Memory {
     value: Option<f64>,
     last: f64,
@@ -84,6 +94,8 @@ pub(crate) struct Memory {
     play: Play,
     /// The position loop that answers the shape.
     follower: Follower,
+    /// What its factors remember.
+    factors: Vec<FactorMemory>,
 }
 
 /// The one parameter of a shape that is not linear.
@@ -114,6 +126,28 @@ impl Shape {
             Self::Vibration { .. } => TermKind::Vibration.name(),
             Self::Coupling { .. } => TermKind::Coupling.name(),
             Self::Compliance { .. } => TermKind::Compliance.name(),
+            Self::Delay { .. } => TermKind::Delay.name(),
+            Self::Step { .. } => TermKind::Step.name(),
+            Self::Times { core, .. } => match **core {
+                Self::Constant => TermKind::Product.name(),
+                ref core => core.name(),
+            },
+        }
+    }
+
+    /// The shape without its factors.
+    pub(crate) fn core(&self) -> &Self {
+        match self {
+            Self::Times { core, .. } => core,
+            plain => plain,
+        }
+    }
+
+    /// Its factors; none of most shapes.
+    pub(crate) fn factors(&self) -> &[Factor<usize>] {
+        match self {
+            Self::Times { factors, .. } => factors,
+            _ => &[],
         }
     }
 
@@ -134,6 +168,12 @@ impl Shape {
             Self::Vibration { .. } => vibration::MEANING,
             Self::Coupling { .. } => coupling::MEANING,
             Self::Compliance { .. } => load::MEANING,
+            Self::Delay { .. } => delay::MEANING,
+            Self::Step { .. } => step::MEANING,
+            Self::Times { core, .. } => match **core {
+                Self::Constant => factor::MEANING,
+                ref core => core.meaning(),
+            },
             Self::Instrument(_) => "",
         }
     }
@@ -145,6 +185,7 @@ impl Shape {
             Self::Coupling { degree, .. } => *degree,
             Self::Table { nodes, directed, .. } => nodes.len() * if *directed { 2 } else { 1 },
             Self::Cyclic { .. } | Self::Vibration { .. } => 2,
+            Self::Times { core, .. } => core.columns(),
             _ => 1,
         }
     }
@@ -159,6 +200,7 @@ impl Shape {
             Self::Drift { time_constant } => ("time_constant", time_constant),
             Self::Lag { inertia, .. } if inertia > 0.0 => ("frequency", inertia),
             Self::Vibration { frequency } => ("frequency", frequency),
+            Self::Times { ref core, .. } => return core.nonlinear(),
             _ => return None,
         };
         Some(Nonlinear { name, value })
@@ -175,6 +217,7 @@ impl Shape {
             | Self::Drift { time_constant: parameter }
             | Self::Lag { inertia: parameter, .. }
             | Self::Vibration { frequency: parameter } => *parameter = value,
+            Self::Times { core, .. } => **core = core.with_nonlinear(value),
             _ => {}
         }
         shape
@@ -201,7 +244,9 @@ impl Shape {
             | Self::Lag { axis, .. }
             | Self::Acceleration { axis }
             | Self::Expansion { axis, .. }
-            | Self::Coupling { axis, .. } => Some(axis),
+            | Self::Coupling { axis, .. }
+            | Self::Delay { axis, .. } => Some(axis),
+            Self::Times { ref core, .. } => core.axis(),
             _ => None,
         }
     }
@@ -237,6 +282,12 @@ impl Shape {
             Self::Drift { time_constant } => one(out, |out| drift::fill(rows, *time_constant, out)),
             Self::Vibration { frequency } => vibration::fill(rows, *frequency, out),
             Self::Compliance { load } => one(out, |out| load::fill(rows, *load, out)),
+            Self::Delay { axis, time } => one(out, |out| delay::fill(rows, *axis, *time, out)),
+            Self::Step { time } => one(out, |out| step::fill(rows, *time, out)),
+            Self::Times { core, factors } => {
+                core.fill(rows, memory, out);
+                factor::multiply(factors, rows, &mut memory.factors, out);
+            }
             // What the instrument's settings do depends on the instrument and is filled where it is known.
             Self::Instrument(_) => each(out, |column| column.resize(rows.len(), 0.0)),
         }
@@ -245,12 +296,7 @@ impl Shape {
     /// Fills its columns as they come in on a side: behind the position loop that answers them, where one does; a play behind the
     /// drive as far as it is crossed.
     pub(crate) fn fill_on(&self, side: Side, rows: &Rows<'_>, memory: &mut Memory, out: &mut [Vec<f64>]) {
-        match (side, self) {
-            (Side::After, Self::Backlash { axis, wind_up: 0.0 }) => {
-                one(out, |out| backlash::fill_crossed(rows, *axis, out));
-            }
-            _ => self.fill(rows, memory, out),
-        }
+        self.fill_crossed(side, rows, memory, out);
         let position_loop = side.answered_by().map(|axis| rows.position_loop(axis));
         if let (Some(position_loop), [column]) = (position_loop.filter(|known| known.acts()), out) {
             for (row, (time, value)) in rows.time.iter().zip(column).enumerate() {
@@ -259,6 +305,20 @@ impl Shape {
                 }
                 *value = position_loop.follow(&mut memory.follower, *time, *value).position;
             }
+        }
+    }
+
+    /// Fills its columns, a play behind the drive as far as it is crossed.
+    fn fill_crossed(&self, side: Side, rows: &Rows<'_>, memory: &mut Memory, out: &mut [Vec<f64>]) {
+        match (side, self) {
+            (Side::After, Self::Backlash { axis, wind_up: 0.0 }) => {
+                one(out, |out| backlash::fill_crossed(rows, *axis, out));
+            }
+            (_, Self::Times { core, factors }) => {
+                core.fill_crossed(side, rows, memory, out);
+                factor::multiply(factors, rows, &mut memory.factors, out);
+            }
+            _ => self.fill(rows, memory, out),
         }
     }
 

@@ -2,7 +2,10 @@
 //!
 //! In: an effect. Out: link, side, state and a sentence.
 
-use crate::alternatives::state;
+use model_dsl::calibration::Factor;
+use model_dsl::calibration::vocabulary::State;
+
+use crate::alternatives::{factor_state, listed, state};
 use crate::curves::active;
 use crate::diagnosis::{Interval, IntervalOf, Location};
 use crate::model::{Effect, Fitted};
@@ -54,7 +57,26 @@ fn state_word(shape: &Shape) -> &'static str {
         Shape::Vibration { .. } => "frequency",
         Shape::Coupling { .. } => "other-axis",
         Shape::Compliance { .. } => "load",
+        Shape::Delay { .. } => "velocity",
+        Shape::Step { .. } => "time",
+        Shape::Times { core, factors } => match **core {
+            Shape::Constant => factors.first().map_or("position", factor_word),
+            ref core => state_word(core),
+        },
         Shape::Instrument(_) => "instrument",
+    }
+}
+
+/// The state that a factor is.
+fn factor_word(factor: &Factor<usize>) -> &'static str {
+    match factor.kind().entry().state {
+        State::Direction => "direction",
+        State::Velocity => "velocity",
+        State::Acceleration => "acceleration",
+        State::Temperature => "temperature",
+        State::Load => "load",
+        State::Time => "time",
+        _ => "position",
     }
 }
 
@@ -109,6 +131,19 @@ fn bare_detail(study: &Study<'_>, effect: &Effect) -> String {
         Shape::Vibration { frequency } => format!("oscillates at {frequency:.3} Hz"),
         Shape::Coupling { axis, .. } => format!("changes with where {} stands", name(*axis)),
         Shape::Compliance { load } => format!("follows the load {}", study.loads[*load].0),
+        Shape::Delay { axis, time } => format!("{} is {} late", name(*axis), seconds(*time)),
+        Shape::Step { time } => format!("jumps once, at {}", seconds(*time)),
+        Shape::Times { core, factors } => {
+            let states =
+                listed(&factors.iter().map(|factor| factor_state(study, factor)).collect::<Vec<_>>());
+            match **core {
+                Shape::Constant => format!("follows {states}, multiplied with one another"),
+                ref core => {
+                    let core = bare_detail(study, &Effect { place: effect.place, shape: core.clone() });
+                    format!("{core}, by an amount that follows {states}")
+                }
+            }
+        }
         Shape::Instrument(setting) => setting.name().to_owned(),
     }
 }

@@ -366,24 +366,11 @@ impl Planted {
 
 fn scale(term: &mut CalibratedTerm, factor: f64) {
     match term {
-        CalibratedTerm::Constant { value } => *value *= factor,
-        CalibratedTerm::Polynomial { coefficients, .. } | CalibratedTerm::Coupling { coefficients, .. } => {
-            coefficients.iter_mut().for_each(|entry| *entry *= factor);
-        }
-        CalibratedTerm::Table { curve, .. } => match &mut curve.values {
-            CurveValues::Both(values) => values.iter_mut().for_each(|entry| *entry *= factor),
-            CurveValues::Directed { forward, reverse } => {
-                forward.iter_mut().chain(reverse).for_each(|entry| *entry *= factor)
-            }
-        },
-        CalibratedTerm::Backlash { lost_motion, .. } => *lost_motion *= factor,
-        CalibratedTerm::ReversalSpike { height, .. } => *height *= factor,
-        CalibratedTerm::Cyclic { amplitude, .. }
-        | CalibratedTerm::Vibration { amplitude, .. }
-        | CalibratedTerm::Drift { amplitude, .. } => *amplitude *= factor,
         CalibratedTerm::Lag { gain, .. } | CalibratedTerm::Acceleration { gain, .. } => *gain /= factor,
-        CalibratedTerm::Expansion { coefficient, .. }
-        | CalibratedTerm::Growth { coefficient, .. }
-        | CalibratedTerm::Compliance { coefficient, .. } => *coefficient *= factor,
+        CalibratedTerm::Delay { time, .. } => *time *= factor,
+        linear => {
+            let numbers = linear.linear_mut().into_iter().flat_map(|(_, numbers)| numbers);
+            numbers.for_each(|number| *number *= factor);
+        }
     }
 }

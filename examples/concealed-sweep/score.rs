@@ -142,7 +142,7 @@ impl Score {
 
     fn take_parameters(&mut self, case: &Case, planted: &Planted, finding: &Finding) {
         let Planted::Term { term, .. } = planted else { return };
-        let sensor = |number: usize| case.sensor(finding.sensor.as_deref().unwrap_or("")) == Some(number);
+        let sensor = |number: usize| case.sensor(finding.sensor().unwrap_or("")) == Some(number);
         let named = match term {
             CalibratedTerm::Expansion { sensor: own, .. } | CalibratedTerm::Growth { sensor: own, .. } => {
                 sensor(*own)
@@ -214,7 +214,7 @@ fn claims(case: &Case, diagnosis: &Diagnosis) -> Vec<Claim> {
 
 fn claim(case: &Case, finding: &Finding) -> Claim {
     let mut term = finding.calibrated.clone();
-    let own = finding.sensor.as_deref().and_then(|name| case.sensor(name));
+    let own = finding.sensor().and_then(|name| case.sensor(name));
     if let (
         CalibratedTerm::Expansion { sensor, .. }
         | CalibratedTerm::Growth { sensor, .. }
@@ -392,6 +392,9 @@ fn truths(term: &CalibratedTerm) -> Vec<(&'static str, usize, f64)> {
         CalibratedTerm::Drift { amplitude, time_constant } => {
             vec![("amplitude", 0, *amplitude), ("time_constant", 0, *time_constant)]
         }
+        CalibratedTerm::Step { time, size } => vec![("time", 0, *time), ("size", 0, *size)],
+        CalibratedTerm::Delay { time, .. } => vec![("time", 0, *time)],
+        CalibratedTerm::Times { core, .. } => truths(core),
         CalibratedTerm::Table { .. } => Vec::new(),
     }
 }

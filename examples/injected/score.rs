@@ -180,7 +180,7 @@ fn located(case: &Case, base: &Base, found: &Diagnosis) -> bool {
 
 /// What a finding alone shows in the readings.
 fn signal(base: &Base, finding: &Finding) -> Option<Signal> {
-    let signal = base.claimed(finding.motion_number, &finding.calibrated, finding.sensor.as_deref())?;
+    let signal = base.claimed(finding.motion_number, &finding.calibrated, finding.sensor())?;
     signal.iter().flatten().all(|value| value.is_finite()).then_some(signal)
 }
 

@@ -57,7 +57,7 @@ fn survives(calibration: &Calibration, machine: &Compiled) {
 fn compensates(calibration: &Calibration, machine: &Compiled) {
     let equations = &machine.equations;
     let terms: Vec<Vec<Term<'_>>> =
-        (0..equations.motions.len()).map(|motion| calibration.runtime(motion).flatten().collect()).collect();
+        (0..equations.motions.len()).map(|motion| calibration.runtime(motion).flatten().flatten().collect()).collect();
     let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
     let interpreter = Interpreter::new(equations, &calibration.constants);
     let axes = equations.axes.len();

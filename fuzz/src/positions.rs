@@ -75,7 +75,7 @@ fn compensate(bytes: &[u8], calibration: &Calibration, equations: &Equations) {
     let columns = layout.axes.clone();
     let mut state = State::new(layout, true, &calibration.sensors, &vec![5e-4; equations.axes.len()]);
     let terms: Vec<Vec<Term<'_>>> =
-        (0..equations.motions.len()).map(|motion| calibration.runtime(motion).flatten().collect()).collect();
+        (0..equations.motions.len()).map(|motion| calibration.runtime(motion).flatten().flatten().collect()).collect();
     let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
     let interpreter = Interpreter::new(equations, &calibration.constants);
     let mut states = vec![TermState::default(); states_needed(&motions)];

@@ -27,6 +27,7 @@
 //! | E0422, E0423 | a derived sensor that is not one; one that is derived from itself |
 //! | E0424 | a compliance that is not per load |
 //! | E0425 | a term that cannot be compensated, from [`Calibration::refuse_uncompensable`] |
+//! | E0428, E0429 | an item of `times` that is not exactly one factor; a unit that the factors do not make the motion's |
 //! | W0401 | a derived sensor that no term uses |
 //!
 //! Quantities have their own codes, E0301 to E0309: see [`crate::quantity`].
@@ -35,9 +36,11 @@ mod build;
 mod compiled_in;
 mod curve;
 mod document;
+pub mod factor;
 mod fields;
 mod names;
 mod parameters;
+mod read_factor;
 mod read_term;
 mod sensors;
 mod series;
@@ -49,6 +52,7 @@ mod write_term;
 
 pub use compiled_in::CompiledIn;
 pub use document::{machine_of, read};
+pub use factor::{Factor, FactorKind, Within};
 pub use names::{AxisName, MachineNames, MotionName};
 pub use sensors::{Sensor, SensorKind, SensorReadings, Sensors};
 pub use term::{CalibratedTerm, Curve, CurveNodes, CurveValues, NotCompensable, Part, SeriesInput};
@@ -169,16 +173,17 @@ impl Calibration {
         listed.map_or(&[], |listed| &listed.terms)
     }
 
-    /// The terms of an error motion as the runtime compensates them, their ramps included; for each that it cannot, why.
-    pub fn runtime(&self, motion: usize) -> impl Iterator<Item = Result<Term<'_>, NotCompensable>> {
+    /// The terms of an error motion as the runtime compensates them, each with its factors before it and its ramp; for each that it
+    /// cannot, why.
+    pub fn runtime(&self, motion: usize) -> impl Iterator<Item = Result<Vec<Term<'_>>, NotCompensable>> {
         let listed = self.motions.iter().filter(move |listed| listed.motion == motion);
         listed.flat_map(|listed| {
             listed.terms.iter().enumerate().map(|(place, term)| {
-                let mut term = term.value.runtime()?;
-                if let Term::Backlash { ramp, .. } = &mut term {
+                let mut terms = term.value.runtime()?;
+                if let Some(Term::Backlash { ramp, .. }) = terms.last_mut() {
                     *ramp = listed.ramp(place);
                 }
-                Ok(term)
+                Ok(terms)
             })
         })
     }
@@ -188,9 +193,15 @@ impl Calibration {
         for listed in &self.motions {
             let motion = names.motions.get(listed.motion).map_or("", |motion| &motion.name);
             for term in &listed.terms {
-                let entry = term.value.kind().entry();
-                let Some(reason) = entry.not_compensable else { continue };
-                let message = format!("`{}` of {motion} cannot be compensated in real time", entry.name);
+                let Some((what, reason)) = term.value.not_compensable() else { continue };
+                let name = term.value.name();
+                let message = match what {
+                    NotCompensable::Factor(factor) => format!(
+                        "`{name}` of {motion} cannot be compensated in real time: its factor `{}` is not known",
+                        factor.name()
+                    ),
+                    _ => format!("`{name}` of {motion} cannot be compensated in real time"),
+                };
                 let help = format!("{reason}; take it out of the file that is compensated");
                 diagnostics.push(Diagnostic::error("E0425", term.span, message).help(help));
             }

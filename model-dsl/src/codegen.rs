@@ -9,6 +9,7 @@ mod bundles;
 mod c_interface;
 mod calibration;
 mod docs;
+mod factors;
 mod functions;
 mod held;
 mod idents;

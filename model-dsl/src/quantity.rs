@@ -11,7 +11,7 @@ mod unit;
 
 pub use dimension::Dimension;
 pub use number::parse_number;
-pub use reading::{read, read_number, read_unit};
+pub use reading::{read, read_number, read_per_load, read_temperature_step, read_unit};
 pub use unit::{UNIT_NAMES, Unit, parse_unit};
 
 use crate::diagnostic::Diagnostic;

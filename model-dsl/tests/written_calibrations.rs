@@ -10,8 +10,8 @@
 use std::path::Path;
 
 use model_dsl::calibration::{
-    AxisName, CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Limits, MachineNames, MotionName,
-    SensorKind, SeriesInput, machine_of, read, write,
+    AxisName, CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Factor, Limits, MachineNames,
+    MotionName, SensorKind, SeriesInput, Within, machine_of, read, write,
 };
 use model_dsl::diagnostic::{Diagnostics, render};
 use model_dsl::source::{SourceFile, Span, Spanned};
@@ -80,14 +80,8 @@ fn said(calibration: &Calibration) -> Said {
         calibration.machine.value, calibration.source, calibration.constants
     );
     let term = |term: &CalibratedTerm| {
-        let mut nameless = term.clone();
-        match &mut nameless {
-            CalibratedTerm::Polynomial { input: SeriesInput::Sensor(sensor), .. }
-            | CalibratedTerm::Expansion { sensor, .. }
-            | CalibratedTerm::Growth { sensor, .. } => *sensor = 0,
-            _ => {}
-        }
-        format!("{nameless:?} {:?}", term.sensor().map(name))
+        let nameless = term.clone().with_sensor(0).with_factors(|factor| factor.with_sensor(0));
+        format!("{nameless:?} {:?}", term.sensors().map(name).collect::<Vec<_>>())
     };
     let motions = calibration.motions.iter();
     let motions =
@@ -164,11 +158,58 @@ fn curve() -> impl Strategy<Value = Curve> {
     })
 }
 
-/// A term under some motion, its sensor still by its place in the list of names.
+/// A range in rising order, or none.
+fn within() -> impl Strategy<Value = Within> {
+    let range = (number(), number()).prop_map(|(a, b)| Within { from: a.min(b), to: a.max(b) });
+    prop_oneof![Just(Within::EVERYWHERE), range]
+}
+
+/// A factor of any kind, its sensor still by its place in the list of names.
+fn factor() -> impl Strategy<Value = Factor> {
+    let parts = (0..15_usize, 0..3_usize, 0..5_usize, 1..4_u8, within(), text());
+    let nodes = series().prop_map(|mut at| {
+        at.sort_by(f64::total_cmp);
+        at.dedup();
+        at
+    });
+    (parts, [number().boxed(), number().boxed()], positive(), any::<bool>(), nodes).prop_map(
+        |((kind, axis, sensor, power, within, load), [a, b], p, filtered, at)| match kind {
+            0 => Factor::Position { axis, power, within },
+            1 => Factor::Direction { axis },
+            2 => Factor::Velocity { axis, within },
+            3 => Factor::Speed { axis, within },
+            4 => Factor::Fading { axis, over: p },
+            5 => Factor::Acceleration { axis, within },
+            6 => {
+                let time_constant = if filtered { p } else { 0.0 };
+                Factor::Temperature { sensor, reference: a, time_constant, within }
+            }
+            7 => Factor::Play { sensor, reference: a, width: p },
+            8 => Factor::Warmth { axis, time_constant: p, rise: a },
+            9 => Factor::Load { load, within },
+            10 => Factor::Half { load, at: p },
+            11 => Factor::Turn { axis, period: p, phase: a },
+            12 => Factor::Spin { load, rate: a, phase: b },
+            13 => Factor::Curve { axis, values: at.iter().rev().copied().collect(), at },
+            _ => Factor::After { time: a },
+        },
+    )
+}
+
+/// A term with up to three factors.
 fn term() -> impl Strategy<Value = (usize, CalibratedTerm)> {
+    (plain_term(), prop::collection::vec(factor(), 0..4)).prop_map(|((motion, term), factors)| {
+        let rings = matches!(term, CalibratedTerm::Lag { frequency, .. } if frequency > 0.0);
+        let takes = term.kind().takes_factors() && !rings;
+        (motion, if takes { term.times(factors) } else { term })
+    })
+}
+
+/// A term under some motion, its sensor still by its place in the list of names.
+fn plain_term() -> impl Strategy<Value = (usize, CalibratedTerm)> {
     let numbers = [number().boxed(), number().boxed(), number().boxed()];
     let measures = [positive().boxed(), positive().boxed()];
-    (0..14_usize, 0..6_usize, 0..3_usize, 0..5_usize, numbers, measures, series(), curve(), text()).prop_map(
+    (0..16_usize, 0..6_usize, 0..3_usize, 0..5_usize, numbers, measures, series(), curve(), text()).prop_map(
         |(kind, motion, axis, sensor, [a, b, c], [p, q], coefficients, curve, load)| {
             let own = names().motions[motion].axis.as_deref().and_then(|letter| names().axis(letter));
             let other = if own == Some(axis) { (axis + 1) % 3 } else { axis };
@@ -194,6 +235,8 @@ fn term() -> impl Strategy<Value = (usize, CalibratedTerm)> {
                 10 => CalibratedTerm::Drift { amplitude: a, time_constant: q },
                 11 => CalibratedTerm::Vibration { frequency: p, amplitude: a, phase: b },
                 12 => CalibratedTerm::Coupling { axis: other, coefficients },
+                13 => CalibratedTerm::Delay { axis, time: if b < 0.0 { -p } else { p } },
+                14 => CalibratedTerm::Step { time: b, size: a },
                 _ => CalibratedTerm::Compliance { load, coefficient: a },
             };
             (motion, term)
@@ -247,12 +290,13 @@ fn extended(
     let terms: Vec<_> = terms
         .into_iter()
         .map(|(motion, mut term)| {
-            match &mut term {
-                CalibratedTerm::Polynomial { input: SeriesInput::Sensor(sensor), .. }
-                | CalibratedTerm::Expansion { sensor, .. }
-                | CalibratedTerm::Growth { sensor, .. } => *sensor = calibration.sensor(known[*sensor]),
-                _ => {}
+            if let Some(sensor) = term.sensor() {
+                term = term.with_sensor(calibration.sensor(known[sensor]));
             }
+            let term = term.with_factors(|factor| match factor.sensor() {
+                Some(sensor) => factor.with_sensor(calibration.sensor(known[sensor])),
+                None => factor,
+            });
             (motion, term)
         })
         .collect();
@@ -326,6 +370,15 @@ errors:
     - compliance: {load: spindle torque, coefficient: 2e-5 mm/N}
     - vibration: {frequency: 50 Hz, amplitude: 0.001 mm, phase: 0 rad}
     - constant: {value: 0 mm}
+    - step: {time: 1200 s, size: 0.008 mm}
+    - product: {value: 5.8e-8 1/mm, times: [{position: X}, {position: Y, within: [0 mm, 300 mm]}]}
+    - product: {value: 1.1e-5 1/K, times: [{warmth: Y, time_constant: 480 s, rise: 0.02 s*K/mm}, {position: Y}]}
+    - backlash: {lost_motion: 2e-5 mm/N, axis: X, times: [{load: feed}]}
+    - backlash: {lost_motion: 0.0076 mm, axis: X, times: [{fading: X, over: 18 mm/s}]}
+    - cyclic: {period: 10 mm, amplitude: 6.4e-6 mm/mm, phase: 0.6 rad, axis: X, times: [{position: X}]}
+    - table: {axis: X, start: 0 mm, step: 10 mm, unit: mm/K, values: [0, 1, 2], times: [{temperature: body, reference: 20 degC}]}
+    - lag: {gain: 16 1/s, axis: X, times: [{direction: X}]}
+    - delay: {time: 0.003 s, axis: X}
 ";
     assert_eq!(write(&read_back(text, &names()), &names()), text);
 }

@@ -156,6 +156,11 @@ impl Real for Lanes {
     }
 
     #[inline]
+    fn exp_m1(self) -> Self {
+        self.map(math::exp_m1)
+    }
+
+    #[inline]
     fn above(self, bound: Self, mut then: Self, otherwise: Self) -> Self {
         let numbers = self.0.iter().zip(&bound.0).zip(&otherwise.0);
         for (then, ((number, bound), otherwise)) in then.0.iter_mut().zip(numbers) {

@@ -16,8 +16,9 @@
 //! # One sum
 //!
 //! The error is `E = sum over j of L_j e_j`. The lever arms L_j are the [`Kinematics`]; the error motions e_j are sums of
-//! terms. A term that remembers (a play with wind-up, a filtered temperature, the ramp of a reversal) keeps its memory in a
-//! [`TermState`], which is advanced once a cycle and stands still while the inverse searches.
+//! terms, each times the factors before it. A term that remembers (a play with wind-up, a filtered temperature, the ramp
+//! of a reversal) keeps its memory in a [`TermState`], which is advanced once a cycle and stands still while the inverse
+//! searches.
 //!
 //! # The inverse
 //!
@@ -110,6 +111,7 @@ extern crate std;
 
 mod compensator;
 mod direction;
+mod factor;
 mod kinematics;
 mod lanes;
 pub mod math;
@@ -125,6 +127,7 @@ pub use compensator::{
     states_needed,
 };
 pub use direction::{Direction, DirectionTracker};
+pub use factor::{Factor, Within};
 pub use kinematics::{Kinematics, Sines};
 pub use lanes::Lanes;
 pub use motion::{ErrorMotion, ErrorMotions, MotionReader};

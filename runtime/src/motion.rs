@@ -55,7 +55,7 @@ impl ErrorMotions for [ErrorMotion<'_>] {
     }
 }
 
-/// One error motion of one link: the sum of its terms. Without terms it is zero.
+/// One error motion of one link: the sum of its terms, each times the factors before it. Without terms it is zero.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct ErrorMotion<'a> {
     /// The terms, each in mm for a displacement or in rad for a rotation.
@@ -104,15 +104,25 @@ impl ErrorMotion<'_> {
         self.sum(memories, |term, memory| term.read(from, Some(memory)))
     }
 
-    /// The sum over the terms; NaN where there is not one memory a term.
+    /// The sum over the terms, each times the factors before it; NaN where there is not one memory a term.
     #[inline]
     fn sum<M, T: Real>(&self, memories: &[M], mut of: impl FnMut(&Term<'_>, &M) -> T) -> T {
         match (self.terms, memories) {
             // Most motions have one term, for which setting up a loop would cost more than the sum.
             ([term], [memory]) => of(term, memory),
             (terms, memories) if terms.len() == memories.len() => {
-                let both = terms.iter().zip(memories);
-                both.fold(T::from(0.0), |sum, (term, memory)| sum + of(term, memory))
+                let (mut sum, mut factors) = (T::from(0.0), None);
+                for (term, memory) in terms.iter().zip(memories) {
+                    let value = of(term, memory);
+                    let product = factors.map_or(value, |before: T| before * value);
+                    if term.is_factor() {
+                        factors = Some(product);
+                    } else {
+                        sum = sum + product;
+                        factors = None;
+                    }
+                }
+                sum
             }
             _ => f64::NAN.into(),
         }

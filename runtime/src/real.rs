@@ -31,6 +31,10 @@ pub trait Real:
     #[must_use]
     fn sqrt(self) -> Self;
 
+    /// The exponential less one, exact to the last digits for small values.
+    #[must_use]
+    fn exp_m1(self) -> Self;
+
     /// `then` where this is above `bound`, and `otherwise` where it is not or is NaN.
     #[must_use]
     fn above(self, bound: Self, then: Self, otherwise: Self) -> Self;
@@ -54,6 +58,11 @@ impl Real for f64 {
     #[inline]
     fn sqrt(self) -> Self {
         math::sqrt(self)
+    }
+
+    #[inline]
+    fn exp_m1(self) -> Self {
+        math::exp_m1(self)
     }
 
     #[inline]

@@ -19,7 +19,7 @@ pub struct Sample<'a> {
     pub travel: &'a [f64],
     /// Direction of each axis's last real motion, see [`DirectionTracker`](crate::DirectionTracker).
     pub direction: &'a [Direction],
-    /// Velocity of each axis in mm/s or rad/s; may be empty where no term is a [`Lag`](crate::Term::Lag).
+    /// Velocity of each axis in mm/s or rad/s; may be empty where no term reads one.
     pub velocity: &'a [f64],
     /// Temperature of each sensor in degC; may be empty where no term reads a sensor.
     pub temperature: &'a [f64],

@@ -3,14 +3,14 @@
 //! In: parameters of a calibration in mm, rad, s, degC, and the [`Sample`] of this cycle. Out: the term's share of one
 //! error motion. It exists because an error motion is the sum of such pieces and nothing else.
 
-mod check;
-mod memory;
+pub(crate) mod check;
+pub(crate) mod memory;
 
 use core::f64::consts::TAU;
 
 use self::memory::{advance_filter, advance_play, follow, followed, take_up};
 use crate::sample::{OneSample, Readings};
-use crate::{Real, Sample, Table};
+use crate::{Factor, Real, Sample, Table};
 
 pub use self::memory::TermState;
 
@@ -23,7 +23,8 @@ pub enum Input {
     Sensor(usize),
 }
 
-/// One piece of physics: it adds its value, in mm or rad, to the error motion in whose list it stands.
+/// One piece of physics: it adds its value, in mm or rad, to the error motion in whose list it stands. A
+/// [`Factor`](Self::Factor) adds nothing: the term behind it is multiplied with it.
 ///
 /// Below, q is the position of the axis, v its velocity, d its direction of motion (+1 or -1) and T the temperature of the
 /// sensor. Axes and sensors are indices into the slices of a [`Sample`].
@@ -107,10 +108,13 @@ pub enum Term<'a> {
         /// Gain K of the position loop, in 1/s.
         gain: f64,
     },
+    /// A state that the next term of the list is multiplied with; several in a row are multiplied with one another.
+    Factor(Factor<'a>),
 }
 
 impl Term<'_> {
-    /// The value of the term in a state of the machine, in mm or rad; NaN where the sample lacks what it reads.
+    /// The value of the term in a state of the machine, in mm or rad, or of a factor in its own unit; NaN where the sample lacks
+    /// what it reads.
     ///
     /// The memory is read and not advanced, so that an inverse may ask at as many positions as it needs. A term that has
     /// not been advanced yet answers as in its first cycle.
@@ -154,6 +158,7 @@ impl Term<'_> {
                 R::Number::from(coefficient) * (filtered - reference.into())
             }
             Self::Lag { axis, gain } => -from.velocity(axis) / gain.into(),
+            Self::Factor(ref factor) => factor.read(from, memory),
         }
     }
 
@@ -197,6 +202,7 @@ impl Term<'_> {
             Self::Growth { sensor, time_constant, .. } if time_constant > 0.0 => {
                 advance_filter(sample, sensor, time_constant, state);
             }
+            Self::Factor(ref factor) => factor.advance(sample, state),
             _ => {}
         }
     }

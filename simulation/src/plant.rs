@@ -8,6 +8,7 @@
 mod body;
 mod curve;
 pub(crate) mod error;
+mod factor;
 mod history;
 mod piece;
 mod servo;
@@ -20,7 +21,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use model_dsl::calibration::{
-    AxisName, Calibration, MachineNames, MotionName, SensorKind, SensorReadings, Sensors,
+    AxisName, Calibration, Factor, MachineNames, MotionName, SensorKind, SensorReadings, Sensors,
 };
 use model_dsl::machine::{Branch, Link, LinkKind, Machine, MotionKind};
 use nalgebra::{Rotation3, Vector3};
@@ -28,7 +29,8 @@ use nalgebra::{Rotation3, Vector3};
 use crate::commands::Commands;
 use crate::legs::stretches;
 use body::Body;
-use piece::{Memory, Piece};
+use factor::FactorMemory;
+use piece::{Memory, Piece, number_of};
 use servo::Before;
 
 /// How far an axis must move back before that is a real motion, mm or rad: far below what any drive resolves.
@@ -69,10 +71,27 @@ struct PlantTerm {
     place: usize,
     name: &'static str,
     piece: Piece,
+    factors: Vec<Factor<usize>>,
     /// The axis whose drive sees it.
     drive: Option<usize>,
     /// The axis whose position loop answers it.
     inside: Option<usize>,
+}
+
+/// What a term remembers from sample to sample.
+struct TermMemory {
+    own: Memory,
+    factors: Vec<FactorMemory>,
+    /// What its axis's position loop makes of it.
+    before: Before,
+}
+
+impl TermMemory {
+    /// That of a term before the first sample.
+    fn of(term: &PlantTerm) -> Self {
+        let factors = vec![FactorMemory::default(); term.factors.len()];
+        Self { own: Memory::default(), factors, before: Before::default() }
+    }
 }
 
 /// The state of the machine at one sample: mm, rad, s, degC, units of the loads.
@@ -86,6 +105,9 @@ pub struct State<'s> {
     pub time: f64,
     /// Whether a leg begins here.
     begins: bool,
+    /// The first row of the leg, and the one behind its last.
+    leg: (usize, usize),
+    times: &'s [f64],
     histories: &'s [History],
     temperatures: &'s [f64],
     loads: &'s [f64],
@@ -100,6 +122,15 @@ impl State<'_> {
     /// The position of an axis behind its position loop.
     pub fn position(&self, axis: usize) -> f64 {
         self.at(axis, |history| &history.position)
+    }
+
+    /// The position of an axis at another time, linear between samples; before the leg that of its first sample, behind it that of
+    /// its last.
+    fn position_at(&self, axis: usize, time: f64) -> f64 {
+        let rows = self.leg.0..self.leg.1;
+        let positions = self.histories.get(axis).and_then(|history| history.position.get(rows.clone()));
+        let (Some(times), Some(positions)) = (self.times.get(rows), positions) else { return f64::NAN };
+        factor::on_curve(times, positions, time)
     }
 
     /// The velocity of an axis.
@@ -241,7 +272,12 @@ impl Plant {
             };
             let own = own_axis(machine, &self.names, &name.name);
             for (place, term) in listed.terms.iter().enumerate() {
-                let mut piece = Piece::of(&term.value, &mut self.loads)?;
+                let term = term.value.in_steady_state();
+                let mut piece = Piece::of(&term, &mut self.loads)?;
+                let factors = term.factors().iter().cloned();
+                let factors = factors
+                    .filter_map(|factor| factor.with_load(|load| Some(number_of(&load, &mut self.loads))))
+                    .collect();
                 if let Piece::Lag { axis, loop_of } = piece
                     && own == Some(axis)
                     && let (Some(slowness), Some(inertia)) = (slowness.get_mut(axis), inertia.get_mut(axis))
@@ -252,8 +288,8 @@ impl Plant {
                     piece = Piece::Loop;
                 }
                 let inside = own.filter(|_| listed.is_inside_loop(place));
-                let name = term.value.name();
-                self.terms.push(PlantTerm { motion, place, name, piece, drive: inside, inside });
+                let name = listed.terms.get(place).map_or("", |term| term.value.name());
+                self.terms.push(PlantTerm { motion, place, name, piece, factors, drive: inside, inside });
             }
         }
         for ((servo, slowness), inertia) in self.servos.iter_mut().zip(slowness).zip(inertia) {
@@ -385,7 +421,9 @@ impl Plant {
         let inputs = self.inputs(commands)?;
         let loads = self.load_columns(commands)?;
         let mut readings = SensorReadings::new(&self.sensors);
-        let mut memories = vec![(Memory::default(), Before::default()); self.terms.len()];
+        let mut memories: Vec<TermMemory> = self.terms.iter().map(TermMemory::of).collect();
+        let stretches = stretches(&legs);
+        let mut leg = stretches.iter().copied().peekable();
         let mut positions = vec![0.0; self.names.axes.len()];
         let mut motions = vec![0.0; self.names.motions.len()];
         let mut drive = positions.clone();
@@ -396,8 +434,19 @@ impl Plant {
                 readings.update(|sensor| inputs.get(sensor).copied().flatten().map_or(f64::NAN, at));
             row_loads.iter_mut().zip(&loads).for_each(|(slot, column)| *slot = at(column));
             positions.iter_mut().zip(&histories).for_each(|(slot, history)| *slot = at(&history.position));
-            let begins = row > 0 && legs.get(row) != legs.get(row - 1);
-            let state = State { row, time, begins, histories: &histories, temperatures, loads: &row_loads };
+            while leg.next_if(|(_, end)| *end <= row).is_some() {}
+            let leg = leg.peek().copied().unwrap_or_default();
+            let begins = row > 0 && leg.0 == row;
+            let state = State {
+                row,
+                time,
+                begins,
+                leg,
+                times: &commands.time,
+                histories: &histories,
+                temperatures,
+                loads: &row_loads,
+            };
             drive.copy_from_slice(&positions);
             self.evaluate(&state, &mut memories, &mut motions, &mut drive);
             let pose = self.pose(&positions, &motions);
@@ -409,13 +458,16 @@ impl Plant {
     fn evaluate(
         &self,
         state: &State<'_>,
-        memories: &mut [(Memory, Before)],
+        memories: &mut [TermMemory],
         motions: &mut [f64],
         drive: &mut [f64],
     ) {
         motions.fill(0.0);
-        for (term, (memory, before)) in self.terms.iter().zip(memories) {
-            let value = term.piece.value(state, memory);
+        for (term, TermMemory { own, factors, before }) in self.terms.iter().zip(memories) {
+            let multiplied = term.factors.iter().zip(factors);
+            let product: f64 =
+                multiplied.map(|(factor, memory)| factor::value(factor, state, memory)).product();
+            let value = product * term.piece.value(state, own);
             let value = match term.inside.and_then(|axis| self.servo(axis)) {
                 Some(servo) => {
                     if state.begins {

@@ -9,8 +9,9 @@ use std::rc::Rc;
 
 use abbe_runtime::{Compensator, ErrorMotion, Limits, TermState, Work, states_needed};
 use csv::ByteRecord;
+use model_dsl::calibration::factor::FactorPart;
 use model_dsl::calibration::vocabulary::{self, Key, Kind};
-use model_dsl::calibration::{CalibratedMotion, CalibratedTerm, Part};
+use model_dsl::calibration::{CalibratedMotion, CalibratedTerm, Factor, Part};
 use model_dsl::program::Interpreter;
 
 use crate::arguments::Compensate;
@@ -217,9 +218,15 @@ fn timed(motion: &CalibratedMotion) -> Option<String> {
 /// Whether a term that is compensated reads a velocity, or follows something behind a time constant.
 fn needs_time(term: &CalibratedTerm) -> bool {
     let entry = term.kind().entry();
+    let filtered =
+        term.factors().iter().flat_map(Factor::parts).any(|(key, part)| {
+            key == "time_constant" && matches!(part, FactorPart::Amount(time) if time > 0.0)
+        });
     let is_time = |key: &str| entry.key(key).and_then(Key::kind) == Some(Kind::TIME);
     let follows =
         |(key, part): (&str, Part<'_>)| is_time(key) && matches!(part, Part::Number(time) if time > 0.0);
-    let needs = entry.state == vocabulary::State::Velocity || term.parts().into_iter().any(follows);
+    let needs = term.states().any(|(state, _)| state == vocabulary::State::Velocity)
+        || term.parts().into_iter().any(follows)
+        || filtered;
     needs && term.compensable()
 }

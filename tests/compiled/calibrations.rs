@@ -8,7 +8,8 @@ use abbe_runtime::{
     Compensator, Direction, ErrorMotion, Kinematics, Sample, Term, TermState, Work, states_needed,
 };
 use model_dsl::calibration::{
-    CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Ramp, SensorReadings, SeriesInput,
+    CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Factor, Ramp, SensorReadings, SeriesInput,
+    Within,
 };
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::Equations;
@@ -67,13 +68,15 @@ impl Followed {
             let size = if motion.angular { 2e-5 } else { 0.02 };
             for _ in 0..pick(rng, most + 1) {
                 if let Some(term) = term(rng, equations.axes.len(), size) {
-                    terms.push((number, term));
+                    let factors = factors(rng, equations.axes.len());
+                    let takes = term.kind().takes_factors();
+                    terms.push((number, if takes { term.times(factors) } else { term }));
                 }
             }
         }
         let mut calibration = calibration.with(&terms);
         for motion in &mut calibration.motions {
-            let backlash = |term: &CalibratedTerm| matches!(term, CalibratedTerm::Backlash { .. });
+            let backlash = |term: &CalibratedTerm| matches!(term.core(), CalibratedTerm::Backlash { .. });
             let ramped = motion.terms.iter().position(|term| backlash(&term.value));
             motion.ramps = ramped
                 .filter(|_| pick(rng, 2) == 0)
@@ -129,7 +132,7 @@ impl Followed {
     pub(super) fn at_run_time(&self, equations: &Equations) -> Vec<String> {
         let kinematics = Interpreter::new(equations, &self.calibration.constants);
         let terms: Vec<Vec<Term<'_>>> = (0..equations.motions.len())
-            .map(|motion| self.calibration.runtime(motion).map(Result::unwrap).collect())
+            .map(|motion| self.calibration.runtime(motion).flat_map(Result::unwrap).collect())
             .collect();
         let motions: Vec<_> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
         let mut states = vec![TermState::default(); states_needed(&motions)];
@@ -193,13 +196,41 @@ fn with_sensors(equations: &Equations) -> Calibration {
     read.unwrap_or_else(|| panic!("{diagnostics:?}\n{}", source.text()))
 }
 
+/// Up to two factors that a controller knows, each of about 1 where a machine is; none of an axis where there is no axis. Which
+/// units they have, the compiler of Rust does not ask.
+fn factors(rng: &mut TestRng, axes: usize) -> Vec<Factor> {
+    let most = if axes == 0 { 0 } else { pick(rng, 3) };
+    (0..most).map(|_| factor(rng, axes)).collect()
+}
+
+fn factor(rng: &mut TestRng, axes: usize) -> Factor {
+    let (axis, sensor) = (pick(rng, axes), pick(rng, 4));
+    let narrow = Within { from: -1.0, to: 1.0 };
+    let range = |rng: &mut TestRng| if pick(rng, 2) == 0 { Within::EVERYWHERE } else { narrow };
+    match pick(rng, 10) {
+        0 => Factor::Position { axis, power: 1 + u8::try_from(pick(rng, 3)).unwrap(), within: narrow },
+        1 => Factor::Direction { axis },
+        2 => Factor::Velocity { axis, within: narrow },
+        3 => Factor::Speed { axis, within: narrow },
+        4 => Factor::Fading { axis, over: 20.0 },
+        5 => {
+            let time_constant = if pick(rng, 2) == 0 { 0.0 } else { 0.02 };
+            Factor::Temperature { sensor, reference: 20.0, time_constant, within: range(rng) }
+        }
+        6 => Factor::Play { sensor, reference: 20.0, width: 1.0 },
+        7 => Factor::Warmth { axis, time_constant: 0.1, rise: 0.05 },
+        8 => Factor::Turn { axis, period: 40.0, phase: draw(rng) },
+        _ => Factor::Curve { axis, at: vec![-200.0, 0.0, 150.0], values: draws(rng, 1.0, 3) },
+    }
+}
+
 /// A term of any kind that a controller compensates, of this size; none of an axis where there is no axis.
 fn term(rng: &mut TestRng, axes: usize, size: f64) -> Option<CalibratedTerm> {
     let sensor = pick(rng, 4);
     // Over a few degC, and below over 300 mm, as much as the size.
     let warmth = size / 5.0;
     let value = size * draw(rng);
-    let term = match (pick(rng, 12), axes) {
+    let term = match (pick(rng, 13), axes) {
         (0, _) => CalibratedTerm::Constant { value },
         (1, _) => CalibratedTerm::Polynomial {
             input: SeriesInput::Sensor(sensor),
@@ -239,6 +270,7 @@ fn of_axis(rng: &mut TestRng, kind: usize, axes: usize, sensor: usize, size: f64
         8 => {
             CalibratedTerm::Expansion { axis, sensor, coefficient: slope * draw(rng) / 5.0, reference: 20.0 }
         }
+        9 => CalibratedTerm::Delay { axis, time: slope / 5.0 },
         _ => CalibratedTerm::Table { axis, curve: curve(rng, size) },
     }
 }

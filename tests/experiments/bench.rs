@@ -75,7 +75,7 @@ impl Bench {
     ) -> (Commands, Vec<Outcome>) {
         let motions = self.compiled.equations.motions.len();
         let terms: Vec<Vec<Term<'_>>> =
-            (0..motions).map(|motion| known.runtime(motion).map(Result::unwrap).collect()).collect();
+            (0..motions).map(|motion| known.runtime(motion).flat_map(Result::unwrap).collect()).collect();
         let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
         let axes = commands.positions.len();
         let mut states = vec![TermState::default(); states_needed(&motions)];

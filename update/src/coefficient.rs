@@ -5,8 +5,10 @@
 //! lists the numbers of a term, for reading and for writing, so that no number can be read in one place and written in
 //! another.
 
+use model_dsl::calibration::factor::dimension_of;
 use model_dsl::calibration::vocabulary::{Base, Form, Given, Holds, Key, Role, State};
-use model_dsl::calibration::{CalibratedTerm, Calibration, MachineNames, Part};
+use model_dsl::calibration::{CalibratedTerm, Calibration, MachineNames, MotionName, Part};
+use model_dsl::quantity::Dimension;
 
 use crate::update::Fixed;
 
@@ -88,7 +90,7 @@ pub(crate) fn set(calibration: &mut Calibration, coefficient: &Coefficient, valu
 /// point of a part shows.
 fn numbers(term: &mut CalibratedTerm) -> Vec<(String, &mut f64)> {
     let entry = term.kind().entry();
-    if unseen(entry.state).is_some() {
+    if unseen(term).is_some() {
         return Vec::new();
     }
     let first = term.kind().first_power();
@@ -106,16 +108,25 @@ fn numbers(term: &mut CalibratedTerm) -> Vec<(String, &mut f64)> {
     lists.collect()
 }
 
+/// Why no point of a part shows a term; nothing where one does.
+fn unseen(term: &CalibratedTerm) -> Option<&'static str> {
+    term.states().find_map(|(state, _)| unseen_state(state))
+}
+
 /// Why no point of a part shows what depends on this; nothing where one does.
-fn unseen(state: State) -> Option<&'static str> {
+fn unseen_state(state: State) -> Option<&'static str> {
     match state {
         State::Velocity | State::Acceleration => Some("is left out, since points are taken at rest"),
         State::Reversal | State::Time | State::Load => {
             Some("is left out: only a recording over time shows it, see abbe diagnose")
         }
-        State::Nothing | State::Position | State::OtherPosition | State::Direction | State::Temperature => {
-            None
-        }
+        // What a product depends on, its factors say.
+        State::Nothing
+        | State::Position
+        | State::OtherPosition
+        | State::Direction
+        | State::Temperature
+        | State::Factors => None,
     }
 }
 
@@ -130,7 +141,7 @@ fn unit_term(term: &CalibratedTerm, number: usize) -> CalibratedTerm {
 /// The numbers of a term that are not moved.
 fn stands(term: &CalibratedTerm, head: &str) -> Vec<Fixed> {
     let entry = term.kind().entry();
-    if let Some(reason) = unseen(entry.state) {
+    if let Some(reason) = unseen(term) {
         return vec![Fixed { name: head.to_owned(), reason }];
     }
     let shapes = entry.keys.iter().filter(|key| key.role == Role::Shape).filter(|key| {
@@ -162,10 +173,16 @@ impl Words<'_> {
             }
             _ => String::new(),
         };
-        format!("{}.{}{of}", motion.map_or("?", |motion| &motion.name), term.name())
+        let sensors = &self.calibration.sensors;
+        let factors = term.factors().iter().map(|factor| format!("*{}", factor.label(self.names, sensors)));
+        let factors: String = factors.collect();
+        format!("{}.{}{of}{factors}", motion.map_or("?", |motion| &motion.name), term.name())
     }
 
     fn unit(&self, term: &CalibratedTerm, number: usize) -> String {
+        if !term.factors().is_empty() {
+            return self.scaled_unit(term, number);
+        }
         let angular = self.names.motions.get(self.motion).is_some_and(|motion| motion.angular);
         let unit = if angular { "rad" } else { "mm" };
         let rotary = |axis: usize| self.names.axes.get(axis).is_some_and(|axis| axis.rotary);
@@ -184,6 +201,36 @@ impl Words<'_> {
                 bases.iter().fold(unit.to_owned(), |unit, base| per(&unit, of(base), 1))
             }
         }
+    }
+
+    /// The unit of a number of a term with factors, which make it one of the error motion.
+    fn scaled_unit(&self, term: &CalibratedTerm, number: usize) -> String {
+        let motion = self.names.motions.get(self.motion).map_or(Dimension::LENGTH, MotionName::dimension);
+        let own = motion.per(dimension_of(term.factors(), self.names));
+        let entry = term.kind().entry();
+        let of_input = match term.axis() {
+            Some(axis) if term.sensor().is_none() => self.names.axis_dimension(axis),
+            _ => Dimension::TEMPERATURE,
+        };
+        let below = match entry.form {
+            Form::Powers { first } => {
+                of_input.power(i8::try_from(usize::from(first) + number).unwrap_or(i8::MAX))
+            }
+            Form::Curve => Dimension::NONE,
+            Form::Plain => {
+                let bases = entry.keys.iter().find(|key| key.role == Role::Linear).and_then(Key::kind);
+                let of = |base: &Base| match base {
+                    Base::Position => of_input,
+                    _ => Dimension::TEMPERATURE,
+                };
+                bases
+                    .map_or(&[] as &[Base], |kind| kind.per)
+                    .iter()
+                    .map(of)
+                    .fold(Dimension::NONE, Dimension::times)
+            }
+        };
+        own.per(below).internal_unit()
     }
 }
 

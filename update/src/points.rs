@@ -5,7 +5,7 @@
 //! dA times that. What the calibration itself predicts is no sum of these, but the product of finite matrices. Rows are gone
 //! through in their order, also those without a reading: they show from where an axis came.
 
-use abbe_runtime::{Direction, DirectionTracker, Sample, Term, TermState};
+use abbe_runtime::{Direction, DirectionTracker, ErrorMotion, Sample, Term, TermState};
 use model_dsl::calibration::{Calibration, SensorReadings};
 use model_dsl::equations::Equations;
 use model_dsl::exact::{Columns, ExactProduct};
@@ -174,10 +174,14 @@ impl<'c> Course<'c> {
     }
 
     fn states(&self) -> States<'_> {
-        let terms: Vec<Option<Term<'_>>> =
-            self.machine.coefficients.iter().map(|known| known.unit_term.runtime().ok()).collect();
+        let terms: Vec<Vec<Term<'_>>> = self
+            .machine
+            .coefficients
+            .iter()
+            .map(|known| known.unit_term.runtime().unwrap_or_default())
+            .collect();
         States {
-            memories: vec![TermState::default(); terms.len()],
+            memories: terms.iter().map(|terms| vec![TermState::default(); terms.len()]).collect(),
             terms,
             trackers: vec![DirectionTracker::new(HYSTERESIS); self.positions.len()],
             sensors: SensorReadings::new(&self.machine.calibration.sensors),
@@ -188,8 +192,9 @@ impl<'c> Course<'c> {
 
 /// The state of the machine from row to row.
 struct States<'s> {
-    terms: Vec<Option<Term<'s>>>,
-    memories: Vec<TermState>,
+    /// Of each coefficient its term, with the factors before it; nothing where no controller has it.
+    terms: Vec<Vec<Term<'s>>>,
+    memories: Vec<Vec<TermState>>,
     trackers: Vec<DirectionTracker>,
     sensors: SensorReadings<'s>,
     time: f64,
@@ -216,11 +221,10 @@ impl States<'_> {
         };
         self.time = time;
         let terms = self.terms.iter().zip(&mut self.memories);
-        let value = |(term, memory): (&Option<Term<'_>>, &mut TermState)| {
-            term.as_ref().map_or(0.0, |term| {
-                term.advance(&sample, memory);
-                term.value(&sample, memory)
-            })
+        let value = |(terms, memories): (&Vec<Term<'_>>, &mut Vec<TermState>)| {
+            let motion = ErrorMotion { terms };
+            motion.advance(&sample, memories);
+            motion.value(&sample, memories)
         };
         terms.map(value).collect()
     }

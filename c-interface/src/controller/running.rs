@@ -191,7 +191,11 @@ impl Supervision<'_> {
 
 /// The terms of every error motion.
 fn terms(calibration: &Calibration, motions: usize) -> Result<Terms<'_>, SetupFailure> {
-    let runtime = |motion| calibration.runtime(motion).collect::<Result<_, _>>().map_err(SetupFailure::Term);
+    let runtime = |motion| {
+        let terms: Vec<Vec<Term<'_>>> =
+            calibration.runtime(motion).collect::<Result<_, _>>().map_err(SetupFailure::Term)?;
+        Ok(terms.concat())
+    };
     (0..motions).map(runtime).collect()
 }
 

@@ -88,7 +88,7 @@ fn of_term(at: TermAt, term: &CalibratedTerm, equations: &Equations) -> Vec<Faul
 
 /// Whether a term is what the drive of an axis does, which has its place in the axis's own motion.
 fn is_of_a_drive(term: &CalibratedTerm) -> bool {
-    matches!(term.kind(), TermKind::Lag | TermKind::Acceleration)
+    matches!(term.kind(), TermKind::Lag | TermKind::Acceleration | TermKind::Delay)
 }
 
 /// Whether a motion holds anything of the drive of its axis.

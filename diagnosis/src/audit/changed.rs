@@ -93,19 +93,23 @@ pub(super) fn calibration(
         Fault::Exchange { one, other } => exchange(&mut changed, equations, *one, *other),
         Fault::Moved { from, to } => exchange(&mut changed, equations, *from, *to),
         Fault::Constant(number) => *changed.constants.get_mut(*number)? += amount,
-        Fault::Reference => each_term(&mut changed, |term| match term {
-            CalibratedTerm::Expansion { reference, .. } | CalibratedTerm::Growth { reference, .. } => {
-                *reference += amount;
-            }
-            _ => {}
+        Fault::Reference => each_term(&mut changed, |term| {
+            *term = term.clone().with_references(&|reference| reference + amount);
         }),
         Fault::Sensors { one, other } => each_term(&mut changed, |term| {
-            let sensor = match term.sensor() {
-                Some(sensor) if sensor == *one => *other,
-                Some(sensor) if sensor == *other => *one,
-                _ => return,
+            let exchanged = |sensor: usize| match sensor {
+                sensor if sensor == *one => *other,
+                sensor if sensor == *other => *one,
+                sensor => sensor,
             };
-            *term = term.clone().with_sensor(sensor);
+            let mut read = term.clone();
+            if let Some(sensor) = term.sensor() {
+                read = read.with_sensor(exchanged(sensor));
+            }
+            *term = read.with_factors(|factor| match factor.sensor() {
+                Some(sensor) => factor.with_sensor(exchanged(sensor)),
+                None => factor,
+            });
         }),
         Fault::Order(_) | Fault::Scale { .. } => return None,
     }

@@ -69,7 +69,7 @@ pub(super) fn report(
             alternatives,
             explanation: fitted.effect.shape.meaning().to_owned(),
             compensable: calibrated.compensable(),
-            sensor: calibrated.sensor().map(|sensor| study.sensors[sensor].clone()),
+            sensors: calibrated.sensors().map(|sensor| (sensor, study.sensors[sensor].clone())).collect(),
             calibrated,
         });
     }

@@ -107,11 +107,16 @@ pub(super) fn removed(finding: &Finding) -> &'static str {
         TermKind::Expansion | TermKind::Growth => {
             "A controller that reads the sensor can compensate it in real time."
         }
+        TermKind::Delay => {
+            "A controller can compensate it in real time; equal paths of the commands are the better place."
+        }
         TermKind::ReversalSpike
         | TermKind::Acceleration
         | TermKind::Drift
         | TermKind::Vibration
-        | TermKind::Compliance => "A controller can compensate it in real time.",
+        | TermKind::Compliance
+        | TermKind::Step
+        | TermKind::Product => "A controller can compensate it in real time.",
     }
 }
 
@@ -131,5 +136,8 @@ pub(super) fn left(finding: &Finding) -> &'static str {
         TermKind::Drift => "Warming up, or a sensor at the source of the heat, is what helps.",
         TermKind::Vibration => "Balancing, damping or isolating its source is what helps.",
         TermKind::Compliance => "A stiffer set-up, or less force, is what helps.",
+        TermKind::Delay => "What stays is what the command of the axis does within that time.",
+        TermKind::Step => "Looking for what moved, and measuring anew, is what helps.",
+        TermKind::Product => "What stays is what lies outside the states that the recording went through.",
     }
 }

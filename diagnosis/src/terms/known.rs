@@ -3,12 +3,13 @@
 use model_dsl::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, SeriesInput};
 
 use super::Shape;
+use super::factor::known_times;
 
 /// The shape and the coefficients of a calibrated term; `load` finds the channel of a load by name. `None` where the
 /// recording lacks it.
 pub(crate) fn known(
     term: &CalibratedTerm,
-    load: impl Fn(&str) -> Option<usize>,
+    load: &dyn Fn(&str) -> Option<usize>,
 ) -> Option<(Shape, Vec<f64>)> {
     let pair = match term {
         CalibratedTerm::Constant { value } => (Shape::Constant, vec![*value]),
@@ -55,6 +56,12 @@ pub(crate) fn known(
         }
         CalibratedTerm::Compliance { load: name, coefficient } => {
             (Shape::Compliance { load: load(name)? }, vec![*coefficient])
+        }
+        CalibratedTerm::Delay { axis, time } => (Shape::Delay { axis: *axis, time: *time }, vec![1.0]),
+        CalibratedTerm::Step { time, size } => (Shape::Step { time: *time }, vec![*size]),
+        CalibratedTerm::Times { .. } => {
+            let steady = term.in_steady_state();
+            return known_times(steady.core(), steady.factors(), load);
         }
     };
     Some(pair)

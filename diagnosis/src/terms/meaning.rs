@@ -4,8 +4,8 @@
 use model_dsl::calibration::TermKind;
 
 use super::{
-    acceleration, backlash, coupling, cyclic, drift, expansion, growth, lag, load, polynomial,
-    reversal_spike, table, vibration,
+    acceleration, backlash, coupling, cyclic, delay, drift, expansion, factor, growth, lag, load, polynomial,
+    reversal_spike, step, table, vibration,
 };
 
 /// What a constant is, physically.
@@ -30,13 +30,16 @@ pub fn meaning(term: &str) -> Option<&'static str> {
         TermKind::Vibration => vibration::MEANING,
         TermKind::Coupling => coupling::MEANING,
         TermKind::Compliance => load::MEANING,
+        TermKind::Delay => delay::MEANING,
+        TermKind::Step => step::MEANING,
+        TermKind::Product => factor::MEANING,
     };
     Some(words)
 }
 
 #[cfg(test)]
 mod tests {
-    use model_dsl::calibration::TERM_NAMES;
+    use model_dsl::calibration::{Factor, TERM_NAMES};
 
     use super::meaning;
     use crate::terms::Shape;
@@ -66,6 +69,9 @@ mod tests {
             Shape::Vibration { frequency: 1.0 },
             Shape::Coupling { axis: 1, degree: 1, scale: 1.0 },
             Shape::Compliance { load: 0 },
+            Shape::Delay { axis: 0, time: 0.01 },
+            Shape::Step { time: 1.0 },
+            Shape::Times { core: Box::new(Shape::Constant), factors: vec![Factor::Direction { axis: 0 }] },
         ];
         for shape in shapes {
             assert_eq!(meaning(shape.name()), Some(shape.meaning()), "{}", shape.name());

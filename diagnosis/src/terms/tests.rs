@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use abbe_runtime::{Direction, Sample, TermState};
+use abbe_runtime::{Direction, ErrorMotion, Sample, TermState};
 use model_dsl::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, SeriesInput};
 
 use super::*;
@@ -43,8 +43,9 @@ fn value(term: &CalibratedTerm, states: &States) -> Vec<f64> {
 }
 
 fn by_runtime(term: &CalibratedTerm, states: &States) -> Vec<f64> {
-    let term = term.runtime().unwrap();
-    let mut memory = TermState::default();
+    let terms = term.runtime().unwrap();
+    let motion = ErrorMotion { terms: &terms };
+    let mut memory = vec![TermState::default(); terms.len()];
     let mut before = states.given.time[0];
     let row = |row: usize| {
         let position: Vec<f64> = states.axes.iter().map(|axis| axis.position[row]).collect();
@@ -66,8 +67,8 @@ fn by_runtime(term: &CalibratedTerm, states: &States) -> Vec<f64> {
             time_step: states.given.time[row] - before,
         };
         before = states.given.time[row];
-        term.advance(&sample, &mut memory);
-        term.value(&sample, &memory)
+        motion.advance(&sample, &mut memory);
+        motion.value(&sample, &memory)
     };
     (0..states.given.time.len()).map(row).collect()
 }

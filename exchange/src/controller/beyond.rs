@@ -47,16 +47,33 @@ impl Beyond {
             CalibratedTerm::Drift { amplitude, .. } => lost(*amplitude, "in the end"),
             CalibratedTerm::Vibration { amplitude, .. } => lost(*amplitude, "as an amplitude"),
             CalibratedTerm::Compliance { coefficient, .. } => lost(*coefficient, "for each unit of its load"),
-            other => match other.kind().entry().state {
-                State::Nothing | State::Position | State::OtherPosition | State::Direction => None,
-                _ => Some(Self {
-                    motion,
-                    term: other.name(),
-                    size: None,
-                    per: "with more than positions",
-                    times: None,
-                }),
-            },
+            CalibratedTerm::Times { core, .. } if winds_up(core) => Some(Self {
+                motion,
+                term: term.name(),
+                size: None,
+                per: "while the play is taken up after a reversal",
+                times: None,
+            }),
+            other => other.states().any(|(state, _)| is_beyond(state)).then(|| Self {
+                motion,
+                term: other.name(),
+                size: None,
+                per: "with more than positions",
+                times: None,
+            }),
         }
     }
+}
+
+/// Whether a play is taken up over some travel.
+fn winds_up(term: &CalibratedTerm) -> bool {
+    matches!(term, CalibratedTerm::Backlash { wind_up, .. } if *wind_up > 0.0)
+}
+
+/// Whether no table of positions holds what depends on this. What a product depends on, its factors say.
+fn is_beyond(state: State) -> bool {
+    !matches!(
+        state,
+        State::Nothing | State::Position | State::OtherPosition | State::Direction | State::Factors
+    )
 }

@@ -78,7 +78,7 @@ impl<'c> Geometry<'c> {
     /// The axes whose direction some term reads.
     pub fn directed(&self) -> Vec<usize> {
         let terms = self.calibration.motions.iter().flat_map(|motion| &motion.terms);
-        let mut axes: Vec<usize> = terms.filter_map(|term| directed_axis(&term.value)).collect();
+        let mut axes: Vec<usize> = terms.flat_map(|term| directed_axes(&term.value)).collect();
         axes.sort_unstable();
         axes.dedup();
         axes
@@ -194,26 +194,37 @@ fn lasting<'c>(calibration: &'c Calibration, motion: usize, beyond: &mut Vec<Bey
     for term in calibration.terms(motion).iter().map(|term| &term.value) {
         beyond.extend(Beyond::of(motion, term));
         match term.runtime() {
-            Ok(Term::Backlash { axis, lost_motion, .. }) => {
-                lasting.push(Term::Backlash { axis, lost_motion, wind_up: 0.0, ramp: 0.0 });
-            }
             Ok(_) if is_changing(term) => {}
-            Ok(term) => lasting.push(term),
+            Ok(with_factors) => lasting.extend(with_factors.into_iter().map(taken_up)),
             Err(_) => {}
         }
     }
     lasting
 }
 
-fn is_changing(term: &CalibratedTerm) -> bool {
-    term.sensor().is_some() || term.kind().entry().state == State::Velocity
+/// A play whose take-up is over.
+fn taken_up(term: Term<'_>) -> Term<'_> {
+    match term {
+        Term::Backlash { axis, lost_motion, .. } => {
+            Term::Backlash { axis, lost_motion, wind_up: 0.0, ramp: 0.0 }
+        }
+        other => other,
+    }
 }
 
-/// The axis whose direction a term reads.
-fn directed_axis(term: &CalibratedTerm) -> Option<usize> {
-    let directed = match term {
-        CalibratedTerm::Table { curve, .. } => matches!(curve.values, CurveValues::Directed { .. }),
-        other => other.kind().entry().state == State::Direction,
+fn is_changing(term: &CalibratedTerm) -> bool {
+    term.states().any(|(state, _)| matches!(state, State::Temperature | State::Velocity))
+}
+
+/// The axes whose directions a term reads.
+fn directed_axes(term: &CalibratedTerm) -> impl Iterator<Item = usize> {
+    let of_table = match term.core() {
+        CalibratedTerm::Table { axis, curve } => {
+            Some(*axis).filter(|_| matches!(curve.values, CurveValues::Directed { .. }))
+        }
+        _ => None,
     };
-    term.axis().filter(|_| directed)
+    let of_states =
+        term.states().filter(|(state, _)| *state == State::Direction).filter_map(|(_, axis)| axis);
+    of_table.into_iter().chain(of_states)
 }

@@ -2,7 +2,7 @@
 //! straight lines between them say the same, or say it closely.
 
 use model_dsl::calibration::vocabulary::Form;
-use model_dsl::calibration::{CalibratedTerm, Calibration, Part};
+use model_dsl::calibration::{CalibratedTerm, Calibration, Factor, Part};
 use model_dsl::equations::Equations;
 
 use super::refused::Refused;
@@ -168,14 +168,25 @@ fn count(number: usize) -> f64 {
 }
 
 fn nodes(term: &CalibratedTerm, axis: usize) -> Vec<f64> {
-    match term {
+    let mut nodes = match term.core() {
         CalibratedTerm::Table { axis: over, curve } if *over == axis => curve.positions(),
         _ => Vec::new(),
+    };
+    for factor in term.factors() {
+        if let Factor::Curve { axis: over, at, .. } = factor
+            && *over == axis
+        {
+            nodes.extend(at);
+        }
     }
+    nodes
 }
 
 /// Whether a term is no straight line over an axis, tables apart.
 fn is_curved(term: &CalibratedTerm, axis: usize) -> bool {
+    if !term.factors().is_empty() {
+        return is_curved_with_factors(term, axis);
+    }
     let (kind, entry) = (term.kind(), term.kind().entry());
     let curved = match entry.form {
         // The last of them belongs to a power above 1.
@@ -187,4 +198,16 @@ fn is_curved(term: &CalibratedTerm, axis: usize) -> bool {
         Form::Curve => false,
     };
     curved && term.axis() == Some(axis)
+}
+
+/// The same of a term with factors: what is linear twice is curved.
+fn is_curved_with_factors(term: &CalibratedTerm, axis: usize) -> bool {
+    let over = |other: Option<usize>| other == Some(axis);
+    let states = term.states().filter(|(state, of)| state.is_position() && over(*of)).count();
+    let bent = term.factors().iter().any(|factor| match factor {
+        Factor::Position { power, .. } => over(factor.axis()) && *power > 1,
+        Factor::Turn { .. } => over(factor.axis()),
+        _ => false,
+    });
+    states > 1 || bent || is_curved(term.core(), axis)
 }

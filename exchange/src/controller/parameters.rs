@@ -70,10 +70,8 @@ pub(super) fn gather(job: &Job<'_, '_>, model: &Volumetric, arguments: usize) ->
 /// The axes whose positions an error motion depends on.
 fn arguments_of(job: &Job<'_, '_>, motion: usize) -> BTreeSet<usize> {
     let terms = job.geometry.calibration.terms(motion).iter();
-    terms
-        .filter(|term| term.value.kind().entry().state.is_position())
-        .filter_map(|term| term.value.axis())
-        .collect()
+    let states = terms.flat_map(|term| term.value.states());
+    states.filter(|(state, _)| state.is_position()).filter_map(|(_, axis)| axis).collect()
 }
 
 fn grid(job: &Job<'_, '_>, motion: usize, sign: f64, axes: BTreeSet<usize>) -> Result<Grid, Refused> {

@@ -50,7 +50,7 @@ impl Calibration {
     }
 
     fn add(&mut self, motion: usize, term: CalibratedTerm) {
-        if let Some(sensor) = term.sensor() {
+        for sensor in term.sensors() {
             self.sensors.mark_used(sensor);
         }
         let term = unplaced(term);

@@ -58,7 +58,7 @@ impl MachineNames {
     }
 
     /// The kind of position that the axis of this index has.
-    pub(super) fn axis_dimension(&self, axis: usize) -> Dimension {
+    pub fn axis_dimension(&self, axis: usize) -> Dimension {
         match self.axes.get(axis) {
             Some(AxisName { rotary: true, .. }) => Dimension::ANGLE,
             _ => Dimension::LENGTH,
@@ -74,7 +74,7 @@ impl MachineNames {
 
 impl MotionName {
     /// The kind of quantity that the motion is.
-    pub(super) fn dimension(&self) -> Dimension {
+    pub fn dimension(&self) -> Dimension {
         if self.angular { Dimension::ANGLE } else { Dimension::LENGTH }
     }
 }

@@ -1,5 +1,6 @@
 //! The parameters of one term. In: its mapping. Out: quantities of the kinds that the term needs, or what is wrong.
 
+use super::factor::{Factor, dimension_of};
 use super::fields::{Fields, parameters, word};
 use super::names::{MachineNames, MotionName};
 use super::sensors::Sensors;
@@ -27,13 +28,20 @@ pub(super) struct Parameters<'p, 'n, 'a> {
     pub(super) fields: Fields<'n>,
     /// The term in words: "`backlash` of EXX".
     pub(super) what: &'p str,
+    /// What the term is multiplied with: none of most terms.
+    pub(super) factors: &'p [Factor],
     pub(super) context: &'p mut Context<'a>,
 }
 
 impl<'n> Parameters<'_, 'n, '_> {
-    /// The kind of quantity that the error motion is.
+    /// The kind of quantity that the term itself is: with its factors that of the error motion.
     pub(super) fn motion(&self) -> Dimension {
-        self.context.motion.dimension()
+        self.context.motion.dimension().per(self.scale())
+    }
+
+    /// The kind of quantity that its factors are together.
+    fn scale(&self) -> Dimension {
+        dimension_of(self.factors, self.context.names)
     }
 
     pub(super) fn report(&mut self, mistake: Diagnostic) {
@@ -68,11 +76,16 @@ impl<'n> Parameters<'_, 'n, '_> {
             (Given::Optional(_), None) => return Some(0.0),
             _ => self.need(key.name)?,
         };
-        if kind.per.contains(&Base::Load) {
+        if kind.per.contains(&Base::Load) && self.factors.is_empty() {
             return self.per_load(node, key.name);
         }
         let position = axis.map(|axis| self.context.names.axis_dimension(axis));
-        let found = self.quantity_in(node, key.name, kind.dimension(self.motion(), position))?;
+        let dimension = kind.dimension(self.motion(), position);
+        let found = if kind.is_of_motion() && !self.factors.is_empty() {
+            self.scaled(node, key.name, dimension)?
+        } else {
+            self.quantity_in(node, key.name, dimension)?
+        };
         let must = match key.bound {
             Bound::Positive if found.value <= 0.0 => "greater than zero",
             Bound::NotNegative if found.value < 0.0 => "zero or greater",
@@ -85,6 +98,33 @@ impl<'n> Parameters<'_, 'n, '_> {
         let message = format!("{} must be {must}", self.words(key.name));
         let help = format!("write a value that is {must}, or leave the term out");
         self.report(Diagnostic::error("E0419", found.span, message).help(help));
+        None
+    }
+
+    /// A number of a term with factors, which make it a quantity of the error motion.
+    fn scaled(&mut self, node: &Node, key: &str, expected: Dimension) -> Option<Spanned<f64>> {
+        let quantity = node.text().and_then(|text| quantity::parse_quantity(text).ok());
+        let found = quantity.as_ref().filter(|found| !found.is_bare());
+        let differs = |found: &&quantity::Quantity| found.dimension.loads_as_forces() != expected;
+        let Some(wrong) = found.filter(differs) else {
+            let words = self.words(key);
+            return quantity::read_per_load(node, expected, &words, self.context.diagnostics);
+        };
+        let (scale, unit) = (self.scale(), expected.usual_unit());
+        let message = format!(
+            "{} is {} with these factors, `{}` is {}",
+            self.words(key),
+            expected.name(),
+            wrong.written_unit(),
+            wrong.kind_name()
+        );
+        let help = format!(
+            "its factors are in `{}` together and {} is {}: use a unit such as `{unit}`",
+            scale.internal_unit(),
+            self.context.motion.name,
+            self.context.motion.dimension().name(),
+        );
+        self.report(Diagnostic::error("E0429", node.part(wrong.unit.clone()), message).help(help));
         None
     }
 
@@ -155,19 +195,8 @@ impl<'n> Parameters<'_, 'n, '_> {
     }
 
     pub(super) fn named_axis(&mut self, node: &Node) -> Option<usize> {
-        let letter = word(node, &self.words("axis"), self.context.diagnostics)?;
-        let names = self.context.names;
-        let found = names.axis(&letter.value);
-        if found.is_none() {
-            let message = format!("{} has no axis `{}`", names.machine, letter.value);
-            let mistake = Diagnostic::error("E0414", letter.span, message);
-            let near = nearest(&letter.value, names.axes.iter().map(|axis| axis.letter.as_str()));
-            self.report(match near {
-                Some(near) => mistake.suggest(Some(near)),
-                None => mistake.help(format!("its axes are {}", names.axis_letters())),
-            });
-        }
-        found
+        let words = self.words("axis");
+        find_axis(node, &words, self.context)
     }
 
     /// The kind of position of an axis; a length where the axis itself was wrong.
@@ -196,4 +225,21 @@ impl<'n> Parameters<'_, 'n, '_> {
     pub(super) fn key_span(&self, key: &str) -> Span {
         self.fields.key_span(key)
     }
+}
+
+/// The axis that a value names; `words` say what the value is.
+pub(super) fn find_axis(node: &Node, words: &str, context: &mut Context<'_>) -> Option<usize> {
+    let letter = word(node, words, context.diagnostics)?;
+    let names = context.names;
+    let found = names.axis(&letter.value);
+    if found.is_none() {
+        let message = format!("{} has no axis `{}`", names.machine, letter.value);
+        let mistake = Diagnostic::error("E0414", letter.span, message);
+        let near = nearest(&letter.value, names.axes.iter().map(|axis| axis.letter.as_str()));
+        context.diagnostics.push(match near {
+            Some(near) => mistake.suggest(Some(near)),
+            None => mistake.help(format!("its axes are {}", names.axis_letters())),
+        });
+    }
+    found
 }

@@ -3,9 +3,10 @@
 use super::curve::read_table;
 use super::fields::{Fields, parameters};
 use super::parameters::{Context, Parameters};
+use super::read_factor::read_factors;
 use super::series::read_powers;
 use super::term::{CalibratedTerm, PlainParts};
-use super::vocabulary::{Form, Holds, INSIDE_LOOP, RAMP, Role, TERM_NAMES, TermKind};
+use super::vocabulary::{FREQUENCY, Form, Holds, INSIDE_LOOP, RAMP, Role, TERM_NAMES, TIMES, TermKind};
 use crate::diagnostic::Diagnostic;
 use crate::quantity;
 use crate::source::Spanned;
@@ -51,8 +52,15 @@ fn read_named(name: &Spanned<String>, node: &Node, context: &mut Context<'_>) ->
     };
     let entry = kind.entry();
     let what = format!("`{}` of {}", entry.name, context.motion.name);
-    let fields = Fields::open(node, name.span, parameters(&what), &entry.key_names(), context.diagnostics)?;
-    let mut term = Parameters { fields, what: &what, context };
+    let mut known = entry.key_names();
+    known.extend(kind.takes_factors().then_some(TIMES));
+    let fields = Fields::open(node, name.span, parameters(&what), &known, context.diagnostics)?;
+    let factors = match fields.get(TIMES).filter(|_| kind.takes_factors()) {
+        Some(times) => read_factors(times, &what, context)?,
+        None => Vec::new(),
+    };
+    let mut term = Parameters { fields, what: &what, factors: &factors, context };
+    refuse_loop_with_factors(kind, &mut term)?;
     let ramp = entry.key(RAMP).map_or(Some(0.0), |key| term.number(key, None));
     let inside_loop = entry.key(INSIDE_LOOP).map_or(Some(false), |_| term.inside_loop());
     let read = match entry.form {
@@ -60,7 +68,21 @@ fn read_named(name: &Spanned<String>, node: &Node, context: &mut Context<'_>) ->
         Form::Powers { first } => read_powers(kind, first, &mut term),
         Form::Curve => read_table(&mut term),
     };
-    Some(Item { term: Spanned::new(read?, name.span), ramp: ramp?, inside_loop: inside_loop? })
+    let term = read?.times(factors);
+    Some(Item { term: Spanned::new(term, name.span), ramp: ramp?, inside_loop: inside_loop? })
+}
+
+/// A loop of second order answers its command as a whole: only the steady state of a lag has factors.
+fn refuse_loop_with_factors(kind: TermKind, term: &mut Parameters<'_, '_, '_>) -> Option<()> {
+    let rings = kind == TermKind::Lag && term.fields.get(FREQUENCY).is_some();
+    if term.factors.is_empty() || !rings {
+        return Some(());
+    }
+    let message = format!("{} has a natural frequency and factors", term.what);
+    let mistake = Diagnostic::error("E0416", term.key_span(TIMES), message);
+    let mistake = mistake.also(term.key_span(FREQUENCY), "the frequency stands here");
+    term.report(mistake.help("leave one of the two out: factors multiply the steady state -v/K"));
+    None
 }
 
 fn unknown_term(name: &Spanned<String>) -> Diagnostic {
@@ -93,6 +115,7 @@ fn read_plain_term(kind: TermKind, term: &mut Parameters<'_, '_, '_>) -> Option<
                 parts.numbers.extend(number.map(|number| (key.name, number)));
                 number.is_some()
             }
+            Holds::Factors => term.need(key.name).is_some(),
             _ => true,
         };
     }

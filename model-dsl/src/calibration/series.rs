@@ -100,8 +100,11 @@ pub(super) fn read_motion_unit(term: &mut Parameters<'_, '_, '_>) -> Option<f64>
     let words = term.words("unit");
     let unit = quantity::read_unit(node, &words, term.context.diagnostics)?;
     let expected = term.motion();
-    if unit.value.dimension != expected {
-        let subject = term.context.motion.name.clone();
+    if unit.value.dimension.loads_as_forces() != expected {
+        let subject = match term.factors {
+            [] => term.context.motion.name.clone(),
+            _ => format!("{} with its factors", term.what),
+        };
         wrong_unit(term, node, unit, &subject, expected);
         return None;
     }

@@ -10,6 +10,7 @@ pub(super) use parts::PlainParts;
 use abbe_runtime::{Input, TableError, Term};
 use std::fmt;
 
+use super::factor::{Factor, FactorKind, Within};
 use super::vocabulary::TermKind;
 
 /// One term of an error motion, in mm, rad, s and degC.
@@ -138,6 +139,27 @@ pub enum CalibratedTerm {
         /// c, mm or rad per N, V, A, % or count.
         coefficient: f64,
     },
+    /// `q(t - T) - q(t)`: the axis is where it was told to be a time T ago.
+    Delay {
+        /// The axis.
+        axis: usize,
+        /// T, s; below zero the axis is early.
+        time: f64,
+    },
+    /// 0 before a time, and the size from it on: an event.
+    Step {
+        /// The time, s.
+        time: f64,
+        /// The size, mm or rad.
+        size: f64,
+    },
+    /// A term times factors. Around a constant it is a `product`. A lag there is its steady state, `-v/K`.
+    Times {
+        /// The term, which has no factors itself: mm or rad for each unit of their product.
+        core: Box<CalibratedTerm>,
+        /// The factors, at least one.
+        factors: Vec<Factor>,
+    },
 }
 
 /// What a polynomial is a polynomial of.
@@ -154,6 +176,8 @@ pub enum SeriesInput {
 pub enum NotCompensable {
     /// The term depends on what a controller cannot know in time.
     Term(TermKind),
+    /// A factor depends on it.
+    Factor(FactorKind),
     /// The table is not one that the runtime reads.
     Table(TableError),
 }
@@ -162,6 +186,9 @@ impl fmt::Display for NotCompensable {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Term(kind) => write!(formatter, "`{}` cannot be compensated in real time", kind.name()),
+            Self::Factor(kind) => {
+                write!(formatter, "the factor `{}` cannot be compensated in real time", kind.name())
+            }
             Self::Table(error) => error.fmt(formatter),
         }
     }
@@ -175,18 +202,72 @@ impl CalibratedTerm {
         self.kind().name()
     }
 
-    /// Whether a controller can compensate the term in real time.
-    pub fn compensable(&self) -> bool {
-        self.kind().compensable()
+    /// The term times factors; itself where there are none.
+    #[must_use]
+    pub fn times(self, factors: Vec<Factor>) -> Self {
+        if factors.is_empty() { self } else { Self::Times { core: Box::new(self), factors } }
     }
 
-    /// The term as the runtime evaluates it, with the same indices of axes and sensors; of a backlash, the physics without
-    /// a ramp, which [`Calibration::runtime`](super::Calibration::runtime) knows.
+    /// The term without its factors.
+    pub fn core(&self) -> &Self {
+        match self {
+            Self::Times { core, .. } => core,
+            plain => plain,
+        }
+    }
+
+    /// The term with a lag that has factors as what it is, `-v/K` times them; any other as it is.
+    #[must_use]
+    pub fn in_steady_state(&self) -> Self {
+        match self {
+            Self::Times { core, factors } => match **core {
+                Self::Lag { axis, gain, .. } => {
+                    let velocity = Factor::Velocity { axis, within: Within::EVERYWHERE };
+                    let factors = std::iter::once(velocity).chain(factors.iter().cloned());
+                    Self::Constant { value: -1.0 / gain }.times(factors.collect())
+                }
+                _ => self.clone(),
+            },
+            plain => plain.clone(),
+        }
+    }
+
+    /// Its factors; none of most terms.
+    pub fn factors(&self) -> &[Factor] {
+        match self {
+            Self::Times { factors, .. } => factors,
+            _ => &[],
+        }
+    }
+
+    /// Why no controller can compensate the term in real time, and what of it; nothing where one can.
+    pub fn not_compensable(&self) -> Option<(NotCompensable, &'static str)> {
+        let of_factors = self.factors().iter().find_map(|factor| {
+            let kind = factor.kind();
+            kind.entry().not_compensable.map(|reason| (NotCompensable::Factor(kind), reason))
+        });
+        let kind = self.kind();
+        kind.entry().not_compensable.map(|reason| (NotCompensable::Term(kind), reason)).or(of_factors)
+    }
+
+    /// Whether a controller can compensate the term in real time.
+    pub fn compensable(&self) -> bool {
+        self.not_compensable().is_none()
+    }
+
+    /// The term as the runtime evaluates it, its factors before it, with the same indices of axes and sensors; of a backlash,
+    /// the physics without a ramp, which [`Calibration::runtime`](super::Calibration::runtime) knows.
     ///
     /// # Errors
     ///
-    /// [`NotCompensable::Term`] for the terms that [`CalibratedTerm::compensable`] denies.
-    pub fn runtime(&self) -> Result<Term<'_>, NotCompensable> {
+    /// The reason for what [`CalibratedTerm::compensable`] denies, or [`NotCompensable::Table`].
+    pub fn runtime(&self) -> Result<Vec<Term<'_>>, NotCompensable> {
+        let factors = self.factors().iter().map(|factor| factor.runtime().map(Term::Factor));
+        factors.chain([self.core().runtime_core()]).collect()
+    }
+
+    /// The term itself as the runtime evaluates it.
+    fn runtime_core(&self) -> Result<Term<'_>, NotCompensable> {
         let term = match self {
             Self::Constant { value } => Term::Constant { value: *value },
             Self::Polynomial { input, coefficients } => {
@@ -210,6 +291,8 @@ impl CalibratedTerm {
             &Self::Growth { sensor, coefficient, reference, time_constant } => {
                 Term::Growth { sensor, coefficient, reference, time_constant }
             }
+            // What a time behind is, a controller knows to first order.
+            &Self::Delay { axis, time } => Term::Lag { axis, gain: 1.0 / time },
             _ => return Err(NotCompensable::Term(self.kind())),
         };
         Ok(term)

@@ -8,7 +8,7 @@ mod key;
 
 pub use key::{Base, Bound, Given, Holds, Key, Kind, Role};
 
-use key::{LOAD, NUMBERS, OTHER_AXIS, OWN_AXIS, PER, SENSOR, UNIT, flag, list, quantity};
+use key::{FACTORS, LOAD, NUMBERS, OTHER_AXIS, OWN_AXIS, PER, SENSOR, UNIT, flag, list, quantity};
 
 /// A term of the vocabulary, without its numbers.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -41,6 +41,12 @@ pub enum TermKind {
     Coupling,
     /// What follows a load.
     Compliance,
+    /// A time that an axis is late.
+    Delay,
+    /// An event.
+    Step,
+    /// States of the machine multiplied with one another.
+    Product,
 }
 
 /// What the vocabulary says of a term.
@@ -85,6 +91,8 @@ pub enum State {
     Time,
     /// A load.
     Load,
+    /// What its factors depend on.
+    Factors,
 }
 
 impl State {
@@ -114,8 +122,14 @@ pub const RAMP: &str = "ramp";
 /// Whether a position loop answers a term: a setting beside it.
 pub const INSIDE_LOOP: &str = "inside_loop";
 
+/// The natural frequency of a position loop.
+pub const FREQUENCY: &str = "frequency";
+
+/// The factors that a term is multiplied with. All terms but a delay may have them, and a product must.
+pub const TIMES: &str = "times";
+
 /// All terms, in the order of [`TermKind`].
-pub const VOCABULARY: [Entry; 14] = [
+pub const VOCABULARY: [Entry; 17] = [
     Entry {
         kind: TermKind::Constant,
         name: "constant",
@@ -213,8 +227,8 @@ pub const VOCABULARY: [Entry; 14] = [
         keys: &[
             quantity("gain", Kind { of: Base::Position, per: &[Base::Motion, Base::Time] })
                 // Below zero the drive leads: no loop of second order does.
-                .bound(Bound::PositiveBeside("frequency")),
-            quantity("frequency", Kind::FREQUENCY)
+                .bound(Bound::PositiveBeside(FREQUENCY)),
+            quantity(FREQUENCY, Kind::FREQUENCY)
                 .bound(Bound::Positive)
                 .or("a loop of first order")
                 .role(Role::Transient),
@@ -311,6 +325,33 @@ pub const VOCABULARY: [Entry; 14] = [
         ],
         not_compensable: Some("no controller knows the load in time"),
     },
+    Entry {
+        kind: TermKind::Delay,
+        name: "delay",
+        physics: "dead time: an axis that is told later than the others, or answers later",
+        state: State::Velocity,
+        form: Form::Plain,
+        keys: &[quantity("time", Kind::TIME).bound(Bound::NotZero), OWN_AXIS],
+        not_compensable: None,
+    },
+    Entry {
+        kind: TermKind::Step,
+        name: "step",
+        physics: "an event: a crash, a slip, a clamp that moved",
+        state: State::Time,
+        form: Form::Plain,
+        keys: &[quantity("time", Kind::TIME), quantity("size", Kind::MOTION).role(Role::Linear)],
+        not_compensable: Some("no controller knows when it was"),
+    },
+    Entry {
+        kind: TermKind::Product,
+        name: "product",
+        physics: "a form that no other term has: states of the machine multiplied with one another",
+        state: State::Factors,
+        form: Form::Plain,
+        keys: &[quantity("value", Kind::MOTION).role(Role::Value), FACTORS],
+        not_compensable: None,
+    },
 ];
 
 /// The names of all terms as calibration files write them.
@@ -353,6 +394,11 @@ impl TermKind {
     /// Whether a controller can compensate it in real time.
     pub fn compensable(self) -> bool {
         self.entry().not_compensable.is_none()
+    }
+
+    /// Whether it may be multiplied with factors. A delay moves the axis itself, which nothing multiplies.
+    pub fn takes_factors(self) -> bool {
+        self != Self::Delay
     }
 
     /// The power of the first of its coefficients; 0 where it has none.

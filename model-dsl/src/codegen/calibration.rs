@@ -11,7 +11,7 @@ use quote::{ToTokens, format_ident, quote};
 use super::body::number;
 use super::bundles::{Bundles, EvenNodes};
 use super::sensors::{self, Numbered};
-use super::{docs, measured};
+use super::{docs, factors, measured};
 use crate::calibration::vocabulary::{RAMP, Role};
 use crate::calibration::{
     CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Limits, NotCompensable, Part, SeriesInput,
@@ -49,10 +49,11 @@ pub(super) struct WrittenMotion {
     costs: bool,
 }
 
-/// A term as tokens, and its nodes where it is a table with even ones.
+/// A term or a factor as tokens, and its nodes where it is a table with even ones.
 struct WrittenTerm {
     tokens: TokenStream,
     even: Option<EvenNodes>,
+    is_factor: bool,
 }
 
 impl WrittenMotion {
@@ -67,18 +68,18 @@ impl WrittenMotion {
         let terms = listed.map_or(&[][..], |listed| &listed.terms);
         let ramp = |place| listed.map_or(0.0, |listed| listed.ramp(place));
         let corrects = |axis: usize| equations.axes.get(axis).is_some_and(|axis| axis.effect.is_some());
-        let read: Vec<_> = terms.iter().map(|term| term.value.runtime()).collect::<Result<_, _>>()?;
+        let read: Vec<Vec<Term<'_>>> =
+            terms.iter().map(|term| term.value.runtime()).collect::<Result<_, _>>()?;
+        let read = read.concat();
+        let written: Vec<Vec<WrittenTerm>> = terms
+            .iter()
+            .enumerate()
+            .map(|(place, written)| with_factors(&written.value, ramp(place), sensors))
+            .collect::<Result<_, _>>()?;
         Ok(Self {
             name: format_ident!("{}", motion.name.replace('-', "_")),
             about: docs::motion(motion),
-            terms: terms
-                .iter()
-                .enumerate()
-                .map(|(place, written)| {
-                    let tokens = term(&written.value, ramp(place), sensors)?;
-                    Ok(WrittenTerm { tokens, even: EvenNodes::of(&written.value) })
-                })
-                .collect::<Result<_, _>>()?,
+            terms: written.into_iter().flatten().collect(),
             moved: read.iter().filter_map(Term::axis).any(corrects),
             costs: !read.iter().all(|term| matches!(term, Term::Constant { .. })),
         })
@@ -117,22 +118,25 @@ impl WrittenMotion {
             .then(|| quote! { let [#(#terms),*] = &Self::#name; })
     }
 
-    /// The sum of the terms, read in their turn.
+    /// The sum of the terms, each times the factors before it, read in their turn.
     fn sum(&self) -> TokenStream {
-        let terms: Vec<_> = self
-            .terms
-            .iter()
-            .enumerate()
-            .map(|(place, term)| {
-                let name = self.term_name(place);
-                match term.even {
-                    Some(_) => quote! { from.known(#name) },
-                    None => quote! { from.term(#name) },
-                }
+        let read = |place: usize, term: &WrittenTerm| {
+            let name = self.term_name(place);
+            match term.even {
+                Some(_) => quote! { from.known(#name) },
+                None => quote! { from.term(#name) },
+            }
+        };
+        let numbered: Vec<_> = self.terms.iter().enumerate().collect();
+        let products = numbered.split_inclusive(|(_, term)| !term.is_factor);
+        let terms: Vec<_> = products
+            .map(|product| {
+                let factors = product.iter().map(|(place, term)| read(*place, term));
+                quote! { #(#factors)** }
             })
             .collect();
         match &terms[..] {
-            [alone] => alone.clone(),
+            [alone] if self.terms.len() == 1 => alone.clone(),
             // From zero on, as any sum of several terms or of none.
             terms => quote! { 0.0 #(+ #terms)* },
         }
@@ -305,11 +309,30 @@ fn method(
     }
 }
 
-/// A term with its numbers: the runtime calls its terms and their fields as the vocabulary does.
-fn term(term: &CalibratedTerm, ramp: f64, sensors: &Numbered) -> Result<TokenStream, NotCompensable> {
+/// A term behind its factors.
+fn with_factors(
+    term: &CalibratedTerm,
+    ramp: f64,
+    sensors: &Numbered,
+) -> Result<Vec<WrittenTerm>, NotCompensable> {
     // What the runtime refuses, it would refuse where it is compiled too.
     term.runtime()?;
+    let factors = term.factors().iter().map(|factor| {
+        let tokens = factors::factor(factor, sensors);
+        WrittenTerm { tokens, even: None, is_factor: true }
+    });
+    let (core, even) = (term.core(), EvenNodes::of(term.core()));
+    let core = WrittenTerm { tokens: core_term(core, ramp, sensors), even, is_factor: false };
+    Ok(factors.chain([core]).collect())
+}
+
+/// A term with its numbers: the runtime calls its terms and their fields as the vocabulary does.
+fn core_term(term: &CalibratedTerm, ramp: f64, sensors: &Numbered) -> TokenStream {
     let fields = match term {
+        // What a time behind is, a controller knows to first order.
+        &CalibratedTerm::Delay { axis, time } => {
+            return core_term(&CalibratedTerm::Lag { axis, gain: 1.0 / time, frequency: 0.0 }, ramp, sensors);
+        }
         CalibratedTerm::Polynomial { input, coefficients } => {
             let coefficients = numbers(coefficients);
             let input = match *input {
@@ -331,11 +354,11 @@ fn term(term: &CalibratedTerm, ramp: f64, sensors: &Numbered) -> Result<TokenStr
         plain => fields(plain, ramp, sensors),
     };
     let name = type_name(term.name());
-    Ok(quote! { ::abbe_runtime::Term::#name { #fields } })
+    quote! { ::abbe_runtime::Term::#name { #fields } }
 }
 
 /// The name of a term as types are called: `ReversalSpike` for `reversal-spike`.
-fn type_name(name: &str) -> Ident {
+pub(super) fn type_name(name: &str) -> Ident {
     let words = name.split('-').map(|word| {
         let (first, rest) = word.split_at_checked(1).unwrap_or((word, ""));
         first.to_ascii_uppercase() + rest
@@ -355,7 +378,7 @@ fn fields(term: &CalibratedTerm, ramp: f64, sensors: &Numbered) -> TokenStream {
             Part::Numbers(values) => numbers(values),
             Part::Axis(axis) => Literal::usize_unsuffixed(axis).into_token_stream(),
             Part::Sensor(sensor) => Literal::usize_unsuffixed(sensors.number(sensor)).into_token_stream(),
-            Part::Load(_) | Part::Unit => return None,
+            Part::Load(_) | Part::Unit | Part::Factors(_) => return None,
         };
         let key = format_ident!("{key}");
         Some(quote! { #key: #value })
@@ -386,6 +409,11 @@ fn table(curve: &Curve) -> TokenStream {
             quote! { at(#at, #values) }
         }
     };
+    table_of(&read)
+}
+
+/// The table that a function of it makes.
+pub(super) fn table_of(read: &TokenStream) -> TokenStream {
     quote! {
         match ::abbe_runtime::Table::#read {
             Ok(table) => table,
@@ -394,7 +422,7 @@ fn table(curve: &Curve) -> TokenStream {
     }
 }
 
-fn numbers(numbers: &[f64]) -> TokenStream {
+pub(super) fn numbers(numbers: &[f64]) -> TokenStream {
     let numbers = numbers.iter().map(|given| number(*given));
     quote! { &[#(#numbers),*] }
 }

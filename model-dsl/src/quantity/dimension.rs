@@ -107,6 +107,20 @@ impl Dimension {
         self.combine(divisor, i8::saturating_sub)
     }
 
+    /// The kind of a product: a length [`times`](Self::times) a temperature.
+    #[must_use]
+    pub fn times(self, other: Self) -> Self {
+        self.combine(other, i8::saturating_add)
+    }
+
+    /// The kind with every load counted as a force, whatever a drive tells in its place.
+    #[must_use]
+    pub fn loads_as_forces(self) -> Self {
+        let others = [self.voltage, self.current, self.percent, self.count];
+        let force = others.into_iter().fold(self.force, i8::saturating_add);
+        Self { force, voltage: 0, current: 0, percent: 0, count: 0, ..self }
+    }
+
     /// The kind of a power.
     #[must_use]
     pub fn power(self, exponent: i8) -> Self {

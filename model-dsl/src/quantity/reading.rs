@@ -28,6 +28,32 @@ pub fn read(
     Some(Spanned::new(quantity.value, node.span))
 }
 
+/// Reads a quantity in which a load may be a force, or what a drive tells in its place: V, A, % or count. `expected` has it as
+/// a force.
+pub fn read_per_load(
+    node: &Node,
+    expected: Dimension,
+    what: &str,
+    diagnostics: &mut Diagnostics,
+) -> Option<Spanned<f64>> {
+    let quantity = node.text().and_then(|text| parse_quantity(text).ok());
+    match quantity {
+        Some(found) if !found.is_bare() && found.dimension.loads_as_forces() == expected => {
+            Some(Spanned::new(found.value, node.span))
+        }
+        _ => read(node, expected, what, diagnostics),
+    }
+}
+
+/// Reads a difference of temperatures: `0.5 K` and `0.5 degC` are the same, and no zero is taken off.
+pub fn read_temperature_step(node: &Node, what: &str, diagnostics: &mut Diagnostics) -> Option<Spanned<f64>> {
+    let absolute = read(node, Dimension::TEMPERATURE, what, diagnostics)?;
+    let quantity = parse_quantity(node.text()?).ok()?;
+    let (number, unit) =
+        parse_number(quantity.written_number()).ok().zip(parse_unit(quantity.written_unit()).ok())?;
+    Some(absolute.map(|_| number * unit.factor))
+}
+
 /// Reads a number that has no unit.
 pub fn read_number(node: &Node, what: &str, diagnostics: &mut Diagnostics) -> Option<Spanned<f64>> {
     let text = scalar(node, &format!("{what} must be a bare number"), diagnostics)?;

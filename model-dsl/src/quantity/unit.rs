@@ -1,4 +1,4 @@
-//! Units and their ratios: `um`, `arcsec`, `1/s`, `um/m/K`, `mm/s^2`.
+//! Units, their ratios and products: `um`, `arcsec`, `1/s`, `um/m/K`, `mm/s^2`, `K.s/mm`.
 
 use super::{Dimension, UnitError};
 use crate::suggest::nearest;
@@ -25,7 +25,7 @@ impl Unit {
 }
 
 /// Name, factor, offset and kind of every unit, with its other spellings after it.
-const UNITS: [(&str, f64, f64, Dimension); 38] = [
+const UNITS: [(&str, f64, f64, Dimension); 39] = [
     ("mm", 1.0, 0.0, Dimension::LENGTH),
     ("um", 1e-3, 0.0, Dimension::LENGTH),
     ("\u{b5}m", 1e-3, 0.0, Dimension::LENGTH),
@@ -55,6 +55,7 @@ const UNITS: [(&str, f64, f64, Dimension); 38] = [
     ("degC", 1.0, 0.0, Dimension::TEMPERATURE),
     ("\u{b0}C", 1.0, 0.0, Dimension::TEMPERATURE),
     ("K", 1.0, -273.15, Dimension::TEMPERATURE),
+    ("mK", 1e-3, -273_150.0, Dimension::TEMPERATURE),
     ("degF", 5.0 / 9.0, -32.0, Dimension::TEMPERATURE),
     ("\u{b0}F", 5.0 / 9.0, -32.0, Dimension::TEMPERATURE),
     ("N", 1.0, 0.0, Dimension::FORCE),
@@ -68,7 +69,7 @@ const UNITS: [(&str, f64, f64, Dimension); 38] = [
 
 /// The units' usual names, for help lines and manuals.
 pub const UNIT_NAMES: &str = "mm, um, nm, cm, m, in, mil, uin; rad, mrad, urad, deg, arcmin, arcsec; s, ms, min; Hz; \
-                              degC, K, degF; N; V, A, %, count; and ratios such as 1/s, um/m/K or mm/min";
+                              degC, K, mK, degF; N; V, A, %, count; and ratios such as 1/s, um/m/K or mm/min";
 
 /// Words that people write for a unit, and the unit.
 const WORDS: [(&str, &str); 22] = [
@@ -96,7 +97,8 @@ const WORDS: [(&str, &str); 22] = [
     ("newton", "N"),
 ];
 
-/// Reads a unit: a name, or names divided by one another, each with an optional power (`mm/s^2`).
+/// Reads a unit: a name, or names divided by one another, each with an optional power (`mm/s^2`). What stands above the line
+/// may be a product (`K.s/mm`, `K*s/mm`).
 ///
 /// # Errors
 ///
@@ -109,16 +111,42 @@ pub fn parse_unit(text: &str) -> Result<Unit, UnitError> {
     while let Some(part) = parts.next() {
         let first = unit.is_none();
         let last = parts.peek().is_none();
-        let name_start = start + (part.len() - part.trim_start().len());
-        let found = power_of_base(part.trim(), name_start, first && !last)?;
         unit = Some(match unit {
-            None => found,
-            Some(above) => divide(above, found),
+            None => product(part, start, first && !last)?,
+            Some(above) => divide(above, trimmed_base(part, start, false)?),
         });
         start += part.len() + 1;
     }
     let unit = unit.ok_or_else(|| incomplete(0..text.len()))?;
     Ok(if single { unit } else { Unit { offset: 0.0, ..unit } })
+}
+
+/// Reads `K` or `K.s`.
+fn product(text: &str, start: usize, one_allowed: bool) -> Result<Unit, UnitError> {
+    let mut start = start;
+    let mut product: Option<Unit> = None;
+    for part in text.split(PRODUCT) {
+        let found = trimmed_base(part, start, one_allowed)?;
+        product = Some(match product {
+            None => found,
+            Some(before) => Unit {
+                factor: before.factor * found.factor,
+                offset: 0.0,
+                dimension: before.dimension.times(found.dimension),
+            },
+        });
+        start += part.len() + 1;
+    }
+    product.ok_or_else(|| incomplete(start..start + text.len()))
+}
+
+/// What stands between the units of a product; one byte each.
+const PRODUCT: [char; 2] = ['.', '*'];
+
+/// Reads a unit with its power, whatever white space is around it.
+fn trimmed_base(text: &str, start: usize, one_allowed: bool) -> Result<Unit, UnitError> {
+    let name_start = start + (text.len() - text.trim_start().len());
+    power_of_base(text.trim(), name_start, one_allowed)
 }
 
 fn divide(above: Unit, below: Unit) -> Unit {

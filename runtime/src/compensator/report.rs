@@ -165,6 +165,13 @@ pub enum SetupError {
         /// The name of the parameter.
         parameter: &'static str,
     },
+    /// A factor stands last in its list: there is no term that it could be multiplied with.
+    LoneFactor {
+        /// Index of the error motion.
+        motion: usize,
+        /// Index of the factor in it.
+        term: usize,
+    },
 }
 
 impl fmt::Display for SetupError {
@@ -181,6 +188,9 @@ impl fmt::Display for SetupError {
             }
             Self::Parameter { motion, term, parameter } => {
                 write!(f, "term {term} of error motion {motion}: {parameter} is out of its range")
+            }
+            Self::LoneFactor { motion, term } => {
+                write!(f, "term {term} of error motion {motion} is a factor without a term behind it")
             }
         }
     }

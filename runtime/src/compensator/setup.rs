@@ -70,11 +70,15 @@ fn check_terms(motions: &[ErrorMotion<'_>], axes: usize) -> Result<Needs, SetupE
             }
             let sensors = given.sensor().map_or(0, |sensor| sensor.saturating_add(1));
             needs.sensors = needs.sensors.max(sensors);
-            if matches!(given, Term::Lag { .. }) {
+            if given.reads_velocity() {
                 needs.velocities = axes;
             }
             needs.ramp |= given.is_ramped();
             needs.memory |= given.remembers();
+        }
+        // A factor has nothing of its own to add.
+        if terms.last().is_some_and(Term::is_factor) {
+            return Err(SetupError::LoneFactor { motion, term: terms.len().saturating_sub(1) });
         }
     }
     Ok(needs)

@@ -20,6 +20,7 @@ impl Term<'_> {
             Self::Polynomial { input: Input::Sensor(_), .. }
             | Self::Constant { .. }
             | Self::Growth { .. } => None,
+            Self::Factor(ref factor) => factor.axis(),
         }
     }
 
@@ -29,8 +30,24 @@ impl Term<'_> {
             Self::Polynomial { input: Input::Sensor(sensor), .. }
             | Self::Expansion { sensor, .. }
             | Self::Growth { sensor, .. } => Some(sensor),
+            Self::Factor(ref factor) => factor.sensor(),
             _ => None,
         }
+    }
+
+    /// Whether the term reads a velocity.
+    pub(crate) const fn reads_velocity(&self) -> bool {
+        match *self {
+            Self::Lag { .. } => true,
+            Self::Factor(ref factor) => factor.reads_velocity(),
+            _ => false,
+        }
+    }
+
+    /// Whether the next term is multiplied with it.
+    #[inline]
+    pub(crate) const fn is_factor(&self) -> bool {
+        matches!(*self, Self::Factor(_))
     }
 
     /// Whether the correction of the term is spread over time.
@@ -43,6 +60,7 @@ impl Term<'_> {
         match *self {
             Self::Backlash { wind_up, ramp, .. } => wind_up > 0.0 || ramp > 0.0,
             Self::Growth { time_constant, .. } => time_constant > 0.0,
+            Self::Factor(ref factor) => factor.remembers(),
             _ => false,
         }
     }
@@ -75,16 +93,17 @@ impl Term<'_> {
                 ("time_constant", not_negative(time_constant)),
             ],
             Self::Lag { gain, .. } => [("gain", divisor(gain)), FINE, FINE],
+            Self::Factor(ref factor) => return factor.bad_parameter(),
         };
         checks.iter().find(|(_, usable)| !usable).map(|(name, _)| *name)
     }
 }
 
 /// A place in the list of checks where a term has no further parameter.
-const FINE: (&str, bool) = ("", true);
+pub(crate) const FINE: (&str, bool) = ("", true);
 
 /// Finite and not below zero.
-fn not_negative(value: f64) -> bool {
+pub(crate) fn not_negative(value: f64) -> bool {
     value.is_finite() && value >= 0.0
 }
 

@@ -6,15 +6,15 @@
 
 use crate::Sample;
 use crate::math::exp_m1;
-use crate::sample::Readings;
+use crate::sample::{Readings, number};
 
-/// What a term remembers from cycle to cycle: the take-up of a play, the filtered temperature of a growth, how far the
-/// correction of a reversal has come.
+/// What a term remembers from cycle to cycle: the take-up of a play, the filtered temperature of a growth, the warmth that a
+/// factor has gathered, how far the correction of a reversal has come.
 ///
 /// Every term has one, in the order of the terms; most never touch it. The default is that of a machine just started.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct TermState {
-    /// Take-up u within [-1, 1], or filtered temperature in degC; none before the first cycle.
+    /// Take-up u within [-1, 1], filtered temperature in degC or warmth in K; none before the first cycle.
     memory: Option<f64>,
     /// Position of the axis in the cycle before, in mm or rad.
     last: f64,
@@ -23,7 +23,7 @@ pub struct TermState {
 }
 
 impl TermState {
-    /// Take-up u within [-1, 1], or filtered temperature in degC; none before the first cycle.
+    /// Take-up u within [-1, 1], filtered temperature in degC or warmth in K; none before the first cycle.
     #[inline]
     pub(crate) const fn remembered(&self) -> Option<&f64> {
         self.memory.as_ref()
@@ -72,7 +72,7 @@ pub(super) fn follow(take_up: f64, time_step: f64, ramp: f64, state: &mut TermSt
 }
 
 /// The filter T* += (T - T*) (1 - exp(-dt / tau)): exact for a temperature that holds through the step.
-pub(super) fn advance_filter(sample: &Sample<'_>, sensor: usize, time_constant: f64, state: &mut TermState) {
+pub(crate) fn advance_filter(sample: &Sample<'_>, sensor: usize, time_constant: f64, state: &mut TermState) {
     let now = sample.temperature(sensor);
     if !now.is_finite() || !sample.time_step.is_finite() {
         return;
@@ -80,4 +80,33 @@ pub(super) fn advance_filter(sample: &Sample<'_>, sensor: usize, time_constant: 
     let before = state.memory.unwrap_or(now);
     let share = -exp_m1(-sample.time_step.max(0.0) / time_constant);
     state.memory = Some(before + (now - before) * share);
+}
+
+/// The play of a sensor: the memory follows its temperature, but stays up to half a width behind it. It starts at the first
+/// temperature.
+pub(crate) fn advance_width(sample: &Sample<'_>, sensor: usize, width: f64, state: &mut TermState) {
+    let now = sample.temperature(sensor);
+    if !now.is_finite() {
+        return;
+    }
+    let before = state.memory.unwrap_or(now);
+    state.memory = Some(before.max(now - 0.5 * width).min(now + 0.5 * width));
+}
+
+/// The warmth that a speed makes: `W += (rise |v| - W) (1 - exp(-dt / tau))` from zero, exact for a speed that holds through
+/// the step.
+pub(crate) fn advance_warmth(
+    sample: &Sample<'_>,
+    axis: usize,
+    time_constant: f64,
+    rise: f64,
+    state: &mut TermState,
+) {
+    let lasting = rise * number(sample.velocity, axis).abs();
+    if !lasting.is_finite() || !sample.time_step.is_finite() {
+        return;
+    }
+    let before = state.memory.unwrap_or(0.0);
+    let share = -exp_m1(-sample.time_step.max(0.0) / time_constant);
+    state.memory = Some(before + (lasting - before) * share);
 }

@@ -77,6 +77,14 @@ pub(super) enum Piece {
         load: usize,
         coefficient: f64,
     },
+    Delay {
+        axis: usize,
+        time: f64,
+    },
+    Step {
+        time: f64,
+        size: f64,
+    },
     /// The axis's own lag, which the position loop makes: nothing to add.
     Loop,
 }
@@ -95,7 +103,7 @@ pub(super) struct Memory {
 }
 
 impl Piece {
-    /// Takes a term over. `loads` are the names of the load channels, which grow by those not met before.
+    /// Takes a term over, its factors apart. `loads` are the names of the load channels, which grow by those not met before.
     pub(super) fn of(term: &CalibratedTerm, loads: &mut Vec<String>) -> Result<Self, PlantError> {
         Ok(match term {
             &CalibratedTerm::Constant { value } => Self::Constant(value),
@@ -134,13 +142,11 @@ impl Piece {
                 Self::Coupling { axis: *axis, coefficients: coefficients.clone() }
             }
             CalibratedTerm::Compliance { load, coefficient } => {
-                let known = loads.iter().position(|name| name == load);
-                let load = known.unwrap_or_else(|| {
-                    loads.push(load.clone());
-                    loads.len() - 1
-                });
-                Self::Compliance { load, coefficient: *coefficient }
+                Self::Compliance { load: number_of(load, loads), coefficient: *coefficient }
             }
+            &CalibratedTerm::Delay { axis, time } => Self::Delay { axis, time },
+            &CalibratedTerm::Step { time, size } => Self::Step { time, size },
+            CalibratedTerm::Times { core, .. } => return Self::of(core, loads),
         })
     }
 
@@ -183,8 +189,12 @@ impl Piece {
             }
             &Self::Growth { sensor, coefficient, reference, time_constant } => {
                 let now = state.temperature(sensor);
-                let behind =
-                    if time_constant > 0.0 { filtered(state.time, now, time_constant, memory) } else { now };
+                let behind = if time_constant > 0.0 {
+                    let Memory { value, input, time, .. } = memory;
+                    filtered(state.time, now, time_constant, (value, input, time))
+                } else {
+                    now
+                };
                 coefficient * (behind - reference)
             }
             &Self::Drift { amplitude, time_constant } => -amplitude * (-state.time / time_constant).exp_m1(),
@@ -196,9 +206,26 @@ impl Piece {
                 at * series(coefficients, at)
             }
             &Self::Compliance { load, coefficient } => coefficient * state.load(load),
+            &Self::Delay { axis, time } => state.position_at(axis, state.time - time) - state.position(axis),
+            &Self::Step { time, size } => {
+                if state.time >= time {
+                    size
+                } else {
+                    0.0
+                }
+            }
             Self::Loop => 0.0,
         }
     }
+}
+
+/// The number of a load channel, which is a new one where it was not met before.
+pub(super) fn number_of(load: &str, loads: &mut Vec<String>) -> usize {
+    let known = loads.iter().position(|name| name == load);
+    known.unwrap_or_else(|| {
+        loads.push(load.to_owned());
+        loads.len() - 1
+    })
 }
 
 /// The polynomial with coefficients from the constant upwards.
@@ -224,14 +251,20 @@ fn take_up(state: &State<'_>, axis: usize, wind_up: f64, memory: &mut Memory) ->
 }
 
 /// An input behind a first-order filter that starts at the first input and takes it as linear between samples.
-fn filtered(time: f64, input: f64, time_constant: f64, memory: &mut Memory) -> f64 {
+/// What is remembered is the output, the input and the time of the sample before.
+pub(super) fn filtered(
+    time: f64,
+    input: f64,
+    time_constant: f64,
+    (value, last_input, last_time): (&mut Option<f64>, &mut f64, &mut f64),
+) -> f64 {
     if !input.is_finite() {
-        return memory.value.unwrap_or(input);
+        return value.unwrap_or(input);
     }
-    let output = match memory.value {
+    let output = match *value {
         None => input,
-        Some(before) => first_order(before, memory.input, input, (time - memory.time) / time_constant),
+        Some(before) => first_order(before, *last_input, input, (time - *last_time) / time_constant),
     };
-    *memory = Memory { value: Some(output), input, time, ..*memory };
+    (*value, *last_input, *last_time) = (Some(output), input, time);
     output
 }

@@ -117,11 +117,7 @@ fn known(target: &Path, recorded: &Recorded, files: &Files) -> Result<Calibratio
 /// The calibration with the findings, each reading the sensor of its name.
 fn improved(mut known: Calibration, findings: &[Finding]) -> Calibration {
     for finding in findings {
-        let sensor = finding.sensor.as_ref().map(|name| known.sensor(name));
-        let (motion, mut term) = (finding.motion_number, finding.calibrated.clone());
-        if let Some(sensor) = sensor {
-            term = term.with_sensor(sensor);
-        }
+        let (motion, term) = (finding.motion_number, finding.calibrated_in(&mut known));
         known = if finding.location.inside_loop {
             known.with_inside_loop(motion, term)
         } else {

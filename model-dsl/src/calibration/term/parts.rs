@@ -4,7 +4,8 @@
 use std::slice;
 
 use super::{CalibratedTerm, CurveNodes, CurveValues, SeriesInput};
-use crate::calibration::vocabulary::TermKind;
+use crate::calibration::factor::Factor;
+use crate::calibration::vocabulary::{State, TIMES, TermKind};
 
 /// What stands behind a key of a term, in mm, rad, s and degC.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -21,6 +22,8 @@ pub enum Part<'t> {
     Load(&'t str),
     /// The unit of numbers that stand bare.
     Unit,
+    /// The factors of a product.
+    Factors(&'t [Factor]),
 }
 
 /// What was read of a term each of whose keys says one thing.
@@ -84,6 +87,10 @@ impl PlainParts {
             TermKind::Compliance => {
                 CalibratedTerm::Compliance { coefficient: number("coefficient")?, load: self.load? }
             }
+            TermKind::Delay => CalibratedTerm::Delay { axis: axis?, time: number("time")? },
+            TermKind::Step => CalibratedTerm::Step { time: number("time")?, size: number("size")? },
+            // The factors come to it as to any other term.
+            TermKind::Product => CalibratedTerm::Constant { value: number("value")? },
             TermKind::Polynomial | TermKind::Table | TermKind::Coupling => return None,
         })
     }
@@ -107,12 +114,19 @@ impl CalibratedTerm {
             Self::Vibration { .. } => TermKind::Vibration,
             Self::Coupling { .. } => TermKind::Coupling,
             Self::Compliance { .. } => TermKind::Compliance,
+            Self::Delay { .. } => TermKind::Delay,
+            Self::Step { .. } => TermKind::Step,
+            Self::Times { core, .. } => match core.kind() {
+                TermKind::Constant => TermKind::Product,
+                other => other,
+            },
         }
     }
 
-    /// What stands behind each key of the vocabulary that this term has, settings beside it apart.
+    /// What stands behind each key of the vocabulary that this term has, settings beside it apart. The factors of a term are among
+    /// them only of a `product`, which is not without them.
     pub fn parts(&self) -> Vec<(&'static str, Part<'_>)> {
-        use Part::{Axis, Load, Number, Numbers, Sensor, Unit};
+        use Part::{Axis, Factors, Load, Number, Numbers, Sensor, Unit};
         match self {
             Self::Constant { value } => vec![("value", Number(*value))],
             Self::Polynomial { input: SeriesInput::Axis(axis), coefficients }
@@ -184,6 +198,15 @@ impl CalibratedTerm {
             Self::Compliance { load, coefficient } => {
                 vec![("load", Load(load)), ("coefficient", Number(*coefficient))]
             }
+            Self::Delay { axis, time } => vec![("axis", Axis(*axis)), ("time", Number(*time))],
+            Self::Step { time, size } => vec![("time", Number(*time)), ("size", Number(*size))],
+            Self::Times { core, factors } => {
+                let mut parts = core.parts();
+                if self.kind() == TermKind::Product {
+                    parts.push((TIMES, Factors(factors)));
+                }
+                parts
+            }
         }
     }
 
@@ -210,23 +233,36 @@ impl CalibratedTerm {
             Self::Expansion { coefficient, .. }
             | Self::Growth { coefficient, .. }
             | Self::Compliance { coefficient, .. } => vec![("coefficient", slice::from_mut(coefficient))],
-            Self::Lag { .. } | Self::Acceleration { .. } => Vec::new(),
+            Self::Step { size, .. } => vec![("size", slice::from_mut(size))],
+            Self::Lag { .. } | Self::Acceleration { .. } | Self::Delay { .. } => Vec::new(),
+            Self::Times { core, .. } => core.linear_mut(),
         }
     }
 
-    /// The term reading another sensor, where it reads one.
+    /// The term reading another sensor, where it reads one. Its factors stay.
     #[must_use]
     pub fn with_sensor(mut self, number: usize) -> Self {
         match &mut self {
             Self::Polynomial { input: SeriesInput::Sensor(sensor), .. }
             | Self::Expansion { sensor, .. }
             | Self::Growth { sensor, .. } => *sensor = number,
+            Self::Times { core, .. } => **core = core.as_ref().clone().with_sensor(number),
             _ => {}
         }
         self
     }
 
-    /// The term reading another axis, where it reads one. Its numbers stay, whether they are per mm or per rad of it.
+    /// The term with each of its factors changed.
+    #[must_use]
+    pub fn with_factors(mut self, change: impl FnMut(Factor) -> Factor) -> Self {
+        if let Self::Times { factors, .. } = &mut self {
+            *factors = std::mem::take(factors).into_iter().map(change).collect();
+        }
+        self
+    }
+
+    /// The term reading another axis, where it reads one. Its numbers stay, whether they are per mm or per rad of it, and so do
+    /// its factors.
     #[must_use]
     pub fn with_axis(mut self, number: usize) -> Self {
         match &mut self {
@@ -238,13 +274,16 @@ impl CalibratedTerm {
             | Self::Cyclic { axis, .. }
             | Self::Lag { axis, .. }
             | Self::Acceleration { axis, .. }
-            | Self::Expansion { axis, .. } => *axis = number,
+            | Self::Expansion { axis, .. }
+            | Self::Delay { axis, .. } => *axis = number,
+            Self::Times { core, .. } => **core = core.as_ref().clone().with_axis(number),
             Self::Constant { .. }
             | Self::Polynomial { .. }
             | Self::Growth { .. }
             | Self::Drift { .. }
             | Self::Vibration { .. }
-            | Self::Compliance { .. } => {}
+            | Self::Compliance { .. }
+            | Self::Step { .. } => {}
         }
         self
     }
@@ -254,7 +293,7 @@ impl CalibratedTerm {
         self.parts().into_iter().find(|(known, _)| *known == key).map(|(_, part)| part)
     }
 
-    /// The number of the axis that the term reads, if it reads one.
+    /// The number of the axis that the term reads, its factors apart, if it reads one.
     pub fn axis(&self) -> Option<usize> {
         self.parts().into_iter().find_map(|(_, part)| match part {
             Part::Axis(axis) => Some(axis),
@@ -262,11 +301,55 @@ impl CalibratedTerm {
         })
     }
 
-    /// The number of the sensor that the term reads, if it reads one.
+    /// The number of the sensor that the term reads, its factors apart, if it reads one.
     pub fn sensor(&self) -> Option<usize> {
         self.parts().into_iter().find_map(|(_, part)| match part {
             Part::Sensor(sensor) => Some(sensor),
             _ => None,
         })
+    }
+
+    /// What the term and its factors depend on, with the axis where it is the state of one.
+    pub fn states(&self) -> impl Iterator<Item = (State, Option<usize>)> {
+        let core = match self.core() {
+            Self::Polynomial { input: SeriesInput::Sensor(_), .. } => State::Temperature,
+            core => core.kind().entry().state,
+        };
+        let factors = self.factors().iter().map(|factor| (factor.kind().entry().state, factor.axis()));
+        std::iter::once((core, self.axis())).chain(factors)
+    }
+
+    /// The term with each reference of a temperature changed, its own and those of its factors.
+    #[must_use]
+    pub fn with_references(mut self, change: &impl Fn(f64) -> f64) -> Self {
+        match &mut self {
+            Self::Expansion { reference, .. } | Self::Growth { reference, .. } => {
+                *reference = change(*reference)
+            }
+            Self::Times { core, factors } => {
+                **core = core.as_ref().clone().with_references(change);
+                for factor in factors {
+                    if let Factor::Temperature { reference, .. } | Factor::Play { reference, .. } = factor {
+                        *reference = change(*reference);
+                    }
+                }
+            }
+            _ => {}
+        }
+        self
+    }
+
+    /// The numbers of all sensors that the term and its factors read.
+    pub fn sensors(&self) -> impl Iterator<Item = usize> {
+        self.sensor().into_iter().chain(self.factors().iter().filter_map(Factor::sensor))
+    }
+
+    /// The loads that the term and its factors read.
+    pub fn loads(&self) -> impl Iterator<Item = &str> {
+        let own = match self.core() {
+            Self::Compliance { load, .. } => Some(load.as_str()),
+            _ => None,
+        };
+        own.into_iter().chain(self.factors().iter().filter_map(Factor::load).map(String::as_str))
     }
 }

@@ -206,7 +206,7 @@ fn a_ramp_stands_beside_its_term() {
     assert_eq!(plain.terms(0), ramped.terms(0));
     assert_ne!(plain, ramped);
     let ramps = |calibration: &Calibration| -> Vec<f64> {
-        let terms = calibration.runtime(0).map(|term| match term.unwrap() {
+        let terms = calibration.runtime(0).map(|term| match term.unwrap()[0] {
             Term::Backlash { ramp, .. } => ramp,
             _ => -1.0,
         });

@@ -1,5 +1,6 @@
 //! The keys of terms. In: nothing. Out: what a key holds, of which kind its quantity is, and what follows where it is left out.
 
+use super::TIMES;
 use crate::quantity::Dimension;
 
 /// A key of a term.
@@ -38,6 +39,8 @@ pub enum Holds {
     Load,
     /// `true` or `false`.
     Flag,
+    /// A list of [factors](crate::calibration::factor).
+    Factors,
 }
 
 /// Whether a key must be there.
@@ -152,6 +155,11 @@ impl Kind {
         self.per.iter().fold(of(self.of), |found, base| found.per(of(*base)))
     }
 
+    /// Whether the error motion is in it, so that factors of the term are too.
+    pub(in crate::calibration) fn is_of_motion(self) -> bool {
+        self.of == Base::Motion || self.per.contains(&Base::Motion)
+    }
+
     /// The unit in which its values are kept, for an error motion and a position in these units: `1/s` or `mm/rad/s`.
     pub(in crate::calibration) fn unit(self, motion: &str, position: &str) -> String {
         let unit = |base: Base, alone: bool| match base {
@@ -195,6 +203,9 @@ pub(super) const PER: Key = Key::new("per", Holds::Unit(Base::Position));
 
 /// The unit of bare values.
 pub(super) const UNIT: Key = Key::new("unit", Holds::Unit(Base::Motion));
+
+/// Factors that must be there.
+pub(super) const FACTORS: Key = Key::new(TIMES, Holds::Factors);
 
 /// Bare numbers.
 pub(super) const NUMBERS: Key = Key::new("", Holds::Numbers);

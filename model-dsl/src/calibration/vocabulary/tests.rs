@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::*;
-use crate::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, Part, SeriesInput};
+use crate::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, Factor, Part, SeriesInput};
 use crate::quantity::{Dimension, parse_unit};
 
 /// A term of each kind, whatever its numbers; those with several forms in each of them.
@@ -33,6 +33,9 @@ fn terms() -> Vec<CalibratedTerm> {
         CalibratedTerm::Vibration { frequency: 1.0, amplitude: 2.0, phase: 3.0 },
         CalibratedTerm::Coupling { axis, coefficients: vec![1.0] },
         CalibratedTerm::Compliance { load: "f".to_owned(), coefficient: 1.0 },
+        CalibratedTerm::Delay { axis, time: 1.0 },
+        CalibratedTerm::Step { time: 1.0, size: 2.0 },
+        CalibratedTerm::Constant { value: 1.0 }.times(vec![Factor::Direction { axis }]),
     ];
     others.into_iter().chain(polynomials).chain(tables).collect()
 }
@@ -63,6 +66,7 @@ fn the_parts_of_a_term_are_its_keys() {
                 Part::Sensor(_) => key.holds == Holds::Sensor,
                 Part::Load(_) => key.holds == Holds::Load,
                 Part::Unit => matches!(key.holds, Holds::Unit(_)),
+                Part::Factors(_) => key.holds == Holds::Factors,
             };
             assert!(fits, "{name} of {}: {part:?}", kind.name());
             seen.insert(name);

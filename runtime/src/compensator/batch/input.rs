@@ -17,7 +17,7 @@ pub struct Batch<'a> {
     pub travel: &'a [&'a [f64]],
     /// For each axis the directions of its last real motion.
     pub direction: &'a [&'a [Direction]],
-    /// For each axis its velocities in mm/s or rad/s; may be empty where no term is a [`Lag`](crate::Term::Lag).
+    /// For each axis its velocities in mm/s or rad/s; may be empty where no term reads one.
     pub velocity: &'a [&'a [f64]],
     /// For each sensor its temperatures in degC; may be empty where no term reads a sensor.
     pub temperature: &'a [&'a [f64]],

@@ -70,7 +70,7 @@ fn finding(recorded: &Recorded, motion: &str, calibrated: CalibratedTerm, sensor
         repeats_with: Vec::new(),
         compensable: calibrated.compensable(),
         calibrated,
-        sensor: sensor.map(str::to_owned),
+        sensors: sensor.map(|name| (0, name.to_owned())).into_iter().collect(),
     }
 }
 

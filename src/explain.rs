@@ -1,4 +1,4 @@
-//! What a code of a diagnostic and a term of the vocabulary mean. In: a name. Out: a page for a person, or the names that
+//! What a code of a diagnostic, a term of the vocabulary and a factor mean. In: a name. Out: a page for a person, or the names that
 //! are near to it.
 //!
 //! The texts stand in files beside this one, in the form that [`entry`] reads: one source for the command and for the tables
@@ -7,6 +7,7 @@
 mod entry;
 mod page;
 
+use model_dsl::calibration::factor::vocabulary::{FACTOR_NAMES, FactorEntry, FactorKind};
 use model_dsl::suggest::nearest;
 
 use entry::Entry;
@@ -28,6 +29,9 @@ const CODES: [&str; 10] = [
 /// The terms of calibration files, then the settings of instruments.
 const TERMS: &str = include_str!("explain/terms.txt");
 
+/// Examples of the factors of terms, in the order of the vocabulary.
+const FACTORS: &str = include_str!("explain/factors.txt");
+
 /// How many near names are told.
 const NEAR: usize = 3;
 
@@ -39,12 +43,17 @@ fn terms() -> Vec<Entry<'static>> {
     entry::read(TERMS)
 }
 
-/// All codes and terms, a line each.
-pub(crate) fn overview() -> String {
-    page::overview(&codes(), &terms())
+/// The factors of the vocabulary, each with its example.
+fn factors() -> Vec<(&'static FactorEntry, Entry<'static>)> {
+    FactorKind::all().map(FactorKind::entry).zip(entry::read(FACTORS)).collect()
 }
 
-/// The page of a code or a term; letter case and `_` for `-` do not matter.
+/// All codes and terms, a line each.
+pub(crate) fn overview() -> String {
+    page::overview(&codes(), &terms(), &factors())
+}
+
+/// The page of a code, a term or a factor; a name that is both a term and a factor gives both. Letter case and `_` for `-` do not matter.
 ///
 /// # Errors
 ///
@@ -55,15 +64,19 @@ pub(crate) fn page(name: &str) -> Result<String, Vec<&'static str>> {
     if let Some(code) = codes().iter().find(|entry| is(entry)) {
         return Ok(page::code(code));
     }
-    if let Some(term) = terms().iter().find(|entry| is(entry)) {
-        return Ok(page::term(term));
-    }
-    Err(near(&name))
+    let term = terms().iter().find(|entry| is(entry)).map(page::term);
+    let factors = factors();
+    let factor = factors.iter().find(|(_, entry)| is(entry)).map(|(known, entry)| page::factor(known, entry));
+    let pages: Vec<String> = term.into_iter().chain(factor).collect();
+    if pages.is_empty() { Err(near(&name)) } else { Ok(pages.join("\n")) }
 }
 
 /// The names nearest to one that is none, the nearest first.
 fn near(name: &str) -> Vec<&'static str> {
     let mut names: Vec<&'static str> = terms().iter().chain(&codes()).map(|entry| entry.name).collect();
+    names.extend(FACTOR_NAMES);
+    names.sort_unstable();
+    names.dedup();
     let mut found = Vec::new();
     while found.len() < NEAR
         && let Some(one) = nearest(name, names.iter().copied())

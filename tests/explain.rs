@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use model_dsl::calibration::factor::vocabulary::FACTORS;
 use model_dsl::calibration::TERM_NAMES;
 
 use crate::cli::abbe;
@@ -345,6 +346,29 @@ fn the_forms_of_the_terms_are_read_and_compensation_is_as_the_pages_say() {
             assert_eq!(refused, !plain.contains("can compensate it in real time"), "{name}");
             assert_eq!(run.err.matches("error[").count(), usize::from(refused), "{name}: {}", run.err);
         }
+    }
+}
+
+#[test]
+fn every_factor_has_a_page_whose_form_is_read() {
+    let folder = bench("factors");
+    let overview = abbe(&["explain"], "").out;
+    for entry in &FACTORS {
+        let name = entry.name;
+        assert!(overview.contains(&format!("\n{name} ")), "{name}: {overview}");
+        let text = page(name);
+        let text = text.split(&format!("{name}: a factor of a term\n")).nth(1).unwrap();
+        let plain = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(plain.contains(entry.physics) && plain.contains(entry.value), "{text}");
+        assert!(text.lines().all(|line| line.len() <= 100 || line.starts_with("    ")), "{text}");
+        let form = block(text.split("In a calibration file, under `errors`").nth(1).unwrap());
+        assert!(form.contains(&format!("{{{name}: ")), "{form}");
+        let path = folder.join("factor.yaml");
+        fs::write(&path, complete("calibration", &format!("errors:\n  {form}"))).unwrap();
+        let run = abbe(&["compensate", path.to_str().unwrap()], "t,x,y,z\n");
+        let refused = run.err.contains("error[E0425]");
+        assert_eq!(refused, entry.not_compensable.is_some(), "{name}: {}", run.err);
+        assert_eq!(run.err.matches("error[").count(), usize::from(refused), "{name}: {}", run.err);
     }
 }
 

@@ -382,7 +382,8 @@ fn closed(value: &Value, pointer: String, found: &mut BTreeSet<String>) {
         Value::Object(entries) => {
             let closed_mapping = entries.get("additionalProperties") == Some(&Value::Bool(false));
             if closed_mapping && entries.get("properties").is_some_and(Value::is_object) {
-                let channels = pointer == "/properties/channels";
+                // Which keys a factor may have depends on its name: its own table is compared beside that of the terms.
+                let channels = pointer == "/properties/channels" || pointer == "/definitions/factor";
                 if !channels {
                     found.insert(pointer.clone());
                 }

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-use model_dsl::calibration::factor::vocabulary::{FACTORS, FactorHolds, FactorKey, Limit, Measure};
+use model_dsl::calibration::factor::vocabulary::{FACTORS, FactorHolds, FactorKey, Measure};
 use model_dsl::calibration::vocabulary::{
     Base, Entry, Form, Given, Holds, Key, Kind, Role, TIMES, VOCABULARY,
 };
@@ -21,7 +21,7 @@ const TABLE: &str = "model-dsl/src/calibration/vocabulary.rs";
 const TYPE: [&str; 2] = ["model-dsl/src/calibration/term.rs", "model-dsl/src/calibration/term/parts.rs"];
 
 /// Where words that are terms elsewhere mean something else.
-const OTHER_SENSES: [(&str, &str); 6] = [
+const OTHER_SENSES: [(&str, &str); 11] = [
     // What a calibration of an instrument writes of its table.
     ("exchange/src/instrument/report/json.rs", "table"),
     // A form of results in set-up files, beside `tables`.
@@ -32,6 +32,14 @@ const OTHER_SENSES: [(&str, &str); 6] = [
     ("diagnosis/src/words.rs", "acceleration"),
     ("diagnosis/src/returns/state.rs", "acceleration"),
     ("diagnosis/src/report/physics.rs", "constant"),
+    // A factor.
+    ("model-dsl/src/calibration/factor/vocabulary.rs", "acceleration"),
+    // The distance of the nodes of a table.
+    ("model-dsl/src/calibration/curve.rs", "step"),
+    ("model-dsl/src/calibration/term/parts.rs", "step"),
+    ("diagnosis/src/report/parameter.rs", "step"),
+    // A word of Maxima.
+    ("model-dsl/src/notation/maxima.rs", "step"),
 ];
 
 /// The path of a file from the root, and its text without tests and comments; nothing for tests and examples.
@@ -88,7 +96,8 @@ fn a_term_is_its_entry_and_its_formulas() {
         let speaks = |text: &str| {
             let ends = |rest: &str| !rest.starts_with(|next: char| next.is_alphanumeric() || next == '_');
             // What a term depends on has a name of its own, at times the same.
-            text.replace("State::", "").split(&variant).skip(1).any(ends)
+            // So has a factor.
+            text.replace("State::", "").replace("Factor::", "").replace("FactorKind::", "").split(&variant).skip(1).any(ends)
         };
         let files = sources.iter().filter(|(_, text)| speaks(text)).map(|(name, _)| name.as_str());
         let (known, other): (BTreeSet<&str>, BTreeSet<&str>) =
@@ -206,7 +215,82 @@ fn the_reference_has_the_terms_and_the_keys_of_the_table() {
     let compensated = rows.iter().map(|row| quoted(&row[0])[0]);
     let is_compensated = |name: &str| VOCABULARY.iter().any(|one| one.name == name && one.kind.compensable());
     let order: Vec<bool> = compensated.map(is_compensated).collect();
-    assert!(order[..9].iter().all(|yes| *yes) && order[9..].iter().all(|yes| !yes), "{order:?}");
+    assert!(order[..11].iter().all(|yes| *yes) && order[11..].iter().all(|yes| !yes), "{order:?}");
+}
+
+/// The kind of what stands behind a key of a factor, in the words of the reference.
+fn factor_words(key: &FactorKey) -> &'static str {
+    match key.holds {
+        FactorHolds::Axis => "the letter of an axis",
+        FactorHolds::Sensor => "the name of a sensor",
+        FactorHolds::Load => "the name of a load",
+        FactorHolds::Power => "1, 2 or 3",
+        FactorHolds::Range(_) => "two of the state's own kind, the lower first",
+        FactorHolds::Nodes(_) => "a list of positions in rising order",
+        FactorHolds::Ratios => "a list of bare numbers, one for each node",
+        FactorHolds::Amount(measure, _) => match measure {
+            Measure::Position => "position",
+            Measure::Speed => "position over time",
+            Measure::Acceleration => "position over time squared",
+            Measure::Temperature => "temperature",
+            Measure::Step => "difference of temperatures",
+            Measure::Rise => "temperature over speed",
+            Measure::Time => "time",
+            Measure::Angle => "angle",
+            Measure::Load => "load",
+            Measure::Rate => "frequency over load",
+        },
+    }
+}
+
+#[test]
+fn the_reference_has_the_factors_of_the_table() {
+    let reference = reference().replace("\\|", "|");
+    let rows = table(&reference, "| factor | keys | value | what depends on it |");
+    assert_eq!(rows.len(), FACTORS.len());
+    for (entry, row) in FACTORS.iter().zip(&rows) {
+        assert_eq!(quoted(&row[0]), [entry.name]);
+        assert_eq!(quoted(&row[1]), entry.key_names(), "{}", entry.name);
+        assert_eq!([&row[2], &row[3]], [entry.value, entry.physics], "{}", entry.name);
+        assert_eq!(entry.keys[0].name, entry.name, "a factor is named by its first key");
+    }
+    let rows = table(&reference, "| factor | why no controller knows it |");
+    let told: Vec<(&str, &str)> = rows.iter().map(|row| (quoted(&row[0])[0], row[1].as_str())).collect();
+    let reasons = FACTORS.iter().filter_map(|entry| Some((entry.name, entry.not_compensable?)));
+    assert_eq!(told, reasons.collect::<Vec<_>>());
+}
+
+#[test]
+fn the_reference_has_the_keys_of_factors() {
+    let rows = table(&reference(), "| key of a factor | kind | left out |");
+    let mut used = BTreeSet::new();
+    for entry in &FACTORS {
+        for key in entry.keys {
+            let speaks = |row: &&Vec<String>| match row[0].split_once(" of ") {
+                Some((name, factor)) => quoted(name) == [key.name] && quoted(factor) == [entry.name],
+                None => quoted(&row[0]).contains(&key.name),
+            };
+            let row = rows.iter().find(speaks).unwrap_or_else(|| panic!("{} of {}", key.name, entry.name));
+            assert_eq!(row[1], factor_words(key), "{} of {}", key.name, entry.name);
+            assert_eq!(row[2].trim(), key.or.unwrap_or_default(), "{} of {}", key.name, entry.name);
+            used.insert(&row[0]);
+        }
+    }
+    assert_eq!(used.len(), rows.len(), "each row speaks of a key");
+}
+
+#[test]
+fn the_schemas_have_the_factors_and_their_keys() {
+    for form in ["calibration", "set-up"] {
+        let text = fs::read_to_string(root().join(format!("schemas/{form}.schema.json"))).unwrap();
+        let schema: Value = serde_json::from_str(&text).unwrap();
+        let factor = &schema["definitions"]["factor"];
+        let one_of = factor["oneOf"].as_array().unwrap().iter().map(|one| one["required"][0].as_str().unwrap());
+        assert_eq!(one_of.collect::<Vec<_>>(), FACTORS.map(|entry| entry.name), "{form}");
+        let listed: BTreeSet<&str> = factor["properties"].as_object().unwrap().keys().map(String::as_str).collect();
+        let keys = FACTORS.iter().flat_map(|entry| entry.keys).map(|key| key.name);
+        assert_eq!(listed, keys.collect(), "{form}");
+    }
 }
 
 #[test]

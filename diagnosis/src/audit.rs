@@ -15,7 +15,7 @@
 mod catalogue;
 mod changed;
 mod columns;
-mod contest;
+mod suspected;
 mod fault;
 pub(crate) mod gross;
 mod verdict;
@@ -26,8 +26,9 @@ use crate::engine::Found;
 use crate::study::Study;
 
 pub(crate) use changed::Changed;
+pub(crate) use columns::spread;
 use columns::Versions;
-use contest::Contest;
+use suspected::FaultContest;
 use fault::Fault;
 pub(crate) use verdict::{Rest, Trial, Verdict, judged};
 pub(crate) use words::change;
@@ -67,7 +68,7 @@ pub(crate) fn suspects(study: &Study<'_>, found: &Found, inputs: &Inputs<'_>) ->
         return Vec::new();
     }
     let versions = Versions::new(study, &found.fit.model, inputs, faults);
-    let mut suspects = Contest::new(study, found, &versions).suspects();
+    let mut suspects = FaultContest::new(study, found, &versions).suspects();
     suspects.retain(|suspect| suspect.named || !catalogue::is_a_finding(inputs, &suspect.fault));
     let mut left = TRIALS;
     let tried = |suspect: &Suspect| {

@@ -196,7 +196,7 @@ fn warmth(study: &Study<'_>, sensor: usize) -> (f64, f64) {
 }
 
 /// The sensors of which there are samples in every recording.
-fn recorded(study: &Study<'_>) -> Vec<usize> {
+pub(crate) fn recorded(study: &Study<'_>) -> Vec<usize> {
     let known = |sensor: &usize| {
         study
             .scenes

@@ -14,6 +14,7 @@ mod units;
 use crate::appraisal::Appraisal;
 use crate::audit;
 use crate::candidates;
+use crate::compose;
 use crate::crossing;
 use crate::diagnosis::{Change, Diagnosis, Mended, NoiseSummary, Residual, SettingFinding, Verdict};
 use crate::engine::{self, Found};
@@ -102,6 +103,7 @@ fn concluded(
     (diagnosis.before, diagnosis.undecided) = (opening.before, opening.undecided);
     (diagnosis.returns, diagnosis.nothing_returns) = (opening.returns, opening.nothing_returns);
     stand_or_fall(&mut study, &units, &mut found, before.holdout_rms);
+    compose::compose(&mut study, &mut found);
     let mut feature = explain_locally(&mut study, &mut found);
     progress(Progress { step: "comparing with other names", done: 0.95 });
     let mut numbers = claims(&study, &mut found, &units, &mut diagnosis);

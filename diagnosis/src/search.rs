@@ -30,7 +30,7 @@ pub(crate) fn price(study: &Study<'_>, effect: &Effect, samples: f64, tries: f64
     // The period of a wave is no further parameter: it was looked for among all waves of all motions, which their number counts.
     let wave = effect.shape.is_wave();
     let searched = effect.shape.nonlinear().is_some() && !wave;
-    let parameters = effect.shape.columns() + usize::from(searched);
+    let parameters = effect.shape.columns() + usize::from(searched) + effect.shape.searched_factors();
     let tried = if wave { waves.max(1.0).ln() } else { tries.ln() };
     (crate::number(parameters) - FIRST_SAVES) * parameter_price(samples)
         + 2.0 * tried

@@ -143,6 +143,21 @@ impl Shape {
         }
     }
 
+    /// How many numbers of its factors were searched for, and for an event its time.
+    pub(crate) fn searched_factors(&self) -> usize {
+        if let Self::Step { .. } = self {
+            return 1;
+        }
+        let searched = |factor: &Factor<usize>| match factor {
+            Factor::Fading { .. } | Factor::Warmth { .. } | Factor::Play { .. } | Factor::Half { .. } => 1,
+            Factor::Temperature { time_constant, .. } => usize::from(*time_constant > 0.0),
+            // Where it lies, and how wide it is.
+            Factor::Curve { .. } => 2,
+            _ => 0,
+        };
+        self.factors().iter().map(searched).sum()
+    }
+
     /// Its factors; none of most shapes.
     pub(crate) fn factors(&self) -> &[Factor<usize>] {
         match self {

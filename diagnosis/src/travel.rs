@@ -20,6 +20,9 @@ pub(crate) struct Travel {
     pub(crate) moves: bool,
     /// The mean time from reversal to reversal, s; 0 where there is none.
     pub(crate) between: f64,
+    /// The highest speed and the highest acceleration, without their signs.
+    pub(crate) fastest: f64,
+    pub(crate) hardest: f64,
 }
 
 impl Travel {
@@ -40,6 +43,11 @@ pub(crate) fn travels(study: &Study<'_>, courses: &[Arc<Course>]) -> Vec<Travel>
     (0..study.equations.axes.len()).map(|axis| travel(courses, axis, observed)).collect()
 }
 
+/// The greatest size of what is known.
+fn highest<'v>(values: impl Iterator<Item = &'v f64>) -> f64 {
+    values.filter(|value| value.is_finite()).fold(0.0, |highest, value| f64::max(highest, value.abs()))
+}
+
 fn travel(courses: &[Arc<Course>], axis: usize, observed: f64) -> Travel {
     let axes = || courses.iter().map(|course| &course.shown.axes[axis]);
     let positions =
@@ -54,5 +62,8 @@ fn travel(courses: &[Arc<Course>], axis: usize, observed: f64) -> Travel {
     let turned = |axis: &AxisStates| axis.since_reversal.iter().filter(|since| **since == 0.0).count();
     let reversals = crate::number(axes().map(turned).sum());
     let between = if reversals > 0.0 { observed / reversals } else { 0.0 };
-    Travel { low, high, step, moves: axes().any(|axis| axis.moves) && high > low, between }
+    let moves = axes().any(|axis| axis.moves) && high > low;
+    let fastest = highest(axes().flat_map(|axis| axis.velocity.iter()));
+    let hardest = highest(axes().flat_map(|axis| axis.acceleration.iter()));
+    Travel { low, high, step, moves, between, fastest, hardest }
 }

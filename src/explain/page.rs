@@ -4,15 +4,25 @@ use std::fmt::Write;
 
 use textwrap::{Options, fill};
 
+use model_dsl::calibration::factor::vocabulary::{FactorEntry, FactorHolds, Measure};
+
 use super::entry::Entry;
 
 const WIDTH: usize = 100;
 
 /// Everything there is to explain, a line each.
-pub(super) fn overview(codes: &[Entry<'_>], terms: &[Entry<'_>]) -> String {
+pub(super) fn overview(
+    codes: &[Entry<'_>],
+    terms: &[Entry<'_>],
+    factors: &[(&FactorEntry, Entry<'_>)],
+) -> String {
     let mut text = String::from("Terms\n-----\n\n");
     for term in terms {
         line(&mut text, term.name, 16, term.part("value").unwrap_or_default());
+    }
+    text.push_str("\nFactors of terms, under `times`\n-------------------------------\n\n");
+    for (factor, _) in factors {
+        line(&mut text, factor.name, 16, factor.value);
     }
     text.push_str("\nDiagnostics\n-----------\n\n");
     for code in codes {
@@ -97,6 +107,53 @@ pub(super) fn term(entry: &Entry<'_>) -> String {
     section(&mut text, form);
     block(&mut text, &entry.example('-'));
     text
+}
+
+/// The page of a factor.
+pub(super) fn factor(known: &FactorEntry, entry: &Entry<'_>) -> String {
+    let mut text = format!("{}: a factor of a term\n\n", known.name);
+    put(&mut text, &fill(&format!("A term is multiplied with it under `times`. Machines have it: {}.", known.physics), WIDTH));
+    section(&mut text, "Its value");
+    put(&mut text, &fill(known.value, WIDTH));
+    section(&mut text, "Its keys");
+    for key in known.keys {
+        let absent = key.or.map_or_else(String::new, |absent| format!("; left out: {absent}"));
+        line(&mut text, key.name, 16, &format!("{}{absent}", holds(key.holds)));
+    }
+    section(&mut text, "In real time");
+    let compensated = known.not_compensable.map_or_else(
+        || "A controller knows it in time: it can compensate a term with this factor.".to_owned(),
+        |reason| format!("No controller compensates a term with this factor: {reason}."),
+    );
+    put(&mut text, &fill(&compensated, WIDTH));
+    section(&mut text, "In a calibration file, under `errors`");
+    block(&mut text, &entry.example('-'));
+    text
+}
+
+/// What stands behind a key of a factor, in words.
+fn holds(holds: FactorHolds) -> &'static str {
+    match holds {
+        FactorHolds::Axis => "the letter of an axis",
+        FactorHolds::Sensor => "the name of a sensor",
+        FactorHolds::Load => "the name of a load",
+        FactorHolds::Power => "1, 2 or 3",
+        FactorHolds::Range(_) => "two values of the state, the lower first: outside, the factor holds its value there",
+        FactorHolds::Nodes(_) => "positions in rising order",
+        FactorHolds::Ratios => "bare numbers, one for each node",
+        FactorHolds::Amount(measure, _) => match measure {
+            Measure::Position => "a position",
+            Measure::Speed => "a speed, `mm/s`",
+            Measure::Acceleration => "an acceleration, `mm/s^2`",
+            Measure::Temperature => "a temperature, `degC`",
+            Measure::Step => "a difference of temperatures, `K`",
+            Measure::Rise => "a difference of temperatures for each unit of speed, `mK.s/mm`",
+            Measure::Time => "a time, `s`",
+            Measure::Angle => "an angle, `deg`",
+            Measure::Load => "a load, `N`",
+            Measure::Rate => "turns in a second for each unit of the load, `Hz/%`",
+        },
+    }
 }
 
 fn section(text: &mut String, title: &str) {

@@ -89,7 +89,7 @@ fn is_lost(one: &Suspected, all: &[Suspected]) -> bool {
 const LOST: f64 = 1e-6;
 
 /// Rows in equal steps, not more than are looked at.
-fn spread(rows: usize) -> Vec<usize> {
+pub(crate) fn spread(rows: usize) -> Vec<usize> {
     (0..rows).step_by(rows.div_ceil(ROWS).max(1)).collect()
 }
 

@@ -4,7 +4,8 @@
 
 use super::Suspect;
 use super::columns::Versions;
-use super::contest::{Contest, DECISIVE, NEAR, TURNED, price_of_a_run};
+use super::suspected::{FaultContest, NEAR, TURNED};
+use crate::contest::{DECISIVE, price_of_a_run};
 use crate::Inputs;
 use crate::certainty::WIDTH_95;
 use crate::engine::Found;
@@ -105,5 +106,5 @@ fn cost(trial: &Trial<'_, '_>, noises: &[Vec<Noise>]) -> f64 {
 fn rest(suspect: &Suspect, before: &Trial<'_, '_>, after: &Trial<'_, '_>) -> Option<Rest> {
     let fault = suspect.fault.turned_back(before.inputs.chains.map(|chains| chains.word));
     let versions = Versions::new(after.study, &after.found.fit.model, after.inputs, vec![fault]);
-    Contest::new(after.study, after.found, &versions).rest()
+    FaultContest::new(after.study, after.found, &versions).rest()
 }

@@ -11,7 +11,7 @@ use crate::testing::{Bench, line, noisy, path, position, programmed};
 use simulation::path::{Shape as PathShape, Stations, Stroke};
 
 fn travel(low: f64, high: f64) -> Travel {
-    Travel { low, high, step: 1.0, moves: true, between: 1.0 }
+    Travel { low, high, step: 1.0, moves: true, between: 1.0, ..Travel::default() }
 }
 
 #[test]

@@ -76,7 +76,7 @@ fn a_fit_that_begins_within_half_a_turn_comes_to_the_vibration() {
 #[test]
 fn a_wave_slips_by_less_than_half_a_cycle_in_one_step() {
     for (low, high, period) in [(0.0, 300.0, 8.0), (-400.0, 400.0, 2.0), (0.0, 50.0, 40.0)] {
-        let travel = Travel { low, high, step: 0.1, moves: true, between: high - low };
+        let travel = Travel { low, high, step: 0.1, moves: true, between: high - low, ..Travel::default() };
         let most = furthest(&Shape::Cyclic { axis: 0, period, center: 0.0 }, &[travel]);
         let cycles = |period: f64| (high - low) / period;
         for slipped in [cycles(period - most) - cycles(period), cycles(period) - cycles(period + most)] {

@@ -286,7 +286,7 @@ fn what_is_written_into_the_calibration_is_what_was_fitted() {
         let covariance = covariance(&numbers(&fitted), 0.01);
         let term = Described::new(&study, &fitted, &Certainty::linear(covariance.clone())).calibrated();
         assert_eq!(term.name(), fitted.effect.shape.name());
-        let (shape, coefficients) = known(&term, |name| (name == "force").then_some(0)).unwrap();
+        let (shape, coefficients) = known(&term, &|name: &str| (name == "force").then_some(0)).unwrap();
         let (before, after) =
             (value(&fitted.effect.shape, &fitted.coefficients), value(&shape, &coefficients));
         assert!(crate::testing::distance(&before, &after) < 1e-12 * peak(&before).max(1e-3), "{term:?}");

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use abbe_runtime::{Direction, ErrorMotion, Sample, TermState};
-use model_dsl::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, SeriesInput};
+use model_dsl::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, Factor, SeriesInput, Within};
 
 use super::*;
 use crate::states::Driven;
@@ -24,7 +24,7 @@ fn states() -> States {
 }
 
 fn value(term: &CalibratedTerm, states: &States) -> Vec<f64> {
-    let (shape, coefficients) = known(term, |name| (name == "force").then_some(0)).unwrap();
+    let (shape, coefficients) = known(term, &|name: &str| (name == "force").then_some(0)).unwrap();
     assert_eq!(shape.name(), term.name());
     assert_eq!(shape.columns(), coefficients.len());
     let rows = states.rows(0..states.given.time.len());
@@ -82,6 +82,9 @@ fn terms_are_those_of_the_runtime() {
     let at = || CurveNodes::At(vec![-20.0, -3.0, 30.0, 41.0]);
     let directed =
         || CurveValues::Directed { forward: vec![0.1, 0.3, -0.2, 0.05], reverse: vec![0.0, -0.1, 0.2, 0.6] };
+    let play = CalibratedTerm::Backlash { axis: 0, lost_motion: 0.02, wind_up: 0.0 };
+    let one = CalibratedTerm::Constant { value: 0.1 };
+    let (narrow, warm) = (Within { from: -20.0, to: 10.0 }, Within { from: 21.5, to: 23.0 });
     let terms = [
         CalibratedTerm::Constant { value: 0.3 },
         CalibratedTerm::Polynomial {
@@ -102,6 +105,22 @@ fn terms_are_those_of_the_runtime() {
         CalibratedTerm::Expansion { axis: 1, sensor: 0, coefficient: 1.1e-5, reference: 20.0 },
         CalibratedTerm::Growth { sensor: 0, coefficient: 0.01, reference: 20.0, time_constant: 0.0 },
         CalibratedTerm::Coupling { axis: 1, coefficients: vec![2e-4, -3e-6] },
+        play.clone().times(vec![Factor::Position { axis: 1, power: 2, within: narrow }]),
+        play.times(vec![Factor::Temperature {
+            sensor: 0,
+            reference: 20.0,
+            time_constant: 0.0,
+            within: warm,
+        }]),
+        one.clone()
+            .times(vec![Factor::Direction { axis: 1 }, Factor::Turn { axis: 0, period: 30.0, phase: 1.0 }]),
+        one.clone().times(vec![Factor::Play { sensor: 0, reference: 20.0, width: 0.7 }]),
+        one.times(vec![Factor::Curve { axis: 1, at: vec![-20.0, 5.0, 12.0], values: vec![1.0, -0.4, 0.3] }]),
+        table(at(), directed()).times(vec![Factor::Position {
+            axis: 1,
+            power: 1,
+            within: Within::EVERYWHERE,
+        }]),
     ];
     let states = states();
     for term in &terms {
@@ -196,7 +215,7 @@ fn terms_that_no_controller_has_are_their_formulas() {
         })
     });
     let missing = CalibratedTerm::Compliance { load: "current".to_owned(), coefficient: 1.0 };
-    assert!(known(&missing, |name| (name == "force").then_some(0)).is_none());
+    assert!(known(&missing, &|name: &str| (name == "force").then_some(0)).is_none());
 }
 
 #[test]
@@ -204,7 +223,7 @@ fn a_lag_is_a_time_constant_and_acts_through_the_states() {
     let states = states();
     let term = CalibratedTerm::Lag { axis: 0, gain: 40.0, frequency: 0.0 };
     assert!(value(&term, &states).iter().all(|value| *value == 0.0));
-    let (shape, coefficients) = known(&term, |_| None).unwrap();
+    let (shape, coefficients) = known(&term, &|_| None).unwrap();
     assert_eq!(coefficients, [1.0 / 40.0]);
     let mut columns = [Vec::new()];
     let rows = states.rows(0..ROWS);
@@ -315,4 +334,104 @@ fn the_nonlinear_parameter_is_read_and_set() {
         "a loop of first order has no inertia"
     );
     assert!(Shape::Constant.nonlinear().is_none() && Shape::Constant.with_nonlinear(3.0) == Shape::Constant);
+}
+
+/// Factors that the runtime lacks, or has for velocities that a controller knows better, against their formulas.
+#[test]
+fn other_factors_are_their_formulas() {
+    let states = states();
+    let within = Within::EVERYWHERE;
+    let [x, load] = [&states.axes[0], &states.axes[1]].map(|axis| axis.velocity.clone());
+    assert!(peak(&x) > 40.0 && peak(&load) > 40.0, "the axes move");
+    let force = states.given.loads[0].clone();
+    let time = states.given.time.clone();
+    let one = || CalibratedTerm::Constant { value: 2.0 };
+    let name = || "force".to_owned();
+    let check = |factor: Factor, of: &dyn Fn(usize) -> f64| {
+        let found = value(&one().times(vec![factor.clone()]), &states);
+        let expected: Vec<f64> = (0..found.len()).map(|row| 2.0 * of(row)).collect();
+        assert!(distance(&found, &expected) <= 1e-12 * peak(&expected).max(1.0), "{factor:?}");
+    };
+    check(Factor::Velocity { axis: 0, within }, &|row| x[row]);
+    check(Factor::Speed { axis: 0, within: Within { from: 5.0, to: 30.0 } }, &|row| {
+        x[row].abs().clamp(5.0, 30.0)
+    });
+    check(Factor::Fading { axis: 0, over: 20.0 }, &|row| (-x[row].abs() / 20.0).exp());
+    check(Factor::Acceleration { axis: 0, within }, &|row| states.axes[0].acceleration[row]);
+    check(Factor::Load { load: name(), within }, &|row| force[row]);
+    check(Factor::Half { load: name(), at: 40.0 }, &|row| 1.0 / (1.0 + force[row].abs() / 40.0));
+    check(Factor::After { time: time[100] }, &|row| f64::from(u8::from(row >= 100)));
+    let steady = CalibratedTerm::Lag { axis: 0, gain: 20.0, frequency: 0.0 };
+    let slow = steady.times(vec![Factor::Direction { axis: 0 }]);
+    let expected: Vec<f64> = (0..x.len()).map(|row| -x[row] / 20.0 * states.axes[0].direction[row]).collect();
+    let shape = known(&slow, &|_| None).unwrap();
+    assert_eq!(shape.0.core(), &Shape::Constant, "a lag with factors is its steady state");
+    let mut sum = vec![0.0; x.len()];
+    shape.0.add(&shape.1, Side::After, &states.rows(0..x.len()), &mut Memory::default(), &mut sum);
+    assert!(distance(&sum, &expected) <= 1e-12 * peak(&expected));
+}
+
+/// What remembers time, in steps of different length: a filter and a warmth against their differential equations, in fine steps.
+#[test]
+fn factors_that_remember_follow_their_equations() {
+    let states = states();
+    let (time, velocity) = (states.given.time.clone(), states.axes[0].velocity.clone());
+    let warm = states.given.temperatures[0].clone();
+    let force = states.given.loads[0].clone();
+    let one = CalibratedTerm::Constant { value: 1.0 };
+    // In so many steps from row to row, the input going straight from one to the next.
+    let fine = 2000_u32;
+    let solved = |input: &dyn Fn(usize) -> f64, start: f64, tau: f64| -> Vec<f64> {
+        let mut now = start;
+        let mut all = vec![now];
+        for row in 1..time.len() {
+            let step = (time[row] - time[row - 1]) / f64::from(fine);
+            for part in 0..fine {
+                let share = (f64::from(part) + 0.5) / f64::from(fine);
+                let driven = input(row - 1) * (1.0 - share) + input(row) * share;
+                now += step / tau * (driven - now);
+            }
+            all.push(now);
+        }
+        all
+    };
+    let near = |term: CalibratedTerm, expected: &[f64]| {
+        let found = value(&term, &states);
+        assert!(distance(&found, expected) < 1e-3 * peak(expected), "{term:?}");
+    };
+    let warmth = Factor::Warmth { axis: 0, time_constant: 3.0, rise: 0.02 };
+    near(one.clone().times(vec![warmth]), &solved(&|row| 0.02 * velocity[row].abs(), 0.0, 3.0));
+    let filtered =
+        Factor::Temperature { sensor: 0, reference: 0.0, time_constant: 2.0, within: Within::EVERYWHERE };
+    near(one.clone().times(vec![filtered]), &solved(&|row| warm[row], warm[0], 2.0));
+    // Turns add up; one unit of the load is a hundredth of a turn each second.
+    let mut turns = 0.0;
+    let expected: Vec<f64> = (0..time.len())
+        .map(|row| {
+            if row > 0 {
+                turns += 0.01 * 0.5 * (force[row] + force[row - 1]) * (time[row] - time[row - 1]);
+            }
+            (TAU * turns + 0.3).sin()
+        })
+        .collect();
+    let spin = Factor::Spin { load: "force".to_owned(), rate: 0.01, phase: 0.3 };
+    near(one.times(vec![spin]), &expected);
+}
+
+/// A delay is where the axis was, and an event is there from its time on.
+#[test]
+fn a_delay_looks_back_and_a_step_stays() {
+    let states = states();
+    let (time, x) = (states.given.time.clone(), states.axes[0].position.clone());
+    let late = value(&CalibratedTerm::Delay { axis: 0, time: 0.01 }, &states);
+    // Within a hundredth of a second the parabola through the velocity and the acceleration is the way.
+    for row in 2..x.len() - 2 {
+        let expected = -0.01 * states.axes[0].velocity[row];
+        assert!((late[row] - expected).abs() < 0.1, "row {row}: {} {expected}", late[row]);
+    }
+    assert_eq!(late[0], 0.0, "before the first row it stood there");
+    let early = value(&CalibratedTerm::Delay { axis: 0, time: -0.01 }, &states);
+    assert!(early[20] * late[20] < 0.0, "below zero it is early");
+    let step = value(&CalibratedTerm::Step { time: time[50], size: 0.3 }, &states);
+    assert_eq!((step[49], step[50], step[239]), (0.0, 0.3, 0.3));
 }

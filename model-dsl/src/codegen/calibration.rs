@@ -131,8 +131,9 @@ impl WrittenMotion {
         let products = numbered.split_inclusive(|(_, term)| !term.is_factor);
         let terms: Vec<_> = products
             .map(|product| {
-                let factors = product.iter().map(|(place, term)| read(*place, term));
-                quote! { #(#factors)** }
+                let mut read = product.iter().map(|(place, term)| read(*place, term));
+                let first = read.next().unwrap_or_default();
+                quote! { #first #(* #read)* }
             })
             .collect();
         match &terms[..] {

@@ -1,0 +1,231 @@
+//! Composition: forms for which no term has a name.
+//!
+//! In: a study that was searched, with what was found, where more comes back than the names explain. Out: what was found, with forms
+//! built from terms and factors in the place of what only imitates them.
+//!
+//! Machines multiply states: a play grows where the screw is worn, a column leans with speed and height. What the vocabulary has no
+//! name for, several of its terms imitate in part. So every form competes with all that was found, as the faults of the files do:
+//!
+//! ```text
+//! forms: some thousand effects -> contest: the cost of a model with each, beside what it keeps of what was found
+//!     -> refined: the number of its factor -> fitted and judged as any effect -> kept where all of it is better
+//! ```
+//!
+//! The price of a form is that of all terms and all forms, and 2 for each of its factors.
+
+mod forms;
+
+use crate::appraisal::Appraisal;
+use crate::audit::spread;
+use crate::contest::{Contest, DECISIVE};
+use crate::design::{Design, Regressor};
+use crate::engine::{self, Found};
+use crate::fit::Fit;
+use crate::model::{Effect, Fitted, Model};
+use crate::noise;
+use crate::study::Study;
+use crate::unsteady;
+use forms::Form;
+
+/// The most forms that are told of one set of recordings: with a third one the recordings show a machine of which too much is unknown
+/// for any of them to be right.
+const MOST: usize = 2;
+
+/// How many forms, of those that promise most beside what was found and of those that do alone, are compared in full.
+const COMPARED: usize = 24;
+
+/// How many forms get a fit of their own: several have nearly the same column, and the fit tells which is right.
+const TRIALS: usize = 3;
+
+/// Puts forms in the place of what imitates them, as long as one makes all of it better.
+pub(crate) fn compose(study: &mut Study<'_>, found: &mut Found) {
+    for _ in 0..MOST {
+        if !is_open(study, found) {
+            return;
+        }
+        let forms = forms::forms(study, found);
+        let price = FormPrice::new(found, forms.len());
+        let tried = best(study, found, forms, &price);
+        let taken = tried.into_iter().any(|(form, kept)| take(study, found, (&form, &kept), &price));
+        if !taken {
+            return;
+        }
+    }
+}
+
+/// Whether there is anything for a form to explain: more is left of some channel than noise, or so many names were found that one form
+/// may well be behind several of them.
+fn is_open(study: &Study<'_>, found: &Found) -> bool {
+    let appraisal = &found.appraisal;
+    found.fit.model.len() >= found.always + MANY
+        || appraisal.lacks()
+        || unsteady::returning(study, appraisal).is_some()
+        || is_rough(study, appraisal)
+}
+
+/// So many names may be one form that each of them imitates in part.
+const MANY: usize = 3;
+
+/// Whether what is left of a channel is larger than its differences from row to row say of noise: what changes slowly is left.
+fn is_rough(study: &Study<'_>, appraisal: &Appraisal) -> bool {
+    study.scenes.iter().enumerate().any(|(scene, known)| {
+        let fitted = known.fitted_rows();
+        (0..known.channels.len()).any(|channel| {
+            let marks = &appraisal.outliers[scene][channel];
+            let residual = &appraisal.residuals[scene][channel];
+            let counts = |row: &usize| fitted[*row] && !marks[*row] && residual[*row].is_finite();
+            let left: Vec<f64> = (0..residual.len()).filter(counts).map(|row| residual[row]).collect();
+            let count = crate::number(left.len());
+            let variance = left.iter().map(|value| value * value).sum::<f64>() / count;
+            let white = noise::from_differences(&left).max(known.channels[channel].rounding).powi(2);
+            variance > white * (1.0 + ROUGH * (3.0 / count).sqrt())
+        })
+    })
+}
+
+/// The variance of white noise by its differences scatters by the square root of 3 over their number. By chance one recording of two
+/// thousand is that many standard deviations off, and costs the time of a contest.
+const ROUGH: f64 = 3.5;
+
+/// What a form costs: what an effect of its kind does, and what it is to be the best of so many more.
+struct FormPrice {
+    more: f64,
+}
+
+impl FormPrice {
+    fn new(found: &Found, forms: usize) -> Self {
+        let known = found.tries.candidates.max(1.0);
+        Self { more: 2.0 * ((known + crate::number(forms)) / known).ln() }
+    }
+
+    fn of(&self, study: &Study<'_>, found: &Found, effect: &Effect, samples: f64) -> f64 {
+        found.conditions().price(study, effect, samples) + self.more
+    }
+}
+
+/// The forms that lower the cost most, the cheapest first, each with its amount and with the numbers of the effects that are kept beside
+/// it.
+fn best(
+    study: &Study<'_>,
+    found: &Found,
+    forms: Vec<Form>,
+    price: &FormPrice,
+) -> Vec<(Fitted, Vec<usize>)> {
+    let contest = contest(study, found, &forms);
+    let price = |form: &Form| price.of(study, found, &form.effect, contest.samples);
+    let promises = contest.promises();
+    let known = contest.outcome(None).cost;
+    let mut compared = Vec::new();
+    for beside in 0..2 {
+        let mut order: Vec<(usize, f64)> = (0..forms.len())
+            .map(|number| (number, promises[number][beside] - price(&forms[number])))
+            .filter(|(_, gain)| *gain > 0.0)
+            .collect();
+        order.sort_by(|a, b| b.1.total_cmp(&a.1));
+        compared.extend(order.into_iter().take(COMPARED).map(|(number, _)| number));
+    }
+    compared.sort_unstable();
+    compared.dedup();
+    let mut gains: Vec<(usize, f64)> = compared
+        .into_iter()
+        .map(|number| (number, known - contest.outcome(Some(number)).cost - price(&forms[number])))
+        .filter(|(_, gain)| *gain > DECISIVE)
+        .collect();
+    gains.sort_by(|a, b| b.1.total_cmp(&a.1));
+    gains.into_iter().take(TRIALS).map(|(number, _)| refined(study, found, &forms[number])).collect()
+}
+
+/// The contest of forms with what was found.
+fn contest(study: &Study<'_>, found: &Found, forms: &[Form]) -> Contest {
+    let rows: Vec<Vec<usize>> = study.scenes.iter().map(|scene| spread(scene.rows())).collect();
+    let columns = |chunk: std::ops::Range<usize>, (scene, channel): (usize, usize)| {
+        columns(study, found, &forms[chunk], (scene, channel), &rows[scene])
+    };
+    Contest::new(study, found, &rows, forms.len(), &columns)
+}
+
+/// The column of each form in some rows of a channel.
+fn columns(
+    study: &Study<'_>,
+    found: &Found,
+    forms: &[Form],
+    channel: (usize, usize),
+    rows: &[usize],
+) -> Vec<Vec<f64>> {
+    let regressors: Vec<Regressor> = forms.iter().map(|form| Regressor::of(form.effect.clone())).collect();
+    let matrix = Design::columns_in(study, channel, &found.fit.model, &regressors, rows);
+    let mut first = 0;
+    forms
+        .iter()
+        .map(|form| {
+            let mut sum = vec![0.0; rows.len()];
+            for coefficient in &form.coefficients {
+                let column = matrix.column(first);
+                sum.iter_mut().zip(column.iter()).for_each(|(sum, value)| *sum += coefficient * value);
+                first += 1;
+            }
+            sum
+        })
+        .collect()
+}
+
+/// A form with the best value of its factor's number, its amount, and the effects that are kept beside it.
+fn refined(study: &Study<'_>, found: &Found, form: &Form) -> (Fitted, Vec<usize>) {
+    let mut variants = vec![form.clone()];
+    variants.extend(
+        forms::neighbours(study, &form.effect.shape)
+            .into_iter()
+            .map(|shape| Form { effect: Effect { shape, ..form.effect }, ..form.clone() }),
+    );
+    let contest = contest(study, found, &variants);
+    let outcomes = (0..variants.len()).map(|number| (number, contest.outcome(Some(number))));
+    let best = outcomes.min_by(|(_, a), (_, b)| a.cost.total_cmp(&b.cost));
+    let (number, outcome) = best.unwrap_or_else(|| (0, contest.outcome(None)));
+    (variants[number].fitted(outcome.amount), outcome.kept)
+}
+
+/// Fits a form beside what is kept, and takes it over where all of it is better: it stands up before the judge, costs decisively less
+/// under the noise that it leaves, and held-out samples lie nearer.
+fn take(
+    study: &mut Study<'_>,
+    found: &mut Found,
+    (form, kept): (&Fitted, &[usize]),
+    price: &FormPrice,
+) -> bool {
+    let mut model: Model = kept.iter().map(|number| found.fit.model[*number].clone()).collect();
+    let always = kept.iter().filter(|number| **number < found.always).count();
+    if always < found.always {
+        return false;
+    }
+    model.push(form.clone());
+    let crossings = study.crossings.clone();
+    let conditions = found.conditions();
+    let fit = conditions.refine(study, model);
+    let (fit, appraisal) = engine::upheld(study, fit, &conditions);
+    let is_form = |fitted: &Fitted| {
+        fitted.effect.place == form.effect.place && fitted.effect.shape.factors() == form.effect.shape.factors()
+    };
+    if fit.model.iter().any(is_form) && is_better(study, found, (&fit, &appraisal), price) {
+        found.fit = fit;
+        found.appraisal = appraisal;
+        return true;
+    }
+    study.crossings = crossings;
+    found.appraisal.mark(study);
+    false
+}
+
+/// Whether a model costs decisively less than what was found, both under the noise that it leaves, and held-out samples lie nearer to it.
+fn is_better(
+    study: &Study<'_>,
+    found: &Found,
+    (fit, appraisal): (&Fit, &Appraisal),
+    price: &FormPrice,
+) -> bool {
+    let conditions = found.conditions();
+    let conditions = conditions.under(&appraisal.noises);
+    let old = conditions.refine(study, found.fit.model.clone());
+    let cost = |fit: &Fit| conditions.cost_at(study, fit, &conditions.prices(study, &fit.model, fit.samples));
+    let nearer = appraisal.held_out(study, appraisal) < found.appraisal.held_out(study, appraisal);
+    nearer && cost(&old) - cost(fit) - price.more > DECISIVE
+}

@@ -1,0 +1,345 @@
+//! Forms: effects built from what terms and factors have.
+//!
+//! In: a study that was searched. Out: some thousand effects that no term of the vocabulary has, each as one column: an effect that was
+//! found times a factor; a play times a factor; factors alone, and times positions; products of positions.
+
+use model_dsl::calibration::{Factor, Within};
+
+use crate::candidates::{geometric, recorded};
+use crate::engine::Found;
+use crate::model::{Effect, Fitted, Place};
+use crate::ranges::shortest_step;
+use crate::side::Side;
+use crate::study::Study;
+use crate::terms::{REFERENCE_TEMPERATURE, Shape};
+use crate::travel::Travel;
+
+/// From one time constant of a filter or a warmth to the next: the answers of two filters whose time constants lie a factor of 3 apart
+/// still have three quarters of their course in common, and the best one is refined.
+const FILTERS: f64 = 3.0;
+
+/// The speeds over which something fades, as shares of the highest speed. The best one is refined.
+const FADING: [f64; 2] = [0.08, 0.3];
+
+/// The loads at which half is left, as shares of the largest load. The best one is refined.
+const HALVES: [f64; 2] = [0.15, 0.6];
+
+/// The widths of the play of a sensor, as shares of the range of its temperature. The best one is refined.
+const WIDTHS: [f64; 2] = [0.15, 0.4];
+
+/// How many events a recording may be divided by: the best one is moved to its time.
+const EVENTS: f64 = 40.0;
+
+/// The widths of a worn zone, as shares of the travel. Zones of one width overlap by half. The best one is moved.
+const ZONES: [f64; 3] = [0.15, 0.3, 0.6];
+
+/// The highest power of a product of positions: with a third power more than a tenth of what most curves are is left to noise.
+const ORDER: u8 = 3;
+
+/// An effect that may be composed, with the coefficients that make one column of it.
+#[derive(Clone, Debug)]
+pub(super) struct Form {
+    pub(super) effect: Effect,
+    pub(super) coefficients: Vec<f64>,
+}
+
+impl Form {
+    /// The same with this amount of it.
+    pub(super) fn fitted(&self, amount: f64) -> Fitted {
+        let coefficients = self.coefficients.iter().map(|coefficient| amount * coefficient).collect();
+        Fitted { effect: self.effect.clone(), coefficients }
+    }
+}
+
+/// What factors may be built of.
+struct Atoms {
+    /// For each axis that moves: its position.
+    positions: Vec<Factor<usize>>,
+    /// Temperatures, which are factors of plays and positions, but as terms of their own a growth.
+    temperatures: Vec<Factor<usize>>,
+    /// Loads, which alone are a compliance.
+    loads: Vec<Factor<usize>>,
+    /// What no term has.
+    others: Vec<Factor<usize>>,
+}
+
+/// All forms.
+pub(super) fn forms(study: &Study<'_>, found: &Found) -> Vec<Form> {
+    let atoms = Atoms::new(study, &found.travels);
+    let mut forms = of_effects(found, &atoms);
+    for motion in 0..study.equations.motions.len() {
+        for side in sides(study, motion) {
+            let place = Place::Motion { motion, side };
+            let shapes = plays(study, motion, &found.travels, &atoms).into_iter();
+            let all = shapes.chain(products(&atoms)).chain(events(study));
+            forms.extend(all.map(|shape| one(place, shape)));
+        }
+    }
+    forms
+}
+
+/// The length of the longest recording, s.
+fn span(study: &Study<'_>) -> f64 {
+    study.scenes.iter().map(|scene| scene.observed).fold(0.0, f64::max)
+}
+
+/// What happens once. Time is that of one recording: several have none in common.
+fn events(study: &Study<'_>) -> Vec<Shape> {
+    let fitted = study.scenes.iter().filter(|scene| scene.blocks.iter().any(|block| !block.held_out));
+    if fitted.count() > 1 {
+        return Vec::new();
+    }
+    let step = span(study) / EVENTS;
+    std::iter::successors(Some(step), |time| Some(time + step))
+        .take_while(|time| *time < span(study))
+        .map(|time| Shape::Step { time })
+        .collect()
+}
+
+fn one(place: Place, shape: Shape) -> Form {
+    Form { effect: Effect { place, shape }, coefficients: vec![1.0] }
+}
+
+/// Where effects of a motion may come in.
+fn sides(study: &Study<'_>, motion: usize) -> Vec<Side> {
+    let outside = study.scenes.iter().flat_map(|scene| &scene.channels).any(|channel| channel.kind.outside());
+    let own = study.own.iter().position(|own| *own == Some(motion));
+    let drive = own.filter(|axis| study.has_drive(*axis)).map(|_| Side::Drive);
+    drive.into_iter().chain(outside.then_some(Side::After)).collect()
+}
+
+/// Effects that were found, times each factor. What a loop does is a matter of its states, which nothing multiplies.
+fn of_effects(found: &Found, atoms: &Atoms) -> Vec<Form> {
+    let multiplied = |fitted: &&Fitted| {
+        fitted.effect.motion().is_some()
+            && fitted.effect.shape.factors().is_empty()
+            && !fitted.effect.shape.nonlinear_in_coefficient()
+            && !matches!(fitted.effect.shape, Shape::Constant)
+    };
+    let effects = found.fit.model[found.always..].iter().filter(multiplied);
+    effects
+        .flat_map(|fitted| {
+            // A play of the axis is multiplied anyway.
+            let multiplied = !matches!(fitted.effect.shape, Shape::Backlash { wind_up: 0.0, .. });
+            atoms.all().filter(move |_| multiplied).map(|factor| Form {
+                effect: Effect {
+                    place: fitted.effect.place,
+                    shape: times(fitted.effect.shape.clone(), vec![factor.clone()]),
+                },
+                coefficients: fitted.coefficients.clone(),
+            })
+        })
+        .collect()
+}
+
+fn times(core: Shape, factors: Vec<Factor<usize>>) -> Shape {
+    Shape::Times { core: Box::new(core), factors }
+}
+
+/// Plays of the motion's axis whose size follows a state.
+fn plays(study: &Study<'_>, motion: usize, travels: &[Travel], atoms: &Atoms) -> Vec<Shape> {
+    let known = &study.equations.motions[motion];
+    let Some(axis) = known.axis.filter(|axis| travels[*axis].moves && !known.alignment) else {
+        return Vec::new();
+    };
+    let play = || Shape::Backlash { axis, wind_up: 0.0 };
+    let zones = zones(axis, &travels[axis]);
+    atoms.all().cloned().chain(zones).map(|factor| times(play(), vec![factor])).collect()
+}
+
+/// Zones of a travel in which something is there, and fades to both sides.
+fn zones(axis: usize, travel: &Travel) -> Vec<Factor<usize>> {
+    let zone = |middle: f64, half: f64| Factor::Curve {
+        axis,
+        at: [-1.0, -0.5, 0.5, 1.0].map(|share| middle + share * half).to_vec(),
+        values: vec![0.0, 1.0, 1.0, 0.0],
+    };
+    ZONES
+        .iter()
+        .flat_map(|share| {
+            let half = 0.5 * share * travel.range();
+            let middles = std::iter::successors(Some(travel.low), move |middle| Some(middle + half));
+            middles.take_while(|middle| *middle <= travel.high).map(move |middle| zone(middle, half))
+        })
+        .collect()
+}
+
+/// Factors alone, and times positions.
+fn products(atoms: &Atoms) -> Vec<Shape> {
+    let product = |factors: Vec<Factor<usize>>| times(Shape::Constant, factors);
+    let mut shapes: Vec<Shape> = atoms.others.iter().map(|factor| product(vec![factor.clone()])).collect();
+    let multiplied = atoms.others.iter().chain(&atoms.temperatures).chain(&atoms.loads);
+    for factor in multiplied {
+        shapes.extend(atoms.positions.iter().map(|position| product(vec![factor.clone(), position.clone()])));
+    }
+    shapes.extend(positions(&atoms.positions).into_iter().map(product));
+    shapes
+}
+
+/// Products of the positions of two and of three axes, up to the highest power.
+fn positions(positions: &[Factor<usize>]) -> Vec<Vec<Factor<usize>>> {
+    let mut products = Vec::new();
+    for (number, one) in positions.iter().enumerate() {
+        for (other_number, other) in positions.iter().enumerate().skip(number + 1) {
+            for power in 1..ORDER {
+                let powers = (1..=ORDER - power).map(|of_other| (power, of_other));
+                products.extend(powers.map(|(a, b)| vec![raised(one, a), raised(other, b)]));
+            }
+            let thirds = positions.iter().skip(other_number + 1);
+            products.extend(thirds.map(|third| vec![one.clone(), other.clone(), third.clone()]));
+        }
+    }
+    products
+}
+
+/// A position to a power.
+fn raised(factor: &Factor<usize>, to: u8) -> Factor<usize> {
+    match *factor {
+        Factor::Position { axis, within, .. } => Factor::Position { axis, power: to, within },
+        ref other => other.clone(),
+    }
+}
+
+impl Atoms {
+    fn new(study: &Study<'_>, travels: &[Travel]) -> Self {
+        let span = span(study);
+        let filters = geometric((4.0 * shortest_step(study)).max(span / 30.0), span, FILTERS);
+        let moving = || (0..travels.len()).filter(|axis| travels[*axis].moves);
+        let positions = moving().map(|axis| {
+            let within = Within { from: travels[axis].low, to: travels[axis].high };
+            Factor::Position { axis, power: 1, within }
+        });
+        Self {
+            positions: positions.collect(),
+            temperatures: temperatures(study, &filters),
+            loads: loads(study),
+            others: moving().flat_map(|axis| motions(axis, &travels[axis], &filters)).collect(),
+        }
+    }
+
+    /// All of them.
+    fn all(&self) -> impl Iterator<Item = &Factor<usize>> {
+        self.positions.iter().chain(&self.temperatures).chain(&self.loads).chain(&self.others)
+    }
+}
+
+/// What the motion of an axis makes.
+fn motions(axis: usize, travel: &Travel, filters: &[f64]) -> Vec<Factor<usize>> {
+    let within = |from: f64, to: f64| Within { from, to };
+    let (fastest, hardest) = (travel.fastest, travel.hardest);
+    let mut factors = vec![
+        Factor::Velocity { axis, within: within(-fastest, fastest) },
+        Factor::Speed { axis, within: within(0.0, fastest) },
+        Factor::Acceleration { axis, within: within(-hardest, hardest) },
+    ];
+    factors.extend(FADING.map(|share| Factor::Fading { axis, over: share * fastest }));
+    // One kelvin for each unit of speed: the coefficient says how much it makes.
+    factors.extend(filters.iter().map(|filter| Factor::Warmth { axis, time_constant: *filter, rise: 1.0 }));
+    factors
+}
+
+/// Temperatures, behind filters, and behind the play of a joint.
+fn temperatures(study: &Study<'_>, filters: &[f64]) -> Vec<Factor<usize>> {
+    let reference = REFERENCE_TEMPERATURE;
+    let mut factors = Vec::new();
+    for sensor in recorded(study) {
+        let readings = study.scenes.iter().flat_map(|scene| &scene.given.temperatures[sensor]);
+        let within = range(readings);
+        let filtered = [0.0].iter().chain(filters);
+        factors.extend(filtered.map(|filter| Factor::Temperature {
+            sensor,
+            reference,
+            time_constant: *filter,
+            within,
+        }));
+        let widths = WIDTHS.map(|share| share * (within.to - within.from));
+        factors.extend(widths.map(|width| Factor::Play { sensor, reference, width }));
+    }
+    factors
+}
+
+fn loads(study: &Study<'_>) -> Vec<Factor<usize>> {
+    let mut factors = Vec::new();
+    for load in 0..study.loads.len() {
+        let within = range(study.scenes.iter().flat_map(|scene| &scene.given.loads[load]));
+        let largest = within.from.abs().max(within.to.abs());
+        factors.push(Factor::Load { load, within });
+        factors.extend(HALVES.map(|share| Factor::Half { load, at: share * largest }));
+    }
+    // A load that is nothing in every row multiplies nothing.
+    factors.retain(|factor| !matches!(factor, Factor::Half { at, .. } if *at <= 0.0));
+    factors
+}
+
+/// From the least to the greatest of what is known.
+fn range<'r>(values: impl Iterator<Item = &'r f64>) -> Within {
+    let known = values.filter(|value| value.is_finite());
+    let (from, to) =
+        known.fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), value| (from.min(*value), to.max(*value)));
+    if from <= to { Within { from, to } } else { Within::EVERYWHERE }
+}
+
+/// The factors by which the number of a factor is changed to find its best value: in steps of a fifth over the distance to the next
+/// value of the grid.
+const STEPS: [f64; 10] = [0.4, 0.5, 0.6, 0.75, 0.87, 1.15, 1.35, 1.65, 2.0, 2.5];
+
+/// How far the ends of a zone and the time of an event are moved, as shares of the distance to the next ones of the grid.
+const MOVES: [f64; 8] = [-0.5, -0.35, -0.2, -0.1, 0.1, 0.2, 0.35, 0.5];
+
+/// The same shape with other values of the number that was searched for on a grid.
+pub(super) fn neighbours(study: &Study<'_>, shape: &Shape) -> Vec<Shape> {
+    match shape {
+        Shape::Step { time } => {
+            let step = span(study) / EVENTS;
+            MOVES.map(|share| Shape::Step { time: time + share * step }).to_vec()
+        }
+        Shape::Times { core, factors } => factors
+            .iter()
+            .enumerate()
+            .flat_map(|(place, factor)| around(factor).into_iter().map(move |other| (place, other)))
+            .map(|(place, other)| {
+                let mut factors = factors.clone();
+                factors[place] = other;
+                times((**core).clone(), factors)
+            })
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The factor with other values of the number that is searched for.
+fn around(factor: &Factor<usize>) -> Vec<Factor<usize>> {
+    if let Factor::Curve { axis, at, values } = factor {
+        return zones_around(*axis, at, values);
+    }
+    let each = |change: &dyn Fn(f64) -> Factor<usize>| STEPS.iter().map(|step| change(*step)).collect();
+    match *factor {
+        Factor::Fading { axis, over } => each(&|step| Factor::Fading { axis, over: over * step }),
+        Factor::Warmth { axis, time_constant, rise } => {
+            each(&|step| Factor::Warmth { axis, time_constant: time_constant * step, rise })
+        }
+        Factor::Temperature { sensor, reference, time_constant, within } if time_constant > 0.0 => {
+            each(&|step| {
+                let time_constant = time_constant * step;
+                Factor::Temperature { sensor, reference, time_constant, within }
+            })
+        }
+        Factor::Play { sensor, reference, width } => {
+            each(&|step| Factor::Play { sensor, reference, width: width * step })
+        }
+        Factor::Half { load, at } => each(&|step| Factor::Half { load, at: at * step }),
+        _ => Vec::new(),
+    }
+}
+
+/// Zones a little to both sides of one, and a little narrower and wider.
+fn zones_around(axis: usize, at: &[f64], values: &[f64]) -> Vec<Factor<usize>> {
+    let (Some(from), Some(to)) = (at.first(), at.last()) else { return Vec::new() };
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let moved = |by: f64, wider: f64| Factor::Curve {
+        axis,
+        at: at.iter().map(|node| middle + by * half + (node - middle) * wider).collect(),
+        values: values.to_vec(),
+    };
+    MOVES.iter().flat_map(|by| [0.6, 0.8, 1.0, 1.25, 1.6].map(|wider| moved(*by, wider))).collect()
+}

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use model_dsl::calibration::factor::vocabulary::FACTORS;
 use model_dsl::calibration::TERM_NAMES;
+use model_dsl::calibration::factor::vocabulary::FACTORS;
 
 use crate::cli::abbe;
 use crate::machine_files::codes as codes_in;

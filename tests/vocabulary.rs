@@ -97,7 +97,12 @@ fn a_term_is_its_entry_and_its_formulas() {
             let ends = |rest: &str| !rest.starts_with(|next: char| next.is_alphanumeric() || next == '_');
             // What a term depends on has a name of its own, at times the same.
             // So has a factor.
-            text.replace("State::", "").replace("Factor::", "").replace("FactorKind::", "").split(&variant).skip(1).any(ends)
+            text.replace("State::", "")
+                .replace("Factor::", "")
+                .replace("FactorKind::", "")
+                .split(&variant)
+                .skip(1)
+                .any(ends)
         };
         let files = sources.iter().filter(|(_, text)| speaks(text)).map(|(name, _)| name.as_str());
         let (known, other): (BTreeSet<&str>, BTreeSet<&str>) =
@@ -285,9 +290,11 @@ fn the_schemas_have_the_factors_and_their_keys() {
         let text = fs::read_to_string(root().join(format!("schemas/{form}.schema.json"))).unwrap();
         let schema: Value = serde_json::from_str(&text).unwrap();
         let factor = &schema["definitions"]["factor"];
-        let one_of = factor["oneOf"].as_array().unwrap().iter().map(|one| one["required"][0].as_str().unwrap());
+        let one_of =
+            factor["oneOf"].as_array().unwrap().iter().map(|one| one["required"][0].as_str().unwrap());
         assert_eq!(one_of.collect::<Vec<_>>(), FACTORS.map(|entry| entry.name), "{form}");
-        let listed: BTreeSet<&str> = factor["properties"].as_object().unwrap().keys().map(String::as_str).collect();
+        let listed: BTreeSet<&str> =
+            factor["properties"].as_object().unwrap().keys().map(String::as_str).collect();
         let keys = FACTORS.iter().flat_map(|entry| entry.keys).map(|key| key.name);
         assert_eq!(listed, keys.collect(), "{form}");
     }

@@ -98,10 +98,12 @@ fn others(study: &Study<'_>, found: &Found) -> Vec<Kin> {
     found.pool.iter().cloned().chain(moved).collect()
 }
 
-/// A wave or a filtered temperature, which the candidates do not hold in this form, at the other motions that could have it.
+/// A wave, a filtered temperature or a composed form, which the candidates do not hold in this form, at the other motions that could
+/// have it.
 fn elsewhere(study: &Study<'_>, effect: &Effect) -> Vec<Effect> {
-    let (Some(motion), Some(side), Some(_)) = (effect.motion(), effect.side(), effect.shape.nonlinear())
-    else {
+    let shape = &effect.shape;
+    let is_of_its_own = shape.nonlinear().is_some() || shape.is_composed();
+    let (Some(motion), Some(side), true) = (effect.motion(), effect.side(), is_of_its_own) else {
         return Vec::new();
     };
     let motions = study.equations.motions.iter().enumerate().filter(|(number, _)| *number != motion);

@@ -15,9 +15,9 @@
 mod catalogue;
 mod changed;
 mod columns;
-mod suspected;
 mod fault;
 pub(crate) mod gross;
+mod suspected;
 mod verdict;
 mod words;
 
@@ -26,10 +26,10 @@ use crate::engine::Found;
 use crate::study::Study;
 
 pub(crate) use changed::Changed;
-pub(crate) use columns::spread;
 use columns::Versions;
-use suspected::FaultContest;
+pub(crate) use columns::spread;
 use fault::Fault;
+use suspected::FaultContest;
 pub(crate) use verdict::{Rest, Trial, Verdict, judged};
 pub(crate) use words::change;
 

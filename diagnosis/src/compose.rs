@@ -27,9 +27,9 @@ use crate::study::Study;
 use crate::unsteady;
 use forms::Form;
 
-/// The most forms that are told of one set of recordings: with a third one the recordings show a machine of which too much is unknown
-/// for any of them to be right.
-const MOST: usize = 2;
+/// The most rounds. Each takes one effect in; with more of them the recordings show a machine of which too much is unknown for any form
+/// to be right.
+const MOST: usize = 3;
 
 /// How many forms, of those that promise most beside what was found and of those that do alone, are compared in full.
 const COMPARED: usize = 24;
@@ -99,18 +99,18 @@ impl FormPrice {
     }
 
     fn of(&self, study: &Study<'_>, found: &Found, effect: &Effect, samples: f64) -> f64 {
-        found.conditions().price(study, effect, samples) + self.more
+        found.conditions().price(study, effect, samples) + self.beyond_a_name(effect)
+    }
+
+    /// What an effect costs beyond a name of the vocabulary.
+    fn beyond_a_name(&self, effect: &Effect) -> f64 {
+        if effect.shape.is_composed() { self.more } else { 0.0 }
     }
 }
 
 /// The forms that lower the cost most, the cheapest first, each with its amount and with the numbers of the effects that are kept beside
 /// it.
-fn best(
-    study: &Study<'_>,
-    found: &Found,
-    forms: Vec<Form>,
-    price: &FormPrice,
-) -> Vec<(Fitted, Vec<usize>)> {
+fn best(study: &Study<'_>, found: &Found, forms: Vec<Form>, price: &FormPrice) -> Vec<(Fitted, Vec<usize>)> {
     let contest = contest(study, found, &forms);
     let price = |form: &Form| price.of(study, found, &form.effect, contest.samples);
     let promises = contest.promises();
@@ -203,7 +203,8 @@ fn take(
     let fit = conditions.refine(study, model);
     let (fit, appraisal) = engine::upheld(study, fit, &conditions);
     let is_form = |fitted: &Fitted| {
-        fitted.effect.place == form.effect.place && fitted.effect.shape.factors() == form.effect.shape.factors()
+        fitted.effect.place == form.effect.place
+            && fitted.effect.shape.factors() == form.effect.shape.factors()
     };
     if fit.model.iter().any(is_form) && is_better(study, found, (&fit, &appraisal), price) {
         found.fit = fit;
@@ -227,5 +228,7 @@ fn is_better(
     let old = conditions.refine(study, found.fit.model.clone());
     let cost = |fit: &Fit| conditions.cost_at(study, fit, &conditions.prices(study, &fit.model, fit.samples));
     let nearer = appraisal.held_out(study, appraisal) < found.appraisal.held_out(study, appraisal);
-    nearer && cost(&old) - cost(fit) - price.more > DECISIVE
+    let more: f64 = fit.model.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum();
+    let known: f64 = old.model.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum();
+    nearer && (cost(&old) + known) - (cost(fit) + more) > DECISIVE
 }

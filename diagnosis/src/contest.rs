@@ -174,7 +174,11 @@ impl Contest {
     }
 
     /// Takes all effects in, then drops those that are not worth their price. The cost stands beside.
-    fn cut_down<'m>(&self, (mut swept, mut kept): Set<'m>, others: Vec<&'m Member>) -> (Swept, f64, Vec<&'m Member>) {
+    fn cut_down<'m>(
+        &self,
+        (mut swept, mut kept): Set<'m>,
+        others: Vec<&'m Member>,
+    ) -> (Swept, f64, Vec<&'m Member>) {
         for column in others.iter().flat_map(|member| member.columns.clone()) {
             swept.take(column);
         }
@@ -188,7 +192,11 @@ impl Contest {
     }
 
     /// Takes effects in one by one, the most worth first, while one is worth its price. Then drops those that no longer are.
-    fn built_up<'m>(&self, (mut swept, mut kept): Set<'m>, mut others: Vec<&'m Member>) -> (Swept, f64, Vec<&'m Member>) {
+    fn built_up<'m>(
+        &self,
+        (mut swept, mut kept): Set<'m>,
+        mut others: Vec<&'m Member>,
+    ) -> (Swept, f64, Vec<&'m Member>) {
         let worth = |swept: &Swept, member: &Member| {
             let columns: Vec<usize> = member.columns.clone().collect();
             let with = swept.remaining() - swept.promise(&columns).0;
@@ -265,7 +273,8 @@ impl Contest {
         let taken: Vec<usize> = (0..width).filter(|column| swept.has(*column)).collect();
         for one in &taken {
             response -= products[*one] * swept.coefficient(*one);
-            let along: f64 = taken.iter().map(|other| products[*other] * swept.covariance(*one, *other)).sum();
+            let along: f64 =
+                taken.iter().map(|other| products[*other] * swept.covariance(*one, *other)).sum();
             square -= products[*one] * along;
         }
         // A column that the others hold already says nothing.

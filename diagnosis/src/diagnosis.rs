@@ -3,6 +3,7 @@
 use model_dsl::calibration::{CalibratedTerm, Calibration, TermKind};
 use model_dsl::equations::Equations;
 use model_dsl::machine::ElementKind;
+use model_dsl::notation::Formula;
 
 use crate::pictures::Pictures;
 
@@ -207,6 +208,17 @@ pub struct Mended {
     pub word: Option<String>,
 }
 
+/// A form for which there is no name: a term times factors, or an event.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Form {
+    /// Its equation.
+    pub equation: Formula,
+    /// How large it is where, in a sentence.
+    pub words: String,
+    /// What machines have that depends on each of its factors.
+    pub physics: Vec<&'static str>,
+}
+
 /// A term of an error motion that the calibration lacks.
 #[derive(Clone, Debug)]
 pub struct Finding {
@@ -236,6 +248,8 @@ pub struct Finding {
     pub compensable: bool,
     /// The term as the calibration takes it; its sensors go by the numbers in [`Finding::sensors`].
     pub calibrated: CalibratedTerm,
+    /// What form it has, where no term of the vocabulary has a name for it.
+    pub form: Option<Form>,
     /// The sensors that it and its factors read: their numbers in [`Finding::calibrated`], and their names.
     pub sensors: Vec<(usize, String)>,
 }

@@ -22,6 +22,7 @@ mod dynamics;
 mod elements;
 mod engine;
 mod fit;
+mod form;
 mod judge;
 mod kinship;
 mod legs;

@@ -135,6 +135,11 @@ impl Shape {
         }
     }
 
+    /// Whether it is no term of the vocabulary with a name of its own: a term with factors, or an event.
+    pub(crate) fn is_composed(&self) -> bool {
+        matches!(self, Self::Times { .. } | Self::Step { .. })
+    }
+
     /// The shape without its factors.
     pub(crate) fn core(&self) -> &Self {
         match self {

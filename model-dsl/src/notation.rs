@@ -1,11 +1,12 @@
 //! The notation of equations: one tree of sums, products and letters, and writers of it.
 //!
-//! In: derived [`Equations`]. Out: plain text, LaTeX, a page with MathML, JSON or Maxima input. What stands
+//! In: derived [`Equations`], and terms with their numbers ([`formula()`]). Out: plain text, LaTeX, a page with MathML, JSON or Maxima input. What stands
 //! where (order, signs, brackets, how a name is split into letter and subscript) is decided once, while the
 //! tree is built; a writer only spells it, so that no two formats can say different things.
 
 mod chain;
 mod example;
+mod formula;
 mod html;
 mod json;
 mod latex;
@@ -28,6 +29,7 @@ use crate::algebra::Polynomial;
 use crate::equations::{Equations, Names};
 
 pub use example::{Example, example};
+pub use formula::{Formula, formula};
 pub use published::Published;
 
 /// In which form equations are printed.

@@ -112,7 +112,13 @@ pub(super) fn term(entry: &Entry<'_>) -> String {
 /// The page of a factor.
 pub(super) fn factor(known: &FactorEntry, entry: &Entry<'_>) -> String {
     let mut text = format!("{}: a factor of a term\n\n", known.name);
-    put(&mut text, &fill(&format!("A term is multiplied with it under `times`. Machines have it: {}.", known.physics), WIDTH));
+    put(
+        &mut text,
+        &fill(
+            &format!("A term is multiplied with it under `times`. Machines have it: {}.", known.physics),
+            WIDTH,
+        ),
+    );
     section(&mut text, "Its value");
     put(&mut text, &fill(known.value, WIDTH));
     section(&mut text, "Its keys");
@@ -138,7 +144,9 @@ fn holds(holds: FactorHolds) -> &'static str {
         FactorHolds::Sensor => "the name of a sensor",
         FactorHolds::Load => "the name of a load",
         FactorHolds::Power => "1, 2 or 3",
-        FactorHolds::Range(_) => "two values of the state, the lower first: outside, the factor holds its value there",
+        FactorHolds::Range(_) => {
+            "two values of the state, the lower first: outside, the factor holds its value there"
+        }
         FactorHolds::Nodes(_) => "positions in rising order",
         FactorHolds::Ratios => "bare numbers, one for each node",
         FactorHolds::Amount(measure, _) => match measure {

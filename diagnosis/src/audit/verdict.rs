@@ -5,9 +5,9 @@
 use super::Suspect;
 use super::columns::Versions;
 use super::suspected::{FaultContest, NEAR, TURNED};
-use crate::contest::{DECISIVE, price_of_a_run};
 use crate::Inputs;
 use crate::certainty::WIDTH_95;
+use crate::contest::{DECISIVE, price_of_a_run};
 use crate::engine::Found;
 use crate::noise::Noise;
 use crate::study::Study;

@@ -3,6 +3,8 @@
 //! In: a study that was searched. Out: some thousand effects that no term of the vocabulary has, each as one column: an effect that was
 //! found times a factor; a play times a factor; factors alone, and times positions; products of positions.
 
+use std::f64::consts::TAU;
+
 use model_dsl::calibration::{Factor, Within};
 
 use crate::candidates::{geometric, recorded};
@@ -32,6 +34,10 @@ const EVENTS: f64 = 40.0;
 
 /// The widths of a worn zone, as shares of the travel. Zones of one width overlap by half. The best one is moved.
 const ZONES: [f64; 3] = [0.15, 0.3, 0.6];
+
+/// The nodes of a zone, as shares of its half width. It rises and falls as a squared cosine: so does wear to both sides of where a
+/// machine works most.
+const ZONE: [f64; 9] = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// The highest power of a product of positions: with a third power more than a tenth of what most curves are is left to noise.
 const ORDER: u8 = 3;
@@ -66,7 +72,8 @@ struct Atoms {
 /// All forms.
 pub(super) fn forms(study: &Study<'_>, found: &Found) -> Vec<Form> {
     let atoms = Atoms::new(study, &found.travels);
-    let mut forms = of_effects(found, &atoms);
+    let mut forms = names(found);
+    forms.extend(of_effects(found, &atoms));
     for motion in 0..study.equations.motions.len() {
         for side in sides(study, motion) {
             let place = Place::Motion { motion, side };
@@ -94,6 +101,14 @@ fn events(study: &Study<'_>) -> Vec<Shape> {
         .take_while(|time| *time < span(study))
         .map(|time| Shape::Step { time })
         .collect()
+}
+
+/// The names of the vocabulary that have one column. Beside a form that has taken the place of others, one of them may be right that was
+/// not before: a play that grows along the travel has a size where the travel begins.
+fn names(found: &Found) -> Vec<Form> {
+    let pool = found.pool.iter().map(|kin| &kin.effect).filter(|effect| effect.shape.columns() == 1);
+    let open = pool.filter(|effect| effect.motion().is_some() && !effect.shape.nonlinear_in_coefficient());
+    open.map(|effect| Form { effect: effect.clone(), coefficients: vec![1.0] }).collect()
 }
 
 fn one(place: Place, shape: Shape) -> Form {
@@ -151,8 +166,8 @@ fn plays(study: &Study<'_>, motion: usize, travels: &[Travel], atoms: &Atoms) ->
 fn zones(axis: usize, travel: &Travel) -> Vec<Factor<usize>> {
     let zone = |middle: f64, half: f64| Factor::Curve {
         axis,
-        at: [-1.0, -0.5, 0.5, 1.0].map(|share| middle + share * half).to_vec(),
-        values: vec![0.0, 1.0, 1.0, 0.0],
+        at: ZONE.map(|share| middle + share * half).to_vec(),
+        values: ZONE.map(|share| (0.25 * TAU * share).cos().powi(2)).to_vec(),
     };
     ZONES
         .iter()
@@ -274,8 +289,8 @@ fn loads(study: &Study<'_>) -> Vec<Factor<usize>> {
 /// From the least to the greatest of what is known.
 fn range<'r>(values: impl Iterator<Item = &'r f64>) -> Within {
     let known = values.filter(|value| value.is_finite());
-    let (from, to) =
-        known.fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), value| (from.min(*value), to.max(*value)));
+    let (from, to) = known
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), value| (from.min(*value), to.max(*value)));
     if from <= to { Within { from, to } } else { Within::EVERYWHERE }
 }
 

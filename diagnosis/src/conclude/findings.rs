@@ -9,6 +9,7 @@ use crate::certainty::{self, WIDTH_95};
 use crate::diagnosis::{Alternative, Diagnosis, Evidence, Finding, Parameter, Residual, SettingFinding};
 use crate::elements;
 use crate::engine::Found;
+use crate::form;
 use crate::judge;
 use crate::model::{Effect, Model};
 use crate::parameters::Described;
@@ -69,6 +70,7 @@ pub(super) fn report(
             alternatives,
             explanation: fitted.effect.shape.meaning().to_owned(),
             compensable: calibrated.compensable(),
+            form: form::form(study, &found.fit.model, &fitted.effect, &calibrated),
             sensors: calibrated.sensors().map(|sensor| (sensor, study.sensors[sensor].clone())).collect(),
             calibrated,
         });

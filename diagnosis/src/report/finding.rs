@@ -16,23 +16,47 @@ pub(super) fn items(diagnosis: &Diagnosis) -> Vec<Item> {
 fn item(finding: &Finding) -> Item {
     let heading = format!(
         "{} in {} ({}): {} of the explainable variance",
-        title(finding.term),
+        heading_of(finding),
         finding.motion,
         finding.motion_meaning,
         percent(finding.share)
     );
     let removed = [removed(finding), left(finding)].join(" ");
-    Item::new(
+    let equation = finding.form.as_ref().map(|form| form.equation.mathml.clone());
+    let item = Item::new(
         heading,
         [
             ("where", vec![place(&finding.location)]),
+            ("form", form(finding)),
             ("what", vec![what(finding)]),
             ("how much", parameter::lines(&finding.parameters, finding.kind().first_power())),
             ("evidence", vec![evidence(&finding.evidence)]),
             ("or else", alternatives(&finding.alternatives)),
             ("compensation", vec![removed.trim_end().to_owned()]),
         ],
-    )
+    );
+    match equation {
+        Some(equation) => item.with_formula("form", equation),
+        None => item,
+    }
+}
+
+/// The form of a finding that has no name of its own: how large it is where, its equation, and what has it.
+fn form(finding: &Finding) -> Vec<String> {
+    let Some(form) = &finding.form else { return Vec::new() };
+    let physics = match form.physics.as_slice() {
+        [] => String::new(),
+        known => format!("Machines have it: {}.", known.join("; ")),
+    };
+    vec![form.words.clone(), format!("{} = {}", finding.motion, form.equation.text), physics]
+}
+
+/// The term as it begins a line; of a form, that it is one.
+fn heading_of(finding: &Finding) -> String {
+    match &finding.form {
+        Some(_) => format!("{} (a form, not a cause)", title(finding.term)),
+        None => title(finding.term),
+    }
 }
 
 fn place(location: &Location) -> String {

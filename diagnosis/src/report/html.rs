@@ -130,7 +130,14 @@ fn item(item: &Item) -> String {
     format!("<article>\n<h3>{}</h3>\n<dl>\n{facts}</dl>\n</article>\n", escape(&item.title))
 }
 
+/// The line of a fact that its formula takes the place of.
+const FORMULA: usize = 1;
+
 fn fact(fact: &Fact) -> String {
-    let lines: String = fact.lines.iter().map(|line| format!("<dd>{}</dd>\n", escape(line))).collect();
+    let line = |(number, line): (usize, &String)| match &fact.formula {
+        Some(formula) if number == FORMULA => format!("<dd>{formula}</dd>\n"),
+        _ => format!("<dd>{}</dd>\n", escape(line)),
+    };
+    let lines: String = fact.lines.iter().enumerate().map(line).collect();
     format!("<dt>{}</dt>\n{lines}", escape(fact.label))
 }

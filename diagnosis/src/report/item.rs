@@ -10,6 +10,8 @@ pub(super) struct Item {
 pub(super) struct Fact {
     pub(super) label: &'static str,
     pub(super) lines: Vec<String>,
+    /// A formula as MathML, which a page has in place of the second line.
+    pub(super) formula: Option<String>,
 }
 
 impl Item {
@@ -17,8 +19,16 @@ impl Item {
     pub(super) fn new(title: String, facts: impl IntoIterator<Item = (&'static str, Vec<String>)>) -> Self {
         let facts = facts.into_iter().filter_map(|(label, lines)| {
             let lines: Vec<String> = lines.into_iter().filter(|line| !line.is_empty()).collect();
-            (!lines.is_empty()).then_some(Fact { label, lines })
+            (!lines.is_empty()).then_some(Fact { label, lines, formula: None })
         });
         Self { title, facts: facts.collect() }
+    }
+
+    /// The same with a formula that a page has in place of the second line of a fact.
+    pub(super) fn with_formula(mut self, label: &str, mathml: String) -> Self {
+        if let Some(fact) = self.facts.iter_mut().find(|fact| fact.label == label) {
+            fact.formula = Some(mathml);
+        }
+        self
     }
 }

@@ -6,8 +6,10 @@ use serde::{Serialize, Serializer};
 
 use super::figure::change;
 use super::told;
+use model_dsl::notation::Formula;
+
 use crate::diagnosis::{
-    Alternative, Change, Diagnosis, Estimate, Evidence, Finding, Interval, IntervalOf, NoiseSummary,
+    Alternative, Change, Diagnosis, Estimate, Evidence, Finding, Form, Interval, IntervalOf, NoiseSummary,
     Parameter, ParameterValue, Repeatability, Repeats, Residual, Returning, SettingFinding, Summary,
     Unexplained,
 };
@@ -103,10 +105,22 @@ struct FindingJson<'d> {
     evidence: String,
     evidence_rms: EvidenceJson,
     explanation: &'d str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    form: Option<FormJson<'d>>,
     compensable: bool,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     repeats_with: Vec<RepeatsJson>,
     indistinguishable_from: Vec<AlternativeJson<'d>>,
+}
+
+/// The form of a finding that has no name of its own.
+#[derive(Serialize)]
+struct FormJson<'d> {
+    equation: &'d str,
+    latex: &'d str,
+    mathml: &'d str,
+    words: &'d str,
+    physics: &'d [&'static str],
 }
 
 /// An element of the axis that a wave repeats with.
@@ -325,10 +339,16 @@ fn finding(finding: &Finding) -> FindingJson<'_> {
         evidence: evidence(&finding.evidence),
         evidence_rms: EvidenceJson { with, without, unit },
         explanation: &finding.explanation,
+        form: finding.form.as_ref().map(form),
         compensable: finding.compensable,
         repeats_with: finding.repeats_with.iter().map(repeats).collect(),
         indistinguishable_from: alternatives(&finding.alternatives),
     }
+}
+
+fn form(form: &Form) -> FormJson<'_> {
+    let Formula { text, latex, mathml } = &form.equation;
+    FormJson { equation: text, latex, mathml, words: &form.words, physics: &form.physics }
 }
 
 fn repeats(one: &Repeats) -> RepeatsJson {

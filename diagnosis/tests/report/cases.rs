@@ -82,6 +82,7 @@ pub(crate) fn backlash(side: &'static str) -> Finding {
         repeats_with: Vec::new(),
         compensable: true,
         calibrated: CalibratedTerm::Backlash { axis: 1, lost_motion: 0.0098, wind_up: 0.0 },
+        form: None,
         sensors: Vec::new(),
     }
 }
@@ -117,6 +118,7 @@ pub(crate) fn expansion() -> Finding {
         repeats_with: Vec::new(),
         compensable: true,
         calibrated: CalibratedTerm::Expansion { axis: 0, sensor: 0, coefficient: 7.18e-6, reference: 20.0 },
+        form: None,
         sensors: vec![(0, "scale".to_owned())],
     }
 }

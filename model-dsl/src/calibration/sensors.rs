@@ -2,7 +2,7 @@
 
 use super::fields::{Fields, keys, word};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::source::Spanned;
+use crate::source::{Span, Spanned};
 use crate::yaml::Node;
 use std::collections::{BTreeMap, VecDeque};
 
@@ -39,6 +39,15 @@ impl Sensors {
     /// The sensors in an order in which each stands after those that it is derived from.
     pub fn iter(&self) -> std::slice::Iter<'_, Sensor> {
         self.list.iter()
+    }
+
+    /// Inputs of these names, in their order, each of which a term reads.
+    pub fn named<'n>(names: impl IntoIterator<Item = &'n str>) -> Self {
+        let mut sensors = Self::default();
+        for name in names {
+            sensors.reference(&Spanned::new(name.to_owned(), Span::default()));
+        }
+        sensors
     }
 
     /// How many there are, inputs and derived ones.

@@ -20,6 +20,7 @@ fn finding(with: f64, without: f64, parameters: Vec<Parameter>) -> Finding {
         repeats_with: Vec::new(),
         compensable: true,
         calibrated: CalibratedTerm::Constant { value: 1.0 },
+        form: None,
         sensors: Vec::new(),
     }
 }

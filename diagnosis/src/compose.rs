@@ -69,18 +69,31 @@ const MANY: usize = 3;
 /// Whether what is left of a channel is larger than its differences from row to row say of noise: what changes slowly is left.
 fn is_rough(study: &Study<'_>, appraisal: &Appraisal) -> bool {
     study.scenes.iter().enumerate().any(|(scene, known)| {
-        let fitted = known.fitted_rows();
         (0..known.channels.len()).any(|channel| {
-            let marks = &appraisal.outliers[scene][channel];
-            let residual = &appraisal.residuals[scene][channel];
-            let counts = |row: &usize| fitted[*row] && !marks[*row] && residual[*row].is_finite();
-            let left: Vec<f64> = (0..residual.len()).filter(counts).map(|row| residual[row]).collect();
-            let count = crate::number(left.len());
-            let variance = left.iter().map(|value| value * value).sum::<f64>() / count;
-            let white = noise::from_differences(&left).max(known.channels[channel].rounding).powi(2);
-            variance > white * (1.0 + ROUGH * (3.0 / count).sqrt())
+            let left = left(study, appraisal, scene, channel);
+            let scatter = (3.0 / crate::number(left.len())).sqrt();
+            square(&left) > white(study, &left, scene, channel).powi(2) * (1.0 + ROUGH * scatter)
         })
     })
+}
+
+/// What is left of a channel in the rows that are fitted and count.
+fn left(study: &Study<'_>, appraisal: &Appraisal, scene: usize, channel: usize) -> Vec<f64> {
+    let fitted = study.scenes[scene].fitted_rows();
+    let (marks, residual) = (&appraisal.outliers[scene][channel], &appraisal.residuals[scene][channel]);
+    let counts = |row: &usize| fitted[*row] && !marks[*row] && residual[*row].is_finite();
+    (0..residual.len()).filter(counts).map(|row| residual[row]).collect()
+}
+
+/// The white noise of a channel by the differences from row to row.
+fn white(study: &Study<'_>, left: &[f64], scene: usize, channel: usize) -> f64 {
+    let rounding = study.scenes[scene].channels[channel].rounding;
+    noise::from_differences(left).max(rounding).max(f64::MIN_POSITIVE)
+}
+
+/// The mean square.
+fn square(left: &[f64]) -> f64 {
+    left.iter().map(|value| value * value).sum::<f64>() / crate::number(left.len().max(1))
 }
 
 /// The variance of white noise by its differences scatters by the square root of 3 over their number. By chance one recording of two
@@ -206,7 +219,10 @@ fn take(
         fitted.effect.place == form.effect.place
             && fitted.effect.shape.factors() == form.effect.shape.factors()
     };
-    if fit.model.iter().any(is_form) && is_better(study, found, (&fit, &appraisal), price) {
+    let simpler = fit.model.len() + SIMPLER <= found.fit.model.len();
+    let explains =
+        simpler || !form.effect.shape.is_composed() || takes_most(study, &found.appraisal, &appraisal);
+    if fit.model.iter().any(is_form) && explains && is_better(study, found, (&fit, &appraisal), price) {
         found.fit = fit;
         found.appraisal = appraisal;
         return true;
@@ -214,6 +230,27 @@ fn take(
     study.crossings = crossings;
     found.appraisal.mark(study);
     false
+}
+
+/// A form that takes the place of so many more names than one need not take more than they do.
+const SIMPLER: usize = 2;
+
+/// The share of what is left above white noise that a form must take. What takes less leaves the better part without a name, and may be a
+/// piece of that.
+const MOST_OF_IT: f64 = 0.5;
+
+/// Whether a model takes most of what another one leaves above white noise.
+fn takes_most(study: &Study<'_>, before: &Appraisal, after: &Appraisal) -> bool {
+    let (mut taken, mut excess) = (0.0, 0.0);
+    for (scene, known) in study.scenes.iter().enumerate() {
+        for channel in 0..known.channels.len() {
+            let (old, new) = (left(study, before, scene, channel), left(study, after, scene, channel));
+            let white = white(study, &new, scene, channel).powi(2);
+            taken += (square(&old) - square(&new)) / white;
+            excess += square(&old) / white - 1.0;
+        }
+    }
+    taken > MOST_OF_IT * excess
 }
 
 /// Whether a model costs decisively less than what was found, both under the noise that it leaves, and held-out samples lie nearer to it.

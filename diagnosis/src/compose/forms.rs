@@ -79,7 +79,8 @@ pub(super) fn forms(study: &Study<'_>, found: &Found) -> Vec<Form> {
             let place = Place::Motion { motion, side };
             let shapes = plays(study, motion, &found.travels, &atoms).into_iter();
             let all = shapes.chain(products(&atoms)).chain(events(study));
-            forms.extend(all.map(|shape| one(place, shape)));
+            forms
+                .extend(all.filter(|shape| !has_a_name(study, motion, shape)).map(|shape| one(place, shape)));
         }
     }
     forms
@@ -111,6 +112,15 @@ fn names(found: &Found) -> Vec<Form> {
     open.map(|effect| Form { effect: effect.clone(), coefficients: vec![1.0] }).collect()
 }
 
+/// Whether what follows the velocity of an axis in its own motion is a loop, or a clock.
+fn has_a_name(study: &Study<'_>, motion: usize, shape: &Shape) -> bool {
+    let own = |axis: usize| study.own[axis] == Some(motion);
+    match (shape.core(), shape.factors()) {
+        (Shape::Constant, [Factor::Velocity { axis, .. } | Factor::Speed { axis, .. }]) => own(*axis),
+        _ => false,
+    }
+}
+
 fn one(place: Place, shape: Shape) -> Form {
     Form { effect: Effect { place, shape }, coefficients: vec![1.0] }
 }
@@ -123,20 +133,27 @@ fn sides(study: &Study<'_>, motion: usize) -> Vec<Side> {
     drive.into_iter().chain(outside.then_some(Side::After)).collect()
 }
 
-/// Effects that were found, times each factor. What a loop does is a matter of its states, which nothing multiplies.
+/// Effects that were found, times each factor. What a loop does is a matter of its states, which nothing multiplies; and what lies in
+/// time, as a vibration or a settling, has no factor that a state of the machine could be.
 fn of_effects(found: &Found, atoms: &Atoms) -> Vec<Form> {
     let multiplied = |fitted: &&Fitted| {
         fitted.effect.motion().is_some()
             && fitted.effect.shape.factors().is_empty()
             && !fitted.effect.shape.nonlinear_in_coefficient()
-            && !matches!(fitted.effect.shape, Shape::Constant)
+            && !matches!(
+                fitted.effect.shape,
+                Shape::Constant | Shape::Vibration { .. } | Shape::Drift { .. } | Shape::ReversalSpike { .. }
+            )
     };
     let effects = found.fit.model[found.always..].iter().filter(multiplied);
     effects
         .flat_map(|fitted| {
             // A play of the axis is multiplied anyway.
-            let multiplied = !matches!(fitted.effect.shape, Shape::Backlash { wind_up: 0.0, .. });
-            atoms.all().filter(move |_| multiplied).map(|factor| Form {
+            let is_open = move |factor: &&Factor<usize>| match fitted.effect.shape {
+                Shape::Backlash { axis, wind_up } => wind_up > 0.0 && !is_speed_of(axis, factor),
+                _ => true,
+            };
+            atoms.all().filter(is_open).map(|factor| Form {
                 effect: Effect {
                     place: fitted.effect.place,
                     shape: times(fitted.effect.shape.clone(), vec![factor.clone()]),
@@ -159,7 +176,14 @@ fn plays(study: &Study<'_>, motion: usize, travels: &[Travel], atoms: &Atoms) ->
     };
     let play = || Shape::Backlash { axis, wind_up: 0.0 };
     let zones = zones(axis, &travels[axis]);
-    atoms.all().cloned().chain(zones).map(|factor| times(play(), vec![factor])).collect()
+    let factors = atoms.all().filter(|factor| !is_speed_of(axis, factor)).cloned().chain(zones);
+    factors.map(|factor| times(play(), vec![factor])).collect()
+}
+
+/// Whether a factor is a speed of this axis. A direction times a velocity is a speed, and times a speed a velocity: a play with such a
+/// factor is that factor alone.
+fn is_speed_of(axis: usize, factor: &Factor<usize>) -> bool {
+    matches!(*factor, Factor::Velocity { axis: of, .. } | Factor::Speed { axis: of, .. } if of == axis)
 }
 
 /// Zones of a travel in which something is there, and fades to both sides.

@@ -127,7 +127,6 @@ fn every_calibration_that_comes_with_the_program_takes_a_finding_and_keeps_the_r
 fn each_finding_reads_the_sensor_of_its_name() {
     let folder = Folder::new("sensors");
     let known = "calibration: 1\nmachine: xfyz-mill\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}\n\
-                 form: None,
                  sensors: {body: {mean: [a, b]}}\n\
                  errors: {EZZ: [{growth: {sensor: body, coefficient: 1 um/K, reference: 20 degC}}]}\n";
     fs::write(folder.join("known.yaml"), known).unwrap();

@@ -254,7 +254,7 @@ const UNSEEN_MOTION: f64 = 8.0;
 fn place(study: &Study<'_>, motion: usize, shape: &Shape) -> f64 {
     let known = &study.equations.motions[motion];
     match shape {
-        Shape::Constant if known.alignment => 0.0,
+        Shape::Constant | Shape::Step { .. } if known.alignment => 0.0,
         _ if known.alignment => 0.8,
         _ if study.own.contains(&Some(motion)) => 0.0,
         _ if known.angular => 0.6,

@@ -13,6 +13,7 @@
 //!
 //! The price of a form is that of all terms and all forms, and 2 for each of its factors.
 
+mod events;
 mod forms;
 
 use crate::appraisal::Appraisal;
@@ -24,7 +25,9 @@ use crate::fit::Fit;
 use crate::model::{Effect, Fitted, Model};
 use crate::noise;
 use crate::study::Study;
+use crate::terms::Shape;
 use crate::unsteady;
+use events::Event;
 use forms::Form;
 
 /// The most rounds. Each takes one effect in; with more of them the recordings show a machine of which too much is unknown for any form
@@ -44,9 +47,12 @@ pub(crate) fn compose(study: &mut Study<'_>, found: &mut Found) {
             return;
         }
         let forms = forms::forms(study, found);
-        let price = FormPrice::new(found, forms.len());
-        let tried = best(study, found, forms, &price);
-        let taken = tried.into_iter().any(|(form, kept)| take(study, found, (&form, &kept), &price));
+        let price = FormPrice::new(found, forms.len() + events::count(study));
+        let contest = contest(study, found, &forms);
+        let happened = events::events(study, found);
+        let tried = best(study, found, &forms, (&contest, &price));
+        let taken = tried.into_iter().any(|(form, kept)| take(study, found, (&form, &kept), &price))
+            || happened.into_iter().any(|event| take_event(study, found, event, &price));
         if !taken {
             return;
         }
@@ -123,8 +129,12 @@ impl FormPrice {
 
 /// The forms that lower the cost most, the cheapest first, each with its amount and with the numbers of the effects that are kept beside
 /// it.
-fn best(study: &Study<'_>, found: &Found, forms: Vec<Form>, price: &FormPrice) -> Vec<(Fitted, Vec<usize>)> {
-    let contest = contest(study, found, &forms);
+fn best(
+    study: &Study<'_>,
+    found: &Found,
+    forms: &[Form],
+    (contest, price): (&Contest, &FormPrice),
+) -> Vec<(Fitted, Vec<usize>)> {
     let price = |form: &Form| price.of(study, found, &form.effect, contest.samples);
     let promises = contest.promises();
     let known = contest.outcome(None).cost;
@@ -186,7 +196,7 @@ fn columns(
 fn refined(study: &Study<'_>, found: &Found, form: &Form) -> (Fitted, Vec<usize>) {
     let mut variants = vec![form.clone()];
     variants.extend(
-        forms::neighbours(study, &form.effect.shape)
+        forms::neighbours(&form.effect.shape)
             .into_iter()
             .map(|shape| Form { effect: Effect { shape, ..form.effect }, ..form.clone() }),
     );
@@ -211,18 +221,37 @@ fn take(
         return false;
     }
     model.push(form.clone());
-    let crossings = study.crossings.clone();
-    let conditions = found.conditions();
-    let fit = conditions.refine(study, model);
-    let (fit, appraisal) = engine::upheld(study, fit, &conditions);
     let is_form = |fitted: &Fitted| {
         fitted.effect.place == form.effect.place
             && fitted.effect.shape.factors() == form.effect.shape.factors()
     };
+    take_model(study, found, model, (&is_form, form.effect.shape.is_composed()), price)
+}
+
+/// Fits a model in which something happened, and takes it over on the same terms.
+fn take_event(study: &mut Study<'_>, found: &mut Found, event: Event, price: &FormPrice) -> bool {
+    let is_step = |fitted: &Fitted| matches!(fitted.effect.shape, Shape::Step { .. });
+    take_model(study, found, event.model, (&is_step, true), price)
+}
+
+/// Fits a model and takes it over where what is wanted of it stands up and all of it is better. What is composed must also take most of
+/// what was left, or the place of several names.
+fn take_model(
+    study: &mut Study<'_>,
+    found: &mut Found,
+    model: Model,
+    (is_wanted, is_composed): (&dyn Fn(&Fitted) -> bool, bool),
+    price: &FormPrice,
+) -> bool {
+    let crossings = study.crossings.clone();
+    let conditions = found.conditions();
+    let fit = conditions.refine(study, model);
+    let (fit, appraisal) = engine::upheld(study, fit, &conditions);
     let simpler = fit.model.len() + SIMPLER <= found.fit.model.len();
-    let explains =
-        simpler || !form.effect.shape.is_composed() || takes_most(study, &found.appraisal, &appraisal);
-    if fit.model.iter().any(is_form) && explains && is_better(study, found, (&fit, &appraisal), price) {
+    if fit.model.iter().any(is_wanted)
+        && (simpler || !is_composed || takes_most(study, &found.appraisal, &appraisal))
+        && is_better(study, found, (&fit, &appraisal), price)
+    {
         found.fit = fit;
         found.appraisal = appraisal;
         return true;

@@ -8,6 +8,7 @@ use model_dsl::notation;
 
 use crate::alternatives::{factor_state, listed};
 use crate::diagnosis::Form;
+use crate::legs;
 use crate::model::{Effect, Model};
 use crate::study::Study;
 use crate::terms::Shape;
@@ -24,7 +25,7 @@ pub(crate) fn form(
     let words = Words { study, motion, plain: plain(model, effect) };
     let sentence = match calibrated {
         CalibratedTerm::Step { time, size } => {
-            format!("A step of {} at {}.", words.amount(*size), seconds(*time))
+            format!("A step of {} {}.", words.amount(*size), when(study, *time))
         }
         _ => words.sentence(effect, calibrated),
     };
@@ -33,6 +34,19 @@ pub(crate) fn form(
     let sensors = Sensors::named(study.sensors.iter().map(String::as_str));
     let equation = notation::formula(calibrated, motion, &names, &sensors);
     Some(Form { equation, words: sentence, physics: physics.collect() })
+}
+
+/// When something happened: between which rows, where these lie apart.
+fn when(study: &Study<'_>, time: f64) -> String {
+    let Some(scene) = study.scenes.first() else { return format!("at {}", seconds(time)) };
+    let times = &scene.given.time;
+    let after = times.partition_point(|known| *known < time);
+    match after.checked_sub(1).and_then(|before| times.get(before).zip(times.get(after))) {
+        Some((before, after)) if after - before > legs::GAP * scene.given.step => {
+            format!("between {} and {}", seconds(*before), seconds(*after))
+        }
+        _ => format!("at {}", seconds(time)),
+    }
 }
 
 /// The linear number of the same term without factors beside it, which adds up with it.

@@ -74,14 +74,10 @@ pub(super) fn forms(study: &Study<'_>, found: &Found) -> Vec<Form> {
     let atoms = Atoms::new(study, &found.travels);
     let mut forms = names(found);
     forms.extend(of_effects(found, &atoms));
-    for motion in 0..study.equations.motions.len() {
-        for side in sides(study, motion) {
-            let place = Place::Motion { motion, side };
-            let shapes = plays(study, motion, &found.travels, &atoms).into_iter();
-            let all = shapes.chain(products(&atoms)).chain(events(study));
-            forms
-                .extend(all.filter(|shape| !has_a_name(study, motion, shape)).map(|shape| one(place, shape)));
-        }
+    for place in places(study) {
+        let Place::Motion { motion, .. } = place else { continue };
+        let shapes = plays(study, motion, &found.travels, &atoms).into_iter().chain(products(&atoms));
+        forms.extend(shapes.filter(|shape| !has_a_name(study, motion, shape)).map(|shape| one(place, shape)));
     }
     forms
 }
@@ -91,17 +87,28 @@ fn span(study: &Study<'_>) -> f64 {
     study.scenes.iter().map(|scene| scene.observed).fold(0.0, f64::max)
 }
 
-/// What happens once. Time is that of one recording: several have none in common.
-fn events(study: &Study<'_>) -> Vec<Shape> {
+/// From one event of the grid to the next, s.
+pub(super) fn distance(study: &Study<'_>) -> f64 {
+    span(study) / EVENTS
+}
+
+/// The moments at which something may have happened. Time is that of one recording: several have none in common.
+pub(super) fn moments(study: &Study<'_>) -> Vec<f64> {
     let fitted = study.scenes.iter().filter(|scene| scene.blocks.iter().any(|block| !block.held_out));
     if fitted.count() > 1 {
         return Vec::new();
     }
-    let step = span(study) / EVENTS;
+    let step = distance(study);
     std::iter::successors(Some(step), |time| Some(time + step))
         .take_while(|time| *time < span(study))
-        .map(|time| Shape::Step { time })
         .collect()
+}
+
+/// Where an effect may come in: each error motion, on each side that is recorded.
+pub(super) fn places(study: &Study<'_>) -> Vec<Place> {
+    let of_motion =
+        |motion: usize| sides(study, motion).into_iter().map(move |side| Place::Motion { motion, side });
+    (0..study.equations.motions.len()).flat_map(of_motion).collect()
 }
 
 /// The names of the vocabulary that have one column. Beside a form that has taken the place of others, one of them may be right that was
@@ -151,6 +158,10 @@ fn of_effects(found: &Found, atoms: &Atoms) -> Vec<Form> {
             // A play of the axis is multiplied anyway.
             let is_open = move |factor: &&Factor<usize>| match fitted.effect.shape {
                 Shape::Backlash { axis, wind_up } => wind_up > 0.0 && !is_speed_of(axis, factor),
+                // Powers of a position times a position are products of positions.
+                Shape::Polynomial { .. } | Shape::Coupling { .. } => {
+                    !matches!(factor, Factor::Position { .. })
+                }
                 _ => true,
             };
             atoms.all().filter(is_open).map(|factor| Form {
@@ -322,16 +333,12 @@ fn range<'r>(values: impl Iterator<Item = &'r f64>) -> Within {
 /// value of the grid.
 const STEPS: [f64; 10] = [0.4, 0.5, 0.6, 0.75, 0.87, 1.15, 1.35, 1.65, 2.0, 2.5];
 
-/// How far the ends of a zone and the time of an event are moved, as shares of the distance to the next ones of the grid.
+/// How far a zone is moved, as shares of its half width.
 const MOVES: [f64; 8] = [-0.5, -0.35, -0.2, -0.1, 0.1, 0.2, 0.35, 0.5];
 
 /// The same shape with other values of the number that was searched for on a grid.
-pub(super) fn neighbours(study: &Study<'_>, shape: &Shape) -> Vec<Shape> {
+pub(super) fn neighbours(shape: &Shape) -> Vec<Shape> {
     match shape {
-        Shape::Step { time } => {
-            let step = span(study) / EVENTS;
-            MOVES.map(|share| Shape::Step { time: time + share * step }).to_vec()
-        }
         Shape::Times { core, factors } => factors
             .iter()
             .enumerate()

@@ -40,6 +40,15 @@ const COMPARED: usize = 24;
 /// How many forms get a fit of their own: several have nearly the same column, and the fit tells which is right.
 const TRIALS: usize = 3;
 
+/// A form that is to be fitted.
+struct Trial {
+    form: Fitted,
+    /// What is fitted beside it, and stays if it stands up.
+    beside: Option<Effect>,
+    /// The effects found that are kept, by their numbers.
+    kept: Vec<usize>,
+}
+
 /// Puts forms in the place of what imitates them, as long as one makes all of it better.
 pub(crate) fn compose(study: &mut Study<'_>, found: &mut Found) {
     for _ in 0..MOST {
@@ -51,7 +60,7 @@ pub(crate) fn compose(study: &mut Study<'_>, found: &mut Found) {
         let contest = contest(study, found, &forms);
         let happened = events::events(study, found);
         let tried = best(study, found, &forms, (&contest, &price));
-        let taken = tried.into_iter().any(|(form, kept)| take(study, found, (&form, &kept), &price))
+        let taken = tried.into_iter().any(|trial| take(study, found, &trial, &price))
             || happened.into_iter().any(|event| take_event(study, found, event, &price));
         if !taken {
             return;
@@ -70,7 +79,7 @@ fn is_open(study: &Study<'_>, found: &Found) -> bool {
 }
 
 /// So many names may be one form that each of them imitates in part.
-const MANY: usize = 3;
+const MANY: usize = 2;
 
 /// Whether what is left of a channel is larger than its differences from row to row say of noise: what changes slowly is left.
 fn is_rough(study: &Study<'_>, appraisal: &Appraisal) -> bool {
@@ -134,7 +143,7 @@ fn best(
     found: &Found,
     forms: &[Form],
     (contest, price): (&Contest, &FormPrice),
-) -> Vec<(Fitted, Vec<usize>)> {
+) -> Vec<Trial> {
     let price = |form: &Form| price.of(study, found, &form.effect, contest.samples);
     let promises = contest.promises();
     let known = contest.outcome(None).cost;
@@ -193,7 +202,7 @@ fn columns(
 }
 
 /// A form with the best value of its factor's number, its amount, and the effects that are kept beside it.
-fn refined(study: &Study<'_>, found: &Found, form: &Form) -> (Fitted, Vec<usize>) {
+fn refined(study: &Study<'_>, found: &Found, form: &Form) -> Trial {
     let mut variants = vec![form.clone()];
     variants.extend(
         forms::neighbours(&form.effect.shape)
@@ -204,23 +213,25 @@ fn refined(study: &Study<'_>, found: &Found, form: &Form) -> (Fitted, Vec<usize>
     let outcomes = (0..variants.len()).map(|number| (number, contest.outcome(Some(number))));
     let best = outcomes.min_by(|(_, a), (_, b)| a.cost.total_cmp(&b.cost));
     let (number, outcome) = best.unwrap_or_else(|| (0, contest.outcome(None)));
-    (variants[number].fitted(outcome.amount), outcome.kept)
+    let (form, beside) = (variants[number].fitted(outcome.amount), form.beside.clone());
+    Trial { form, beside, kept: outcome.kept }
 }
 
 /// Fits a form beside what is kept, and takes it over where all of it is better: it stands up before the judge, costs decisively less
 /// under the noise that it leaves, and held-out samples lie nearer.
-fn take(
-    study: &mut Study<'_>,
-    found: &mut Found,
-    (form, kept): (&Fitted, &[usize]),
-    price: &FormPrice,
-) -> bool {
+fn take(study: &mut Study<'_>, found: &mut Found, trial: &Trial, price: &FormPrice) -> bool {
+    let Trial { form, beside, kept } = trial;
     let mut model: Model = kept.iter().map(|number| found.fit.model[*number].clone()).collect();
     let always = kept.iter().filter(|number| **number < found.always).count();
     if always < found.always {
         return false;
     }
     model.push(form.clone());
+    model.extend(
+        beside
+            .iter()
+            .map(|effect| Fitted { effect: effect.clone(), coefficients: vec![0.0; effect.shape.columns()] }),
+    );
     let is_form = |fitted: &Fitted| {
         fitted.effect.place == form.effect.place
             && fitted.effect.shape.factors() == form.effect.shape.factors()
@@ -261,8 +272,8 @@ fn take_model(
     false
 }
 
-/// A form that takes the place of so many more names than one need not take more than they do.
-const SIMPLER: usize = 2;
+/// A form that makes a model simpler by so many effects need not take more than they do.
+const SIMPLER: usize = 1;
 
 /// The share of what is left above white noise that a form must take. What takes less leaves the better part without a name, and may be a
 /// piece of that.

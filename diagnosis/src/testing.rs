@@ -130,11 +130,15 @@ pub(crate) fn together(known: &Calibration, more: &Calibration) -> Calibration {
     let mut terms = Vec::new();
     for listed in &more.motions {
         for term in &listed.terms {
+            let mut known = |number: usize| sum.sensor(&more.sensors.iter().nth(number).unwrap().name.value);
             let mut term = term.value.clone();
             if let Some(number) = term.sensor() {
-                let name = &more.sensors.iter().nth(number).unwrap().name.value;
-                set_sensor(&mut term, sum.sensor(name));
+                set_sensor(&mut term, known(number));
             }
+            let term = term.with_factors(|factor| match factor.sensor() {
+                Some(number) => factor.with_sensor(known(number)),
+                None => factor,
+            });
             terms.push((listed.motion, term));
         }
     }

@@ -47,6 +47,8 @@ const ORDER: u8 = 3;
 pub(super) struct Form {
     pub(super) effect: Effect,
     pub(super) coefficients: Vec<f64>,
+    /// An effect that is fitted beside it, and stays if it stands up.
+    pub(super) beside: Option<Effect>,
 }
 
 impl Form {
@@ -74,6 +76,7 @@ pub(super) fn forms(study: &Study<'_>, found: &Found) -> Vec<Form> {
     let atoms = Atoms::new(study, &found.travels);
     let mut forms = names(found);
     forms.extend(of_effects(found, &atoms));
+    forms.extend(beats(found, &atoms));
     for place in places(study) {
         let Place::Motion { motion, .. } = place else { continue };
         let shapes = plays(study, motion, &found.travels, &atoms).into_iter().chain(products(&atoms));
@@ -116,7 +119,7 @@ pub(super) fn places(study: &Study<'_>) -> Vec<Place> {
 fn names(found: &Found) -> Vec<Form> {
     let pool = found.pool.iter().map(|kin| &kin.effect).filter(|effect| effect.shape.columns() == 1);
     let open = pool.filter(|effect| effect.motion().is_some() && !effect.shape.nonlinear_in_coefficient());
-    open.map(|effect| Form { effect: effect.clone(), coefficients: vec![1.0] }).collect()
+    open.map(|effect| Form { effect: effect.clone(), coefficients: vec![1.0], beside: None }).collect()
 }
 
 /// Whether what follows the velocity of an axis in its own motion is a loop, or a clock.
@@ -129,7 +132,7 @@ fn has_a_name(study: &Study<'_>, motion: usize, shape: &Shape) -> bool {
 }
 
 fn one(place: Place, shape: Shape) -> Form {
-    Form { effect: Effect { place, shape }, coefficients: vec![1.0] }
+    Form { effect: Effect { place, shape }, coefficients: vec![1.0], beside: None }
 }
 
 /// Where effects of a motion may come in.
@@ -170,9 +173,50 @@ fn of_effects(found: &Found, atoms: &Atoms) -> Vec<Form> {
                     shape: times(fitted.effect.shape.clone(), vec![factor.clone()]),
                 },
                 coefficients: fitted.coefficients.clone(),
+                beside: None,
             })
         })
         .collect()
+}
+
+/// Two waves of nearly the same period along one axis, of opposite phases, as one wave that grows along the axis: over less than a beat
+/// they are the same.
+fn beats(found: &Found, atoms: &Atoms) -> Vec<Form> {
+    let waves: Vec<&Fitted> = found.fit.model[found.always..]
+        .iter()
+        .filter(|fitted| matches!(fitted.effect.shape, Shape::Cyclic { .. }))
+        .collect();
+    let pairs = waves.iter().enumerate().flat_map(|(number, one)| {
+        waves.iter().skip(number + 1).filter_map(|other| beat(one, other, &found.travels, atoms))
+    });
+    pairs.collect()
+}
+
+/// The wave that grows along its axis of which two waves are made; `None` where they are two.
+fn beat(one: &Fitted, other: &Fitted, travels: &[Travel], atoms: &Atoms) -> Option<Form> {
+    let (&Shape::Cyclic { axis, period, center }, &Shape::Cyclic { axis: of, period: second, .. }) =
+        (&one.effect.shape, &other.effect.shape)
+    else {
+        return None;
+    };
+    let (near, same) = ((1.0 / period - 1.0 / second).abs(), one.effect.place == other.effect.place);
+    if axis != of || !same || near * travels[axis].range() > 1.0 {
+        return None;
+    }
+    let phase = |fitted: &Fitted| match fitted.coefficients.as_slice() {
+        [sine, cosine] => Some(cosine.atan2(*sine)),
+        _ => None,
+    };
+    let between = 0.5 * (phase(one)? + phase(other)?);
+    let shape = Shape::Cyclic { axis, period: 2.0 / (1.0 / period + 1.0 / second), center };
+    let along = |factor: &&Factor<usize>| factor.axis() == Some(axis);
+    let position = atoms.positions.iter().find(along)?.clone();
+    let place = one.effect.place;
+    Some(Form {
+        effect: Effect { place, shape: times(shape.clone(), vec![position]) },
+        coefficients: vec![between.cos(), between.sin()],
+        beside: Some(Effect { place, shape }),
+    })
 }
 
 fn times(core: Shape, factors: Vec<Factor<usize>>) -> Shape {

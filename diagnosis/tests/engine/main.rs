@@ -16,6 +16,7 @@ mod confusions;
 mod drives;
 mod each_term;
 mod evidence;
+mod forms;
 mod invariances;
 mod large;
 mod pictures;

@@ -1,0 +1,161 @@
+//! Forms for which no term has a name: planted in the exact machine, and found with their numbers.
+//!
+//! In: recordings in which a term is multiplied with states of the machine, or in which something happened once. Out: the form, its
+//! interval, and what is said of it.
+
+use diagnosis::diagnosis::{Diagnosis, Estimate, Finding, Verdict};
+use model_dsl::calibration::Factor;
+use simulation::Path;
+use simulation::path::Shape;
+
+use crate::common::*;
+use crate::recording::Recording;
+use crate::testing::*;
+
+/// Standard deviation of the noise, mm.
+const SIGMA: f64 = 0.0005;
+
+fn runs(path: Path, runs: u32) -> Path {
+    Path { runs, ..path }
+}
+
+/// The diagnosis of a machine with concealed errors below those of a mill, or below none, on paths each of which is a recording.
+fn concealed(machine: &str, known: &str, more: &str, paths: Vec<Path>, directions: &str) -> Diagnosis {
+    let bench = Bench::of(machine);
+    let known = bench.calibration(known);
+    let truth = together(&known, &bench.calibration(more));
+    let record = |(seed, path): (u64, Path)| {
+        let mut scenario = noisy(path, position(directions), SIGMA, seed);
+        if more.contains("scale") {
+            scenario.temperatures = vec![warming("scale", 6.0, 300.0)];
+        }
+        bench.record(&truth, &scenario)
+    };
+    let recordings: Vec<Recording> = (7..).zip(paths).map(record).collect();
+    diagnosed(&bench, &known, &recordings.iter().collect::<Vec<_>>())
+}
+
+/// The finding that is a form.
+#[track_caller]
+fn composed(diagnosis: &Diagnosis) -> &Finding {
+    let mut forms = diagnosis.findings.iter().filter(|finding| finding.form.is_some());
+    let first = forms.next();
+    assert_eq!(forms.count(), 0, "{:?}", found(diagnosis));
+    first.unwrap_or_else(|| panic!("no form in {:?}, {:?}", found(diagnosis), diagnosis.unexplained))
+}
+
+#[track_caller]
+fn holds(estimate: &Estimate, truth: f64) {
+    let away = off(estimate, truth);
+    assert!(away < 2.0, "{truth} is {away} half widths from {estimate:?}");
+}
+
+fn there_and_back() -> Path {
+    Path { pause: 20.0, ..runs(path(line(0, 0.0, 300.0), 20.0, 8.0), 6) }
+}
+
+#[test]
+fn a_play_that_grows_along_the_travel() {
+    let more = "{EXX: [{backlash: {lost_motion: 3 um}}, {backlash: {lost_motion: 40 nm/mm, times: [{position: X}]}}]}";
+    let diagnosis = concealed("FX", "{}", more, vec![there_and_back()], "x");
+    assert_eq!(found(&diagnosis), ["EXX backlash", "EXX backlash"]);
+    let form = composed(&diagnosis);
+    holds(&numbers(form, "lost_motion")[0], 4e-5);
+    assert!(matches!(form.calibrated.factors(), [Factor::Position { axis: 0, power: 1, .. }]), "{form:?}");
+    let told = form.form.as_ref().unwrap();
+    // With the play beside it: 3 um where X is 0, 15 um at 300 mm.
+    assert!(told.words.starts_with("A backlash of X that grows from 3."), "{}", told.words);
+    assert!(told.words.contains("to 15.") || told.words.contains("to 14."), "{}", told.words);
+    assert!(told.equation.text.contains("d_X * [x]"), "{}", told.equation.text);
+    let plain = diagnosis.findings.iter().find(|finding| finding.form.is_none()).unwrap();
+    holds(&numbers(plain, "lost_motion")[0], 0.003);
+}
+
+#[test]
+fn a_play_that_follows_a_temperature() {
+    let more =
+        "{EXX: [{backlash: {lost_motion: 2 um/K, times: [{temperature: scale, reference: 20 degC}]}}]}";
+    let diagnosis = concealed("FX", "{}", more, vec![there_and_back()], "x");
+    assert_eq!(found(&diagnosis), ["EXX backlash"]);
+    let form = composed(&diagnosis);
+    holds(&numbers(form, "lost_motion")[0], 0.002);
+    assert_eq!(form.sensors, [(0, "scale".to_owned())]);
+    assert!(form.compensable);
+}
+
+#[test]
+fn a_wave_that_grows_along_the_travel() {
+    let more =
+        "{EXX: [{cyclic: {period: 10 mm, amplitude: 20 nm/mm, phase: 34 deg, times: [{position: X}]}}]}";
+    // At one speed a wave that grows along the travel is one that grows in time.
+    let fine = |feed: f64| runs(path(line(0, 0.0, 200.0), feed, 20.0), 3);
+    let diagnosis = concealed("FX", "{}", more, vec![fine(20.0), fine(33.0)], "x");
+    assert_eq!(found(&diagnosis), ["EXX cyclic"]);
+    let form = composed(&diagnosis);
+    holds(&numbers(form, "amplitude")[0], 2e-5);
+    holds(&numbers(form, "period")[0], 10.0);
+    holds(&numbers(form, "phase")[0], 34_f64.to_radians());
+}
+
+#[test]
+fn an_error_that_is_the_product_of_two_positions() {
+    let grid = Shape::Grid { plane: [0, 1], from: [20.0, 20.0], to: [420.0, 240.0], lines: 6 };
+    let more = "{EYX: [{product: {value: 90 um/m^2, times: [{position: X}, {position: Y}]}}]}";
+    let path = Path { at: vec![vec![250.0], vec![140.0], vec![-50.0]], ..runs(path(grid, 50.0, 5.0), 3) };
+    let diagnosis = concealed("xyfz-mill", MILL, more, vec![path], "xyz");
+    let form = composed(&diagnosis);
+    assert_eq!(diagnosis.findings.len(), 1, "{:?}", found(&diagnosis));
+    assert!(names(form).contains(&"EYX product".to_owned()), "{:?}", names(form));
+    // Under another name of the same it has the other sign.
+    let mut value = numbers(form, "value")[0].clone();
+    if value.value < 0.0 {
+        value = Estimate { value: -value.value, ci95: (-value.ci95.1, -value.ci95.0), ..value };
+    }
+    holds(&value, 9e-8);
+    assert_eq!(form.calibrated.factors().len(), 2);
+}
+
+#[test]
+fn a_screw_that_its_own_motion_warms() {
+    let more = "{EXX: [{product: {value: 11e-6 1/K, times: [{warmth: X, time_constant: 200 s, rise: 0.08 K.s/mm}, {position: X}]}}]}";
+    let long = runs(path(line(0, 0.0, 300.0), 30.0, 3.0), 24);
+    let diagnosis = concealed("FX", "{}", more, vec![long], "x");
+    let form = composed(&diagnosis);
+    assert_eq!(diagnosis.findings.len(), 1, "{:?}", found(&diagnosis));
+    // What a kelvin does and how many kelvins a speed makes are one number.
+    holds(&numbers(form, "value")[0], 11e-6 * 0.08);
+    let warmth = form.calibrated.factors().iter().find_map(|factor| match factor {
+        Factor::Warmth { time_constant, .. } => Some(*time_constant),
+        _ => None,
+    });
+    assert!(warmth.is_some_and(|time_constant| (time_constant - 200.0).abs() < 60.0), "{form:?}");
+}
+
+#[test]
+fn a_crash_is_dated_and_told_from_a_drift() {
+    let grid = Shape::Grid { plane: [0, 1], from: [20.0, 20.0], to: [420.0, 240.0], lines: 4 };
+    let path = Path { at: vec![vec![250.0], vec![140.0], vec![-50.0]], ..runs(path(grid, 50.0, 5.0), 4) };
+    let more = "{EC0Y: [{step: {time: 70 s, size: 60 urad}}], EXX: [{step: {time: 70 s, size: 8 um}}]}";
+    let diagnosis = concealed("xyfz-mill", MILL, more, vec![path], "xyz");
+    assert_eq!(diagnosis.findings.len(), 2, "{:?}", found(&diagnosis));
+    let squareness = called(&diagnosis, "EC0Y step");
+    holds(&numbers(squareness, "size")[0], 60e-6);
+    let zero = called(&diagnosis, "EXX step");
+    holds(&numbers(zero, "size")[0], 0.008);
+    for finding in [squareness, zero] {
+        assert!(!finding.compensable);
+        let words = &finding.form.as_ref().unwrap().words;
+        // To the row: five a second.
+        assert!(words.contains("70.") || words.contains("69.9"), "{words}");
+    }
+}
+
+#[test]
+fn what_has_a_name_is_told_by_it() {
+    // Two plays, and a scale that follows a temperature: nothing is composed where the vocabulary reaches the noise.
+    let more = "{EXX: [{backlash: {lost_motion: 6 um}}, {expansion: {sensor: scale, coefficient: 5 um/m/K, reference: 20 degC}}]}";
+    let diagnosis = concealed("FX", "{}", more, vec![there_and_back()], "x");
+    assert!(diagnosis.findings.iter().all(|finding| finding.form.is_none()), "{:?}", found(&diagnosis));
+    let quiet = concealed("FX", "{}", "{}", vec![there_and_back()], "x");
+    assert_eq!(quiet.verdict, Verdict::Adequate);
+}

@@ -5,14 +5,17 @@
 
 use abbe_generated::head_table_5axis::{Axes, Constants, Machine, Motions};
 use abbe_runtime::{
-    AxisMemory, Compensator, Direction, DirectionTracker, ErrorMotion, Input, Memory, Sample, State,
-    Supervisor, Table, Term, TermState, Values, Work, states_needed,
+    AxisMemory, Compensator, Direction, DirectionTracker, ErrorMotion, Factor, Input, Memory, Sample, State,
+    Supervisor, Table, Term, TermState, Values, Within, Work, states_needed,
 };
 
 const CURVE: [f64; 4] = [0.0, 2e-3, 5e-3, 1e-3];
 
-/// A term of every kind on X, which its temperature reads too.
-fn terms() -> [Term<'static>; 10] {
+/// How many terms and factors there are.
+const TERMS: usize = 21;
+
+/// A term of every kind on X, which its temperature reads too, and behind every factor a constant.
+fn terms() -> [Term<'static>; TERMS] {
     let (axis, sensor) = (0, 0);
     let directed = Values::Directed { forward: &CURVE, reverse: &CURVE };
     [
@@ -26,6 +29,22 @@ fn terms() -> [Term<'static>; 10] {
         Term::Expansion { axis, sensor, coefficient: 1e-5, reference: 20.0 },
         Term::Growth { sensor, coefficient: 1e-3, reference: 20.0, time_constant: 600.0 },
         Term::Lag { axis, gain: 30.0 },
+        Term::Factor(Factor::Position { axis, power: 2, within: Within { from: 0.0, to: 3.0 } }),
+        Term::Factor(Factor::Direction { axis }),
+        Term::Factor(Factor::Velocity { axis, within: Within { from: -1.0, to: 1.0 } }),
+        Term::Factor(Factor::Speed { axis, within: Within { from: 0.0, to: 1.0 } }),
+        Term::Factor(Factor::Fading { axis, over: 100.0 }),
+        Term::Factor(Factor::Temperature {
+            sensor,
+            reference: 20.0,
+            time_constant: 9.0,
+            within: Within::EVERYWHERE,
+        }),
+        Term::Factor(Factor::Play { sensor, reference: 20.0, width: 0.5 }),
+        Term::Factor(Factor::Warmth { axis, time_constant: 9.0, rise: 0.01 }),
+        Term::Factor(Factor::Turn { axis, period: 10.0, phase: 0.0 }),
+        Term::Factor(Factor::Curve { axis, table: Table::at(&[0.0, 50.0, 80.0, 300.0], directed).unwrap() }),
+        Term::Constant { value: 1e-6 },
     ]
 }
 
@@ -45,7 +64,7 @@ fn a_servo_cycle_asks_for_no_memory() {
 fn run(machine: &Machine, terms: &[Term<'_>]) -> u32 {
     let mut motions = [ErrorMotion::default(); Motions::NAMES.len()];
     motions[0] = ErrorMotion { terms };
-    let mut states = [TermState::default(); 10];
+    let mut states = [TermState::default(); TERMS];
     assert_eq!(states_needed(&motions), states.len());
     let (mut directions, mut values) = ([[0.0; 3]; Axes::NAMES.len()], [0.0; Motions::NAMES.len()]);
     let work = Work { directions: &mut directions, motions: &mut values, travel: &mut [] };

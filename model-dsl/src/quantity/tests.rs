@@ -68,6 +68,18 @@ fn ratios_are_counted_out() {
 }
 
 #[test]
+fn products_stand_above_the_line() {
+    close("20 mK.s/mm", 0.02, "a time temperature per length");
+    close("20 K*s/mm", 20.0, "a time temperature per length");
+    close("3 um.s", 3e-3, "a length time");
+    close("2 N . m", 2000.0, "a length force");
+    // Only there: what follows a line is divided by, and a product of it would be read in two ways.
+    assert_eq!(parse_unit("um/N.K").expect_err("no unit").code, "E0304");
+    assert_eq!(parse_unit("um.").expect_err("no unit").code, "E0305");
+    assert_eq!(parse_unit(".s").expect_err("no unit").code, "E0305");
+}
+
+#[test]
 fn temperatures_alone_know_their_zero() {
     assert_eq!(value("20 degC").0, 20.0);
     assert_eq!(value("68 degF").0, 20.0);

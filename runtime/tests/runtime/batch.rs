@@ -4,8 +4,8 @@
 //! other.
 
 use abbe_runtime::{
-    Batch, BatchWork, Compensator, Convergence, Direction, ErrorMotion, Input, Kinematics, Lanes, Limits,
-    Outcome, Real, Refusal, Sample, Table, Term, TermState, Values,
+    Batch, BatchWork, Compensator, Convergence, Direction, ErrorMotion, Factor, Input, Kinematics, Lanes,
+    Limits, Outcome, Real, Refusal, Sample, Table, Term, TermState, Values, Within,
 };
 use proptest::prelude::*;
 
@@ -222,14 +222,43 @@ impl Plan {
             11 => Term::Growth { sensor: 0, coefficient: 0.1 * a, reference: 20.0, time_constant: 0.0 },
             12 => Term::Growth { sensor: 1, coefficient: 0.1 * a, reference: 20.0, time_constant: self.time },
             13 if ramps => Term::Backlash { axis, lost_motion: a, wind_up: 0.0, ramp: self.time },
+            14..24 => Term::Factor(self.factor(axis)),
             _ => Term::Lag { axis, gain: 1000.0 },
+        }
+    }
+}
+
+impl Plan {
+    /// A factor, not far above 1, so that commands are found.
+    fn factor(&self, axis: usize) -> Factor<'_> {
+        let [a, b, ..] = self.numbers;
+        let within = Within { from: -1.0, to: 1.0 };
+        match self.kind {
+            14 => Factor::Position { axis, power: 1, within },
+            15 => Factor::Position { axis, power: 3, within },
+            16 => Factor::Direction { axis },
+            17 => Factor::Velocity { axis, within },
+            18 => Factor::Speed { axis, within: Within { from: 0.0, to: 1.0 } },
+            19 => Factor::Fading { axis, over: 2.0 },
+            20 => {
+                let time_constant = if a < 0.0 { 0.0 } else { self.time };
+                Factor::Temperature {
+                    sensor: 1,
+                    reference: 20.0,
+                    time_constant,
+                    within: Within { from: 19.5, to: 21.0 },
+                }
+            }
+            21 => Factor::Play { sensor: 0, reference: 20.0, width: self.time },
+            22 => Factor::Warmth { axis, time_constant: self.time, rise: 0.1 },
+            _ => Factor::Turn { axis, period: 30.0, phase: 100.0 * b },
         }
     }
 }
 
 fn plan() -> impl Strategy<Value = Plan> {
     let numbers = prop::array::uniform6(-0.01..0.01_f64);
-    (0..15_u8, 0..4_usize, numbers, 0.01..1.0_f64).prop_map(|(kind, axis, numbers, time)| Plan {
+    (0..25_u8, 0..4_usize, numbers, 0.01..1.0_f64).prop_map(|(kind, axis, numbers, time)| Plan {
         kind,
         axis,
         numbers,
@@ -287,6 +316,14 @@ fn setting() -> impl Strategy<Value = Setting> {
     })
 }
 
+/// Terms of which no factor is the last one.
+fn closed(mut terms: Vec<Term<'_>>) -> Vec<Term<'_>> {
+    if matches!(terms.last(), Some(Term::Factor(_))) {
+        terms.push(Term::Constant { value: 0.003 });
+    }
+    terms
+}
+
 /// Hands the terms of plans to a test as error motions.
 fn planned<R>(
     plans: &[Vec<Plan>],
@@ -294,8 +331,11 @@ fn planned<R>(
     ramps: bool,
     test: impl FnOnce(&[ErrorMotion<'_>]) -> R,
 ) -> R {
-    let terms: Vec<Vec<Term<'_>>> =
-        plans.iter().map(|plans| plans.iter().map(|plan| plan.term(axes, ramps)).collect()).collect();
+    let terms: Vec<Vec<Term<'_>>> = plans
+        .iter()
+        .map(|plans| plans.iter().map(|plan| plan.term(axes, ramps)).collect())
+        .map(closed)
+        .collect();
     let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
     test(&motions)
 }

@@ -3,8 +3,8 @@
 //! In: samples good and bad. Out: what the compensator says, and what it leaves in `out`.
 
 use abbe_runtime::{
-    Compensator, Convergence, Direction, ErrorMotion, Input, Kinematics, Limits, Refusal, Sample, SetupError,
-    Term, TermState, Work,
+    Compensator, Convergence, Direction, ErrorMotion, Factor, Input, Kinematics, Limits, Refusal, Sample,
+    SetupError, Term, TermState, Within, Work,
 };
 
 use crate::common::{Lathe, Slide, at, with};
@@ -329,4 +329,36 @@ fn bad_terms_are_named_by_motion_and_place() {
     assert_eq!(growth(1.0, nan, 0.0), parameter("reference"));
     assert_eq!(growth(1.0, 20.0, -1.0), parameter("time_constant"));
     assert_eq!(growth(1.0, 20.0, 0.0), Ok(5)); // sensor 4 needs five temperatures
+}
+
+#[test]
+fn bad_factors_are_named_too() {
+    let told = |factor: Factor<'_>| {
+        let terms = [Term::Factor(factor), Term::Constant { value: 0.0 }];
+        setup(&[ErrorMotion { terms: &terms }], 2, [1, 1, 0])
+    };
+    let parameter = |parameter| Err(SetupError::Parameter { motion: 0, term: 0, parameter });
+    let within = Within::EVERYWHERE;
+    let turned = Within { from: 1.0, to: 0.0 };
+    assert_eq!(
+        told(Factor::Direction { axis: 1 }),
+        Err(SetupError::TermAxis { motion: 0, term: 0, axis: 1 })
+    );
+    assert_eq!(told(Factor::Position { axis: 0, power: 0, within }), parameter("power"));
+    assert_eq!(told(Factor::Position { axis: 0, power: 4, within }), parameter("power"));
+    assert_eq!(told(Factor::Speed { axis: 0, within: turned }), parameter("within"));
+    assert_eq!(
+        told(Factor::Speed { axis: 0, within: Within { from: f64::NAN, to: 1.0 } }),
+        parameter("within")
+    );
+    assert_eq!(told(Factor::Fading { axis: 0, over: 0.0 }), parameter("over"));
+    assert_eq!(told(Factor::Warmth { axis: 0, time_constant: 0.0, rise: 1.0 }), parameter("time_constant"));
+    assert_eq!(told(Factor::Turn { axis: 0, period: -1.0, phase: 0.0 }), parameter("period"));
+    assert_eq!(told(Factor::Play { sensor: 2, reference: 20.0, width: -1.0 }), parameter("width"));
+    assert_eq!(told(Factor::Play { sensor: 2, reference: 20.0, width: 1.0 }), Ok(3));
+    let alone = [Term::Constant { value: 0.0 }, Term::Factor(Factor::Direction { axis: 0 })];
+    assert_eq!(
+        setup(&[ErrorMotion { terms: &alone }], 2, [1, 1, 0]),
+        Err(SetupError::LoneFactor { motion: 0, term: 1 })
+    );
 }

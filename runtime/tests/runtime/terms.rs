@@ -3,7 +3,8 @@
 //! In: parameters and states. Out: the values that section "terms" of the vocabulary asks for.
 
 use abbe_runtime::{
-    Direction, ErrorMotion, Input, Sample, Table, Term, TermState, Values, math, states_needed,
+    Direction, ErrorMotion, Factor, Input, Sample, Table, Term, TermState, Values, Within, math,
+    states_needed,
 };
 
 use crate::common::at;
@@ -258,4 +259,90 @@ fn an_error_motion_advances_each_of_its_terms() {
     motion.advance(&at(&[0.0]), &mut states);
     motion.advance(&at(&[-1.0]), &mut states);
     assert_eq!(motion.value(&at(&[-1.0]), &states), -0.5 - 5.0);
+}
+
+/// A factor's value in the first cycle.
+fn factor(factor: Factor<'_>, sample: &Sample<'_>) -> f64 {
+    value(Term::Factor(factor), sample)
+}
+
+#[test]
+fn factors_have_the_values_of_their_formulas() {
+    let within = Within::EVERYWHERE;
+    let sample = Sample {
+        direction: &[Direction::Positive, Direction::Negative],
+        velocity: &[-9.0, 4.0],
+        temperature: &[23.0, 18.0],
+        ..at(&[-3.0, 5.0])
+    };
+    for (power, cube) in [(1, -3.0), (2, 9.0), (3, -27.0)] {
+        assert_eq!(factor(Factor::Position { axis: 0, power, within }, &sample), cube);
+    }
+    assert_eq!(
+        factor(Factor::Position { axis: 0, power: 2, within: Within { from: -2.0, to: 1.0 } }, &sample),
+        4.0
+    );
+    assert_eq!(factor(Factor::Direction { axis: 1 }, &sample), -1.0);
+    assert_eq!(factor(Factor::Velocity { axis: 0, within }, &sample), -9.0);
+    assert_eq!(factor(Factor::Speed { axis: 0, within }, &sample), 9.0);
+    assert_eq!(factor(Factor::Speed { axis: 0, within: Within { from: 0.0, to: 5.0 } }, &sample), 5.0);
+    assert_close(factor(Factor::Fading { axis: 0, over: 3.0 }, &sample), (-3.0_f64).exp());
+    let warm = Factor::Temperature { sensor: 0, reference: 20.0, time_constant: 60.0, within };
+    assert_eq!(factor(warm, &sample), 3.0, "a filter starts where the temperature is");
+    assert_eq!(factor(Factor::Play { sensor: 1, reference: 20.0, width: 1.0 }, &sample), -2.0);
+    assert_eq!(
+        factor(Factor::Warmth { axis: 0, time_constant: 60.0, rise: 1.0 }, &sample),
+        0.0,
+        "it starts cold"
+    );
+    let turn = Factor::Turn { axis: 1, period: 20.0, phase: core::f64::consts::FRAC_PI_2 };
+    assert!(factor(turn, &sample).abs() < 1e-15, "a quarter of a turn before half of one");
+    let table = Table::at(&[0.0, 10.0], Values::Both(&[2.0, 4.0])).unwrap();
+    assert_eq!(factor(Factor::Curve { axis: 1, table }, &sample), 3.0);
+    // What the sample lacks is NaN, whatever range it is held in.
+    let bare = at(&[1.0]);
+    assert!(factor(Factor::Speed { axis: 0, within: Within { from: 0.0, to: 5.0 } }, &bare).is_nan());
+}
+
+#[test]
+fn a_factor_multiplies_the_next_term_alone() {
+    let sample = Sample { direction: &[Direction::Negative], ..at(&[4.0]) };
+    let position = Term::Factor(Factor::Position { axis: 0, power: 1, within: Within::EVERYWHERE });
+    let direction = Term::Factor(Factor::Direction { axis: 0 });
+    let (two, three) = (Term::Constant { value: 2.0 }, Term::Constant { value: 3.0 });
+    let sum = |terms: &[Term<'_>]| {
+        let states = vec![TermState::default(); states_needed(&[ErrorMotion { terms }])];
+        ErrorMotion { terms }.value(&sample, &states)
+    };
+    assert_eq!(sum(&[position, two, three]), 11.0);
+    assert_eq!(sum(&[two, position, three]), 14.0);
+    assert_eq!(sum(&[position, direction, two, position, three]), 4.0);
+}
+
+#[test]
+fn factors_remember_from_cycle_to_cycle() {
+    let mut state = TermState::default();
+    let warmth = Term::Factor(Factor::Warmth { axis: 0, time_constant: 50.0, rise: 0.1 });
+    // At a speed that lasts it comes nearer to 0.1 K for each mm/s by 1 - 1/e in each time constant.
+    let moving = Sample { velocity: &[-20.0], time_step: 0.5, ..at(&[0.0]) };
+    for cycle in 1..=100_i32 {
+        warmth.advance(&moving, &mut state);
+        let expected = 2.0 * (1.0 - (-0.5 * f64::from(cycle) / 50.0).exp());
+        assert!((warmth.value(&moving, &state) - expected).abs() < 1e-12);
+    }
+    let play = Term::Factor(Factor::Play { sensor: 0, reference: 20.0, width: 1.0 });
+    let mut state = TermState::default();
+    let found: Vec<f64> = [20.0, 20.4, 21.0, 20.8, 20.0, 19.9]
+        .iter()
+        .map(|temperature| {
+            let readings = [*temperature];
+            let sample = Sample { temperature: &readings, ..at(&[0.0]) };
+            play.advance(&sample, &mut state);
+            play.value(&sample, &state)
+        })
+        .collect();
+    // It follows up to half a kelvin behind, and stands while the temperature turns.
+    for (found, expected) in found.iter().zip([0.0, 0.0, 0.5, 0.5, 0.5, 0.4]) {
+        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    }
 }

@@ -318,3 +318,69 @@ error[E0413]: EBX is an angle, `um` is a length
 ";
     assert_eq!(crate::diagnostic::render(&source, &diagnostics, false), expected);
 }
+
+/// A play of EXX with these factors.
+fn times(lost_motion: &str, factors: &str) -> String {
+    format!("{{EXX: [{{backlash: {{lost_motion: {lost_motion}, times: {factors}}}}}]}}")
+}
+
+#[test]
+fn factors_are_checked() {
+    refused(&times("1 um/mm", "[{position: X}]"), &[]);
+    refused(&times("1 um", "[{positon: X}]"), &[("E0428", "positon")]);
+    refused(&times("1 um", "[{direction: X, speed: X}]"), &[("E0428", "speed")]);
+    refused(&times("1 um", "[direction]"), &[("E0428", "direction")]);
+    refused(&times("1 um", "[]"), &[("E0417", "[]")]);
+    refused(&times("1 um", "{direction: X}"), &[("E0404", "{direction: X}")]);
+    refused(&times("1 um", "[{direction: Q}]"), &[("E0414", "Q")]);
+    refused(&times("1 um/mm", "[{position: X, over: 1 mm}]"), &[("E0412", "over")]);
+    refused(&times("1 um", "[{fading: X}]"), &[("E0411", "fading")]);
+    refused(&times("1 um", "[{fading: X, over: 0 mm/s}]"), &[("E0419", "0 mm/s")]);
+    refused(&times("1 um", "[{fading: X, over: 1 mm}]"), &[("E0307", "mm")]);
+    refused(&times("1 um/mm^4", "[{position: X, power: 4}]"), &[("E0419", "4")]);
+    refused(&times("1 um/mm", "[{position: X, within: [2 mm, 1 mm]}]"), &[("E0418", "1 mm")]);
+    refused(&times("1 um/mm", "[{position: X, within: [2 mm]}]"), &[("E0417", "[2 mm]")]);
+    refused(&times("1 um/K", "[{play: T, reference: 20 degC, width: -1 K}]"), &[("E0419", "-1 K")]);
+    refused(&times("1 um", "[{curve: X, at: [0 mm, 0 mm], values: [1, 2]}]"), &[("E0418", "0 mm")]);
+    refused(&times("1 um", "[{curve: X, at: [0 mm, 1 mm], values: [1]}]"), &[("E0417", "values")]);
+    // Of two factors each mistake is told.
+    refused(&times("1 um", "[{direction: Q}, {speed: R}]"), &[("E0414", "Q"), ("E0414", "R")]);
+}
+
+#[test]
+fn the_units_of_factors_are_checked() {
+    refused(&times("20 nm/N", "[{load: feed}]"), &[]);
+    refused(&times("20 nm/V", "[{load: feed}]"), &[]);
+    refused(&times("20 nm", "[{load: feed}]"), &[("E0429", "nm")]);
+    refused(
+        &times("20 nm/mm", "[{position: X}, {temperature: T, reference: 20 degC}]"),
+        &[("E0429", "nm/mm")],
+    );
+    refused(&times("20 nm/mm/K", "[{position: X}, {temperature: T, reference: 20 degC}]"), &[]);
+    refused(&times("5", "[{position: X}]"), &[("E0306", "5")]);
+    let told = words(&times("20 nm", "[{position: X}]"));
+    let expected = "E0429 `lost_motion` of EXX is a plain number with these factors, `nm` is a length | its factors are in \
+                    `mm` together and EXX is a length: use a unit such as `um/m`";
+    assert_eq!(told, [expected]);
+    // Of a list the unit is that of all its numbers, and what is not of the motion keeps its own.
+    let table = |unit: &str| {
+        format!(
+            "{{EXX: [{{table: {{start: 0 mm, step: 1 mm, unit: {unit}, values: [1], times: [{{speed: X}}]}}}}]}}"
+        )
+    };
+    refused(&table("um.s/mm"), &[]);
+    refused(&table("um"), &[("E0413", "um")]);
+    let wave =
+        "{EXX: [{cyclic: {period: 10 mm/mm, amplitude: 1 um/mm, phase: 1 rad, times: [{position: X}]}}]}";
+    refused(wave, &[("E0307", "mm/mm")]);
+}
+
+#[test]
+fn terms_that_take_no_factors_say_so() {
+    refused("{EXX: [{delay: {time: 1 ms, times: [{direction: X}]}}]}", &[("E0412", "times")]);
+    refused("{EXX: [{delay: {time: 0 s}}]}", &[("E0419", "0 s")]);
+    refused("{EXX: [{product: {value: 1 um}}]}", &[("E0411", "product")]);
+    refused("{EXX: [{lag: {gain: 5 1/s, times: [{direction: X}]}}]}", &[]);
+    let rings = "{EXX: [{lag: {gain: 5 1/s, frequency: 20 Hz, times: [{direction: X}]}}]}";
+    refused(rings, &[("E0416", "times")]);
+}

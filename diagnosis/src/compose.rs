@@ -147,15 +147,8 @@ fn best(
     let price = |form: &Form| price.of(study, found, &form.effect, contest.samples);
     let promises = contest.promises();
     let known = contest.outcome(None).cost;
-    let mut compared = Vec::new();
-    for beside in 0..2 {
-        let mut order: Vec<(usize, f64)> = (0..forms.len())
-            .map(|number| (number, promises[number][beside] - price(&forms[number])))
-            .filter(|(_, gain)| *gain > 0.0)
-            .collect();
-        order.sort_by(|a, b| b.1.total_cmp(&a.1));
-        compared.extend(order.into_iter().take(COMPARED).map(|(number, _)| number));
-    }
+    let mut compared = most_promising(forms, &promises, |[beside_all, _]| beside_all, &price);
+    compared.extend(most_promising(forms, &promises, |[_, alone]| alone, &price));
     compared.sort_unstable();
     compared.dedup();
     let mut gains: Vec<(usize, f64)> = compared
@@ -165,6 +158,19 @@ fn best(
         .collect();
     gains.sort_by(|a, b| b.1.total_cmp(&a.1));
     gains.into_iter().take(TRIALS).map(|(number, _)| refined(study, found, &forms[number])).collect()
+}
+
+/// The forms of the highest promises above their price, beside all that was found or alone.
+fn most_promising(
+    forms: &[Form],
+    promises: &[[f64; 2]],
+    which: fn([f64; 2]) -> f64,
+    price: &dyn Fn(&Form) -> f64,
+) -> Vec<usize> {
+    let gains = promises.iter().zip(forms).map(|(promise, form)| which(*promise) - price(form));
+    let mut order: Vec<(usize, f64)> = gains.enumerate().filter(|(_, gain)| *gain > 0.0).collect();
+    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    order.into_iter().take(COMPARED).map(|(number, _)| number).collect()
 }
 
 /// The contest of forms with what was found.

@@ -56,8 +56,9 @@ fn survives(calibration: &Calibration, machine: &Compiled) {
 /// The compensable terms, the rest left out, at a few positions: an answer is finite, or refused.
 fn compensates(calibration: &Calibration, machine: &Compiled) {
     let equations = &machine.equations;
-    let terms: Vec<Vec<Term<'_>>> =
-        (0..equations.motions.len()).map(|motion| calibration.runtime(motion).flatten().flatten().collect()).collect();
+    let terms: Vec<Vec<Term<'_>>> = (0..equations.motions.len())
+        .map(|motion| calibration.runtime(motion).flatten().flatten().collect())
+        .collect();
     let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
     let interpreter = Interpreter::new(equations, &calibration.constants);
     let axes = equations.axes.len();

@@ -74,8 +74,9 @@ fn compensate(bytes: &[u8], calibration: &Calibration, equations: &Equations) {
     assert!(layout.unread.iter().all(|name| quoted(name).len() <= 200));
     let columns = layout.axes.clone();
     let mut state = State::new(layout, true, &calibration.sensors, &vec![5e-4; equations.axes.len()]);
-    let terms: Vec<Vec<Term<'_>>> =
-        (0..equations.motions.len()).map(|motion| calibration.runtime(motion).flatten().flatten().collect()).collect();
+    let terms: Vec<Vec<Term<'_>>> = (0..equations.motions.len())
+        .map(|motion| calibration.runtime(motion).flatten().flatten().collect())
+        .collect();
     let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
     let interpreter = Interpreter::new(equations, &calibration.constants);
     let mut states = vec![TermState::default(); states_needed(&motions)];

@@ -32,7 +32,7 @@ pub(super) fn parameters(term: &CalibratedTerm, context: &Context<'_>) -> Parame
         Some((key.name, context.item(key, *part, axis, scale)?))
     });
     let factors = term.factors().iter().map(|factor| context.factor(factor)).collect::<Vec<_>>();
-    let times = (!factors.is_empty()).then(|| (TIMES, Item::List(factors)));
+    let times = (!factors.is_empty()).then_some((TIMES, Item::List(factors)));
     written.chain(times).collect()
 }
 

@@ -336,8 +336,10 @@ fn spelled(math: &Math, by: &impl Spelling) -> String {
 fn rounded(value: f64) -> String {
     let magnitude = value.abs();
     if value == 0.0 || (1e-3..1e5).contains(&magnitude) {
-        let digits = if value == 0.0 { 0.0 } else { 3.0 - magnitude.log10().floor() };
-        let decimals = if digits > 0.0 { digits as usize } else { 0 };
+        // As many as are needed for four digits: times ten until four stand before the point.
+        let decimals = std::iter::successors(Some(magnitude), |larger| Some(larger * 10.0))
+            .take_while(|larger| value != 0.0 && *larger < 1000.0)
+            .count();
         let text = format!("{value:.decimals$}");
         if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
     } else {

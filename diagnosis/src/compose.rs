@@ -227,11 +227,9 @@ fn refined(study: &Study<'_>, found: &Found, form: &Form) -> Trial {
 /// under the noise that it leaves, and held-out samples lie nearer.
 fn take(study: &mut Study<'_>, found: &mut Found, trial: &Trial, price: &FormPrice) -> bool {
     let Trial { form, beside, kept } = trial;
-    let mut model: Model = kept.iter().map(|number| found.fit.model[*number].clone()).collect();
-    let always = kept.iter().filter(|number| **number < found.always).count();
-    if always < found.always {
-        return false;
-    }
+    let kept = kept.iter().copied().filter(|number| *number >= found.always);
+    let numbers = (0..found.always).chain(kept);
+    let mut model: Model = numbers.map(|number| found.fit.model[number].clone()).collect();
     model.push(form.clone());
     model.extend(
         beside
@@ -299,7 +297,8 @@ fn takes_most(study: &Study<'_>, before: &Appraisal, after: &Appraisal) -> bool 
     taken > MOST_OF_IT * excess
 }
 
-/// Whether a model costs decisively less than what was found, both under the noise that it leaves, and held-out samples lie nearer to it.
+/// Whether a model costs decisively less than what was found, both under the noise that it leaves, and held-out samples lie nearer to
+/// it.
 fn is_better(
     study: &Study<'_>,
     found: &Found,

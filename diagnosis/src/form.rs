@@ -3,7 +3,7 @@
 //! In: a term with factors, or an event, with its numbers. Out: its equation, a sentence of its size, and which physics has that form.
 //! A form is not a cause: the vocabulary alone has names of causes.
 
-use model_dsl::calibration::{CalibratedTerm, Factor, Sensors, Within};
+use model_dsl::calibration::{CalibratedTerm, Factor, Sensors, TermKind, Within};
 use model_dsl::notation;
 
 use crate::alternatives::{factor_state, listed};
@@ -70,7 +70,7 @@ impl Words<'_> {
     fn sentence(&self, effect: &Effect, term: &CalibratedTerm) -> String {
         let known = &self.study.equations.motions[self.motion];
         let of = match effect.shape.axis() {
-            Some(axis) => format!("{} of {}", term.core().name().replace('-', " "), self.letter(axis)),
+            Some(axis) => format!("{} of {}", noun(term.core().kind()), self.letter(axis)),
             None => format!("part of the {}", known.meaning),
         };
         match (self.linear(term), term.factors()) {
@@ -102,11 +102,11 @@ impl Words<'_> {
             let (low, high) = (self.plain + number * from, self.plain + number * to);
             let verb = if low.abs() <= high.abs() { "grows" } else { "shrinks" };
             format!(
-                "that {verb} from {} at {:.4} {unit} to {} at {:.4} {unit} of {}",
+                "that {verb} from {} at {} {unit} to {} at {} {unit} of {}",
                 self.amount(low),
-                within.from,
+                plainly(within.from),
                 self.amount(high),
-                within.to,
+                plainly(within.to),
                 self.state(factor)
             )
         };
@@ -151,15 +151,12 @@ impl Words<'_> {
             }
             Factor::Curve { axis, at: ref nodes, .. } => {
                 let ends = nodes.first().zip(nodes.last()).map_or((0.0, 0.0), |(from, to)| (*from, *to));
+                let [from, middle, to] = [ends.0, 0.5 * (ends.0 + ends.1), ends.1].map(plainly);
+                let (most, unit) = (at(1.0), unit(axis));
                 format!(
-                    "that is {} at {:.4} {unit} of {} and fades to both sides, to {} at {:.4} and at {:.4} {unit}",
-                    at(1.0),
-                    0.5 * (ends.0 + ends.1),
+                    "that is {most} at {middle} {unit} of {} and fades to both sides, to {} at {from} and at {to} {unit}",
                     self.state(factor),
-                    at(0.0),
-                    ends.0,
-                    ends.1,
-                    unit = unit(axis)
+                    at(0.0)
                 )
             }
             _ => format!("that follows {}", self.state(factor)),
@@ -208,6 +205,21 @@ impl Words<'_> {
         let number = |name: String| self.study.loads.iter().position(|(known, _)| *known == name);
         factor.clone().with_load(number).map_or_else(String::new, |factor| factor_state(self.study, &factor))
     }
+}
+
+/// What a term is called in a sentence.
+fn noun(term: TermKind) -> String {
+    match term {
+        TermKind::Cyclic => "wave".to_owned(),
+        TermKind::Polynomial | TermKind::Table => "curve".to_owned(),
+        other => other.name().replace('-', " "),
+    }
+}
+
+/// A number with three decimals at most.
+fn plainly(value: f64) -> String {
+    let text = format!("{value:.3}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// The greatest size within a range.

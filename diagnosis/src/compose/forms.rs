@@ -20,7 +20,8 @@ use crate::travel::Travel;
 /// still have three quarters of their course in common, and the best one is refined.
 const FILTERS: f64 = 3.0;
 
-/// The speeds over which something fades, as shares of the highest speed. The best one is refined.
+/// The speeds over which something fades, as shares of the highest speed: between them they cover what fades within a few percent of it,
+/// and what is hardly gone there. The best one is refined.
 const FADING: [f64; 2] = [0.08, 0.3];
 
 /// The loads at which half is left, as shares of the largest load. The best one is refined.
@@ -29,7 +30,8 @@ const HALVES: [f64; 2] = [0.15, 0.6];
 /// The widths of the play of a sensor, as shares of the range of its temperature. The best one is refined.
 const WIDTHS: [f64; 2] = [0.15, 0.4];
 
-/// How many events a recording may be divided by: the best one is moved to its time.
+/// How many moments of a recording are looked at for an event. The best of them is wrong in a fortieth of the rows at most, and is then
+/// looked for more finely.
 const EVENTS: f64 = 40.0;
 
 /// The widths of a worn zone, as shares of the travel. Zones of one width overlap by half. The best one is moved.
@@ -39,7 +41,7 @@ const ZONES: [f64; 3] = [0.15, 0.3, 0.6];
 /// machine works most.
 const ZONE: [f64; 9] = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0];
 
-/// The highest power of a product of positions: with a third power more than a tenth of what most curves are is left to noise.
+/// The highest power of a product of positions, that of the polynomials of the vocabulary. What bends more is measured as a table.
 const ORDER: u8 = 3;
 
 /// An effect that may be composed, with the coefficients that make one column of it.

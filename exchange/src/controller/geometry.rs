@@ -101,8 +101,9 @@ impl<'c> Geometry<'c> {
 
     /// What an error motion is at a pose, mm or rad.
     pub fn motion(&self, motion: usize, pose: &Pose) -> f64 {
-        let sample = sample(pose);
-        self.terms(motion).iter().map(|term| term.value(&sample, &TermState::default())).sum()
+        let motion = ErrorMotion { terms: self.terms(motion) };
+        let states = vec![TermState::default(); states_needed(std::slice::from_ref(&motion))];
+        motion.value(&sample(pose), &states)
     }
 
     /// The error at a pose: tip relative to the part, actual minus commanded, mm, part frame.

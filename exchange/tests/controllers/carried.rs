@@ -119,6 +119,33 @@ proptest! {
 }
 
 #[test]
+fn a_product_of_two_positions_is_carried_by_a_grid() {
+    // 200 um/m^2 times x times y: -16 um at 400 and -200 mm. The reference, 150 and -50 mm, has -1.5 um of its own, which is a
+    // shift of all positions. A grid over both axes holds the rest in full.
+    let errors = ["EYX: [{product: {value: 200 um/m^2, times: [{position: X}, {position: Y}]}}]".to_owned()];
+    let machine = Machine::of("FXYZ", &errors);
+    let export = machine.export(Format::Isg, &options()).unwrap();
+    assert!(export.left_out.is_empty(), "{:?}", export.left_out);
+    assert!((export.lost.without.largest - 14.5e-3).abs() < 1e-5, "{:?}", export.lost);
+    assert!(export.lost.lost.largest < second_order(&export.lost), "{:?}", export.lost);
+    // The other format has tables of one axis, and says so.
+    let export = machine.export(Format::Etalon, &options()).unwrap();
+    let said: Vec<String> = export.left_out.iter().map(ToString::to_string).collect();
+    assert_eq!(said, ["EYX: it depends on several axes, and the format has tables of one"]);
+}
+
+#[test]
+fn a_wave_that_grows_along_its_axis_is_carried_at_its_nodes() {
+    // 30 um/m of x: 12 um at 400 mm. 101 points over 500 mm follow a wave of 100 mm, but for the arrow over 5 mm of its sine.
+    let wave = "EXX: [{cyclic: {amplitude: 30 um/m, period: 100 mm, phase: 0 rad, times: [{position: X}]}}]"
+        .to_owned();
+    let machine = Machine::of("FXYZ", &[wave]);
+    let export = machine.export(Format::Isg, &Options { points: Some(101), ..options() }).unwrap();
+    let arrow = 12e-3 * (1.0 - (std::f64::consts::PI * 2.5 / 50.0).cos());
+    assert!(export.lost.lost.largest < 1.1 * arrow, "{:?} of {arrow}", export.lost);
+}
+
+#[test]
 fn what_a_single_axis_cannot_know_is_lost_as_a_lever_arm_says() {
     // EAY of 40 urad turns the tool about the frame of Y: the tip, 150 mm and z above it, goes towards -Y by 40 urad times that. What
     // stands in the table of Y is right at the reference, z = 0; at the ends of Z, 100 mm from it, 4 um are missing.

@@ -23,7 +23,7 @@ use crate::design::{Design, Regressor};
 use crate::engine::{self, Found};
 use crate::fit::Fit;
 use crate::model::{Effect, Fitted, Model};
-use crate::noise;
+use crate::noise::{self, Noise};
 use crate::study::Study;
 use crate::terms::Shape;
 use crate::unsteady;
@@ -68,14 +68,15 @@ pub(crate) fn compose(study: &mut Study<'_>, found: &mut Found) {
     }
 }
 
-/// Whether there is anything for a form to explain: more is left of some channel than noise, or so many names were found that one form
-/// may well be behind several of them.
+/// Whether there is anything for a form to explain: something is left, or so many names were found that one form may well be behind
+/// several of them.
 fn is_open(study: &Study<'_>, found: &Found) -> bool {
-    let appraisal = &found.appraisal;
-    found.fit.model.len() >= found.always + MANY
-        || appraisal.lacks()
-        || unsteady::returning(study, appraisal).is_some()
-        || is_rough(study, appraisal)
+    found.fit.model.len() >= found.always + MANY || is_something_left(study, &found.appraisal)
+}
+
+/// Whether more is left of some channel than noise.
+fn is_something_left(study: &Study<'_>, appraisal: &Appraisal) -> bool {
+    appraisal.lacks() || unsteady::returning(study, appraisal).is_some() || is_rough(study, appraisal)
 }
 
 /// So many names may be one form that each of them imitates in part.
@@ -249,8 +250,9 @@ fn take_event(study: &mut Study<'_>, found: &mut Found, event: Event, price: &Fo
     take_model(study, found, event.model, (&is_step, true), price)
 }
 
-/// Fits a model and takes it over where what is wanted of it stands up and all of it is better. What is composed must also take most of
-/// what was left, or the place of several names.
+/// Fits a model and takes it over where what is wanted of it stands up and all of it is better. It must also take the place of several
+/// names; or what is composed takes most of what was left. A name may replace another one, and is added only where more than noise was
+/// left: otherwise the search has asked for it.
 fn take_model(
     study: &mut Study<'_>,
     found: &mut Found,
@@ -263,8 +265,13 @@ fn take_model(
     let fit = conditions.refine(study, model);
     let (fit, appraisal) = engine::upheld(study, fit, &conditions);
     let simpler = fit.model.len() + SIMPLER <= found.fit.model.len();
+    let is_needed = if is_composed {
+        takes_most(study, &found.appraisal, &appraisal)
+    } else {
+        fit.model.len() <= found.fit.model.len() || is_something_left(study, &found.appraisal)
+    };
     if fit.model.iter().any(is_wanted)
-        && (simpler || !is_composed || takes_most(study, &found.appraisal, &appraisal))
+        && (simpler || is_needed)
         && is_better(study, found, (&fit, &appraisal), price)
     {
         found.fit = fit;
@@ -298,19 +305,27 @@ fn takes_most(study: &Study<'_>, before: &Appraisal, after: &Appraisal) -> bool 
 }
 
 /// Whether a model costs decisively less than what was found, both under the noise that it leaves, and held-out samples lie nearer to
-/// it.
+/// it. Under the noise that was left before it may not cost decisively more: what a poor model leaves looks like noise, under which
+/// the better model is only the longer one.
 fn is_better(
     study: &Study<'_>,
     found: &Found,
     (fit, appraisal): (&Fit, &Appraisal),
     price: &FormPrice,
 ) -> bool {
-    let conditions = found.conditions();
-    let conditions = conditions.under(&appraisal.noises);
-    let old = conditions.refine(study, found.fit.model.clone());
-    let cost = |fit: &Fit| conditions.cost_at(study, fit, &conditions.prices(study, &fit.model, fit.samples));
+    let gains = |noises: &[Vec<Noise>]| gain(study, found, fit, (noises, price));
     let nearer = appraisal.held_out(study, appraisal) < found.appraisal.held_out(study, appraisal);
-    let more: f64 = fit.model.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum();
-    let known: f64 = old.model.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum();
-    nearer && (cost(&old) + known) - (cost(fit) + more) > DECISIVE
+    nearer && gains(&appraisal.noises) > DECISIVE && gains(&found.appraisal.noises) > -DECISIVE
+}
+
+/// By how much a model costs less than what was found, both fitted under a noise.
+fn gain(study: &Study<'_>, found: &Found, fit: &Fit, (noises, price): (&[Vec<Noise>], &FormPrice)) -> f64 {
+    let conditions = found.conditions();
+    let conditions = conditions.under(noises);
+    let cost = |model: &Model| {
+        let fit = conditions.refine(study, model.clone());
+        let names = conditions.cost_at(study, &fit, &conditions.prices(study, &fit.model, fit.samples));
+        names + fit.model.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum::<f64>()
+    };
+    cost(&found.fit.model) - cost(&fit.model)
 }

@@ -243,7 +243,8 @@ pub(crate) fn simplicity(study: &Study<'_>, effect: &Effect) -> f64 {
     shape + effect.motion().map_or(0.0, |motion| place(study, motion, &effect.shape))
 }
 
-/// What each factor must bring: e to this half is how many times less likely a form with one more factor is, before anything is seen.
+/// The price of each factor. The cost is a deviance, so half of it is a logarithm of odds: with one more factor a form is e times less
+/// likely before any data are seen.
 const FACTOR: f64 = 2.0;
 
 /// What a term that needs the motion between rows must bring beyond others where rows are far apart: the axes may well be at

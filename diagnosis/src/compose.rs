@@ -68,8 +68,7 @@ pub(crate) fn compose(study: &mut Study<'_>, found: &mut Found) {
     }
 }
 
-/// Whether there is anything for a form to explain: something is left, or so many names were found that one form may well be behind
-/// several of them.
+/// Whether there is anything for a form to explain: more than noise is left, or one form may be behind several names.
 fn is_open(study: &Study<'_>, found: &Found) -> bool {
     found.fit.model.len() >= found.always + MANY || is_something_left(study, &found.appraisal)
 }
@@ -79,7 +78,8 @@ fn is_something_left(study: &Study<'_>, appraisal: &Appraisal) -> bool {
     appraisal.lacks() || unsteady::returning(study, appraisal).is_some() || is_rough(study, appraisal)
 }
 
-/// So many names may be one form that each of them imitates in part.
+/// From this number of names on, one form may be behind them, and each name imitates a part of it. One name that leaves nothing is the
+/// simplest model there is.
 const MANY: usize = 2;
 
 /// Whether what is left of a channel is larger than its differences from row to row say of noise: what changes slowly is left.
@@ -112,11 +112,11 @@ fn square(left: &[f64]) -> f64 {
     left.iter().map(|value| value * value).sum::<f64>() / crate::number(left.len().max(1))
 }
 
-/// The variance of white noise by its differences scatters by the square root of 3 over their number. By chance one recording of two
-/// thousand is that many standard deviations off, and costs the time of a contest.
+/// The variance of white noise, estimated from differences, has a relative standard deviation of the square root of 3 over their
+/// number. By chance one channel of 4300 lies 3.5 of them above (a normal tail), and costs the time of a contest.
 const ROUGH: f64 = 3.5;
 
-/// What a form costs: what an effect of its kind does, and what it is to be the best of so many more.
+/// The price of a form: that of an effect of its kind, and more because it is the best of more candidates.
 struct FormPrice {
     more: f64,
 }
@@ -283,7 +283,7 @@ fn take_model(
     false
 }
 
-/// A form that makes a model simpler by so many effects need not take more than they do.
+/// How many effects fewer make a model simpler. Such a form need not take more of the residual than they did.
 const SIMPLER: usize = 1;
 
 /// The share of what is left above white noise that a form must take. What takes less leaves the better part without a name, and may be a

@@ -21,7 +21,7 @@ use crate::terms::Shape;
 /// A candidate must lower the cost by this much. The cost is that of Schwarz's criterion, and the odds are then 150 to 1.
 pub(crate) const DECISIVE: f64 = 10.0;
 
-/// How many columns are worked out at once: so many of the most rows take 10 MB.
+/// How many columns are worked out at once. With the largest number of rows they take 10 MB.
 const CHUNK: usize = 256;
 
 /// Products of the columns of what was found, of the candidates, and of the response that both have to explain.
@@ -58,7 +58,7 @@ type Set<'m> = (Swept, Vec<&'m Member>);
 pub(crate) type Columns<'c> = dyn Fn(Range<usize>, (usize, usize)) -> Vec<Vec<f64>> + Sync + 'c;
 
 impl Contest {
-    /// Works out the products over all recordings, in these rows of each, for so many candidates.
+    /// Works out the products over all recordings, in the given rows of each. `candidates` is the number of candidates.
     pub(crate) fn new(
         study: &Study<'_>,
         found: &Found,

@@ -12,10 +12,12 @@ mod factor;
 mod history;
 mod piece;
 mod servo;
+mod state;
 
 pub use error::PlantError;
 pub use history::History;
 pub use servo::Servo;
+pub use state::State;
 
 use std::fmt;
 use std::sync::Arc;
@@ -91,82 +93,6 @@ impl TermMemory {
     fn of(term: &PlantTerm) -> Self {
         let factors = vec![FactorMemory::default(); term.factors.len()];
         Self { own: Memory::default(), factors, before: Before::default() }
-    }
-}
-
-/// The state of the machine at one sample: mm, rad, s, degC, units of the loads.
-///
-/// Axes, sensors and loads go by number; what is not there is NaN.
-#[derive(Clone, Copy, Debug)]
-pub struct State<'s> {
-    /// The number of the sample.
-    pub row: usize,
-    /// Time since the recording began.
-    pub time: f64,
-    /// Whether a leg begins here.
-    begins: bool,
-    /// The first row of the leg, and the one behind its last.
-    leg: (usize, usize),
-    times: &'s [f64],
-    histories: &'s [History],
-    temperatures: &'s [f64],
-    loads: &'s [f64],
-}
-
-impl State<'_> {
-    fn at(&self, axis: usize, column: impl Fn(&History) -> &Vec<f64>) -> f64 {
-        let history = self.histories.get(axis);
-        history.and_then(|history| column(history).get(self.row)).copied().unwrap_or(f64::NAN)
-    }
-
-    /// The position of an axis behind its position loop.
-    pub fn position(&self, axis: usize) -> f64 {
-        self.at(axis, |history| &history.position)
-    }
-
-    /// The position of an axis at another time, linear between samples; before the leg that of its first sample, behind it that of
-    /// its last.
-    fn position_at(&self, axis: usize, time: f64) -> f64 {
-        let rows = self.leg.0..self.leg.1;
-        let positions = self.histories.get(axis).and_then(|history| history.position.get(rows.clone()));
-        let (Some(times), Some(positions)) = (self.times.get(rows), positions) else { return f64::NAN };
-        factor::on_curve(times, positions, time)
-    }
-
-    /// The velocity of an axis.
-    pub fn velocity(&self, axis: usize) -> f64 {
-        self.at(axis, |history| &history.velocity)
-    }
-
-    /// The acceleration of an axis.
-    pub fn acceleration(&self, axis: usize) -> f64 {
-        self.at(axis, |history| &history.acceleration)
-    }
-
-    /// The direction of an axis's last real motion: +1 or -1.
-    pub fn direction(&self, axis: usize) -> f64 {
-        self.at(axis, |history| &history.direction)
-    }
-
-    /// Whether an axis begins a leg here, elsewhere than it ended the last one.
-    fn is_displaced(&self, axis: usize) -> bool {
-        let history = self.histories.get(axis);
-        history.is_some_and(|history| history.displaced.get(self.row) == Some(&true))
-    }
-
-    /// The time at which an axis reversed last; NaN before the first reversal.
-    pub fn reversal(&self, axis: usize) -> f64 {
-        self.at(axis, |history| &history.reversal)
-    }
-
-    /// The temperature of a sensor, numbered as in the calibration.
-    pub fn temperature(&self, sensor: usize) -> f64 {
-        self.temperatures.get(sensor).copied().unwrap_or(f64::NAN)
-    }
-
-    /// A load, numbered as in [`Plant::loads`].
-    pub fn load(&self, load: usize) -> f64 {
-        self.loads.get(load).copied().unwrap_or(f64::NAN)
     }
 }
 

@@ -88,7 +88,7 @@ fn amount_to_try(fault: &Fault, outcome: &Outcome) -> Option<(f64, bool)> {
     }
 }
 
-/// The amount of a wrong sign.
+/// The amount of a wrong sign: added to what the files say, -2 times that turns +1 into -1.
 pub(super) const TURNED: f64 = -2.0;
 
 /// Twice the log of how unlikely it is that a number came to be its own reversal by chance, within this standard deviation. All changes

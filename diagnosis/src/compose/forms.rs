@@ -379,8 +379,8 @@ fn range<'r>(values: impl Iterator<Item = &'r f64>) -> Within {
 /// value of the grid.
 const STEPS: [f64; 10] = [0.4, 0.5, 0.6, 0.75, 0.87, 1.15, 1.35, 1.65, 2.0, 2.5];
 
-/// How far a zone is moved, as shares of its half width.
-const MOVES: [f64; 8] = [-0.5, -0.35, -0.2, -0.1, 0.1, 0.2, 0.35, 0.5];
+/// How far a zone is moved, as shares of its half width: up to half of the distance to the next zone of the grid.
+const MOVES: [f64; 9] = [-0.5, -0.35, -0.2, -0.1, 0.0, 0.1, 0.2, 0.35, 0.5];
 
 /// The same shape with other values of the number that was searched for on a grid.
 pub(super) fn neighbours(shape: &Shape) -> Vec<Shape> {
@@ -424,6 +424,9 @@ fn around(factor: &Factor<usize>) -> Vec<Factor<usize>> {
     }
 }
 
+/// How much narrower or wider a zone is made: from one width of the grid nearly to the next, in steps of a quarter.
+const WIDTHS_BESIDE: [f64; 5] = [0.6, 0.8, 1.0, 1.25, 1.6];
+
 /// Zones a little to both sides of one, and a little narrower and wider.
 fn zones_around(axis: usize, at: &[f64], values: &[f64]) -> Vec<Factor<usize>> {
     let (Some(from), Some(to)) = (at.first(), at.last()) else { return Vec::new() };
@@ -433,5 +436,5 @@ fn zones_around(axis: usize, at: &[f64], values: &[f64]) -> Vec<Factor<usize>> {
         at: at.iter().map(|node| middle + by * half + (node - middle) * wider).collect(),
         values: values.to_vec(),
     };
-    MOVES.iter().flat_map(|by| [0.6, 0.8, 1.0, 1.25, 1.6].map(|wider| moved(*by, wider))).collect()
+    MOVES.iter().flat_map(|by| WIDTHS_BESIDE.map(|wider| moved(*by, wider))).collect()
 }

@@ -379,7 +379,7 @@ fn factors_that_remember_follow_their_equations() {
     let warm = states.given.temperatures[0].clone();
     let force = states.given.loads[0].clone();
     let one = CalibratedTerm::Constant { value: 1.0 };
-    // In so many steps from row to row, the input going straight from one to the next.
+    // Euler steps from one row to the next; between rows the input is linear.
     let fine = 2000_u32;
     let solved = |input: &dyn Fn(usize) -> f64, start: f64, tau: f64| -> Vec<f64> {
         let mut now = start;

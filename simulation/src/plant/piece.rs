@@ -251,7 +251,7 @@ fn take_up(state: &State<'_>, axis: usize, wind_up: f64, memory: &mut Memory) ->
 }
 
 /// An input behind a first-order filter that starts at the first input and takes it as linear between samples.
-/// What is remembered is the output, the input and the time of the sample before.
+/// Between samples it remembers the last output, the last input and their time.
 pub(super) fn filtered(
     time: f64,
     input: f64,

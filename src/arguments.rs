@@ -29,6 +29,10 @@ pub(crate) enum Command {
     Compensate(Compensate),
     /// Find what the model of a machine leaves out, from recordings of the real one.
     Diagnose(Diagnose),
+    /// Tell what a recording could show: from which size on each effect would be found in it.
+    Limits(Limits),
+    /// Tell what a path would show that was not driven yet, and what to drive besides.
+    Plan(Plan),
     /// Write the recording that a calibration predicts: an exact machine, its instrument and their noise.
     Simulate(Simulate),
     /// Make a calibration from instruments' files: lasers, levels, straightedges.
@@ -96,6 +100,57 @@ pub(crate) struct Diagnose {
     /// A recording of the same machine that is not fitted: the findings are tested on it.
     #[arg(long, value_name = "RECORDING")]
     pub(crate) holdout: Option<PathBuf>,
+    /// Show no progress.
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct Limits {
+    /// A recording.
+    pub(crate) recording: PathBuf,
+    /// Ask for these alone: kinds (backlash), error motions (EXX) or axes (X), with commas between them.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) only: Vec<String>,
+    /// The most diagnoses for each effect; a limit of 20 of them is known to some 10 %.
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(4..=1000))]
+    pub(crate) trials: u16,
+    /// The seed of signs, places and phases; the same seed gives the same limits.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Try which extra passes would tell apart what this recording cannot.
+    #[arg(long)]
+    pub(crate) passes: bool,
+    /// How to write the limits.
+    #[arg(long, value_enum, default_value_t = LimitsFormat::Text)]
+    pub(crate) format: LimitsFormat,
+    /// Show no progress.
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct Plan {
+    /// A path file: where the axes would go, the instrument that would measure them, and its noise.
+    pub(crate) path: PathBuf,
+    /// A machine file, the name of a shipped machine, or a topology word; its constants are those of the file.
+    #[arg(long, required_unless_present = "calibration", conflicts_with = "calibration")]
+    pub(crate) machine: Option<String>,
+    /// The calibration file of the machine, in place of the machine: its known errors.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) calibration: Option<PathBuf>,
+    /// Ask for these alone: kinds (backlash), error motions (EXX) or axes (X), with commas between them.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) only: Vec<String>,
+    /// The most diagnoses for each effect.
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(4..=1000))]
+    pub(crate) trials: u16,
+    /// The seed of signs, places and phases; the same seed gives the same limits.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// How to write the plan.
+    #[arg(long, value_enum, default_value_t = LimitsFormat::Text)]
+    pub(crate) format: LimitsFormat,
     /// Show no progress.
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -360,6 +415,16 @@ pub(crate) enum UpdateFormat {
     Text,
     /// The schema abbe-update/1.
     Json,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum LimitsFormat {
+    /// For a person at a terminal.
+    Text,
+    /// The schema abbe-limits/1.
+    Json,
+    /// One self-contained page with the curves.
+    Html,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

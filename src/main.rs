@@ -45,6 +45,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Expand(command) => commands::expand::run(command),
         Command::Compensate(command) => commands::compensate::run(command),
         Command::Diagnose(command) => commands::diagnose::run(command),
+        Command::Limits(command) => commands::limits::run(command),
+        Command::Plan(command) => commands::plan::run(command),
         Command::Simulate(command) => commands::simulate::run(command),
         Command::Calibrate(command) => commands::calibrate::run(command),
         Command::Update(command) => commands::update::run(command),

@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
+use model_dsl::machine::Machine;
 use model_dsl::source::{SourceFile, Span, Spanned};
-use model_dsl::yaml;
+use model_dsl::{Compiled, yaml};
 use recording::{self, Header, Recording};
 
 use crate::calibrated::{self, Calibrated};
@@ -22,6 +23,8 @@ pub(crate) struct Recorded {
     pub(crate) source: SourceFile,
     /// The equations of the machine that was recorded.
     pub(crate) equations: Equations,
+    /// The machine that was recorded.
+    pub(crate) machine: Machine,
     /// Where they come from a topology word: the word, and its file.
     pub(crate) topology: Option<Topology>,
     /// What is already known of it, where the recording names a calibration.
@@ -50,7 +53,7 @@ pub(crate) fn read(path: &Path, quiet: bool) -> Result<Recorded, Failure> {
     let loaded = load::machine(&name.value, folder)
         .map_err(|failure| unusable(&source, "E0622", "machine", &name, failure))?;
     let topology = Topology::of(&loaded);
-    let equations = loaded.compiled.equations;
+    let Compiled { machine, equations } = loaded.compiled;
     let header = recording::read_header(&root, &equations, &mut diagnostics);
     let header = header.filter(|_| !diagnostics.has_errors()).ok_or_else(|| wrong(&source, &diagnostics))?;
     show(&source, &diagnostics);
@@ -58,7 +61,7 @@ pub(crate) fn read(path: &Path, quiet: bool) -> Result<Recorded, Failure> {
     let calibration = read_calibration(&source, &header, calibration_path.as_deref(), &equations)?;
     let recording = read_data(&header, folder, &source, quiet)?;
     let named = Named { machine: name.span, calibration: header.calibration.map(|name| name.span) };
-    Ok(Recorded { source, equations, topology, calibration, recording, calibration_path, named })
+    Ok(Recorded { source, equations, machine, topology, calibration, recording, calibration_path, named })
 }
 
 /// Reads several recordings of one machine with one calibration.

@@ -19,16 +19,9 @@
     reason = "a program for the terminal, whose cases are its own"
 )]
 
-mod allowed;
-mod base;
-mod case;
-mod columns;
-mod effect;
+mod folder;
 mod options;
 mod report;
-mod score;
-mod state;
-mod taken;
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -39,14 +32,14 @@ use std::thread;
 use std::time::Instant;
 
 use diagnosis::diagnosis::Diagnosis;
-use diagnosis::{Inputs, diagnose};
 use recording::Recording;
 
-use base::Base;
-use case::Case;
+use limits::injection::allowed;
+use limits::injection::base::Base;
+use limits::injection::case::{self, Case};
+use limits::injection::score::Score;
 use options::{Form, Options};
 use report::Line;
-use score::Score;
 
 fn main() {
     let options = Options::read(std::env::args().skip(1)).unwrap_or_else(|error| {
@@ -78,7 +71,7 @@ fn bases(options: &Options) -> Vec<Base> {
     let named: Vec<(String, PathBuf)> = named.collect();
     let read = |number: usize| {
         let (name, folder) = &named[number];
-        let base = catch_unwind(AssertUnwindSafe(|| Base::read(name, folder)));
+        let base = catch_unwind(AssertUnwindSafe(|| folder::read(name, folder)));
         let base = base.unwrap_or_else(|_| Err("it cannot be made again".to_owned()));
         base.inspect_err(|why| eprintln!("{name}: skipped: {why}")).ok()
     };
@@ -162,16 +155,11 @@ fn judged<'c>(bases: &'c [Base], cases: &'c [Case]) -> Vec<Line<'c>> {
 
 /// A diagnosis; nothing where it fails, which is told.
 fn diagnosed(base: &Base, recording: &Recording) -> Option<Diagnosis> {
-    let inputs = Inputs {
-        equations: &base.compiled.equations,
-        calibration: base.calibration.as_ref(),
-        recordings: vec![recording],
-        holdout: None,
-        calibration_file: None,
-        chains: None,
-    };
-    let done = catch_unwind(AssertUnwindSafe(|| diagnose(&inputs, &mut |_| {})));
-    done.inspect_err(|_| eprintln!("{}: the diagnosis failed", base.name)).ok()
+    let done = limits::trial::diagnosed(base, &[recording]);
+    if done.is_none() {
+        eprintln!("{}: the diagnosis failed", base.name);
+    }
+    done
 }
 
 /// What jobs give, in order, from all processors.

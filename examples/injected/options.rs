@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use crate::allowed::KINDS;
+use limits::injection::allowed::KINDS;
 
 /// How the tables are printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
 
-use crate::allowed::KINDS;
-use crate::base::Base;
-use crate::case::Case;
-use crate::score::{How, NEAR, Score};
+use limits::injection::allowed::KINDS;
+use limits::injection::base::Base;
+use limits::injection::case::Case;
+use limits::injection::score::{How, NEAR, Score};
 
 /// A case with its score.
 pub(crate) struct Line<'c> {

@@ -143,7 +143,7 @@ fn plant(calibrated: &Calibrated, names: &MachineNames) -> Result<Plant, Failure
     Plant::new(&calibrated.machine, names, &calibrated.calibration).map_err(|error| wrong(&error))
 }
 
-fn wrong(error: &dyn std::fmt::Display) -> Failure {
+pub(super) fn wrong(error: &dyn std::fmt::Display) -> Failure {
     Failure::Wrong(format!("error: {error}"))
 }
 
@@ -153,7 +153,7 @@ fn is_recording(source: &SourceFile) -> bool {
     root.is_some_and(|root| root.get("recording").is_some())
 }
 
-fn read_path(
+pub(super) fn read_path(
     source: &SourceFile,
     calibrated: &Calibrated,
     names: &MachineNames,

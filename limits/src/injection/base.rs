@@ -1,38 +1,38 @@
-//! Recordings that effects are injected into. In: a folder with a recording and its table. Out: the recording in memory,
-//! the machine that was recorded, what its calibration shows there, and what an error motion adds to each reading.
+//! Recordings that effects are injected into. In: a recording, its machine, what is known of it. Out: what the calibration shows
+//! there, and what an error motion adds to each reading.
 //!
 //! Readings come from the simulation, which turns bodies by finite angles and shares no code with the diagnosis.
 
-use std::fs;
-use std::path::{Path as File, PathBuf};
 use std::sync::Arc;
 
-use model_dsl::calibration::{self, CalibratedTerm, Calibration, MachineNames, SeriesInput};
-use model_dsl::diagnostic::Diagnostics;
-use model_dsl::source::SourceFile;
-use model_dsl::{Compiled, compile, compile_word, yaml};
-use recording::{Recording, calibration_of, machine_of, read_header};
-use simulation::{Commands, Measurement, Plant, replay};
+use model_dsl::Compiled;
+use model_dsl::calibration::{CalibratedTerm, Calibration, MachineNames, SeriesInput};
+use recording::Recording;
+use simulation::{Commands, Instrument, Measurement, Plant, replay};
 
-use crate::columns::difference;
-use crate::effect::Path;
-use crate::taken::{Outlet, column_of, commands, instrument, path, reading};
+use crate::injection::columns::difference;
+use crate::injection::effect::Path;
+use crate::injection::taken::{Outlet, column_of, commands, instrument, path, reading};
 
 /// The part of a motion that a reading must show: a tenth.
 const SEEN: f64 = 0.1;
 
 /// A recording with its machine.
-pub(crate) struct Base {
-    pub(crate) name: String,
-    pub(crate) compiled: Compiled,
-    pub(crate) names: MachineNames,
+pub struct Base {
+    /// What it is called in messages.
+    pub name: String,
+    /// The machine and its equations.
+    pub compiled: Compiled,
+    /// The names of its axes, motions and constants.
+    pub names: MachineNames,
     /// What is known of the machine.
-    pub(crate) calibration: Option<Calibration>,
-    pub(crate) recording: Recording,
+    pub calibration: Option<Calibration>,
+    /// The recording as it is.
+    pub recording: Recording,
     /// What effects follow.
-    pub(crate) path: Path,
+    pub path: Path,
     /// The readings that show the machine.
-    pub(crate) outlets: Vec<Outlet>,
+    pub outlets: Vec<Outlet>,
     /// What the recording should say of the machine as it is known, reading by reading.
     still: Signal,
     known: Calibration,
@@ -41,32 +41,11 @@ pub(crate) struct Base {
 }
 
 /// One number a row for each outlet.
-pub(crate) type Signal = Vec<Vec<f64>>;
+pub type Signal = Vec<Vec<f64>>;
 
 impl Base {
-    /// Reads the folder's `recording.yaml` and all that it names; or why that cannot be.
-    pub(crate) fn read(name: &str, folder: &File) -> Result<Self, String> {
-        let source = source(&folder.join("recording.yaml"))?;
-        let mut findings = Diagnostics::new();
-        let told = |findings: &Diagnostics| match findings.iter().next() {
-            Some(finding) => format!("{}: {}", finding.code, finding.message),
-            None => "it cannot be read".to_owned(),
-        };
-        let root = yaml::read(&source, &mut findings).ok_or_else(|| told(&findings))?;
-        let machine = machine_of(&root, &mut findings).ok_or_else(|| told(&findings))?;
-        let compiled = machine_named(&machine.value, folder)?;
-        let header = read_header(&root, &compiled.equations, &mut findings).ok_or_else(|| told(&findings))?;
-        let recording =
-            header.read_data(&folder.join(&header.data.value)).map_err(|error| error.to_string())?;
-        let names = compiled.equations.names();
-        let calibration = calibration_of(&root)
-            .map(|file| calibration_named(&folder.join(&file.value), &names))
-            .transpose()?;
-        Self::new(name, compiled, calibration, recording)
-    }
-
     /// A recording in memory.
-    pub(crate) fn new(
+    pub fn new(
         name: &str,
         compiled: Compiled,
         calibration: Option<Calibration>,
@@ -95,6 +74,16 @@ impl Base {
         Ok(base)
     }
 
+    /// The instrument, without faults.
+    pub fn instrument(&self) -> &Instrument {
+        &self.measurement.instrument
+    }
+
+    /// What is known of the machine as it moves; without any error where there is no calibration.
+    pub fn known(&self) -> &Calibration {
+        &self.known
+    }
+
     fn plant(&self, calibration: &Calibration) -> Result<Plant, String> {
         Plant::new(&self.compiled.machine, &self.names, calibration).map_err(|error| error.to_string())
     }
@@ -111,19 +100,14 @@ impl Base {
     }
 
     /// What the readings gain where an error motion has these values, row by row.
-    pub(crate) fn shown(&self, motion: usize, values: &[f64]) -> Option<Signal> {
+    pub fn shown(&self, motion: usize, values: &[f64]) -> Option<Signal> {
         let values = Arc::new(values.to_vec());
         let effect = move |state: &simulation::State<'_>| values.get(state.row).copied().unwrap_or(0.0);
         self.beside(&self.plant(&self.known).ok()?.with_effect(motion, Arc::new(effect)))
     }
 
     /// What the readings gain where an error motion has a term more; its sensor is that of a name.
-    pub(crate) fn claimed(
-        &self,
-        motion: usize,
-        term: &CalibratedTerm,
-        sensor: Option<&str>,
-    ) -> Option<Signal> {
+    pub fn claimed(&self, motion: usize, term: &CalibratedTerm, sensor: Option<&str>) -> Option<Signal> {
         let (mut known, mut term) = (self.known.clone(), term.clone());
         if let (
             CalibratedTerm::Expansion { sensor: number, .. }
@@ -138,7 +122,7 @@ impl Base {
     }
 
     /// The recording with a signal added to its readings; `drive` goes to the feedback of an axis besides.
-    pub(crate) fn with(&self, signal: &Signal, drive: Option<(usize, &[f64])>) -> Recording {
+    pub fn with(&self, signal: &Signal, drive: Option<(usize, &[f64])>) -> Recording {
         let mut recording = self.recording.clone();
         for (outlet, gain) in self.outlets.iter().zip(signal) {
             column_of(&mut recording, *outlet).into_iter().for_each(|column| add(column, gain));
@@ -150,13 +134,13 @@ impl Base {
     }
 
     /// What the recording says beside what is known, reading by reading; NaN where nothing was read.
-    pub(crate) fn residual(&self) -> Signal {
+    pub fn residual(&self) -> Signal {
         let read = self.outlets.iter().map(|outlet| reading(&self.recording, *outlet));
         read.zip(&self.still).map(|(read, still)| difference(&read, still)).collect()
     }
 
     /// The motion through which an axis shows: its own (EXX of X) where a reading sees it, else another one of its link.
-    pub(crate) fn motion_of(&self, axis: usize) -> Option<usize> {
+    pub fn motion_of(&self, axis: usize) -> Option<usize> {
         let of_axis = |motion: &usize| {
             let named = &self.names.motions[*motion];
             named.axis.as_deref() == Some(self.names.axes[axis].letter.as_str())
@@ -169,7 +153,7 @@ impl Base {
     }
 
     /// Whether an instrument stands outside the drives: no encoder of an axis sees what another axis does to it.
-    pub(crate) fn outside(&self) -> bool {
+    pub fn outside(&self) -> bool {
         !self.outlets.iter().any(|outlet| matches!(outlet, Outlet::Actual(_)))
     }
 
@@ -185,31 +169,10 @@ fn add(column: &mut [f64], gain: &[f64]) {
     column.iter_mut().zip(gain).for_each(|(value, gain)| *value += gain);
 }
 
-fn source(path: &File) -> Result<SourceFile, String> {
-    let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
-    Ok(SourceFile::new(path.display().to_string(), text))
-}
-
-/// A machine file beside the recording, a shipped machine, or a topology word.
-fn machine_named(name: &str, folder: &File) -> Result<Compiled, String> {
-    let shipped = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("machines/{name}.yaml"));
-    let file = [folder.join(name), shipped].into_iter().find(|path| path.is_file());
-    let compiled = match file {
-        Some(path) => compile(&source(&path)?, &mut Diagnostics::new()),
-        None => compile_word(name, &mut Diagnostics::new()),
-    };
-    compiled.ok_or_else(|| format!("no machine `{name}`"))
-}
-
-fn calibration_named(path: &File, names: &MachineNames) -> Result<Calibration, String> {
-    let mut findings = Diagnostics::new();
-    let root = yaml::read(&source(path)?, &mut findings);
-    let read = root.and_then(|root| calibration::read(&root, names, &mut findings));
-    read.ok_or_else(|| format!("{} cannot be used", path.display()))
-}
-
 #[cfg(test)]
 mod tests {
+    use model_dsl::compile_word;
+    use model_dsl::diagnostic::Diagnostics;
     use recording::AxisChannels;
 
     use super::*;
@@ -269,8 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn folders_that_are_none_and_recordings_of_nothing_are_told() {
-        assert!(Base::read("none", File::new("no-such-folder")).is_err());
+    fn recordings_of_nothing_are_told() {
         let compiled = compile_word("FX", &mut Diagnostics::new()).unwrap();
         let axes = vec![AxisChannels::default()];
         let empty = Recording { time: vec![0.0, 1.0], run: vec![1, 1], axes, ..Recording::default() };

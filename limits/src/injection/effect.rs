@@ -5,96 +5,147 @@
 
 use std::f64::consts::TAU;
 
-use crate::columns::difference;
-use crate::state::{Axis, Clock, followed, taken_up};
+use crate::injection::columns::difference;
+use crate::injection::state::{Axis, Clock, followed, taken_up};
 
 /// What an effect may depend on.
-pub(crate) struct Path {
-    pub(crate) clock: Clock,
+pub struct Path {
+    /// When rows were taken.
+    pub clock: Clock,
     /// The axes of the machine, in its order; nothing where it is not known where one is.
-    pub(crate) axes: Vec<Option<Axis>>,
+    pub axes: Vec<Option<Axis>>,
     /// Temperatures, degC.
-    pub(crate) temperatures: Vec<Vec<f64>>,
+    pub temperatures: Vec<Vec<f64>>,
     /// Loads.
-    pub(crate) loads: Vec<Vec<f64>>,
+    pub loads: Vec<Vec<f64>>,
 }
 
 /// One effect: mm, rad, s, degC. Axes, sensors and loads go by number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Effect {
+pub enum Effect {
+    /// The same everywhere: a squareness.
     Constant {
+        /// Its size.
         value: f64,
     },
+    /// A line over the axis.
     Polynomial {
+        /// The axis.
         axis: usize,
+        /// Its rise for each mm or rad.
         slope: f64,
     },
     /// A bump, as a table could hold it: `exp(-((q - at)/width)^2/2)`.
     Table {
+        /// The axis.
         axis: usize,
+        /// The place of its top.
         at: f64,
+        /// Its standard deviation.
         width: f64,
+        /// Its height.
         height: f64,
     },
+    /// A play, which jumps at each reversal or winds up over some way.
     Backlash {
+        /// The axis.
         axis: usize,
+        /// From one side to the other.
         lost_motion: f64,
+        /// The way from side to side; 0 jumps.
         wind_up: f64,
     },
+    /// A spike after each reversal, which decays.
     ReversalSpike {
+        /// The axis.
         axis: usize,
+        /// Its height.
         height: f64,
+        /// Its time constant, s.
         decay: f64,
     },
+    /// A wave along the axis.
     Cyclic {
+        /// The axis.
         axis: usize,
+        /// The way of one wave.
         period: f64,
+        /// Its amplitude.
         amplitude: f64,
+        /// Its phase where the axis is at zero, rad.
         phase: f64,
     },
+    /// What a position loop stays behind.
     Lag {
+        /// The axis.
         axis: usize,
+        /// Its velocity gain, 1/s.
         gain: f64,
     },
+    /// Minus the acceleration over a gain.
     Acceleration {
+        /// The axis.
         axis: usize,
+        /// The gain, 1/s^2 for a motion in mm.
         gain: f64,
     },
+    /// A scale or a screw that is warm.
     Expansion {
+        /// The axis.
         axis: usize,
+        /// The sensor.
         sensor: usize,
+        /// 1/K.
         coefficient: f64,
+        /// Where it is not warm, degC.
         reference: f64,
     },
+    /// A structure that grows behind a temperature.
     Growth {
+        /// The sensor.
         sensor: usize,
+        /// mm/K or rad/K.
         coefficient: f64,
+        /// Where it has not grown, degC.
         reference: f64,
+        /// s.
         time_constant: f64,
     },
+    /// A fading drift in time.
     Drift {
+        /// Where it comes to.
         amplitude: f64,
+        /// s.
         time_constant: f64,
     },
+    /// A wave in time.
     Vibration {
+        /// Hz.
         frequency: f64,
+        /// Its amplitude.
         amplitude: f64,
+        /// Its phase at the first row, rad.
         phase: f64,
     },
     /// Of another axis: c_1 q + c_2 q^2.
     Coupling {
+        /// The other axis.
         axis: usize,
+        /// c_1 and c_2.
         coefficients: [f64; 2],
     },
+    /// What gives way under a load.
     Compliance {
+        /// The load.
         load: usize,
+        /// mm or rad for each unit of the load.
         coefficient: f64,
     },
 }
 
 impl Effect {
     /// The name of its term.
-    pub(crate) fn term(&self) -> &'static str {
+    pub fn term(&self) -> &'static str {
         match self {
             Self::Constant { .. } => "constant",
             Self::Polynomial { .. } => "polynomial",
@@ -114,7 +165,7 @@ impl Effect {
     }
 
     /// What kind of case it makes: the term, and a backlash that winds up apart from one that jumps.
-    pub(crate) fn kind(&self) -> &'static str {
+    pub fn kind(&self) -> &'static str {
         match self {
             Self::Backlash { wind_up, .. } if *wind_up > 0.0 => "wind-up",
             _ => self.term(),
@@ -122,7 +173,7 @@ impl Effect {
     }
 
     /// The same, this many times as large.
-    pub(crate) fn scaled(mut self, by: f64) -> Self {
+    pub fn scaled(mut self, by: f64) -> Self {
         match &mut self {
             Self::Constant { value: size }
             | Self::Polynomial { slope: size, .. }
@@ -142,8 +193,32 @@ impl Effect {
         self
     }
 
+    /// Its size as one number above zero to which all that it adds is proportional: what stays behind goes as one over a gain.
+    pub fn strength(&self) -> f64 {
+        match *self {
+            Self::Constant { value: size }
+            | Self::Polynomial { slope: size, .. }
+            | Self::Table { height: size, .. }
+            | Self::Backlash { lost_motion: size, .. }
+            | Self::ReversalSpike { height: size, .. }
+            | Self::Cyclic { amplitude: size, .. }
+            | Self::Expansion { coefficient: size, .. }
+            | Self::Growth { coefficient: size, .. }
+            | Self::Drift { amplitude: size, .. }
+            | Self::Vibration { amplitude: size, .. }
+            | Self::Compliance { coefficient: size, .. } => size.abs(),
+            Self::Coupling { coefficients: [_, second], .. } => second.abs(),
+            Self::Lag { gain, .. } | Self::Acceleration { gain, .. } => 1.0 / gain.abs(),
+        }
+    }
+
+    /// The same at this strength.
+    pub fn at_strength(self, strength: f64) -> Self {
+        self.scaled(strength / self.strength())
+    }
+
     /// Its size as a calibration has it: the parameter, its place among several, its value. A bump has none.
-    pub(crate) fn size(&self) -> Option<(&'static str, usize, f64)> {
+    pub fn size(&self) -> Option<(&'static str, usize, f64)> {
         Some(match *self {
             Self::Constant { value } => ("value", 0, value),
             Self::Polynomial { slope, .. } => ("coefficients", 1, slope),
@@ -163,12 +238,12 @@ impl Effect {
     }
 
     /// Whether the drive's own feedback sees it: what the position loop does is done before the screw.
-    pub(crate) fn at_the_drive(&self) -> bool {
+    pub fn at_the_drive(&self) -> bool {
         matches!(self, Self::Lag { .. } | Self::Acceleration { .. })
     }
 
     /// What it adds to its error motion in each row; nothing where the path does not know what it depends on.
-    pub(crate) fn values(&self, path: &Path) -> Option<Vec<f64>> {
+    pub fn values(&self, path: &Path) -> Option<Vec<f64>> {
         let axis = |number: usize| path.axes.get(number)?.as_ref();
         let over = |number: usize, of: &dyn Fn(f64) -> f64| -> Option<Vec<f64>> {
             Some(axis(number)?.position.iter().map(|q| of(*q)).collect())

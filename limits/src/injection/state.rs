@@ -3,24 +3,24 @@
 //!
 //! All of it is written from the definitions of the terms alone: nothing here is shared with the diagnosis or the simulation.
 
-use crate::columns::{median, rms};
+use crate::injection::columns::{median, rms};
 
 /// A pause this many times as long as the usual step is a gap, over which nothing is driven.
 const GAP: f64 = 20.0;
 
 /// When rows were taken.
-pub(crate) struct Clock {
+pub struct Clock {
     /// Time since the recording began, s.
-    pub(crate) time: Vec<f64>,
+    pub time: Vec<f64>,
     /// The stretches that were driven in one go, as ranges of rows.
-    pub(crate) stretches: Vec<(usize, usize)>,
+    pub stretches: Vec<(usize, usize)>,
     /// The usual time from row to row, s.
-    pub(crate) step: f64,
+    pub step: f64,
 }
 
 impl Clock {
     /// A clock of rows with their runs.
-    pub(crate) fn new(time: Vec<f64>, run: &[i64]) -> Self {
+    pub fn new(time: Vec<f64>, run: &[i64]) -> Self {
         let steps: Vec<f64> =
             time.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0).collect();
         let step = median(&steps);
@@ -36,29 +36,32 @@ impl Clock {
     }
 
     /// From the first row to the last, s.
-    pub(crate) fn span(&self) -> f64 {
+    pub fn span(&self) -> f64 {
         self.time.last().copied().unwrap_or(0.0) - self.time.first().copied().unwrap_or(0.0)
     }
 }
 
 /// Where one axis is and how it moves: mm or rad, and s.
-pub(crate) struct Axis {
-    pub(crate) position: Vec<f64>,
-    pub(crate) velocity: Vec<f64>,
-    pub(crate) acceleration: Vec<f64>,
+pub struct Axis {
+    /// Where it is.
+    pub position: Vec<f64>,
+    /// By central differences.
+    pub velocity: Vec<f64>,
+    /// By central differences of those.
+    pub acceleration: Vec<f64>,
     /// +1 or -1: the direction of the last real motion, +1 before the first.
-    pub(crate) direction: Vec<f64>,
+    pub direction: Vec<f64>,
     /// The time since the last reversal; infinite before the first.
-    pub(crate) since: Vec<f64>,
+    pub since: Vec<f64>,
     /// How often it turns.
-    pub(crate) turns: usize,
+    pub turns: usize,
     /// From where to where it goes.
-    pub(crate) range: [f64; 2],
+    pub range: [f64; 2],
 }
 
 impl Axis {
     /// Follows positions; a motion back by no more than `deadband` of the travel is none.
-    pub(crate) fn new(clock: &Clock, position: Vec<f64>, deadband: f64) -> Self {
+    pub fn new(clock: &Clock, position: Vec<f64>, deadband: f64) -> Self {
         let range = [
             position.iter().copied().fold(f64::INFINITY, f64::min),
             position.iter().copied().fold(f64::NEG_INFINITY, f64::max),
@@ -70,24 +73,24 @@ impl Axis {
     }
 
     /// How far it goes.
-    pub(crate) fn travel(&self) -> f64 {
+    pub fn travel(&self) -> f64 {
         self.range[1] - self.range[0]
     }
 
     /// The longest way from row to row.
-    pub(crate) fn stride(&self) -> f64 {
+    pub fn stride(&self) -> f64 {
         self.position.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max)
     }
 
     /// Whether the acceleration goes on from row to row, as that of rounded or jittering positions does not: differences of
     /// numbers that know nothing of each other are 1.4 times as large as the numbers.
-    pub(crate) fn smooth(&self) -> bool {
+    pub fn smooth(&self) -> bool {
         let steps: Vec<f64> = self.acceleration.windows(2).map(|pair| pair[1] - pair[0]).collect();
         rms(&steps) < 0.7 * rms(&self.acceleration)
     }
 
     /// How many places it stands at, told apart by a millionth of the travel.
-    pub(crate) fn stations(&self) -> usize {
+    pub fn stations(&self) -> usize {
         let near = 1e-6 * self.travel();
         let mut places = self.position.clone();
         places.sort_by(f64::total_cmp);
@@ -132,7 +135,7 @@ fn directions(time: &[f64], position: &[f64], deadband: f64) -> (Vec<f64>, Vec<f
 
 /// What follows an input at the rate `rate` (1/s): y' = rate (input - y), at rest on the input where a stretch begins, the
 /// input straight between rows. What stays behind, y - input, falls by exp(-rate t) and gains -slope/rate (1 - exp(-rate t)).
-pub(crate) fn followed(clock: &Clock, input: &[f64], rate: f64) -> Vec<f64> {
+pub fn followed(clock: &Clock, input: &[f64], rate: f64) -> Vec<f64> {
     let mut output = input.to_vec();
     for &(start, end) in &clock.stretches {
         let mut behind = 0.0;
@@ -148,7 +151,7 @@ pub(crate) fn followed(clock: &Clock, input: &[f64], rate: f64) -> Vec<f64> {
 }
 
 /// A play that is taken up over the way `wind_up`: within -1 and 1, follows the position by twice the way over `wind_up`.
-pub(crate) fn taken_up(axis: &Axis, wind_up: f64) -> Vec<f64> {
+pub fn taken_up(axis: &Axis, wind_up: f64) -> Vec<f64> {
     let mut state = axis.direction.first().copied().unwrap_or(1.0);
     let mut before = axis.position.first().copied().unwrap_or(0.0);
     let next = |position: &f64| {

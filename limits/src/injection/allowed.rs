@@ -8,13 +8,13 @@ use std::f64::consts::TAU;
 
 use simulation::noise::Source;
 
-use crate::base::{Base, Signal};
-use crate::columns::{alike, correlation, rms, straightened};
-use crate::effect::Effect;
-use crate::state::Axis;
+use crate::injection::base::{Base, Signal};
+use crate::injection::columns::{alike, correlation, rms, straightened};
+use crate::injection::effect::Effect;
+use crate::injection::state::Axis;
 
 /// All kinds, in the order in which they are told.
-pub(crate) const KINDS: [&str; 15] = [
+pub const KINDS: [&str; 15] = [
     "constant",
     "polynomial",
     "table",
@@ -48,11 +48,13 @@ const SLOW: f64 = 300.0;
 const WARMER: f64 = 1.0;
 
 /// An effect of size one and the motion that it is in.
-pub(crate) struct Allowed {
-    pub(crate) motion: usize,
+pub struct Allowed {
+    /// The motion, by number.
+    pub motion: usize,
     /// The axis that moves, where the effect follows one.
-    pub(crate) axis: Option<usize>,
-    pub(crate) effect: Effect,
+    pub axis: Option<usize>,
+    /// The effect of size one.
+    pub effect: Effect,
 }
 
 /// Random choices of one case: the same under the same seed, whatever other cases there are.
@@ -69,7 +71,7 @@ impl Draw {
 }
 
 /// All effects that a recording allows.
-pub(crate) fn allowed(base: &Base, seed: u64) -> Vec<Allowed> {
+pub fn allowed(base: &Base, seed: u64) -> Vec<Allowed> {
     let mut all = Vec::new();
     let mut take =
         |motion: usize, axis: Option<usize>, make: &dyn Fn(&mut Draw) -> Option<Effect>, kind: &str| {
@@ -97,8 +99,29 @@ pub(crate) fn allowed(base: &Base, seed: u64) -> Vec<Allowed> {
     all
 }
 
+/// An effect of size one of a kind in a motion of an axis, where the recording could show it. `name` is that of the draw: the same
+/// name draws the same place, period, phase and sign in whatever motion.
+pub fn drawn(
+    base: &Base,
+    motion: usize,
+    axis: usize,
+    (kind, name): (&str, &str),
+    seed: u64,
+) -> Option<Allowed> {
+    let moving = base.path.axes.get(axis)?.as_ref().filter(|axis| axis.travel() > 0.0)?;
+    let mut draw = Draw(Source::new(seed, name));
+    let (follows, effect) = if kind == "constant" {
+        (None, Some(Effect::Constant { value: draw.sign() }))
+    } else if OF_AXIS.contains(&kind) {
+        (Some(axis), of_axis(base, axis, moving, kind, &mut draw))
+    } else {
+        (None, beside(base, kind, &mut draw))
+    };
+    effect.map(|effect| Allowed { motion, axis: follows, effect })
+}
+
 /// The kinds that follow an axis.
-const OF_AXIS: [&str; 10] = [
+pub const OF_AXIS: [&str; 10] = [
     "polynomial",
     "table",
     "backlash",

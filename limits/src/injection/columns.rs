@@ -5,12 +5,12 @@
 const ALIKE: f64 = 0.9;
 
 /// One less the other, row by row.
-pub(crate) fn difference(left: &[f64], right: &[f64]) -> Vec<f64> {
+pub fn difference(left: &[f64], right: &[f64]) -> Vec<f64> {
     left.iter().zip(right).map(|(left, right)| left - right).collect()
 }
 
 /// Gaps take the value before them; those in the beginning the first value there is.
-pub(crate) fn filled(values: &[f64]) -> Vec<f64> {
+pub fn filled(values: &[f64]) -> Vec<f64> {
     let mut last = values.iter().copied().find(|value| value.is_finite()).unwrap_or(0.0);
     let next = |value: &f64| {
         last = if value.is_finite() { *value } else { last };
@@ -20,7 +20,7 @@ pub(crate) fn filled(values: &[f64]) -> Vec<f64> {
 }
 
 /// Values less their line over `along`; NaN stays.
-pub(crate) fn straightened(values: &[f64], along: &[f64]) -> Vec<f64> {
+pub fn straightened(values: &[f64], along: &[f64]) -> Vec<f64> {
     let rows: Vec<(f64, f64)> =
         along.iter().zip(values).filter(|(_, y)| y.is_finite()).map(|(x, y)| (*x, *y)).collect();
     let count = rows.len().max(1) as f64;
@@ -35,26 +35,26 @@ pub(crate) fn straightened(values: &[f64], along: &[f64]) -> Vec<f64> {
 }
 
 /// The root mean square of what is there.
-pub(crate) fn rms(values: &[f64]) -> f64 {
+pub fn rms(values: &[f64]) -> f64 {
     let there = values.iter().filter(|value| value.is_finite());
     let (sum, count) = there.fold((0.0, 0.0), |(sum, count), value| (sum + value * value, count + 1.0));
     f64::sqrt(sum / f64::max(count, 1.0))
 }
 
 /// The middle one by size; zero of nothing.
-pub(crate) fn median(values: &[f64]) -> f64 {
+pub fn median(values: &[f64]) -> f64 {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Whether two columns are nearly on one line.
-pub(crate) fn alike(left: &[f64], right: &[f64]) -> bool {
+pub fn alike(left: &[f64], right: &[f64]) -> bool {
     correlation(left, right).abs() > ALIKE
 }
 
 /// The correlation of two columns: 1 or -1 on one line, 0 where neither tells of the other.
-pub(crate) fn correlation(left: &[f64], right: &[f64]) -> f64 {
+pub fn correlation(left: &[f64], right: &[f64]) -> f64 {
     let flat = vec![0.0; left.len()];
     let (left, right) = (straightened(left, &flat), straightened(right, &flat));
     let product: f64 = left.iter().zip(&right).map(|(left, right)| left * right).sum();

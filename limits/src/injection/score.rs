@@ -5,32 +5,34 @@ use diagnosis::diagnosis::{Diagnosis, Estimate, Finding, IntervalOf, ParameterVa
 use model_dsl::calibration::CalibratedTerm;
 use model_dsl::quantity::parse_unit;
 
-use crate::base::{Base, Signal};
-use crate::case::Case;
-use crate::columns::{difference, rms, straightened};
-use crate::effect::Effect;
+use crate::injection::base::{Base, Signal};
+use crate::injection::case::Case;
+use crate::injection::columns::{difference, rms, straightened};
+use crate::injection::effect::Effect;
 
 /// How far a claimed effect may be from the injected one, in parts of its size: within a third it is the right size.
 const SAME: f64 = 0.35;
 
 /// What is left held out may be so much more than in the base before something is said to be missing.
-pub(crate) const NEAR: f64 = 1.1;
+pub const NEAR: f64 = 1.1;
 
 /// Periods and frequencies closer than this are one wave.
 const WAVE: f64 = 0.03;
 
 /// How an effect was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum How {
+pub enum How {
     /// Its name stands there, or under `or else`, and its size is right.
     Named,
     /// What was claimed is the same in this recording, under another name.
     Same,
+    /// Nothing that was claimed is it.
     Missed,
 }
 
 impl How {
-    pub(crate) fn word(self) -> &'static str {
+    /// In a word.
+    pub fn word(self) -> &'static str {
         match self {
             Self::Named => "named",
             Self::Same => "same",
@@ -40,16 +42,20 @@ impl How {
 }
 
 /// The score of one case.
-pub(crate) struct Score {
-    pub(crate) how: How,
+pub struct Score {
+    /// How the effect was found.
+    pub how: How,
+    /// The finding that is the effect, by number, where one is.
+    pub hit: Option<usize>,
     /// Claims that were neither injected nor are made of the base.
-    pub(crate) extra: Vec<String>,
+    pub extra: Vec<String>,
     /// The held-out figure over that of the base.
-    pub(crate) left: Option<f64>,
+    pub left: Option<f64>,
     /// Whether the interval of the size holds what was injected beside what the base has; nothing where no interval of it
     /// was told, or the base has the same unclaimed.
-    pub(crate) covered: Option<bool>,
-    pub(crate) verdict: &'static str,
+    pub covered: Option<bool>,
+    /// The verdict's word.
+    pub verdict: &'static str,
 }
 
 /// How a finding stands to what was injected.
@@ -67,7 +73,7 @@ struct Claim<'d> {
 
 impl Score {
     /// Scores the diagnosis of a case.
-    pub(crate) fn of(case: &Case, base: &Base, found: &Diagnosis, alone: &Diagnosis) -> Self {
+    pub fn of(case: &Case, base: &Base, found: &Diagnosis, alone: &Diagnosis) -> Self {
         let left = held_out(found).zip(held_out(alone)).map(|(case, base)| case / base);
         let whole = left.is_some_and(|left| left < NEAR);
         let injected = centred(case, base, &case.signal);
@@ -91,7 +97,7 @@ impl Score {
         });
         // What was injected, told in several pieces, is no claim besides.
         let extra = if pieces { Vec::new() } else { extra(case, base, &claims, &known, hit) };
-        Self { how, extra, left, covered, verdict: found.verdict.word() }
+        Self { how, hit, extra, left, covered, verdict: found.verdict.word() }
     }
 }
 
@@ -272,6 +278,23 @@ fn covered(case: &Case, base: &Base, finding: &Finding, known: &[Claim<'_>]) -> 
     Some(truth >= low.min(high) && truth <= low.max(high))
 }
 
+/// The size of a finding that is of the effect's term, and half of its interval of 95 %, in the effect's unit; of what stays behind a
+/// gain, one over it.
+pub fn interval(effect: &Effect, finding: &Finding) -> Option<(f64, f64)> {
+    let (name, place, _) = effect.size()?;
+    if finding.term != effect.term() {
+        return None;
+    }
+    let found = estimate(finding, name, place)?;
+    let [value, low, high] = [found.value, found.ci95.0, found.ci95.1].map(|number| value_of(found, number));
+    match effect {
+        Effect::Lag { .. } | Effect::Acceleration { .. } => {
+            Some((1.0 / value.abs(), 0.5 * (1.0 / low - 1.0 / high).abs()))
+        }
+        _ => Some((value.abs(), 0.5 * (high - low).abs())),
+    }
+}
+
 fn estimate<'f>(finding: &'f Finding, name: &str, place: usize) -> Option<&'f Estimate> {
     finding.parameters.iter().filter(|parameter| parameter.name == name).find_map(|parameter| {
         match &parameter.value {
@@ -288,7 +311,7 @@ fn value_of(estimate: &Estimate, number: f64) -> f64 {
 }
 
 /// A number in mm, rad, s, degC and N.
-fn internal(number: f64, unit: &str) -> f64 {
+pub(crate) fn internal(number: f64, unit: &str) -> f64 {
     match parse_unit(unit) {
         Ok(unit) if unit.offset == 0.0 => number * unit.factor,
         _ => number,

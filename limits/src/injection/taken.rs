@@ -5,9 +5,9 @@ use model_dsl::calibration::MachineNames;
 use recording::{AxisChannels, Instrument as Recorder, Named, Recording};
 use simulation::{Column, Commands, Instrument, Normal};
 
-use crate::columns::{difference, filled, rms, straightened};
-use crate::effect::Path;
-use crate::state::{Axis, Clock};
+use crate::injection::columns::{difference, filled, rms, straightened};
+use crate::injection::effect::Path;
+use crate::injection::state::{Axis, Clock};
 
 /// A way back by less than this part of the travel is rounding of a command.
 const ROUNDING: f64 = 1e-6;
@@ -24,7 +24,7 @@ const END_POINT: f64 = 0.1;
 
 /// Where a reading stands in the recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Outlet {
+pub enum Outlet {
     /// `measured.x|y|z`, by direction.
     Measured(usize),
     /// `measured` of a rotary axis.
@@ -36,7 +36,7 @@ pub(crate) enum Outlet {
 }
 
 /// What stands at an outlet.
-pub(crate) fn reading(recording: &Recording, outlet: Outlet) -> Vec<f64> {
+pub fn reading(recording: &Recording, outlet: Outlet) -> Vec<f64> {
     match outlet {
         Outlet::Measured(direction) => recording.measured[direction].clone(),
         Outlet::Angle(axis) => recording.axes[axis].measured.clone(),
@@ -47,7 +47,7 @@ pub(crate) fn reading(recording: &Recording, outlet: Outlet) -> Vec<f64> {
 }
 
 /// The column at an outlet, to be changed.
-pub(crate) fn column_of(recording: &mut Recording, outlet: Outlet) -> Option<&mut Vec<f64>> {
+pub fn column_of(recording: &mut Recording, outlet: Outlet) -> Option<&mut Vec<f64>> {
     match outlet {
         Outlet::Measured(direction) => recording.measured[direction].as_mut(),
         Outlet::Angle(axis) => recording.axes[axis].measured.as_mut(),
@@ -58,10 +58,7 @@ pub(crate) fn column_of(recording: &mut Recording, outlet: Outlet) -> Option<&mu
 
 /// The instrument of a recording without faults, and where its readings stand. Where there is none, the drives are read as
 /// if an instrument stood in their place.
-pub(crate) fn instrument(
-    recording: &Recording,
-    names: &MachineNames,
-) -> Result<(Instrument, Vec<Outlet>), String> {
+pub fn instrument(recording: &Recording, names: &MachineNames) -> Result<(Instrument, Vec<Outlet>), String> {
     let instrument = match &recording.instrument {
         Recorder::Position => return positions(recording, names),
         Recorder::Ballbar { center, radius } => Instrument::Ballbar {
@@ -115,7 +112,7 @@ fn drives(recording: &Recording, names: &MachineNames) -> Result<(Instrument, Ve
 }
 
 /// Where the axes were sent, and what surrounded them.
-pub(crate) fn commands(recording: &Recording) -> Commands {
+pub fn commands(recording: &Recording) -> Commands {
     let column = |named: &Named| Column {
         name: named.name.clone(),
         unit: named.unit.clone(),
@@ -136,7 +133,7 @@ pub(crate) fn commands(recording: &Recording) -> Commands {
 }
 
 /// What effects follow: the commands; the drive's feedback where it is far behind them.
-pub(crate) fn path(recording: &Recording, names: &MachineNames) -> Path {
+pub fn path(recording: &Recording, names: &MachineNames) -> Path {
     let clock = Clock::new(recording.time.clone(), &recording.run);
     let axes = recording.axes.iter().enumerate().map(|(number, axis)| {
         let command = filled(axis.command.as_ref()?);

@@ -1,0 +1,137 @@
+//! The words of a limit. In: a limit. Out: clauses that text and page share.
+
+use crate::limits::{Limit, Limits};
+use crate::passes::{Advice, Pass};
+use crate::size::{short, significant};
+
+/// What the effect of a limit is, with all that was drawn for it: `EXX cyclic (period 21 to 34 mm)`.
+pub(super) fn name(limit: &Limit) -> String {
+    let drawn = if limit.drawn.is_empty() { String::new() } else { format!(" ({})", limit.drawn) };
+    format!("{}{drawn}", limit.name())
+}
+
+/// By which names an effect at the limit would be found, and what else was drawn for it.
+pub(super) fn told_and_drawn(limit: &Limit) -> String {
+    let drawn = if limit.drawn.is_empty() { String::new() } else { format!("; {}", limit.drawn) };
+    format!("{}{drawn}", told(limit))
+}
+
+/// The limit with its sense and unit: `0.82 um`, `below 120 1/s`.
+pub(super) fn size(limit: &Limit) -> Option<String> {
+    let size = limit.size()?;
+    let sense = if limit.scale.is_gain { "below " } else { "" };
+    Some(format!("{sense}{} {}", significant(size, 2), limit.scale.unit))
+}
+
+/// The interval of an effect at the limit: `+- 0.21 um`.
+pub(super) fn interval(limit: &Limit) -> String {
+    limit
+        .half()
+        .map_or_else(|| "-".to_owned(), |half| format!("+- {} {}", significant(half, 2), limit.scale.unit))
+}
+
+/// By which names an effect at the limit would be found.
+pub(super) fn told(limit: &Limit) -> String {
+    let Some(found) = &limit.found else { return String::new() };
+    let others: Vec<&str> = found.others.iter().map(|other| other.name.as_str()).collect();
+    match (others.as_slice(), found.first) {
+        ([], first) if first >= MOSTLY => "by its name".to_owned(),
+        ([], first) => {
+            format!("by its name in {} of 10, else under names that change", short((10.0 * first).round()))
+        }
+        (others, _) => format!("or else {}", others.join(", ")),
+    }
+}
+
+/// The share of its own name from which on a limit is told by its name alone.
+const MOSTLY: f64 = 0.75;
+
+/// What a kind without a limit was taken for.
+pub(super) fn never(limit: &Limit) -> String {
+    let largest = limit.scale.told(limit.largest);
+    let instead = match limit.instead.as_slice() {
+        [] if limit.trials.iter().any(|trial| trial.is_unexplained) => "it stays unexplained".to_owned(),
+        [] => "nothing was claimed in its place".to_owned(),
+        [one] => format!("{one} was claimed in its place"),
+        [one, other, ..] => format!("{one} or {other} was claimed in its place"),
+    };
+    let tried = if limit.scale.is_gain { "not found at a gain of" } else { "not found up to" };
+    format!("{}: {tried} {} {}; {instead}", name(limit), significant(largest, 2), limit.scale.unit)
+}
+
+/// Pairs that are never told apart, each with the measurement that would: one sentence for each pair.
+pub(super) fn pairs(limits: &Limits) -> Vec<String> {
+    let mut sentences: Vec<String> = Vec::new();
+    for limit in &limits.all {
+        for other in limit.found.iter().flat_map(|found| &found.others) {
+            let name = limit.name();
+            let known = |sentence: &String| sentence.starts_with(&format!("{} and {name}", other.name));
+            if sentences.iter().any(known) {
+                continue;
+            }
+            let advice =
+                if other.separate_by.is_empty() { String::new() } else { format!("; {}", other.separate_by) };
+            sentences.push(format!("{name} and {}{advice}", other.name));
+        }
+        if !limit.alike.is_empty() {
+            sentences.push(format!(
+                "{} and the same of {}: they show alike here",
+                limit.name(),
+                limit.alike.join(", ")
+            ));
+        }
+    }
+    sentences
+}
+
+/// What the recording shows already.
+pub(super) fn already(limits: &Limits) -> Option<String> {
+    let names = limits.already.iter().map(|one| format!("{} {}", one.motion, one.term));
+    let names: Vec<String> = names.collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "Found in it as it is, and not asked: {}. What more there might be adds to it.",
+            names.join(", ")
+        )
+    })
+}
+
+/// The extra passes, a sentence each, and what none of them settles.
+pub(super) fn passes(advice: &Advice) -> Vec<String> {
+    let pass = |(number, pass): (usize, &Pass)| {
+        let also = if number == 0 { "" } else { "then also " };
+        let named = pass.settles.join(", ");
+        format!("{also}{} ({}): tells {named} by name", pass.words, lasting(pass.time))
+    };
+    let mut lines: Vec<String> = advice.passes.iter().enumerate().map(pass).collect();
+    if !advice.left.is_empty() {
+        lines.push(format!("no pass that was tried settles {}", advice.left.join(", ")));
+    }
+    lines
+}
+
+/// A time in s or min.
+fn lasting(time: f64) -> String {
+    if time < 120.0 { format!("{} s", short(time)) } else { format!("{} min", short(time / 60.0)) }
+}
+
+/// The kinds that a reader asks for first: what a shop mends. In this order, one of each.
+const USEFUL: [&str; 6] = ["backlash", "constant", "cyclic", "lag", "reversal-spike", "polynomial"];
+
+/// The most useful limits, at most so many: sentences such as `no EXX backlash above 0.8 um`.
+pub fn useful(limits: &Limits, most: usize) -> Vec<String> {
+    let of_kind = |kind: &&str| {
+        let limits = limits.all.iter().filter(|limit| limit.subject.kind == *kind && limit.found.is_some());
+        // Of several axes the one of which least is known: what holds for it holds for all.
+        limits.max_by(|a, b| size_of(a).total_cmp(&size_of(b)))
+    };
+    let told = USEFUL.iter().filter_map(of_kind).filter_map(|limit| {
+        let sense = if limit.scale.is_gain { "with a gain below" } else { "above" };
+        Some(format!("{} {sense} {} {}", limit.name(), significant(limit.size()?, 2), limit.scale.unit))
+    });
+    told.take(most).collect()
+}
+
+fn size_of(limit: &Limit) -> f64 {
+    limit.found.as_ref().map_or(0.0, |found| found.strength)
+}

@@ -1,0 +1,113 @@
+//! The limit of one kind of effect. In: a recording, a kind in a motion. Out: from which size on nine of ten are found, by trials.
+//!
+//! ```text
+//! large -> found: the interval of its size tells where the limit may lie -> trials where each tells most -> the limit
+//!       \-> not found, nor three and ten times as large: no limit; what was claimed in its place
+//! ```
+
+use crate::injection::case::strength_of;
+use crate::injection::score::How;
+use crate::posterior::Posterior;
+use crate::subject::Subject;
+use crate::trial::{Known, Trial, trial};
+
+/// How a search is led.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// The most trials of one kind in one motion.
+    pub trials: usize,
+    /// The relative uncertainty of the limit that ends it.
+    pub uncertainty: f64,
+}
+
+impl Default for Effort {
+    /// Some twelve trials know the limit to an eighth, where the share found rises as steeply as most do.
+    fn default() -> Self {
+        Self { trials: 20, uncertainty: 0.12 }
+    }
+}
+
+/// What trials of one kind in one motion showed.
+#[derive(Clone, Debug)]
+pub struct Searched {
+    /// The limit; nothing where no size was found.
+    pub posterior: Option<Posterior>,
+    /// All trials, in order.
+    pub trials: Vec<Trial>,
+}
+
+/// The first sizes, as the largest value in the readings over the root mean square of what the diagnosis leaves of the recording as it
+/// is. What is not found at a hundred times all that conceals it is not concealed: it cannot be told from something else.
+const LARGE: [f64; 3] = [10.0, 30.0, 100.0];
+
+/// An effect is claimed at some five standard errors of its size; half an interval of 95 % has two.
+const ERRORS: f64 = 2.5;
+
+/// What is known so of the logarithm of the limit: a factor of two.
+const SPREAD: f64 = 0.7;
+
+/// The same of the first size, where the size that was found has no interval: a factor of four.
+const VAGUE: f64 = 1.4;
+
+/// The shares at which trials are made in turn: below nine of ten, where they tell more, and at two places, since the width is asked too.
+const SHARES: [f64; 3] = [0.85, 0.5, 0.7];
+
+/// Searches the limit. Trial `t` is made in the recording `t` modulo their number: one real one, or several noises of a simulated one.
+pub fn search(known: &[Known], subject: &Subject, effort: Effort, seed: u64) -> Searched {
+    let mut series = Series { known, subject, seed, drawn: 0, trials: Vec::new() };
+    let posterior = series.begin().map(|begun| series.narrow(begun, effort));
+    Searched { posterior, trials: series.trials }
+}
+
+struct Series<'s> {
+    known: &'s [Known],
+    subject: &'s Subject,
+    seed: u64,
+    drawn: usize,
+    trials: Vec<Trial>,
+}
+
+impl Series<'_> {
+    /// Large effects, until one is found.
+    fn begin(&mut self) -> Option<Posterior> {
+        for size in LARGE {
+            let Known { base, left, .. } = self.known.first()?;
+            let allowed = self.subject.drawn(base, self.seed, self.drawn)?;
+            let strength = strength_of(base, &allowed, size * left)?;
+            let Some(first) = self.at(strength) else { continue };
+            if first.how == How::Missed {
+                continue;
+            }
+            let mut posterior = match first.interval {
+                Some((_, half)) if half > 0.0 && half.is_finite() => {
+                    Posterior::new((ERRORS * half).min(strength), SPREAD)
+                }
+                _ => Posterior::new(strength / 4.0, VAGUE),
+            };
+            posterior.observe(strength, true);
+            return Some(posterior);
+        }
+        None
+    }
+
+    /// Trials where each tells most.
+    fn narrow(&mut self, mut posterior: Posterior, effort: Effort) -> Posterior {
+        while self.drawn < effort.trials && posterior.uncertainty() > effort.uncertainty {
+            let strength = posterior.reaches(SHARES[self.drawn % SHARES.len()]);
+            let found = self.at(strength).is_some_and(|trial| trial.how != How::Missed);
+            posterior.observe(strength, found);
+        }
+        posterior
+    }
+
+    /// One trial with a fresh draw; nothing where no effect of that strength is one of its kind.
+    fn at(&mut self, strength: f64) -> Option<Trial> {
+        let known = &self.known[self.drawn % self.known.len()];
+        let drawn = self.subject.drawn(&known.base, self.seed, self.drawn);
+        self.drawn += 1;
+        let allowed = drawn?;
+        let trial = trial(known, allowed.motion, allowed.effect.at_strength(strength))?;
+        self.trials.push(trial.clone());
+        Some(trial)
+    }
+}

@@ -1,0 +1,141 @@
+//! What is asked of a recording. In: a recording with its machine. Out: the kinds of effects, each in one error motion, of which its
+//! readings show something. Motions in which a kind shows alike are asked once.
+
+use crate::injection::allowed::{self, Allowed, KINDS, OF_AXIS};
+use crate::injection::base::{Base, Signal};
+use crate::injection::columns::{correlation, rms, straightened};
+
+/// A kind of effect in an error motion.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Subject {
+    /// The error motion, by number.
+    pub motion: usize,
+    /// The axis that the effect follows, by number; of a squareness the one whose line is turned.
+    pub axis: usize,
+    /// `backlash`, `wind-up`, ...
+    pub kind: &'static str,
+    /// Other motions in which it would show alike, by number.
+    pub alike: Vec<usize>,
+}
+
+impl Subject {
+    /// The name of its term in calibrations: a play that winds up is a backlash too.
+    pub fn term(&self) -> &'static str {
+        if self.kind == "wind-up" { "backlash" } else { self.kind }
+    }
+
+    /// The effect of one trial at size one.
+    pub fn drawn(&self, base: &Base, seed: u64, trial: usize) -> Option<Allowed> {
+        drawn(base, (self.motion, self.axis, self.kind), seed, trial)
+    }
+}
+
+fn drawn(
+    base: &Base,
+    (motion, axis, kind): (usize, usize, &str),
+    seed: u64,
+    trial: usize,
+) -> Option<Allowed> {
+    let name = format!("{} {kind} {trial}", base.names.axes[axis].letter);
+    allowed::drawn(base, motion, axis, (kind, &name), seed)
+}
+
+/// The kinds that any motion of an axis may have; the others belong to its position.
+const OF_ANY_MOTION: [&str; 4] = ["polynomial", "table", "backlash", "cyclic"];
+
+/// What a thousandth of an error motion must add to the readings, in parts of it, for the motion to show: a tenth. Of what it hardly
+/// shows no machine has enough.
+const SEEN: f64 = 0.1;
+
+/// Two signals are one where the part of one that the other does not explain is below a hundredth of its variance: no noise that hides
+/// the one shows the difference.
+const ONE: f64 = 0.995;
+
+/// How an error motion shows: what each reading gains, row by row, for each mm or rad of it.
+pub struct Lever {
+    motion: usize,
+    gains: Signal,
+}
+
+/// The levers of all motions that show.
+pub fn levers(base: &Base) -> Vec<Lever> {
+    let of = |motion: usize| {
+        let step = vec![STEP; base.recording.time.len()];
+        let shown = base.shown(motion, &step)?;
+        let gains: Signal =
+            shown.iter().map(|column| column.iter().map(|gain| gain / STEP).collect()).collect();
+        let seen = gains.iter().flatten().any(|gain| gain.abs() > SEEN);
+        seen.then_some(Lever { motion, gains })
+    };
+    (0..base.names.motions.len()).filter_map(of).collect()
+}
+
+/// So small that bodies turn in proportion to it, mm or rad.
+const STEP: f64 = 1e-3;
+
+/// All that a recording could show, by axes, then kinds, then motions.
+pub fn subjects(base: &Base, seed: u64) -> Vec<Subject> {
+    let levers = levers(base);
+    let mut all = Vec::new();
+    for axis in 0..base.names.axes.len() {
+        for kind in KINDS {
+            let motions = motions(base, &levers, axis, kind);
+            all.extend(grouped(base, &motions, (axis, kind), seed));
+        }
+    }
+    all
+}
+
+/// The levers of the motions of an axis that may have a kind, the axis's own first.
+fn motions<'l>(base: &Base, levers: &'l [Lever], axis: usize, kind: &str) -> Vec<&'l Lever> {
+    let letter = &base.names.axes[axis].letter;
+    let is_own = |motion: usize| base.names.own_axis(&base.names.motions[motion]) == Some(axis);
+    let is_alignment = |motion: usize| base.compiled.equations.motions[motion].alignment;
+    let may = |lever: &&Lever| {
+        let motion = lever.motion;
+        if base.names.motions[motion].axis.as_ref() != Some(letter) {
+            return false;
+        }
+        match kind {
+            "constant" => is_alignment(motion) && base.outside(),
+            "coupling" => is_own(motion) && base.outside(),
+            _ if is_alignment(motion) => false,
+            _ if OF_ANY_MOTION.contains(&kind) => is_own(motion) || base.outside(),
+            _ => is_own(motion),
+        }
+    };
+    let mut motions: Vec<&Lever> = levers.iter().filter(may).collect();
+    motions.sort_by_key(|lever| !is_own(lever.motion));
+    motions
+}
+
+/// A kind in several motions: those in which it shows alike under the first of them.
+fn grouped(base: &Base, motions: &[&Lever], (axis, kind): (usize, &'static str), seed: u64) -> Vec<Subject> {
+    let mut found: Vec<(Subject, Vec<f64>)> = Vec::new();
+    for lever in motions {
+        let Some(allowed) = drawn(base, (lever.motion, axis, kind), seed, 0) else { continue };
+        let Some(shown) = shown(base, lever, &allowed) else { continue };
+        match found.iter_mut().find(|(_, known)| correlation(known, &shown).abs() > ONE) {
+            Some((subject, _)) => subject.alike.push(lever.motion),
+            None => found.push((Subject { motion: lever.motion, axis, kind, alike: Vec::new() }, shown)),
+        }
+    }
+    found.into_iter().map(|(subject, _)| subject).collect()
+}
+
+/// What an effect shows in all readings, each less its free zero; nothing where that is nothing.
+fn shown(base: &Base, lever: &Lever, allowed: &Allowed) -> Option<Vec<f64>> {
+    let values = allowed.effect.values(&base.path)?;
+    let flat = vec![0.0; values.len()];
+    let column = |gains: &Vec<f64>| {
+        let column: Vec<f64> = gains.iter().zip(&values).map(|(gain, value)| gain * value).collect();
+        straightened(&column, &flat)
+    };
+    let shown: Vec<f64> = lever.gains.iter().flat_map(column).collect();
+    (rms(&shown) > SEEN * SEEN * rms(&straightened(&values, &flat)) && rms(&shown) > 0.0).then_some(shown)
+}
+
+/// Whether a kind belongs to an axis and not only to what stands beside it.
+pub fn follows_axis(kind: &str) -> bool {
+    OF_AXIS.contains(&kind)
+}

@@ -1,0 +1,113 @@
+//! One trial: an effect at a size in a recording, and what a diagnosis says of it.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use diagnosis::diagnosis::{Diagnosis, Finding};
+use diagnosis::{Inputs, diagnose};
+use recording::Recording;
+
+use crate::injection::base::Base;
+use crate::injection::case::Case;
+use crate::injection::effect::Effect;
+use crate::injection::score::{self, How, Score, internal};
+
+/// A recording with what its diagnosis says of it as it is.
+pub struct Known {
+    /// The recording and its machine.
+    pub base: Base,
+    /// What is found in it alone.
+    pub alone: Diagnosis,
+    /// The root mean square of what that leaves, mm or rad.
+    pub left: f64,
+}
+
+impl Known {
+    /// Diagnoses a recording as it is.
+    pub fn new(base: Base) -> Option<Self> {
+        let alone = diagnosed(&base, &[&base.recording])?;
+        let left = internal(alone.after.rms, alone.after.unit);
+        (left > 0.0 && left.is_finite()).then_some(Self { base, alone, left })
+    }
+}
+
+/// What a diagnosis makes of an effect.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// The effect as it was injected.
+    pub effect: Effect,
+    /// Its strength.
+    pub strength: f64,
+    /// Whether it was found.
+    pub how: How,
+    /// The size that was found, with half of its interval of 95 %, where it was found by its own name.
+    pub interval: Option<(f64, f64)>,
+    /// Whether its own name stands first.
+    pub is_first: bool,
+    /// The other names of what was found: motion, term, and the measurement that would tell them apart.
+    pub others: Vec<Other>,
+    /// What was claimed instead, where it was not found.
+    pub instead: Vec<String>,
+    /// Whether something was told that no term explains.
+    pub is_unexplained: bool,
+}
+
+/// Another name for what was found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Other {
+    /// `EXX backlash`, `clock of the instrument`.
+    pub name: String,
+    /// The measurement that would tell them apart; empty where none was told.
+    pub separate_by: String,
+}
+
+/// Injects an effect and diagnoses; nothing where no such effect is one of its kind.
+pub fn trial(known: &Known, motion: usize, effect: Effect) -> Option<Trial> {
+    let case = Case::with(0, &known.base, (motion, effect), 0.0)?;
+    let found = diagnosed(&known.base, &[&case.recording(&known.base)])?;
+    let score = Score::of(&case, &known.base, &found, &known.alone);
+    let own = &known.base.names.motions[motion].name;
+    let hit = score.hit.and_then(|hit| found.findings.get(hit));
+    let is_first = hit.is_some_and(|hit| hit.motion == *own && hit.term == effect.term());
+    Some(Trial {
+        effect,
+        strength: effect.strength(),
+        how: score.how,
+        interval: hit.filter(|_| is_first).and_then(|hit| score::interval(&effect, hit)),
+        is_first,
+        others: hit.map(|hit| others(hit, own, effect.term())).unwrap_or_default(),
+        instead: if score.how == How::Missed { score.extra } else { Vec::new() },
+        is_unexplained: found.unexplained.is_some(),
+    })
+}
+
+/// All names of a finding but the effect's own.
+fn others(hit: &Finding, motion: &str, term: &str) -> Vec<Other> {
+    let is_own = |of: &str, name: &str| of == motion && name == term;
+    let advice = hit.alternatives.iter().find(|other| is_own(&other.motion, other.term));
+    let first = Other {
+        name: name(&hit.motion, hit.term),
+        separate_by: advice.map(|advice| advice.separate_by.clone()).unwrap_or_default(),
+    };
+    let first = Some(first).filter(|_| !is_own(&hit.motion, hit.term));
+    let rest = hit.alternatives.iter().filter(|other| !is_own(&other.motion, other.term));
+    let rest = rest
+        .map(|other| Other { name: name(&other.motion, other.term), separate_by: other.separate_by.clone() });
+    first.into_iter().chain(rest).collect()
+}
+
+fn name(motion: &str, term: &str) -> String {
+    if motion == "instrument" { format!("{term} of the instrument") } else { format!("{motion} {term}") }
+}
+
+/// A diagnosis; nothing where it fails.
+pub fn diagnosed(base: &Base, recordings: &[&Recording]) -> Option<Diagnosis> {
+    let inputs = Inputs {
+        equations: &base.compiled.equations,
+        calibration: base.calibration.as_ref(),
+        recordings: recordings.to_vec(),
+        holdout: None,
+        calibration_file: None,
+        chains: None,
+    };
+    catch_unwind(AssertUnwindSafe(|| diagnose(&inputs, &mut |_| {}))).ok()
+}

@@ -1,0 +1,111 @@
+//! `abbe limits`: what a recording could show. In: a recording. Out: from which size on each effect would be found in it, as text, JSON
+//! or a page. What it shares with `abbe plan` stands here too.
+
+use limits::injection::allowed::KINDS;
+use limits::injection::base::Base;
+use limits::limits::{Limits as Found, Question, limits};
+use limits::moves::library;
+use limits::passes::advice;
+use limits::report;
+use limits::search::Effort;
+use limits::trial::Known;
+use model_dsl::Compiled;
+use model_dsl::calibration::MachineNames;
+use model_dsl::suggest::nearest;
+
+use super::diagnose::origin::word;
+use crate::arguments::{Limits, LimitsFormat};
+use crate::failure::Failure;
+use crate::output::print;
+use crate::progress::Progress;
+use crate::recorded::{self, Recorded};
+
+/// Runs the command. Status 1 where no effect can be injected into the recording.
+pub(crate) fn run(arguments: &Limits) -> Result<(), Failure> {
+    let recorded = recorded::read(&arguments.recording, arguments.quiet)?;
+    check_names(&arguments.only, &recorded.equations.names())?;
+    let progress = Progress::new(arguments.quiet, "diagnosing the recording as it is");
+    let name = arguments.recording.display().to_string();
+    let known = [Known::new(base(&name, recorded)?).ok_or_else(|| cannot(&name, "it cannot be diagnosed"))?];
+    let effort = Effort { trials: usize::from(arguments.trials), ..Effort::default() };
+    let question = Question { only: arguments.only.clone(), effort, seed: arguments.seed };
+    let found = asked(&known, &question, arguments.passes, &progress);
+    drop(progress);
+    tell(found, &name, arguments.format, &command(arguments))
+}
+
+/// The recording, ready for effects to be injected.
+fn base(name: &str, recorded: Recorded) -> Result<Base, Failure> {
+    let compiled = Compiled { machine: recorded.machine, equations: recorded.equations };
+    let calibration = recorded.calibration.map(|known| known.calibration);
+    Base::new(name, compiled, calibration, recorded.recording).map_err(|reason| cannot(name, &reason))
+}
+
+/// Asks, and looks for extra passes where that is wanted.
+pub(super) fn asked(
+    known: &[Known],
+    question: &Question,
+    passes: bool,
+    progress: &Progress,
+) -> Option<Found> {
+    let mut found = limits(known, question, &|done| progress.part("injecting effects", done))?;
+    if let Some(first) = known.first().filter(|_| passes) {
+        let trying = |done: f64| progress.part("trying extra passes", done);
+        found.advice = Some(advice(first, &found, &library(&first.base), &trying));
+    }
+    Some(found)
+}
+
+/// Prints what was found. Status 1 where nothing could be asked.
+pub(super) fn tell(
+    found: Option<Found>,
+    name: &str,
+    format: LimitsFormat,
+    command: &str,
+) -> Result<(), Failure> {
+    let found = found.filter(|found| !found.all.is_empty() || !found.already.is_empty());
+    let reason = "it shows no effect that was asked for: its axes do not move as that needs";
+    let found = found.ok_or_else(|| cannot(name, reason))?;
+    print(&match format {
+        LimitsFormat::Text => report::text(&found),
+        LimitsFormat::Json => report::json(&found),
+        LimitsFormat::Html => report::html(&found, command),
+    })
+}
+
+/// Why nothing can be injected.
+pub(super) fn cannot(name: &str, reason: &str) -> Failure {
+    Failure::No(format!("error: no effect can be injected into {name}: {reason}"))
+}
+
+/// Refuses a name that is neither a kind, a motion nor an axis.
+pub(super) fn check_names(only: &[String], names: &MachineNames) -> Result<(), Failure> {
+    let axes = names.axes.iter().map(|axis| axis.letter.as_str());
+    let motions = names.motions.iter().map(|motion| motion.name.as_str());
+    let known: Vec<&str> = KINDS.into_iter().chain(axes).chain(motions).collect();
+    let Some(wrong) = only.iter().find(|name| !known.contains(&name.as_str())) else { return Ok(()) };
+    let help = match nearest(wrong, known.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => {
+            format!("--only takes axes and error motions of the machine, and of kinds: {}", KINDS.join(", "))
+        }
+    };
+    Err(Failure::Wrong(format!("error: `{wrong}` is no effect, error motion or axis\nhelp: {help}")))
+}
+
+/// The command that makes the page again.
+fn command(arguments: &Limits) -> String {
+    let passes = if arguments.passes { " --passes" } else { "" };
+    format!(
+        "abbe limits {}{}{passes} --trials {} --seed {} --format html > limits.html",
+        word(&arguments.recording),
+        only(&arguments.only),
+        arguments.trials,
+        arguments.seed
+    )
+}
+
+/// The words of the option `--only`, with a space before them.
+pub(super) fn only(names: &[String]) -> String {
+    if names.is_empty() { String::new() } else { format!(" --only {}", names.join(",")) }
+}

@@ -4,6 +4,7 @@
 
 mod ceiling;
 mod decidable;
+mod denied;
 mod findings;
 mod refuted;
 mod searched;
@@ -132,6 +133,9 @@ fn concluded(
     diagnosis.unexplained = diagnosis.unexplained.or_else(|| unexplained::on_the_way(&study));
     diagnosis.repeatability = scattered.first().map(|scatter| repeats::describe(&study, scatter, units.unit));
     diagnosis.verdict = verdict(&diagnosis);
+    if diagnosis.verdict == Verdict::Adequate {
+        diagnosis.denied = denied::denied(&study, &found);
+    }
     diagnosis.candidates = found.pool.len();
     diagnosis.recordings = study.scenes.iter().map(summary).collect();
     diagnosis

@@ -44,6 +44,8 @@ pub struct Diagnosis {
     pub repeatability: Option<Repeatability>,
     /// What cannot be decided from these recordings: whole sentences, each with its reason.
     pub undecided: Vec<String>,
+    /// Where nothing was found: from which size on effects would have been, at most three of them.
+    pub denied: Vec<Denied>,
     /// How many terms were tried that the recordings tell apart, waves aside.
     pub candidates: usize,
     /// What can be drawn of it, where that was asked for.
@@ -407,6 +409,21 @@ pub struct SettingFinding {
     pub parameters: Vec<Parameter>,
     /// Other names for it.
     pub alternatives: Vec<Alternative>,
+}
+
+/// An effect that an adequate model denies: above this size it would have been found in nine of ten cases.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Denied {
+    /// The error motion.
+    pub motion: String,
+    /// The term.
+    pub term: &'static str,
+    /// The period of a wave, and its unit.
+    pub period: Option<(f64, &'static str)>,
+    /// The size: lost motion, constant or amplitude.
+    pub above: f64,
+    /// `mm`, `rad` or `deg`.
+    pub unit: &'static str,
 }
 
 /// What stands above the noise and no term explains.

@@ -9,9 +9,9 @@ use super::told;
 use model_dsl::notation::Formula;
 
 use crate::diagnosis::{
-    Alternative, Change, Diagnosis, Estimate, Evidence, Finding, Form, Interval, IntervalOf, NoiseSummary,
-    Parameter, ParameterValue, Repeatability, Repeats, Residual, Returning, SettingFinding, Summary,
-    Unexplained,
+    Alternative, Change, Denied, Diagnosis, Estimate, Evidence, Finding, Form, Interval, IntervalOf,
+    NoiseSummary, Parameter, ParameterValue, Repeatability, Repeats, Residual, Returning, SettingFinding,
+    Summary, Unexplained,
 };
 
 /// The diagnosis as one JSON object with the schema `abbe-diagnosis/1`.
@@ -37,8 +37,20 @@ struct ReportJson<'d> {
     instrument: Vec<SettingJson<'d>>,
     unexplained: Option<UnexplainedJson<'d>>,
     repeatability: Option<RepeatabilityJson<'d>>,
+    /// Where nothing was found: from which size on effects would have been.
+    denied: Vec<DeniedJson<'d>>,
     undecided: &'d [String],
     recordings: Vec<RecordingJson<'d>>,
+}
+
+#[derive(Serialize)]
+struct DeniedJson<'d> {
+    motion: &'d str,
+    term: &'static str,
+    above: f64,
+    unit: &'static str,
+    period: Option<f64>,
+    period_unit: Option<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -278,9 +290,15 @@ fn report(diagnosis: &Diagnosis) -> ReportJson<'_> {
         instrument: diagnosis.settings.iter().map(|one| setting(one, diagnosis)).collect(),
         unexplained: diagnosis.unexplained.as_ref().map(unexplained),
         repeatability: diagnosis.repeatability.as_ref().map(repeatability),
+        denied: diagnosis.denied.iter().map(denied).collect(),
         undecided: &diagnosis.undecided,
         recordings: diagnosis.recordings.iter().map(recording).collect(),
     }
+}
+
+fn denied(one: &Denied) -> DeniedJson<'_> {
+    let (period, period_unit) = one.period.unzip();
+    DeniedJson { motion: &one.motion, term: one.term, above: one.above, unit: one.unit, period, period_unit }
 }
 
 fn noise(noise: &NoiseSummary) -> NoiseJson {

@@ -2,7 +2,7 @@
 
 use super::figure::{change, percent, size};
 use super::remains::brief;
-use crate::diagnosis::{Diagnosis, Verdict};
+use crate::diagnosis::{Denied, Diagnosis, Verdict};
 
 pub(super) fn sentence(diagnosis: &Diagnosis) -> String {
     match diagnosis.verdict {
@@ -25,10 +25,22 @@ fn adequate(diagnosis: &Diagnosis) -> String {
         None => String::new(),
     };
     format!(
-        "adequate: nothing systematic stands above the noise{settings}; {}, {}",
+        "adequate: nothing systematic stands above the noise{settings}; {}, {}{}",
         remaining(diagnosis),
-        noise(diagnosis)
+        noise(diagnosis),
+        denied(&diagnosis.denied)
     )
+}
+
+/// From which size on effects would have been found.
+fn denied(denied: &[Denied]) -> String {
+    let one = |one: &Denied| {
+        let period = one.period.map(|(period, unit)| format!(" of period {}", size(period, unit)));
+        let period = period.unwrap_or_default();
+        format!("no {} of {}{period} above about {}", one.term, one.motion, size(one.above, one.unit))
+    };
+    let all: Vec<String> = denied.iter().map(one).collect();
+    if all.is_empty() { String::new() } else { format!("; {}", all.join(", ")) }
 }
 
 /// What was wrong: the physics, or the files.

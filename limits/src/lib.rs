@@ -16,6 +16,8 @@ pub mod report;
 pub mod search;
 pub mod size;
 pub mod subject;
+#[cfg(test)]
+mod testing;
 pub mod trial;
 
 /// A count as a number.

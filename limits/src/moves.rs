@@ -273,3 +273,40 @@ fn feed(axis: &Axis) -> f64 {
     let usual = median(&moving);
     if usual > 0.0 { usual } else { axis.travel() / 10.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::passes_of_x;
+
+    #[test]
+    fn every_move_can_be_driven_and_read_as_the_recording_was() {
+        let base = passes_of_x("FXZ", [true, false, false], 1e-3, 1);
+        let library = library(&base);
+        assert!(library.len() > 4, "{library:#?}");
+        for one in library {
+            let recorded = one.recorded(&base, 1e-3, 1).unwrap();
+            assert!(one.time > 0.0 && one.time.is_finite(), "{}", one.words);
+            let rows = crate::number(recorded.recording.time.len());
+            assert!(rows > 5.0 && rows < 1.1 * READINGS * f64::from(RUNS), "{}: {rows} rows", one.words);
+            assert!(recorded.recording.measured[0].is_some(), "{}", one.words);
+        }
+    }
+
+    #[test]
+    fn a_slide_that_stood_still_is_moved_to_another_height() {
+        let base = passes_of_x("FXZ", [true, false, false], 1e-3, 1);
+        let moved = library(&base).into_iter().find(|one| one.words.contains("Z at 100 mm")).unwrap();
+        let recorded = moved.recorded(&base, 1e-3, 1).unwrap();
+        let z = base.names.axis("Z").unwrap();
+        let command = recorded.recording.axes[z].command.as_ref().unwrap();
+        assert!(command.iter().all(|place| (place - 100.0).abs() < 1e-12));
+    }
+
+    #[test]
+    fn the_feed_is_the_usual_speed() {
+        let base = passes_of_x("FX", [true, false, false], 1e-3, 1);
+        let axis = base.path.axes[0].as_ref().unwrap();
+        assert!((feed(axis) - 50.0).abs() < 1.0, "{}", feed(axis));
+    }
+}

@@ -21,8 +21,11 @@ const GUESSED: f64 = 0.01;
 /// errors, and its estimate scatters by one: a fifth. Places and periods that differ widen it; where only the sign is drawn it is narrow.
 const WIDTHS: [(f64, f64); 6] = [(0.06, 1.0), (0.1, 2.0), (0.16, 3.0), (0.25, 2.5), (0.4, 1.0), (0.63, 0.5)];
 
+/// The width where nothing is drawn: less than the uncertainty that ends a search.
+const SHARP: f64 = 0.02;
+
 /// The steps of the middle: finer than the uncertainty that ends a search.
-const STEP: f64 = 0.04;
+const STEP: f64 = 0.02;
 
 /// A distribution of the middle and the width of the rise.
 #[derive(Clone, Debug)]
@@ -41,12 +44,26 @@ struct Point {
 impl Posterior {
     /// Before any trial: the size is known but for a factor of `exp(spread)`.
     pub fn new(size: f64, spread: f64) -> Self {
+        Self::with(size, spread, &WIDTHS)
+    }
+
+    /// The same where all trials of a size are one and the same: found from one size on, and never below it.
+    pub fn sharp(size: f64, spread: f64) -> Self {
+        Self::with(size, spread, &[(SHARP, 1.0)])
+    }
+
+    fn with(size: f64, spread: f64, widths: &[(f64, f64)]) -> Self {
         let steps = (4.0 * spread / STEP).ceil();
         let count = 2 * crate::index(steps);
         let points = (0..=count).flat_map(|step| {
             let away = crate::number(step) * STEP - steps * STEP;
             let near = (-0.5 * (away / spread).powi(2)).exp();
-            WIDTHS.map(|(width, weight)| Point { middle: size.ln() + away, width, weight: near * weight })
+            let point = move |(width, weight): &(f64, f64)| Point {
+                middle: size.ln() + away,
+                width: *width,
+                weight: near * weight,
+            };
+            widths.iter().map(point)
         });
         let mut posterior = Self { points: points.collect() };
         posterior.normalise();
@@ -64,18 +81,20 @@ impl Posterior {
 
     /// The size that nine of ten trials find.
     pub fn limit(&self) -> f64 {
-        self.mean(|point| point.reaches(SHARE)).exp()
+        self.reaches(SHARE)
     }
 
     /// Its relative standard uncertainty.
     pub fn uncertainty(&self) -> f64 {
-        let mean = self.mean(|point| point.reaches(SHARE));
-        self.mean(|point| (point.reaches(SHARE) - mean).powi(2)).sqrt()
+        let widths = widths_to(SHARE);
+        let mean = self.mean(|point| point.at(widths));
+        self.mean(|point| (point.at(widths) - mean).powi(2)).sqrt()
     }
 
     /// The size that this share of the trials finds.
     pub fn reaches(&self, share: f64) -> f64 {
-        self.mean(|point| point.reaches(share)).exp()
+        let widths = widths_to(share);
+        self.mean(|point| point.at(widths)).exp()
     }
 
     /// The share of the trials at a size that find it.
@@ -98,10 +117,15 @@ impl Point {
         GUESSED + (1.0 - GUESSED - MISSED) * normal((size - self.middle) / self.width)
     }
 
-    /// The logarithm of the size that this share finds.
-    fn reaches(&self, share: f64) -> f64 {
-        self.middle + self.width * quantile((share - GUESSED) / (1.0 - GUESSED - MISSED))
+    /// The logarithm of the size so many widths above the middle.
+    fn at(&self, widths: f64) -> f64 {
+        self.middle + self.width * widths
     }
+}
+
+/// How many widths above the middle this share of the trials finds an effect.
+fn widths_to(share: f64) -> f64 {
+    quantile((share - GUESSED) / (1.0 - GUESSED - MISSED))
 }
 
 /// The normal distribution function, to 2e-7: Abramowitz and Stegun, Handbook of Mathematical Functions, 26.2.17.

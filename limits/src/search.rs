@@ -50,6 +50,12 @@ const SPREAD: f64 = 0.45;
 /// The same of the first size, where the size that was found has no interval: a factor of four.
 const VAGUE: f64 = 1.4;
 
+/// So many draws that agree are no chance: of signs one series in 128.
+const DRAWS: usize = 8;
+
+/// A size from which on all trials find an effect is told apart in a few trials, to a third of the uncertainty that is asked of a share.
+const FIXED: f64 = 1.0 / 3.0;
+
 /// The shares at which trials are made in turn: below nine of ten, where they tell more, and at two places, since the width is asked too.
 const SHARES: [f64; 3] = [0.85, 0.5, 0.7];
 
@@ -79,22 +85,35 @@ impl Series<'_> {
             if first.how == How::Missed {
                 continue;
             }
-            let mut posterior = match first.interval {
-                Some((_, half)) if half > 0.0 && half.is_finite() => {
-                    Posterior::new((ERRORS * half).min(strength), SPREAD)
-                }
-                _ => Posterior::new(strength / 4.0, VAGUE),
+            let (size, spread) = match first.interval {
+                Some((_, half)) if half > 0.0 && half.is_finite() => ((ERRORS * half).min(strength), SPREAD),
+                _ => (strength / 4.0, VAGUE),
             };
+            let mut posterior =
+                if self.is_fixed() { Posterior::sharp(size, spread) } else { Posterior::new(size, spread) };
             posterior.observe(strength, true);
             return Some(posterior);
         }
         None
     }
 
+    /// Whether nothing is drawn: one recording, and an effect that has nothing but its size.
+    fn is_fixed(&self) -> bool {
+        let [known] = self.known else { return false };
+        let drawn =
+            |trial: usize| self.subject.drawn(&known.base, self.seed, trial).map(|drawn| drawn.effect);
+        (1..DRAWS).all(|trial| drawn(trial) == drawn(0))
+    }
+
     /// Trials where each tells most.
     fn narrow(&mut self, mut posterior: Posterior, effort: Effort) -> Posterior {
-        while self.drawn < effort.trials && posterior.uncertainty() > effort.uncertainty {
-            let strength = posterior.reaches(SHARES[self.drawn % SHARES.len()]);
+        let (shares, uncertainty): (&[f64], f64) = if self.is_fixed() {
+            (&[0.5], FIXED * effort.uncertainty)
+        } else {
+            (&SHARES, effort.uncertainty)
+        };
+        while self.drawn < effort.trials && posterior.uncertainty() > uncertainty {
+            let strength = posterior.reaches(shares[self.drawn % shares.len()]);
             let found = self.at(strength).is_some_and(|trial| trial.how != How::Missed);
             posterior.observe(strength, found);
         }
@@ -110,5 +129,43 @@ impl Series<'_> {
         let trial = trial(known, allowed.motion, allowed.effect.at_strength(strength))?;
         self.trials.push(trial.clone());
         Some(trial)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limits::{Question, limits};
+    use crate::testing::passes_of_x;
+    use crate::trial::trial;
+
+    /// In white noise the size of a play is known by theory: its standard error is twice the noise over the root of the fitted readings.
+    /// A claim takes some standard errors; nine of ten a few more. And what is half again as large is found in fresh noise, what is half as
+    /// large is not.
+    #[test]
+    fn the_limit_of_a_play_in_white_noise_is_some_standard_errors() {
+        let noise = 1e-3;
+        let known: Vec<Known> = (1..4)
+            .map(|seed| Known::new(passes_of_x("FX", [true, false, false], noise, seed)).unwrap())
+            .collect();
+        let base = &known[0].base;
+        let question = Question { only: vec!["backlash".to_owned()], seed: 1, ..Question::default() };
+        let found = limits(&known, &question, &|_| {}).unwrap();
+        let limit = found.all.iter().find(|limit| limit.subject.kind == "backlash").unwrap();
+        let strength = limit.found.as_ref().unwrap().strength;
+        let fitted = base.recording.run.iter().filter(|run| **run < 3).count();
+        let error = 2.0 * noise / crate::number(fitted).sqrt();
+        assert!((3.0..12.0).contains(&(strength / error)), "{strength} is {} errors", strength / error);
+        let motion = base.names.motion("EXX").unwrap();
+        let share = |strength: f64| {
+            let effect = limit.trials[0].effect.at_strength(strength);
+            let fresh = (11..17).filter_map(|seed| {
+                let known = Known::new(passes_of_x("FX", [true, false, false], noise, seed))?;
+                trial(&known, motion, effect).map(|trial| trial.how != How::Missed)
+            });
+            fresh.filter(|found| *found).count()
+        };
+        assert!(share(1.5 * strength) >= 5, "{} of 6 at 1.5 times", share(1.5 * strength));
+        assert!(share(0.5 * strength) <= 2, "{} of 6 at half", share(0.5 * strength));
     }
 }

@@ -139,3 +139,49 @@ fn shown(base: &Base, lever: &Lever, allowed: &Allowed) -> Option<Vec<f64>> {
 pub fn follows_axis(kind: &str) -> bool {
     OF_AXIS.contains(&kind)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::passes_of_x;
+
+    #[test]
+    fn a_slide_read_along_itself_shows_its_own_motion() {
+        let base = passes_of_x("FX", [true, false, false], 1e-4, 1);
+        let subjects = subjects(&base, 1);
+        let motions: Vec<&str> =
+            subjects.iter().map(|subject| base.names.motions[subject.motion].name.as_str()).collect();
+        assert!(motions.iter().all(|name| *name == "EXX"), "{motions:?}");
+        let kinds: Vec<&str> = subjects.iter().map(|subject| subject.kind).collect();
+        assert!(kinds.contains(&"backlash") && kinds.contains(&"polynomial"), "{kinds:?}");
+        // No sensor, no load, no second axis.
+        for kind in ["growth", "expansion", "compliance", "coupling", "constant"] {
+            assert!(!kinds.contains(&kind), "{kind}");
+        }
+    }
+
+    /// The tool is 100 mm long: a pitch of X moves the tip along X too. With one height the two show alike and are one subject.
+    #[test]
+    fn motions_that_show_alike_are_asked_once() {
+        let base = passes_of_x("FX", [true, false, false], 1e-4, 1);
+        let subjects = subjects(&base, 1);
+        let plays: Vec<&Subject> = subjects.iter().filter(|subject| subject.kind == "backlash").collect();
+        let [own] = plays.as_slice() else { panic!("{plays:?}") };
+        let alike: Vec<&str> =
+            own.alike.iter().map(|motion| base.names.motions[*motion].name.as_str()).collect();
+        assert!(alike.contains(&"EBX"), "{alike:?}");
+    }
+
+    #[test]
+    fn one_draw_is_one_effect_in_whatever_motion() {
+        let base = passes_of_x("FX", [true, true, false], 1e-4, 1);
+        let own = base.names.motion("EXX").unwrap();
+        let across = base.names.motion("EYX").unwrap();
+        let wave = |motion: usize, trial: usize| {
+            let subject = Subject { motion, axis: 0, kind: "cyclic", alike: Vec::new() };
+            subject.drawn(&base, 7, trial).unwrap().effect
+        };
+        assert_eq!(wave(own, 3), wave(across, 3));
+        assert_ne!(wave(own, 3), wave(own, 4));
+    }
+}

@@ -95,7 +95,8 @@ fn others(hit: &Finding, motion: &str, term: &str) -> Vec<Other> {
     first.into_iter().chain(rest).collect()
 }
 
-fn name(motion: &str, term: &str) -> String {
+/// A name as it is told: `EXX backlash`, `clock of the instrument`.
+pub(crate) fn name(motion: &str, term: &str) -> String {
     if motion == "instrument" { format!("{term} of the instrument") } else { format!("{motion} {term}") }
 }
 

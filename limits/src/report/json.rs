@@ -4,7 +4,7 @@ use serde_json::{Value, json as object};
 
 use crate::injection::score::How;
 use crate::limits::{Already, Limit, Limits};
-use crate::passes::{Advice, Pass};
+use crate::passes::{Advice, Pair, Pass};
 use crate::trial::{Other, Trial};
 
 /// Limits as one JSON object with the schema `abbe-limits/1`, in the units that each entry names.
@@ -25,8 +25,14 @@ pub fn json(limits: &Limits) -> String {
 }
 
 fn advice(advice: &Advice) -> Value {
-    let pass = |pass: &Pass| object!({"drive": pass.words, "seconds": pass.time, "settles": pass.settles});
-    object!({"passes": advice.passes.iter().map(pass).collect::<Vec<Value>>(), "left": advice.left})
+    let pairs = |pairs: &[Pair]| {
+        pairs
+            .iter()
+            .map(|pair| object!({"effect": pair.effect, "or_else": pair.other}))
+            .collect::<Vec<Value>>()
+    };
+    let pass = |pass: &Pass| object!({"drive": pass.words, "seconds": pass.time, "tells_apart": pairs(&pass.settles)});
+    object!({"passes": advice.passes.iter().map(pass).collect::<Vec<Value>>(), "left": pairs(&advice.left)})
 }
 
 fn already(one: &Already) -> Value {

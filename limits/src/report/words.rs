@@ -1,7 +1,7 @@
 //! The words of a limit. In: a limit. Out: clauses that text and page share.
 
 use crate::limits::{Limit, Limits};
-use crate::passes::{Advice, Pass};
+use crate::passes::{Advice, Pair, Pass};
 use crate::size::{short, significant};
 
 /// What the effect of a limit is, with all that was drawn for it: `EXX cyclic (period 21 to 34 mm)`.
@@ -59,29 +59,25 @@ pub(super) fn never(limit: &Limit) -> String {
     format!("{}: {tried} {} {}; {instead}", name(limit), significant(largest, 2), limit.scale.unit)
 }
 
-/// Pairs that are never told apart, each with the measurement that would: one sentence for each pair.
+/// What is never told apart, by the measurement that would: a sentence for each.
 pub(super) fn pairs(limits: &Limits) -> Vec<String> {
-    let mut sentences: Vec<String> = Vec::new();
+    let mut grouped: Vec<(&str, Vec<Pair>)> = Vec::new();
     for limit in &limits.all {
         for other in limit.found.iter().flat_map(|found| &found.others) {
-            let name = limit.name();
-            let known = |sentence: &String| sentence.starts_with(&format!("{} and {name}", other.name));
-            if sentences.iter().any(known) {
-                continue;
+            let pair = Pair { effect: limit.name(), other: Some(other.name.clone()) };
+            let turned = Pair { effect: other.name.clone(), other: Some(limit.name()) };
+            match grouped.iter_mut().find(|(advice, _)| *advice == other.separate_by) {
+                Some((_, pairs)) if pairs.contains(&turned) => {}
+                Some((_, pairs)) => pairs.push(pair),
+                None => grouped.push((&other.separate_by, vec![pair])),
             }
-            let advice =
-                if other.separate_by.is_empty() { String::new() } else { format!("; {}", other.separate_by) };
-            sentences.push(format!("{name} and {}{advice}", other.name));
-        }
-        if !limit.alike.is_empty() {
-            sentences.push(format!(
-                "{} and the same of {}: they show alike here",
-                limit.name(),
-                limit.alike.join(", ")
-            ));
         }
     }
-    sentences
+    let sentence = |(advice, pairs): &(&str, Vec<Pair>)| {
+        let told = told_apart(pairs);
+        if advice.is_empty() { told } else { format!("{told}. To tell them apart: {advice}") }
+    };
+    grouped.iter().map(sentence).collect()
 }
 
 /// What the recording shows already.
@@ -100,14 +96,30 @@ pub(super) fn already(limits: &Limits) -> Option<String> {
 pub(super) fn passes(advice: &Advice) -> Vec<String> {
     let pass = |(number, pass): (usize, &Pass)| {
         let also = if number == 0 { "" } else { "then also " };
-        let named = pass.settles.join(", ");
-        format!("{also}{} ({}): tells {named} by name", pass.words, lasting(pass.time))
+        format!("{also}{} ({}): tells {}", pass.words, lasting(pass.time), told_apart(&pass.settles))
     };
     let mut lines: Vec<String> = advice.passes.iter().enumerate().map(pass).collect();
     if !advice.left.is_empty() {
-        lines.push(format!("no pass that was tried settles {}", advice.left.join(", ")));
+        lines.push(format!("no pass that was tried tells {}", told_apart(&advice.left)));
     }
     lines
+}
+
+/// Pairs by their effects: `EXX cyclic from EBX cyclic or EAX cyclic`.
+fn told_apart(pairs: &[Pair]) -> String {
+    let mut grouped: Vec<(&str, Vec<&str>)> = Vec::new();
+    for pair in pairs {
+        let other = pair.other.as_deref();
+        match grouped.iter_mut().find(|(known, _)| *known == pair.effect) {
+            Some((_, others)) => others.extend(other),
+            None => grouped.push((&pair.effect, other.into_iter().collect())),
+        }
+    }
+    let told = grouped.iter().map(|(effect, others)| match others.as_slice() {
+        [] => format!("{effect} at all"),
+        others => format!("{effect} from {}", others.join(" or ")),
+    });
+    told.collect::<Vec<_>>().join("; ")
 }
 
 /// A time in s or min.

@@ -87,6 +87,21 @@ const SET_UP: &str = "setup: 1\nmachine: machine.yaml\nconstants: {Zt: 50 mm}\nm
 const READINGS: &str =
     "run,direction,x,deviation\n#unit,,,mm,um\n1,+1,0,0.4\n1,+1,50,1.1\n1,-1,50,4.9\n1,-1,0,4.1\n";
 
+/// The stage there and back six times, its readings off by a micrometre or so.
+fn noisy() -> String {
+    let rows = (0..120_u32).map(|row| {
+        let (run, place) = (row / 20, f64::from(10 - (i32::try_from(row % 20).unwrap() - 10).abs()));
+        let noise = f64::from(row.wrapping_mul(2_654_435_761) >> 16) / 65_536.0 - 0.5;
+        format!("{row},{},{place},{}\n", run + 1, place * 1.001 + 0.002 * noise)
+    });
+    format!("t,run,x,m\n{}", rows.collect::<String>())
+}
+
+/// The path with noise, and runs enough to hold one out.
+fn noisy_path() -> String {
+    PATH.replace("count: 3", "count: 11").replace("runs: 2", "runs: 6") + "noise: {white: 1 um}\n"
+}
+
 /// The files of the stage in a folder.
 fn stage(folder: &Path) {
     let data = data();
@@ -96,6 +111,9 @@ fn stage(folder: &Path) {
         ("recording.yaml", RECORDING),
         ("data.csv", &data),
         ("path.yaml", PATH),
+        ("noisy.yaml", &RECORDING.replace("data.csv", "noisy.csv")),
+        ("noisy.csv", &noisy()),
+        ("noisy-path.yaml", &noisy_path()),
         ("stage.eqs", EQUATIONS),
         ("positions.csv", POSITIONS),
         ("set-up.yaml", SET_UP),
@@ -106,7 +124,7 @@ fn stage(folder: &Path) {
 }
 
 /// Every command that reads a file, with the file and the arguments behind it; `@` is the folder of the stage.
-const READERS: [(&str, &[&str]); 13] = [
+const READERS: [(&str, &[&str]); 15] = [
     ("machine.yaml", &["derive", "@/machine.yaml"]),
     ("machine.yaml", &["expand", "@/machine.yaml"]),
     ("calibration.yaml", &["expand", "@/machine.yaml", "--calibration", "@/calibration.yaml"]),
@@ -118,6 +136,20 @@ const READERS: [(&str, &[&str]); 13] = [
         &["simulate", "@/calibration.yaml", "@/recording.yaml", "--output", "@/out", "--force"],
     ),
     ("data.csv", &["diagnose", "@/recording.yaml"]),
+    ("noisy.csv", &["limits", "@/noisy.yaml", "--only", "X,backlash", "--trials", "4"]),
+    (
+        "noisy-path.yaml",
+        &[
+            "plan",
+            "@/noisy-path.yaml",
+            "--calibration",
+            "@/calibration.yaml",
+            "--only",
+            "X,backlash",
+            "--trials",
+            "4",
+        ],
+    ),
     ("recording.yaml", &["evaluate", "@/recording.yaml"]),
     ("data.csv", &["evaluate", "@/recording.yaml"]),
     ("recording.yaml", &["update", "@/calibration.yaml", "@/recording.yaml"]),

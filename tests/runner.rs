@@ -33,6 +33,7 @@ mod guide;
 mod hostile;
 mod killed;
 mod laws;
+mod limits;
 mod machine_files;
 mod macro_errors;
 mod manuals;

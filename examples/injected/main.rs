@@ -97,7 +97,7 @@ fn cases(bases: &[Base], options: &Options) -> Vec<Case> {
     let of_base = |number: usize| -> Vec<Case> {
         let base = &bases[number];
         let allowed = allowed::allowed(base, options.seed);
-        let wanted = allowed.iter().filter(|one| options.wants(one.effect.kind()));
+        let wanted = allowed.iter().filter(|one| options.wants(one.effect.kind().name()));
         wanted.flat_map(|one| Case::all(number, base, one, &options.sizes)).collect()
     };
     let cases = parallel(bases.len(), of_base);
@@ -144,7 +144,7 @@ fn judged<'c>(bases: &'c [Base], cases: &'c [Case]) -> Vec<Line<'c>> {
         tell(&format!(
             "{} {motion} {} {}: {}{left}{extra}",
             base.name,
-            case.effect.kind(),
+            case.effect.kind().name(),
             case.size,
             score.how.word()
         ));

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use limits::injection::allowed::KINDS;
+use limits::injection::kind::Kind;
 
 /// How the tables are printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +37,7 @@ impl Options {
             folder: PathBuf::new(),
             seed: 1,
             sizes: vec![0.5, 1.0, 3.0],
-            kinds: KINDS.map(str::to_owned).to_vec(),
+            kinds: Kind::names().map(str::to_owned).to_vec(),
             only: None,
             most: usize::MAX,
             form: Form::Plain,
@@ -81,9 +81,9 @@ where
 }
 
 fn kinds(list: &str) -> Result<Vec<String>, String> {
-    let known = |kind: &str| match KINDS.contains(&kind) {
+    let known = |kind: &str| match Kind::of_name(kind).is_some() {
         true => Ok(kind.to_owned()),
-        false => Err(format!("no kind `{kind}`; there are {}", KINDS.join(", "))),
+        false => Err(format!("no kind `{kind}`; there are {}", Kind::names().join(", "))),
     };
     list.split(',').map(str::trim).map(known).collect()
 }

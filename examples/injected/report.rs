@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
 
-use limits::injection::allowed::KINDS;
 use limits::injection::base::Base;
 use limits::injection::case::Case;
+use limits::injection::kind::Kind;
 use limits::injection::score::{How, NEAR, Score};
 
 /// A case with its score.
@@ -45,7 +45,8 @@ pub(crate) fn text(lines: &[Line<'_>], sizes: &[f64], markdown: bool) -> String 
 fn by_kind(lines: &[Line<'_>], sizes: &[f64]) -> Table {
     let sized = sizes.iter().map(|size| format!("found at {size}"));
     let head = ["kind".to_owned()].into_iter().chain(sized).chain(HEAD.map(str::to_owned)).collect();
-    let kinds = KINDS.iter().map(|kind| (*kind, pick(lines, |line| line.case.effect.kind() == *kind)));
+    let kinds =
+        Kind::ALL.iter().map(|kind| (kind.name(), pick(lines, |line| line.case.effect.kind() == *kind)));
     let all = ("all", lines.iter().collect());
     let rows = kinds.chain([all]).filter(|(_, lines)| !lines.is_empty()).map(|(kind, lines)| {
         let sized = sizes.iter().map(|size| {
@@ -190,7 +191,7 @@ fn case(line: &Line<'_>) -> Value {
     json!({
         "recording": base.name,
         "motion": base.names.motions[case.motion].name,
-        "kind": case.effect.kind(),
+        "kind": case.effect.kind().name(),
         "size": case.size,
         "injected": size,
         "found": score.how.word(),

@@ -8,6 +8,7 @@ pub mod base;
 pub mod case;
 pub mod columns;
 pub mod effect;
+pub mod kind;
 pub mod score;
 pub mod state;
 pub mod taken;

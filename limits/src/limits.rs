@@ -5,10 +5,12 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use diagnosis::diagnosis::{Diagnosis, Finding};
+use model_dsl::calibration::TermKind;
 use rayon::prelude::*;
 
 use crate::injection::base::Base;
 use crate::injection::effect::Effect;
+use crate::injection::kind::Kind;
 use crate::injection::score::How;
 use crate::passes::Advice;
 use crate::posterior::Posterior;
@@ -142,15 +144,15 @@ fn is_shown(base: &Base, subject: &Subject, alone: &Diagnosis) -> bool {
     let of_motion = |finding: &&Finding| {
         finding.motion_number == subject.motion || subject.alike.contains(&finding.motion_number)
     };
-    let term = subject.term();
-    let is_wave = matches!(term, "cyclic" | "vibration");
+    let term = subject.kind.term();
+    let is_wave = matches!(term, TermKind::Cyclic | TermKind::Vibration);
     let axis = &base.names.axes[subject.axis].letter;
     !is_wave
         && alone
             .findings
             .iter()
             .filter(of_motion)
-            .any(|finding| finding.term == term && finding.location.link.contains(axis.as_str()))
+            .any(|finding| finding.kind() == term && finding.location.link.contains(axis.as_str()))
 }
 
 fn already(base: &Base, shown: &[Subject]) -> Vec<Already> {
@@ -158,7 +160,7 @@ fn already(base: &Base, shown: &[Subject]) -> Vec<Already> {
     for subject in shown {
         let one = Already {
             motion: base.names.motions[subject.motion].name.clone(),
-            term: subject.term().to_owned(),
+            term: subject.kind.term().name().to_owned(),
         };
         if !all.contains(&one) {
             all.push(one);
@@ -171,13 +173,12 @@ impl Question {
     /// Whether a subject is asked.
     fn asks(&self, base: &Base, subject: &Subject) -> bool {
         let names = [
-            subject.kind,
+            subject.kind.name(),
             base.names.motions[subject.motion].name.as_str(),
             base.names.axes[subject.axis].letter.as_str(),
         ];
-        let kinds = self.only.iter().filter(|word| crate::injection::allowed::KINDS.contains(&word.as_str()));
-        let places =
-            self.only.iter().filter(|word| !crate::injection::allowed::KINDS.contains(&word.as_str()));
+        let kinds = self.only.iter().filter(|word| Kind::of_name(word).is_some());
+        let places = self.only.iter().filter(|word| !Kind::of_name(word).is_some());
         let asked = |mut words: Box<dyn Iterator<Item = &String> + '_>| {
             let mut any = false;
             let hit = words.any(|word| {
@@ -285,8 +286,8 @@ impl Limit {
     /// `backlash of EXX`, `cyclic of EXX`; a play that winds up is a backlash too.
     pub fn name(&self) -> String {
         match self.subject.kind {
-            "wind-up" => format!("{} backlash that winds up", self.motion),
-            kind => format!("{} {kind}", self.motion),
+            Kind::WindUp => format!("{} {} that winds up", self.motion, TermKind::Backlash.name()),
+            Kind::Term(term) => format!("{} {}", self.motion, term.name()),
         }
     }
 

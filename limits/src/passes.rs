@@ -135,9 +135,9 @@ fn cheapest(moves: &[(&Move, Base)], settled: Vec<(usize, Vec<Pair>)>) -> Option
 
 /// The pairs of an effect that the recording tells apart with passes beside it: its own name stands first, the other nowhere.
 fn told_apart(known: &Known, passes: &[&Base], open: &Open<'_>) -> Vec<Pair> {
-    let (motion, term) = (open.limit.motion.as_str(), open.limit.subject.term());
+    let (motion, term) = (open.limit.motion.as_str(), open.limit.subject.kind.term());
     let Some(found) = together(known, passes, open) else { return Vec::new() };
-    let own = found.findings.iter().find(|finding| finding.motion == motion && finding.term == term);
+    let own = found.findings.iter().find(|finding| finding.motion == motion && finding.kind() == term);
     let Some(own) = own else { return Vec::new() };
     let stays = |pair: &&Pair| {
         pair.other

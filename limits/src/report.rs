@@ -8,4 +8,3 @@ mod words;
 pub use html::html;
 pub use json::json;
 pub use text::text;
-pub use words::useful;

@@ -21,9 +21,10 @@ pub struct Effort {
 }
 
 impl Default for Effort {
-    /// Some twelve trials know the limit to an eighth, where the share found rises as steeply as most do.
+    /// Some twelve trials know the limit to an eighth, where the share found rises as steeply as most do; where places or moments that
+    /// are drawn make it rise slowly, forty do.
     fn default() -> Self {
-        Self { trials: 20, uncertainty: 0.12 }
+        Self { trials: 40, uncertainty: 0.12 }
     }
 }
 
@@ -134,7 +135,10 @@ impl Series<'_> {
 
 #[cfg(test)]
 mod tests {
+    use model_dsl::calibration::TermKind;
+
     use super::*;
+    use crate::injection::kind::Kind;
     use crate::limits::{Question, limits};
     use crate::testing::passes_of_x;
     use crate::trial::trial;
@@ -151,7 +155,8 @@ mod tests {
         let base = &known[0].base;
         let question = Question { only: vec!["backlash".to_owned()], seed: 1, ..Question::default() };
         let found = limits(&known, &question, &|_| {}).unwrap();
-        let limit = found.all.iter().find(|limit| limit.subject.kind == "backlash").unwrap();
+        let limit =
+            found.all.iter().find(|limit| limit.subject.kind == Kind::Term(TermKind::Backlash)).unwrap();
         let strength = limit.found.as_ref().unwrap().strength;
         let fitted = base.recording.run.iter().filter(|run| **run < 3).count();
         let error = 2.0 * noise / crate::number(fitted).sqrt();
@@ -160,7 +165,7 @@ mod tests {
         let share = |strength: f64| {
             let effect = limit.trials[0].effect.at_strength(strength);
             let fresh = (11..17).filter_map(|seed| {
-                let known = Known::new(passes_of_x("FX", [true, false, false], noise, seed))?;
+                let known = Known::new(passes_of_x("FX", [true, false, false], noise, seed)).ok()?;
                 trial(&known, motion, effect).map(|trial| trial.how != How::Missed)
             });
             fresh.filter(|found| *found).count()

@@ -1,9 +1,12 @@
 //! What is asked of a recording. In: a recording with its machine. Out: the kinds of effects, each in one error motion, of which its
 //! readings show something. Motions in which a kind shows alike are asked once.
 
-use crate::injection::allowed::{self, Allowed, KINDS, OF_AXIS};
+use model_dsl::calibration::TermKind;
+
+use crate::injection::allowed::{self, Allowed};
 use crate::injection::base::{Base, Signal};
 use crate::injection::columns::{correlation, rms, straightened};
+use crate::injection::kind::Kind;
 
 /// A kind of effect in an error motion.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -13,17 +16,12 @@ pub struct Subject {
     /// The axis that the effect follows, by number; of a squareness the one whose line is turned.
     pub axis: usize,
     /// `backlash`, `wind-up`, ...
-    pub kind: &'static str,
+    pub kind: Kind,
     /// Other motions in which it would show alike, by number.
     pub alike: Vec<usize>,
 }
 
 impl Subject {
-    /// The name of its term in calibrations: a play that winds up is a backlash too.
-    pub fn term(&self) -> &'static str {
-        if self.kind == "wind-up" { "backlash" } else { self.kind }
-    }
-
     /// The effect of one trial at size one.
     pub fn drawn(&self, base: &Base, seed: u64, trial: usize) -> Option<Allowed> {
         drawn(base, (self.motion, self.axis, self.kind), seed, trial)
@@ -32,16 +30,17 @@ impl Subject {
 
 fn drawn(
     base: &Base,
-    (motion, axis, kind): (usize, usize, &str),
+    (motion, axis, kind): (usize, usize, Kind),
     seed: u64,
     trial: usize,
 ) -> Option<Allowed> {
-    let name = format!("{} {kind} {trial}", base.names.axes[axis].letter);
+    let name = format!("{} {} {trial}", base.names.axes[axis].letter, kind.name());
     allowed::drawn(base, motion, axis, (kind, &name), seed)
 }
 
 /// The kinds that any motion of an axis may have; the others belong to its position.
-const OF_ANY_MOTION: [&str; 4] = ["polynomial", "table", "backlash", "cyclic"];
+const OF_ANY_MOTION: [TermKind; 4] =
+    [TermKind::Polynomial, TermKind::Table, TermKind::Backlash, TermKind::Cyclic];
 
 /// What a thousandth of an error motion must add to the readings, in parts of it, for the motion to show: a tenth. Of what it hardly
 /// shows no machine has enough.
@@ -78,7 +77,7 @@ pub fn subjects(base: &Base, seed: u64) -> Vec<Subject> {
     let levers = levers(base);
     let mut all = Vec::new();
     for axis in 0..base.names.axes.len() {
-        for kind in KINDS {
+        for kind in Kind::ALL {
             let motions = motions(base, &levers, axis, kind);
             all.extend(grouped(base, &motions, (axis, kind), seed));
         }
@@ -87,7 +86,7 @@ pub fn subjects(base: &Base, seed: u64) -> Vec<Subject> {
 }
 
 /// The levers of the motions of an axis that may have a kind, the axis's own first.
-fn motions<'l>(base: &Base, levers: &'l [Lever], axis: usize, kind: &str) -> Vec<&'l Lever> {
+fn motions<'l>(base: &Base, levers: &'l [Lever], axis: usize, kind: Kind) -> Vec<&'l Lever> {
     let letter = &base.names.axes[axis].letter;
     let is_own = |motion: usize| base.names.own_axis(&base.names.motions[motion]) == Some(axis);
     let is_alignment = |motion: usize| base.compiled.equations.motions[motion].alignment;
@@ -96,11 +95,11 @@ fn motions<'l>(base: &Base, levers: &'l [Lever], axis: usize, kind: &str) -> Vec
         if base.names.motions[motion].axis.as_ref() != Some(letter) {
             return false;
         }
-        match kind {
-            "constant" => is_alignment(motion) && base.outside(),
-            "coupling" => is_own(motion) && base.outside(),
+        match kind.term() {
+            TermKind::Constant => is_alignment(motion) && base.outside(),
+            TermKind::Coupling => is_own(motion) && base.outside(),
             _ if is_alignment(motion) => false,
-            _ if OF_ANY_MOTION.contains(&kind) => is_own(motion) || base.outside(),
+            term if OF_ANY_MOTION.contains(&term) && kind != Kind::WindUp => is_own(motion) || base.outside(),
             _ => is_own(motion),
         }
     };
@@ -110,7 +109,7 @@ fn motions<'l>(base: &Base, levers: &'l [Lever], axis: usize, kind: &str) -> Vec
 }
 
 /// A kind in several motions: those in which it shows alike under the first of them.
-fn grouped(base: &Base, motions: &[&Lever], (axis, kind): (usize, &'static str), seed: u64) -> Vec<Subject> {
+fn grouped(base: &Base, motions: &[&Lever], (axis, kind): (usize, Kind), seed: u64) -> Vec<Subject> {
     let mut found: Vec<(Subject, Vec<f64>)> = Vec::new();
     for lever in motions {
         let Some(allowed) = drawn(base, (lever.motion, axis, kind), seed, 0) else { continue };
@@ -135,11 +134,6 @@ fn shown(base: &Base, lever: &Lever, allowed: &Allowed) -> Option<Vec<f64>> {
     (rms(&shown) > SEEN * SEEN * rms(&straightened(&values, &flat)) && rms(&shown) > 0.0).then_some(shown)
 }
 
-/// Whether a kind belongs to an axis and not only to what stands beside it.
-pub fn follows_axis(kind: &str) -> bool {
-    OF_AXIS.contains(&kind)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -152,7 +146,7 @@ mod tests {
         let motions: Vec<&str> =
             subjects.iter().map(|subject| base.names.motions[subject.motion].name.as_str()).collect();
         assert!(motions.iter().all(|name| *name == "EXX"), "{motions:?}");
-        let kinds: Vec<&str> = subjects.iter().map(|subject| subject.kind).collect();
+        let kinds: Vec<&str> = subjects.iter().map(|subject| subject.kind.name()).collect();
         assert!(kinds.contains(&"backlash") && kinds.contains(&"polynomial"), "{kinds:?}");
         // No sensor, no load, no second axis.
         for kind in ["growth", "expansion", "compliance", "coupling", "constant"] {
@@ -165,7 +159,8 @@ mod tests {
     fn motions_that_show_alike_are_asked_once() {
         let base = passes_of_x("FX", [true, false, false], 1e-4, 1);
         let subjects = subjects(&base, 1);
-        let plays: Vec<&Subject> = subjects.iter().filter(|subject| subject.kind == "backlash").collect();
+        let plays: Vec<&Subject> =
+            subjects.iter().filter(|subject| subject.kind == Kind::Term(TermKind::Backlash)).collect();
         let [own] = plays.as_slice() else { panic!("{plays:?}") };
         let alike: Vec<&str> =
             own.alike.iter().map(|motion| base.names.motions[*motion].name.as_str()).collect();
@@ -178,7 +173,7 @@ mod tests {
         let own = base.names.motion("EXX").unwrap();
         let across = base.names.motion("EYX").unwrap();
         let wave = |motion: usize, trial: usize| {
-            let subject = Subject { motion, axis: 0, kind: "cyclic", alike: Vec::new() };
+            let subject = Subject { motion, axis: 0, kind: Kind::Term(TermKind::Cyclic), alike: Vec::new() };
             subject.drawn(&base, 7, trial).unwrap().effect
         };
         assert_eq!(wave(own, 3), wave(across, 3));

@@ -23,10 +23,21 @@ pub struct Known {
 
 impl Known {
     /// Diagnoses a recording as it is.
-    pub fn new(base: Base) -> Option<Self> {
-        let alone = diagnosed(&base, &[&base.recording])?;
+    ///
+    /// # Errors
+    ///
+    /// Why nothing can be asked of it: nothing can be decided from it, or it has no noise that could hide an effect.
+    pub fn new(base: Base) -> Result<Self, String> {
+        let alone = diagnosed(&base, &[&base.recording]).ok_or("it cannot be diagnosed")?;
+        if let Some(reason) = &alone.undecidable {
+            return Err(format!("nothing can be decided from it. {reason}"));
+        }
         let left = internal(alone.after.rms, alone.after.unit);
-        (left > 0.0 && left.is_finite()).then_some(Self { base, alone, left })
+        if left > 0.0 && left.is_finite() {
+            Ok(Self { base, alone, left })
+        } else {
+            Err("its readings have no noise, so that an effect of any size would be found".to_owned())
+        }
     }
 }
 
@@ -67,14 +78,15 @@ pub fn trial(known: &Known, motion: usize, effect: Effect) -> Option<Trial> {
     let score = Score::of(&case, &known.base, &found, &known.alone);
     let own = &known.base.names.motions[motion].name;
     let hit = score.hit.and_then(|hit| found.findings.get(hit));
-    let is_first = hit.is_some_and(|hit| hit.motion == *own && hit.term == effect.term());
+    let term = effect.term().name();
+    let is_first = hit.is_some_and(|hit| hit.motion == *own && hit.term == term);
     Some(Trial {
         effect,
         strength: effect.strength(),
         how: score.how,
         interval: hit.filter(|_| is_first).and_then(|hit| score::interval(&effect, hit)),
         is_first,
-        others: hit.map(|hit| others(hit, own, effect.term())).unwrap_or_default(),
+        others: hit.map(|hit| others(hit, own, term)).unwrap_or_default(),
         instead: if score.how == How::Missed { score.extra } else { Vec::new() },
         is_unexplained: found.unexplained.is_some(),
     })

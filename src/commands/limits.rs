@@ -1,8 +1,8 @@
 //! `abbe limits`: what a recording could show. In: a recording. Out: from which size on each effect would be found in it, as text, JSON
 //! or a page. What it shares with `abbe plan` stands here too.
 
-use limits::injection::allowed::KINDS;
 use limits::injection::base::Base;
+use limits::injection::kind::Kind;
 use limits::limits::{Limits as Found, Question, limits};
 use limits::moves::library;
 use limits::passes::advice;
@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &Limits) -> Result<(), Failure> {
     check_names(&arguments.only, &recorded.equations.names())?;
     let progress = Progress::new(arguments.quiet, "diagnosing the recording as it is");
     let name = arguments.recording.display().to_string();
-    let known = [Known::new(base(&name, recorded)?).ok_or_else(|| cannot(&name, "it cannot be diagnosed"))?];
+    let known = [Known::new(base(&name, recorded)?).map_err(|reason| cannot(&name, &reason))?];
     let effort = Effort { trials: usize::from(arguments.trials), ..Effort::default() };
     let question = Question { only: arguments.only.clone(), effort, seed: arguments.seed };
     let found = asked(&known, &question, arguments.passes, &progress);
@@ -82,12 +82,15 @@ pub(super) fn cannot(name: &str, reason: &str) -> Failure {
 pub(super) fn check_names(only: &[String], names: &MachineNames) -> Result<(), Failure> {
     let axes = names.axes.iter().map(|axis| axis.letter.as_str());
     let motions = names.motions.iter().map(|motion| motion.name.as_str());
-    let known: Vec<&str> = KINDS.into_iter().chain(axes).chain(motions).collect();
+    let known: Vec<&str> = Kind::names().into_iter().chain(axes).chain(motions).collect();
     let Some(wrong) = only.iter().find(|name| !known.contains(&name.as_str())) else { return Ok(()) };
     let help = match nearest(wrong, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
         None => {
-            format!("--only takes axes and error motions of the machine, and of kinds: {}", KINDS.join(", "))
+            format!(
+                "--only takes axes and error motions of the machine, and of kinds: {}",
+                Kind::names().join(", ")
+            )
         }
     };
     Err(Failure::Wrong(format!("error: `{wrong}` is no effect, error motion or axis\nhelp: {help}")))

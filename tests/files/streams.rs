@@ -8,7 +8,7 @@ use std::process::Stdio;
 use super::{folder, on_stage, placed, program, run, stage, status, text};
 
 /// Every command that prints, in its forms; `@` is the folder of the stage.
-const PRINTERS: [&[&str]; 24] = [
+const PRINTERS: [&[&str]; 26] = [
     &["derive", "trunnion-5axis"],
     &["derive", "trunnion-5axis", "--format", "html"],
     &["derive", "@/machine.yaml", "--format", "json"],
@@ -28,6 +28,17 @@ const PRINTERS: [&[&str]; 24] = [
     &["calibrate", "@/set-up.yaml"],
     &["calibrate", "@/set-up.yaml", "--format", "json"],
     &["export", "linuxcnc", "@/calibration.yaml", "--output", "@/", "--force", "--range", "X=0:100"],
+    &["limits", "@/noisy.yaml", "--only", "X,backlash", "--trials", "4"],
+    &[
+        "plan",
+        "@/noisy-path.yaml",
+        "--calibration",
+        "@/calibration.yaml",
+        "--only",
+        "X,backlash",
+        "--trials",
+        "4",
+    ],
     &["new", "XYFZ"],
     &["explain"],
     &["explain", "backlash"],

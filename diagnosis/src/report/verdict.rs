@@ -37,7 +37,7 @@ fn denied(denied: &[Denied]) -> String {
     let one = |one: &Denied| {
         let period = one.period.map(|(period, unit)| format!(" of period {}", size(period, unit)));
         let period = period.unwrap_or_default();
-        format!("no {} of {}{period} above about {}", one.term, one.motion, size(one.above, one.unit))
+        format!("no {} in {}{period} above about {}", one.term, one.motion, size(one.above, one.unit))
     };
     let all: Vec<String> = denied.iter().map(one).collect();
     if all.is_empty() { String::new() } else { format!("; {}", all.join(", ")) }

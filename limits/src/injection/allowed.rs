@@ -6,31 +6,14 @@
 
 use std::f64::consts::TAU;
 
+use model_dsl::calibration::TermKind;
 use simulation::noise::Source;
 
 use crate::injection::base::{Base, Signal};
 use crate::injection::columns::{alike, correlation, rms, straightened};
 use crate::injection::effect::Effect;
+use crate::injection::kind::Kind;
 use crate::injection::state::Axis;
-
-/// All kinds, in the order in which they are told.
-pub const KINDS: [&str; 15] = [
-    "constant",
-    "polynomial",
-    "table",
-    "backlash",
-    "wind-up",
-    "reversal-spike",
-    "cyclic",
-    "lag",
-    "acceleration",
-    "expansion",
-    "growth",
-    "drift",
-    "vibration",
-    "coupling",
-    "compliance",
-];
 
 /// Reversals that an effect of direction needs: one on each side of what is held out.
 const REVERSALS: usize = 2;
@@ -74,27 +57,32 @@ impl Draw {
 pub fn allowed(base: &Base, seed: u64) -> Vec<Allowed> {
     let mut all = Vec::new();
     let mut take =
-        |motion: usize, axis: Option<usize>, make: &dyn Fn(&mut Draw) -> Option<Effect>, kind: &str| {
+        |motion: usize, axis: Option<usize>, make: &dyn Fn(&mut Draw) -> Option<Effect>, kind: Kind| {
             let name = &base.names.motions[motion].name;
-            let mut draw = Draw(Source::new(seed, &format!("{} {name} {kind}", base.name)));
+            let mut draw = Draw(Source::new(seed, &format!("{} {name} {}", base.name, kind.name())));
             all.extend(make(&mut draw).map(|effect| Allowed { motion, axis, effect }));
         };
     let motions: Vec<Option<usize>> = (0..base.names.axes.len()).map(|axis| base.motion_of(axis)).collect();
     for (number, motion) in motions.iter().enumerate() {
         let moving = base.path.axes[number].as_ref().filter(|axis| axis.travel() > 0.0);
         let (Some(motion), Some(axis)) = (*motion, moving) else { continue };
-        let of = |kind: &'static str| move |draw: &mut Draw| of_axis(base, number, axis, kind, draw);
+        let of = |kind: Kind| move |draw: &mut Draw| of_axis(base, number, axis, kind, draw);
         for kind in OF_AXIS {
             take(motion, Some(number), &of(kind), kind);
         }
     }
     if let Some(motion) = motions.iter().flatten().next().copied() {
-        for kind in ["growth", "drift", "vibration", "compliance"] {
+        for kind in BESIDE {
             take(motion, None, &|draw| beside(base, kind, draw), kind);
         }
     }
     if let Some(motion) = squareness(base).filter(|_| base.outside()) {
-        take(motion, None, &|draw| Some(Effect::Constant { value: draw.sign() }), "constant");
+        take(
+            motion,
+            None,
+            &|draw| Some(Effect::Constant { value: draw.sign() }),
+            Kind::Term(TermKind::Constant),
+        );
     }
     all
 }
@@ -105,12 +93,12 @@ pub fn drawn(
     base: &Base,
     motion: usize,
     axis: usize,
-    (kind, name): (&str, &str),
+    (kind, name): (Kind, &str),
     seed: u64,
 ) -> Option<Allowed> {
     let moving = base.path.axes.get(axis)?.as_ref().filter(|axis| axis.travel() > 0.0)?;
     let mut draw = Draw(Source::new(seed, name));
-    let (follows, effect) = if kind == "constant" {
+    let (follows, effect) = if kind.term() == TermKind::Constant {
         (None, Some(Effect::Constant { value: draw.sign() }))
     } else if OF_AXIS.contains(&kind) {
         (Some(axis), of_axis(base, axis, moving, kind, &mut draw))
@@ -121,40 +109,52 @@ pub fn drawn(
 }
 
 /// The kinds that follow an axis.
-pub const OF_AXIS: [&str; 10] = [
-    "polynomial",
-    "table",
-    "backlash",
-    "wind-up",
-    "reversal-spike",
-    "cyclic",
-    "lag",
-    "acceleration",
-    "expansion",
-    "coupling",
+const OF_AXIS: [Kind; 10] = [
+    Kind::Term(TermKind::Polynomial),
+    Kind::Term(TermKind::Table),
+    Kind::Term(TermKind::Backlash),
+    Kind::WindUp,
+    Kind::Term(TermKind::ReversalSpike),
+    Kind::Term(TermKind::Cyclic),
+    Kind::Term(TermKind::Lag),
+    Kind::Term(TermKind::Acceleration),
+    Kind::Term(TermKind::Expansion),
+    Kind::Term(TermKind::Coupling),
 ];
 
-fn of_axis(base: &Base, number: usize, axis: &Axis, kind: &str, draw: &mut Draw) -> Option<Effect> {
+/// The kinds that follow what is recorded beside the axes.
+const BESIDE: [Kind; 4] = [
+    Kind::Term(TermKind::Growth),
+    Kind::Term(TermKind::Drift),
+    Kind::Term(TermKind::Vibration),
+    Kind::Term(TermKind::Compliance),
+];
+
+fn of_axis(base: &Base, number: usize, axis: &Axis, kind: Kind, draw: &mut Draw) -> Option<Effect> {
     let clock = &base.path.clock;
     let (travel, turns) = (axis.travel(), axis.turns >= REVERSALS);
     let fine = axis.stations() > PLACES;
     match kind {
-        "polynomial" => Some(Effect::Polynomial { axis: number, slope: draw.sign() / travel }),
-        "table" => bump(base, number, axis, draw),
-        "backlash" if turns => Some(Effect::Backlash { axis: number, lost_motion: 1.0, wind_up: 0.0 }),
-        "wind-up" => {
+        Kind::Term(TermKind::Polynomial) => {
+            Some(Effect::Polynomial { axis: number, slope: draw.sign() / travel })
+        }
+        Kind::Term(TermKind::Table) => bump(base, number, axis, draw),
+        Kind::Term(TermKind::Backlash) if turns => {
+            Some(Effect::Backlash { axis: number, lost_motion: 1.0, wind_up: 0.0 })
+        }
+        Kind::WindUp => {
             let wind_up = travel / draw.between(20.0, 50.0);
             let resolved = fine && axis.stride() < wind_up / 3.0;
             (turns && resolved).then_some(Effect::Backlash { axis: number, lost_motion: 1.0, wind_up })
         }
-        "reversal-spike" => {
+        Kind::Term(TermKind::ReversalSpike) => {
             let decay = clock.step * draw.between(6.0, 15.0);
             // Twice as many as backlash needs: a spike shows in the few rows behind each.
             let apart = clock.span() / axis.turns.max(1) as f64;
             let many = axis.turns >= 2 * REVERSALS && decay < apart / 5.0;
             many.then(|| Effect::ReversalSpike { axis: number, height: draw.sign(), decay })
         }
-        "cyclic" => {
+        Kind::Term(TermKind::Cyclic) => {
             let mut period = travel / draw.between(9.0, 14.0);
             if base.names.axes[number].rotary {
                 // What turns repeats in whole parts of a turn.
@@ -164,17 +164,17 @@ fn of_axis(base: &Base, number: usize, axis: &Axis, kind: &str, draw: &mut Draw)
             let phase = draw.between(0.0, TAU);
             resolved.then_some(Effect::Cyclic { axis: number, period, amplitude: 1.0, phase })
         }
-        "lag" if turns && clock.step < FAST => {
+        Kind::Term(TermKind::Lag) if turns && clock.step < FAST => {
             Some(Effect::Lag { axis: number, gain: draw.between(15.0, 60.0) })
         }
-        "acceleration" if turns && clock.step < FAST => {
+        Kind::Term(TermKind::Acceleration) if turns && clock.step < FAST => {
             let most = axis.acceleration.iter().fold(0.0, |most: f64, a| most.max(a.abs()));
             let strong = axis.acceleration.iter().filter(|a| a.abs() > 0.2 * most).count();
             // A command that jumps from speed to speed, or is rounded, has no acceleration that rows could show.
             let smooth = strong > PLACES && axis.smooth();
             smooth.then(|| Effect::Acceleration { axis: number, gain: draw.sign() })
         }
-        "expansion" => {
+        Kind::Term(TermKind::Expansion) => {
             let (sensor, reference) = warmest(base)?;
             let coefficient = draw.sign();
             (axis.stations() > 2).then_some(Effect::Expansion {
@@ -184,7 +184,7 @@ fn of_axis(base: &Base, number: usize, axis: &Axis, kind: &str, draw: &mut Draw)
                 reference,
             })
         }
-        "coupling" if base.outside() => coupling(base, number, axis, draw),
+        Kind::Term(TermKind::Coupling) if base.outside() => coupling(base, number, axis, draw),
         _ => None,
     }
 }
@@ -215,12 +215,12 @@ fn coupling(base: &Base, number: usize, axis: &Axis, draw: &mut Draw) -> Option<
 }
 
 /// The kinds that follow what is recorded beside the axes.
-fn beside(base: &Base, kind: &str, draw: &mut Draw) -> Option<Effect> {
+fn beside(base: &Base, kind: Kind, draw: &mut Draw) -> Option<Effect> {
     let clock = &base.path.clock;
     let span = clock.span();
     let whole = clock.stretches.len() < 3;
     match kind {
-        "growth" => {
+        Kind::Term(TermKind::Growth) => {
             let (sensor, reference) = warmest(base)?;
             let time_constant = span / draw.between(10.0, 20.0);
             let coefficient = draw.sign();
@@ -228,18 +228,18 @@ fn beside(base: &Base, kind: &str, draw: &mut Draw) -> Option<Effect> {
             let slow = whole && time_constant > 5.0 * clock.step;
             slow.then_some(Effect::Growth { sensor, coefficient, reference, time_constant })
         }
-        "drift" => {
+        Kind::Term(TermKind::Drift) => {
             let time_constant = span / draw.between(4.0, 7.0);
             (whole && span > SLOW).then(|| Effect::Drift { amplitude: draw.sign(), time_constant })
         }
-        "vibration" => {
+        Kind::Term(TermKind::Vibration) => {
             let frequency = 1.0 / (clock.step * draw.between(10.0, 20.0));
             let phase = draw.between(0.0, TAU);
             // A wave needs its rows at even times: stations have times of their own.
             let even = clock.time.len() > PLACES && clock.step < FAST;
             even.then_some(Effect::Vibration { frequency, amplitude: 1.0, phase })
         }
-        "compliance" => {
+        Kind::Term(TermKind::Compliance) => {
             let load = pushes(base)?;
             Some(Effect::Compliance { load, coefficient: draw.sign() })
         }

@@ -5,7 +5,10 @@
 
 use std::f64::consts::TAU;
 
+use model_dsl::calibration::TermKind;
+
 use crate::injection::columns::difference;
+use crate::injection::kind::Kind;
 use crate::injection::state::{Axis, Clock, followed, taken_up};
 
 /// What an effect may depend on.
@@ -144,31 +147,31 @@ pub enum Effect {
 }
 
 impl Effect {
-    /// The name of its term.
-    pub fn term(&self) -> &'static str {
+    /// Its term.
+    pub fn term(&self) -> TermKind {
         match self {
-            Self::Constant { .. } => "constant",
-            Self::Polynomial { .. } => "polynomial",
-            Self::Table { .. } => "table",
-            Self::Backlash { .. } => "backlash",
-            Self::ReversalSpike { .. } => "reversal-spike",
-            Self::Cyclic { .. } => "cyclic",
-            Self::Lag { .. } => "lag",
-            Self::Acceleration { .. } => "acceleration",
-            Self::Expansion { .. } => "expansion",
-            Self::Growth { .. } => "growth",
-            Self::Drift { .. } => "drift",
-            Self::Vibration { .. } => "vibration",
-            Self::Coupling { .. } => "coupling",
-            Self::Compliance { .. } => "compliance",
+            Self::Constant { .. } => TermKind::Constant,
+            Self::Polynomial { .. } => TermKind::Polynomial,
+            Self::Table { .. } => TermKind::Table,
+            Self::Backlash { .. } => TermKind::Backlash,
+            Self::ReversalSpike { .. } => TermKind::ReversalSpike,
+            Self::Cyclic { .. } => TermKind::Cyclic,
+            Self::Lag { .. } => TermKind::Lag,
+            Self::Acceleration { .. } => TermKind::Acceleration,
+            Self::Expansion { .. } => TermKind::Expansion,
+            Self::Growth { .. } => TermKind::Growth,
+            Self::Drift { .. } => TermKind::Drift,
+            Self::Vibration { .. } => TermKind::Vibration,
+            Self::Coupling { .. } => TermKind::Coupling,
+            Self::Compliance { .. } => TermKind::Compliance,
         }
     }
 
-    /// What kind of case it makes: the term, and a backlash that winds up apart from one that jumps.
-    pub fn kind(&self) -> &'static str {
+    /// What kind of case it makes.
+    pub fn kind(&self) -> Kind {
         match self {
-            Self::Backlash { wind_up, .. } if *wind_up > 0.0 => "wind-up",
-            _ => self.term(),
+            Self::Backlash { wind_up, .. } if *wind_up > 0.0 => Kind::WindUp,
+            _ => Kind::Term(self.term()),
         }
     }
 

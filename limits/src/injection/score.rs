@@ -2,7 +2,7 @@
 //! claimed besides, what is left beside what the base leaves, and whether the interval holds the truth.
 
 use diagnosis::diagnosis::{Diagnosis, Estimate, Finding, IntervalOf, ParameterValue};
-use model_dsl::calibration::CalibratedTerm;
+use model_dsl::calibration::{CalibratedTerm, TermKind};
 use model_dsl::quantity::parse_unit;
 
 use crate::injection::base::{Base, Signal};
@@ -145,7 +145,7 @@ fn larger(claimed: &Signal, injected: &Signal) -> bool {
 
 fn is_named(case: &Case, base: &Base, finding: &Finding) -> bool {
     let motion = base.names.motions[case.motion].name.as_str();
-    let is = |of: &str, term: &str| of == motion && term == case.effect.term();
+    let is = |of: &str, term: &str| of == motion && term == case.effect.term().name();
     let others = &finding.alternatives;
     is(&finding.motion, finding.term) || others.iter().any(|other| is(&other.motion, other.term))
 }
@@ -174,7 +174,7 @@ fn located(case: &Case, base: &Base, found: &Diagnosis) -> bool {
     let Effect::Table { axis, at, width, .. } = case.effect else { return false };
     let letter = &base.names.axes[axis].letter;
     let told = found.unexplained.iter().filter_map(|left| left.interval.as_ref());
-    let tables = found.findings.iter().filter(|finding| finding.term == "table");
+    let tables = found.findings.iter().filter(|finding| finding.kind() == TermKind::Table);
     let mut told = told.chain(tables.filter_map(|finding| finding.location.interval.as_ref()));
     told.any(|interval| {
         let (from, to) = (internal(interval.from, interval.unit), internal(interval.to, interval.unit));
@@ -258,7 +258,7 @@ fn same_label(left: &Finding, right: &Finding) -> bool {
 /// Whether the interval of the size holds what was injected and what the base has of it.
 fn covered(case: &Case, base: &Base, finding: &Finding, known: &[Claim<'_>]) -> Option<bool> {
     let (name, place, injected) = case.effect.size()?;
-    if finding.term != case.effect.term() || finding.motion != base.names.motions[case.motion].name {
+    if finding.kind() != case.effect.term() || finding.motion != base.names.motions[case.motion].name {
         return None;
     }
     let found = estimate(finding, name, place)?;
@@ -282,7 +282,7 @@ fn covered(case: &Case, base: &Base, finding: &Finding, known: &[Claim<'_>]) -> 
 /// gain, one over it.
 pub fn interval(effect: &Effect, finding: &Finding) -> Option<(f64, f64)> {
     let (name, place, _) = effect.size()?;
-    if finding.term != effect.term() {
+    if finding.kind() != effect.term() {
         return None;
     }
     let found = estimate(finding, name, place)?;

@@ -42,7 +42,7 @@ fn already(one: &Already) -> Value {
 fn limit(limit: &Limit) -> Value {
     let found = limit.found.as_ref();
     object!({
-        "motion": limit.motion, "axis": limit.axis, "kind": limit.subject.kind, "shows_alike": limit.alike,
+        "motion": limit.motion, "axis": limit.axis, "kind": limit.subject.kind.name(), "shows_alike": limit.alike,
         "drawn": limit.drawn, "size_of": limit.scale.of, "unit": limit.scale.unit,
         "found_below": limit.scale.is_gain,
         "size": limit.size(), "relative_uncertainty": found.map(|found| found.uncertainty),

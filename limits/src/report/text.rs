@@ -23,7 +23,8 @@ pub fn text(limits: &Limits) -> String {
     let trials: usize = limits.all.iter().map(|limit| limit.trials.len()).sum();
     text += "\n";
     text += &wrapped(&format!(
-        "By {trials} diagnoses with a known effect in the readings, seed {}. Most limits are known to some 12 %.",
+        "By {trials} diagnoses with a known effect in the readings, seed {}. A limit is known to some 12 % where nothing \
+         else is said.",
         limits.seed
     ));
     text

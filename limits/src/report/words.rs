@@ -20,8 +20,13 @@ pub(super) fn told_and_drawn(limit: &Limit) -> String {
 pub(super) fn size(limit: &Limit) -> Option<String> {
     let size = limit.size()?;
     let sense = if limit.scale.is_gain { "below " } else { "" };
-    Some(format!("{sense}{} {}", significant(size, 2), limit.scale.unit))
+    let known = limit.found.as_ref().map_or(0.0, |found| found.uncertainty);
+    let known = if known > VAGUE { format!(" (to {:.0} %)", 100.0 * known) } else { String::new() };
+    Some(format!("{sense}{} {}{known}", significant(size, 2), limit.scale.unit))
 }
+
+/// A limit that is known less well than this is told with how well.
+const VAGUE: f64 = 0.15;
 
 /// The interval of an effect at the limit: `+- 0.21 um`.
 pub(super) fn interval(limit: &Limit) -> String {
@@ -125,25 +130,4 @@ fn told_apart(pairs: &[Pair]) -> String {
 /// A time in s or min.
 fn lasting(time: f64) -> String {
     if time < 120.0 { format!("{} s", short(time)) } else { format!("{} min", short(time / 60.0)) }
-}
-
-/// The kinds that a reader asks for first: what a shop mends. In this order, one of each.
-const USEFUL: [&str; 6] = ["backlash", "constant", "cyclic", "lag", "reversal-spike", "polynomial"];
-
-/// The most useful limits, at most so many: sentences such as `no EXX backlash above 0.8 um`.
-pub fn useful(limits: &Limits, most: usize) -> Vec<String> {
-    let of_kind = |kind: &&str| {
-        let limits = limits.all.iter().filter(|limit| limit.subject.kind == *kind && limit.found.is_some());
-        // Of several axes the one of which least is known: what holds for it holds for all.
-        limits.max_by(|a, b| size_of(a).total_cmp(&size_of(b)))
-    };
-    let told = USEFUL.iter().filter_map(of_kind).filter_map(|limit| {
-        let sense = if limit.scale.is_gain { "with a gain below" } else { "above" };
-        Some(format!("{} {sense} {} {}", limit.name(), significant(limit.size()?, 2), limit.scale.unit))
-    });
-    told.take(most).collect()
-}
-
-fn size_of(limit: &Limit) -> f64 {
-    limit.found.as_ref().map_or(0.0, |found| found.strength)
 }

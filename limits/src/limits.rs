@@ -177,17 +177,11 @@ impl Question {
             base.names.motions[subject.motion].name.as_str(),
             base.names.axes[subject.axis].letter.as_str(),
         ];
-        let kinds = self.only.iter().filter(|word| Kind::of_name(word).is_some());
-        let places = self.only.iter().filter(|word| !Kind::of_name(word).is_some());
-        let asked = |mut words: Box<dyn Iterator<Item = &String> + '_>| {
-            let mut any = false;
-            let hit = words.any(|word| {
-                any = true;
-                names.contains(&word.as_str())
-            });
-            hit || !any
-        };
-        asked(Box::new(kinds)) && asked(Box::new(places))
+        let (kinds, places): (Vec<&String>, Vec<&String>) =
+            self.only.iter().partition(|word| Kind::of_name(word).is_some());
+        let asked =
+            |words: &[&String]| words.is_empty() || words.iter().any(|word| names.contains(&word.as_str()));
+        asked(&kinds) && asked(&places)
     }
 }
 

@@ -74,51 +74,43 @@ impl Scale {
 
 /// What else was drawn for the trials, from the least to the most: `period 21 to 34 mm`. Empty where an effect has nothing but its size.
 pub fn drawn(base: &Base, effects: &[Effect]) -> String {
-    let over = |of: &dyn Fn(&Effect) -> Option<f64>| {
-        let numbers: Vec<f64> = effects.iter().filter_map(of).collect();
-        let low = numbers.iter().copied().reduce(f64::min)?;
-        let high = numbers.iter().copied().reduce(f64::max)?;
-        Some((low, high))
-    };
-    let rotary = |axis: usize| base.names.axes.get(axis).is_some_and(|axis| axis.rotary);
-    let along = |effect: &Effect| match *effect {
-        Effect::Table { axis, .. } | Effect::Backlash { axis, .. } | Effect::Cyclic { axis, .. } => {
-            rotary(axis)
+    let all: Vec<Drawn> = effects.iter().filter_map(|effect| Drawn::of(base, effect)).collect();
+    let Some(first) = all.first() else { return String::new() };
+    let low = all.iter().map(|one| one.value).fold(f64::INFINITY, f64::min);
+    let high = all.iter().map(|one| one.value).fold(f64::NEG_INFINITY, f64::max);
+    format!("{} {} to {} {}", first.name, short(low), short(high), first.unit)
+}
+
+/// The number that was drawn for an effect besides its size.
+struct Drawn {
+    name: &'static str,
+    value: f64,
+    unit: &'static str,
+}
+
+impl Drawn {
+    fn of(base: &Base, effect: &Effect) -> Option<Self> {
+        let along = |name: &'static str, axis: usize, value: f64| match base.names.axes.get(axis) {
+            Some(axis) if axis.rotary => Self { name, value: value * 360.0 / TAU, unit: "deg" },
+            _ => Self { name, value, unit: "mm" },
+        };
+        let time = |name: &'static str, value: f64| Self { name, value, unit: "s" };
+        match *effect {
+            Effect::Backlash { axis, wind_up, .. } if wind_up > 0.0 => {
+                Some(along("wound up over", axis, wind_up))
+            }
+            Effect::Table { axis, width, .. } => Some(along("width", axis, width)),
+            Effect::Cyclic { axis, period, .. } => Some(along("period", axis, period)),
+            Effect::ReversalSpike { decay, .. } => Some(time("decay", decay)),
+            Effect::Growth { time_constant, .. } | Effect::Drift { time_constant, .. } => {
+                Some(time("time constant", time_constant))
+            }
+            Effect::Vibration { frequency, .. } => {
+                Some(Self { name: "frequency", value: frequency, unit: "Hz" })
+            }
+            _ => None,
         }
-        _ => false,
-    };
-    let (way, per) = if effects.first().is_some_and(along) { ("deg", 360.0 / TAU) } else { ("mm", 1.0) };
-    let named: [(&str, &str, f64, &dyn Fn(&Effect) -> Option<f64>); 6] = [
-        ("wound up over", way, per, &|effect| match *effect {
-            Effect::Backlash { wind_up, .. } if wind_up > 0.0 => Some(wind_up),
-            _ => None,
-        }),
-        ("width", way, per, &|effect| match *effect {
-            Effect::Table { width, .. } => Some(width),
-            _ => None,
-        }),
-        ("decay", "s", 1.0, &|effect| match *effect {
-            Effect::ReversalSpike { decay, .. } => Some(decay),
-            _ => None,
-        }),
-        ("period", way, per, &|effect| match *effect {
-            Effect::Cyclic { period, .. } => Some(period),
-            _ => None,
-        }),
-        ("time constant", "s", 1.0, &|effect| match *effect {
-            Effect::Growth { time_constant, .. } | Effect::Drift { time_constant, .. } => Some(time_constant),
-            _ => None,
-        }),
-        ("frequency", "Hz", 1.0, &|effect| match *effect {
-            Effect::Vibration { frequency, .. } => Some(frequency),
-            _ => None,
-        }),
-    ];
-    let told = named.iter().filter_map(|(name, unit, factor, of)| {
-        let (low, high) = over(*of)?;
-        Some(format!("{name} {} to {} {unit}", short(low * factor), short(high * factor)))
-    });
-    told.collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// A number with three significant digits, and no more than it needs.

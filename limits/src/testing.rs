@@ -1,7 +1,5 @@
 //! What tests of this crate share: recordings of simulated machines. In: a machine, a path, noise. Out: a recording ready for effects.
 
-#![expect(clippy::unwrap_used, reason = "a test fails where something is missing")]
-
 use model_dsl::calibration::Calibration;
 use model_dsl::compile_word;
 use model_dsl::diagnostic::Diagnostics;

@@ -5,6 +5,7 @@
 //!
 //! Nothing is assumed of the diagnosis: known effects are injected into the recording itself, at sizes near the limit, and diagnosed.
 
+pub mod answer;
 pub mod injection;
 pub mod limits;
 mod made;

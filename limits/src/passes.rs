@@ -12,41 +12,12 @@ use diagnosis::diagnosis::Diagnosis;
 use rayon::prelude::*;
 use recording::Recording;
 
+use crate::answer::{Advice, Limit, Limits, Pair, Pass};
 use crate::injection::base::Base;
 use crate::injection::case::Case;
 use crate::injection::effect::Effect;
-use crate::limits::{Limit, Limits};
 use crate::moves::Move;
 use crate::trial::{Known, diagnosed, name};
-
-/// An extra pass and what it settles.
-#[derive(Clone, Debug)]
-pub struct Pass {
-    /// What is driven: `X from 0 to 400 mm and back at 50 mm/s, Z at 200 mm`.
-    pub words: String,
-    /// How long it takes, s.
-    pub time: f64,
-    /// What it tells apart.
-    pub settles: Vec<Pair>,
-}
-
-/// Two names of which a recording cannot tell which is right.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Pair {
-    /// The effect: `EXX backlash`.
-    pub effect: String,
-    /// What else it may be: `EBX backlash`; nothing where it is not found at all.
-    pub other: Option<String>,
-}
-
-/// What extra passes do for a recording.
-#[derive(Clone, Debug, Default)]
-pub struct Advice {
-    /// The passes, in the order in which they were chosen: each counts on those before it.
-    pub passes: Vec<Pass>,
-    /// What no move of the library settles.
-    pub left: Vec<Pair>,
-}
 
 /// The most passes that are advised: with more of them another path is the better advice.
 const MOST: usize = 3;

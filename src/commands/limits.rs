@@ -1,9 +1,10 @@
 //! `abbe limits`: what a recording could show. In: a recording. Out: from which size on each effect would be found in it, as text, JSON
 //! or a page. What it shares with `abbe plan` stands here too.
 
+use limits::answer::Limits as Found;
 use limits::injection::base::Base;
 use limits::injection::kind::Kind;
-use limits::limits::{Limits as Found, Question, limits};
+use limits::limits::{Question, limits};
 use limits::moves::library;
 use limits::passes::advice;
 use limits::report;

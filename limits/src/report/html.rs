@@ -5,8 +5,8 @@ use pages::plot::{Axis, Cartesian, Draw, Line, Look, Plot, RULES, Series, Tone};
 use pages::text::escape;
 
 use super::words;
+use crate::answer::{Found, Limit, Limits};
 use crate::injection::score::How;
-use crate::limits::{Found, Limit, Limits};
 use crate::posterior::SHARE;
 
 const STYLE: &str = "\

@@ -2,9 +2,9 @@
 
 use serde_json::{Value, json as object};
 
+use crate::answer::{Advice, Pair, Pass};
+use crate::answer::{Already, Limit, Limits};
 use crate::injection::score::How;
-use crate::limits::{Already, Limit, Limits};
-use crate::passes::{Advice, Pair, Pass};
 use crate::trial::{Other, Trial};
 
 /// Limits as one JSON object with the schema `abbe-limits/1`, in the units that each entry names.

@@ -3,7 +3,7 @@
 use diagnosis::report::{WIDTH, paragraph};
 
 use super::words;
-use crate::limits::{Limit, Limits};
+use crate::answer::{Limit, Limits};
 
 /// Limits as text for a person.
 pub fn text(limits: &Limits) -> String {

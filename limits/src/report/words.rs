@@ -1,7 +1,7 @@
 //! The words of a limit. In: a limit. Out: clauses that text and page share.
 
-use crate::limits::{Limit, Limits};
-use crate::passes::{Advice, Pair, Pass};
+use crate::answer::{Advice, Pair, Pass};
+use crate::answer::{Limit, Limits};
 use crate::size::{short, significant};
 
 /// What the effect of a limit is, with all that was drawn for it: `EXX cyclic (period 21 to 34 mm)`.

@@ -1,5 +1,6 @@
 //! One trial: an effect at a size in a recording, and what a diagnosis says of it.
 
+use std::cmp::Ordering;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use diagnosis::diagnosis::{Diagnosis, Finding};
@@ -33,10 +34,12 @@ impl Known {
             return Err(format!("nothing can be decided from it. {reason}"));
         }
         let left = internal(alone.after.rms, alone.after.unit);
-        if left > 0.0 && left.is_finite() {
-            Ok(Self { base, alone, left })
-        } else {
-            Err("its readings have no noise, so that an effect of any size would be found".to_owned())
+        match left.partial_cmp(&0.0) {
+            Some(Ordering::Greater) if left.is_finite() => Ok(Self { base, alone, left }),
+            Some(_) => {
+                Err("its readings have no noise, so that an effect of any size would be found".to_owned())
+            }
+            None => Err("what the diagnosis leaves of it has no known size".to_owned()),
         }
     }
 }

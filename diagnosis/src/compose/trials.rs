@@ -1,0 +1,167 @@
+//! Trials: forms that are worth a fit of their own.
+//!
+//! In: all forms, and what was found. Out: a few forms, each with its amount and with what is kept beside it. All forms compete with what
+//! was found; those that promise most compete again, beside the names that may be missing: a search that lacks something drops what
+//! it would have found beside it, and without that a form that makes up for both looks better than the right one.
+
+use crate::audit::spread;
+use crate::contest::{Contest, DECISIVE};
+use crate::design::{Design, Regressor};
+use crate::engine::Found;
+use crate::model::{Effect, Fitted, Model};
+use crate::noise::Noise;
+use crate::study::Study;
+
+use super::forms::{self, Form};
+
+/// How many forms, of those that promise most beside what was found and of those that do alone, are compared in full.
+const COMPARED: usize = 24;
+
+/// How many forms get a fit of their own: several have nearly the same column, and the fit tells which is right.
+const TRIALS: usize = 3;
+
+/// How many names that may be missing compete beside the forms, of those that promise most beside what was found and of those that do
+/// alone. A search seldom misses more than two beside what it lacks; several names of one promise are the same physics.
+const MISSING: usize = 6;
+
+/// A form that is to be fitted.
+pub(super) struct Trial {
+    pub(super) form: Fitted,
+    /// What is fitted beside it, and stays if it stands up.
+    pub(super) beside: Option<Effect>,
+    /// What is kept of what was found beyond the settings, and names that were missing.
+    pub(super) kept: Model,
+}
+
+/// What forms compete with, and how samples weigh.
+#[derive(Clone, Copy)]
+pub(super) struct Ring<'r> {
+    pub(super) study: &'r Study<'r>,
+    pub(super) found: &'r Found,
+    pub(super) noises: &'r [Vec<Noise>],
+    pub(super) price: &'r FormPrice,
+    /// Whether more than noise is left, so that names may be missing too.
+    pub(super) lacks: bool,
+}
+
+/// The price of a form: that of an effect of its kind, and more because it is the best of more candidates.
+pub(super) struct FormPrice {
+    more: f64,
+}
+
+impl FormPrice {
+    pub(super) fn new(found: &Found, forms: usize) -> Self {
+        let known = found.tries.candidates.max(1.0);
+        Self { more: 2.0 * ((known + crate::number(forms)) / known).ln() }
+    }
+
+    fn of(&self, study: &Study<'_>, found: &Found, effect: &Effect, samples: f64) -> f64 {
+        found.conditions().price(study, effect, samples) + self.beyond_a_name(effect)
+    }
+
+    /// What an effect costs beyond a name of the vocabulary.
+    pub(super) fn beyond_a_name(&self, effect: &Effect) -> f64 {
+        if effect.shape.is_composed() { self.more } else { 0.0 }
+    }
+}
+
+/// The forms that lower the cost most, the cheapest first.
+pub(super) fn best(ring: Ring<'_>, forms: &[Form]) -> Vec<Trial> {
+    let Ring { study, found, price, lacks, .. } = ring;
+    let mut model = found.fit.model.clone();
+    let contest = ring.contest(&model, forms);
+    let price = |form: &Form| price.of(study, found, &form.effect, contest.samples);
+    let promises = contest.promises();
+    let known = contest.outcome(None).cost;
+    let every = |_: &Form| true;
+    let compared = most_promising(forms, &promises, &price, (COMPARED, every));
+    let compared: Vec<Form> = compared.into_iter().map(|number| forms[number].clone()).collect();
+    if lacks {
+        let is_name = |form: &Form| !form.effect.shape.is_composed();
+        let missing = most_promising(forms, &promises, &price, (MISSING, is_name));
+        model.extend(missing.into_iter().map(|number| forms[number].fitted(0.0)));
+    }
+    let contest = ring.contest(&model, &compared);
+    let mut gains: Vec<(usize, f64)> = (0..compared.len())
+        .map(|number| (number, known - contest.outcome(Some(number)).cost - price(&compared[number])))
+        .filter(|(_, gain)| *gain > DECISIVE)
+        .collect();
+    gains.sort_by(|a, b| b.1.total_cmp(&a.1));
+    gains.into_iter().take(TRIALS).map(|(number, _)| ring.refined(&model, &compared[number])).collect()
+}
+
+/// So many forms of a kind with the highest promises above their price, beside all that was found and alone.
+fn most_promising(
+    forms: &[Form],
+    promises: &[[f64; 2]],
+    price: &dyn Fn(&Form) -> f64,
+    (count, is_wanted): (usize, fn(&Form) -> bool),
+) -> Vec<usize> {
+    let of = |which: usize| {
+        let gains = promises.iter().zip(forms).map(|(promise, form)| promise[which] - price(form));
+        let gains = gains.enumerate().filter(|(number, gain)| *gain > 0.0 && is_wanted(&forms[*number]));
+        let mut order: Vec<(usize, f64)> = gains.collect();
+        order.sort_by(|a, b| b.1.total_cmp(&a.1));
+        order.into_iter().take(count).map(|(number, _)| number)
+    };
+    let mut numbers: Vec<usize> = of(0).chain(of(1)).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    numbers
+}
+
+impl Ring<'_> {
+    /// The contest of forms with the effects of a model.
+    fn contest(&self, model: &Model, forms: &[Form]) -> Contest {
+        let rows: Vec<Vec<usize>> = self.study.scenes.iter().map(|scene| spread(scene.rows())).collect();
+        let columns = |chunk: std::ops::Range<usize>, (scene, channel): (usize, usize)| {
+            columns(self.study, model, &forms[chunk], (scene, channel), &rows[scene])
+        };
+        Contest::new(self.study, (self.found, model, self.noises), &rows, forms.len(), &columns)
+    }
+
+    /// A form with the best value of its factor's number, its amount, and the effects that are kept beside it.
+    fn refined(&self, model: &Model, form: &Form) -> Trial {
+        let mut variants = vec![form.clone()];
+        variants.extend(
+            forms::neighbours(&form.effect.shape)
+                .into_iter()
+                .map(|shape| Form { effect: Effect { shape, ..form.effect }, ..form.clone() }),
+        );
+        let contest = self.contest(model, &variants);
+        let outcomes = (0..variants.len()).map(|number| (number, contest.outcome(Some(number))));
+        let best = outcomes.min_by(|(_, a), (_, b)| a.cost.total_cmp(&b.cost));
+        let (number, outcome) = best.unwrap_or_else(|| (0, contest.outcome(None)));
+        let kept = outcome.kept.into_iter().filter(|number| *number >= self.found.always);
+        Trial {
+            form: variants[number].fitted(outcome.amount),
+            beside: form.beside.clone(),
+            kept: kept.map(|number| model[number].clone()).collect(),
+        }
+    }
+}
+
+/// The column of each form in some rows of a channel.
+fn columns(
+    study: &Study<'_>,
+    model: &Model,
+    forms: &[Form],
+    channel: (usize, usize),
+    rows: &[usize],
+) -> Vec<Vec<f64>> {
+    let regressors: Vec<Regressor> = forms.iter().map(|form| Regressor::of(form.effect.clone())).collect();
+    let matrix = Design::columns_in(study, channel, model, &regressors, rows);
+    let mut first = 0;
+    forms
+        .iter()
+        .map(|form| {
+            let mut sum = vec![0.0; rows.len()];
+            for coefficient in &form.coefficients {
+                let column = matrix.column(first);
+                sum.iter_mut().zip(column.iter()).for_each(|(sum, value)| *sum += coefficient * value);
+                first += 1;
+            }
+            sum
+        })
+        .collect()
+}

@@ -45,9 +45,10 @@ pub(crate) fn compose(study: &mut Study<'_>, found: &mut Found) {
         let forms = forms::forms(study, found);
         let price = FormPrice::new(found, forms.len() + events::count(study));
         // A dead time first: where a loop stands in for it, forms of the velocity make up for the difference.
-        let taken = take_delay(study, found, &price)
-            || take_form(study, found, &forms, &price)
-            || take_event(study, found, &price);
+        let lacks = is_something_left(study, &found.appraisal);
+        let taken = take_delay(study, found, (&price, lacks))
+            || take_form(study, found, &forms, (&price, lacks))
+            || take_event(study, found, (&price, lacks));
         if !taken {
             return;
         }
@@ -55,18 +56,22 @@ pub(crate) fn compose(study: &mut Study<'_>, found: &mut Found) {
 }
 
 /// Takes over the first delay that makes all of it better, if one does.
-fn take_delay(study: &mut Study<'_>, found: &mut Found, price: &FormPrice) -> bool {
-    let late = delays::delays(study, found);
+fn take_delay(study: &mut Study<'_>, found: &mut Found, (price, lacks): (&FormPrice, bool)) -> bool {
+    let late = delays::delays(study, found, lacks);
     late.into_iter().any(|late| take_late(study, found, late, price))
 }
 
 /// Takes over the first form that makes all of it better, the one that promises most first.
-fn take_form(study: &mut Study<'_>, found: &mut Found, forms: &[Form], price: &FormPrice) -> bool {
+fn take_form(
+    study: &mut Study<'_>,
+    found: &mut Found,
+    forms: &[Form],
+    (price, lacks): (&FormPrice, bool),
+) -> bool {
     let mut weights = vec![each_for_itself(&found.appraisal.noises)];
-    if wanders(&found.appraisal) {
+    if lacks && wanders(&found.appraisal) {
         weights.push(each_for_itself(&found.appraisal.as_white()));
     }
-    let lacks = is_something_left(study, &found.appraisal);
     weights.iter().any(|noises| {
         let tried = trials::best(Ring { study, found, noises, price, lacks }, forms);
         tried.into_iter().any(|trial| take(study, found, &trial, price))
@@ -80,8 +85,15 @@ fn wanders(appraisal: &Appraisal) -> bool {
     appraisal.noises.iter().flatten().any(|noise| noise.wander > noise.white)
 }
 
-/// Takes over the first event that makes all of it better.
-fn take_event(study: &mut Study<'_>, found: &mut Found, price: &FormPrice) -> bool {
+/// Takes over the first event that makes all of it better. Where nothing is left, only what was found as a course of time may be one.
+fn take_event(study: &mut Study<'_>, found: &mut Found, (price, lacks): (&FormPrice, bool)) -> bool {
+    let is_course = |fitted: &Fitted| {
+        let shape = fitted.effect.shape.core();
+        matches!(shape, Shape::Drift { .. } | Shape::Growth { .. } | Shape::SensorPolynomial { .. })
+    };
+    if !lacks && !found.fit.model.iter().any(is_course) {
+        return false;
+    }
     let happened = events::events(study, found);
     happened.into_iter().any(|event| take_happened(study, found, event, price))
 }

@@ -20,9 +20,14 @@ pub(super) struct Late {
     pub(super) axis: usize,
 }
 
-/// For each loop that was found: a delay in its place, and one beside it.
-pub(super) fn delays(study: &Study<'_>, found: &Found) -> Vec<Late> {
-    let loops = found.fit.model[found.always..].iter().filter_map(|fitted| behind(study, fitted));
+/// For each loop that was found: a delay in its place, and one beside it. Where nothing is left, only for those beside which something
+/// else follows the motion of the axis.
+pub(super) fn delays(study: &Study<'_>, found: &Found, lacks: bool) -> Vec<Late> {
+    let effects = &found.fit.model[found.always..];
+    let is_open = |(axis, _): &(usize, f64)| {
+        lacks || effects.iter().any(|fitted| follows_its_motion(&fitted.effect, *axis))
+    };
+    let loops = effects.iter().filter_map(|fitted| behind(study, fitted)).filter(is_open);
     loops.flat_map(|(axis, time)| [1.0, HALF].map(|share| late(found, axis, time, share))).collect()
 }
 

@@ -208,3 +208,33 @@ fn chosen(study: &Study<'_>, found: &Found, time: f64, places: &[Place]) -> Even
     let steps = model.iter().filter(|fitted| matches!(fitted.effect.shape, Shape::Step { .. })).count();
     Event { model, steps }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows 0, 0, 3, 3 beside a zero: a step before the third row explains all of 9 about the mean of 1.5. One before the second row
+    /// leaves means of 0 and 2, and explains 1.5^2 + 3 0.5^2 = 3. One behind all rows, or before the first, explains nothing.
+    #[test]
+    fn a_step_explains_what_lies_between_the_means() {
+        let mut sums = Sums::new(1, 1, 4);
+        for (since, response) in [(1, 0.0), (2, 0.0), (3, 3.0), (3, 3.0)] {
+            sums.add(&[1.0, 1.0, response], since);
+        }
+        let explained = sums.explained();
+        for (found, expected) in explained.iter().zip([0.0, 3.0, 9.0, 0.0]) {
+            assert!((found - expected).abs() < 1e-9, "{explained:?}");
+        }
+    }
+
+    /// A row that is not known says nothing.
+    #[test]
+    fn what_is_missing_does_not_count() {
+        let mut sums = Sums::new(1, 1, 2);
+        for (since, response) in [(1, 0.0), (2, 3.0), (2, f64::NAN)] {
+            sums.add(&[1.0, 1.0, response], since);
+        }
+        let explained = sums.explained();
+        assert!((explained[1] - 4.5).abs() < 1e-9, "{explained:?}");
+    }
+}

@@ -75,19 +75,26 @@ pub(super) fn best(ring: Ring<'_>, forms: &[Form]) -> Vec<Trial> {
     let known = contest.outcome(None).cost;
     let every = |_: &Form| true;
     let compared = most_promising(forms, &promises, &price, (COMPARED, every));
-    let compared: Vec<Form> = compared.into_iter().map(|number| forms[number].clone()).collect();
-    if lacks {
+    // Where nothing is left no name is missing, and the first contest has said all.
+    let again = lacks.then(|| {
         let is_name = |form: &Form| !form.effect.shape.is_composed();
         let missing = most_promising(forms, &promises, &price, (MISSING, is_name));
         model.extend(missing.into_iter().map(|number| forms[number].fitted(0.0)));
-    }
-    let contest = ring.contest(&model, &compared);
-    let mut gains: Vec<(usize, f64)> = (0..compared.len())
-        .map(|number| (number, known - contest.outcome(Some(number)).cost - price(&compared[number])))
+        let compared: Vec<Form> = compared.iter().map(|number| forms[*number].clone()).collect();
+        ring.contest(&model, &compared)
+    });
+    let cost = |place: usize, number: usize| match &again {
+        Some(again) => again.outcome(Some(place)).cost,
+        None => contest.outcome(Some(number)).cost,
+    };
+    let mut gains: Vec<(usize, f64)> = compared
+        .into_iter()
+        .enumerate()
+        .map(|(place, number)| (number, known - cost(place, number) - price(&forms[number])))
         .filter(|(_, gain)| *gain > DECISIVE)
         .collect();
     gains.sort_by(|a, b| b.1.total_cmp(&a.1));
-    gains.into_iter().take(TRIALS).map(|(number, _)| ring.refined(&model, &compared[number])).collect()
+    gains.into_iter().take(TRIALS).map(|(number, _)| ring.refined(&model, &forms[number])).collect()
 }
 
 /// So many forms of a kind with the highest promises above their price, beside all that was found and alone.

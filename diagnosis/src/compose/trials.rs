@@ -21,8 +21,8 @@ const COMPARED: usize = 24;
 const TRIALS: usize = 3;
 
 /// How many names that may be missing compete beside the forms, of those that promise most beside what was found and of those that do
-/// alone. A search seldom misses more than two beside what it lacks; several names of one promise are the same physics.
-const MISSING: usize = 6;
+/// alone, in turn. A search seldom misses more than two beside what it lacks, and one lever arm has three names or four.
+const MISSING: usize = 12;
 
 /// A form that is to be fitted.
 pub(super) struct Trial {
@@ -78,7 +78,8 @@ pub(super) fn best(ring: Ring<'_>, forms: &[Form]) -> Vec<Trial> {
     // Where nothing is left no name is missing, and the first contest has said all.
     let again = lacks.then(|| {
         let is_name = |form: &Form| !form.effect.shape.is_composed();
-        let missing = most_promising(forms, &promises, &price, (MISSING, is_name));
+        let names = most_promising(forms, &promises, &price, (forms.len(), is_name));
+        let missing = different(forms, names);
         model.extend(missing.into_iter().map(|number| forms[number].fitted(0.0)));
         let compared: Vec<Form> = compared.iter().map(|number| forms[*number].clone()).collect();
         ring.contest(&model, &compared)
@@ -97,7 +98,8 @@ pub(super) fn best(ring: Ring<'_>, forms: &[Form]) -> Vec<Trial> {
     gains.into_iter().take(TRIALS).map(|(number, _)| ring.refined(&model, &forms[number])).collect()
 }
 
-/// So many forms of a kind with the highest promises above their price, beside all that was found and alone.
+/// So many forms of a kind with the highest promises above their price, beside all that was found and alone; both in turn, the highest
+/// first.
 fn most_promising(
     forms: &[Form],
     promises: &[[f64; 2]],
@@ -111,10 +113,28 @@ fn most_promising(
         order.sort_by(|a, b| b.1.total_cmp(&a.1));
         order.into_iter().take(count).map(|(number, _)| number)
     };
-    let mut numbers: Vec<usize> = of(0).chain(of(1)).collect();
-    numbers.sort_unstable();
-    numbers.dedup();
+    let (beside_all, alone): (Vec<usize>, Vec<usize>) = (of(0).collect(), of(1).collect());
+    let longest = beside_all.len().max(alone.len());
+    let in_turn = |place: usize| [beside_all.get(place), alone.get(place)].into_iter().flatten();
+    let mut numbers: Vec<usize> = Vec::new();
+    for number in (0..longest).flat_map(in_turn) {
+        if !numbers.contains(number) {
+            numbers.push(*number);
+        }
+    }
     numbers
+}
+
+/// The first of them that are different terms, or terms of different motions: a play is the same at each length over which it winds up.
+fn different(forms: &[Form], numbers: Vec<usize>) -> Vec<usize> {
+    let kind = |number: usize| (forms[number].effect.motion(), forms[number].effect.shape.name());
+    let mut first: Vec<usize> = Vec::new();
+    for number in numbers {
+        if first.len() < MISSING && !first.iter().any(|known| kind(*known) == kind(number)) {
+            first.push(number);
+        }
+    }
+    first
 }
 
 impl Ring<'_> {
@@ -171,4 +191,40 @@ fn columns(
             sum
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Place;
+    use crate::side::Side;
+    use crate::terms::Shape;
+
+    fn form(motion: usize, shape: Shape) -> Form {
+        let effect = Effect { place: Place::Motion { motion, side: Side::After }, shape };
+        Form { effect, coefficients: vec![1.0], beside: None }
+    }
+
+    fn play(wind_up: f64) -> Shape {
+        Shape::Backlash { axis: 0, wind_up }
+    }
+
+    /// Beside all, the first form promises most; alone, the last. What does not pay its price is not among them.
+    #[test]
+    fn the_most_promising_come_in_turn() {
+        let forms =
+            [form(0, play(0.0)), form(0, play(1.0)), form(1, Shape::Constant), form(2, Shape::Constant)];
+        let promises = [[90.0, 20.0], [50.0, 5.0], [8.0, 9.0], [30.0, 70.0]];
+        let price = |_: &Form| 10.0;
+        assert_eq!(most_promising(&forms, &promises, &price, (4, |_| true)), [0, 3, 1]);
+        assert_eq!(most_promising(&forms, &promises, &price, (1, |_| true)), [0, 3]);
+    }
+
+    /// A play that winds up is no other name than the play; the constant of another motion is.
+    #[test]
+    fn one_term_of_a_motion_is_one_name() {
+        let forms =
+            [form(0, play(0.0)), form(0, play(1.0)), form(1, Shape::Constant), form(2, Shape::Constant)];
+        assert_eq!(different(&forms, vec![1, 0, 3, 2]), [1, 3, 2]);
+    }
 }

@@ -252,7 +252,42 @@ fn is_better(
     let gains = |noises: &[Vec<Noise>]| gain(study, found, fit, (noises, price));
     let nearer = appraisal.held_out(study, appraisal) < found.appraisal.held_out(study, appraisal);
     let before = each_for_itself(&found.appraisal.as_white());
-    nearer && gains(&appraisal.noises) > DECISIVE && gains(&before) > -DECISIVE
+    nearer
+        && gains(&appraisal.noises) > DECISIVE
+        && gains(&before) > -DECISIVE
+        && more_likely(study, found, (fit, appraisal), price) > DECISIVE
+}
+
+/// By how much a model costs less than what was found, each beside a noise that wanders as suits it best. A sensor that walks draws a
+/// curve as well as a form does; under the noise that the form leaves, which holds less of the walk, it would not seem so.
+fn more_likely(
+    study: &Study<'_>,
+    found: &Found,
+    (fit, appraisal): (&Fit, &Appraisal),
+    price: &FormPrice,
+) -> f64 {
+    let paid = |fit: &Fit, appraisal: &Appraisal| {
+        let conditions = found.conditions();
+        let conditions = conditions.under(&appraisal.noises);
+        let names: f64 = conditions.prices(study, &fit.model, fit.samples)[found.always..].iter().sum();
+        names + fit.model.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum::<f64>()
+    };
+    let cost = |fit: &Fit, appraisal: &Appraisal| deviance(study, appraisal) + paid(fit, appraisal);
+    cost(&found.fit, &found.appraisal) - cost(fit, appraisal)
+}
+
+/// Minus twice the log-likelihood of what is left, beside the noise that suits each channel best.
+fn deviance(study: &Study<'_>, appraisal: &Appraisal) -> f64 {
+    let of_channel = |scene: usize, channel: usize| {
+        let (known, residual) = (&study.scenes[scene], &appraisal.residuals[scene][channel]);
+        let (fitted, outliers) = (known.fitted_rows(), &appraisal.outliers[scene][channel]);
+        let counts = |row: usize| fitted[row] && residual[row].is_finite() && !outliers[row];
+        let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
+        noise::estimate(&known.recording.time, residual, &valid, known.channels[channel].rounding).1
+    };
+    let channels =
+        |scene: usize| (0..study.scenes[scene].channels.len()).map(move |channel| (scene, channel));
+    (0..study.scenes.len()).flat_map(channels).map(|(scene, channel)| of_channel(scene, channel)).sum()
 }
 
 /// By how much a model costs less than what was found, both fitted under a noise.

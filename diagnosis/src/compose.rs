@@ -13,41 +13,28 @@
 //!
 //! The price of a form is that of all terms and all forms, and 2 for each of its factors.
 
+mod delays;
 mod events;
 mod forms;
+mod trials;
 
 use crate::appraisal::Appraisal;
-use crate::audit::spread;
-use crate::contest::{Contest, DECISIVE};
-use crate::design::{Design, Regressor};
+use crate::contest::DECISIVE;
 use crate::engine::{self, Found};
 use crate::fit::Fit;
-use crate::model::{Effect, Fitted, Model};
+use crate::model::{Fitted, Model};
 use crate::noise::{self, Noise};
 use crate::study::Study;
 use crate::terms::Shape;
 use crate::unsteady;
+use delays::Late;
 use events::Event;
 use forms::Form;
+use trials::{FormPrice, Ring, Trial};
 
 /// The most rounds. Each takes one effect in; with more of them the recordings show a machine of which too much is unknown for any form
 /// to be right.
 const MOST: usize = 3;
-
-/// How many forms, of those that promise most beside what was found and of those that do alone, are compared in full.
-const COMPARED: usize = 24;
-
-/// How many forms get a fit of their own: several have nearly the same column, and the fit tells which is right.
-const TRIALS: usize = 3;
-
-/// A form that is to be fitted.
-struct Trial {
-    form: Fitted,
-    /// What is fitted beside it, and stays if it stands up.
-    beside: Option<Effect>,
-    /// The effects found that are kept, by their numbers.
-    kept: Vec<usize>,
-}
 
 /// Puts forms in the place of what imitates them, as long as one makes all of it better.
 pub(crate) fn compose(study: &mut Study<'_>, found: &mut Found) {
@@ -57,15 +44,58 @@ pub(crate) fn compose(study: &mut Study<'_>, found: &mut Found) {
         }
         let forms = forms::forms(study, found);
         let price = FormPrice::new(found, forms.len() + events::count(study));
-        let contest = contest(study, found, &forms);
-        let happened = events::events(study, found);
-        let tried = best(study, found, &forms, (&contest, &price));
-        let taken = tried.into_iter().any(|trial| take(study, found, &trial, &price))
-            || happened.into_iter().any(|event| take_event(study, found, event, &price));
+        // A dead time first: where a loop stands in for it, forms of the velocity make up for the difference.
+        let lacks = is_something_left(study, &found.appraisal);
+        let taken = take_delay(study, found, (&price, lacks))
+            || take_form(study, found, &forms, (&price, lacks))
+            || take_event(study, found, (&price, lacks));
         if !taken {
             return;
         }
     }
+}
+
+/// Takes over the first delay that makes all of it better, if one does.
+fn take_delay(study: &mut Study<'_>, found: &mut Found, (price, lacks): (&FormPrice, bool)) -> bool {
+    let late = delays::delays(study, found, lacks);
+    late.into_iter().any(|late| take_late(study, found, late, price))
+}
+
+/// Takes over the first form that makes all of it better, the one that promises most first.
+fn take_form(
+    study: &mut Study<'_>,
+    found: &mut Found,
+    forms: &[Form],
+    (price, lacks): (&FormPrice, bool),
+) -> bool {
+    let mut weights = vec![each_for_itself(&found.appraisal.noises)];
+    if lacks && wanders(&found.appraisal) {
+        weights.push(each_for_itself(&found.appraisal.as_white()));
+    }
+    weights.iter().any(|noises| {
+        let tried = trials::best(Ring { study, found, noises, price, lacks }, forms);
+        tried.into_iter().any(|trial| take(study, found, &trial, price))
+    })
+}
+
+/// Whether the noise of a channel wanders by more than it scatters. What a model leaves out and what changes slowly looks like that, and
+/// no form could explain it better than such a noise. So forms compete beside white noise too; the one that is taken has to win under the
+/// noise that it leaves itself.
+fn wanders(appraisal: &Appraisal) -> bool {
+    appraisal.noises.iter().flatten().any(|noise| noise.wander > noise.white)
+}
+
+/// Takes over the first event that makes all of it better. Where nothing is left, only what was found as a course of time may be one.
+fn take_event(study: &mut Study<'_>, found: &mut Found, (price, lacks): (&FormPrice, bool)) -> bool {
+    let is_course = |fitted: &Fitted| {
+        let shape = fitted.effect.shape.core();
+        matches!(shape, Shape::Drift { .. } | Shape::Growth { .. } | Shape::SensorPolynomial { .. })
+    };
+    if !lacks && !found.fit.model.iter().any(is_course) {
+        return false;
+    }
+    let happened = events::events(study, found);
+    happened.into_iter().any(|event| take_happened(study, found, event, price))
 }
 
 /// Whether there is anything for a form to explain: more than noise is left, or one form may be behind several names.
@@ -116,121 +146,19 @@ fn square(left: &[f64]) -> f64 {
 /// number. By chance one channel of 4300 lies 3.5 of them above (a normal tail), and costs the time of a contest.
 const ROUGH: f64 = 3.5;
 
-/// The price of a form: that of an effect of its kind, and more because it is the best of more candidates.
-struct FormPrice {
-    more: f64,
-}
-
-impl FormPrice {
-    fn new(found: &Found, forms: usize) -> Self {
-        let known = found.tries.candidates.max(1.0);
-        Self { more: 2.0 * ((known + crate::number(forms)) / known).ln() }
-    }
-
-    fn of(&self, study: &Study<'_>, found: &Found, effect: &Effect, samples: f64) -> f64 {
-        found.conditions().price(study, effect, samples) + self.beyond_a_name(effect)
-    }
-
-    /// What an effect costs beyond a name of the vocabulary.
-    fn beyond_a_name(&self, effect: &Effect) -> f64 {
-        if effect.shape.is_composed() { self.more } else { 0.0 }
-    }
-}
-
-/// The forms that lower the cost most, the cheapest first, each with its amount and with the numbers of the effects that are kept beside
-/// it.
-fn best(
-    study: &Study<'_>,
-    found: &Found,
-    forms: &[Form],
-    (contest, price): (&Contest, &FormPrice),
-) -> Vec<Trial> {
-    let price = |form: &Form| price.of(study, found, &form.effect, contest.samples);
-    let promises = contest.promises();
-    let known = contest.outcome(None).cost;
-    let mut compared = most_promising(forms, &promises, |[beside_all, _]| beside_all, &price);
-    compared.extend(most_promising(forms, &promises, |[_, alone]| alone, &price));
-    compared.sort_unstable();
-    compared.dedup();
-    let mut gains: Vec<(usize, f64)> = compared
-        .into_iter()
-        .map(|number| (number, known - contest.outcome(Some(number)).cost - price(&forms[number])))
-        .filter(|(_, gain)| *gain > DECISIVE)
-        .collect();
-    gains.sort_by(|a, b| b.1.total_cmp(&a.1));
-    gains.into_iter().take(TRIALS).map(|(number, _)| refined(study, found, &forms[number])).collect()
-}
-
-/// The forms of the highest promises above their price, beside all that was found or alone.
-fn most_promising(
-    forms: &[Form],
-    promises: &[[f64; 2]],
-    which: fn([f64; 2]) -> f64,
-    price: &dyn Fn(&Form) -> f64,
-) -> Vec<usize> {
-    let gains = promises.iter().zip(forms).map(|(promise, form)| which(*promise) - price(form));
-    let mut order: Vec<(usize, f64)> = gains.enumerate().filter(|(_, gain)| *gain > 0.0).collect();
-    order.sort_by(|a, b| b.1.total_cmp(&a.1));
-    order.into_iter().take(COMPARED).map(|(number, _)| number).collect()
-}
-
-/// The contest of forms with what was found.
-fn contest(study: &Study<'_>, found: &Found, forms: &[Form]) -> Contest {
-    let rows: Vec<Vec<usize>> = study.scenes.iter().map(|scene| spread(scene.rows())).collect();
-    let columns = |chunk: std::ops::Range<usize>, (scene, channel): (usize, usize)| {
-        columns(study, found, &forms[chunk], (scene, channel), &rows[scene])
-    };
-    Contest::new(study, found, &rows, forms.len(), &columns)
-}
-
-/// The column of each form in some rows of a channel.
-fn columns(
-    study: &Study<'_>,
-    found: &Found,
-    forms: &[Form],
-    channel: (usize, usize),
-    rows: &[usize],
-) -> Vec<Vec<f64>> {
-    let regressors: Vec<Regressor> = forms.iter().map(|form| Regressor::of(form.effect.clone())).collect();
-    let matrix = Design::columns_in(study, channel, &found.fit.model, &regressors, rows);
-    let mut first = 0;
-    forms
-        .iter()
-        .map(|form| {
-            let mut sum = vec![0.0; rows.len()];
-            for coefficient in &form.coefficients {
-                let column = matrix.column(first);
-                sum.iter_mut().zip(column.iter()).for_each(|(sum, value)| *sum += coefficient * value);
-                first += 1;
-            }
-            sum
-        })
-        .collect()
-}
-
-/// A form with the best value of its factor's number, its amount, and the effects that are kept beside it.
-fn refined(study: &Study<'_>, found: &Found, form: &Form) -> Trial {
-    let mut variants = vec![form.clone()];
-    variants.extend(
-        forms::neighbours(&form.effect.shape)
-            .into_iter()
-            .map(|shape| Form { effect: Effect { shape, ..form.effect }, ..form.clone() }),
-    );
-    let contest = contest(study, found, &variants);
-    let outcomes = (0..variants.len()).map(|number| (number, contest.outcome(Some(number))));
-    let best = outcomes.min_by(|(_, a), (_, b)| a.cost.total_cmp(&b.cost));
-    let (number, outcome) = best.unwrap_or_else(|| (0, contest.outcome(None)));
-    let (form, beside) = (variants[number].fitted(outcome.amount), form.beside.clone());
-    Trial { form, beside, kept: outcome.kept }
+/// The noises in which every sample counts for itself. What a model lacks keeps its direction, and the search counts such stretches once:
+/// so few samples are left then that no form could pay its price. A form that makes the rest noise again has to win under that noise.
+fn each_for_itself(noises: &[Vec<Noise>]) -> Vec<Vec<Noise>> {
+    let itself = |noise: &Noise| Noise { alike: 1.0, ..*noise };
+    noises.iter().map(|channels| channels.iter().map(itself).collect()).collect()
 }
 
 /// Fits a form beside what is kept, and takes it over where all of it is better: it stands up before the judge, costs decisively less
 /// under the noise that it leaves, and held-out samples lie nearer.
 fn take(study: &mut Study<'_>, found: &mut Found, trial: &Trial, price: &FormPrice) -> bool {
     let Trial { form, beside, kept } = trial;
-    let kept = kept.iter().copied().filter(|number| *number >= found.always);
-    let numbers = (0..found.always).chain(kept);
-    let mut model: Model = numbers.map(|number| found.fit.model[number].clone()).collect();
+    let mut model: Model = found.fit.model[..found.always].to_vec();
+    model.extend(kept.iter().cloned());
     model.push(form.clone());
     model.extend(
         beside
@@ -245,9 +173,16 @@ fn take(study: &mut Study<'_>, found: &mut Found, trial: &Trial, price: &FormPri
 }
 
 /// Fits a model in which something happened, and takes it over on the same terms.
-fn take_event(study: &mut Study<'_>, found: &mut Found, event: Event, price: &FormPrice) -> bool {
+fn take_happened(study: &mut Study<'_>, found: &mut Found, event: Event, price: &FormPrice) -> bool {
     let is_step = |fitted: &Fitted| matches!(fitted.effect.shape, Shape::Step { .. });
     take_model(study, found, event.model, (&is_step, true), price)
+}
+
+/// Fits a model in which an axis is late, and takes it over on the same terms.
+fn take_late(study: &mut Study<'_>, found: &mut Found, late: Late, price: &FormPrice) -> bool {
+    let is_delay =
+        |fitted: &Fitted| matches!(fitted.effect.shape, Shape::Delay { axis, .. } if axis == late.axis);
+    take_model(study, found, late.model, (&is_delay, false), price)
 }
 
 /// Fits a model and takes it over where what is wanted of it stands up and all of it is better. It must also take the place of several
@@ -305,8 +240,9 @@ fn takes_most(study: &Study<'_>, before: &Appraisal, after: &Appraisal) -> bool 
 }
 
 /// Whether a model costs decisively less than what was found, both under the noise that it leaves, and held-out samples lie nearer to
-/// it. Under the noise that was left before it may not cost decisively more: what a poor model leaves looks like noise, under which
-/// the better model is only the longer one.
+/// it. Beside white noise of the size that was left before it may not cost decisively more: a model that leaves more makes its noise
+/// larger, under which every shorter model looks better. That noise counts each sample for itself. As one that wanders, or as stretches
+/// that keep their direction, it would hold a step, or a play that fades, as well as a model does.
 fn is_better(
     study: &Study<'_>,
     found: &Found,
@@ -315,7 +251,43 @@ fn is_better(
 ) -> bool {
     let gains = |noises: &[Vec<Noise>]| gain(study, found, fit, (noises, price));
     let nearer = appraisal.held_out(study, appraisal) < found.appraisal.held_out(study, appraisal);
-    nearer && gains(&appraisal.noises) > DECISIVE && gains(&found.appraisal.noises) > -DECISIVE
+    let before = each_for_itself(&found.appraisal.as_white());
+    nearer
+        && gains(&appraisal.noises) > DECISIVE
+        && gains(&before) > -DECISIVE
+        && more_likely(study, found, (fit, appraisal), price) > DECISIVE
+}
+
+/// By how much a model costs less than what was found, each beside a noise that wanders as suits it best. A sensor that walks draws a
+/// curve as well as a form does; under the noise that the form leaves, which holds less of the walk, it would not seem so.
+fn more_likely(
+    study: &Study<'_>,
+    found: &Found,
+    (fit, appraisal): (&Fit, &Appraisal),
+    price: &FormPrice,
+) -> f64 {
+    let paid = |fit: &Fit, appraisal: &Appraisal| {
+        let conditions = found.conditions();
+        let conditions = conditions.under(&appraisal.noises);
+        let names: f64 = conditions.prices(study, &fit.model, fit.samples)[found.always..].iter().sum();
+        names + fit.model.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum::<f64>()
+    };
+    let cost = |fit: &Fit, appraisal: &Appraisal| deviance(study, appraisal) + paid(fit, appraisal);
+    cost(&found.fit, &found.appraisal) - cost(fit, appraisal)
+}
+
+/// Minus twice the log-likelihood of what is left, beside the noise that suits each channel best.
+fn deviance(study: &Study<'_>, appraisal: &Appraisal) -> f64 {
+    let of_channel = |scene: usize, channel: usize| {
+        let (known, residual) = (&study.scenes[scene], &appraisal.residuals[scene][channel]);
+        let (fitted, outliers) = (known.fitted_rows(), &appraisal.outliers[scene][channel]);
+        let counts = |row: usize| fitted[row] && residual[row].is_finite() && !outliers[row];
+        let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
+        noise::estimate(&known.recording.time, residual, &valid, known.channels[channel].rounding).1
+    };
+    let channels =
+        |scene: usize| (0..study.scenes[scene].channels.len()).map(move |channel| (scene, channel));
+    (0..study.scenes.len()).flat_map(channels).map(|(scene, channel)| of_channel(scene, channel)).sum()
 }
 
 /// By how much a model costs less than what was found, both fitted under a noise.

@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
-use crate::model::Effect;
+use crate::model::{Effect, Model};
 use crate::noise::{Noise, Step, Whitening, whiten};
 use crate::parallel;
 use crate::search::untold_price;
@@ -58,15 +58,15 @@ type Set<'m> = (Swept, Vec<&'m Member>);
 pub(crate) type Columns<'c> = dyn Fn(Range<usize>, (usize, usize)) -> Vec<Vec<f64>> + Sync + 'c;
 
 impl Contest {
-    /// Works out the products over all recordings, in the given rows of each. `candidates` is the number of candidates.
+    /// Works out the products over all recordings, in the given rows of each, as samples weigh under these noises. The model is what was
+    /// found, and behind it what may be missing, with coefficients of 0. `candidates` is the number of candidates.
     pub(crate) fn new(
         study: &Study<'_>,
-        found: &Found,
+        (found, model, noises): (&Found, &Model, &[Vec<Noise>]),
         rows: &[Vec<usize>],
         candidates: usize,
         of_candidates: &Columns<'_>,
     ) -> Self {
-        let model = &found.fit.model;
         let regressors: Vec<Regressor> =
             model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
         let width: usize = regressors.iter().map(Regressor::columns).sum();
@@ -76,14 +76,13 @@ impl Contest {
             effects: Vec::new(),
             samples: 0.0,
         };
-        for (scene, rows) in rows.iter().enumerate() {
-            for channel in 0..study.scenes[scene].channels.len() {
+        for (scene, (rows, noises)) in rows.iter().zip(noises).enumerate() {
+            for (channel, noise) in noises.iter().enumerate() {
                 let mut columns = Design::columns_in(study, (scene, channel), model, &regressors, rows);
                 let coefficients: Vec<f64> =
                     model.iter().flat_map(|fitted| &fitted.coefficients).copied().collect();
                 add_back(&mut columns, &coefficients);
-                let noise = found.appraisal.noises[scene][channel];
-                contest.add(study, (scene, channel), (noise, rows), columns, of_candidates);
+                contest.add(study, (scene, channel), (*noise, rows), columns, of_candidates);
             }
         }
         let conditions = found.conditions();

@@ -123,6 +123,7 @@ impl Linearised {
                 fitted.effect.shape.with_nonlinear(value.min(most.max(parameter.value)))
             });
             let shape = moved.unwrap_or_else(|| fitted.effect.shape.clone());
+            let (shape, coefficients) = timed(shape, coefficients);
             Fitted { effect: Effect { place: fitted.effect.place, shape }, coefficients }
         };
         self.model.iter().enumerate().map(step).collect()
@@ -143,6 +144,21 @@ impl Linearised {
         Fit { covariances, remaining: self.remaining, samples: self.samples, model: self.model }
     }
 }
+
+/// A delay that is so many times itself is one of so many times its time: nearly, and exactly where it is once itself.
+fn timed(shape: Shape, coefficients: Vec<f64>) -> (Shape, Vec<f64>) {
+    match (&shape, coefficients.as_slice()) {
+        (Shape::Delay { axis, time }, [times]) => {
+            let time = time * times.clamp(1.0 / FURTHEST_TIME, FURTHEST_TIME);
+            (Shape::Delay { axis: *axis, time }, vec![1.0])
+        }
+        _ => (shape, coefficients),
+    }
+}
+
+/// How many times longer or shorter a delay may become in one step: the motion of an axis is straight over a few times a delay, not
+/// over many.
+const FURTHEST_TIME: f64 = 3.0;
 
 impl Linearised {
     /// For each column how many times wider its interval is than the likelihood has it: by how far estimates scatter from block to

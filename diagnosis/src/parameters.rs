@@ -282,7 +282,10 @@ impl<'f> Described<'f> {
                 ]
             }
             Shape::Delay { axis, time } => {
-                vec![axis_name(study, *axis), Parameter::given("time", *time, "s")]
+                vec![
+                    axis_name(study, *axis),
+                    Parameter::fitted("time", self.linear(0, *time, "s".to_owned())),
+                ]
             }
             Shape::Step { time } => vec![Parameter::given("time", *time, "s"), plain("size", 0)],
             // Factors of factors there are none.

@@ -33,7 +33,13 @@ impl<'v> FaultContest<'v> {
         let columns = |chunk: std::ops::Range<usize>, (scene, channel): (usize, usize)| {
             suspected[chunk].iter().map(|one| one.columns[scene][channel].clone()).collect::<Vec<_>>()
         };
-        let contest = Contest::new(study, found, &versions.rows, suspected.len(), &columns);
+        let contest = Contest::new(
+            study,
+            (found, &found.fit.model, &found.appraisal.noises),
+            &versions.rows,
+            suspected.len(),
+            &columns,
+        );
         let tried = 2.0 * crate::number(found.pool.len() + suspected.len()).ln();
         Self { suspected, contest, tried }
     }

@@ -11,7 +11,6 @@ use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::fit;
 use crate::model::{Effect, Model, Place};
-use crate::parallel;
 use crate::ranges::Resolution;
 use crate::search::Choice;
 use crate::study::Study;
@@ -81,51 +80,96 @@ fn dated(study: &Study<'_>, found: &Found, places: &[Place], mut time: f64) -> f
 }
 
 /// Times with the sum of squares that steps in all places explain together there, beside the settings alone; the most first.
+///
+/// A step is how its motion is seen, from its time on. So its products are sums over the rows from that time on, and one pass over the
+/// rows gives those of all times.
 fn ranked(study: &Study<'_>, found: &Found, places: &[Place], times: &[f64]) -> Vec<(f64, f64)> {
     let model = &found.fit.model;
-    let step =
-        |time: f64, place: &Place| Regressor::of(Effect { place: *place, shape: Shape::Step { time } });
+    let always_there =
+        |place: &Place| Regressor::of(Effect { place: *place, shape: Shape::Step { time: f64::MIN } });
     let known = model.iter().map(|fitted| Regressor::of(fitted.effect.clone()));
-    let steps = times.iter().flat_map(|time| places.iter().map(move |place| step(*time, place)));
-    let regressors: Vec<Regressor> = known.chain(steps).collect();
+    let regressors: Vec<Regressor> = known.chain(places.iter().map(always_there)).collect();
     let columns_of = |effects: &[Regressor]| effects.iter().map(Regressor::columns).sum::<usize>();
     let (whole, always) = (columns_of(&regressors[..model.len()]), columns_of(&regressors[..found.always]));
-    let size = always + places.len() + 1;
-    let mut products = vec![DMatrix::<f64>::zeros(size, size); times.len()];
+    let mut times = times.to_vec();
+    times.sort_by(f64::total_cmp);
+    let mut sums = Sums::new(always, places.len(), times.len());
     for (scene, known) in study.scenes.iter().enumerate() {
         let rows = spread(known.rows());
         for channel in 0..known.channels.len() {
             let matrix = Design::columns_in(study, (scene, channel), model, &regressors, &rows);
             let response = restored(study, found, &matrix, (scene, channel), &rows);
             let weight = 1.0 / found.appraisal.noises[scene][channel].size();
-            let of_time = |number: usize| {
-                let first = whole + number * places.len();
-                let settings = (0..always).map(|column| matrix.column(column).into_owned());
-                let steps = (first..first + places.len()).map(|column| matrix.column(column).into_owned());
-                let mut columns: Vec<_> = settings.chain(steps).chain([response.clone()]).collect();
-                for column in &mut columns {
-                    *column *= weight;
-                    column.iter_mut().zip(response.iter()).for_each(|(value, known)| {
-                        *value = if known.is_finite() && value.is_finite() { *value } else { 0.0 };
-                    });
-                }
-                let together = DMatrix::from_columns(&columns);
-                together.tr_mul(&together)
-            };
-            let parts = parallel::counted(times.len(), times.len() * rows.len() * size, of_time);
-            products.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
+            let mut row_of = vec![0.0; always + places.len() + 1];
+            for (place, row) in rows.iter().enumerate() {
+                let settings = (0..always).chain(whole..whole + places.len());
+                let values = settings.map(|column| matrix[(place, column)]).chain([response[place]]);
+                row_of.iter_mut().zip(values).for_each(|(sum, value)| *sum = weight * value);
+                let since = times.partition_point(|time| *time <= known.given.time[*row]);
+                sums.add(&row_of, since);
+            }
         }
     }
-    let explained = |products: &DMatrix<f64>| {
-        let mut swept = Swept::new(products);
-        for column in 0..always {
-            swept.take(column);
-        }
-        swept.promise(&(always..size - 1).collect::<Vec<_>>()).0
-    };
-    let mut ranked: Vec<(f64, f64)> = times.iter().copied().zip(products.iter().map(explained)).collect();
+    let explained = sums.explained();
+    let mut ranked: Vec<(f64, f64)> = times.into_iter().zip(explained).collect();
     ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
     ranked
+}
+
+/// Products of the settings, of steps and of the response, for many times of the steps.
+struct Sums {
+    always: usize,
+    places: usize,
+    /// Of the rows between each time and the next one: the products of the steps with everything. Those before the first time hold none.
+    between: Vec<DMatrix<f64>>,
+    /// The products of the settings and of the response, over all rows.
+    whole: DMatrix<f64>,
+}
+
+impl Sums {
+    fn new(always: usize, places: usize, times: usize) -> Self {
+        let size = always + places + 1;
+        let between = vec![DMatrix::zeros(size, places); times];
+        Self { always, places, between, whole: DMatrix::zeros(size, size) }
+    }
+
+    /// Adds a row that lies behind so many of the times; one that is not known whole says nothing.
+    fn add(&mut self, row: &[f64], since: usize) {
+        if row.iter().any(|value| !value.is_finite()) {
+            return;
+        }
+        let row = nalgebra::DVectorView::from_slice(row, row.len());
+        self.whole.ger(1.0, &row, &row, 1.0);
+        if let Some(between) = since.checked_sub(1).and_then(|number| self.between.get_mut(number)) {
+            between.ger(1.0, &row, &row.rows(self.always, self.places), 1.0);
+        }
+    }
+
+    /// For each time the sum of squares that steps explain together, beside the settings.
+    fn explained(&self) -> Vec<f64> {
+        let steps = self.always..self.always + self.places;
+        let mut since = DMatrix::zeros(self.whole.nrows(), self.places);
+        let mut explained: Vec<f64> = self
+            .between
+            .iter()
+            .rev()
+            .map(|between| {
+                since += between;
+                let mut products = self.whole.clone();
+                for (number, column) in steps.clone().enumerate() {
+                    products.column_mut(column).copy_from(&since.column(number));
+                    products.row_mut(column).tr_copy_from(&since.column(number));
+                }
+                let mut swept = Swept::new(&products);
+                for column in 0..self.always {
+                    swept.take(column);
+                }
+                swept.promise(&steps.clone().collect::<Vec<_>>()).0
+            })
+            .collect();
+        explained.reverse();
+        explained
+    }
 }
 
 /// What the settings and the steps have to explain: the residual, with what the model takes from it; NaN in rows that do not count.
@@ -163,4 +207,34 @@ fn chosen(study: &Study<'_>, found: &Found, time: f64, places: &[Place]) -> Even
     let model = fit::linear(&design, &products, found.always, &choice);
     let steps = model.iter().filter(|fitted| matches!(fitted.effect.shape, Shape::Step { .. })).count();
     Event { model, steps }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows 0, 0, 3, 3 beside a zero: a step before the third row explains all of 9 about the mean of 1.5. One before the second row
+    /// leaves means of 0 and 2, and explains 1.5^2 + 3 0.5^2 = 3. One behind all rows, or before the first, explains nothing.
+    #[test]
+    fn a_step_explains_what_lies_between_the_means() {
+        let mut sums = Sums::new(1, 1, 4);
+        for (since, response) in [(1, 0.0), (2, 0.0), (3, 3.0), (3, 3.0)] {
+            sums.add(&[1.0, 1.0, response], since);
+        }
+        let explained = sums.explained();
+        for (found, expected) in explained.iter().zip([0.0, 3.0, 9.0, 0.0]) {
+            assert!((found - expected).abs() < 1e-9, "{explained:?}");
+        }
+    }
+
+    /// A row that is not known says nothing.
+    #[test]
+    fn what_is_missing_does_not_count() {
+        let mut sums = Sums::new(1, 1, 2);
+        for (since, response) in [(1, 0.0), (2, 3.0), (2, f64::NAN)] {
+            sums.add(&[1.0, 1.0, response], since);
+        }
+        let explained = sums.explained();
+        assert!((explained[1] - 4.5).abs() < 1e-9, "{explained:?}");
+    }
 }

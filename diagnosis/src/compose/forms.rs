@@ -81,7 +81,9 @@ pub(super) fn forms(study: &Study<'_>, found: &Found) -> Vec<Form> {
     forms.extend(beats(found, &atoms));
     for place in places(study) {
         let Place::Motion { motion, .. } = place else { continue };
-        let shapes = plays(study, motion, &found.travels, &atoms).into_iter().chain(products(&atoms));
+        let own =
+            plays(study, motion, &found.travels, &atoms).into_iter().chain(drags(study, motion, &atoms));
+        let shapes = own.chain(products(&atoms));
         forms.extend(shapes.filter(|shape| !has_a_name(study, motion, shape)).map(|shape| one(place, shape)));
     }
     forms
@@ -124,11 +126,12 @@ fn names(found: &Found) -> Vec<Form> {
     open.map(|effect| Form { effect: effect.clone(), coefficients: vec![1.0], beside: None }).collect()
 }
 
-/// Whether what follows the velocity of an axis in its own motion is a loop, or a clock.
+/// Whether what follows the velocity of an axis in its own motion is a loop, or a clock. What follows its speed is neither: a loop whose
+/// gain differs from one direction to the other.
 fn has_a_name(study: &Study<'_>, motion: usize, shape: &Shape) -> bool {
     let own = |axis: usize| study.own[axis] == Some(motion);
     match (shape.core(), shape.factors()) {
-        (Shape::Constant, [Factor::Velocity { axis, .. } | Factor::Speed { axis, .. }]) => own(*axis),
+        (Shape::Constant, [Factor::Velocity { axis, .. }]) => own(*axis),
         _ => false,
     }
 }
@@ -146,16 +149,14 @@ fn sides(study: &Study<'_>, motion: usize) -> Vec<Side> {
 }
 
 /// Effects that were found, times each factor. What a loop does is a matter of its states, which nothing multiplies; and what lies in
-/// time, as a vibration or a settling, has no factor that a state of the machine could be.
+/// time, as a vibration or a drift, has no factor that a state of the machine could be. How far an axis jumps at a reversal may
+/// depend on the place.
 fn of_effects(found: &Found, atoms: &Atoms) -> Vec<Form> {
     let multiplied = |fitted: &&Fitted| {
         fitted.effect.motion().is_some()
             && fitted.effect.shape.factors().is_empty()
             && !fitted.effect.shape.nonlinear_in_coefficient()
-            && !matches!(
-                fitted.effect.shape,
-                Shape::Constant | Shape::Vibration { .. } | Shape::Drift { .. } | Shape::ReversalSpike { .. }
-            )
+            && !matches!(fitted.effect.shape, Shape::Constant | Shape::Vibration { .. } | Shape::Drift { .. })
     };
     let effects = found.fit.model[found.always..].iter().filter(multiplied);
     effects
@@ -235,6 +236,22 @@ fn plays(study: &Study<'_>, motion: usize, travels: &[Travel], atoms: &Atoms) ->
     let zones = zones(axis, &travels[axis]);
     let factors = atoms.all().filter(|factor| !is_speed_of(axis, factor)).cloned().chain(zones);
     factors.map(|factor| times(play(), vec![factor])).collect()
+}
+
+/// What follows the square of an axis's velocity, with its sign, in its own motion: a loop whose gain changes with speed, or the drag of
+/// oil and air on the drive.
+fn drags(study: &Study<'_>, motion: usize, atoms: &Atoms) -> Vec<Shape> {
+    let own = |factor: &&Factor<usize>| factor.axis().is_some_and(|axis| study.own[axis] == Some(motion));
+    let find = |is_wanted: fn(&Factor<usize>) -> bool| {
+        atoms.others.iter().filter(own).find(|factor| is_wanted(factor)).cloned()
+    };
+    let velocity = find(|factor| matches!(factor, Factor::Velocity { .. }));
+    let speed = find(|factor| matches!(factor, Factor::Speed { .. }));
+    velocity
+        .zip(speed)
+        .map(|(velocity, speed)| times(Shape::Constant, vec![velocity, speed]))
+        .into_iter()
+        .collect()
 }
 
 /// Whether a factor is a speed of this axis. A direction times a velocity is a speed, and times a speed a velocity: a play with such a

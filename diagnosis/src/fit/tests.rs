@@ -84,3 +84,13 @@ fn a_wave_slips_by_less_than_half_a_cycle_in_one_step() {
         }
     }
 }
+
+/// A delay of 5 ms that is fitted 1.2 times is one of 6 ms, once; what is no delay stays.
+#[test]
+fn a_delay_keeps_its_amount_in_its_time() {
+    let (shape, coefficients) = timed(Shape::Delay { axis: 0, time: 0.005 }, vec![1.2]);
+    assert_eq!(coefficients, [1.0]);
+    assert!(matches!(shape, Shape::Delay { axis: 0, time } if (time - 0.006).abs() < 1e-12), "{shape:?}");
+    let play = Shape::Backlash { axis: 0, wind_up: 0.0 };
+    assert_eq!(timed(play.clone(), vec![1.2]), (play, vec![1.2]));
+}

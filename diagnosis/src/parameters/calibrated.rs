@@ -84,7 +84,7 @@ impl Described<'_> {
             Shape::Vibration { frequency } => {
                 CalibratedTerm::Vibration { frequency: *frequency, amplitude, phase }
             }
-            Shape::Delay { axis, time } => CalibratedTerm::Delay { axis: *axis, time: *time },
+            Shape::Delay { axis, time } => CalibratedTerm::Delay { axis: *axis, time: first * time },
             Shape::Step { time } => CalibratedTerm::Step { time: *time, size: first },
             Shape::Compliance { load } => {
                 CalibratedTerm::Compliance { load: self.study.loads[*load].0.clone(), coefficient: first }

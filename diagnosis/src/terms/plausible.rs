@@ -61,7 +61,8 @@ impl Body {
 /// The plausible sizes of an effect; `None` where its physics sets no limit.
 pub(crate) fn plausible(study: &Study<'_>, effect: &Effect) -> Option<Range> {
     match effect.shape {
-        Shape::Lag { .. } => Some(lag::PLAUSIBLE),
+        // At constant speed a delay of 1/K is a loop of gain K: what makes the one odd makes the other odd too, and the data decide.
+        Shape::Lag { .. } | Shape::Delay { .. } => Some(lag::PLAUSIBLE),
         Shape::Acceleration { .. } => Some(acceleration::PLAUSIBLE),
         Shape::Expansion { .. } => Some(expansion::PLAUSIBLE),
         Shape::Backlash { .. } => backlash::plausible(Body::of(study, effect)),
@@ -92,6 +93,7 @@ fn size(shape: &Shape, coefficients: &[f64]) -> f64 {
     let sum = |coefficients: &[f64]| coefficients.iter().map(|coefficient| coefficient.abs()).sum::<f64>();
     match shape {
         Shape::Lag { .. } | Shape::Acceleration { .. } => sum(coefficients).recip(),
+        Shape::Delay { time, .. } => (time.abs() * sum(coefficients)).recip(),
         Shape::Polynomial { .. } => sum(coefficients.get(1..).unwrap_or_default()),
         Shape::Table { .. } => {
             let highest = coefficients.iter().copied().fold(f64::NEG_INFINITY, f64::max);

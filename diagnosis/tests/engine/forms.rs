@@ -150,6 +150,56 @@ fn a_crash_is_dated_and_told_from_a_drift() {
     }
 }
 
+/// Circles, which start and stop at once, at two feeds.
+fn circles() -> Vec<Path> {
+    let at = vec![vec![250.0], vec![140.0], vec![-50.0]];
+    [20.0, 60.0].map(|feed| Path { at: at.clone(), ..runs(path(circle(50.0), feed, 50.0), 3) }).to_vec()
+}
+
+#[test]
+fn an_axis_that_is_told_late_has_no_loop() {
+    let diagnosis = concealed("xyfz-mill", MILL, "{EXX: [{delay: {time: 5 ms}}]}", circles(), "xy");
+    assert_eq!(found(&diagnosis), ["EXX delay"]);
+    holds(&numbers(&diagnosis.findings[0], "time")[0], 0.005);
+}
+
+#[test]
+fn an_axis_that_is_told_late_and_follows_late() {
+    let more = "{EXX: [{delay: {time: 6 ms}}, {lag: {gain: 60 1/s}}]}";
+    let diagnosis = concealed("xyfz-mill", MILL, more, circles(), "xy");
+    assert_eq!(diagnosis.findings.len(), 2, "{:?}", found(&diagnosis));
+    holds(&numbers(called(&diagnosis, "EXX delay"), "time")[0], 0.006);
+    holds(&numbers(called(&diagnosis, "EXX lag"), "gain")[0], 60.0);
+}
+
+#[test]
+fn a_play_that_fades_with_speed() {
+    // Most of what comes back is the play: such samples count for few, and still the form is found.
+    let more = "{EXX: [{backlash: {lost_motion: 8 um, times: [{fading: X, over: 15 mm/s}]}}]}";
+    let diagnosis = concealed("xyfz-mill", MILL, more, circles(), "x");
+    assert_eq!(found(&diagnosis), ["EXX backlash"]);
+    let form = composed(&diagnosis);
+    holds(&numbers(form, "lost_motion")[0], 0.008);
+    let over = form.calibrated.factors().iter().find_map(|factor| match factor {
+        Factor::Fading { over, .. } => Some(*over),
+        _ => None,
+    });
+    // Between the speeds that were driven the number is known to a fifth of itself: so far apart are those that are tried.
+    assert!(over.is_some_and(|over| (over - 15.0).abs() < 3.0), "{form:?}");
+}
+
+#[test]
+fn a_loop_whose_gain_differs_by_direction() {
+    // 10 % of a gain of 50 1/s: 2 ms of the speed, whose sign does not change with the direction.
+    let more = "{EXX: [{lag: {gain: 50 1/s}}, {product: {value: 2 ms, times: [{speed: X}]}}]}";
+    let diagnosis = concealed("xyfz-mill", MILL, more, circles(), "xy");
+    assert_eq!(diagnosis.findings.len(), 2, "{:?}", found(&diagnosis));
+    holds(&numbers(called(&diagnosis, "EXX lag"), "gain")[0], 50.0);
+    let form = composed(&diagnosis);
+    assert!(matches!(form.calibrated.factors(), [Factor::Speed { axis: 0, .. }]), "{form:?}");
+    holds(&numbers(form, "value")[0], 0.002);
+}
+
 #[test]
 fn what_has_a_name_is_told_by_it() {
     // Two plays, and a scale that follows a temperature: nothing is composed where the vocabulary reaches the noise.

@@ -68,21 +68,9 @@ fn take_form(
     forms: &[Form],
     (price, lacks): (&FormPrice, bool),
 ) -> bool {
-    let mut weights = vec![each_for_itself(&found.appraisal.noises)];
-    if lacks && wanders(&found.appraisal) {
-        weights.push(each_for_itself(&found.appraisal.as_white()));
-    }
-    weights.iter().any(|noises| {
-        let tried = trials::best(Ring { study, found, noises, price, lacks }, forms);
-        tried.into_iter().any(|trial| take(study, found, &trial, price))
-    })
-}
-
-/// Whether the noise of a channel wanders by more than it scatters. What a model leaves out and what changes slowly looks like that, and
-/// no form could explain it better than such a noise. So forms compete beside white noise too; the one that is taken has to win under the
-/// noise that it leaves itself.
-fn wanders(appraisal: &Appraisal) -> bool {
-    appraisal.noises.iter().flatten().any(|noise| noise.wander > noise.white)
+    let noises = each_for_itself(&found.appraisal.noises);
+    let tried = trials::best(Ring { study, found, noises: &noises, price, lacks }, forms);
+    tried.into_iter().any(|trial| take(study, found, &trial, price))
 }
 
 /// Takes over the first event that makes all of it better. Where nothing is left, only what was found as a course of time may be one.

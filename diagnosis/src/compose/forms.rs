@@ -84,7 +84,11 @@ pub(super) fn forms(study: &Study<'_>, found: &Found) -> Vec<Form> {
         let own =
             plays(study, motion, &found.travels, &atoms).into_iter().chain(drags(study, motion, &atoms));
         let shapes = own.chain(products(&atoms));
-        forms.extend(shapes.filter(|shape| !has_a_name(study, motion, shape)).map(|shape| one(place, shape)));
+        forms.extend(
+            shapes
+                .filter(|shape| !has_a_name(study, &found.travels, motion, shape))
+                .map(|shape| one(place, shape)),
+        );
     }
     forms
 }
@@ -126,12 +130,14 @@ fn names(found: &Found) -> Vec<Form> {
     open.map(|effect| Form { effect: effect.clone(), coefficients: vec![1.0], beside: None }).collect()
 }
 
-/// Whether what follows the velocity of an axis in its own motion is a loop, or a clock. What follows its speed is neither: a loop whose
-/// gain differs from one direction to the other.
-fn has_a_name(study: &Study<'_>, motion: usize, shape: &Shape) -> bool {
+/// Whether what follows the velocity of an axis in its own motion is a loop, or a clock. What follows its speed is neither, but a loop whose
+/// gain differs from one direction to the other; of an axis that never turns the two are the same.
+fn has_a_name(study: &Study<'_>, travels: &[Travel], motion: usize, shape: &Shape) -> bool {
     let own = |axis: usize| study.own[axis] == Some(motion);
+    let turns = |axis: usize| travels[axis].between > 0.0;
     match (shape.core(), shape.factors()) {
         (Shape::Constant, [Factor::Velocity { axis, .. }]) => own(*axis),
+        (Shape::Constant, [Factor::Speed { axis, .. }]) => own(*axis) && !turns(*axis),
         _ => false,
     }
 }

@@ -33,7 +33,7 @@ use forms::Form;
 use trials::{FormPrice, Ring, Trial};
 
 /// The most rounds. Each takes one effect in; with more of them the recordings show a machine of which too much is unknown for any form
-/// to be right.
+/// to be right. With one round, a crash of three steps and two forms at once are found in part; five rounds find what three do.
 const MOST: usize = 3;
 
 /// Puts forms in the place of what imitates them, as long as one makes all of it better.
@@ -97,7 +97,7 @@ fn is_something_left(study: &Study<'_>, appraisal: &Appraisal) -> bool {
 }
 
 /// From this number of names on, one form may be behind them, and each name imitates a part of it. One name that leaves nothing is the
-/// simplest model there is.
+/// simplest model there is. Between one and three nothing that was simulated comes out otherwise, nor takes longer.
 const MANY: usize = 2;
 
 /// Whether what is left of a channel is larger than its differences from row to row say of noise: what changes slowly is left.
@@ -206,11 +206,13 @@ fn take_model(
     false
 }
 
-/// How many effects fewer make a model simpler. Such a form need not take more of the residual than they did.
+/// How many effects fewer make a model simpler. Such a form need not take more of the residual than they did. With two, products of
+/// positions come out a little farther from the noise, and nothing else changes.
 const SIMPLER: usize = 1;
 
 /// The share of what is left above white noise that a form must take. What takes less leaves the better part without a name, and may be a
-/// piece of that.
+/// piece of that. At three quarters the first step of a crash and the first of two parts of a wave are refused, at a quarter nothing more is
+/// found that is right.
 const MOST_OF_IT: f64 = 0.5;
 
 /// Whether a model takes most of what another one leaves above white noise.

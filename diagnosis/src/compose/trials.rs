@@ -14,14 +14,17 @@ use crate::study::Study;
 
 use super::forms::{self, Form};
 
-/// How many forms, of those that promise most beside what was found and of those that do alone, are compared in full.
+/// How many forms, of those that promise most beside what was found and of those that do alone, are compared in full. With eight,
+/// motions that a lever arm cannot tell apart crowd out the right one; sixty find nothing more.
 const COMPARED: usize = 24;
 
 /// How many forms get a fit of their own: several have nearly the same column, and the fit tells which is right.
+/// With one, a wave that grows along a travel is taken for another form beside a backlash that does; six find what three do.
 const TRIALS: usize = 3;
 
 /// How many names that may be missing compete beside the forms, of those that promise most beside what was found and of those that do
 /// alone, in turn. A search seldom misses more than two beside what it lacks, and one lever arm has three names or four.
+/// With none, forms beside a squareness stay at up to 2.8 times the noise, with six at 1.2, and twenty-four find what twelve do.
 const MISSING: usize = 12;
 
 /// A form that is to be fitted.

@@ -5,7 +5,6 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use diagnosis::diagnosis::{Diagnosis, Finding};
-use model_dsl::calibration::TermKind;
 use rayon::prelude::*;
 
 use crate::answer::{Already, Found, Limit, Limits};
@@ -70,9 +69,8 @@ fn is_shown(base: &Base, subject: &Subject, alone: &Diagnosis) -> bool {
         finding.motion_number == subject.motion || subject.alike.contains(&finding.motion_number)
     };
     let term = subject.kind.term();
-    let is_wave = matches!(term, TermKind::Cyclic | TermKind::Vibration);
     let axis = &base.names.axes[subject.axis].letter;
-    !is_wave
+    !subject.kind.is_wave()
         && alone
             .findings
             .iter()

@@ -38,10 +38,6 @@ fn drawn(
     allowed::drawn(base, motion, axis, (kind, &name), seed)
 }
 
-/// The kinds that any motion of an axis may have; the others belong to its position.
-const OF_ANY_MOTION: [TermKind; 4] =
-    [TermKind::Polynomial, TermKind::Table, TermKind::Backlash, TermKind::Cyclic];
-
 /// What a thousandth of an error motion must add to the readings, in parts of it, for the motion to show: a tenth. Of what it hardly
 /// shows no machine has enough.
 const SEEN: f64 = 0.1;
@@ -99,7 +95,7 @@ fn motions<'l>(base: &Base, levers: &'l [Lever], axis: usize, kind: Kind) -> Vec
             TermKind::Constant => is_alignment(motion) && base.outside(),
             TermKind::Coupling => is_own(motion) && base.outside(),
             _ if is_alignment(motion) => false,
-            term if OF_ANY_MOTION.contains(&term) && kind != Kind::WindUp => is_own(motion) || base.outside(),
+            _ if kind.is_of_any_motion() => is_own(motion) || base.outside(),
             _ => is_own(motion),
         }
     };

@@ -40,6 +40,17 @@ impl Kind {
         }
     }
 
+    /// Whether it is a wave, of which another one has a period of its own.
+    pub fn is_wave(self) -> bool {
+        matches!(self.term(), TermKind::Cyclic | TermKind::Vibration)
+    }
+
+    /// Whether any motion of an axis may have it; the others belong to its position.
+    pub fn is_of_any_motion(self) -> bool {
+        let any = [TermKind::Polynomial, TermKind::Table, TermKind::Backlash, TermKind::Cyclic];
+        self != Self::WindUp && any.contains(&self.term())
+    }
+
     /// Its name: that of the term, or `wind-up`.
     pub fn name(self) -> &'static str {
         match self {

@@ -1,9 +1,19 @@
 //! The arguments of the command line. In: words. Out: one command with its options.
 
+mod choices;
+mod values;
+
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
+
+pub(crate) use choices::{
+    CalibrateFormat, Color, EvaluationFormat, ExportFormat, ExportUnit, ExportValue, Format, LimitsFormat,
+    Names, ReportFormat, UpdateFormat, UpdateMethod,
+};
+pub(crate) use values::Datum;
+use values::{datum, name, non_negative, place, range};
 
 /// Compiles a machine tool's kinematic chain into its error equations and compensation code.
 #[derive(Parser)]
@@ -109,24 +119,12 @@ pub(crate) struct Diagnose {
 pub(crate) struct Limits {
     /// A recording.
     pub(crate) recording: PathBuf,
-    /// Ask for these alone: kinds (backlash), error motions (EXX) or axes (X), with commas between them.
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    pub(crate) only: Vec<String>,
-    /// The most diagnoses for each effect; most limits are known to 12 % after a dozen, and end there.
-    #[arg(long, default_value_t = 40, value_parser = clap::value_parser!(u16).range(4..=1000))]
-    pub(crate) trials: u16,
-    /// The seed of signs, places and phases; the same seed gives the same limits.
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
     /// Try which extra passes would tell apart what this recording cannot.
     #[arg(long)]
     pub(crate) passes: bool,
-    /// How to write the limits.
-    #[arg(long, value_enum, default_value_t = LimitsFormat::Text)]
-    pub(crate) format: LimitsFormat,
-    /// Show no progress.
-    #[arg(long)]
-    pub(crate) quiet: bool,
+    /// What is asked, and how it is told.
+    #[command(flatten)]
+    pub(crate) asked: Asked,
 }
 
 #[derive(Args)]
@@ -139,6 +137,14 @@ pub(crate) struct Plan {
     /// The calibration file of the machine, in place of the machine: its known errors.
     #[arg(long, value_name = "FILE")]
     pub(crate) calibration: Option<PathBuf>,
+    /// What is asked, and how it is told.
+    #[command(flatten)]
+    pub(crate) asked: Asked,
+}
+
+/// What is asked of a recording or a path, and how it is told.
+#[derive(Args)]
+pub(crate) struct Asked {
     /// Ask for these alone: kinds (backlash), error motions (EXX) or axes (X), with commas between them.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) only: Vec<String>,
@@ -148,7 +154,7 @@ pub(crate) struct Plan {
     /// The seed of signs, places and phases; the same seed gives the same limits.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// How to write the plan.
+    /// How to write what was found.
     #[arg(long, value_enum, default_value_t = LimitsFormat::Text)]
     pub(crate) format: LimitsFormat,
     /// Show no progress.
@@ -346,179 +352,4 @@ pub(crate) struct Man {
     /// The folder for abbe.1, abbe-derive.1, ...; it is made where it is missing.
     #[arg(long, value_name = "FOLDER")]
     pub(crate) output: Option<PathBuf>,
-}
-
-/// When words for people are coloured.
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum Color {
-    /// Where a terminal shows them that knows colours.
-    Auto,
-    /// Also in files and pipes.
-    Always,
-    /// Nowhere.
-    Never,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum Format {
-    /// Plain text beside which a printed report can be held.
-    Text,
-    /// LaTeX, to include in a document.
-    Latex,
-    /// One self-contained page with MathML.
-    Html,
-    /// The schema abbe-equations/1.
-    Json,
-    /// A batch file for Maxima.
-    Maxima,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum ReportFormat {
-    /// For a person at a terminal.
-    Text,
-    /// The schema abbe-diagnosis/1.
-    Json,
-    /// One self-contained page.
-    Html,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum Names {
-    /// EXX, EBZ, EC0Y.
-    Iso,
-    /// The symbols of the machine file.
-    Symbols,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum UpdateMethod {
-    /// The pseudo-inverse of the scaled system: the least change in scaled coefficients.
-    Svd,
-    /// Least squares held towards the present calibration; the strength by generalised cross-validation.
-    Ridge,
-    /// As few coefficients as pay; all others stand.
-    Select,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum CalibrateFormat {
-    /// For a person at a terminal.
-    Text,
-    /// The schema abbe-calibrate/1.
-    Json,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum UpdateFormat {
-    /// For a person at a terminal.
-    Text,
-    /// The schema abbe-update/1.
-    Json,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum LimitsFormat {
-    /// For a person at a terminal.
-    Text,
-    /// The schema abbe-limits/1.
-    Json,
-    /// One self-contained page with the curves.
-    Html,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum EvaluationFormat {
-    /// For a person at a terminal.
-    Text,
-    /// The schema abbe-evaluation/1.
-    Json,
-    /// One self-contained page with the diagrams of the standards.
-    Html,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ExportFormat {
-    /// LinuxCNC: screw compensation, COMP_FILE.
-    Linuxcnc,
-    /// ISG kernel and Beckhoff: volumetric compensation, ISG CSV.
-    Isg,
-    /// Etalon Exchange Format, variant Vendor.
-    Etalon,
-    /// Siemens SINUMERIK: ENC_COMP and CEC.
-    Sinumerik,
-    /// HEIDENHAIN: .COM tables.
-    Heidenhain,
-    /// Delta Tau PMAC: DEFINE COMP and DEFINE BLCOMP.
-    Pmac,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum ExportValue {
-    /// The error, actual minus commanded: a positive number moves the axis in its negative direction.
-    Error,
-    /// What is added to the command.
-    Correction,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum ExportUnit {
-    /// Millimetres.
-    Mm,
-    /// Inches.
-    In,
-}
-
-/// The directions X, Y, Z in which the zero of a part is free.
-#[derive(Clone, Copy)]
-pub(crate) struct Datum(pub(crate) [bool; 3]);
-
-fn datum(text: &str) -> Result<Datum, String> {
-    match text {
-        "free" => return Ok(Datum([true; 3])),
-        "none" => return Ok(Datum([false; 3])),
-        _ => {}
-    }
-    let mut free = [false; 3];
-    for word in text.split(',') {
-        let place = ["x", "y", "z"].iter().position(|letter| word.trim().eq_ignore_ascii_case(letter));
-        match place.and_then(|place| free.get_mut(place)) {
-            Some(slot) => *slot = true,
-            None => return Err("write `free`, `none`, or directions such as `z` or `x,z`".to_owned()),
-        }
-    }
-    Ok(Datum(free))
-}
-
-fn non_negative(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
-        _ => Err("not a number that is zero or more".to_owned()),
-    }
-}
-
-/// `X=...`, in two parts.
-fn name(text: &str) -> Result<(String, String), String> {
-    match text.split_once('=') {
-        Some((axis, value)) if !axis.is_empty() && !value.is_empty() => {
-            Ok((axis.to_owned(), value.to_owned()))
-        }
-        _ => Err("write an axis and its value, as in X=...".to_owned()),
-    }
-}
-
-fn place(text: &str) -> Result<(String, f64), String> {
-    let (axis, value) = name(text)?;
-    Ok((axis, number(&value)?))
-}
-
-fn range(text: &str) -> Result<(String, [f64; 2]), String> {
-    let (axis, value) = name(text)?;
-    let (from, to) = value.split_once(':').ok_or("write both ends, as in X=0:500")?;
-    Ok((axis, [number(from)?, number(to)?]))
-}
-
-fn number(text: &str) -> Result<f64, String> {
-    let number = text.trim().parse().ok().filter(|number: &f64| number.is_finite());
-    number.ok_or_else(|| format!("`{text}` is not a number"))
 }

@@ -123,6 +123,19 @@ fn stage(folder: &Path) {
     }
 }
 
+/// What the stage could show, in few diagnoses.
+const LIMITS: &[&str] = &["limits", "@/noisy.yaml", "--only", "X,backlash", "--trials", "4"];
+const PLAN: &[&str] = &[
+    "plan",
+    "@/noisy-path.yaml",
+    "--calibration",
+    "@/calibration.yaml",
+    "--only",
+    "X,backlash",
+    "--trials",
+    "4",
+];
+
 /// Every command that reads a file, with the file and the arguments behind it; `@` is the folder of the stage.
 const READERS: [(&str, &[&str]); 15] = [
     ("machine.yaml", &["derive", "@/machine.yaml"]),
@@ -136,20 +149,8 @@ const READERS: [(&str, &[&str]); 15] = [
         &["simulate", "@/calibration.yaml", "@/recording.yaml", "--output", "@/out", "--force"],
     ),
     ("data.csv", &["diagnose", "@/recording.yaml"]),
-    ("noisy.csv", &["limits", "@/noisy.yaml", "--only", "X,backlash", "--trials", "4"]),
-    (
-        "noisy-path.yaml",
-        &[
-            "plan",
-            "@/noisy-path.yaml",
-            "--calibration",
-            "@/calibration.yaml",
-            "--only",
-            "X,backlash",
-            "--trials",
-            "4",
-        ],
-    ),
+    ("noisy.csv", LIMITS),
+    ("noisy-path.yaml", PLAN),
     ("recording.yaml", &["evaluate", "@/recording.yaml"]),
     ("data.csv", &["evaluate", "@/recording.yaml"]),
     ("recording.yaml", &["update", "@/calibration.yaml", "@/recording.yaml"]),

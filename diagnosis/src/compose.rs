@@ -145,9 +145,6 @@ fn each_for_itself(noises: &[Vec<Noise>]) -> Vec<Vec<Noise>> {
 /// under the noise that it leaves, and held-out samples lie nearer.
 fn take(study: &mut Study<'_>, found: &mut Found, trial: &Trial, price: &FormPrice) -> bool {
     let Trial { form, beside, kept } = trial;
-    if !form.effect.shape.is_composed() && !has_a_form(&found.fit.model) {
-        return false;
-    }
     let mut model: Model = found.fit.model[..found.always].to_vec();
     model.extend(kept.iter().cloned());
     model.push(form.clone());
@@ -161,13 +158,6 @@ fn take(study: &mut Study<'_>, found: &mut Found, trial: &Trial, price: &FormPri
             && fitted.effect.shape.factors() == form.effect.shape.factors()
     };
     take_model(study, found, model, (&is_form, form.effect.shape.is_composed()), price)
-}
-
-/// Whether a model holds what the vocabulary of the search has no name for. A name is asked again only beside such a form, which may have
-/// hidden it; of all other names the search has decided.
-fn has_a_form(model: &Model) -> bool {
-    let is_form = |shape: &Shape| shape.is_composed() || matches!(shape, Shape::Delay { .. });
-    model.iter().any(|fitted| is_form(&fitted.effect.shape))
 }
 
 /// Fits a model in which something happened, and takes it over on the same terms.

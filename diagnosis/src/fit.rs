@@ -145,7 +145,8 @@ impl Linearised {
     }
 }
 
-/// A delay that is so many times itself is one of so many times its time: nearly, and exactly where it is once itself.
+/// Moves the coefficient of a delay into its time: 1.2 times a delay of 5 ms is nearly a delay of 6 ms. The fit is repeated until the
+/// coefficient is 1, where the two are the same.
 fn timed(shape: Shape, coefficients: Vec<f64>) -> (Shape, Vec<f64>) {
     match (&shape, coefficients.as_slice()) {
         (Shape::Delay { axis, time }, [times]) => {

@@ -155,11 +155,8 @@ fn judged<'c>(bases: &'c [Base], cases: &'c [Case]) -> Vec<Line<'c>> {
 
 /// A diagnosis; nothing where it fails, which is told.
 fn diagnosed(base: &Base, recording: &Recording) -> Option<Diagnosis> {
-    let done = limits::trial::diagnosed(base, &[recording]);
-    if done.is_none() {
-        eprintln!("{}: the diagnosis failed", base.name);
-    }
-    done
+    let done = catch_unwind(AssertUnwindSafe(|| limits::trial::diagnosed(base, &[recording])));
+    done.inspect_err(|_| eprintln!("{}: the diagnosis failed", base.name)).ok()
 }
 
 /// What jobs give, in order, from all processors.

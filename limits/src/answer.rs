@@ -58,7 +58,7 @@ pub struct Limit {
     pub instead: Vec<String>,
 }
 
-/// A limit that there is.
+/// The limit of a kind that is found from some size on.
 #[derive(Clone, Debug)]
 pub struct Found {
     /// The share found over the strength.

@@ -12,7 +12,6 @@ use crate::injection::base::Base;
 use crate::injection::effect::Effect;
 use crate::injection::kind::Kind;
 use crate::injection::score::How;
-
 use crate::posterior::Posterior;
 use crate::search::{Effort, Searched, search};
 use crate::size::{Scale, drawn};
@@ -36,8 +35,7 @@ pub fn limits(known: &[Known], question: &Question, progress: &(dyn Fn(f64) + Sy
     let base = &known.first()?.base;
     let alone = &known.first()?.alone;
     let asked = subjects(base, question.seed).into_iter().filter(|subject| question.asks(base, subject));
-    let (shown, subjects): (Vec<Subject>, Vec<Subject>) =
-        asked.partition(|subject| is_shown(base, subject, alone));
+    let (shown, subjects): (Vec<Subject>, Vec<Subject>) = asked.partition(|subject| is_shown(subject, alone));
     let done = AtomicUsize::new(0);
     let told = Mutex::new(());
     let all = subjects.par_iter().filter_map(|subject| {
@@ -64,18 +62,12 @@ pub fn limits(known: &[Known], question: &Question, progress: &(dyn Fn(f64) + Sy
 }
 
 /// Whether a recording shows a kind in a motion as it is. A wave more has a period of its own.
-fn is_shown(base: &Base, subject: &Subject, alone: &Diagnosis) -> bool {
+fn is_shown(subject: &Subject, alone: &Diagnosis) -> bool {
     let of_motion = |finding: &&Finding| {
         finding.motion_number == subject.motion || subject.alike.contains(&finding.motion_number)
     };
     let term = subject.kind.term();
-    let axis = &base.names.axes[subject.axis].letter;
-    !subject.kind.is_wave()
-        && alone
-            .findings
-            .iter()
-            .filter(of_motion)
-            .any(|finding| finding.kind() == term && finding.location.link.contains(axis.as_str()))
+    !subject.kind.is_wave() && alone.findings.iter().filter(of_motion).any(|finding| finding.kind() == term)
 }
 
 fn already(base: &Base, shown: &[Subject]) -> Vec<Already> {

@@ -126,7 +126,7 @@ fn together(known: &Known, passes: &[&Base], open: &Open<'_>) -> Option<Diagnosi
         recordings.push(case.recording(base));
     }
     let all: Vec<&Recording> = recordings.iter().collect();
-    diagnosed(&known.base, &all)
+    Some(diagnosed(&known.base, &all))
 }
 
 #[cfg(test)]

@@ -48,7 +48,7 @@ const ERRORS: f64 = 3.5;
 /// What is known so of the logarithm of the limit: twice the scatter of those.
 const SPREAD: f64 = 0.45;
 
-/// The same of the first size, where the size that was found has no interval: a factor of four.
+/// The same where the size that was found has no interval: a quarter of the first size is taken for the limit, within a factor of four.
 const VAGUE: f64 = 1.4;
 
 /// So many draws that agree are no chance: of signs one series in 128.

@@ -1,7 +1,6 @@
 //! One trial: an effect at a size in a recording, and what a diagnosis says of it.
 
 use std::cmp::Ordering;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use diagnosis::diagnosis::{Diagnosis, Finding};
 use diagnosis::{Inputs, diagnose};
@@ -29,7 +28,7 @@ impl Known {
     ///
     /// Why nothing can be asked of it: nothing can be decided from it, or it has no noise that could hide an effect.
     pub fn new(base: Base) -> Result<Self, String> {
-        let alone = diagnosed(&base, &[&base.recording]).ok_or("it cannot be diagnosed")?;
+        let alone = diagnosed(&base, &[&base.recording]);
         if let Some(reason) = &alone.undecidable {
             return Err(format!("nothing can be decided from it. {reason}"));
         }
@@ -77,7 +76,7 @@ pub struct Other {
 /// Injects an effect and diagnoses; nothing where no such effect is one of its kind.
 pub fn trial(known: &Known, motion: usize, effect: Effect) -> Option<Trial> {
     let case = Case::with(0, &known.base, (motion, effect), 0.0)?;
-    let found = diagnosed(&known.base, &[&case.recording(&known.base)])?;
+    let found = diagnosed(&known.base, &[&case.recording(&known.base)]);
     let score = Score::of(&case, &known.base, &found, &known.alone);
     let own = &known.base.names.motions[motion].name;
     let hit = score.hit.and_then(|hit| found.findings.get(hit));
@@ -115,8 +114,8 @@ pub(crate) fn name(motion: &str, term: &str) -> String {
     if motion == "instrument" { format!("{term} of the instrument") } else { format!("{motion} {term}") }
 }
 
-/// A diagnosis; nothing where it fails.
-pub fn diagnosed(base: &Base, recordings: &[&Recording]) -> Option<Diagnosis> {
+/// The diagnosis of recordings of a machine, beside what is known of it.
+pub fn diagnosed(base: &Base, recordings: &[&Recording]) -> Diagnosis {
     let inputs = Inputs {
         equations: &base.compiled.equations,
         calibration: base.calibration.as_ref(),
@@ -125,5 +124,5 @@ pub fn diagnosed(base: &Base, recordings: &[&Recording]) -> Option<Diagnosis> {
         calibration_file: None,
         chains: None,
     };
-    catch_unwind(AssertUnwindSafe(|| diagnose(&inputs, &mut |_| {}))).ok()
+    diagnose(&inputs, &mut |_| {})
 }

@@ -15,7 +15,7 @@ use model_dsl::calibration::MachineNames;
 use model_dsl::suggest::nearest;
 
 use super::diagnose::origin::word;
-use crate::arguments::{Limits, LimitsFormat};
+use crate::arguments::{Asked, Limits, LimitsFormat};
 use crate::failure::Failure;
 use crate::output::print;
 use crate::progress::Progress;
@@ -23,16 +23,15 @@ use crate::recorded::{self, Recorded};
 
 /// Runs the command. Status 1 where no effect can be injected into the recording.
 pub(crate) fn run(arguments: &Limits) -> Result<(), Failure> {
-    let recorded = recorded::read(&arguments.recording, arguments.quiet)?;
-    check_names(&arguments.only, &recorded.equations.names())?;
-    let progress = Progress::new(arguments.quiet, "diagnosing the recording as it is");
+    let asked = &arguments.asked;
+    let recorded = recorded::read(&arguments.recording, asked.quiet)?;
+    check_names(&asked.only, &recorded.equations.names())?;
+    let progress = Progress::new(asked.quiet, "diagnosing the recording as it is");
     let name = arguments.recording.display().to_string();
-    let known = [Known::new(base(&name, recorded)?).map_err(|reason| cannot(&name, &reason))?];
-    let effort = Effort { trials: usize::from(arguments.trials), ..Effort::default() };
-    let question = Question { only: arguments.only.clone(), effort, seed: arguments.seed };
-    let found = asked(&known, &question, arguments.passes, &progress);
+    let known = Known::new(base(&name, recorded)?).map_err(|reason| cannot(&name, &reason))?;
+    let found = answered(&[known], asked, arguments.passes, &progress);
     drop(progress);
-    tell(found, &name, arguments.format, &command(arguments))
+    tell(found, &name, asked.format, &command(arguments))
 }
 
 /// The recording, ready for effects to be injected.
@@ -43,13 +42,10 @@ fn base(name: &str, recorded: Recorded) -> Result<Base, Failure> {
 }
 
 /// Asks, and looks for extra passes where that is wanted.
-pub(super) fn asked(
-    known: &[Known],
-    question: &Question,
-    passes: bool,
-    progress: &Progress,
-) -> Option<Found> {
-    let mut found = limits(known, question, &|done| progress.part("injecting effects", done))?;
+pub(super) fn answered(known: &[Known], asked: &Asked, passes: bool, progress: &Progress) -> Option<Found> {
+    let effort = Effort { trials: usize::from(asked.trials), ..Effort::default() };
+    let question = Question { only: asked.only.clone(), effort, seed: asked.seed };
+    let mut found = limits(known, &question, &|done| progress.part("injecting effects", done))?;
     if let Some(first) = known.first().filter(|_| passes) {
         let trying = |done: f64| progress.part("trying extra passes", done);
         found.advice = Some(advice(first, &found, &library(&first.base), &trying));
@@ -100,16 +96,15 @@ pub(super) fn check_names(only: &[String], names: &MachineNames) -> Result<(), F
 /// The command that makes the page again.
 fn command(arguments: &Limits) -> String {
     let passes = if arguments.passes { " --passes" } else { "" };
-    format!(
-        "abbe limits {}{}{passes} --trials {} --seed {} --format html > limits.html",
-        word(&arguments.recording),
-        only(&arguments.only),
-        arguments.trials,
-        arguments.seed
-    )
+    let recording = word(&arguments.recording);
+    format!("abbe limits {recording}{passes}{} > limits.html", options(&arguments.asked))
 }
 
-/// The words of the option `--only`, with a space before them.
-pub(super) fn only(names: &[String]) -> String {
-    if names.is_empty() { String::new() } else { format!(" --only {}", names.join(",")) }
+/// The options of what is asked for a page, each with a space before it.
+pub(super) fn options(asked: &Asked) -> String {
+    let only = match asked.only.as_slice() {
+        [] => String::new(),
+        names => format!(" --only {}", names.join(",")),
+    };
+    format!("{only} --trials {} --seed {} --format html", asked.trials, asked.seed)
 }

@@ -1,15 +1,13 @@
 //! `abbe plan`: what a path would show that was not driven yet. In: a path file with its instrument and noise, and a machine. Out: from
 //! which size on each effect would be found, and what to drive besides, as text, JSON or a page.
 
-use limits::limits::Question;
 use limits::plan::driven;
-use limits::search::Effort;
 use model_dsl::Compiled;
 use model_dsl::calibration::Calibration;
 use simulation::Plant;
 
 use super::diagnose::origin::word;
-use super::limits::{asked, cannot, check_names, only, tell};
+use super::limits::{answered, cannot, check_names, options, tell};
 use super::simulate::{read_path, wrong};
 use crate::arguments::Plan;
 use crate::calibrated::{self, Calibrated};
@@ -21,21 +19,20 @@ use crate::progress::Progress;
 pub(crate) fn run(arguments: &Plan) -> Result<(), Failure> {
     let machine = machine(arguments)?;
     let names = machine.equations.names();
-    check_names(&arguments.only, &names)?;
+    let asked = &arguments.asked;
+    check_names(&asked.only, &names)?;
     let source = load::read(&arguments.path)?;
     let mut plant =
         Plant::new(&machine.machine, &names, &machine.calibration).map_err(|error| wrong(&error))?;
     let scenario = read_path(&source, &machine, &names, &mut plant)?.scenario;
-    let progress = Progress::new(arguments.quiet, "driving the path");
+    let progress = Progress::new(asked.quiet, "driving the path");
     let name = arguments.path.display().to_string();
     let compiled = Compiled { machine: machine.machine, equations: machine.equations };
     let known = driven(&name, &compiled, &machine.calibration, (&plant, &scenario))
         .map_err(|reason| cannot(&name, &reason))?;
-    let effort = Effort { trials: usize::from(arguments.trials), ..Effort::default() };
-    let question = Question { only: arguments.only.clone(), effort, seed: arguments.seed };
-    let found = asked(&known, &question, true, &progress);
+    let found = answered(&known, asked, true, &progress);
     drop(progress);
-    tell(found, &name, arguments.format, &command(arguments))
+    tell(found, &name, asked.format, &command(arguments))
 }
 
 /// The machine as it is known: with its calibration, or without any error.
@@ -67,11 +64,5 @@ fn command(arguments: &Plan) -> String {
         (Some(calibration), _) => format!("--calibration {}", word(calibration)),
         (None, machine) => format!("--machine {}", machine.as_deref().unwrap_or_default()),
     };
-    format!(
-        "abbe plan {} {machine}{} --trials {} --seed {} --format html > plan.html",
-        word(&arguments.path),
-        only(&arguments.only),
-        arguments.trials,
-        arguments.seed
-    )
+    format!("abbe plan {} {machine}{} > plan.html", word(&arguments.path), options(&arguments.asked))
 }

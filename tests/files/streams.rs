@@ -5,7 +5,7 @@ use std::fs;
 use std::io::Read;
 use std::process::Stdio;
 
-use super::{folder, on_stage, placed, program, run, stage, status, text};
+use super::{LIMITS, PLAN, folder, on_stage, placed, program, run, stage, status, text};
 
 /// Every command that prints, in its forms; `@` is the folder of the stage.
 const PRINTERS: [&[&str]; 26] = [
@@ -28,17 +28,8 @@ const PRINTERS: [&[&str]; 26] = [
     &["calibrate", "@/set-up.yaml"],
     &["calibrate", "@/set-up.yaml", "--format", "json"],
     &["export", "linuxcnc", "@/calibration.yaml", "--output", "@/", "--force", "--range", "X=0:100"],
-    &["limits", "@/noisy.yaml", "--only", "X,backlash", "--trials", "4"],
-    &[
-        "plan",
-        "@/noisy-path.yaml",
-        "--calibration",
-        "@/calibration.yaml",
-        "--only",
-        "X,backlash",
-        "--trials",
-        "4",
-    ],
+    LIMITS,
+    PLAN,
     &["new", "XYFZ"],
     &["explain"],
     &["explain", "backlash"],

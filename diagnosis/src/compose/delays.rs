@@ -2,7 +2,8 @@
 //!
 //! In: what was found. Out: models in which an axis that follows late does so by a dead time, in the place of its loop or beside it. At
 //! constant speed a loop of gain K and a delay of 1/K are the same; where the speed changes, a loop takes 1/K to follow and a delay
-//! follows at once. An acceleration may stand beside a delay, as feed-forward of the wrong size. The linear search has the loop alone, since a delay has no column that holds for every time.
+//! follows at once. An acceleration may stand beside a delay, as feed-forward of the wrong size. The linear search has the loop alone:
+//! a delay has no column that holds for every time.
 
 use model_dsl::calibration::Factor;
 
@@ -11,7 +12,8 @@ use crate::model::{Effect, Fitted, Model, Place};
 use crate::study::Study;
 use crate::terms::Shape;
 
-/// What a delay takes of what an axis stays behind by, where it stands beside a loop; the fit moves it to its place from there.
+/// The share of the following error that a delay beside a loop starts with. The fit moves it from there; a half is as near to every share
+/// as one start can be.
 const HALF: f64 = 0.5;
 
 /// A model in which this axis is late.

@@ -133,7 +133,7 @@ impl Sums {
         Self { always, places, between, whole: DMatrix::zeros(size, size) }
     }
 
-    /// Adds a row that lies behind so many of the times; one that is not known whole says nothing.
+    /// Adds a row. `since` is the number of times that lie before it. A row with a value missing is left out.
     fn add(&mut self, row: &[f64], since: usize) {
         if row.iter().any(|value| !value.is_finite()) {
             return;

@@ -11,6 +11,7 @@ use crate::engine::Found;
 use crate::model::{Effect, Fitted, Model};
 use crate::noise::Noise;
 use crate::study::Study;
+use crate::terms::Shape;
 
 use super::forms::{self, Form};
 
@@ -76,12 +77,12 @@ pub(super) fn best(ring: Ring<'_>, forms: &[Form]) -> Vec<Trial> {
     let price = |form: &Form| price.of(study, found, &form.effect, contest.samples);
     let promises = contest.promises();
     let known = contest.outcome(None).cost;
-    let every = |_: &Form| true;
-    let compared = most_promising(forms, &promises, &price, (COMPARED, every));
+    let is_name = |form: &Form| !form.effect.shape.is_composed();
+    let names_too = has_a_form(&found.fit.model);
+    let compared = most_promising(forms, &promises, &price, (COMPARED, &|form| names_too || !is_name(form)));
     // Where nothing is left no name is missing, and the first contest has said all.
     let again = lacks.then(|| {
-        let is_name = |form: &Form| !form.effect.shape.is_composed();
-        let names = most_promising(forms, &promises, &price, (forms.len(), is_name));
+        let names = most_promising(forms, &promises, &price, (forms.len(), &is_name));
         let missing = different(forms, names);
         model.extend(missing.into_iter().map(|number| forms[number].fitted(0.0)));
         let compared: Vec<Form> = compared.iter().map(|number| forms[*number].clone()).collect();
@@ -101,13 +102,20 @@ pub(super) fn best(ring: Ring<'_>, forms: &[Form]) -> Vec<Trial> {
     gains.into_iter().take(TRIALS).map(|(number, _)| ring.refined(&model, &forms[number])).collect()
 }
 
-/// So many forms of a kind with the highest promises above their price, beside all that was found and alone; both in turn, the highest
-/// first.
+/// Whether a model holds what the vocabulary of the search has no name for. A name is asked again only beside such a form, which may have
+/// hidden it; of all other names the search has decided.
+fn has_a_form(model: &Model) -> bool {
+    let is_form = |shape: &Shape| shape.is_composed() || matches!(shape, Shape::Delay { .. });
+    model.iter().any(|fitted| is_form(&fitted.effect.shape))
+}
+
+/// The wanted forms whose promise exceeds their price most: `count` of them beside all that was found, and as many alone. They come in
+/// turn, the best first.
 fn most_promising(
     forms: &[Form],
     promises: &[[f64; 2]],
     price: &dyn Fn(&Form) -> f64,
-    (count, is_wanted): (usize, fn(&Form) -> bool),
+    (count, is_wanted): (usize, &dyn Fn(&Form) -> bool),
 ) -> Vec<usize> {
     let of = |which: usize| {
         let gains = promises.iter().zip(forms).map(|(promise, form)| promise[which] - price(form));
@@ -201,7 +209,6 @@ mod tests {
     use super::*;
     use crate::model::Place;
     use crate::side::Side;
-    use crate::terms::Shape;
 
     fn form(motion: usize, shape: Shape) -> Form {
         let effect = Effect { place: Place::Motion { motion, side: Side::After }, shape };
@@ -219,8 +226,8 @@ mod tests {
             [form(0, play(0.0)), form(0, play(1.0)), form(1, Shape::Constant), form(2, Shape::Constant)];
         let promises = [[90.0, 20.0], [50.0, 5.0], [8.0, 9.0], [30.0, 70.0]];
         let price = |_: &Form| 10.0;
-        assert_eq!(most_promising(&forms, &promises, &price, (4, |_| true)), [0, 3, 1]);
-        assert_eq!(most_promising(&forms, &promises, &price, (1, |_| true)), [0, 3]);
+        assert_eq!(most_promising(&forms, &promises, &price, (4, &|_| true)), [0, 3, 1]);
+        assert_eq!(most_promising(&forms, &promises, &price, (1, &|_| true)), [0, 3]);
     }
 
     /// A play that winds up is no other name than the play; the constant of another motion is.

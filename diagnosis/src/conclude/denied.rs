@@ -2,8 +2,8 @@
 //! would have been found.
 //!
 //! It is an estimate from what the design knows already: by how much an effect of size one would lower the cost, and the price that it
-//! has to pay. `abbe limits` asks the same by injection, and of every effect: on two quiet simulated machines
-//! its limits were 0.65 to 1.6 times these.
+//! has to pay. `abbe limits` asks the same by injection, and of every effect: on two quiet simulated machines its limits were 0.65 to
+//! 1.6 times these.
 
 use crate::design::{Design, Regressor};
 use crate::diagnosis::Denied;
@@ -15,7 +15,7 @@ use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 
-/// So many limits are told.
+/// How many limits are told: a verdict is one sentence.
 const MOST: usize = 3;
 
 /// What an effect of one kind may be before the diagnosis names it, the least known axis of each kind first.
@@ -77,10 +77,11 @@ fn places(found: &Found, motion: usize) -> Vec<Place> {
     places
 }
 
-/// So many waves on the travel.
+/// How many periods of the wave fit into the travel: more than a polynomial draws.
 const WAVES: f64 = 10.0;
 
-/// A wave of so many times the shortest period that rows show loses nothing to their spacing.
+/// The shortest period that is asked, in shortest periods that rows can show (two rows). Six rows a period show a sine to 5 % (sinc of a
+/// sixth).
 const RESOLVED: f64 = 3.0;
 
 /// The size of each effect that would be found in nine of ten cases, mm or rad; nothing where the recordings do not show it.

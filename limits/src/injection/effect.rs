@@ -100,7 +100,7 @@ pub enum Effect {
         sensor: usize,
         /// 1/K.
         coefficient: f64,
-        /// Where it is not warm, degC.
+        /// The temperature at which it adds nothing, degC.
         reference: f64,
     },
     /// A structure that grows behind a temperature.
@@ -109,7 +109,7 @@ pub enum Effect {
         sensor: usize,
         /// mm/K or rad/K.
         coefficient: f64,
-        /// Where it has not grown, degC.
+        /// The temperature at which it adds nothing, degC.
         reference: f64,
         /// s.
         time_constant: f64,
@@ -198,20 +198,10 @@ impl Effect {
 
     /// Its size as one number above zero to which all that it adds is proportional: what stays behind goes as one over a gain.
     pub fn strength(&self) -> f64 {
-        match *self {
-            Self::Constant { value: size }
-            | Self::Polynomial { slope: size, .. }
-            | Self::Table { height: size, .. }
-            | Self::Backlash { lost_motion: size, .. }
-            | Self::ReversalSpike { height: size, .. }
-            | Self::Cyclic { amplitude: size, .. }
-            | Self::Expansion { coefficient: size, .. }
-            | Self::Growth { coefficient: size, .. }
-            | Self::Drift { amplitude: size, .. }
-            | Self::Vibration { amplitude: size, .. }
-            | Self::Compliance { coefficient: size, .. } => size.abs(),
-            Self::Coupling { coefficients: [_, second], .. } => second.abs(),
-            Self::Lag { gain, .. } | Self::Acceleration { gain, .. } => 1.0 / gain.abs(),
+        match (self, self.size()) {
+            (Self::Table { height, .. }, _) => height.abs(),
+            (Self::Lag { .. } | Self::Acceleration { .. }, Some((_, _, gain))) => 1.0 / gain.abs(),
+            (_, size) => size.map_or(0.0, |(_, _, size)| size.abs()),
         }
     }
 

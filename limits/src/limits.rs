@@ -11,7 +11,6 @@ use crate::answer::{Already, Found, Limit, Limits};
 use crate::injection::base::Base;
 use crate::injection::effect::Effect;
 use crate::injection::kind::Kind;
-use crate::injection::score::How;
 use crate::posterior::Posterior;
 use crate::search::{Effort, Searched, search};
 use crate::size::{Scale, drawn};
@@ -125,7 +124,7 @@ fn limit(base: &Base, subject: &Subject, searched: Searched) -> Option<Limit> {
 
 fn found(posterior: Posterior, trials: &[Trial]) -> Found {
     let strength = posterior.limit();
-    let hits: Vec<&Trial> = trials.iter().filter(|trial| trial.how != How::Missed).collect();
+    let hits: Vec<&Trial> = trials.iter().filter(|trial| trial.is_found).collect();
     let count = crate::number(hits.len().max(1));
     let first = crate::number(hits.iter().filter(|trial| trial.is_first).count()) / count;
     Found {

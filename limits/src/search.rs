@@ -6,7 +6,6 @@
 //! ```
 
 use crate::injection::case::strength_of;
-use crate::injection::score::How;
 use crate::posterior::Posterior;
 use crate::subject::Subject;
 use crate::trial::{Known, Trial, trial};
@@ -83,7 +82,7 @@ impl Series<'_> {
             let allowed = self.subject.drawn(base, self.seed, self.drawn)?;
             let strength = strength_of(base, &allowed, size * left)?;
             let Some(first) = self.at(strength) else { continue };
-            if first.how == How::Missed {
+            if !first.is_found {
                 continue;
             }
             let (size, spread) = match first.interval {
@@ -115,7 +114,7 @@ impl Series<'_> {
         };
         while self.drawn < effort.trials && posterior.uncertainty() > uncertainty {
             let strength = posterior.reaches(shares[self.drawn % shares.len()]);
-            let found = self.at(strength).is_some_and(|trial| trial.how != How::Missed);
+            let found = self.at(strength).is_some_and(|trial| trial.is_found);
             posterior.observe(strength, found);
         }
         posterior
@@ -166,7 +165,7 @@ mod tests {
             let effect = limit.trials[0].effect.at_strength(strength);
             let fresh = (11..17).filter_map(|seed| {
                 let known = Known::new(passes_of_x("FX", [true, false, false], noise, seed)).ok()?;
-                trial(&known, motion, effect).map(|trial| trial.how != How::Missed)
+                trial(&known, motion, effect).map(|trial| trial.is_found)
             });
             fresh.filter(|found| *found).count()
         };

@@ -50,8 +50,8 @@ pub struct Trial {
     pub effect: Effect,
     /// Its strength.
     pub strength: f64,
-    /// Whether it was found.
-    pub how: How,
+    /// Whether it was found, and its size is right. A claim of it together with what the recording has of the same has the wrong size.
+    pub is_found: bool,
     /// The size that was found, with half of its interval of 95 %, where it was found by its own name.
     pub interval: Option<(f64, f64)>,
     /// Whether its own name stands first.
@@ -78,6 +78,7 @@ pub fn trial(known: &Known, motion: usize, effect: Effect) -> Option<Trial> {
     let case = Case::with(0, &known.base, (motion, effect), 0.0)?;
     let found = diagnosed(&known.base, &[&case.recording(&known.base)]);
     let score = Score::of(&case, &known.base, &found, &known.alone);
+    let is_found = score.how != How::Missed && !score.beside_unclaimed;
     let own = &known.base.names.motions[motion].name;
     let hit = score.hit.and_then(|hit| found.findings.get(hit));
     let term = effect.term().name();
@@ -85,11 +86,11 @@ pub fn trial(known: &Known, motion: usize, effect: Effect) -> Option<Trial> {
     Some(Trial {
         effect,
         strength: effect.strength(),
-        how: score.how,
+        is_found,
         interval: hit.filter(|_| is_first).and_then(|hit| score::interval(&effect, hit)),
         is_first,
         others: hit.map(|hit| others(hit, own, term)).unwrap_or_default(),
-        instead: if score.how == How::Missed { score.extra } else { Vec::new() },
+        instead: if is_found { Vec::new() } else { score.extra },
         is_unexplained: found.unexplained.is_some(),
     })
 }

@@ -47,6 +47,8 @@ pub struct Score {
     pub how: How,
     /// The finding that is the effect, by number, where one is.
     pub hit: Option<usize>,
+    /// Whether the finding is larger than the effect, because the base has the same effect and does not claim it.
+    pub beside_unclaimed: bool,
     /// Claims that were neither injected nor are made of the base.
     pub extra: Vec<String>,
     /// The held-out figure over that of the base.
@@ -97,7 +99,9 @@ impl Score {
         });
         // What was injected, told in several pieces, is no claim besides.
         let extra = if pieces { Vec::new() } else { extra(case, base, &claims, &known, hit) };
-        Self { how, hit, extra, left, covered, verdict: found.verdict.word() }
+        let beside_unclaimed =
+            hit.and_then(|hit| matches[hit].as_ref()).is_some_and(|one| one.beside_unclaimed);
+        Self { how, hit, beside_unclaimed, extra, left, covered, verdict: found.verdict.word() }
     }
 }
 

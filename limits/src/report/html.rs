@@ -6,7 +6,6 @@ use pages::text::escape;
 
 use super::words;
 use crate::answer::{Found, Limit, Limits};
-use crate::injection::score::How;
 use crate::posterior::SHARE;
 
 const STYLE: &str = "\
@@ -103,7 +102,7 @@ fn curve(limit: &Limit, found: &Found) -> Cartesian {
     let marks = limit
         .trials
         .iter()
-        .map(|trial| (limit.scale.told(trial.strength), if trial.how == How::Missed { 0.0 } else { 1.0 }));
+        .map(|trial| (limit.scale.told(trial.strength), if trial.is_found { 1.0 } else { 0.0 }));
     let size = limit.size().unwrap_or_default();
     Cartesian::new(
         &words::name(limit),

@@ -4,7 +4,6 @@ use serde_json::{Value, json as object};
 
 use crate::answer::{Advice, Pair, Pass};
 use crate::answer::{Already, Limit, Limits};
-use crate::injection::score::How;
 use crate::trial::{Other, Trial};
 
 /// Limits as one JSON object with the schema `abbe-limits/1`, in the units that each entry names.
@@ -58,6 +57,6 @@ fn other(other: &Other) -> Value {
 }
 
 fn trial(limit: &Limit, trial: &Trial) -> Value {
-    object!({"size": limit.scale.told(trial.strength), "found": trial.how != How::Missed,
+    object!({"size": limit.scale.told(trial.strength), "found": trial.is_found,
              "first": trial.is_first, "instead": trial.instead})
 }

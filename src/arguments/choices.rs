@@ -1,0 +1,124 @@
+//! Options that are one word of several. In: a word. Out: which of them.
+
+use clap::ValueEnum;
+
+/// When words for people are coloured.
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Color {
+    /// Where a terminal shows them that knows colours.
+    Auto,
+    /// Also in files and pipes.
+    Always,
+    /// Nowhere.
+    Never,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Format {
+    /// Plain text beside which a printed report can be held.
+    Text,
+    /// LaTeX, to include in a document.
+    Latex,
+    /// One self-contained page with MathML.
+    Html,
+    /// The schema abbe-equations/1.
+    Json,
+    /// A batch file for Maxima.
+    Maxima,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum ReportFormat {
+    /// For a person at a terminal.
+    Text,
+    /// The schema abbe-diagnosis/1.
+    Json,
+    /// One self-contained page.
+    Html,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Names {
+    /// EXX, EBZ, EC0Y.
+    Iso,
+    /// The symbols of the machine file.
+    Symbols,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum UpdateMethod {
+    /// The pseudo-inverse of the scaled system: the least change in scaled coefficients.
+    Svd,
+    /// Least squares held towards the present calibration; the strength by generalised cross-validation.
+    Ridge,
+    /// As few coefficients as pay; all others stand.
+    Select,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum CalibrateFormat {
+    /// For a person at a terminal.
+    Text,
+    /// The schema abbe-calibrate/1.
+    Json,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum UpdateFormat {
+    /// For a person at a terminal.
+    Text,
+    /// The schema abbe-update/1.
+    Json,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum LimitsFormat {
+    /// For a person at a terminal.
+    Text,
+    /// The schema abbe-limits/1.
+    Json,
+    /// One self-contained page with the curves.
+    Html,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum EvaluationFormat {
+    /// For a person at a terminal.
+    Text,
+    /// The schema abbe-evaluation/1.
+    Json,
+    /// One self-contained page with the diagrams of the standards.
+    Html,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ExportFormat {
+    /// LinuxCNC: screw compensation, COMP_FILE.
+    Linuxcnc,
+    /// ISG kernel and Beckhoff: volumetric compensation, ISG CSV.
+    Isg,
+    /// Etalon Exchange Format, variant Vendor.
+    Etalon,
+    /// Siemens SINUMERIK: ENC_COMP and CEC.
+    Sinumerik,
+    /// HEIDENHAIN: .COM tables.
+    Heidenhain,
+    /// Delta Tau PMAC: DEFINE COMP and DEFINE BLCOMP.
+    Pmac,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum ExportValue {
+    /// The error, actual minus commanded: a positive number moves the axis in its negative direction.
+    Error,
+    /// What is added to the command.
+    Correction,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum ExportUnit {
+    /// Millimetres.
+    Mm,
+    /// Inches.
+    In,
+}

@@ -16,6 +16,7 @@
 mod delays;
 mod events;
 mod forms;
+mod spins;
 mod trials;
 
 use crate::appraisal::Appraisal;
@@ -39,13 +40,17 @@ const MOST: usize = 3;
 /// Puts forms in the place of what imitates them, as long as one makes all of it better.
 pub(crate) fn compose(study: &mut Study<'_>, found: &mut Found) {
     for _ in 0..MOST {
-        if !is_open(study, found) {
+        let spins = spins::spins(study, found);
+        let open = is_open(study, found);
+        if !open && spins.forms.is_empty() {
             return;
         }
-        let forms = forms::forms(study, found);
-        let price = FormPrice::new(found, forms.len() + events::count(study));
-        // A dead time first: where a loop stands in for it, forms of the velocity make up for the difference.
         let lacks = is_something_left(study, &found.appraisal);
+        let mut forms = if open { forms::forms(study, found) } else { Vec::new() };
+        let tried = crate::number(forms.len() + events::count(study)) + spins.tried;
+        forms.extend(spins.forms);
+        let price = FormPrice::new(found, tried);
+        // A dead time first: where a loop stands in for it, forms of the velocity make up for the difference.
         let taken = take_delay(study, found, (&price, lacks))
             || take_form(study, found, &forms, (&price, lacks))
             || take_event(study, found, (&price, lacks));

@@ -10,6 +10,7 @@ use crate::alternatives::{factor_state, listed};
 use crate::diagnosis::Form;
 use crate::legs;
 use crate::model::{Effect, Model};
+use crate::report::figure::significant;
 use crate::study::Study;
 use crate::terms::Shape;
 use crate::words::seconds;
@@ -141,6 +142,11 @@ impl Words<'_> {
                 "that grows as the motion of {} warms it, within {}",
                 self.letter(axis),
                 seconds(3.0 * time_constant)
+            ),
+            Factor::Spin { ref load, rate, .. } => format!(
+                "that swings by {}, {} times a second for each unit of {load}",
+                self.amount(number.abs()),
+                significant(rate, 4)
             ),
             Factor::Half { at: half, .. } => {
                 format!(

@@ -13,7 +13,7 @@
 mod brief;
 mod data;
 mod element;
-mod figure;
+pub(crate) mod figure;
 mod files;
 mod finding;
 mod html;

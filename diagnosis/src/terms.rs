@@ -135,6 +135,11 @@ impl Shape {
         }
     }
 
+    /// A wave whose frequency is `rate` for each unit of a recorded speed.
+    pub(crate) fn spin(load: usize, rate: f64, phase: f64) -> Self {
+        Self::Times { core: Box::new(Self::Constant), factors: vec![Factor::Spin { load, rate, phase }] }
+    }
+
     /// Whether it is no term of the vocabulary with a name of its own: a term with factors, or an event.
     pub(crate) fn is_composed(&self) -> bool {
         matches!(self, Self::Times { .. } | Self::Step { .. })
@@ -156,8 +161,8 @@ impl Shape {
         let searched = |factor: &Factor<usize>| match factor {
             Factor::Fading { .. } | Factor::Warmth { .. } | Factor::Play { .. } | Factor::Half { .. } => 1,
             Factor::Temperature { time_constant, .. } => usize::from(*time_constant > 0.0),
-            // Where it lies, and how wide it is.
-            Factor::Curve { .. } => 2,
+            // Where it lies, and how wide it is; how fast it turns, and from where.
+            Factor::Curve { .. } | Factor::Spin { .. } => 2,
             _ => 0,
         };
         self.factors().iter().map(searched).sum()
@@ -368,6 +373,11 @@ impl Shape {
             }
         }
     }
+}
+
+/// How often something has turned whose speed, in turns a second, a channel records.
+pub(crate) fn turned(time: &[f64], speed: &[f64]) -> Vec<f64> {
+    factor::FactorMemory::default().turned(time, speed, 1.0)
 }
 
 fn each(out: &mut [Vec<f64>], fill: impl Fn(&mut Vec<f64>)) {

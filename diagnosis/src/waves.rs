@@ -1,9 +1,9 @@
 //! Waves: the search for periods along axes and frequencies in time.
 //!
 //! In: the residual of every channel under the present model, and its noise. Out: the most promising `cyclic` and
-//! `vibration` effects, with how many independent waves were looked at. The residual is weighted by the inverse of its
-//! noise, sorted into fine bins of position or time, and Fourier transformed at once: `spectrum` tells what each wave would
-//! gain.
+//! `vibration` effects, and waves over the turns of which a channel records the speed, with how many independent waves were
+//! looked at. The residual is weighted by the inverse of its noise, sorted into fine bins of position, time or turns, and
+//! Fourier transformed at once: `spectrum` tells what each wave would gain.
 
 mod spectrum;
 
@@ -334,6 +334,53 @@ fn in_time(study: &Study<'_>, source: &Source, courses: &[Arc<Course>]) -> Optio
         local: top.local,
     };
     Some(LookedAt { peaks: found.into_iter().map(peak).collect(), tried: span / (2.0 * step) })
+}
+
+/// What something has turned since the beginning of each recording, of which a channel records the speed.
+pub(crate) struct Turns {
+    /// The number of the channel among the loads.
+    pub(crate) load: usize,
+    /// For each recording: the speed summed up over time, row by row.
+    pub(crate) turned: Vec<Vec<f64>>,
+    /// From one row to the next, typically.
+    pub(crate) step: f64,
+}
+
+/// Waves whose frequency follows a recorded speed, and how many independent ones were looked at.
+pub(crate) fn over_turns(
+    study: &Study<'_>,
+    (model, noises): (&Model, &[Vec<Noise>]),
+    travels: &[Travel],
+    turns: &Turns,
+) -> (Vec<Peak>, f64) {
+    let courses: Vec<Arc<Course>> =
+        (0..study.scenes.len()).map(|scene| Course::new(study, scene, model)).collect();
+    let residuals = all_weighted(study, model, noises, &courses);
+    let in_time = |place: &WavePlace| place.vibration;
+    let places: Vec<WavePlace> =
+        places(study, &courses, noises, travels).into_iter().filter(in_time).collect();
+    let all = || turns.turned.iter().flatten();
+    let low = all().copied().fold(f64::INFINITY, f64::min);
+    let range = all().copied().fold(f64::NEG_INFINITY, f64::max) - low;
+    let shortest = 2.0 * turns.step;
+    // As in time: what changes in fewer cycles is a drift.
+    if !(shortest > 0.0 && CYCLES * shortest < range) {
+        return (Vec::new(), 0.0);
+    }
+    let turned: Vec<&[f64]> = turns.turned.iter().map(Vec::as_slice).collect();
+    let (mut peaks, mut tried) = (Vec::new(), 0.0);
+    for places in places.chunks(PLACES) {
+        for source in sources(study, model, &courses, &residuals, places) {
+            let found = tops(&source.spectrum(&turned, low, range, shortest), CYCLES / range, OF_A_PLACE);
+            let peak = |top: Top| {
+                let shape = Shape::spin(turns.load, top.frequency, 0.0);
+                Peak { effect: effect(&source, shape), gain: top.gain, local: top.local }
+            };
+            peaks.extend(found.into_iter().map(peak));
+            tried += range / shortest;
+        }
+    }
+    (peaks, tried)
 }
 
 /// A period along an axis; of one that goes round the nearest whole part of a turn.

@@ -8,7 +8,9 @@ use std::f64::consts::TAU;
 use model_dsl::calibration::{Factor, Within};
 
 use crate::candidates::{geometric, recorded};
+use crate::course::Course;
 use crate::engine::Found;
+use crate::kinship;
 use crate::model::{Effect, Fitted, Place};
 use crate::ranges::shortest_step;
 use crate::side::Side;
@@ -76,6 +78,7 @@ struct Atoms {
 /// All forms.
 pub(super) fn forms(study: &Study<'_>, found: &Found) -> Vec<Form> {
     let atoms = Atoms::new(study, &found.travels);
+    let named = loops(study, found, &atoms);
     let mut forms = names(found);
     forms.extend(of_effects(found, &atoms));
     forms.extend(beats(found, &atoms));
@@ -84,11 +87,8 @@ pub(super) fn forms(study: &Study<'_>, found: &Found) -> Vec<Form> {
         let own =
             plays(study, motion, &found.travels, &atoms).into_iter().chain(drags(study, motion, &atoms));
         let shapes = own.chain(products(&atoms));
-        forms.extend(
-            shapes
-                .filter(|shape| !has_a_name(study, &found.travels, motion, shape))
-                .map(|shape| one(place, shape)),
-        );
+        let effects = shapes.map(|shape| Effect { place, shape });
+        forms.extend(effects.filter(|effect| !named.contains(effect)).map(one));
     }
     forms
 }
@@ -130,20 +130,38 @@ fn names(found: &Found) -> Vec<Form> {
     open.map(|effect| Form { effect: effect.clone(), coefficients: vec![1.0], beside: None }).collect()
 }
 
-/// Whether what follows the velocity of an axis in its own motion is a loop, or a clock. What follows its speed is neither, but a loop whose
-/// gain differs from one direction to the other; of an axis that never turns the two are the same.
-fn has_a_name(study: &Study<'_>, travels: &[Travel], motion: usize, shape: &Shape) -> bool {
-    let own = |axis: usize| study.own[axis] == Some(motion);
-    let turns = |axis: usize| travels[axis].between > 0.0;
-    match (shape.core(), shape.factors()) {
-        (Shape::Constant, [Factor::Velocity { axis, .. }]) => own(*axis),
-        (Shape::Constant, [Factor::Speed { axis, .. }]) => own(*axis) && !turns(*axis),
+/// What follows the velocity of an axis in its own motion, and what the recordings show alike in others: it has a name, a loop or a
+/// clock. What follows the speed is neither, but a loop whose gain differs from one direction to the other; of an axis that never turns
+/// the two are the same.
+fn loops(study: &Study<'_>, found: &Found, atoms: &Atoms) -> Vec<Effect> {
+    let turns = |axis: usize| found.travels[axis].between > 0.0;
+    let follows = |factor: &&Factor<usize>| match factor {
+        Factor::Velocity { .. } => true,
+        Factor::Speed { axis, .. } => !turns(*axis),
         _ => false,
-    }
+    };
+    let shapes: Vec<Shape> = atoms
+        .others
+        .iter()
+        .filter(follows)
+        .map(|factor| times(Shape::Constant, vec![factor.clone()]))
+        .collect();
+    let everywhere = places(study)
+        .into_iter()
+        .flat_map(|place| shapes.iter().map(move |shape| Effect { place, shape: shape.clone() }));
+    let model = &found.fit.model;
+    let courses: Vec<_> = (0..study.scenes.len()).map(|scene| Course::new(study, scene, model)).collect();
+    let kin = kinship::groups(study, &courses, &found.appraisal.noises, everywhere.collect());
+    let own = |effect: &Effect| {
+        let axis = effect.shape.factors().first().and_then(Factor::axis);
+        axis.is_some_and(|axis| study.own[axis].is_some() && study.own[axis] == effect.motion())
+    };
+    let members = kin.into_iter().map(|kin| [vec![kin.effect], kin.equals].concat());
+    members.filter(|effects| effects.iter().any(own)).flatten().collect()
 }
 
-fn one(place: Place, shape: Shape) -> Form {
-    Form { effect: Effect { place, shape }, coefficients: vec![1.0], beside: None }
+fn one(effect: Effect) -> Form {
+    Form { effect, coefficients: vec![1.0], beside: None }
 }
 
 /// Where effects of a motion may come in.

@@ -23,6 +23,10 @@ const COMPARED: usize = 24;
 /// With one, a wave that grows along a travel is taken for another form beside a backlash that does; six find what three do.
 const TRIALS: usize = 3;
 
+/// How many forms with a number are compared at other values of it too. Beside a play that fades there are some ten others of the same
+/// size, as the warmth of each axis behind each time constant.
+const SHARPENED: usize = 16;
+
 /// How many names that may be missing compete beside the forms, of those that promise most beside what was found and of those that do
 /// alone, in turn. A search seldom misses more than two beside what it lacks, and one lever arm has three names or four.
 /// With none, forms beside a squareness stay at up to 2.8 times the noise, with six at 1.2, and twenty-four find what twelve do.
@@ -54,9 +58,10 @@ pub(super) struct FormPrice {
 }
 
 impl FormPrice {
-    pub(super) fn new(found: &Found, forms: usize) -> Self {
+    /// That of the best of so many forms.
+    pub(super) fn new(found: &Found, forms: f64) -> Self {
         let known = found.tries.candidates.max(1.0);
-        Self { more: 2.0 * ((known + crate::number(forms)) / known).ln() }
+        Self { more: 2.0 * ((known + forms) / known).ln() }
     }
 
     fn of(&self, study: &Study<'_>, found: &Found, effect: &Effect, samples: f64) -> f64 {
@@ -92,14 +97,15 @@ pub(super) fn best(ring: Ring<'_>, forms: &[Form]) -> Vec<Trial> {
         Some(again) => again.outcome(Some(place)).cost,
         None => contest.outcome(Some(number)).cost,
     };
-    let mut gains: Vec<(usize, f64)> = compared
+    let mut gains: Vec<(Form, f64)> = compared
         .into_iter()
         .enumerate()
-        .map(|(place, number)| (number, known - cost(place, number) - price(&forms[number])))
+        .map(|(place, number)| (forms[number].clone(), known - cost(place, number) - price(&forms[number])))
         .filter(|(_, gain)| *gain > DECISIVE)
         .collect();
     gains.sort_by(|a, b| b.1.total_cmp(&a.1));
-    gains.into_iter().take(TRIALS).map(|(number, _)| ring.refined(&model, &forms[number])).collect()
+    let gains = ring.sharpened(&model, gains);
+    gains.into_iter().take(TRIALS).map(|(form, _)| ring.refined(&model, &form)).collect()
 }
 
 /// Whether a model holds what the vocabulary of the search has no name for. A name is asked again only beside such a form, which may have
@@ -158,14 +164,38 @@ impl Ring<'_> {
         Contest::new(self.study, (self.found, model, self.noises), &rows, forms.len(), &columns)
     }
 
+    /// The forms and what they gain, with a better value of a factor's number where a neighbour on the grid gains more; the best first. A
+    /// form that lies between two values of the grid would fall behind others that have no such number.
+    fn sharpened(&self, model: &Model, mut forms: Vec<(Form, f64)>) -> Vec<(Form, f64)> {
+        let has_neighbours = |(form, _): &&mut (Form, f64)| !forms::neighbours(&form.effect.shape).is_empty();
+        let mut open: Vec<&mut (Form, f64)> =
+            forms.iter_mut().filter(has_neighbours).take(SHARPENED).collect();
+        let beside: Vec<(usize, Form)> = open
+            .iter()
+            .enumerate()
+            .flat_map(|(place, (form, _))| neighbours(form).into_iter().map(move |other| (place, other)))
+            .collect();
+        let others: Vec<Form> = beside.iter().map(|(_, form)| form.clone()).collect();
+        if others.is_empty() {
+            return forms;
+        }
+        let contest = self.contest(model, &others);
+        let known = contest.outcome(None).cost;
+        for (number, (place, other)) in beside.into_iter().enumerate() {
+            let price = self.price.of(self.study, self.found, &other.effect, contest.samples);
+            let gain = known - contest.outcome(Some(number)).cost - price;
+            if gain > open[place].1 {
+                *open[place] = (other, gain);
+            }
+        }
+        forms.sort_by(|a, b| b.1.total_cmp(&a.1));
+        forms
+    }
+
     /// A form with the best value of its factor's number, its amount, and the effects that are kept beside it.
     fn refined(&self, model: &Model, form: &Form) -> Trial {
         let mut variants = vec![form.clone()];
-        variants.extend(
-            forms::neighbours(&form.effect.shape)
-                .into_iter()
-                .map(|shape| Form { effect: Effect { shape, ..form.effect }, ..form.clone() }),
-        );
+        variants.extend(neighbours(form));
         let contest = self.contest(model, &variants);
         let outcomes = (0..variants.len()).map(|number| (number, contest.outcome(Some(number))));
         let best = outcomes.min_by(|(_, a), (_, b)| a.cost.total_cmp(&b.cost));
@@ -177,6 +207,12 @@ impl Ring<'_> {
             kept: kept.map(|number| model[number].clone()).collect(),
         }
     }
+}
+
+/// A form with other values of the number of its factor.
+fn neighbours(form: &Form) -> Vec<Form> {
+    let shapes = forms::neighbours(&form.effect.shape).into_iter();
+    shapes.map(|shape| Form { effect: Effect { shape, ..form.effect }, ..form.clone() }).collect()
 }
 
 /// The column of each form in some rows of a channel.

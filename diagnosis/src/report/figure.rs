@@ -179,7 +179,7 @@ fn exponent(value: f64) -> Option<i32> {
 }
 
 /// A number with so many significant digits, at least its whole digits as far as four.
-fn significant(value: f64, digits: i32) -> String {
+pub(crate) fn significant(value: f64, digits: i32) -> String {
     match exponent(value) {
         _ if !value.is_finite() => "unknown".to_owned(),
         Some(exponent) if value != 0.0 => {

@@ -149,7 +149,7 @@ impl FactorMemory {
     }
 
     /// How often something has turned whose frequency is `rate` for each unit of a channel.
-    fn turned(&mut self, time: &[f64], channel: &[f64], rate: f64) -> Vec<f64> {
+    pub(super) fn turned(&mut self, time: &[f64], channel: &[f64], rate: f64) -> Vec<f64> {
         let each = channel.iter().zip(time);
         each.map(|(unit, time)| {
             let frequency = rate * unit;

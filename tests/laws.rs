@@ -192,7 +192,7 @@ fn a_rotary_table_at_ninety_degrees() {
     near("EXX", [0.0, -1.0, 0.0]);
 }
 
-/// `sign: -1` turns a lever, and a free travel stands in it for the position.
+/// `sign: -1` is a matter of the symbol and turns no lever of the name; a free travel stands in it for the position.
 #[test]
 fn signs_and_travels_of_the_file() {
     let slide = |detail: &str| {
@@ -200,8 +200,8 @@ fn signs_and_travels_of_the_file() {
     };
     let values = [("x", 100.0), ("dx", 40.0)];
     assert_eq!(levers(&slide("ao"), &values)["EB0X"], [0.0, 0.0, -100.0]);
-    assert_eq!(levers(&slide("{sign: -1}"), &values)["EB0X"], [0.0, 0.0, 100.0]);
-    assert_eq!(levers(&slide("{sign: -1, travel: dx}"), &values)["EB0X"], [0.0, 0.0, 40.0]);
+    assert_eq!(levers(&slide("{symbol: ao, sign: -1}"), &values)["EB0X"], [0.0, 0.0, -100.0]);
+    assert_eq!(levers(&slide("{symbol: ao, sign: -1, travel: dx}"), &values)["EB0X"], [0.0, 0.0, -40.0]);
 }
 
 /// The error is the sum of levers times motions, in every shipped machine.

@@ -227,7 +227,6 @@ impl Machine {
     /// An error motion moves its own body in bed directions. The link's own direction is counted along `along`; where the
     /// motions are relative, those on the part's branch are seen from the part, but the line of a slide is turned alike from both sides.
     fn sign(&self, link: &Link, error: &ErrorMotion, on_part: bool) -> f64 {
-        let file = if error.opposite { -1.0 } else { 1.0 };
         let own = link.moves()
             && error.axis == link.along
             && match link.kind {
@@ -236,7 +235,7 @@ impl Machine {
             };
         let line = matches!((link.kind, error.shape), (Kind::Slide(_), Shape::Alignment));
         let seen_from_part = self.relative && on_part && !line && !own;
-        if own && link.backwards || seen_from_part { -file } else { file }
+        if own && link.backwards || seen_from_part { -1.0 } else { 1.0 }
     }
 }
 

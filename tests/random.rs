@@ -207,7 +207,8 @@ impl Builder {
             }
             self.symbols += 1;
             error.symbol = plan.symbol.then(|| format!("m{}", self.symbols));
-            error.opposite = plan.opposite;
+            // It is the symbol that is counted against the ISO sense.
+            error.opposite = plan.symbol && plan.opposite;
             if matches!(link.kind, Kind::Slide(_)) && error.shape == Shape::Alignment {
                 error.travel = plan.travel.then(|| format!("d{}", link.id));
                 error.rotates = plan.rotates;

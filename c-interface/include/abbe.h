@@ -72,6 +72,8 @@ enum AbbeRefused
   ABBE_REFUSED_OVER_LIMIT = 4,
   // A length that does not fit: a fault of Abbe.
   ABBE_REFUSED_LENGTH = 5,
+  // In this pose axes move the tip in nearly the same direction: they would have to move more than a hundred times as far as it.
+  ABBE_REFUSED_NEAR_SINGULAR = 6,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

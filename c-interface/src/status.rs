@@ -106,6 +106,8 @@ pub enum Refused {
     OverLimit = 4,
     /// A length that does not fit: a fault of Abbe.
     Length = 5,
+    /// In this pose axes move the tip in nearly the same direction: they would have to move more than a hundred times as far as it.
+    NearSingular = 6,
 }
 
 impl From<Refusal> for Refused {
@@ -116,6 +118,7 @@ impl From<Refusal> for Refused {
             Refusal::NotConverging { .. } => Self::NotConverging,
             Refusal::OverLimit { .. } => Self::OverLimit,
             Refusal::Length { .. } => Self::Length,
+            Refusal::NearSingular { .. } => Self::NearSingular,
         }
     }
 }

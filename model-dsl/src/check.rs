@@ -133,9 +133,9 @@ pub struct Finding {
     pub name: String,
     /// The machine's symbol.
     pub symbol: String,
-    /// The derived lever arm; zero where there is none.
+    /// The derived lever arm of what the symbol counts; zero where there is none.
     pub derived: Polynomial,
-    /// The printed lever arm; zero where there is none.
+    /// The printed one.
     pub printed: Polynomial,
     /// How they stand to each other.
     pub verdict: Verdict,

@@ -114,7 +114,7 @@ fn motion(machine: &Machine, number: usize, travels: &[TravelInfo]) -> Motion {
         angular: motion.kind.angular(),
         direction: motion.kind.axis(),
         alignment: motion.kind.alignment(),
-        against_iso: motion.sign < 0,
+        symbol_against_iso: motion.sign < 0,
         link: link.id.clone(),
         axis: machine.axes().iter().position(|(axis, _)| *axis == motion.link),
         body: motion.link,

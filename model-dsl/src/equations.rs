@@ -99,8 +99,8 @@ pub struct Motion {
     pub direction: Axis,
     /// Whether it is an alignment error of an axis.
     pub alignment: bool,
-    /// Whether the machine file counts it against the ISO sense.
-    pub against_iso: bool,
+    /// Whether the machine file counts its symbol against the ISO sense. Under its name it never is.
+    pub symbol_against_iso: bool,
     /// The link that it belongs to.
     pub link: String,
     /// The number in [`Equations::axes`] of that link, where a program moves it.
@@ -156,6 +156,16 @@ impl Motion {
             Names::Iso => &self.name,
             Names::Symbols => &self.symbol,
         }
+    }
+
+    /// Whether what is printed is counted against the ISO sense.
+    pub fn is_printed_against_iso(&self, names: Names) -> bool {
+        names == Names::Symbols && self.symbol_against_iso
+    }
+
+    /// An arm of the motion as that of what is printed.
+    pub fn printed_arm(&self, arm: &Polynomial, names: Names) -> Polynomial {
+        if self.is_printed_against_iso(names) { -arm } else { arm.clone() }
     }
 }
 

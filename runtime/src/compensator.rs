@@ -17,7 +17,7 @@ use crate::math::{add_scaled, all_finite, sqrt};
 use crate::{ErrorMotion, ErrorMotions, Kinematics, Sample, Sines, TermState};
 
 pub use self::batch::{Batch, BatchSizes, BatchWork};
-pub use self::report::{Convergence, Limits, Outcome, Refusal, SetupError, Work};
+pub use self::report::{Convergence, GREATEST_AMPLIFICATION, Limits, Outcome, Refusal, SetupError, Work};
 pub use self::setup::states_needed;
 
 /// Predicts the error of a machine and compensates it, one sample a servo cycle.
@@ -164,6 +164,9 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
         let columns = prediction.columns(directions);
         let ramp = prediction.needs.ramp;
         let start = if ramp { prediction.corrected(sample, sample.position)? } else { error };
+        if reach.may_amplify() {
+            report::check_amplification(reach.moved_and_corrected(columns, start))?;
+        }
         let Pulled { pull, mut here, iterations } =
             convergence.iterate(prediction, sample, start, columns, &reach, out)?;
         limits.check(|| sqrt(reach.distance_squared(here)))?;

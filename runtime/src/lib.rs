@@ -123,8 +123,8 @@ mod table;
 mod term;
 
 pub use compensator::{
-    Batch, BatchSizes, BatchWork, Compensator, Convergence, Limits, Outcome, Refusal, SetupError, Work,
-    states_needed,
+    Batch, BatchSizes, BatchWork, Compensator, Convergence, GREATEST_AMPLIFICATION, Limits, Outcome, Refusal,
+    SetupError, Work, states_needed,
 };
 pub use direction::{Direction, DirectionTracker};
 pub use factor::{Factor, Within};

@@ -480,8 +480,7 @@ impl fmt::Debug for Plant {
 fn own_axis(machine: &Machine, names: &MachineNames, motion: &str) -> Option<usize> {
     let motion = machine.motions.iter().find(|known| known.name == motion)?;
     let link = machine.links.get(motion.link)?;
-    // Counted the other way, a lag would run ahead: then it is a term like any other.
-    let letter = link.kind.letter().filter(|_| is_own(link, motion.kind) && motion.sign > 0)?;
+    let letter = link.kind.letter().filter(|_| is_own(link, motion.kind))?;
     names.axis(letter.encode_utf8(&mut [0; 4]))
 }
 

@@ -151,6 +151,8 @@ fn findings(
             Verdict::Missing if left_out(&motion.name) => Verdict::LeftOut,
             verdict => verdict,
         };
+        let of_symbol = |arm: Polynomial| if motion.sign < 0 { -&arm } else { arm };
+        let (derived, printed) = (of_symbol(derived), of_symbol(printed));
         Finding { name: motion.name.clone(), symbol: motion.symbol.clone(), derived, printed, verdict }
     });
     motions.filter(|finding| !(finding.derived.is_zero() && finding.printed.is_zero())).collect()

@@ -103,7 +103,8 @@ fn published() -> [(Compiled, String); 2] {
 
 fn polynomial(compiled: &Compiled, text: &str) -> Polynomial {
     let vocabulary = Vocabulary::new(&compiled.machine);
-    parse(text, &mut |name| vocabulary.resolve(name)).expect("a published expression")
+    let read = parse(text, &mut |name| vocabulary.resolve(name)).expect("a published expression");
+    vocabulary.settle(&read)
 }
 
 /// The published equations as left side and value.
@@ -187,6 +188,34 @@ fn motions_of(left: &str, change: &Polynomial) -> Vec<(String, String)> {
         (left.to_owned(), motion(&symbols))
     };
     change.terms().map(|(monomial, _)| name(monomial)).collect()
+}
+
+/// The name of ISO 230-1 and a symbol that is counted against it are two names with opposite arms; a letter may stand for either.
+#[test]
+fn a_symbol_counted_against_iso_is_compared_with_its_own_sign() {
+    let nist = machine("nist-turning-center");
+    let text = file("published/nist-turning-center.eqs").text().to_owned();
+    for (letter, right) in [
+        ("", "(-EB0X)*dx"),
+        ("let g = ao\n", "g*dx"),
+        ("let g = -ao\n", "(-g)*dx"),
+        ("let g = -EB0X\n", "g*dx"),
+    ] {
+        let changed = text.replace("ao*dx", right).replace("[general]\n", &format!("[general]\n{letter}"));
+        let changed = changed.replace("[significant]\n", &format!("[significant]\n{letter}"));
+        assert!(report(&nist, &changed).agrees(), "{letter}{right}");
+    }
+    let turned = report(&nist, &text.replace("ao*dx", "EB0X*dx"));
+    assert!(
+        contradictions(&turned)
+            .iter()
+            .all(|(_, motion, verdict)| motion == "EB0X" && *verdict == Verdict::OppositeSign)
+    );
+    assert!(
+        turned.text().contains("opposite sign: ao (EB0X): derived with lever dx, printed with -dx"),
+        "{}",
+        turned.text()
+    );
 }
 
 #[test]

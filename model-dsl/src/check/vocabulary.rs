@@ -5,7 +5,8 @@ use crate::algebra::{Monomial, Polynomial, Symbol};
 use crate::machine::{Machine, parse_name};
 use crate::suggest::nearest;
 
-/// A letter that stands for a motion or a position, perhaps counted in the other sense.
+/// A name that stands for a motion, a position or a constant, perhaps counted in the other sense: a letter of the section, or a name of
+/// the machine.
 #[derive(Clone, Debug)]
 struct Letter {
     name: String,
@@ -17,26 +18,30 @@ struct Letter {
 #[derive(Clone, Debug)]
 pub(super) struct Vocabulary<'m> {
     machine: &'m Machine,
-    names: Vec<(String, Symbol)>,
+    names: Vec<Letter>,
     letters: Vec<Letter>,
 }
 
 impl<'m> Vocabulary<'m> {
     /// The names of a machine: positions, constants, travels, symbols and ISO names.
     pub(super) fn new(machine: &'m Machine) -> Self {
-        let mut names: Vec<(String, Symbol)> = Vec::new();
+        let named = |name: &str, symbol: Symbol| Letter { name: name.to_owned(), symbol, negative: false };
+        let mut names: Vec<Letter> = Vec::new();
         for (_, link) in machine.axes() {
-            names.push((link.variable().to_string(), Symbol::Position(link.variable())));
+            names.push(named(&link.variable(), Symbol::Position(link.variable())));
         }
         for constant in &machine.constants {
-            names.push((constant.name.to_string(), Symbol::Constant(constant.name.clone())));
+            names.push(named(&constant.name, Symbol::Constant(constant.name.clone())));
         }
         for travel in machine.motions.iter().filter_map(|motion| motion.travel.as_ref()) {
-            names.push((travel.value.to_string(), Symbol::Travel(travel.value.clone())));
+            names.push(named(&travel.value, Symbol::Travel(travel.value.clone())));
         }
-        let motion = |name: &str| Symbol::Motion(name.into());
-        names.extend(machine.motions.iter().map(|one| (one.symbol.clone(), motion(&one.name))));
-        names.extend(machine.motions.iter().map(|one| (one.name.clone(), motion(&one.name))));
+        for motion in &machine.motions {
+            let known = named(&motion.symbol, Symbol::Motion(motion.name.as_str().into()));
+            names.push(Letter { negative: motion.sign < 0, ..known });
+        }
+        let of_motion = |name: &str| named(name, Symbol::Motion(name.into()));
+        names.extend(machine.motions.iter().map(|motion| of_motion(&motion.name)));
         Self { machine, names, letters: Vec::new() }
     }
 
@@ -52,23 +57,22 @@ impl<'m> Vocabulary<'m> {
             Some(rest) => (true, rest.trim()),
             None => (false, value),
         };
-        let symbol = self.machine_name(name).ok_or_else(|| name.to_owned())?;
-        self.letters.push(Letter { name: letter.to_owned(), symbol, negative });
+        let known = self.machine_name(name).ok_or_else(|| name.to_owned())?;
+        let negative = negative != known.negative;
+        self.letters.push(Letter { name: letter.to_owned(), negative, ..known });
         Ok(())
     }
 
     /// The symbol of a name. A letter counted in the other sense comes as a placeholder, which [`Self::settle`] replaces.
     pub(super) fn resolve(&self, name: &str) -> Option<Symbol> {
-        match self.letters.iter().find(|letter| letter.name == name) {
-            Some(letter) if letter.negative => Some(placeholder(letter)),
-            Some(letter) => Some(letter.symbol.clone()),
-            None => self.machine_name(name),
-        }
+        let letter = self.letters.iter().find(|letter| letter.name == name).cloned();
+        let known = letter.or_else(|| self.machine_name(name))?;
+        Some(if known.negative { placeholder(&known) } else { known.symbol })
     }
 
     /// Replaces letters counted in the other sense by what they stand for, with a minus sign.
     pub(super) fn settle(&self, polynomial: &Polynomial) -> Polynomial {
-        let counted = self.letters.iter().filter(|letter| letter.negative);
+        let counted = self.names.iter().chain(&self.letters).filter(|letter| letter.negative);
         counted.fold(polynomial.clone(), |settled, letter| {
             let value = -&Polynomial::symbol(letter.symbol.clone());
             substitute(&settled, &placeholder(letter), &value)
@@ -78,23 +82,24 @@ impl<'m> Vocabulary<'m> {
     /// The known name that a mistyped one probably means.
     pub(super) fn nearest(&self, name: &str) -> Option<&str> {
         let letters = self.letters.iter().map(|letter| letter.name.as_str());
-        nearest(name, letters.chain(self.names.iter().map(|(known, _)| known.as_str())))
+        nearest(name, letters.chain(self.names.iter().map(|known| known.name.as_str())))
     }
 
-    fn machine_name(&self, name: &str) -> Option<Symbol> {
-        let known = self.names.iter().find(|(known, _)| known == name);
-        known.map(|(_, symbol)| symbol.clone()).or_else(|| self.alias(name))
+    fn machine_name(&self, name: &str) -> Option<Letter> {
+        let known = self.names.iter().find(|known| known.name == name);
+        known.cloned().or_else(|| self.alias(name))
     }
 
     /// A motion by another spelling of its ISO name: `C0Y` and `COY` for `EC0Y`.
-    fn alias(&self, name: &str) -> Option<Symbol> {
+    fn alias(&self, name: &str) -> Option<Letter> {
         let found = self.machine.motions.iter().find(|motion| {
             let id = self.machine.links.get(motion.link).map_or("", |link| link.id.as_str());
             parse_name(name, id).is_some_and(|parsed| {
                 parsed.letter == motion.kind.letter() && parsed.alignment == motion.kind.alignment()
             })
         });
-        found.map(|motion| Symbol::Motion(motion.name.as_str().into()))
+        let symbol = Symbol::Motion(found?.name.as_str().into());
+        Some(Letter { name: name.to_owned(), symbol, negative: false })
     }
 }
 

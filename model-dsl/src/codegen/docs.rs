@@ -24,9 +24,12 @@ pub(super) fn machine(equations: &Equations) -> String {
 /// An error motion with its symbol, meaning and unit.
 pub(super) fn motion(motion: &Motion) -> String {
     let unit = if motion.angular { "rad" } else { "mm" };
-    let symbol = if motion.symbol == motion.name { String::new() } else { format!(" (`{}`)", motion.symbol) };
-    let sense = if motion.against_iso { ", counted against the sense of ISO 230-1" } else { "" };
-    format!("{}{symbol}: {}{sense} \\[{unit}\\].", motion.name, motion.meaning)
+    let symbol = match &motion.symbol {
+        symbol if *symbol == motion.name => String::new(),
+        symbol if motion.symbol_against_iso => format!(" (`-{symbol}`)"),
+        symbol => format!(" (`{symbol}`)"),
+    };
+    format!("{}{symbol}: {} \\[{unit}\\].", motion.name, motion.meaning)
 }
 
 /// The equations of the error, one line a direction.

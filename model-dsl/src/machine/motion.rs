@@ -62,7 +62,7 @@ pub struct Motion {
     pub link: usize,
     /// What it does.
     pub kind: MotionKind,
-    /// -1 where the file counts it against the ISO sense.
+    /// -1 where the symbol is counted against the ISO sense; the motion under its name never is.
     pub sign: i64,
     /// The free travel in the lever of an alignment error, where it is not the position.
     pub travel: Option<Spanned<Name>>,
@@ -122,10 +122,10 @@ pub(crate) fn body_sign(motion: &Motion, link: &Link, relative: bool) -> i64 {
     };
     let line = matches!((link.kind, motion.kind), (LinkKind::Slide(_), MotionKind::Alignment(_)));
     if own {
-        motion.sign * link.along.sign
+        link.along.sign
     } else if relative && link.branch == Branch::Workpiece && !line {
-        -motion.sign
+        -1
     } else {
-        motion.sign
+        1
     }
 }

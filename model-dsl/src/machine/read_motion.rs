@@ -161,6 +161,9 @@ fn detail(node: &Node, motion: &mut Motion, link: &Link, diagnostics: &mut Diagn
             if let Some(node) = fields.get("sign") {
                 let word = choice(node, "a sign", &["1", "+1", "-1"], diagnostics);
                 motion.sign = if word == Some("-1") { -1 } else { 1 };
+                if motion.sign < 0 && motion.symbol == motion.name {
+                    diagnostics.push(sign_without_symbol(node, motion));
+                }
             }
             let travel = fields.entry("travel");
             let rotates = fields.entry("rotates");
@@ -176,6 +179,17 @@ fn detail(node: &Node, motion: &mut Motion, link: &Link, diagnostics: &mut Diagn
             }
         }
     }
+}
+
+/// A name of ISO 230-1 has one sense; another one needs a name of its own.
+fn sign_without_symbol(node: &Node, motion: &Motion) -> Diagnostic {
+    Diagnostic::error(
+        "E0142",
+        node.span,
+        format!("`sign: -1` has no symbol that would count against {}", motion.name),
+    )
+    .label("the sign belongs to the symbol")
+    .help(format!("give it a symbol, `{}: {{symbol: a, sign: -1}}`, or take it out", motion.name))
 }
 
 /// `travel` and `rotates` say how an alignment error of a slide acts; elsewhere they mean nothing.

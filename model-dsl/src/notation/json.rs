@@ -1,7 +1,7 @@
 //! JSON of schema `abbe-equations/1`. In: equations. Out: one object whose expressions are plain infix text.
 //!
-//! A term holds `"sign": -1` where its motion is counted against the ISO sense; the arm belongs to the motion
-//! as it is counted.
+//! An arm is that of the motion under its ISO name. A term holds `"symbol_sign": -1` where the symbol is counted against the
+//! ISO sense: its arm is the opposite one.
 
 use super::infix;
 use crate::equations::{Equations, Row, Term};
@@ -28,7 +28,7 @@ fn row(row: &Row, equations: &Equations) -> String {
 
 fn term(term: &Term, equations: &Equations) -> Option<String> {
     let motion = equations.motions.get(term.motion)?;
-    let sign = if motion.against_iso { ", \"sign\": -1" } else { "" };
+    let sign = if motion.symbol_against_iso { ", \"symbol_sign\": -1" } else { "" };
     Some(format!(
         "\n      {{\"motion\": {}, \"symbol\": {}, \"arm\": {}{sign}}}",
         string(&motion.name),

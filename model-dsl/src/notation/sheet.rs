@@ -127,7 +127,7 @@ fn row(row: &Row, equations: &Equations, names: Names, taken: &BTreeSet<String>)
     parts.push(tree::plus(letter("dP", true)));
     let terms = row.terms.iter().filter_map(|term| {
         let motion = equations.motions.get(term.motion)?;
-        Some(tree::term(&term.arm, Letter::motion(motion, names)))
+        Some(tree::term(&motion.printed_arm(&term.arm, names), Letter::motion(motion, names)))
     });
     SheetRow {
         direction: row.direction,
@@ -146,14 +146,15 @@ fn moves(monomial: &Monomial) -> bool {
 fn motions(equations: &Equations, names: Names) -> Vec<MotionEntry> {
     let arm = |row: &Row, number: usize| {
         let found: Option<&Term> = row.terms.iter().find(|term| term.motion == number);
-        found.map(|term| tree::polynomial(&term.arm))
+        let motion = equations.motions.get(number);
+        found.zip(motion).map(|(term, motion)| tree::polynomial(&motion.printed_arm(&term.arm, names)))
     };
     let entry = |(number, motion): (usize, &crate::equations::Motion)| MotionEntry {
         letter: Letter::motion(motion, names),
         iso: motion.name.clone(),
         meaning: motion.meaning.clone(),
         unit: if motion.angular { "rad" } else { "mm" },
-        against_iso: motion.against_iso,
+        against_iso: motion.is_printed_against_iso(names),
         arms: equations.rows.iter().map(|row| arm(row, number)).collect(),
     };
     equations.motions.iter().enumerate().map(entry).collect()
@@ -255,7 +256,7 @@ fn conventions(equations: &Equations, names: Names) -> Vec<String> {
     let against: Vec<&str> = equations
         .motions
         .iter()
-        .filter(|motion| motion.against_iso)
+        .filter(|motion| motion.is_printed_against_iso(names))
         .map(|motion| motion.printed(names))
         .collect();
     if !against.is_empty() {

@@ -36,6 +36,27 @@ fn named(name: &str) -> Option<Symbol> {
     })
 }
 
+/// The turned squareness of the turning centre: +X travel goes towards -Z by EB0X, and towards +Z by ao.
+#[test]
+fn a_symbol_counted_against_iso_has_the_opposite_arm_of_its_name() {
+    let of = |format, names| print(&equations("nist-turning-center"), format, names);
+    let lines = |names| super::error_lines(&equations("nist-turning-center"), names).join("\n");
+    let [symbols, iso] = [Names::Symbols, Names::Iso].map(lines);
+    assert!(symbols.contains("+ dx*ao"), "{symbols}");
+    assert!(iso.contains("- dx*EB0X"), "{iso}");
+    let told = "Counted against the sense of ISO 230-1: ao.";
+    assert!(of(Format::Text, Names::Symbols).contains(told));
+    assert!(!of(Format::Text, Names::Iso).contains("ounted against"));
+    assert!(!of(Format::Latex, Names::Iso).contains("ounted against"));
+    // JSON says the arm of the name under either.
+    for names in [Names::Symbols, Names::Iso] {
+        assert!(
+            of(Format::Json, names)
+                .contains(r#"{"motion": "EB0X", "symbol": "ao", "arm": "-dx", "symbol_sign": -1}"#)
+        );
+    }
+}
+
 fn symbols() -> impl Strategy<Value = Symbol> {
     prop_oneof![
         prop::sample::select(vec!["x", "z", "dz", "X1", "Zt", "a_b"])
@@ -92,8 +113,11 @@ fn text_stays_within_its_width() {
 #[test]
 fn json_tells_the_sense_and_both_names() {
     let text = print(&equations("nist-turning-center"), Format::Json, Names::Symbols);
-    assert!(text.contains(r#"{"motion": "EB0X", "symbol": "ao", "arm": "dx", "sign": -1}"#), "{text}");
-    assert_eq!(text.matches("\"sign\"").count(), 1);
+    assert!(
+        text.contains(r#"{"motion": "EB0X", "symbol": "ao", "arm": "-dx", "symbol_sign": -1}"#),
+        "{text}"
+    );
+    assert_eq!(text.matches("\"symbol_sign\"").count(), 1);
     let lathe = print(&equations("excello-921"), Format::Json, Names::Symbols);
     assert!(lathe.contains(r#""nominal": "x - X1 + X2 + Xt""#));
     assert!(lathe.contains(r#"{"motion": "EBX", "symbol": "eyx", "arm": "Zt"}"#));

@@ -4,11 +4,14 @@
 //! the axes that makes the part of E which they can make. It exists because a machine may have one slide or six, in
 //! directions that a rotary table has turned, and directions that nothing reaches.
 
+use super::report::GREATEST_AMPLIFICATION;
 use crate::math::{add_scaled, dot, length};
 use crate::{Lanes, Real};
 
-/// A direction that the slides reach only by moving ten thousand times as far as the tip counts as out of reach.
-const DEPENDENT: f64 = 1e-4;
+/// A direction that the slides reach only by moving a thousand million times as far as the tip counts as out of reach. Rounding leaves
+/// as much of a direction that none reaches: sines and cosines are known to some 1e-16, and sums of a few of them to 1e-14. What is
+/// reached by less than one in [`GREATEST_AMPLIFICATION`] is refused where it is asked for.
+const DEPENDENT: f64 = 1e-9;
 
 /// What rounding leaves of the square of a scalar product of two unit vectors at right angles: a few units in the last
 /// place of 1, squared.
@@ -68,6 +71,21 @@ impl<T: Real> Reach<T> {
         } else {
             straight
         }
+    }
+
+    /// Whether the axes may have to move more than [`GREATEST_AMPLIFICATION`] times as far as the tip. Slides at right angles that
+    /// move the tip as far as themselves never have to.
+    // Always: of what is known when the code is compiled, nothing is left to ask.
+    #[inline(always)]
+    pub(super) fn may_amplify(&self) -> bool {
+        let bound = GREATEST_AMPLIFICATION * GREATEST_AMPLIFICATION;
+        self.skew.any_above(0.0) || self.straight.iter().any(|weight| weight.any_above(bound))
+    }
+
+    /// The squares of how far the axes move to correct an error, and of the part of it that they correct.
+    pub(super) fn moved_and_corrected(&self, columns: Columns<'_, T>, error: [T; 3]) -> [T; 2] {
+        let corrected = self.tip(columns, self.apply(error));
+        [self.distance_squared(error), dot(corrected, corrected)]
     }
 
     /// `A v = J J^T v`: what the tip does when each axis moves along these columns by its share of v.
@@ -340,12 +358,12 @@ mod tests {
     }
 
     #[test]
-    fn what_a_slide_reaches_by_a_thousandth_is_reached_and_by_a_hundred_thousandth_not() {
+    fn what_a_slide_reaches_by_a_millionth_is_reached_and_what_rounding_leaves_is_not() {
         for lean in [0.0, 0.5] {
             let columns = |reach| [[reach, 0.0, 0.0], [0.0, 1.0, lean], [0.0, 0.0, 1.0]];
             let error = [0.3, -0.2, 0.7];
-            assert_close(made(&columns(1e-3), error), error);
-            assert_close(made(&columns(1e-5), error), [0.0, -0.2, 0.7]);
+            assert_close(made(&columns(1e-6), error), error);
+            assert_close(made(&columns(1e-12), error), [0.0, -0.2, 0.7]);
         }
     }
 

@@ -5,6 +5,8 @@
 
 use core::fmt;
 
+use crate::math::sqrt;
+
 /// What a correction must not exceed.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Limits {
@@ -21,6 +23,22 @@ impl Limits {
         // Not `>`: also at NaN, which no comparison lets through.
         if correction <= limit { Ok(()) } else { Err(Refusal::OverLimit { correction, limit }) }
     }
+}
+
+/// The axes may move at most this many times as far as the tip is to move: a correction that needs more is refused.
+///
+/// In front of a pose in which two slides move the tip in the same direction, they have to move ever farther against one another to
+/// move it in another one. A hundredth of a radian from there it is a hundred times as far: what is wrong with the error by 1 um moves
+/// an axis by 0.1 mm, and what the slides themselves are wrong by over that way is no longer small beside the error.
+pub const GREATEST_AMPLIFICATION: f64 = 100.0;
+
+/// Refuses a correction for which the axes would move too far beside the tip, from the squares of both ways.
+#[inline]
+pub(super) fn check_amplification([moved, corrected]: [f64; 2]) -> Result<(), Refusal> {
+    if moved > GREATEST_AMPLIFICATION * GREATEST_AMPLIFICATION * corrected {
+        return Err(Refusal::NearSingular { amplification: sqrt(moved / corrected) });
+    }
+    Ok(())
 }
 
 /// When the search for the compensated position ends.
@@ -105,6 +123,12 @@ pub enum Refusal {
         /// The limit, in mm.
         limit: f64,
     },
+    /// The axes would have to move far against one another to move the tip a little: in this pose they move it in nearly the same
+    /// direction, see [`GREATEST_AMPLIFICATION`].
+    NearSingular {
+        /// How many times as far as the tip the axes would move.
+        amplification: f64,
+    },
 }
 
 impl fmt::Display for Refusal {
@@ -118,6 +142,10 @@ impl fmt::Display for Refusal {
             Self::NotConverging { iterations, distance } => write!(
                 f,
                 "the compensated position is not found: step {iterations} still moves by {distance:.6} mm"
+            ),
+            Self::NearSingular { amplification } => write!(
+                f,
+                "axes would move {amplification:.0} times as far as the tip is to move: here two of them move it in nearly the same direction"
             ),
             Self::OverLimit { correction, limit } => {
                 write!(f, "the correction of {correction:.6} mm is over the limit of {limit} mm")

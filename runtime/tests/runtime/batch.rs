@@ -9,7 +9,7 @@ use abbe_runtime::{
 };
 use proptest::prelude::*;
 
-use crate::common::{Lathe, Slide, TableMill, with};
+use crate::common::{Lathe, Slide, Swivel, TableMill, at, with};
 
 /// Rows as a caller has them: a vector for each quantity.
 #[derive(Clone, Debug, Default)]
@@ -405,6 +405,37 @@ proptest! {
         prop_assert!(same(Real::sqrt(x), |a, _| a.sqrt()));
         prop_assert!(same(x.sin_cos().0, |a, _| abbe_runtime::math::sin_cos(a).0));
         prop_assert!(same(x.sin_cos().1, |a, _| abbe_runtime::math::sin_cos(a).1));
+    }
+}
+
+/// Rows on both sides of a singular pose, in it, and far from it.
+#[test]
+fn rows_near_a_singular_pose_are_refused_as_each_alone() {
+    let term = [Term::Constant { value: 0.01 }];
+    let motions = [ErrorMotion { terms: &term }];
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let angles =
+        vec![0.0, 1.0, quarter - 0.0141, quarter - 0.0142, quarter, quarter + 1e-3, quarter + 0.1, 3.0, -1.0];
+    let rows = Rows {
+        direction: vec![vec![Direction::Positive; 9]; 3],
+        position: vec![vec![100.0; 9], angles.clone(), vec![10.0; 9]],
+        time_step: vec![0.001; 9],
+        ..Rows::default()
+    };
+    let mut out = vec![vec![0.0; 9]; 3];
+    let mut columns: Vec<&mut [f64]> = out.iter_mut().map(Vec::as_mut_slice).collect();
+    let (answers, _) =
+        with(&Swivel, &motions, |compensator| batch(compensator, &rows, 0..9, &mut columns).unwrap());
+    let refused: Vec<usize> =
+        (0..9).filter(|row| matches!(answers[*row], Err(Refusal::NearSingular { .. }))).collect();
+    assert_eq!(refused, [2, 5]);
+    for (number, answer) in answers.iter().enumerate() {
+        let mut alone = [0.0; 3];
+        let position = row(&rows.position, number);
+        let (expected, _) =
+            with(&Swivel, &motions, |compensator| compensator.compensate(&at(&position), &mut alone));
+        assert_eq!(*answer, expected);
+        assert_eq!(row(&out, number), alone, "row {number}");
     }
 }
 

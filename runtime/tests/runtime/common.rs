@@ -157,3 +157,30 @@ impl Kinematics for TableMill {
         Some([1.0; 3])
     }
 }
+
+/// A slide W on a swivel B on a slide X: at B = 0 W moves the tip along Z, at 90 degrees along X as X itself does. The one error motion
+/// is EZX.
+#[derive(Debug)]
+pub(crate) struct Swivel;
+
+impl Kinematics for Swivel {
+    fn axes(&self) -> usize {
+        3
+    }
+    fn travels(&self) -> &[usize] {
+        &[]
+    }
+    fn motions(&self) -> usize {
+        1
+    }
+    fn error(&self, _position: &[f64], _travel: &[f64], motions: &[f64]) -> [f64; 3] {
+        [0.0, 0.0, motions[0]]
+    }
+    fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {
+        let (sine, cosine) = position[1].sin_cos();
+        directions.copy_from_slice(&[[1.0, 0.0, 0.0], [0.0; 3], [sine, 0.0, cosine]]);
+    }
+    fn directions_vary(&self) -> bool {
+        true
+    }
+}

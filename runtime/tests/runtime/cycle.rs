@@ -7,7 +7,7 @@ use abbe_runtime::{
     SetupError, Term, TermState, Within, Work,
 };
 
-use crate::common::{Lathe, Slide, at, with};
+use crate::common::{Lathe, Slide, Swivel, at, with};
 
 /// Compensates one sample on the slide with these terms of EXX, after `set` has set the compensator up.
 fn run(
@@ -90,6 +90,49 @@ fn the_limit_holds_over_all_axes_together() {
     let Err(Refusal::OverLimit { correction, .. }) = result else { panic!("{result:?}") };
     assert!((correction - 0.5).abs() < 1e-12);
     assert_eq!(out, [1.0, 2.0]);
+}
+
+/// At an angle a from the pose in which both slides move along X, W moves 1/sin a times as far as the tip along Z, and X takes back
+/// cos a of that: both together move sqrt(1 + cos^2 a)/sin a times as far.
+#[test]
+fn near_a_singular_pose_a_correction_is_refused_and_says_so() {
+    let term = [Term::Constant { value: 0.01 }];
+    let motions = [ErrorMotion { terms: &term }];
+    let at_angle = |angle: f64| {
+        let position = [100.0, std::f64::consts::FRAC_PI_2 - angle, 10.0];
+        let mut out = [f64::NAN; 3];
+        let (result, _) =
+            with(&Swivel, &motions, |compensator| compensator.compensate(&at(&position), &mut out));
+        (result, position, out)
+    };
+    for angle in [1.0, 0.1, 0.0142] {
+        let (result, position, out) = at_angle(angle);
+        assert!(result.is_ok(), "{angle}: {result:?}");
+        let moved = (out[0] - position[0]).hypot(out[2] - position[2]);
+        assert!((moved - 0.01 * (1.0 + angle.cos().powi(2)).sqrt() / angle.sin()).abs() < 1e-9);
+    }
+    for angle in [0.0141, 1e-3, 1e-6] {
+        let (result, position, out) = at_angle(angle);
+        let Err(Refusal::NearSingular { amplification }) = result else { panic!("{angle}: {result:?}") };
+        let expected = (1.0 + angle.cos().powi(2)).sqrt() / angle.sin();
+        assert!((amplification / expected - 1.0).abs() < 1e-6, "{amplification} {expected}");
+        assert_eq!(out, position);
+    }
+    // In the pose itself Z is out of reach, and stays.
+    let (result, position, out) = at_angle(0.0);
+    assert_eq!(result.map(|outcome| outcome.remaining), Ok([0.0, 0.0, 0.01]));
+    assert_eq!(out, position);
+}
+
+#[test]
+fn an_error_that_the_axes_reach_is_corrected_beside_a_singular_pose() {
+    // Without an error along Z no slide moves far.
+    let motions = [ErrorMotion { terms: &[] }];
+    let mut out = [f64::NAN; 3];
+    let position = [100.0, std::f64::consts::FRAC_PI_2 - 1e-5, 10.0];
+    let (result, _) = with(&Swivel, &motions, |compensator| compensator.compensate(&at(&position), &mut out));
+    assert!(result.is_ok(), "{result:?}");
+    assert_eq!(out, position);
 }
 
 #[test]
@@ -287,6 +330,7 @@ fn a_travel_of_no_axis_is_told() {
 fn every_message_says_what_it_is_about() {
     let said = [
         (Refusal::OverLimit { correction: 0.25, limit: 0.125 }.to_string(), ["0.250000 mm", "0.125 mm"]),
+        (Refusal::NearSingular { amplification: 5729.6 }.to_string(), ["5730 times", "the same direction"]),
         (Refusal::NotConverging { iterations: 20, distance: 0.5 }.to_string(), ["step 20", "0.500000 mm"]),
         (Refusal::Length { slice: "velocity", expected: 3, found: 2 }.to_string(), ["velocity", "2 given"]),
         (

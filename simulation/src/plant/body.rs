@@ -255,7 +255,6 @@ fn body_error(motion: &Motion, known: usize, link: &Link, relative: bool) -> Bod
 /// minus commanded. With `motions: relative` the motions are those of the tool seen from the part, so every other sign
 /// turns on the part's branch; but the line of a slide is turned the same way from whichever side it is seen.
 fn sense(motion: &Motion, link: &Link, direction: Axis, relative: bool) -> f64 {
-    let written = if motion.sign < 0 { -1.0 } else { 1.0 };
     let own_way = direction == link.along.axis
         && match link.kind {
             LinkKind::Slide(_) => matches!(motion.kind, MotionKind::Linear(_)),
@@ -264,7 +263,7 @@ fn sense(motion: &Motion, link: &Link, direction: Axis, relative: bool) -> f64 {
         };
     let line = matches!(link.kind, LinkKind::Slide(_)) && matches!(motion.kind, MotionKind::Alignment(_));
     if own_way {
-        return if link.along.sign < 0 { -written } else { written };
+        return if link.along.sign < 0 { -1.0 } else { 1.0 };
     }
-    if relative && link.branch == Branch::Workpiece && !line { -written } else { written }
+    if relative && link.branch == Branch::Workpiece && !line { -1.0 } else { 1.0 }
 }

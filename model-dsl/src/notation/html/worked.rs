@@ -22,7 +22,9 @@ pub(super) fn section(sheet: &Sheet, equations: &Equations, example: &Example) -
     let micro = short(example.value * 1e6);
     let mut formulas = String::new();
     let mut meanings = Vec::new();
-    let error = example.error();
+    // Of what is printed the value is chosen.
+    let sign = if entry.against_iso { -1.0 } else { 1.0 };
+    let error = example.error().map(|part| sign * part);
     for (row, arm) in sheet.rows.iter().zip(&entry.arms) {
         let Some(arm) = arm else { continue };
         let direction = row.direction;
@@ -33,25 +35,26 @@ pub(super) fn section(sheet: &Sheet, equations: &Equations, example: &Example) -
     }
     format!(
         "<h3>A worked example</h3>\n<p>Let {}. These numbers are chosen; those of a machine stand in its calibration. \
-         One error motion is not zero: {}, that is {}, {}, is +{micro} \u{b5}rad. {}</p>\n<div class=\"wide\">\n{formulas}</div>\n\
+         One error motion is not zero: {}, that is {}{}, {}, is +{micro} \u{b5}rad. {}</p>\n<div class=\"wide\">\n{formulas}</div>\n\
          <p>{}</p>\n",
         state(equations, example),
         letter(&entry.letter),
+        if entry.against_iso { "the opposite of " } else { "" },
         escape(&motion.name),
         escape(&motion.meaning),
-        sense(equations, motion),
+        sense(equations, motion, entry.against_iso),
         escape(&meanings.join(" ")),
     )
 }
 
 /// By which hand what turns.
-fn sense(equations: &Equations, motion: &crate::equations::Motion) -> String {
+fn sense(equations: &Equations, motion: &crate::equations::Motion, against_iso: bool) -> String {
     if !motion.angular {
         return String::new();
     }
     let about = motion.direction;
     let (from, to) = (about.next(), about.next().next());
-    let (hand, from, to) = if motion.against_iso { ("left", to, from) } else { ("right", from, to) };
+    let (hand, from, to) = if against_iso { ("left", to, from) } else { ("right", from, to) };
     let what = if equations.relative {
         "Relative to the part, the tool".to_owned()
     } else {

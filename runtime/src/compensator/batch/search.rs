@@ -8,6 +8,7 @@ use super::block::Block;
 use super::input::Batch;
 use super::{Answers, Open};
 use crate::compensator::inverse::{Reach, set};
+use crate::compensator::report::check_amplification;
 use crate::compensator::{Compensator, Outcome, Prediction, Refusal};
 use crate::math::{add_scaled, all_finite};
 use crate::sample::{LaneSample, lanes};
@@ -108,6 +109,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         out: &mut [&mut [f64]],
         answers: Answers<'_>,
     ) {
+        self.refuse_amplified(block, start, &mut open, answers);
         let zero = [Lanes::from(0.0); 3];
         let mut step =
             Step { iterations: 0, here: start, pull: zero, corrected: zero, square: f64::INFINITY.into() };
@@ -125,6 +127,21 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
             step.square = block.reach.distance_squared(change);
             self.prediction.columns(block.columns).correct(block.position, step.pull, block.command);
             self.settle(first, block, &step, &mut open, out, answers);
+        }
+    }
+
+    /// Refuses the rows in which the axes would move too far beside the tip.
+    fn refuse_amplified(&self, block: &Block<'_>, start: [Lanes; 3], open: &mut Open, answers: Answers<'_>) {
+        if !block.reach.may_amplify() {
+            return;
+        }
+        let columns = self.prediction.columns(block.columns);
+        let [moved, corrected] = block.reach.moved_and_corrected(columns, start);
+        for (lane, (open, answer)) in open.iter_mut().zip(answers).enumerate().filter(|(_, (open, _))| **open)
+        {
+            if let Err(refusal) = check_amplification([moved.lane(lane), corrected.lane(lane)]) {
+                (*open, *answer) = (false, Err(refusal));
+            }
         }
     }
 

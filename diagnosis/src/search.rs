@@ -5,6 +5,7 @@
 //! sets are carried along at once, effects chosen early are dropped when others make them needless, and at the end each
 //! is tried against every other, so that a first wrong guess does not stay.
 
+use model_dsl::calibration::LARGEST_ANGLE;
 use nalgebra::DMatrix;
 
 use crate::candidates::simplicity;
@@ -307,7 +308,7 @@ impl<'d> Choice<'d> {
         let columns: Vec<usize> = self.design.columns(regressor).collect();
         let coefficients: Vec<f64> = columns.iter().map(|column| set.swept.coefficient(*column)).collect();
         let turn: f64 = coefficients.iter().map(|coefficient| coefficient.abs()).sum();
-        self.rotations[regressor] && turn > LARGEST_TURN
+        self.rotations[regressor] && turn > LARGEST_ANGLE
             || self.zeroed.energy(&columns, &coefficients) > LARGE * LARGE * self.zeroed.remaining()
     }
 
@@ -331,8 +332,6 @@ impl<'d> Choice<'d> {
 
 /// How many times as large as all there is to explain an effect may be.
 const LARGE: f64 = 5.0;
-/// Rad: the axes of machines stand and run truer than this by far, and first-order equations end here.
-const LARGEST_TURN: f64 = 0.02;
 
 /// Whether an effect turns a body, other than the angle of a rotary axis, by its coefficient.
 fn rotates(study: &Study<'_>, effect: &Effect) -> bool {

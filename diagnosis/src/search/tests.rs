@@ -255,9 +255,11 @@ fn two_effects_that_nearly_cancel_have_outgrown_what_they_explain() {
 #[test]
 fn a_body_turns_by_hundredths_at_most() {
     let turned = [("ECX", Shape::Constant)];
-    for (turn, far) in [(10.0, false), (-10.0, false), (30.0, true), (-30.0, true)] {
-        let calibration = format!("{{ECX: {turn} mrad}}");
-        assert_eq!(outgrown(&calibration, &turned), [far], "{turn} mrad");
+    // In two terms, since a calibration has none that is larger.
+    for (half, far) in [(4.0, false), (-4.0, false), (8.0, true), (-8.0, true)] {
+        let calibration =
+            format!("{{ECX: [{{constant: {{value: {half} mrad}}}}, {{constant: {{value: {half} mrad}}}}]}}");
+        assert_eq!(outgrown(&calibration, &turned), [far], "twice {half} mrad");
     }
     // A number that is no angle may be greater: 40 um, written as mm.
     let bent = [("EXX", Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 40.0 })];

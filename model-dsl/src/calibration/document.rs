@@ -5,6 +5,7 @@ use super::names::MachineNames;
 use super::parameters::Context;
 use super::read_term::{Item, read_item, read_plain};
 use super::sensors::{Sensors, read_derived};
+use super::small::refuse_large;
 use super::{CalibratedMotion, Calibration, Limits, Ramp};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::quantity::{self, Dimension};
@@ -255,9 +256,16 @@ fn read_terms(
         return Vec::new();
     };
     let mut context = Context { names, motion, sensors, diagnostics };
+    let items = read_items(node, &mut context);
+    items.iter().for_each(|item| refuse_large(&item.term, &mut context));
+    items
+}
+
+fn read_items(node: &Node, context: &mut Context<'_>) -> Vec<Item> {
+    let motion = context.motion;
     match &node.kind {
-        NodeKind::Scalar(_) => read_plain(node, &mut context).into_iter().collect(),
-        NodeKind::Sequence(items) => items.iter().filter_map(|item| read_item(item, &mut context)).collect(),
+        NodeKind::Scalar(_) => read_plain(node, context).into_iter().collect(),
+        NodeKind::Sequence(items) => items.iter().filter_map(|item| read_item(item, context)).collect(),
         NodeKind::Null | NodeKind::Mapping(_) => {
             let message =
                 format!("{} is a quantity or a list of terms, found {}", motion.name, node.kind_name());
@@ -265,7 +273,7 @@ fn read_terms(
                 "write `{}: [{{backlash: {{lost_motion: ...}}}}]`, or each term behind a `-`",
                 motion.name
             );
-            diagnostics.push(Diagnostic::error("E0404", node.span, message).help(help));
+            context.diagnostics.push(Diagnostic::error("E0404", node.span, message).help(help));
             Vec::new()
         }
     }

@@ -222,12 +222,12 @@ fn what_no_term_describes_can_be_added() {
 
 #[test]
 fn a_rotation_is_finite_and_not_linearised() {
-    // A roll of a whole degree: the tip 120 mm below the carriage goes round an arc.
-    let plant = plant("FZX", "{EBX: 1 deg}");
+    // A pitch of half a degree: the tip 120 mm below the carriage goes round an arc.
+    let plant = plant("FZX", "{EBX: 0.5 deg}");
     let recorded =
         simulate(&plant, &scenario(path(Shape::Still { time: 1.0 }, 1.0, 1.0), Instrument::position()))
             .unwrap();
-    let angle = 1.0_f64.to_radians();
+    let angle = 0.5_f64.to_radians();
     assert!((recorded.readings[0].values[0] - 120.0 * angle.sin()).abs() < 1e-12);
     assert!((recorded.readings[2].values[0] - 120.0 * angle.cos()).abs() < 1e-12);
 }

@@ -239,6 +239,30 @@ impl CalibratedTerm {
         }
     }
 
+    /// The largest size, mm or rad, that its numbers tell by themselves; 0 where the states of the machine make it.
+    pub fn told_size(&self) -> f64 {
+        let mut own = self.clone();
+        let numbers = own.linear_mut().into_iter().flat_map(|(_, numbers)| numbers.iter().copied());
+        let told: Vec<f64> = match self.kind() {
+            TermKind::Constant
+            | TermKind::Table
+            | TermKind::Backlash
+            | TermKind::ReversalSpike
+            | TermKind::Cyclic
+            | TermKind::Drift
+            | TermKind::Vibration
+            | TermKind::Step
+                if self.factors().is_empty() =>
+            {
+                numbers.collect()
+            }
+            // Its first coefficient is that of the power zero.
+            TermKind::Polynomial if self.factors().is_empty() => numbers.take(1).collect(),
+            _ => Vec::new(),
+        };
+        told.into_iter().map(f64::abs).fold(0.0, f64::max)
+    }
+
     /// The term reading another sensor, where it reads one. Its factors stay.
     #[must_use]
     pub fn with_sensor(mut self, number: usize) -> Self {

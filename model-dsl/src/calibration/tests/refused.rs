@@ -47,6 +47,29 @@ fn top_level_keys_are_checked() {
 }
 
 #[test]
+fn an_error_that_is_not_small_is_refused_where_it_stands() {
+    refused("{EC0Y: 1 deg}", &[("E0430", "1 deg")]);
+    refused("{EC0Y: -3 rad}", &[("E0430", "-3 rad")]);
+    refused("{EC0Y: 10 mrad, EXX: -10 mm}", &[]);
+    refused("{EXX: 0.5 in}", &[("E0430", "0.5 in")]);
+    let table = "table: {start: 0 mm, step: 10 mm, unit: deg, values: [0, 0.1, -2]}";
+    refused(&format!("{{EBX: [{{{table}}}]}}"), &[("E0430", "table")]);
+    refused("{EBX: [{backlash: {lost_motion: 1 deg}}]}", &[("E0430", "backlash")]);
+    refused("{EBX: [{cyclic: {period: 5 mm, amplitude: 1 deg, phase: 0 deg}}]}", &[("E0430", "cyclic")]);
+    refused("{EBX: [{polynomial: {unit: deg, per: mm, coefficients: [1, 0]}}]}", &[("E0430", "polynomial")]);
+    // An encoder may count from another zero.
+    refused("{ECC: 45 deg}", &[]);
+    // What the states make of it is not known here.
+    refused("{EBX: [{polynomial: {unit: deg, per: mm, coefficients: [0, 1]}}]}", &[]);
+    assert_eq!(
+        words("{EC0Y: 45 deg}"),
+        [
+            "E0430 785 mrad is no small error | see to the unit: the equations are of first order, and leave half of the square of an angle"
+        ]
+    );
+}
+
+#[test]
 fn constants_are_checked() {
     let file = |constants: &str| format!("calibration: 1\nmachine: m\nconstants: {constants}\n");
     refused_file(&file("{Xtt: 0 mm, Xt: 1 mm}"), &[("E0405", "Xtt")]);

@@ -37,6 +37,7 @@ mod limits;
 mod machine_files;
 mod macro_errors;
 mod manuals;
+mod odd_machines;
 mod oracle;
 mod page;
 mod pictures;

@@ -28,6 +28,8 @@ pub trait CompiledMachine: Kinematics + Send + Sized + 'static {
     const AXES: &'static [AxisOfMachine];
     /// Its error motions, in the order of the equations.
     const MOTIONS: &'static [MotionOfMachine];
+    /// Those without a lever at the tool tip, which a calibration may list.
+    const UNSEEN: &'static [MotionOfMachine] = &[];
     /// Its equations, as `abbe derive --format json --names iso` prints them: a machine file that says something else is
     /// not the one that was compiled.
     const EQUATIONS: &'static str;
@@ -46,6 +48,7 @@ pub(crate) fn names<M: CompiledMachine>() -> MachineNames {
             .map(|&(letter, rotary)| AxisName { letter: letter.to_owned(), rotary })
             .collect(),
         motions: M::MOTIONS.iter().map(|motion| motion_name(*motion)).collect(),
+        unseen: M::UNSEEN.iter().map(|motion| motion_name(*motion)).collect(),
     }
 }
 

@@ -81,6 +81,8 @@ pub struct Calibration {
     pub sensors: Sensors,
     /// The error motions that the file lists, in its order; all others are zero.
     pub motions: Vec<CalibratedMotion>,
+    /// Those of [`MachineNames::unseen`] that the file lists. They have no effect, and are written back.
+    pub unseen: Vec<CalibratedMotion>,
 }
 
 /// What a correction may not exceed, and how a controller goes from one correction to another.
@@ -122,7 +124,7 @@ impl Limits {
 /// Two of them are equal wherever they stand, as [`Spanned`] values are.
 #[derive(Clone, Debug)]
 pub struct CalibratedMotion {
-    /// Which motion: an index into [`MachineNames::motions`].
+    /// Which motion: an index into [`MachineNames::motions`], or into [`MachineNames::unseen`] where it has no effect.
     pub motion: usize,
     /// Where the file names it.
     pub span: Span,

@@ -29,6 +29,7 @@ pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
     let rows = rows(machine, tip, &kept);
     warn_undriven(machine, &rows, diagnostics);
     let travels = travels(machine, &kept);
+    let unseen = (0..machine.motions.len()).filter(|number| kept.binary_search(number).is_err());
     Equations {
         machine: machine.name.clone(),
         title: machine.title.clone(),
@@ -38,6 +39,7 @@ pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
         axes: axes(machine, tip),
         constants: constants(machine),
         motions: kept.iter().map(|number| motion(machine, *number, &travels)).collect(),
+        unseen: unseen.map(|number| motion(machine, number, &travels)).collect(),
         travels,
         rows,
         turns: turn.each_ref().map(|entry| terms(machine, entry, &kept)),

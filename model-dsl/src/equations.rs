@@ -36,6 +36,8 @@ pub struct Equations {
     pub constants: Vec<ConstantInfo>,
     /// The error motions that some row sees, by axis, alignment errors last.
     pub motions: Vec<Motion>,
+    /// The error motions of the machine that no row sees: none of them has a lever at the tool tip.
+    pub unseen: Vec<Motion>,
     /// One row for each sensitive direction, in order.
     pub rows: Vec<Row>,
     /// The rotation of the tool relative to the part by the errors, rad, right-handed about X, Y, Z of the part's
@@ -234,6 +236,12 @@ impl Equations {
     /// The names that a calibration of the machine may use.
     pub fn names(&self) -> MachineNames {
         let axis_letter = |axis: usize| self.axes.get(axis).map(|axis| axis.letter.clone());
+        let named = |motion: &Motion| MotionName {
+            name: motion.name.clone(),
+            angular: motion.angular,
+            axis: motion.axis.and_then(axis_letter),
+            own: self.own_axis(motion).is_some(),
+        };
         MachineNames {
             machine: self.machine.clone(),
             constants: self.constants.iter().map(|known| (known.name.to_string(), known.default)).collect(),
@@ -242,16 +250,8 @@ impl Equations {
                 .iter()
                 .map(|axis| AxisName { letter: axis.letter.clone(), rotary: axis.rotary })
                 .collect(),
-            motions: self
-                .motions
-                .iter()
-                .map(|motion| MotionName {
-                    name: motion.name.clone(),
-                    angular: motion.angular,
-                    axis: motion.axis.and_then(axis_letter),
-                    own: self.own_axis(motion).is_some(),
-                })
-                .collect(),
+            motions: self.motions.iter().map(named).collect(),
+            unseen: self.unseen.iter().map(named).collect(),
         }
     }
 }

@@ -40,6 +40,7 @@ fn names() -> MachineNames {
             motion("ECC", true, Some("C")),
             motion("EZS", false, None),
         ],
+        unseen: vec![motion("ECS", true, None)],
     }
 }
 
@@ -242,7 +243,8 @@ fn plain_term() -> impl Strategy<Value = (usize, CalibratedTerm)> {
             // Error motions are small.
             if term.told_size() > LARGEST_ANGLE {
                 let numbers = term.linear_mut().into_iter().flat_map(|(_, numbers)| numbers);
-                numbers.for_each(|number| *number %= LARGEST_ANGLE);
+                // A rest may be a zero below zero.
+                numbers.for_each(|number| *number = *number % LARGEST_ANGLE + 0.0);
             }
             (motion, term)
         },
@@ -398,6 +400,23 @@ fn long_tables_are_broken_into_lines_that_can_be_read() {
     let text = write(&calibration, &names());
     assert!(text.lines().all(|line| line.chars().count() <= 130), "{text}");
     assert_eq!(read_back(&text, &names()), calibration);
+}
+
+/// What has no lever at the tool tip is warned of, kept and written back.
+#[test]
+fn what_has_no_effect_is_not_lost() {
+    let text = "calibration: 1\nmachine: mill\nconstants: {Xt: 0 mm}\nerrors:\n  EXX: 0.003 mm\n  ECS:\n    - growth: {sensor: spindle, coefficient: 1e-6 rad/K, reference: 20 degC}\n    - constant: {value: 1e-5 rad}\n";
+    let mut diagnostics = Diagnostics::new();
+    let source = SourceFile::new("written.yaml", text);
+    let root = yaml::read(&source, &mut diagnostics).unwrap();
+    let calibration = read(&root, &names(), &mut diagnostics).unwrap();
+    let told: Vec<_> = diagnostics.iter().map(|one| (one.code, source.slice(one.span).to_owned())).collect();
+    assert_eq!(told, [("W0402", "ECS".to_owned())]);
+    assert_eq!((calibration.motions.len(), calibration.unseen[0].terms.len()), (1, 2));
+    assert_eq!(
+        write(&calibration, &names()),
+        text.replace("constants: {Xt: 0 mm}", "constants: {Xt: 0 mm, Zt: 120 mm}")
+    );
 }
 
 #[test]

@@ -135,6 +135,7 @@ pub fn names_of(machine: &Machine) -> MachineNames {
             })
             .collect(),
         motions: motions.collect(),
+        unseen: Vec::new(),
     }
 }
 
@@ -184,6 +185,7 @@ impl Plant {
             limits: model_dsl::calibration::Limits::default(),
             sensors: Sensors::default(),
             motions: Vec::new(),
+            unseen: Vec::new(),
         };
         Self::new(machine, names, &calibration)
     }

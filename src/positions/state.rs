@@ -40,7 +40,7 @@ impl<'s> State<'s> {
         }
         Self {
             timed,
-            sensors: SensorReadings::new(sensors),
+            sensors: SensorReadings::of_terms(sensors),
             input_columns,
             numbers: vec![f64::NAN; layout.width],
             inputs: vec![f64::NAN; sensors.len()],

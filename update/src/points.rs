@@ -184,7 +184,7 @@ impl<'c> Course<'c> {
             memories: terms.iter().map(|terms| vec![TermState::default(); terms.len()]).collect(),
             terms,
             trackers: vec![DirectionTracker::new(HYSTERESIS); self.positions.len()],
-            sensors: SensorReadings::new(&self.machine.calibration.sensors),
+            sensors: SensorReadings::of_terms(&self.machine.calibration.sensors),
             time: 0.0,
         }
     }

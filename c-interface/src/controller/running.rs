@@ -84,10 +84,8 @@ pub(super) struct Running {
 enum Place {
     /// The entry of the controller's temperatures.
     Given(usize),
-    /// Other sensors.
+    /// Other sensors, or nowhere where no term reads it.
     Derived,
-    /// Nowhere: no term reads it.
-    Unused,
 }
 
 impl Running {
@@ -122,7 +120,7 @@ impl Running {
     /// Forgets what terms and sensors remember.
     pub(super) fn restart(&mut self) {
         self.supervised.with_dependent_mut(|parts, running| {
-            running.readings = SensorReadings::new(parts.sensors());
+            running.readings = SensorReadings::of_terms(parts.sensors());
             running.supervisor.restart();
         });
     }
@@ -183,9 +181,7 @@ impl Supervision<'_> {
             _ => f64::NAN,
         };
         let readings = self.readings.update(input);
-        for ((slot, &reading), place) in all.iter_mut().zip(readings).zip(places) {
-            *slot = if matches!(place, Place::Unused) { 0.0 } else { reading };
-        }
+        all.iter_mut().zip(readings).for_each(|(slot, reading)| *slot = *reading);
     }
 }
 
@@ -215,14 +211,13 @@ fn supervise(parts: &Parts) -> Result<Supervision<'_>, SetupFailure> {
     let mut supervisor =
         Supervisor::new(compensator, Memory { axes, temperature, silence }).map_err(SetupFailure::Setup)?;
     supervisor.transition = calibration.limits.transition();
-    Ok(Supervision { supervisor, readings: SensorReadings::new(&calibration.sensors) })
+    Ok(Supervision { supervisor, readings: SensorReadings::of_terms(&calibration.sensors) })
 }
 
 /// For each sensor of a calibration where its temperature comes from; inputs count in the order of their names for C.
 fn places(calibration: &Calibration) -> Vec<Place> {
     let sensors = &calibration.sensors;
-    let mut places: Vec<_> =
-        sensors.iter().map(|sensor| if sensor.used { Place::Derived } else { Place::Unused }).collect();
+    let mut places = vec![Place::Derived; sensors.len()];
     for (number, (sensor, _)) in sensors.inputs().enumerate() {
         if let Some(place) = places.get_mut(sensor) {
             *place = Place::Given(number);

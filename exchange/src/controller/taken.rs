@@ -49,7 +49,12 @@ pub fn volumetric_terms(
         let motion = equations.motions.iter().position(|motion| motion.name == name);
         let Some((motion, sign)) = motion.and_then(|motion| Some((motion, model.sign(&geometry, motion)?)))
         else {
-            if grid.values.iter().any(|value| *value != 0.0) {
+            let unseen = equations.unseen.iter().any(|motion| motion.name == name);
+            if grid.values.iter().any(|value| *value != 0.0) && unseen {
+                let message = format!("{name} has no effect on {}", equations.machine);
+                let warning = Diagnostic::warning("W0402", Span::default(), message);
+                diagnostics.push(warning.help("it has no lever at the tool tip, and is left out"));
+            } else if grid.values.iter().any(|value| *value != 0.0) {
                 let message = format!("{} has no error motion {name}", equations.machine);
                 let help =
                     "an alignment error may go by another axis in the machine file: B0X for B0Z turned about";

@@ -13,6 +13,7 @@ impl Calibration {
             limits: Limits::default(),
             sensors: Sensors::default(),
             motions: Vec::new(),
+            unseen: Vec::new(),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The calibration file as a whole: its top-level keys, constants, limits and error motions.
 
 use super::fields::{Fields, keys, word};
-use super::names::MachineNames;
+use super::names::{MachineNames, MotionName};
 use super::parameters::Context;
 use super::read_term::{Item, read_item, read_plain};
 use super::sensors::{Sensors, read_derived};
@@ -65,7 +65,8 @@ fn read_all(root: &Node, names: &MachineNames, diagnostics: &mut Diagnostics) ->
     let sensors = present(&fields, "sensors").map(|node| read_derived(node, diagnostics));
     let mut sensors = sensors.unwrap_or_default();
     let errors = present(&fields, "errors");
-    let motions = errors.map(|node| read_motions(node, names, &mut sensors, diagnostics));
+    let [motions, unseen] =
+        errors.map(|node| read_motions(node, names, &mut sensors, diagnostics)).unwrap_or_default();
     sensors.warn_unused(diagnostics);
     let machine = word(root.get("machine")?, "`machine`", &mut Diagnostics::new())?;
     Some(Calibration {
@@ -74,7 +75,8 @@ fn read_all(root: &Node, names: &MachineNames, diagnostics: &mut Diagnostics) ->
         constants,
         limits: limits.unwrap_or_default(),
         sensors,
-        motions: motions.unwrap_or_default(),
+        motions,
+        unseen,
     })
 }
 
@@ -191,32 +193,47 @@ fn read_motions(
     names: &MachineNames,
     sensors: &mut Sensors,
     diagnostics: &mut Diagnostics,
-) -> Vec<CalibratedMotion> {
+) -> [Vec<CalibratedMotion>; 2] {
     let Some(entries) = node.entries() else {
         let message = format!("`errors` is a mapping of error motions to terms, found {}", node.kind_name());
         diagnostics
             .push(Diagnostic::error("E0404", node.span, message).help("write `EXX: [...]`, a line each"));
-        return Vec::new();
+        return Default::default();
     };
     let mut places = BTreeMap::new();
-    let mut motions = Vec::new();
+    let (mut motions, mut unseen) = (Vec::new(), Vec::new());
     for (name, value) in entries {
-        let Some(motion) = names.motion(&name.value) else {
-            diagnostics.push(unknown_motion(name, names));
-            continue;
+        let (listed, motion, known) = match (names.motion(&name.value), names.unseen_motion(&name.value)) {
+            (Some(motion), _) => (&mut motions, motion, &names.motions),
+            (None, Some(motion)) => {
+                diagnostics.push(without_effect(name, names));
+                (&mut unseen, motion, &names.unseen)
+            }
+            (None, None) => {
+                diagnostics.push(unknown_motion(name, names));
+                continue;
+            }
         };
-        if let Some(first) = places.insert(motion, name.span) {
-            diagnostics.push(repeated_motion(motion, name, first, names));
+        let Some(known) = known.get(motion) else { continue };
+        if let Some(first) = places.insert(known.name.as_str(), name.span) {
+            diagnostics.push(repeated_motion(known, name, first));
         }
-        let items = read_terms(motion, value, names, sensors, diagnostics);
+        let items = read_terms(known, value, names, sensors, diagnostics);
         let ramped = items.iter().enumerate().filter(|(_, item)| item.ramp > 0.0);
         let ramps = ramped.map(|(term, item)| Ramp { term, time: item.ramp }).collect();
         let answered = items.iter().enumerate().filter(|(_, item)| item.inside_loop);
         let inside_loop = answered.map(|(term, _)| term).collect();
         let terms = items.into_iter().map(|item| item.term).collect();
-        motions.push(CalibratedMotion { motion, span: name.span, terms, ramps, inside_loop });
+        listed.push(CalibratedMotion { motion, span: name.span, terms, ramps, inside_loop });
     }
-    motions
+    [motions, unseen]
+}
+
+fn without_effect(name: &Spanned<String>, names: &MachineNames) -> Diagnostic {
+    let message = format!("{} has no effect on {}", name.value, names.machine);
+    Diagnostic::warning("W0402", name.span, message)
+        .label("it has no lever at the tool tip")
+        .help("its numbers are read and written back; a tool or a part elsewhere would need them")
 }
 
 fn unknown_motion(name: &Spanned<String>, names: &MachineNames) -> Diagnostic {
@@ -236,8 +253,8 @@ fn unknown_motion(name: &Spanned<String>, names: &MachineNames) -> Diagnostic {
     }
 }
 
-fn repeated_motion(motion: usize, name: &Spanned<String>, first: Span, names: &MachineNames) -> Diagnostic {
-    let known = names.motions.get(motion).map_or("", |motion| motion.name.as_str());
+fn repeated_motion(known: &MotionName, name: &Spanned<String>, first: Span) -> Diagnostic {
+    let known = &known.name;
     let message = format!("{known} is given twice");
     let mistake = Diagnostic::error("E0408", name.span, message).also(first, "first given here");
     mistake.help(format!(
@@ -246,15 +263,12 @@ fn repeated_motion(motion: usize, name: &Spanned<String>, first: Span, names: &M
 }
 
 fn read_terms(
-    motion: usize,
+    motion: &MotionName,
     node: &Node,
     names: &MachineNames,
     sensors: &mut Sensors,
     diagnostics: &mut Diagnostics,
 ) -> Vec<Item> {
-    let Some(motion) = names.motions.get(motion) else {
-        return Vec::new();
-    };
     let mut context = Context { names, motion, sensors, diagnostics };
     let items = read_items(node, &mut context);
     items.iter().for_each(|item| refuse_large(&item.term, &mut context));

@@ -13,6 +13,8 @@ pub struct MachineNames {
     pub axes: Vec<AxisName>,
     /// Error motions in the machine's order.
     pub motions: Vec<MotionName>,
+    /// Error motions of the machine without a lever at the tool tip: a calibration may have numbers of them, which have no effect.
+    pub unseen: Vec<MotionName>,
 }
 
 /// An axis by its letter.
@@ -45,11 +47,12 @@ impl MachineNames {
 
     /// The index of an error motion; alignment errors also as `C0Y` and `COY`.
     pub fn motion(&self, name: &str) -> Option<usize> {
-        let exact = self.motions.iter().position(|motion| motion.name == name);
-        exact.or_else(|| {
-            let alignment = alignment_name(name)?;
-            self.motions.iter().position(|motion| motion.name == alignment)
-        })
+        named(&self.motions, name)
+    }
+
+    /// The index of an error motion without a lever, under the same spellings.
+    pub fn unseen_motion(&self, name: &str) -> Option<usize> {
+        named(&self.unseen, name)
     }
 
     /// The axis whose own motion, actual minus commanded, an error motion is: X for EXX, C for ECC.
@@ -77,6 +80,15 @@ impl MotionName {
     pub fn dimension(&self) -> Dimension {
         if self.angular { Dimension::ANGLE } else { Dimension::LENGTH }
     }
+}
+
+/// The index of a motion by its name.
+fn named(motions: &[MotionName], name: &str) -> Option<usize> {
+    let exact = motions.iter().position(|motion| motion.name == name);
+    exact.or_else(|| {
+        let alignment = alignment_name(name)?;
+        motions.iter().position(|motion| motion.name == alignment)
+    })
 }
 
 /// `EC0Y` for `C0Y`, `COY` and `ECOY`; nothing for what is not spelled like an alignment error.

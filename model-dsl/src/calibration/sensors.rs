@@ -125,13 +125,20 @@ pub struct SensorReadings<'s> {
     sensors: &'s Sensors,
     values: Vec<f64>,
     first: Vec<f64>,
+    /// Whether sensors that no term reads are left out.
+    of_terms: bool,
 }
 
 impl<'s> SensorReadings<'s> {
     /// Readings before the first sample: all NaN.
     pub fn new(sensors: &'s Sensors) -> Self {
         let unknown = vec![f64::NAN; sensors.len()];
-        Self { sensors, first: unknown.clone(), values: unknown }
+        Self { sensors, first: unknown.clone(), values: unknown, of_terms: false }
+    }
+
+    /// [`new`](Self::new) for the terms alone: a sensor that none of them reads has no channel, and is 0 degC.
+    pub fn of_terms(sensors: &'s Sensors) -> Self {
+        Self { of_terms: true, ..Self::new(sensors) }
     }
 
     /// Takes one sample and gives the temperature in degC of every sensor, in the order of [`Sensors::iter`].
@@ -141,6 +148,7 @@ impl<'s> SensorReadings<'s> {
     pub fn update(&mut self, mut inputs: impl FnMut(usize) -> f64) -> &[f64] {
         for (index, sensor) in self.sensors.iter().enumerate() {
             let value = match &sensor.kind {
+                _ if self.of_terms && !sensor.used => 0.0,
                 SensorKind::Input => inputs(index),
                 SensorKind::Mean(sources) => self.mean(sources),
                 SensorKind::Initial(source) => read(&self.first, *source),

@@ -29,6 +29,7 @@ pub(super) fn names() -> MachineNames {
             motion("ECC", true, Some("C")),
             motion("EZS", false, None),
         ],
+        unseen: Vec::new(),
     }
 }
 

@@ -1,6 +1,6 @@
 //! A calibration as its file. In: a calibration and the names of its machine. Out: text that reads back to it.
 
-use super::names::MachineNames;
+use super::names::{MachineNames, MotionName};
 use super::sensors::{SensorKind, Sensors};
 use super::spelling::{Item, braces, brackets, quantity, sentence, term, word};
 use super::term::CalibratedTerm;
@@ -26,10 +26,12 @@ pub fn write(calibration: &Calibration, names: &MachineNames) -> String {
     text += &constants(calibration, names);
     text += &limits(&calibration.limits);
     text += &derived(&calibration.sensors);
-    if !calibration.motions.is_empty() {
+    if !(calibration.motions.is_empty() && calibration.unseen.is_empty()) {
         text += "errors:\n";
     }
-    text.extend(calibration.motions.iter().map(|listed| motion(listed, calibration, names)));
+    for (listed, known) in [(&calibration.motions, &names.motions), (&calibration.unseen, &names.unseen)] {
+        text.extend(listed.iter().map(|listed| motion(listed, known.get(listed.motion), calibration, names)));
+    }
     text
 }
 
@@ -73,8 +75,12 @@ fn derived(sensors: &Sensors) -> String {
     if lines.is_empty() { lines } else { format!("sensors:\n{lines}") }
 }
 
-fn motion(listed: &CalibratedMotion, calibration: &Calibration, names: &MachineNames) -> String {
-    let known = names.motions.get(listed.motion);
+fn motion(
+    listed: &CalibratedMotion,
+    known: Option<&MotionName>,
+    calibration: &Calibration,
+    names: &MachineNames,
+) -> String {
     let context = Context { names, sensors: &calibration.sensors, motion: known };
     let name = word(known.map_or(UNKNOWN, |motion| &motion.name));
     match listed.terms.as_slice() {

@@ -4,7 +4,7 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::calibration::{CompiledIn, MachineNames};
+use crate::calibration::{CompiledIn, MachineNames, MotionName};
 use crate::equations::Equations;
 
 /// The implementation of `abbe_c::CompiledMachine`, and `abbe_open`.
@@ -34,7 +34,7 @@ pub(super) fn all(equations: &Equations) -> TokenStream {
 }
 
 fn compiled_machine(equations: &Equations) -> TokenStream {
-    let MachineNames { machine, constants, axes, motions } = equations.names();
+    let MachineNames { machine, constants, axes, motions, unseen } = equations.names();
     let constants = constants.iter().map(|(name, default)| {
         let default = optional(default.as_ref());
         quote! { (#name, #default) }
@@ -43,11 +43,7 @@ fn compiled_machine(equations: &Equations) -> TokenStream {
         let (letter, rotary) = (&axis.letter, axis.rotary);
         quote! { (#letter, #rotary) }
     });
-    let motions = motions.iter().map(|motion| {
-        let (name, angular, own) = (&motion.name, motion.angular, motion.own);
-        let axis = optional(motion.axis.as_ref());
-        quote! { (#name, #angular, #axis, #own) }
-    });
+    let [motions, unseen] = [motions, unseen].map(|motions| motions.iter().map(named).collect::<Vec<_>>());
     let json = CompiledIn::of_equations(equations);
     let measured = super::measured();
     quote! {
@@ -57,6 +53,7 @@ fn compiled_machine(equations: &Equations) -> TokenStream {
             const CONSTANTS: &'static [::abbe_c::ConstantOfMachine] = &[#(#constants),*];
             const AXES: &'static [::abbe_c::AxisOfMachine] = &[#(#axes),*];
             const MOTIONS: &'static [::abbe_c::MotionOfMachine] = &[#(#motions),*];
+            const UNSEEN: &'static [::abbe_c::MotionOfMachine] = &[#(#unseen),*];
             const EQUATIONS: &'static str = #json;
             fn with_constants(constants: &[f64]) -> Option<Self> {
                 let constants = constants.try_into().ok()?;
@@ -64,6 +61,13 @@ fn compiled_machine(equations: &Equations) -> TokenStream {
             }
         }
     }
+}
+
+/// An error motion by its name.
+fn named(motion: &MotionName) -> TokenStream {
+    let (name, angular, own) = (&motion.name, motion.angular, motion.own);
+    let axis = optional(motion.axis.as_ref());
+    quote! { (#name, #angular, #axis, #own) }
 }
 
 fn optional<T: quote::ToTokens>(value: Option<&T>) -> TokenStream {

@@ -11,6 +11,7 @@ fn names() -> MachineNames {
         constants: Vec::new(),
         axes: vec![axis("X", false), axis("Y", false), axis("C", true)],
         motions: vec![motion("EXX", false), motion("EBX", true)],
+        unseen: Vec::new(),
     }
 }
 

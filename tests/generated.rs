@@ -326,10 +326,10 @@ fn code_is_the_same_on_every_run() {
 }
 
 /// Machines whose names and shapes are hard on generated code.
-const HARD: [(&str, &str); 8] = [
+const HARD: [(&str, &str); 9] = [
     (
         "keywords",
-        "{slide: X, along: +X, origin: [self, as, fn]}, {fixed: Self, origin: [type, match, crate]}, {tool: super, offset: [0, 0, async]}",
+        "{slide: X, along: +X, origin: [self, as, fn]}, {fixed: Self, origin: [type, match, crate]}, {tool: super, offset: [0, gen, async]}",
     ),
     (
         "locals",
@@ -346,6 +346,10 @@ const HARD: [(&str, &str); 8] = [
         "{slide: X, along: +X, errors: {EB0X: {symbol: ao, sign: -1, travel: dx}, EC0X: {travel: dx, rotates: true}}}, {slide: Z, along: +Z, errors: {EB0Z: {travel: dz}}}, {tool: tip, offset: [Xt, 0, Zt]}",
     ),
     ("rotary-alone", "{rotary: C, along: +C}, {tool: tip, offset: [R, 0, 0]}"),
+    (
+        "small-letters",
+        "{slide: X, id: x1, along: +X}, {rotary: C, id: c2, along: +C}, {tool: tip, offset: [0, 0, l_1]}",
+    ),
     (
         "everything",
         "{slide: X, along: +X}, {slide: Y, along: +Y}, {slide: Z, along: +Z}, {slide: U, along: -U}, {rotary: A, along: -A}, {rotary: C, along: +C}, {spindle: S, along: +Z}, {tool: tip, offset: [Xt, Yt, Zt]}",
@@ -385,6 +389,13 @@ fn fresh_code_passes_the_strictest_compiler() {
         let code = model_dsl::calibrated_rust_for(machine_file(name), numbers).unwrap();
         module(&format!("calibrated-{name}"), &code);
     }
+    // Numbers for each motion of a machine whose ids are in lower case, tables among them: they become constants.
+    let numbers = "calibration: 1\nmachine: small.yaml\nconstants: {l_1: 5 mm}\nerrors:\n  EXx1: 3 um\n  EBx1: [{table: {start: 0 mm, step: 10 mm, unit: urad, values: [0, 1, 2]}}]\n  ECx1: [{table: {start: 0 mm, step: 10 mm, unit: urad, values: [0, 2, 1]}}]\n  EXc2: 2 um\n";
+    let small = HARD.iter().find(|(name, _)| *name == "small-letters").unwrap().1;
+    fs::write(folder.join("small.yaml"), hard("small", small)).unwrap();
+    fs::write(folder.join("numbers.yaml"), numbers).unwrap();
+    let code = model_dsl::calibrated_rust_for(folder.join("small.yaml"), folder.join("numbers.yaml"));
+    module("calibrated-small", &code.unwrap());
     for (name, links) in HARD {
         let source = SourceFile::new(format!("{name}.yaml"), hard(name, links));
         let (tokens, _, _) = model_dsl::rust_tokens(&source).unwrap_or_else(|told| panic!("{told}"));
@@ -423,6 +434,17 @@ fn hard_names_do_not_shadow_each_other() {
             assert_eq!((found.nominal, found.error), expected, "{name}");
         }
     }
+}
+
+/// The offsets by default are those of the machine file, where it has any.
+#[test]
+fn constants_have_the_values_of_the_machine_file() {
+    mod valued {
+        abbe_macros::machine!("tests/fixtures/valued.yaml");
+    }
+    let machine = valued::Machine::default();
+    assert_eq!(machine.constants.to_array(), [0.0, 120.5]);
+    assert_eq!(machine.nominal(&valued::Axes { x: 1.0 }), [1.0, 0.0, 120.5]);
 }
 
 /// The machines of [`HARD`] as the macro compiles them, from the files beside this one.

@@ -100,7 +100,7 @@ impl Bundle<'_> {
 
 /// The name of the next bundle over an axis.
 fn name(equations: &Equations, axis: usize, before: &[Bundle<'_>]) -> Ident {
-    let letter = equations.axes.get(axis).map_or("", |axis| &axis.letter);
+    let letter = equations.axes.get(axis).map_or("", |axis| &axis.letter).to_ascii_uppercase();
     match before.iter().filter(|bundle| bundle.nodes.axis == axis).count() {
         0 => format_ident!("TABLES_OVER_{letter}"),
         others => format_ident!("TABLES_OVER_{letter}_{}", others.saturating_add(1)),

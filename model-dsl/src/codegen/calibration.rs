@@ -77,7 +77,7 @@ impl WrittenMotion {
             .map(|(place, written)| with_factors(&written.value, ramp(place), sensors))
             .collect::<Result<_, _>>()?;
         Ok(Self {
-            name: format_ident!("{}", motion.name.replace('-', "_")),
+            name: format_ident!("{}", motion.name.replace('-', "_").to_ascii_uppercase()),
             about: docs::motion(motion),
             terms: written.into_iter().flatten().collect(),
             moved: read.iter().filter_map(Term::axis).any(corrects),

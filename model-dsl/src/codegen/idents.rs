@@ -7,7 +7,10 @@ use proc_macro2::{Ident, Span};
 pub(super) fn field(name: &str) -> Ident {
     let lower = name.to_ascii_lowercase().replace('-', "_");
     match syn::parse_str::<Ident>(&lower) {
-        Ok(ident) => ident,
-        Err(_) => Ident::new(&format!("_{lower}"), Span::call_site()),
+        Ok(ident) if lower != RESERVED_SINCE_2024 => ident,
+        _ => Ident::new(&format!("_{lower}"), Span::call_site()),
     }
 }
+
+/// A word of Rust since its edition of 2024, which `syn` takes for a name.
+const RESERVED_SINCE_2024: &str = "gen";

@@ -3,6 +3,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::body::number;
 use super::docs;
 use super::idents::field;
 use crate::equations::Equations;
@@ -38,8 +39,8 @@ pub(super) fn of_any(fields: usize) -> TokenStream {
 }
 
 /// A record of numbers with its names and its conversions from and to an array. The numbers are doubles unless said
-/// otherwise; a record without fields has none.
-fn record(name: &str, about: &str, fields: &[(String, String)]) -> TokenStream {
+/// otherwise; a record without fields has none. `derives_default` where the default of all is 0.
+fn record(name: &str, about: &str, fields: &[(String, String)], derives_default: bool) -> TokenStream {
     let ident = format_ident!("{name}");
     let count = Literal::usize_unsuffixed(fields.len());
     let idents: Vec<_> = fields.iter().map(|(name, _)| field(name)).collect();
@@ -51,9 +52,14 @@ fn record(name: &str, about: &str, fields: &[(String, String)]) -> TokenStream {
         _ => (quote! { <T = f64> }, quote! { <T: Copy> }, quote! { T }),
     };
     let argument = of_any(fields.len());
+    let derived = if derives_default {
+        quote! { Default, }
+    } else {
+        quote! {}
+    };
     quote! {
         #about
-        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        #[derive(Clone, Copy, Debug, #derived PartialEq)]
         pub struct #ident #default {
             #(#docs pub #idents: #number,)*
         }
@@ -85,7 +91,21 @@ fn constants(equations: &Equations) -> TokenStream {
             (constant.name.to_string(), format!("{}: {meaning} \\[mm\\].", constant.name))
         })
         .collect();
-    record("Constants", "The named offsets of the machine.", &fields)
+    let values: Vec<Option<f64>> = equations.constants.iter().map(|constant| constant.default).collect();
+    if values.iter().all(Option::is_none) {
+        return record("Constants", "The named offsets of the machine.", &fields, true);
+    }
+    let about = "The named offsets of the machine. By default each has the value of the machine file, or 0 where that has none.";
+    let record = record("Constants", about, &fields, false);
+    let values = values.into_iter().map(Option::unwrap_or_default).map(number);
+    quote! {
+        #record
+        impl Default for Constants {
+            fn default() -> Self {
+                Self::from_array([#(#values),*])
+            }
+        }
+    }
 }
 
 fn axes(equations: &Equations) -> TokenStream {
@@ -100,7 +120,7 @@ fn axes(equations: &Equations) -> TokenStream {
             )
         })
         .collect();
-    record("Axes", "The programmed positions of the axes.", &fields)
+    record("Axes", "The programmed positions of the axes.", &fields, true)
 }
 
 fn travels(equations: &Equations) -> TokenStream {
@@ -116,11 +136,11 @@ fn travels(equations: &Equations) -> TokenStream {
             (travel.name.to_string(), doc)
         })
         .collect();
-    record("Travels", "Free travels in the levers of alignment errors.", &fields)
+    record("Travels", "Free travels in the levers of alignment errors.", &fields, true)
 }
 
 fn motions(equations: &Equations) -> TokenStream {
     let fields: Vec<_> =
         equations.motions.iter().map(|motion| (motion.name.clone(), docs::motion(motion))).collect();
-    record("Motions", "The error motions: what each link does beside what it was told.", &fields)
+    record("Motions", "The error motions: what each link does beside what it was told.", &fields, true)
 }

@@ -5,9 +5,10 @@ use super::fields::{self, items, text};
 use super::header::reference;
 use super::link::{Along, Branch, Link, LinkKind, Reference};
 use super::words::{exact_length, is_name};
-use crate::algebra::{Axis, Polynomial, Symbol, to_f64};
+use crate::algebra::{Axis, Monomial, Polynomial, Rational, Symbol, to_f64};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::expression;
+use crate::notation::infix;
 use crate::source::{Span, Spanned};
 use crate::suggest::nearest;
 use crate::yaml::{Node, NodeKind};
@@ -295,7 +296,12 @@ fn coordinate(node: &Node, diagnostics: &mut Diagnostics) -> Polynomial {
     };
     let bounded = value.and_then(|value| {
         let too_large = value.terms().any(|(_, number)| to_f64(number).abs() > MOST_MM);
-        if too_large {
+        let factors = |monomial: &Monomial| monomial.factors().iter().map(|(_, power)| power).sum::<u32>();
+        let product = value.terms().map(|(monomial, _)| monomial).find(|monomial| factors(monomial) > 1);
+        if let Some(product) = product {
+            let product = Polynomial::monomial(product.clone(), Rational::from_integer(1.into()));
+            Err(format!("`{}` is a product of lengths, and no length", infix(&product)))
+        } else if too_large {
             Err(format!("it holds a number beyond {MOST_MM:e} mm"))
         } else if value.size() > MOST_TERMS {
             Err(format!("it expands to {} terms, more than {MOST_TERMS}", value.size()))

@@ -92,7 +92,7 @@ fn read_section(
     let mut printed: Vec<Printed> = Vec::new();
     for statement in &section.statements {
         match statement {
-            Statement::Let(letter, value) => give(&mut vocabulary, letter, value, diagnostics),
+            Statement::Let(letter, value) => give(&mut vocabulary, letter, value, work, diagnostics),
             Statement::Equation(left, right) => {
                 let target = target(left, kind.link, equations, diagnostics);
                 let value = value(right, target.as_ref(), &vocabulary, work, diagnostics);
@@ -161,7 +161,8 @@ fn link(id: &str, name: &Spanned<String>, machine: &Machine, diagnostics: &mut D
 fn give(
     vocabulary: &mut Vocabulary<'_>,
     letter: &Spanned<String>,
-    value: &Spanned<String>,
+    expression: &Spanned<String>,
+    work: &mut usize,
     diagnostics: &mut Diagnostics,
 ) {
     let name = letter.value.as_str();
@@ -173,14 +174,12 @@ fn give(
         diagnostics.push(
             Diagnostic::error("E0509", letter.span, format!("`{name}` {problem}"))
                 .label("not a new name")
-                .help("write `let gamma = EAX`, or `let gamma = -EAX` for the other sense"),
+                .help("write `let gamma = -EAX`, or `let L = Z1 + z`"),
         );
-    } else if let Err(unknown) = vocabulary.give(name, &value.value) {
-        diagnostics.push(
-            Diagnostic::error("E0509", value.span, format!("`{unknown}` is not known here"))
-                .label("a motion, position, constant or travel is expected")
-                .suggest(vocabulary.nearest(&unknown)),
-        );
+    } else {
+        // What cannot be read has been told: the letter is known, so that it is told once.
+        let value = value(expression, None, vocabulary, work, diagnostics).unwrap_or_default();
+        vocabulary.give(name, value);
     }
 }
 
@@ -280,7 +279,17 @@ fn value(
             symbol
         };
         let error = match parse_within(&right.value, &mut resolve, work) {
-            Ok(value) => return told.is_empty().then(|| vocabulary.settle(&value)),
+            Ok(_) if !told.is_empty() => return None,
+            Ok(value) => {
+                let settled = vocabulary.settle(&value, work);
+                if settled.is_none() {
+                    diagnostics.push(
+                        Diagnostic::error("E0503", right.span, "there is too much to expand")
+                            .label("with the letters written out"),
+                    );
+                }
+                return settled;
+            }
             Err(error) => error,
         };
         let span = Span::new(right.span.start + error.start, right.span.start + error.end);

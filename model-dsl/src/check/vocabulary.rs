@@ -5,28 +5,34 @@ use crate::algebra::{Monomial, Polynomial, Symbol};
 use crate::machine::{Machine, parse_name};
 use crate::suggest::nearest;
 
-/// A name that stands for a motion, a position or a constant, perhaps counted in the other sense: a letter of the section, or a name of
-/// the machine.
+/// A name of the machine, perhaps counted in the other sense.
 #[derive(Clone, Debug)]
-struct Letter {
+struct Name {
     name: String,
     symbol: Symbol,
     negative: bool,
+}
+
+/// A letter of the section, and what it stands for.
+#[derive(Clone, Debug)]
+struct Letter {
+    name: String,
+    value: Polynomial,
 }
 
 /// What names mean in one section.
 #[derive(Clone, Debug)]
 pub(super) struct Vocabulary<'m> {
     machine: &'m Machine,
-    names: Vec<Letter>,
+    names: Vec<Name>,
     letters: Vec<Letter>,
 }
 
 impl<'m> Vocabulary<'m> {
     /// The names of a machine: positions, constants, travels, symbols and ISO names.
     pub(super) fn new(machine: &'m Machine) -> Self {
-        let named = |name: &str, symbol: Symbol| Letter { name: name.to_owned(), symbol, negative: false };
-        let mut names: Vec<Letter> = Vec::new();
+        let named = |name: &str, symbol: Symbol| Name { name: name.to_owned(), symbol, negative: false };
+        let mut names: Vec<Name> = Vec::new();
         for (_, link) in machine.axes() {
             names.push(named(&link.variable(), Symbol::Position(link.variable())));
         }
@@ -38,7 +44,7 @@ impl<'m> Vocabulary<'m> {
         }
         for motion in &machine.motions {
             let known = named(&motion.symbol, Symbol::Motion(motion.name.as_str().into()));
-            names.push(Letter { negative: motion.sign < 0, ..known });
+            names.push(Name { negative: motion.sign < 0, ..known });
         }
         let of_motion = |name: &str| named(name, Symbol::Motion(name.into()));
         names.extend(machine.motions.iter().map(|motion| of_motion(&motion.name)));
@@ -50,32 +56,27 @@ impl<'m> Vocabulary<'m> {
         self.letters.iter().any(|letter| letter.name == name)
     }
 
-    /// Gives a letter to what `value` names; a minus sign before it counts it in the other sense.
-    /// `Err` holds the name that is not known.
-    pub(super) fn give(&mut self, letter: &str, value: &str) -> Result<(), String> {
-        let (negative, name) = match value.strip_prefix('-') {
-            Some(rest) => (true, rest.trim()),
-            None => (false, value),
-        };
-        let known = self.machine_name(name).ok_or_else(|| name.to_owned())?;
-        let negative = negative != known.negative;
-        self.letters.push(Letter { name: letter.to_owned(), negative, ..known });
-        Ok(())
+    /// Gives a letter to an expression that was settled.
+    pub(super) fn give(&mut self, letter: &str, value: Polynomial) {
+        self.letters.push(Letter { name: letter.to_owned(), value });
     }
 
-    /// The symbol of a name. A letter counted in the other sense comes as a placeholder, which [`Self::settle`] replaces.
+    /// The symbol of a name. A letter, and a name counted in the other sense, come as placeholders, which [`Self::settle`] replaces.
     pub(super) fn resolve(&self, name: &str) -> Option<Symbol> {
-        let letter = self.letters.iter().find(|letter| letter.name == name).cloned();
-        let known = letter.or_else(|| self.machine_name(name))?;
-        Some(if known.negative { placeholder(&known) } else { known.symbol })
+        if self.has_letter(name) {
+            return Some(placeholder(name));
+        }
+        let known = self.machine_name(name)?;
+        Some(if known.negative { placeholder(&known.name) } else { known.symbol })
     }
 
-    /// Replaces letters counted in the other sense by what they stand for, with a minus sign.
-    pub(super) fn settle(&self, polynomial: &Polynomial) -> Polynomial {
-        let counted = self.names.iter().chain(&self.letters).filter(|letter| letter.negative);
-        counted.fold(polynomial.clone(), |settled, letter| {
-            let value = -&Polynomial::symbol(letter.symbol.clone());
-            substitute(&settled, &placeholder(letter), &value)
+    /// Replaces placeholders by what they stand for. `None` where that is too much to expand.
+    pub(super) fn settle(&self, polynomial: &Polynomial, work: &mut usize) -> Option<Polynomial> {
+        let counted = self.names.iter().filter(|name| name.negative && !self.has_letter(&name.name));
+        let counted = counted.map(|name| (&name.name, -&Polynomial::symbol(name.symbol.clone())));
+        let letters = self.letters.iter().map(|letter| (&letter.name, letter.value.clone()));
+        counted.chain(letters).try_fold(polynomial.clone(), |settled, (name, value)| {
+            substitute(&settled, &placeholder(name), &value, work)
         })
     }
 
@@ -85,13 +86,13 @@ impl<'m> Vocabulary<'m> {
         nearest(name, letters.chain(self.names.iter().map(|known| known.name.as_str())))
     }
 
-    fn machine_name(&self, name: &str) -> Option<Letter> {
+    fn machine_name(&self, name: &str) -> Option<Name> {
         let known = self.names.iter().find(|known| known.name == name);
         known.cloned().or_else(|| self.alias(name))
     }
 
     /// A motion by another spelling of its ISO name: `C0Y` and `COY` for `EC0Y`.
-    fn alias(&self, name: &str) -> Option<Letter> {
+    fn alias(&self, name: &str) -> Option<Name> {
         let found = self.machine.motions.iter().find(|motion| {
             let id = self.machine.links.get(motion.link).map_or("", |link| link.id.as_str());
             parse_name(name, id).is_some_and(|parsed| {
@@ -99,29 +100,38 @@ impl<'m> Vocabulary<'m> {
             })
         });
         let symbol = Symbol::Motion(found?.name.as_str().into());
-        Some(Letter { name: name.to_owned(), symbol, negative: false })
+        Some(Name { name: name.to_owned(), symbol, negative: false })
     }
 }
 
 /// No name of a machine can begin with a minus sign.
-fn placeholder(letter: &Letter) -> Symbol {
-    Symbol::Constant(format!("-{}", letter.name).into())
+fn placeholder(name: &str) -> Symbol {
+    Symbol::Constant(format!("-{name}").into())
 }
 
-fn substitute(polynomial: &Polynomial, symbol: &Symbol, value: &Polynomial) -> Polynomial {
-    let replaced = polynomial.terms().map(|(monomial, coefficient)| {
-        let start = Polynomial::number(coefficient.clone());
-        monomial.factors().iter().fold(start, |product, (factor, power)| {
-            if factor == symbol {
-                (0..*power).fold(product, |product, _| &product * value)
-            } else {
-                let kept = Polynomial::monomial(
-                    Monomial::power(factor.clone(), *power),
-                    crate::algebra::Rational::from_integer(1.into()),
-                );
-                &product * &kept
+/// Replaces a symbol by a value; each product of two terms is work, of which there may be so much. `None` where it is not enough.
+fn substitute(
+    polynomial: &Polynomial,
+    symbol: &Symbol,
+    value: &Polynomial,
+    work: &mut usize,
+) -> Option<Polynomial> {
+    let mut sum = Polynomial::zero();
+    for (monomial, coefficient) in polynomial.terms() {
+        let mut product = Polynomial::number(coefficient.clone());
+        for (factor, power) in monomial.factors() {
+            if factor != symbol {
+                let one = crate::algebra::Rational::from_integer(1.into());
+                product = &product * &Polynomial::monomial(Monomial::power(factor.clone(), *power), one);
+                continue;
             }
-        })
-    });
-    replaced.collect()
+            for _ in 0..*power {
+                *work = work.checked_sub(product.size().max(1) * value.size().max(1))?;
+                product = &product * value;
+            }
+        }
+        *work = work.checked_sub(product.size())?;
+        sum = &sum + &product;
+    }
+    Some(sum)
 }

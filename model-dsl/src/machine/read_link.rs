@@ -6,6 +6,7 @@ use super::header::reference;
 use super::link::{Along, Branch, Link, LinkKind, Reference};
 use super::words::{exact_length, is_name};
 use crate::algebra::{Axis, Monomial, Polynomial, Rational, Symbol, to_f64};
+use crate::calibration::LARGEST_ANGLE;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::expression;
 use crate::notation::infix;
@@ -237,11 +238,29 @@ fn unit_vector(node: &Node, entries: &[Node], diagnostics: &mut Diagnostics) -> 
                     "a direction runs along one of the frame's own directions",
                 )
                 .label("this direction is skew")
-                .help("take the nearest of +X -X +Y -Y +Z -Z; the angle that is left is an alignment error"),
+                .help(straightened(&numbers)),
             );
             None
         }
     }
+}
+
+/// What to write for a skew direction: an alignment error is a small angle, and any other one is that of a rotary axis.
+fn straightened(direction: &[f64]) -> String {
+    let length = direction.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let nearest = direction.iter().map(|part| part.abs()).fold(0.0, f64::max);
+    let angle = (nearest / length).min(1.0).acos();
+    if angle <= LARGEST_ANGLE {
+        return format!(
+            "take the nearest of +X -X +Y -Y +Z -Z; the {:.2} mrad that are left are an alignment error",
+            angle * 1e3
+        );
+    }
+    format!(
+        "put a rotary axis with `errors: []` before it that always stands at {:.2} deg, and let this one run along the nearest \
+         of +X -X +Y -Y +Z -Z",
+        angle.to_degrees()
+    )
 }
 
 fn number(node: &Node) -> Option<f64> {

@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use model_dsl::calibration::Calibration;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::machine::Machine;
@@ -68,9 +69,9 @@ pub(crate) fn read(path: &Path, quiet: bool) -> Result<Recorded, Failure> {
 pub(crate) fn read_all(paths: &[PathBuf], quiet: bool) -> Result<Vec<Recorded>, Failure> {
     let mut all: Vec<Recorded> = Vec::new();
     for path in paths {
-        let recorded = read(path, quiet)?;
+        let mut recorded = read(path, quiet)?;
         if let Some(first) = all.first() {
-            first.check_same(&recorded)?;
+            first.take_other(&mut recorded)?;
         }
         all.push(recorded);
     }
@@ -148,9 +149,22 @@ pub(crate) fn unusable(
     Failure::Wrong(format!("{}\n{reason}", rendered(source, &diagnostics).trim_end()))
 }
 
+/// Whether calibrations differ in nothing that acts, or in constants alone.
+fn are_alike(known: &Calibration, other: &Calibration) -> bool {
+    let (constants, source) = (known.constants.clone(), known.source.clone());
+    *known == Calibration { constants, source, ..other.clone() }
+}
+
+/// The constants that are others than those that are known, by their numbers.
+fn differing(known: &[f64], own: &[f64]) -> Vec<(usize, f64)> {
+    let all = known.iter().zip(own).enumerate();
+    all.filter(|(_, (known, own))| known != own).map(|(number, (_, own))| (number, *own)).collect()
+}
+
 impl Recorded {
-    /// Reports a recording that is of another machine, or counts on another calibration (E0625).
-    fn check_same(&self, other: &Self) -> Result<(), Failure> {
+    /// Reports a recording that is of another machine, or counts on another calibration (E0625). Calibrations that differ in constants
+    /// alone are one calibration with other tools: the recording then tells what its own are.
+    fn take_other(&self, other: &mut Self) -> Result<(), Failure> {
         let first = self.source.name();
         if self.equations.names() != other.equations.names() {
             let message = format!(
@@ -165,10 +179,14 @@ impl Recorded {
                 mistake.help("give recordings of one machine, or one call for each machine"),
             ));
         }
-        let calibration =
-            |recorded: &Self| recorded.calibration.as_ref().map(|known| known.calibration.clone());
-        if calibration(self) == calibration(other) {
-            return Ok(());
+        match (&self.calibration, &other.calibration) {
+            (None, None) => return Ok(()),
+            (Some(known), Some(own)) if are_alike(&known.calibration, &own.calibration) => {
+                let own = other.recording.constants(&own.calibration.constants);
+                other.recording.constants = differing(&known.calibration.constants, &own);
+                return Ok(());
+            }
+            _ => {}
         }
         let named = |recorded: &Self| match &recorded.calibration_path {
             Some(path) => format!("counts on {}", path.display()),

@@ -549,6 +549,61 @@ fn recordings_of_two_machines_are_refused() {
     assert!(run.err.contains("E0625"), "{}", run.err);
 }
 
+/// At one length of the tool a pitch and a positioning error are the same. Recordings with two lengths tell them apart, whether each says
+/// its own length or names a calibration of its own.
+#[test]
+fn tools_of_two_lengths_tell_an_angle_from_a_displacement() {
+    let folder = folder("two-tools");
+    let path = "path: 1\nline: {axis: X, from: 0 mm, to: 300 mm}\nruns: 3\nfeed: 1800 mm/min\nrate: 10 Hz\ninstrument: position\nnoise: {white: 0.3 um}\n";
+    let path = write(&folder, "path.yaml", path);
+    let numbers = |zt: u32, errors: &str| {
+        format!("calibration: 1\nmachine: FX\nconstants: {{Xt: 0 mm, Yt: 0 mm, Zt: {zt} mm}}\n{errors}")
+    };
+    let errors = "errors: {EXX: [{cyclic: {period: 40 mm, amplitude: 3 um, phase: 20 deg}}], EBX: [{backlash: {lost_motion: 30 urad}}]}\n";
+    let record = |zt: u32| {
+        let truth = write(&folder, "truth.yaml", &numbers(zt, errors));
+        let output = folder.join(format!("tool-{zt}"));
+        let (recording, _) = simulated(&[&truth, &path, "--seed", &zt.to_string()], &output);
+        write(&output, "known.yaml", &numbers(zt, ""));
+        write(&output, "recording.yaml", &format!("{recording}calibration: known.yaml\n"))
+    };
+    let (short, long) = (record(50), record(150));
+    let found = |recordings: &[&str], more: &[&str]| {
+        let run = done(abbe(&[&["diagnose", "--format", "json", "--quiet"], more, recordings].concat(), ""));
+        let all = json(&run)["findings"].as_array().unwrap().clone();
+        let name =
+            |one: &Value| format!("{} {}", one["motion"].as_str().unwrap(), one["term"].as_str().unwrap());
+        let also = |one: &Value| one["indistinguishable_from"].as_array().unwrap().len();
+        all.iter().map(|one| (name(one), also(one))).collect::<Vec<_>>()
+    };
+    let alone = found(&[&short], &[]);
+    assert_eq!(alone, [("EXX cyclic".to_owned(), 1), ("EXX backlash".to_owned(), 1)]);
+    let right = [("EXX cyclic".to_owned(), 0), ("EBX backlash".to_owned(), 0)];
+    assert_eq!(found(&[&short, &long], &[]), right);
+    // The same with one calibration, and the length in the recording.
+    let said = text(Path::new(&long))
+        .replace("calibration: known.yaml", "calibration: ../tool-50/known.yaml\nconstants: {Zt: 150 mm}");
+    let long = write(&folder.join("tool-150"), "said.yaml", &said);
+    let improved = joined(&folder, "improved.yaml");
+    assert_eq!(found(&[&short, &long], &["--write-calibration", &improved]), right);
+    // What is written back is of the first calibration, and predicts the recording with the other tool.
+    assert!(text(Path::new(&improved)).contains("Zt: 50 mm"));
+    let (_, predicted) = simulated(&[&improved, &long], &folder.join("predicted"));
+    let measured = text(&folder.join("tool-150/data.csv"));
+    let off = column(&predicted, "x_meas")
+        .into_iter()
+        .zip(column(&measured, "x_meas"))
+        .map(|(a, b)| (a - b).powi(2));
+    let rms = (off.clone().sum::<f64>() / off.count() as f64).sqrt();
+    assert!(rms < 0.000_35, "{rms}");
+    // Other numbers are another calibration.
+    let other = numbers(150, "errors: {EXX: 1 um}\n");
+    write(&folder.join("tool-150"), "known.yaml", &other);
+    let run = abbe(&["diagnose", &short, &joined(&folder, "tool-150/recording.yaml")], "");
+    assert_eq!(run.status, 2);
+    assert!(run.err.contains("E0625"), "{}", run.err);
+}
+
 /// `abbe simulate CALIBRATION RECORDING`.
 mod replay {
     use super::*;

@@ -13,7 +13,7 @@ use crate::model::{Fitted, Model};
 use crate::parallel;
 use crate::position_loop::PositionLoop;
 use crate::states::{Driven, Rows, States};
-use crate::study::{Kind, Study};
+use crate::study::{Built, Kind, Study};
 use crate::terms::{Memory, Setting, Shape};
 
 /// How many rows are worked on at a time.
@@ -29,6 +29,8 @@ pub(crate) struct Course {
     pub(crate) drives: Option<States>,
     /// What the calibration says of the tip and of its rotation in every row.
     pub(crate) known: KnownError,
+    /// The machine that was recorded.
+    pub(crate) built: Arc<Built>,
 }
 
 /// The error of the tip, and the rotation of the tool relative to the part, X, Y, Z each; the rotation only where a channel
@@ -99,7 +101,8 @@ impl Course {
         let shown = states(ways.clock);
         let drives = (ways.clock != 0.0 && known.has_drives()).then(|| states(0.0));
         let known = KnownError::new(study, scene, &shown);
-        Self { shown, drives, known }
+        let built = Arc::clone(&study.scenes[scene].built);
+        Self { shown, drives, known, built }
     }
 
     /// The states that a channel shows.
@@ -135,7 +138,7 @@ impl KnownError {
             let errors = parallel::counted(stretches.len(), batch.len() * motions.len(), |number| {
                 let rows = stretches[number].clone();
                 let motions = part(&motions, &(rows.start - batch.start..rows.end - batch.start));
-                displaced(study, &states.rows(rows), &motions, turning)
+                displaced(study, &study.scenes[scene].built, (&states.rows(rows), &motions), turning)
             });
             for part in errors {
                 append(&mut known.tip, part.tip);
@@ -152,11 +155,16 @@ impl KnownError {
 ///
 /// A motion that is not known in a row, as what a sensor says that was not recorded, counts as nothing in the product, and leaves
 /// those directions unknown that see it to first order: not the others, which would see no more than products of two errors.
-fn displaced(study: &Study<'_>, view: &Rows<'_>, motions: &[Option<&[f64]>], turning: bool) -> Displaced {
+fn displaced(
+    study: &Study<'_>,
+    built: &Built,
+    (view, motions): (&Rows<'_>, &[Option<&[f64]>]),
+    turning: bool,
+) -> Displaced {
     let (positions, travels) = inputs(study, view);
     let product = |motions: &[Option<&[f64]>]| {
         let columns = Columns { positions: &positions, travels: &travels, motions };
-        study.exact.displaced(&columns, turning)
+        built.exact.displaced(&columns, turning)
     };
     let unknown =
         |motion: &Option<&[f64]>| motion.is_some_and(|motion| motion.iter().any(|value| value.is_nan()));
@@ -170,7 +178,7 @@ fn displaced(study: &Study<'_>, view: &Rows<'_>, motions: &[Option<&[f64]>], tur
     let (known, gaps) = (each(|value| if value.is_nan() { 0.0 } else { value }), each(|value| 0.0 * value));
     let all = 0..view.len();
     let mut error = product(&part(&known, &all));
-    let (interpreter, gaps) = (&study.interpreter, part(&gaps, &all));
+    let (interpreter, gaps) = (&built.interpreter, part(&gaps, &all));
     let seen = |of: &[[Column<'_>; 3]]| weighted_sum(of, &gaps, view.len());
     error.tip = plus(error.tip, &seen(&interpreter.lever_values(&positions, &travels)), &all);
     error.turn =

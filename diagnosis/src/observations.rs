@@ -49,7 +49,7 @@ impl<'c> Frame<'c> {
         let (positions, travels) = inputs(study, &view);
         let programmed: Vec<&'c [f64]> =
             course.shown.given.programmed.iter().map(|position| &position[rows.clone()]).collect();
-        let interpreter = &study.interpreter;
+        let interpreter = &course.built.interpreter;
         let levers = interpreter.lever_values(&positions, &travels);
         let within = rows.start - moved.rows.start..rows.end - moved.rows.start;
         let motions = part(&moved.motions, &within);

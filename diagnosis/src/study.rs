@@ -23,12 +23,23 @@ use crate::states::{Given, Shared, behind_corners, beside_reversals, unseen_turn
 use crate::targets::Targets;
 use crate::terms::{self, Shape};
 
-/// A machine, what is known of it, and what was recorded.
-pub(crate) struct Study<'a> {
-    pub(crate) equations: &'a Equations,
+/// A machine with the values of its constants while one recording was made.
+pub(crate) struct Built {
     pub(crate) interpreter: Interpreter,
     /// The same machine without linearisation, for what the calibration says.
     pub(crate) exact: ExactProduct,
+}
+
+impl Built {
+    fn new(equations: &Equations, constants: &[f64]) -> Arc<Self> {
+        let interpreter = Interpreter::new(equations, constants);
+        Arc::new(Self { interpreter, exact: ExactProduct::new(equations, constants) })
+    }
+}
+
+/// A machine, what is known of it, and what was recorded.
+pub(crate) struct Study<'a> {
+    pub(crate) equations: &'a Equations,
     /// The names of all sensors: those of the calibration under its own numbers, then others that were recorded.
     pub(crate) sensors: Vec<String>,
     /// The names and units of all loads that were recorded.
@@ -46,6 +57,8 @@ pub(crate) struct Study<'a> {
 /// One recording in the study.
 pub(crate) struct Scene<'a> {
     pub(crate) recording: &'a Recording,
+    /// The machine that was recorded: recordings with tools of different lengths differ in a constant.
+    pub(crate) built: Arc<Built>,
     pub(crate) given: Given,
     pub(crate) channels: Vec<Channel<'a>>,
     pub(crate) blocks: Vec<Block>,
@@ -159,14 +172,19 @@ impl<'a> Study<'a> {
         let loads = load_names(recordings);
         let own = own_motions(equations);
         let known = known(calibration, &loads, &own);
-        let interpreter = Interpreter::new(equations, &constants);
-        let exact = ExactProduct::new(equations, &constants);
+        let usual = Built::new(equations, &constants);
+        let built = |recording: &Recording| match recording.constants.as_slice() {
+            [] => Arc::clone(&usual),
+            _ => Built::new(equations, &recording.constants(&constants)),
+        };
         let scenes = recordings
             .iter()
-            .map(|recording| Scene::new(recording, equations, calibration, &sensors, &loads, &interpreter))
+            .map(|recording| {
+                Scene::new(recording, equations, calibration, (&sensors, &loads), built(recording))
+            })
             .collect();
         let crossings = vec![0.0; own.len()];
-        let mut study = Self { equations, interpreter, exact, sensors, loads, scenes, known, own, crossings };
+        let mut study = Self { equations, sensors, loads, scenes, known, own, crossings };
         for scene in 0..study.scenes.len() {
             let course = Course::new(&study, scene, &[]);
             study.scenes[scene].returns = Returns::new(&study, scene, &course.shown);
@@ -257,9 +275,8 @@ impl<'a> Scene<'a> {
         recording: &'a Recording,
         equations: &Equations,
         calibration: Option<&Calibration>,
-        sensors: &[String],
-        loads: &[(String, String)],
-        interpreter: &Interpreter,
+        (sensors, loads): (&[String], &[(String, String)]),
+        built: Arc<Built>,
     ) -> Self {
         let rows = recording.time.len();
         let loads = loads.iter().map(|(name, _)| column(&recording.loads, name, rows)).collect();
@@ -275,7 +292,8 @@ impl<'a> Scene<'a> {
             returns: Returns::default(),
             observed: observed(&given),
             corners: corners(recording, &given),
-            leans: leans(recording, &given.programmed, interpreter),
+            leans: leans(recording, &given.programmed, &built.interpreter),
+            built,
             recording,
             given,
             channels: channels(recording, equations, &rounded),

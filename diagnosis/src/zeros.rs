@@ -68,7 +68,7 @@ pub(crate) fn residuals(study: &Study<'_>, model: &Model) -> Vec<Vec<Vec<f64>>> 
                 for (channel, residual) in known.channels.iter().zip(&mut residuals) {
                     let residual = &mut residual[block.rows.clone()];
                     match channel.kind {
-                        Kind::Radius { center, .. } => recenter(study, known, &block.rows, center, residual),
+                        Kind::Radius { center, .. } => recenter(known, &block.rows, center, residual),
                         _ => center(residual),
                     }
                 }
@@ -80,16 +80,10 @@ pub(crate) fn residuals(study: &Study<'_>, model: &Model) -> Vec<Vec<Vec<f64>>> 
 }
 
 /// Takes out what a ballbar's centre of its own explains.
-fn recenter(
-    study: &Study<'_>,
-    known: &Scene<'_>,
-    rows: &Range<usize>,
-    center: [f64; 3],
-    residual: &mut [f64],
-) {
+fn recenter(known: &Scene<'_>, rows: &Range<usize>, center: [f64; 3], residual: &mut [f64]) {
     let programmed: Vec<&[f64]> =
         known.given.programmed.iter().map(|position| &position[rows.clone()]).collect();
-    let nominal = study.interpreter.nominal_columns(&programmed);
+    let nominal = known.built.interpreter.nominal_columns(&programmed);
     let leaning: Vec<usize> = (0..3).filter(|direction| known.leans[*direction]).collect();
     let spokes = DMatrix::from_fn(residual.len(), leaning.len(), |row, column| {
         let spoke = [0, 1, 2].map(|d| nominal[d][row] - center[d]);

@@ -53,7 +53,7 @@ impl<'c> Course<'c> {
         let absolute = calibration.is_some() || defaults.clone().all(|default| default.is_some());
         let defaults: Vec<f64> = defaults.map(Option::unwrap_or_default).collect();
         let constants = calibration.map_or(&defaults, |calibration| &calibration.constants);
-        let interpreter = Interpreter::new(equations, constants);
+        let interpreter = Interpreter::new(equations, &recording.constants(constants));
         let columns: Vec<&[f64]> = positions.iter().map(Vec::as_slice).collect();
         let tip = interpreter.nominal_columns(&columns);
         Ok(Self { equations, recording, positions, commanded, tolerance, tip, absolute, interpreter })

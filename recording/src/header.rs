@@ -1,12 +1,12 @@
 //! The recording file as a whole: its top-level keys.
 //!
 //! In: the tree of the file and the machine's equations. Out: a [`Header`], which knows what every column means and
-//! reads the data ([`Header::read_data`]); or findings E0601 to E0621.
+//! reads the data ([`Header::read_data`]); or findings E0601 to E0621, E0628.
 
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::fields::{self, Fields};
-use model_dsl::quantity;
+use model_dsl::quantity::{self, Dimension};
 use model_dsl::source::Spanned;
 use model_dsl::yaml::Node;
 
@@ -16,11 +16,12 @@ use super::setup::{Kind, read_setup};
 use super::suited::check_suited;
 use super::words::{FORM, first_key, keys, near_or_all, word};
 
-const KEYS: [&str; 10] = [
+const KEYS: [&str; 11] = [
     "recording",
     "title",
     "machine",
     "calibration",
+    "constants",
     "instrument",
     "data",
     "channels",
@@ -38,6 +39,8 @@ pub struct Header {
     pub machine: Spanned<String>,
     /// The calibration file that the file names, a path from its own folder.
     pub calibration: Option<Spanned<String>>,
+    /// Constants of the machine that had other values, mm, each with its number.
+    pub constants: Vec<(usize, f64)>,
     /// What measured, and how it was set up.
     pub instrument: Instrument,
     /// The direction of all readings of a probe, where the set-up gives it in place of channels: a unit vector.
@@ -127,6 +130,8 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
     }
     let title = fields.get("title").and_then(|node| word(node, "`title`", diagnostics));
     let calibration = fields.get("calibration").and_then(|node| word(node, "`calibration`", diagnostics));
+    let constants =
+        fields.get("constants").map(|node| read_constants(node, equations, diagnostics)).unwrap_or_default();
     let data = fields.need("data", wording, diagnostics).and_then(|node| word(node, "`data`", diagnostics));
     let instrument = fields.need("instrument", wording, diagnostics);
     let instrument = instrument.and_then(|node| read_instrument(node, diagnostics));
@@ -154,6 +159,7 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
         title: title.map(|title| title.value),
         machine,
         calibration,
+        constants,
         instrument: setup.instrument,
         normal: setup.normal,
         data: data?,
@@ -163,6 +169,32 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
         axes: equations.axes.iter().map(|axis| axis.letter.clone()).collect(),
     })
 }
+
+/// Constants that had other values while it was recorded: E0628 what is no constant of the machine.
+fn read_constants(node: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -> Vec<(usize, f64)> {
+    let Some(entries) = node.entries() else {
+        let message = format!("`constants` is a mapping of names to lengths, found {}", node.kind_name());
+        diagnostics.push(Diagnostic::error(FORM, node.span, message).help("write `{Zt: 150 mm}`"));
+        return Vec::new();
+    };
+    let known: Vec<&str> = equations.constants.iter().map(|constant| &*constant.name).collect();
+    let mut constants = Vec::new();
+    for (name, node) in entries {
+        let Some(number) = known.iter().position(|known| *known == name.value) else {
+            let message = format!("{} has no constant `{}`", equations.machine, name.value);
+            let mistake = Diagnostic::error(UNKNOWN_CONSTANT, name.span, message);
+            diagnostics.push(near_or_all(mistake, &name.value, "its constants are", &known));
+            continue;
+        };
+        let what = format!("the constant {}", name.value);
+        let value = quantity::read(node, Dimension::LENGTH, &what, diagnostics);
+        constants.extend(value.map(|value| (number, value.value)));
+    }
+    constants
+}
+
+/// A constant that the machine has not.
+const UNKNOWN_CONSTANT: &str = "E0628";
 
 fn check_version(node: &Node, diagnostics: &mut Diagnostics) {
     if node.text() == Some("1") {

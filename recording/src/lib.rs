@@ -44,6 +44,8 @@ mod setup;
 mod suited;
 mod words;
 
+use model_dsl::calibration::Calibration;
+
 pub use channel::{Channel, ChannelKind};
 pub use data::{DataError, Place};
 pub use direction::own_direction;
@@ -74,12 +76,34 @@ pub struct Recording {
     pub temperatures: Vec<Named>,
     /// Loads.
     pub loads: Vec<Named>,
+    /// Constants of the machine that had other values than the calibration says, mm, each with its number: a tool of another length.
+    pub constants: Vec<(usize, f64)>,
     /// The runs that are held out; whole blocks of time where the recording names none.
     pub holdout: Option<Vec<i64>>,
     /// The unit in which the recording gives angles, for people.
     pub angle_unit: AngleUnit,
     /// What a reader of the results should know of the data, a sentence each.
     pub notes: Vec<String>,
+}
+
+impl Recording {
+    /// The constants of the machine while it was recorded, from those that are known of it.
+    #[must_use]
+    pub fn constants(&self, known: &[f64]) -> Vec<f64> {
+        let mut constants = known.to_vec();
+        for (number, value) in &self.constants {
+            if let Some(constant) = constants.get_mut(*number) {
+                *constant = *value;
+            }
+        }
+        constants
+    }
+
+    /// A calibration with the constants of the machine while it was recorded.
+    #[must_use]
+    pub fn calibrated(&self, known: &Calibration) -> Calibration {
+        Calibration { constants: self.constants(&known.constants), ..known.clone() }
+    }
 }
 
 /// What a recording knows of one axis of the machine: mm, or rad for a rotary axis. [`AxisChannels::position`] says where it is.

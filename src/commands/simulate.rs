@@ -117,7 +117,8 @@ fn replayed(command: &Simulate, calibrated: &Calibrated, names: &MachineNames) -
             names.machine
         )));
     }
-    let plant = plant(calibrated, names)?;
+    let calibration = recorded.recording.calibrated(&calibrated.calibration);
+    let plant = Plant::new(&calibrated.machine, names, &calibration).map_err(|error| wrong(&error))?;
     let progress = Progress::new(command.quiet, "driving the recording's path");
     let simulated = replay::replayed(plant, &recorded.recording);
     drop(progress);

@@ -52,14 +52,15 @@ pub(crate) struct Machine<'m> {
 impl Machine<'_> {
     /// The readings of all recordings.
     pub(crate) fn points(&self, recordings: &[&Recording]) -> Result<Points, UpdateError> {
-        let interpreter = Interpreter::new(self.equations, &self.calibration.constants);
-        let exact = ExactProduct::new(self.equations, &self.calibration.constants);
         let mut all = Points { points: Vec::new(), parts: Vec::new() };
         let mut settings = 0;
         for (number, recording) in recordings.iter().enumerate() {
             if !matches!(recording.instrument, Instrument::Probe | Instrument::Position) {
                 return Err(UpdateError::Instrument { recording: number });
             }
+            let constants = recording.constants(&self.calibration.constants);
+            let interpreter = Interpreter::new(self.equations, &constants);
+            let exact = ExactProduct::new(self.equations, &constants);
             let course = Course::of(self, recording, number)?;
             let (points, left_out) = course.points(&interpreter, &exact, settings);
             settings += course.runs.len();

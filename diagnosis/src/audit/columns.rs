@@ -15,7 +15,7 @@ use crate::course::{BATCH, Course, Terms, pieces, plus, weighted_sum};
 use crate::model::{Fitted, Model};
 use crate::observations::{self, Sight};
 use crate::parallel;
-use crate::study::{self, Study};
+use crate::study::{self, Scene, Study};
 
 /// The most rows of a recording that are compared. A fault as large as the noise then stands 70 standard deviations out, the square
 /// root of this number, and one of a tenth of it 7.
@@ -100,8 +100,8 @@ struct Files {
     fault: Option<Fault>,
     /// The amount of it that was changed.
     step: f64,
-    /// The machine, if its equations or constants are changed.
-    interpreter: Option<Interpreter>,
+    /// The machine of each recording, if its equations or constants are changed.
+    interpreters: Option<Vec<Interpreter>>,
     /// The number of its error motions, and the axes of its free travels.
     motions: usize,
     travels: Vec<usize>,
@@ -140,7 +140,12 @@ impl Files {
         let (motions, travels) = shape(with.equations);
         Some(Self {
             step,
-            interpreter: other_arms.then(|| Interpreter::new(with.equations, &calibration.constants)),
+            interpreters: other_arms.then(|| {
+                let of_scene = |scene: &Scene<'_>| {
+                    Interpreter::new(with.equations, &scene.recording.constants(&calibration.constants))
+                };
+                study.scenes.iter().map(of_scene).collect()
+            }),
             motions,
             travels,
             terms: numbered(study, calibration, &own, terms),
@@ -254,7 +259,8 @@ impl Seen {
     fn predicted(&self, study: &Study<'_>, files: &Files) -> Predicted {
         let positions: Vec<&[f64]> = self.positions.iter().map(Vec::as_slice).collect();
         let travels: Vec<&[f64]> = files.travels.iter().map(|axis| positions[*axis]).collect();
-        let interpreter = files.interpreter.as_ref().unwrap_or(&study.interpreter);
+        let changed = files.interpreters.as_ref().and_then(|interpreters| interpreters.get(self.scene));
+        let interpreter = changed.unwrap_or(&study.scenes[self.scene].built.interpreter);
         let rows = positions.first().map_or(0, |position| position.len());
         let mut motions: Vec<Option<Vec<f64>>> = vec![None; files.motions];
         for (motion, term) in &files.terms {

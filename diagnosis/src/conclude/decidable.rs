@@ -237,7 +237,7 @@ pub(super) fn misplaced(study: &Study<'_>) -> Option<String> {
     for scene in &study.scenes {
         let Instrument::Ballbar { center, radius } = scene.recording.instrument else { continue };
         let positions: Vec<&[f64]> = scene.given.programmed.iter().map(|position| &position[..]).collect();
-        let tip = study.interpreter.nominal_columns(&positions);
+        let tip = scene.built.interpreter.nominal_columns(&positions);
         let distance = |row: usize| (0..3).map(|d| (tip[d][row] - center[d]).powi(2)).sum::<f64>().sqrt();
         let mut distances: Vec<f64> = (0..scene.rows()).map(distance).filter(|far| far.is_finite()).collect();
         distances.sort_by(f64::total_cmp);

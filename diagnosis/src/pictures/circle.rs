@@ -25,7 +25,7 @@ pub(super) fn draw(sight: &Sight<'_>, before: &[Vec<f64>], after: &[Vec<f64>]) -
     let scene = &study.scenes[sight.scene];
     let seen = Seen::of(scene)?;
     let programmed: Vec<&[f64]> = scene.given.programmed.iter().map(|position| &**position).collect();
-    let path = study.interpreter.nominal_columns(&programmed);
+    let path = scene.built.interpreter.nominal_columns(&programmed);
     let plane = seen.plane(&path);
     let (center, radius) = seen.geometry(&path, plane)?;
     let spoke = |row: usize| [path[plane[0]][row] - center[0], path[plane[1]][row] - center[1]];

@@ -55,6 +55,7 @@ impl Base {
         let constants = names.constants.iter().map(|(_, value)| value.unwrap_or(0.0)).collect();
         let known =
             calibration.clone().unwrap_or_else(|| Calibration::new(names.machine.as_str(), constants));
+        let known = recording.calibrated(&known);
         let (instrument, outlets) = instrument(&recording, &names)?;
         let path = path(&recording, &names);
         let mut base = Self {

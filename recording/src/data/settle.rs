@@ -27,6 +27,7 @@ pub(super) fn settle(
         title: header.title.clone(),
         instrument: header.instrument.clone(),
         axes: vec![AxisChannels::default(); header.axes.len()],
+        constants: header.constants.clone(),
         holdout: header.holdout.clone(),
         angle_unit: angle_unit(&header.channels),
         notes,

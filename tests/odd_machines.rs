@@ -93,4 +93,6 @@ fn a_motion_without_a_lever_is_read_and_told() {
     assert_eq!(run.status, 0, "{}", run.err);
     assert!(run.err.contains("warning[W0402]: ECZ has no effect on gantry"), "{}", run.err);
     assert_eq!(column(&run.out, "x_comp"), [0.997]);
+    let derived = abbe(&["derive", &known.replace("known.yaml", "gantry.yaml")], "").out;
+    assert!(derived.contains("Without effect, since they have no lever here: ECY, ECZ."), "{derived}");
 }

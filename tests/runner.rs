@@ -43,6 +43,7 @@ mod page;
 mod pictures;
 mod processors;
 mod published_table;
+mod python;
 mod random;
 mod real_recordings;
 mod reproducible;

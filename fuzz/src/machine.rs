@@ -9,7 +9,8 @@ use model_dsl::program::Interpreter;
 
 use super::text::{findings_hold, source};
 
-const FORMATS: [Format; 5] = [Format::Text, Format::Latex, Format::Html, Format::Json, Format::Maxima];
+const FORMATS: [Format; 6] =
+    [Format::Text, Format::Latex, Format::Html, Format::Json, Format::Maxima, Format::Python];
 
 /// Takes a file of any bytes as a machine file.
 pub fn run(bytes: &[u8]) {

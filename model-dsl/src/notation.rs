@@ -1,6 +1,6 @@
 //! The notation of equations: one tree of sums, products and letters, and writers of it.
 //!
-//! In: derived [`Equations`], and terms with their numbers ([`formula()`]). Out: plain text, LaTeX, a page with MathML, JSON or Maxima input. What stands
+//! In: derived [`Equations`], and terms with their numbers ([`formula()`]). Out: plain text, LaTeX, a page with MathML, JSON, Maxima input or a Python module. What stands
 //! where (order, signs, brackets, how a name is split into letter and subscript) is decided once, while the
 //! tree is built; a writer only spells it, so that no two formats can say different things.
 
@@ -15,6 +15,7 @@ mod mathml;
 mod maxima;
 mod number;
 mod published;
+mod python;
 mod reach;
 mod sheet;
 mod text;
@@ -46,6 +47,8 @@ pub enum Format {
     Json,
     /// A batch file for Maxima.
     Maxima,
+    /// A module for Python: NumPy and SymPy.
+    Python,
 }
 
 /// Prints equations. JSON gives both names of every motion, whatever `names` says.
@@ -56,6 +59,7 @@ pub fn print(equations: &Equations, format: Format, names: Names) -> String {
         Format::Latex => latex::page(&sheet()),
         Format::Html => page(equations, names, &[]),
         Format::Maxima => maxima::batch(&sheet()),
+        Format::Python => python::module(&sheet(), equations),
         Format::Json => json::object(equations),
     }
 }

@@ -25,6 +25,8 @@ pub(crate) enum Format {
     Json,
     /// A batch file for Maxima.
     Maxima,
+    /// A module for Python, with numbers, NumPy arrays or SymPy symbols.
+    Python,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

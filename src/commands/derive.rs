@@ -19,6 +19,7 @@ pub(crate) fn run(command: &Derive) -> Result<(), Failure> {
         Format::Html => notation::Format::Html,
         Format::Json => notation::Format::Json,
         Format::Maxima => notation::Format::Maxima,
+        Format::Python => notation::Format::Python,
     };
     let names = match command.names {
         Names::Iso => equations::Names::Iso,

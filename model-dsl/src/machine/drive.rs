@@ -245,7 +245,9 @@ mod tests {
     fn equations_and_code_do_not_depend_on_it() {
         let (bare, driven) =
             (equations(""), equations("drive: {X: {pitch: 10 mm, ratio: 2}, C: {teeth: 90}}"));
-        for format in [Format::Text, Format::Latex, Format::Html, Format::Json, Format::Maxima] {
+        for format in
+            [Format::Text, Format::Latex, Format::Html, Format::Json, Format::Maxima, Format::Python]
+        {
             assert_eq!(print(&bare, format, Names::Iso), print(&driven, format, Names::Iso));
         }
         assert_eq!(codegen::tokens(&bare).to_string(), codegen::tokens(&driven).to_string());

@@ -262,6 +262,10 @@ fn conventions(equations: &Equations, names: Names) -> Vec<String> {
     if !against.is_empty() {
         sentences.push(format!("Counted against the sense of ISO 230-1: {}.", against.join(", ")));
     }
+    if !equations.unseen.is_empty() {
+        let unseen: Vec<&str> = equations.unseen.iter().map(|motion| motion.printed(names)).collect();
+        sentences.push(format!("Without effect, since they have no lever here: {}.", unseen.join(", ")));
+    }
     let absent: Vec<String> = Axis::ALL
         .into_iter()
         .filter(|axis| equations.row(*axis).is_none())

@@ -128,7 +128,9 @@ fn json_tells_the_sense_and_both_names() {
 fn every_format_prints_every_machine() {
     for name in MACHINES {
         let equations = equations(name);
-        for format in [Format::Text, Format::Latex, Format::Html, Format::Json, Format::Maxima] {
+        for format in
+            [Format::Text, Format::Latex, Format::Html, Format::Json, Format::Maxima, Format::Python]
+        {
             let text = print(&equations, format, Names::Iso);
             assert!(text.contains(name), "{name} as {format:?}");
             assert_eq!(text, print(&equations, format, Names::Iso), "{name} as {format:?} is the same twice");

@@ -1,0 +1,178 @@
+//! Equations for Python. In: a sheet, and the equations behind it. Out: a module without dependencies, whose functions take numbers, NumPy
+//! arrays or SymPy symbols: whoever checks a machine in a notebook has its nominal position, its error and its lever arms.
+
+use super::letter::Letter;
+use super::number::Number;
+use super::sheet::Sheet;
+use super::tree::{self, Expression, Function};
+use super::wrap;
+use super::writer::{Signs, Writer, pieces};
+use crate::equations::Equations;
+
+/// Keywords of Python, and the names that the functions of the module use.
+const RESERVED: [&str; 41] = [
+    "False",
+    "None",
+    "True",
+    "and",
+    "as",
+    "assert",
+    "async",
+    "await",
+    "break",
+    "class",
+    "continue",
+    "def",
+    "del",
+    "elif",
+    "else",
+    "except",
+    "finally",
+    "for",
+    "from",
+    "functions",
+    "global",
+    "if",
+    "import",
+    "in",
+    "is",
+    "lambda",
+    "math",
+    "motions",
+    "nonlocal",
+    "not",
+    "operator",
+    "or",
+    "pass",
+    "raise",
+    "return",
+    "try",
+    "values",
+    "while",
+    "with",
+    "yield",
+    "_ratio",
+];
+
+struct Python;
+
+impl Writer for Python {
+    fn signs(&self) -> &'static Signs {
+        &Signs { plus: " + ", minus: " - ", leading_minus: "-", times: "*", open: "(", close: ")" }
+    }
+
+    fn letter(&self, letter: &Letter) -> String {
+        let underscore = if RESERVED.contains(&letter.plain.as_str()) { "_" } else { "" };
+        format!("{}{underscore}", letter.plain)
+    }
+
+    fn number(&self, number: &Number) -> String {
+        match &number.denominator {
+            Some(denominator) => format!("_ratio({}, {denominator})", number.numerator),
+            None => number.numerator.clone(),
+        }
+    }
+
+    fn power(&self, base: &str, exponent: u32) -> String {
+        format!("{base}**{exponent}")
+    }
+
+    fn function(&self, function: Function, argument: &str) -> String {
+        format!("functions.{}({argument})", function.word())
+    }
+}
+
+/// The module.
+pub(super) fn module(sheet: &Sheet, equations: &Equations) -> String {
+    let source = sheet.source.as_ref().map(|source| format!("\nSource: {source}")).unwrap_or_default();
+    let about = format!(
+        "{}\n\nThe error equations of the tool tip relative to the part, to first order. Lengths in mm, angles in rad.{source}\n\n\
+         Values are numbers; arrays with `functions=numpy`; symbols with `functions=sympy`.\n",
+        sheet.heading()
+    );
+    let values = sheet.quantities.iter().map(|one| (one.letter.plain.as_str(), one.meaning.clone()));
+    let motions = sheet.motions.iter().map(|one| {
+        let against = if one.against_iso { ", counted against the ISO sense" } else { "" };
+        (one.letter.plain.as_str(), format!("{}, {} ({}{against})", one.iso, one.meaning, one.unit))
+    });
+    [
+        format!("\"\"\"{}\"\"\"\n\nimport math\nimport operator\n", quoted(&about)),
+        dictionary("VALUES", "Positions, travels and constants.", values),
+        dictionary("MOTIONS", "Error motions.", motions),
+        nominal(sheet, equations),
+        error(sheet),
+        levers(sheet),
+    ]
+    .join("\n")
+}
+
+fn nominal(sheet: &Sheet, equations: &Equations) -> String {
+    let rows = equations.rows.iter().map(|row| {
+        let position = tree::polynomial(&row.nominal);
+        entry(&row.direction.to_string(), &position)
+    });
+    let about = "The position of the tool tip without errors, by direction, mm.";
+    function("nominal(values, functions=math)", about, &values(sheet), rows)
+}
+
+fn error(sheet: &Sheet) -> String {
+    let names = sheet.motions.iter().map(|motion| &motion.letter);
+    let motions: String = names
+        .map(|letter| format!("    {} = motions.get(\"{}\", 0)\n", Python.letter(letter), letter.plain))
+        .collect();
+    let rows = sheet.rows.iter().map(|row| entry(&row.direction.to_string(), &row.error.right));
+    let about = "The error of the tool tip, by direction, mm; motions that are not given are 0.";
+    function("error(values, motions, functions=math)", about, &format!("{}{motions}", values(sheet)), rows)
+}
+
+fn levers(sheet: &Sheet) -> String {
+    let arms = sheet.motions.iter().map(|motion| {
+        let seen = sheet.rows.iter().zip(&motion.arms).filter_map(|(row, arm)| Some((row, arm.as_ref()?)));
+        let entries: String = seen
+            .map(|(row, arm)| {
+                format!("    {}", entry(&row.direction.to_string(), arm)).replace('\n', "\n    ")
+            })
+            .map(|entry| format!("{}\n", entry.trim_end()))
+            .collect();
+        format!("        \"{}\": {{\n{entries}        }},\n", motion.letter.plain)
+    });
+    let about = "The lever arm of each error motion, by direction: mm for an angle, a pure number for a displacement.";
+    function("levers(values, functions=math)", about, &values(sheet), arms)
+}
+
+/// A function that answers a dictionary.
+fn function(head: &str, about: &str, names: &str, entries: impl Iterator<Item = String>) -> String {
+    let entries: String = entries.collect();
+    format!(
+        "\ndef {head}:\n    \"\"\"{about}\"\"\"\n    _ratio = getattr(functions, \"Rational\", operator.truediv)\n{names}    \
+         return {{\n{entries}    }}\n"
+    )
+}
+
+/// The names of positions, travels and constants.
+fn values(sheet: &Sheet) -> String {
+    let name = |letter: &Letter| format!("    {} = values[\"{}\"]\n", Python.letter(letter), letter.plain);
+    sheet.quantities.iter().map(|one| name(&one.letter)).collect()
+}
+
+/// An expression under a key, in brackets, so that it may go on in the next line.
+fn entry(key: &str, expression: &Expression) -> String {
+    let mut pieces = pieces(&Python, expression);
+    if let Some(last) = pieces.last_mut() {
+        last.text.push_str("),");
+    }
+    wrap::equation(&format!("        \"{key}\": ("), &pieces)
+}
+
+/// Names with what they mean.
+fn dictionary<'n>(name: &str, about: &str, entries: impl Iterator<Item = (&'n str, String)>) -> String {
+    let entries: String = entries
+        .map(|(name, meaning)| format!("    \"{name}\": \"{}\",\n", quoted(&meaning).replace('"', "'")))
+        .collect();
+    format!("# {about}\n{name} = {{\n{entries}}}\n")
+}
+
+/// Text inside quotation marks of Python.
+fn quoted(text: &str) -> String {
+    text.replace('\\', "\\\\").replace("\"\"\"", "'''").replace('\r', " ")
+}

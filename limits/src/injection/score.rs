@@ -16,7 +16,8 @@ const SAME: f64 = 0.35;
 /// What is left held out may be so much more than in the base before something is said to be missing.
 pub const NEAR: f64 = 1.1;
 
-/// Periods and frequencies closer than this are one wave.
+/// Periods and frequencies closer than this are one wave: a screw and its neighbours in a table of pitches, or a motor and a gear, lie
+/// farther apart.
 const WAVE: f64 = 0.03;
 
 /// How an effect was found.
@@ -132,11 +133,32 @@ fn matched(
     let of_base = known.iter().filter_map(|known| known.signal.as_ref());
     let more = of_base.fold(claimed.clone(), |sum, known| minus(&sum, known));
     let near = |claim: &Signal| size(&minus(claim, injected)) < SAME * size(injected);
-    let beside_unclaimed = !near(&more) && !near(claimed);
+    let is_right = near(&more) || near(claimed) || known.is_empty() && is_wave(case, claim, injected);
+    let beside_unclaimed = !is_right;
     if beside_unclaimed && !(known.is_empty() && whole && larger(claimed, injected)) {
         return None;
     }
     Some(Match { named: is_named(case, base, claim.finding), beside_unclaimed })
+}
+
+/// Whether a claim is the injected wave by its period and its size. Over many cycles a small error of the period shifts its phase, so that
+/// the two signals differ though the wave is right.
+fn is_wave(case: &Case, claim: &Claim<'_>, injected: &Signal) -> bool {
+    let near = apart(&case.effect, &claim.finding.calibrated).is_some_and(|apart| apart < WAVE);
+    let larger = claim.signal.as_ref().map(|claimed| size(claimed) / size(injected) - 1.0);
+    near && larger.is_some_and(|larger| larger.abs() < SAME)
+}
+
+/// By which share the period of a wave, or its frequency, is another one; none where the two are no waves of one kind.
+fn apart(injected: &Effect, found: &CalibratedTerm) -> Option<f64> {
+    let (injected, found) = match (injected, found) {
+        (Effect::Cyclic { period, .. }, CalibratedTerm::Cyclic { period: found, .. }) => (period, found),
+        (Effect::Vibration { frequency, .. }, CalibratedTerm::Vibration { frequency: found, .. }) => {
+            (frequency, found)
+        }
+        _ => return None,
+    };
+    Some((found / injected - 1.0).abs())
 }
 
 /// Whether a claim is the injected effect, only larger: the base has its own share of it.
@@ -336,6 +358,16 @@ mod tests {
         assert!(!larger(&wave(0.6), &wave(1.0)));
         let line: Signal = vec![(0..40).map(f64::from).collect()];
         assert!(!larger(&line, &wave(1.0)));
+    }
+
+    #[test]
+    fn a_wave_is_told_by_its_period() {
+        let injected = Effect::Cyclic { axis: 0, period: 10.0, amplitude: 1.0, phase: 0.0 };
+        let found = |period| CalibratedTerm::Cyclic { axis: 0, period, amplitude: 2.0, phase: 3.0 };
+        assert!(apart(&injected, &found(10.2)).is_some_and(|apart| (apart - 0.02).abs() < 1e-12));
+        assert!(apart(&injected, &found(9.5)).is_some_and(|apart| apart > WAVE));
+        let in_time = CalibratedTerm::Vibration { frequency: 10.0, amplitude: 1.0, phase: 0.0 };
+        assert_eq!(apart(&injected, &in_time), None);
     }
 
     #[test]

@@ -190,7 +190,8 @@ impl<'s> Rows<'s> {
         row > 0 && legs[row] != legs[row - 1]
     }
 
-    /// Where an axis was a time before each row, straight between rows; before its leg where that begins, and behind it where it ends.
+    /// Where an axis was a time before each row: between two rows on the arc on which it is accelerated; before its leg where that begins,
+    /// and behind it where it ends.
     pub(crate) fn earlier(&self, axis: usize, time: f64) -> Vec<f64> {
         let (given, position) = (&self.states.given, &self.states.axes[axis].position);
         let mut leg = 0..0;
@@ -204,8 +205,11 @@ impl<'s> Rows<'s> {
             if after == 0 || after == times.len() {
                 return places[after.saturating_sub(1)];
             }
-            let share = (wanted - times[after - 1]) / (times[after] - times[after - 1]);
-            places[after - 1] + share * (places[after] - places[after - 1])
+            let step = times[after] - times[after - 1];
+            let share = (wanted - times[after - 1]) / step;
+            let sagging =
+                0.5 * steady_acceleration(times, places, after) * step * step * share * (1.0 - share);
+            places[after - 1] + share * (places[after] - places[after - 1]) - sagging
         };
         (self.first..self.end).map(earlier).collect()
     }
@@ -224,6 +228,20 @@ impl<'s> Rows<'s> {
     pub(crate) fn load(&self, number: usize) -> &'s [f64] {
         &self.states.given.loads[number][self.first..self.end]
     }
+}
+
+/// The acceleration between a row and the one before it: the smaller of those at both rows, and none where they differ in sign. On an arc
+/// the two are alike; at a corner of the path one of them is no acceleration.
+fn steady_acceleration(times: &[f64], places: &[f64], row: usize) -> f64 {
+    let at = |row: usize| {
+        let slope = |row: usize| (places[row] - places[row - 1]) / (times[row] - times[row - 1]);
+        2.0 * (slope(row + 1) - slope(row)) / (times[row + 1] - times[row - 1])
+    };
+    if row < 2 || row + 1 >= times.len() {
+        return 0.0;
+    }
+    let (before, behind) = (at(row - 1), at(row));
+    if before * behind > 0.0 { before.signum() * before.abs().min(behind.abs()) } else { 0.0 }
 }
 
 impl States {

@@ -36,13 +36,20 @@ impl State<'_> {
         self.at(axis, |history| &history.position)
     }
 
-    /// The position of an axis at another time, linear between samples; before the leg that of its first sample, behind it that of
-    /// its last.
+    /// The position of an axis at another time, between samples on the arc on which it is accelerated; before the leg that of its first
+    /// sample, behind it that of its last.
     pub(super) fn position_at(&self, axis: usize, time: f64) -> f64 {
         let rows = self.leg.0..self.leg.1;
         let positions = self.histories.get(axis).and_then(|history| history.position.get(rows.clone()));
         let (Some(times), Some(positions)) = (self.times.get(rows), positions) else { return f64::NAN };
-        factor::on_curve(times, positions, time)
+        let after = times.partition_point(|known| *known <= time);
+        let straight = factor::on_curve(times, positions, time);
+        match (after.checked_sub(1).and_then(|before| times.get(before)), times.get(after)) {
+            (Some(before), Some(behind)) => {
+                straight - 0.5 * arc(times, positions, after) * (time - before) * (behind - time)
+            }
+            _ => straight,
+        }
     }
 
     /// The velocity of an axis.
@@ -80,4 +87,23 @@ impl State<'_> {
     pub fn load(&self, load: usize) -> f64 {
         self.loads.get(load).copied().unwrap_or(f64::NAN)
     }
+}
+
+/// The acceleration on the way to a sample: the smaller of those at its two ends. Where they differ in sign, or one end is that of the leg,
+/// the way is straight: a path may turn there at once.
+fn arc(times: &[f64], positions: &[f64], sample: usize) -> f64 {
+    let around = sample.checked_sub(2).zip(sample.checked_add(1));
+    let Some((times, positions)) =
+        around.and_then(|(first, last)| Some((times.get(first..=last)?, positions.get(first..=last)?)))
+    else {
+        return 0.0;
+    };
+    let speeds: Vec<f64> = positions
+        .windows(2)
+        .zip(times.windows(2))
+        .map(|(position, time)| (position[1] - position[0]) / (time[1] - time[0]))
+        .collect();
+    let at_end = |end: usize| 2.0 * (speeds[end + 1] - speeds[end]) / (times[end + 2] - times[end]);
+    let (one, other) = (at_end(0), at_end(1));
+    if one * other > 0.0 { one.signum() * one.abs().min(other.abs()) } else { 0.0 }
 }

@@ -352,3 +352,17 @@ fn runs_and_gaps_are_those_of_the_exact_machine() {
         plant.run(&commands(&recording), &mut each).unwrap();
     }
 }
+
+/// On a parabola the way to each row has its acceleration; beside a corner, where only one end bends, it has none.
+#[test]
+fn the_way_between_rows_is_an_arc_and_no_corner() {
+    let times = [0.0, 0.1, 0.25, 0.4, 0.5, 0.6];
+    let parabola = times.map(|time| 3.0 * time * time - time);
+    for row in 2..5 {
+        assert!((steady_acceleration(&times, &parabola, row) - 6.0).abs() < 1e-9, "{row}");
+    }
+    // The ends of a leg are straight.
+    assert_eq!([1, 5].map(|row| steady_acceleration(&times, &parabola, row)), [0.0, 0.0]);
+    let corner = times.map(|time| if time < 0.25 { 0.0 } else { time - 0.25 });
+    assert_eq!([2, 3, 4].map(|row| steady_acceleration(&times, &corner, row)), [0.0; 3]);
+}

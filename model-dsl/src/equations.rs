@@ -160,7 +160,7 @@ impl Motion {
         }
     }
 
-    /// Whether what is printed is counted against the ISO sense.
+    /// Whether the printed name counts against the ISO sense.
     pub fn is_printed_against_iso(&self, names: Names) -> bool {
         names == Names::Symbols && self.symbol_against_iso
     }

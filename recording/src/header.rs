@@ -193,7 +193,7 @@ fn read_constants(node: &Node, equations: &Equations, diagnostics: &mut Diagnost
     constants
 }
 
-/// A constant that the machine has not.
+/// The code for a constant that the machine does not have.
 const UNKNOWN_CONSTANT: &str = "E0628";
 
 fn check_version(node: &Node, diagnostics: &mut Diagnostics) {

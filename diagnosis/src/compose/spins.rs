@@ -41,7 +41,7 @@ pub(super) fn spins(study: &Study<'_>, found: &Found) -> Spins {
         let model = (&found.fit.model, found.appraisal.noises.as_slice());
         let (peaks, tried) = waves::over_turns(study, model, &found.travels, &turns);
         spins.tried += tried;
-        // Of so many waves of noise the highest gains twice the logarithm of their number.
+        // By chance, the highest of this many waves of noise gains twice the logarithm of their number.
         let chance = 2.0 * tried.max(1.0).ln();
         let wanted = |peak: &Peak| {
             peak.gain.max(peak.local) > chance + DECISIVE

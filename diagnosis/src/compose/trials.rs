@@ -58,7 +58,7 @@ pub(super) struct FormPrice {
 }
 
 impl FormPrice {
-    /// That of the best of so many forms.
+    /// The price of the best of this many forms.
     pub(super) fn new(found: &Found, forms: f64) -> Self {
         let known = found.tries.candidates.max(1.0);
         Self { more: 2.0 * ((known + forms) / known).ln() }

@@ -7,11 +7,11 @@ use super::term::CalibratedTerm;
 use crate::diagnostic::Diagnostic;
 use crate::source::Spanned;
 
-/// The largest angle of an error motion, rad, but for that of a rotary axis about itself. First order leaves half of its square: 50 um at a metre, for an angle that puts the tool
-/// 10 mm off there.
+/// The largest angle of an error motion, rad, except that of a rotary axis about itself. First order neglects half of its square: at a
+/// distance of one metre, 50 um of the 10 mm by which such an angle displaces the tool.
 pub const LARGEST_ANGLE: f64 = 0.010;
 
-/// The largest displacement of an error motion, mm. A slide that is so far off has not been set up.
+/// The largest displacement of an error motion, mm. An axis that is off by more than this has not been set up.
 pub const LARGEST_DISPLACEMENT: f64 = 10.0;
 
 /// Refuses a term whose own number says that it is no small error. The angle of a rotary axis itself may be large: an encoder may count

@@ -206,6 +206,7 @@ fn a_symbol_counted_against_iso_is_compared_with_its_own_sign() {
         assert!(report(&nist, &changed).agrees(), "{letter}{right}");
     }
     let turned = report(&nist, &text.replace("ao*dx", "EB0X*dx"));
+    assert_eq!(contradictions(&turned).len(), 2);
     assert!(
         contradictions(&turned)
             .iter()

@@ -249,15 +249,14 @@ impl CalibratedTerm {
             | TermKind::Backlash
             | TermKind::ReversalSpike
             | TermKind::Cyclic
-            | TermKind::Drift
             | TermKind::Vibration
             | TermKind::Step
                 if self.factors().is_empty() =>
             {
                 numbers.collect()
             }
-            // Its first coefficient is that of the power zero.
-            TermKind::Polynomial if self.factors().is_empty() => numbers.take(1).collect(),
+            // Where an axis travels far from its zero, the coefficients of a polynomial are large, and what they add up to is small. A drift
+            // may never reach its amplitude.
             _ => Vec::new(),
         };
         told.into_iter().map(f64::abs).fold(0.0, f64::max)

@@ -56,11 +56,13 @@ fn an_error_that_is_not_small_is_refused_where_it_stands() {
     refused(&format!("{{EBX: [{{{table}}}]}}"), &[("E0430", "table")]);
     refused("{EBX: [{backlash: {lost_motion: 1 deg}}]}", &[("E0430", "backlash")]);
     refused("{EBX: [{cyclic: {period: 5 mm, amplitude: 1 deg, phase: 0 deg}}]}", &[("E0430", "cyclic")]);
-    refused("{EBX: [{polynomial: {unit: deg, per: mm, coefficients: [1, 0]}}]}", &[("E0430", "polynomial")]);
     // An encoder may count from another zero.
     refused("{ECC: 45 deg}", &[]);
     // What the states make of it is not known here.
-    refused("{EBX: [{polynomial: {unit: deg, per: mm, coefficients: [0, 1]}}]}", &[]);
+    // 1e3 nm times (q - 1000 mm)^2: a metre at the zero of the axis, and nothing at 1000 mm.
+    refused("{EXX: [{polynomial: {unit: nm, per: mm, coefficients: [1e9, -2e6, 1e3]}}]}", &[]);
+    refused("{EBX: [{polynomial: {unit: urad, per: mm, coefficients: [1e5, -200, 0.1]}}]}", &[]);
+    refused("{EXX: [{drift: {amplitude: 20 mm, time_constant: 9000 min}}]}", &[]);
     assert_eq!(
         words("{EC0Y: 45 deg}"),
         [

@@ -4,15 +4,18 @@
 //! keeps from where it was wanted, off and on. On, it must be of second order in the errors.
 
 use abbe_runtime::{
-    Compensator, Direction, ErrorMotion, Input, Kinematics, Outcome, Sample, Table, Term, TermState, Values,
-    Work, states_needed,
+    Compensator, Direction, ErrorMotion, Input, Kinematics, Outcome, Refusal, Sample, Table, Term, TermState,
+    Values, Work, states_needed,
 };
 use model_dsl::equations::Equations;
+use model_dsl::program::Interpreter;
+use proptest::prelude::*;
 
 use crate::agreement::compiled;
 use crate::oracle::{Machine, Sizes, State, draw, exact};
-use crate::random::state;
+use crate::random::{machines, state};
 use crate::shipped::{SHIPPED, Shipped};
+use crate::yaml;
 
 /// Temperature of the one sensor, degC.
 const WARM: [f64; 1] = [26.5];
@@ -111,6 +114,11 @@ impl Trial<'_> {
         state
     }
 
+    /// The turn of the tool at a command away from the one wanted, rad.
+    fn turned(&self, command: &[f64]) -> f64 {
+        length(exact::turn_between(self.machine, &self.target, &self.real(command)))
+    }
+
     /// Where the tool really is at a command, less where it was wanted, in the sensitive directions.
     fn miss(&self, command: &[f64]) -> [f64; 3] {
         let (real, wanted) =
@@ -127,6 +135,15 @@ impl Trial<'_> {
 }
 
 fn cycle<K: Kinematics>(machine: &K, trial: &Trial<'_>, enabled: bool) -> (Outcome, Vec<f64>) {
+    let (outcome, command) = asked(machine, trial, enabled);
+    (outcome.unwrap(), command)
+}
+
+fn asked<K: Kinematics>(
+    machine: &K,
+    trial: &Trial<'_>,
+    enabled: bool,
+) -> (Result<Outcome, Refusal>, Vec<f64>) {
     let mut states = vec![TermState::default(); states_needed(trial.motions)];
     let mut directions = vec![[0.0; 3]; machine.axes()];
     let mut values = vec![0.0; machine.motions()];
@@ -136,7 +153,7 @@ fn cycle<K: Kinematics>(machine: &K, trial: &Trial<'_>, enabled: bool) -> (Outco
     compensator.enabled = enabled;
     let wanted = trial.wanted();
     let mut command = vec![f64::NAN; wanted.len()];
-    let outcome = compensator.compensate(&trial.sample(&wanted), &mut command).unwrap();
+    let outcome = compensator.compensate(&trial.sample(&wanted), &mut command);
     (outcome, command)
 }
 
@@ -230,5 +247,78 @@ fn five_axes() {
 fn by_the_interpreter() {
     let equations =
         compiled(&SHIPPED.iter().find(|shipped| shipped.name == "trunnion-5axis").unwrap().text());
-    judged("trunnion-5axis", |constants| model_dsl::program::Interpreter::new(&equations, constants));
+    judged("trunnion-5axis", |constants| Interpreter::new(&equations, constants));
+}
+
+/// One place to ask for on any machine, with these terms.
+fn on_any<R>(
+    machine: &Machine,
+    terms: impl Fn(&Equations) -> Vec<Vec<Term<'static>>>,
+    seed: u64,
+    judge: impl FnOnce(&Trial<'_>, &Interpreter) -> R,
+) -> R {
+    let equations = compiled(&yaml::text(machine, true));
+    let terms = terms(&equations);
+    let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
+    let directions = vec![Direction::Positive; equations.axes.len()];
+    let target = state(machine, seed);
+    let constants: Vec<f64> =
+        equations.constants.iter().map(|constant| target.constants[&*constant.name]).collect();
+    let trial = Trial { machine, equations: &equations, motions: &motions, directions: &directions, target };
+    judge(&trial, &Interpreter::new(&equations, &constants))
+}
+
+/// Constants: displacements up to 0.05 mm, angles up to 40 urad.
+fn constants(equations: &Equations, seed: u64) -> Vec<Vec<Term<'static>>> {
+    let size = |angular: bool| if angular { 40e-6 } else { 0.05 };
+    let motions = equations.motions.iter();
+    motions
+        .map(|motion| vec![Term::Constant { value: size(motion.angular) * draw(seed, &motion.name) }])
+        .collect()
+}
+
+/// The own angles of rotary axes alone, up to 0.2 rad.
+fn own_angles(equations: &Equations, seed: u64) -> Vec<Vec<Term<'static>>> {
+    let mut terms = vec![Vec::new(); equations.motions.len()];
+    for own in equations.turning() {
+        let value = 0.2 * draw(seed, &equations.motions[own.motion].name);
+        terms[own.motion].push(Term::Constant { value });
+    }
+    terms
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Any chain with any errors: what is left is of second order, rotary axes included.
+    #[test]
+    fn random_machines(machine in machines(), seed in any::<u64>()) {
+        on_any(&machine, |equations| constants(equations, seed), seed, |trial, interpreter| {
+            let (outcome, command) = asked(interpreter, trial, true);
+            // In front of a singular pose nothing is corrected, as the position says.
+            let remaining = match outcome {
+                Ok(outcome) => outcome.remaining,
+                Err(Refusal::NearSingular { .. }) => return Ok(()),
+                Err(refusal) => return Err(TestCaseError::fail(refusal.to_string())),
+            };
+            let left = length(less(trial.miss(&command), remaining));
+            prop_assert!(left <= trial.second_order(&command), "left {left:e} at {command:?}");
+            Ok(())
+        })?;
+    }
+
+    /// Where only the angles of the rotary axes are wrong, they undo all of it, however much that is: tip and direction of the tool
+    /// are right to rounding.
+    #[test]
+    fn own_angles_of_random_machines(machine in machines(), seed in any::<u64>()) {
+        on_any(&machine, |equations| own_angles(equations, seed), seed, |trial, interpreter| {
+            let (outcome, command) = asked(interpreter, trial, true);
+            prop_assert_eq!(outcome.map(|outcome| outcome.remaining), Ok([0.0; 3]));
+            let lengths = Sizes::of(trial.machine, &trial.real(&command)).lengths;
+            let (tip, turn) = (length(trial.miss(&command)), trial.turned(&command));
+            prop_assert!(tip <= 1e-12 * (1.0 + lengths), "tip {tip:e} at {command:?}");
+            prop_assert!(turn <= 1e-12, "turned by {turn:e}");
+            Ok(())
+        })?;
+    }
 }

@@ -145,14 +145,19 @@ fn what_the_page_calls_compensable_the_compensator_cancels() {
     }
 }
 
-/// A rotary table and one slide: positioning errors lie along the slide, straightness across it, and what the table's own
-/// angle does lies along it as far as the tip is off its line.
+/// A rotary table and one slide: positioning errors lie along the slide, straightness across it, and the table undoes its own
+/// angle; left to the slide, what that does lies along it as far as the tip is off its line.
 #[test]
 fn what_one_slide_cancels() {
-    let text = page(&compiled("abbe: 1\nname: one\ntopology: CFX\n"), Names::Iso, &[]);
-    let said = column(&text, "Compensable");
-    let of = |motion: &str| said[motion].as_str();
-    assert_eq!([of("EXX"), of("EYX"), of("EZX"), of("ECC")], ["yes", "no", "no", "X, Y in part"]);
+    let said = |machine: &str| column(&page(&compiled(machine), Names::Iso, &[]), "Compensable");
+    let all = said("abbe: 1\nname: one\ntopology: CFX\n");
+    let of = |motion: &str| all[motion].as_str();
+    assert_eq!([of("EXX"), of("EYX"), of("EZX"), of("ECC")], ["yes", "no", "no", "yes"]);
+    let left = said(
+        "abbe: 1\nname: one\nchain:\n  workpiece: [{rotary: C, along: -C, corrects: false}]\n  \
+         tool: [{slide: X, along: +X}, {tool: tip, offset: [Xt, Yt, Zt]}]\n",
+    );
+    assert_eq!(left["ECC"], "X, Y in part");
 }
 
 #[test]

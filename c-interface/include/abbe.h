@@ -110,7 +110,7 @@ typedef struct AbbeCycle {
   double error[3];
   // What the correction leaves of it at its end, mm: what no axis reaches, or all of it where nothing is corrected.
   double remaining[3];
-  // Length over all axes of the correction made, mm.
+  // Length over all slides of the correction made, mm.
   double correction;
   // Why the sample was refused.
   AbbeRefused refused;

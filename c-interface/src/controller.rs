@@ -32,6 +32,9 @@ pub struct Inputs<'a> {
 /// No reversal asks for more, in mm, where the calibration has no limit.
 const LARGEST: f64 = 0.1;
 
+/// The same of a rotary axis, in rad: 200 arcsec.
+const LARGEST_ROTATION: f64 = 1e-3;
+
 /// Why there is no controller for a calibration.
 #[derive(Debug)]
 pub enum SetupFailure {
@@ -118,6 +121,8 @@ fn transition(calibration: &Calibration) -> f64 {
     let limits = &calibration.limits;
     let largest = limits.compensation.map_or(LARGEST, |limit| limit.value);
     let at_rate = limits.rate.map_or(0.0, |rate| largest / rate.value);
+    let largest = limits.rotation.map_or(LARGEST_ROTATION, |limit| limit.value);
+    let at_rate = limits.rotation_rate.map_or(at_rate, |rate| at_rate.max(largest / rate.value));
     let ramps = calibration.motions.iter().flat_map(|motion| &motion.ramps);
     at_rate + ramps.fold(0.0, |longest, ramp| ramp.time.max(longest))
 }

@@ -102,7 +102,7 @@ pub enum Refused {
     TimeStep = 2,
     /// The search for the command does not settle: the error changes about as fast as the position.
     NotConverging = 3,
-    /// The correction is longer than the limit of the calibration.
+    /// The correction is longer than the limit of the calibration, of slides or of rotary axes.
     OverLimit = 4,
     /// A length that does not fit: a fault of Abbe.
     Length = 5,
@@ -115,8 +115,8 @@ impl From<Refusal> for Refused {
         match refusal {
             Refusal::NotFinite => Self::NotFinite,
             Refusal::NegativeTimeStep { .. } => Self::TimeStep,
-            Refusal::NotConverging { .. } => Self::NotConverging,
-            Refusal::OverLimit { .. } => Self::OverLimit,
+            Refusal::NotConverging { .. } | Refusal::AngleNotConverging { .. } => Self::NotConverging,
+            Refusal::OverLimit { .. } | Refusal::OverRotationLimit { .. } => Self::OverLimit,
             Refusal::Length { .. } => Self::Length,
             Refusal::NearSingular { .. } => Self::NearSingular,
         }
@@ -132,7 +132,7 @@ pub struct Cycle {
     pub error: [f64; 3],
     /// What the correction leaves of it at its end, mm: what no axis reaches, or all of it where nothing is corrected.
     pub remaining: [f64; 3],
-    /// Length over all axes of the correction made, mm.
+    /// Length over all slides of the correction made, mm.
     pub correction: f64,
     /// Why the sample was refused.
     pub refused: Refused,

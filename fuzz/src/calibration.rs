@@ -67,7 +67,7 @@ fn compensates(calibration: &Calibration, machine: &Compiled) {
     let (mut values, mut travel) = (vec![0.0; equations.motions.len()], vec![0.0; equations.travels.len()]);
     let work = Work { directions: &mut directions, motions: &mut values, travel: &mut travel };
     let Ok(mut compensator) = Compensator::new(&interpreter, &motions, &mut states, work) else { return };
-    compensator.limits = Limits { compensation: calibration.limits.compensation.map(|limit| limit.value) };
+    compensator.limits = calibration.limits.of_compensator();
     let mut compensated = vec![0.0; axes];
     let temperature = vec![21.5; compensator.sensors()];
     for (place, direction) in

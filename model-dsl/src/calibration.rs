@@ -90,10 +90,14 @@ pub struct Calibration {
 /// Points of a table know only the first; the others are for servo cycles, which follow each other in time.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Limits {
-    /// The largest correction in mm; a larger one is refused, not applied. No limit where there is none.
+    /// The largest correction over all slides in mm; a larger one is refused, not applied. No limit where there is none.
     pub compensation: Option<Spanned<f64>>,
-    /// The greatest change of a correction, over all axes, in mm/s. No limit where there is none.
+    /// The largest correction over all rotary axes in rad; a larger one is refused. No limit where there is none.
+    pub rotation: Option<Spanned<f64>>,
+    /// The greatest change of a correction, over all slides, in mm/s. No limit where there is none.
     pub rate: Option<Spanned<f64>>,
+    /// The greatest change of a correction, over all rotary axes, in rad/s. No limit where there is none.
+    pub rotation_rate: Option<Spanned<f64>>,
     /// How long the last reading of a silent sensor is held, in s. The runtime's default where there is none.
     pub hold: Option<Spanned<f64>>,
     /// The time over which a correction fades in or out, in s. The runtime's default where there is none.
@@ -104,7 +108,10 @@ impl Limits {
     /// What the runtime's compensator is told.
     #[must_use]
     pub fn of_compensator(&self) -> abbe_runtime::Limits {
-        abbe_runtime::Limits { compensation: self.compensation.map(|limit| limit.value) }
+        abbe_runtime::Limits {
+            compensation: self.compensation.map(|limit| limit.value),
+            rotation: self.rotation.map(|limit| limit.value),
+        }
     }
 
     /// What the runtime's supervisor is told.
@@ -113,6 +120,7 @@ impl Limits {
         let default = abbe_runtime::Transition::default();
         abbe_runtime::Transition {
             rate: self.rate.map(|rate| rate.value),
+            rotation_rate: self.rotation_rate.map(|rate| rate.value),
             hold: self.hold.map_or(default.hold, |hold| hold.value),
             fade: self.fade.map_or(default.fade, |fade| fade.value),
         }

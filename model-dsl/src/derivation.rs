@@ -69,17 +69,23 @@ fn is_sensitive(machine: &Machine, direction: Axis) -> bool {
     machine.sensitive.contains(&direction)
 }
 
-/// The motions that some sensitive direction sees, by their numbers in the machine.
+/// The motions that some sensitive direction sees, or that a rotary axis corrects itself, by their numbers in the machine.
 fn seen_motions(machine: &Machine, tip: &[FirstOrder; 3]) -> Vec<usize> {
-    let mut seen: Vec<usize> = Axis::ALL
-        .into_iter()
-        .zip(tip)
-        .filter(|(direction, _)| is_sensitive(machine, *direction))
-        .flat_map(|(_, entry)| entry.error_part().map(|(motion, _)| motion))
-        .collect();
+    let rows = Axis::ALL.into_iter().zip(tip).filter(|(direction, _)| is_sensitive(machine, *direction));
+    let seen = rows.flat_map(|(_, entry)| entry.error_part().map(|(motion, _)| motion));
+    let corrected = (0..machine.motions.len()).filter(|motion| is_own_angle(machine, *motion));
+    let mut seen: Vec<usize> = seen.chain(corrected).collect();
     seen.sort_unstable();
     seen.dedup();
     seen
+}
+
+/// Whether a motion is the angle of a rotary axis that corrects it itself.
+fn is_own_angle(machine: &Machine, motion: usize) -> bool {
+    let motion = &machine.motions[motion];
+    let link = &machine.links[motion.link];
+    let rotary = matches!(link.kind, LinkKind::Rotary(_));
+    rotary && link.corrects && motion.kind.angular() && motion.kind.axis() == link.along.axis
 }
 
 fn rows(machine: &Machine, tip: &[FirstOrder; 3], kept: &[usize]) -> Vec<Row> {
@@ -172,6 +178,7 @@ fn axes(machine: &Machine, tip: &[FirstOrder; 3]) -> Vec<AxisInfo> {
             along: link.along.axis,
             branch: link.branch,
             effect: corrects.then_some(effect),
+            corrects_angle: rotary && link.corrects,
             elements: elements(machine, link),
         });
     }

@@ -11,6 +11,8 @@
 
 use std::fmt;
 
+use abbe_runtime::Turning;
+
 use crate::algebra::{Axis, Name, Polynomial, to_f64};
 use crate::calibration::{AxisName, MachineNames, MotionName};
 use crate::machine::{Branch, Element, Link, MotionKind};
@@ -64,6 +66,8 @@ pub struct AxisInfo {
     /// in the part's frame, zero in insensitive directions; `None` where the axis does not
     /// correct errors: a rotary axis, or a second slide in the direction of another.
     pub effect: Option<[Polynomial; 3]>,
+    /// Whether it corrects the error of its own angle itself: a rotary axis, unless the machine file leaves it to the slides.
+    pub corrects_angle: bool,
     /// What repeats along its travel: a rotary axis itself, then what the machine file says of the drive.
     pub elements: Vec<Element>,
 }
@@ -141,6 +145,13 @@ pub struct Term {
     pub arm: Polynomial,
 }
 
+impl AxisInfo {
+    /// Whether a correction moves it: for the tip, or for its own angle.
+    pub fn corrects(&self) -> bool {
+        self.effect.is_some() || self.corrects_angle
+    }
+}
+
 /// By which names error motions are printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Names {
@@ -204,7 +215,20 @@ impl Equations {
         self.motions.iter().position(|motion| self.own_axis(motion) == Some(axis))
     }
 
-    /// For each axis, whether it never corrects; empty where all do.
+    /// The error motions that rotary axes correct themselves: actual minus commanded angle, the zero of the axis among them. In the
+    /// order of the axes.
+    pub fn turning(&self) -> Vec<Turning> {
+        let own = |(number, axis): (usize, &AxisInfo)| {
+            let is_own = move |motion: &Motion| {
+                motion.axis == Some(number) && motion.angular && motion.direction == axis.along
+            };
+            let motions = self.motions.iter().enumerate().filter(move |(_, motion)| is_own(motion));
+            motions.map(move |(motion, _)| Turning { axis: number, motion }).collect::<Vec<_>>()
+        };
+        self.axes.iter().enumerate().filter(|(_, axis)| axis.corrects_angle).flat_map(own).collect()
+    }
+
+    /// For each axis, whether no error of the tip moves it in a search for a command; empty where all move.
     pub fn resting(&self) -> Vec<bool> {
         let rest: Vec<bool> = self.axes.iter().map(|axis| axis.effect.is_none()).collect();
         if rest.contains(&true) { rest } else { Vec::new() }

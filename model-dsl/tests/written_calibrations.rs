@@ -74,8 +74,9 @@ struct Said {
 
 fn said(calibration: &Calibration) -> Said {
     let name = |sensor: usize| calibration.sensors.iter().nth(sensor).unwrap().name.value.clone();
-    let Limits { compensation, rate, hold, fade } = calibration.limits;
-    let limits = [compensation, rate, hold, fade].map(|limit| limit.map(|limit| limit.value));
+    let Limits { compensation, rotation, rate, rotation_rate, hold, fade } = calibration.limits;
+    let limits =
+        [compensation, rotation, rate, rotation_rate, hold, fade].map(|limit| limit.map(|limit| limit.value));
     let head = format!(
         "{:?} {:?} {:?} {limits:?}",
         calibration.machine.value, calibration.source, calibration.constants
@@ -257,17 +258,17 @@ fn calibration() -> impl Strategy<Value = Calibration> {
     let order = Just(vec![0_usize, 1, 2]).prop_shuffle();
     let terms = || prop::collection::vec(term(), 0..8);
     let limit = || prop::option::of(positive());
-    let limits = [limit(), limit(), limit(), limit()];
+    let limits = [limit(), limit(), limit(), limit(), limit(), limit()];
     let head = (prop::option::of(text()), limits, [number(), number()], text());
     (derived, order, terms(), terms(), head, text()).prop_map(|(derived, order, first, then, head, name)| {
         let (source, limits, constants, machine) = head;
-        let [compensation, rate, hold, fade] =
+        let [compensation, rotation, rate, rotation_rate, hold, fade] =
             limits.map(|limit| limit.map(|limit| Spanned::new(limit, Span::default())));
         let mut calibration = read_back(&sensors_alone(&derived, &order), &names());
         calibration.machine.value = machine;
         calibration.source = source;
         calibration.constants = constants.to_vec();
-        calibration.limits = Limits { compensation, rate, hold, fade };
+        calibration.limits = Limits { compensation, rotation, rate, rotation_rate, hold, fade };
         let known = ["spindle", "d0", "d1", "d2", name.as_str()];
         let calibration = extended(calibration, first, &known);
         extended(calibration, then, &known)

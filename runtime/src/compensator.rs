@@ -9,12 +9,14 @@ mod inverse;
 mod prediction;
 mod report;
 mod setup;
+mod turns;
 
 use self::inverse::{Columns, Reach};
 use self::prediction::Prediction;
 use self::setup::Needs;
+use self::turns::Turned;
 use crate::math::{add_scaled, all_finite, sqrt};
-use crate::{ErrorMotion, ErrorMotions, Kinematics, Sample, Sines, TermState};
+use crate::{ErrorMotion, ErrorMotions, Kinematics, Sample, Sines, TermState, Turning};
 
 pub use self::batch::{Batch, BatchSizes, BatchWork};
 pub use self::report::{Convergence, GREATEST_AMPLIFICATION, Limits, Outcome, Refusal, SetupError, Work};
@@ -94,6 +96,11 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
         self.prediction.kinematics.axes()
     }
 
+    /// The error motions that rotary axes correct themselves.
+    pub(crate) fn turning(&self) -> &[Turning] {
+        self.prediction.kinematics.turning()
+    }
+
     /// The least number of temperatures that a sample must hold.
     #[must_use]
     pub const fn sensors(&self) -> usize {
@@ -118,8 +125,10 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     /// One cycle: writes to `out` the command c that puts the tool tip where the position of the sample would put it on a
     /// machine without errors.
     ///
-    /// The command solves `J (c - target) + E(c) = 0` as far as the axes reach, J being the directions of the axes, by
-    /// `c <- target - J^+ E(c)` from `c = target` on. Direction, velocity, temperature and memories are those of the sample
+    /// The command solves `J (c - target) + E(c) = 0` as far as the slides reach, J being the directions of the axes, by
+    /// `c <- target - J^+ E(c)` from `c = target` on; a rotary axis has the command at which its [own
+    /// angle](Kinematics::turning) is the one wanted, which is no part of that E, and whose lever arms are those of the angle wanted.
+    /// Direction, velocity, temperature and memories are those of the sample
     /// throughout. What no axis reaches is left in [`Outcome::remaining`], and so is what the ramp of a backlash leaves for
     /// later cycles: E is then [`Term::corrected`](crate::Term::corrected).
     ///
@@ -163,15 +172,23 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
         same_length("work.directions", prediction.kinematics.axes(), directions.len())?;
         let columns = prediction.columns(directions);
         let ramp = prediction.needs.ramp;
-        let start = if ramp { prediction.corrected(sample, sample.position)? } else { error };
+        let turned = prediction.turn(sample, convergence, out)?;
+        let start = match &turned {
+            Some(turned) => {
+                limits.check_rotation(turned.correction(sample.position))?;
+                prediction.left_to_slides(sample, turned, out)?
+            }
+            None if ramp => prediction.corrected(sample, sample.position)?,
+            None => error,
+        };
         if reach.may_amplify() {
             report::check_amplification(reach.moved_and_corrected(columns, start))?;
         }
         let Pulled { pull, mut here, iterations } =
-            convergence.iterate(prediction, sample, start, columns, &reach, out)?;
+            convergence.iterate(prediction, sample, start, (columns, &reach), turned.as_ref(), out)?;
         limits.check(|| sqrt(reach.distance_squared(here)))?;
         if ramp {
-            here = prediction.error_behind_ramp(sample, out)?;
+            here = prediction.error_behind_ramp(sample, turned.as_ref(), out)?;
             if !all_finite(&here) {
                 return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
             }
@@ -219,8 +236,8 @@ impl Convergence {
         prediction: &mut Prediction<'_, K, M>,
         sample: &Sample<'_>,
         [x, y, z]: [f64; 3],
-        columns: Columns<'_>,
-        reach: &Reach,
+        (columns, reach): (Columns<'_>, &Reach),
+        turned: Option<&Turned>,
         out: &mut [f64],
     ) -> Result<Pulled, Refusal> {
         let bound = self.tolerance_squared();
@@ -234,6 +251,9 @@ impl Convergence {
             // Not from the commands, which far from the origin are too coarse to tell when it ends.
             square = reach.distance_squared(add_scaled(here, -1.0, corrected));
             columns.correct(sample.position, pull, out);
+            if let Some(turned) = turned {
+                turned.write(out);
+            }
             if square <= bound {
                 return Ok(Pulled { pull, here, iterations });
             }
@@ -241,7 +261,10 @@ impl Convergence {
             if !finite {
                 return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
             }
-            let [x, y, z] = prediction.corrected_again(sample, out)?;
+            let [x, y, z] = match turned {
+                None => prediction.corrected_again(sample, out)?,
+                Some(turned) => prediction.left_to_slides_again(sample, turned, out)?,
+            };
             (corrected, here) = (here, [x, y, z]);
         }
         Err(Refusal::NotConverging { iterations: self.iterations, distance: sqrt(square) })

@@ -10,6 +10,15 @@ use crate::Lanes;
 /// names three rotary axes: A, B and C.
 pub type Sines = ([f64; 3], [f64; 3]);
 
+/// An error motion that is a rotary axis's own angle, actual minus commanded: its positioning error, or its zero.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Turning {
+    /// Index of the axis.
+    pub axis: usize,
+    /// Index of the error motion.
+    pub motion: usize,
+}
+
 /// The compiled equations of one machine: what the topology says, with the machine's constants already in it.
 ///
 /// Positions and travels are in mm for slides and in rad for rotary axes. Error motions are in mm for displacements and
@@ -30,9 +39,9 @@ pub trait Kinematics {
     /// A direction that is not sensitive is 0.0. A slice of the wrong length gives NaN in all three.
     fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3];
 
-    /// Writes the sines and cosines of rotary axes at a position, as far as the equations read them. Rotary axes do not correct: no
-    /// step of a search for a command moves them, so that a compensator asks once for what it passes to
-    /// [`error_with`](Self::error_with) at each step.
+    /// Writes the sines and cosines of rotary axes at a position, as far as the equations read them. A rotary axis corrects no more
+    /// than its [own angle](Self::turning), and then stands at the angle of the position wanted: a compensator asks once for what
+    /// it passes to [`error_with`](Self::error_with) at each step.
     fn turn(&self, _position: &[f64], _sines: &mut Sines) {}
 
     /// [`Kinematics::error`], bit for bit, at a position at which [`turn`](Self::turn) writes these.
@@ -46,6 +55,15 @@ pub trait Kinematics {
     /// Generated code and the compiler's interpreter have it. A slice of the wrong length gives NaN in all lanes.
     fn error_lanes(&self, _position: &[Lanes], _travel: &[Lanes], _motions: &[Lanes]) -> Option<[Lanes; 3]> {
         None
+    }
+
+    /// The error motions that rotary axes correct themselves: those of their own angles, in the order of the axes. An axis that only
+    /// slides correct has none here.
+    ///
+    /// The command c of such an axis is the one for which `c + e(c)` is the angle wanted. Tip and direction of the tool are then where
+    /// they belong without any slide's help.
+    fn turning(&self) -> &[Turning] {
+        &[]
     }
 
     /// For each axis, the displacement of the tool tip relative to the part per mm of programmed motion.

@@ -29,6 +29,9 @@
 //! does not settle, where the correction is over the limit, where a number is not finite, the position passes
 //! unchanged and a [`Refusal`] says why.
 //!
+//! A rotary axis corrects the error of its own angle itself ([`Kinematics::turning`]): its command is the one at which it stands at
+//! the angle wanted, in front of the search for the slides, which correct the rest.
+//!
 //! # Batches
 //!
 //! [`Compensator::compensate_batch`] takes many samples, a slice for each quantity, and gives for each row what
@@ -128,7 +131,7 @@ pub use compensator::{
 };
 pub use direction::{Direction, DirectionTracker};
 pub use factor::{Factor, Within};
-pub use kinematics::{Kinematics, Sines};
+pub use kinematics::{Kinematics, Sines, Turning};
 pub use lanes::Lanes;
 pub use motion::{ErrorMotion, ErrorMotions, MotionReader};
 pub use real::Real;

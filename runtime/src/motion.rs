@@ -19,7 +19,7 @@ pub trait ErrorMotions {
     /// One number for each error motion, in mm or rad.
     ///
     /// A calibration that was compiled in gives an array, which need never lie in memory.
-    type Values<'k>: AsRef<[f64]>;
+    type Values<'k>: AsRef<[f64]> + AsMut<[f64]>;
 
     /// The error motions, in the order of the kinematics.
     fn motions(&self) -> &[ErrorMotion<'_>];
@@ -39,14 +39,14 @@ pub trait ErrorMotions {
 }
 
 impl ErrorMotions for [ErrorMotion<'_>] {
-    type Values<'k> = &'k [f64];
+    type Values<'k> = &'k mut [f64];
 
     fn motions(&self) -> &[ErrorMotion<'_>] {
         self
     }
 
     #[inline]
-    fn read<'k>(&self, mut from: MotionReader<'_>, kept: &'k mut [f64]) -> Option<&'k [f64]> {
+    fn read<'k>(&self, mut from: MotionReader<'_>, kept: &'k mut [f64]) -> Option<&'k mut [f64]> {
         let values = kept.get_mut(..self.len())?;
         for (motion, value) in self.iter().zip(&mut *values) {
             *value = from.motion(motion);
@@ -79,7 +79,7 @@ impl ErrorMotion<'_> {
 
     /// [`value`](Self::value) in what is read, or [`corrected`](Self::corrected).
     #[inline]
-    fn read(&self, from: &mut OneSample<'_>, states: &[TermState], corrected: bool) -> f64 {
+    pub(crate) fn read(&self, from: &mut OneSample<'_>, states: &[TermState], corrected: bool) -> f64 {
         self.sum(states, |term, state| term.read_one(from, state, corrected))
     }
 

@@ -16,9 +16,11 @@ pub use self::correction::AxisMemory;
 /// How the correction goes from one value to another where the machine's motion is not the cause.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Transition {
-    /// Greatest change of the correction per second, as a length over all axes in mm/s, whatever causes it: a reversal,
+    /// Greatest change of the correction per second, as a length over all slides in mm/s, whatever causes it: a reversal,
     /// a step of a table, a switch; none: no limit. With 0 or NaN the correction stays as it is.
     pub rate: Option<f64>,
+    /// The same for rotary axes that correct their own angle, over all of them, in rad/s.
+    pub rotation_rate: Option<f64>,
     /// How long the last reading of a sensor that fell silent is held, in s. With NaN it is not held.
     pub hold: f64,
     /// The time over which a correction fades in or out after a switch, a refusal, the loss or the return of a sensor,
@@ -29,7 +31,7 @@ pub struct Transition {
 impl Default for Transition {
     /// No limit of the rate, 1 s held, 1 s to fade.
     fn default() -> Self {
-        Self { rate: None, hold: 1.0, fade: 1.0 }
+        Self { rate: None, rotation_rate: None, hold: 1.0, fade: 1.0 }
     }
 }
 
@@ -82,7 +84,7 @@ pub struct Cycle {
     pub state: State,
     /// Whether the correction is still on its way to what the state asks for. [`Outcome::remaining`] is that of its end.
     pub settling: bool,
-    /// Length of the correction made in this cycle over all axes, in mm.
+    /// Length of the correction made in this cycle over all slides, in mm.
     pub correction: f64,
 }
 
@@ -92,7 +94,7 @@ pub struct Cycle {
 /// where a sample is refused or taken again, where a sensor is lost or returns, the difference between the correction made
 /// and the one now wanted fades over [`Transition::fade`]. A reading that is not finite is a silent sensor: its last value
 /// is held for [`Transition::hold`], then compensation fades out until it speaks again. On top of that the correction
-/// changes by no more than [`Transition::rate`], and stays within [`Limits::compensation`](crate::Limits::compensation).
+/// changes by no more than [`Transition::rate`] and [`Transition::rotation_rate`], and stays within its [`Limits`](crate::Limits).
 ///
 /// ```
 /// # use abbe_runtime::*;
@@ -152,11 +154,12 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Supervisor<'a, K, M> 
                 return Err(SetupError::Length { slice, expected, found });
             }
         }
+        let correction = Correction::new(memory.axes, compensator.turning());
         Ok(Self {
             compensator,
             transition: Transition::default(),
             sensors: Sensors::new(memory.temperature, memory.silence),
-            correction: Correction::new(memory.axes),
+            correction,
         })
     }
 
@@ -192,9 +195,9 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Supervisor<'a, K, M> 
         if heard.returned {
             self.correction.switch();
         }
-        let limit = self.compensator.limits.compensation;
+        let limits = self.compensator.limits;
         self.correction.set_wanted(sample.position, out, state.is_active());
-        let settling = self.correction.follow(&self.transition, limit, time_step);
+        let settling = self.correction.follow(&self.transition, &limits, time_step);
         self.correction.write(sample.position, out, settling || !state.is_active());
         Cycle { outcome, state, settling, correction: self.correction.length() }
     }

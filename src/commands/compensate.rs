@@ -7,7 +7,7 @@ use std::cell::RefCell;
 use std::io::{self, IsTerminal};
 use std::rc::Rc;
 
-use abbe_runtime::{Compensator, ErrorMotion, Limits, TermState, Work, states_needed};
+use abbe_runtime::{Compensator, ErrorMotion, TermState, Work, states_needed};
 use csv::ByteRecord;
 use model_dsl::calibration::factor::FactorPart;
 use model_dsl::calibration::vocabulary::{self, Key, Kind};
@@ -54,8 +54,7 @@ pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
     let work = Work { directions: &mut directions, motions: &mut values, travel: &mut travel };
     let mut compensator = Compensator::new(&machine, &motions, &mut states, work)
         .map_err(|error| Failure::Wrong(format!("error: the calibration cannot be run: {error}")))?;
-    compensator.limits =
-        Limits { compensation: calibrated.calibration.limits.compensation.map(|limit| limit.value) };
+    compensator.limits = calibrated.calibration.limits.of_compensator();
     let mut rows = Rows::open(&calibrated, command, compensator)?;
     // Rows on a terminal are their own progress, and whoever types them needs none.
     let seen = command.quiet || io::stdout().is_terminal() || io::stdin().is_terminal();

@@ -13,8 +13,12 @@ pub(crate) fn tip(machine: &Machine, state: &State) -> [f64; 3] {
 
 /// By what the tool is turned away from where it stands without errors: a rotation vector in the part's frame, rad.
 pub(crate) fn turn_by_errors(machine: &Machine, state: &State) -> [f64; 3] {
-    let without = State { errors: Default::default(), ..state.clone() };
-    let turned = pose(machine, state).rotation * pose(machine, &without).rotation.inverse();
+    turn_between(machine, &State { errors: Default::default(), ..state.clone() }, state)
+}
+
+/// By what the tool in a state is turned away from where it stands in another: a rotation vector in the part's frame, rad.
+pub(crate) fn turn_between(machine: &Machine, wanted: &State, real: &State) -> [f64; 3] {
+    let turned = pose(machine, real).rotation * pose(machine, wanted).rotation.inverse();
     // The skew part is the sine of the angle along the axis: sharp for small angles, where the cosine is 1 to rounding.
     let skew = (turned.matrix() - turned.matrix().transpose()) / 2.0;
     let sine = Vector3::new(skew[(2, 1)], skew[(0, 2)], skew[(1, 0)]);

@@ -166,5 +166,5 @@ fn join(machine: &mut Machine, id: String, kind: LinkKind, along: Axis, origin: 
     }
     let along = Along { axis: along, sign: 1 };
     let (branch, reference, span) = (Branch::Tool, Reference::Carriage, Span::new(0, 0));
-    machine.links.push(Link { id, kind, branch, along, origin, reference, span });
+    machine.links.push(Link { id, kind, branch, along, origin, reference, corrects: true, span });
 }

@@ -98,7 +98,7 @@ fn supervised<M: ErrorMotions + ?Sized>(
     };
     let memory = Memory { axes: black_box(&mut axes), temperature: readings, silence };
     let Ok(mut supervisor) = Supervisor::new(compensator, memory) else { return -1.0 };
-    supervisor.transition = black_box(Transition { rate: Some(2.0), hold: 1.0, fade: 1.0 });
+    supervisor.transition = black_box(Transition { rate: Some(2.0), ..Transition::default() });
     let position = black_box([1.0; Axes::NAMES.len()]);
     let mut tracker = DirectionTracker::new(black_box(1e-3));
     let directions = [tracker.update(black_box(1.0)); Axes::NAMES.len()];

@@ -16,6 +16,9 @@ use super::space::Space;
 /// What is smaller needs no table of its own, and counts as lost: mm.
 pub(super) const LEAST: f64 = 1e-5;
 
+/// An angle counts as what it moves at this distance from its axis, in mm: few points of a machine are farther away.
+const ARM: f64 = 1000.0;
+
 /// What a source axis alone adds to the command of a target axis, zero at the reference pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Effect {
@@ -23,16 +26,18 @@ pub struct Effect {
     pub source: usize,
     /// The axis whose command changes.
     pub target: usize,
+    /// What the correction of the target moves, mm for each mm or rad of it.
+    pub arm: f64,
     /// Positions of the source, mm or rad.
     pub nodes: Vec<f64>,
-    /// The correction where the source came in its positive direction, mm.
+    /// The correction where the source came in its positive direction, mm or rad.
     pub forward: Vec<f64>,
-    /// The correction where it came in its negative direction, mm.
+    /// The correction where it came in its negative direction, mm or rad.
     pub reverse: Vec<f64>,
 }
 
 impl Effect {
-    /// The correction whatever the direction: the mean of both, mm.
+    /// The correction whatever the direction: the mean of both, mm or rad.
     pub fn mean(&self) -> Vec<f64> {
         self.forward
             .iter()
@@ -43,19 +48,14 @@ impl Effect {
 
     /// The largest correction, mm.
     pub fn largest(&self) -> f64 {
-        largest(self.forward.iter().chain(&self.reverse))
+        self.arm * largest(self.forward.iter().chain(&self.reverse))
     }
 
     /// Half the largest difference between the directions, mm.
     pub fn directed(&self) -> f64 {
-        largest(
-            self.forward
-                .iter()
-                .zip(&self.reverse)
-                .map(|(forward, reverse)| 0.5 * (forward - reverse))
-                .collect::<Vec<_>>()
-                .iter(),
-        )
+        let both = self.forward.iter().zip(&self.reverse);
+        let halves: Vec<f64> = both.map(|(forward, reverse)| 0.5 * (forward - reverse)).collect();
+        self.arm * largest(halves.iter())
     }
 }
 
@@ -70,7 +70,7 @@ pub struct Factor {
     pub values: Vec<f64>,
 }
 
-/// What two axes together add to the command of a third or of one of them: the product of two functions, mm.
+/// What two axes together add to the command of a third or of one of them: the product of two functions, mm or rad.
 ///
 /// Both functions are scaled to the same largest value.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,7 +88,7 @@ pub struct Product {
 pub struct Effects<'g, 'c> {
     geometry: &'g Geometry<'c>,
     space: &'g Space,
-    /// The correction at the reference pose, mm.
+    /// The correction at the reference pose, mm or rad.
     pub base: Vec<f64>,
 }
 
@@ -120,6 +120,7 @@ impl<'g, 'c> Effects<'g, 'c> {
         let effect = |target| Effect {
             source,
             target,
+            arm: self.arm(target),
             nodes: nodes.to_vec(),
             forward: column(&forward, target),
             reverse: column(&reverse, target),
@@ -139,7 +140,7 @@ impl<'g, 'c> Effects<'g, 'c> {
         let (at, midway) = (self.of(source, own)?, self.of(source, &between)?);
         let bends = at.iter().zip(&midway).any(|(at, midway)| {
             let straight = at.forward.windows(2).map(|pair| f64::midpoint(pair[0], pair[1]));
-            straight.zip(&midway.forward).any(|(straight, value)| (straight - value).abs() > LEAST)
+            straight.zip(&midway.forward).any(|(straight, value)| at.arm * (straight - value).abs() > LEAST)
         });
         Ok(nodes.curved(bends))
     }
@@ -168,13 +169,14 @@ impl<'g, 'c> Effects<'g, 'c> {
             let left = DMatrix::from_fn(nodes[0].len(), nodes[1].len(), |row, column| {
                 rows[row][column][target] - base - means[row] - others[column]
             });
-            products.extend(split(left, least).into_iter().map(|(one, other, largest)| Product {
+            let arm = of_first.arm;
+            products.extend(split(left, least / arm).into_iter().map(|(one, other, largest)| Product {
                 target,
                 factors: [
                     Factor { source: first, nodes: nodes[0].to_vec(), values: one },
                     Factor { source: second, nodes: nodes[1].to_vec(), values: other },
                 ],
-                largest,
+                largest: arm * largest,
             }));
         }
         Ok(products)
@@ -183,7 +185,13 @@ impl<'g, 'c> Effects<'g, 'c> {
     /// The numbers of the axes that correct.
     pub fn correcting(&self) -> impl Iterator<Item = usize> + use<'g, 'c> {
         let axes = self.geometry.equations.axes.iter().enumerate();
-        axes.filter(|(_, axis)| axis.effect.is_some()).map(|(number, _)| number)
+        axes.filter(|(_, axis)| axis.corrects()).map(|(number, _)| number)
+    }
+
+    /// What a correction of an axis moves, mm for each mm or rad of it.
+    fn arm(&self, axis: usize) -> f64 {
+        let rotary = self.geometry.equations.axes.get(axis).is_some_and(|axis| axis.rotary);
+        if rotary { ARM } else { 1.0 }
     }
 
     /// The correction with some axes moved from the reference pose, the mean over the directions that are not given.

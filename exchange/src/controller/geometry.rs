@@ -114,7 +114,7 @@ impl<'c> Geometry<'c> {
         asked(&self.machine, &self.terms, pose, |compensator, sample| compensator.error(sample))
     }
 
-    /// What is to be added to the command of each axis so that the error at the pose vanishes, mm; 0 for rotary axes.
+    /// What is to be added to the command of each axis so that the error at the pose vanishes: mm, or rad for a rotary axis.
     ///
     /// # Errors
     /// Where the inverse refuses.
@@ -129,8 +129,21 @@ impl<'c> Geometry<'c> {
     pub fn remaining(&self, pose: &Pose, correction: &[f64]) -> Result<[f64; 3], Refused> {
         let position = pose.position.iter().zip(correction).map(|(place, more)| place + more).collect();
         let commanded = Pose { position, direction: pose.direction.clone() };
-        let error = self.error(&commanded)?;
-        let [to, from] = [&commanded, pose].map(|pose| self.machine.nominal(&pose.position));
+        // An axis that is corrected in its angle stands where its own error takes it: a whole turn of it is exact.
+        let mut stands = commanded.clone();
+        let mut others = self.terms.clone();
+        for own in self.equations.turning() {
+            let angle = self.motion(own.motion, &commanded);
+            if let (Some(place), Some(terms)) =
+                (stands.position.get_mut(own.axis), others.get_mut(own.motion))
+            {
+                *place += angle;
+                terms.clear();
+            }
+        }
+        let error =
+            asked(&self.machine, &others, &commanded, |compensator, sample| compensator.error(sample))?;
+        let [to, from] = [&stands, pose].map(|pose| self.machine.nominal(&pose.position));
         Ok(std::array::from_fn(|axis| error[axis] + to[axis] - from[axis]))
     }
 }
@@ -165,7 +178,7 @@ fn travels(machine: &Interpreter, position: &[f64]) -> Vec<f64> {
     machine.travels().iter().map(|axis| position.get(*axis).copied().unwrap_or(f64::NAN)).collect()
 }
 
-/// What is to be added to the commands of a machine with these error motions, mm; 0 for rotary axes.
+/// What is to be added to the commands of a machine with these error motions: mm, or rad for a rotary axis.
 pub(super) fn correction(
     machine: &Interpreter,
     terms: &[Vec<Term<'_>>],

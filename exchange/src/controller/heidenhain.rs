@@ -9,6 +9,7 @@ use std::fmt::Write;
 
 use abbe_runtime::Direction;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
+use model_dsl::equations::AxisInfo;
 use model_dsl::source::SourceFile;
 
 use super::decimal::decimal;
@@ -57,7 +58,7 @@ pub(super) fn controller(job: &Job<'_, '_>) -> Result<Heidenhain, Refused> {
     Ok(Heidenhain {
         letters: job.names(|_, letter| letter.to_owned())?,
         units: axes.iter().map(|axis| if axis.rotary { 1_f64.to_degrees() } else { 1.0 }).collect(),
-        moved: axes.iter().map(|axis| axis.effect.is_some()).collect(),
+        moved: axes.iter().map(AxisInfo::corrects).collect(),
         columns: Vec::new(),
         sense: sense(job)?,
     })
@@ -155,7 +156,8 @@ impl Target for Heidenhain {
             if let Some(slot) =
                 correction.get_mut(column.target).filter(|_| self.moved.get(column.target) == Some(&true))
             {
-                *slot += self.sense.sign() * grid.value(&[place * unit]);
+                let of_target = self.units.get(column.target).copied().unwrap_or(1.0);
+                *slot += self.sense.sign() * grid.value(&[place * unit]) / of_target;
             }
         }
         Ok(correction)
@@ -202,14 +204,17 @@ fn table(control: &Heidenhain, name: &str, source: usize, columns: &[Effect], ba
     let Some(first) = columns.first() else { return text };
     let unit = control.units.get(source).copied().unwrap_or(1.0);
     let own = columns.iter().find(|effect| effect.target == source);
-    let told = |value: Option<&f64>, base: f64| {
-        decimal(control.sense.sign() * (value.copied().unwrap_or_default() + base), 6)
+    let told = |value: Option<&f64>, base: f64, target: usize| {
+        let of_target = control.units.get(target).copied().unwrap_or(1.0);
+        // Degrees are worth more than millimetres, and have two decimals more.
+        let decimals = if of_target > 1.0 { 8 } else { 6 };
+        decimal(control.sense.sign() * of_target * (value.copied().unwrap_or_default() + base), decimals)
     };
     for (number, place) in first.nodes.iter().enumerate() {
-        let backlash = own.map_or_else(|| decimal(0.0, 6), |own| told(own.reverse.get(number), base));
+        let backlash = own.map_or_else(|| decimal(0.0, 6), |own| told(own.reverse.get(number), base, source));
         let values = columns.iter().map(|effect| match effect.target == source {
-            true => told(effect.forward.get(number), base),
-            false => told(effect.mean().get(number), 0.0),
+            true => told(effect.forward.get(number), base, source),
+            false => told(effect.mean().get(number), 0.0, effect.target),
         });
         let cells = [number.to_string(), decimal(place * unit, 6), backlash];
         let _ = writeln!(text, "{}", row(cells.into_iter().chain(values)));

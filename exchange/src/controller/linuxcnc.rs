@@ -9,6 +9,7 @@ use std::fmt::Write;
 
 use abbe_runtime::Direction;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
+use model_dsl::equations::AxisInfo;
 use model_dsl::source::{SourceFile, Span};
 
 use super::decimal::decimal;
@@ -17,7 +18,7 @@ use super::geometry::Pose;
 use super::job::{Controller, File, Job, Written};
 use super::lost::Target;
 use super::nodes::Spacing;
-use super::options::{Kind, Unit};
+use super::options::{Kind, Options, Unit};
 use super::refused::Refused;
 
 /// The most triplets that a joint takes.
@@ -180,19 +181,19 @@ fn single(number: f64) -> f32 {
 pub struct Joints {
     /// For each axis of the machine its table, where it has one.
     pub tables: Vec<Option<Table>>,
-    /// The unit of the tables.
-    pub unit: Unit,
+    /// The unit of each joint's table: degrees for one that turns.
+    pub units: Vec<Unit>,
     /// The type of the files.
     pub kind: Kind,
 }
 
 impl Target for Joints {
     fn correction(&self, pose: &Pose) -> Result<Vec<f64>, Refused> {
-        let axes = self.tables.iter().zip(pose.position.iter().zip(&pose.direction));
-        let trim = |(table, (position, direction)): (&Option<Table>, (&f64, &Direction))| {
-            table.as_ref().map_or(0.0, |table| table.trim(position / self.unit.0, *direction) * self.unit.0)
+        let joints = self.tables.iter().zip(&self.units).zip(pose.position.iter().zip(&pose.direction));
+        let trim = |((table, unit), (position, direction)): ((&Option<Table>, &Unit), (&f64, &Direction))| {
+            table.as_ref().map_or(0.0, |table| table.trim(position / unit.0, *direction) * unit.0)
         };
-        Ok(axes.map(trim).collect())
+        Ok(joints.map(trim).collect())
     }
 }
 
@@ -218,8 +219,14 @@ impl Controller for Joints {
 
 /// LinuxCNC without compensation.
 pub(super) fn controller(job: &Job<'_, '_>) -> Joints {
-    let tables = vec![None; job.geometry.equations.axes.len()];
-    Joints { tables, unit: job.options.unit, kind: job.options.kind }
+    let axes = &job.geometry.equations.axes;
+    let units = axes.iter().map(|axis| unit(axis, job.options)).collect();
+    Joints { tables: vec![None; axes.len()], units, kind: job.options.kind }
+}
+
+/// The unit of a joint: the machine's for slides, degrees for what turns.
+fn unit(axis: &AxisInfo, options: &Options) -> Unit {
+    if axis.rotary { Unit::DEGREE } else { options.unit }
 }
 
 /// A file for each joint that corrects.
@@ -245,7 +252,7 @@ pub(super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
         written.files.push(File {
             name,
             axis: Some(axis),
-            text: write(&own, *base, options.kind, options.unit),
+            text: write(&own, *base, options.kind, unit(info, options)),
             about,
         });
     }

@@ -81,9 +81,11 @@ impl Unit {
     pub const MM: Self = Self(1.0);
     /// The inch.
     pub const INCH: Self = Self(25.4);
+    /// The degree of a joint that turns, in rad.
+    pub const DEGREE: Self = Self(std::f64::consts::PI / 180.0);
 
-    /// Numbers in inches need two decimals more for the same nanometre.
+    /// Numbers in inches or degrees need two decimals more for the same nanometre, that of a degree 1 m from its axis.
     pub(super) fn decimals(self) -> usize {
-        if self.0 > 1.0 { 8 } else { 6 }
+        if self == Self::MM { 6 } else { 8 }
     }
 }

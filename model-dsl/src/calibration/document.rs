@@ -153,7 +153,7 @@ fn check_constant(name: &Spanned<String>, names: &MachineNames, diagnostics: &mu
 
 /// A limit of zero forbids what it limits; only the time for which a reading is held may be zero.
 fn read_limits(node: &Node, name: Span, diagnostics: &mut Diagnostics) -> Limits {
-    let known = ["compensation", "rate", "hold", "fade"];
+    let known = ["compensation", "rotation", "rate", "rotation_rate", "hold", "fade"];
     let Some(fields) = Fields::open(node, name, keys("`limits`"), &known, diagnostics) else {
         return Limits::default();
     };
@@ -174,10 +174,20 @@ fn read_limits(node: &Node, name: Span, diagnostics: &mut Diagnostics) -> Limits
             Dimension::LENGTH,
             "the largest correction that may be applied, such as `0.2 mm`",
         ),
+        rotation: read(
+            "rotation",
+            Dimension::ANGLE,
+            "the largest correction of a rotary axis that may be applied, such as `60 arcsec`",
+        ),
         rate: read(
             "rate",
             Dimension::LENGTH.per(Dimension::TIME),
             "the fastest change of a correction that the drives take, such as `2 mm/s`",
+        ),
+        rotation_rate: read(
+            "rotation_rate",
+            Dimension::ANGLE.per(Dimension::TIME),
+            "the fastest change of a rotary axis's correction that its drive takes, such as `1 mrad/s`",
         ),
         hold: read(
             "hold",

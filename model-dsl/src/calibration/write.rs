@@ -44,7 +44,9 @@ fn constants(calibration: &Calibration, names: &MachineNames) -> String {
 fn limits(limits: &Limits) -> String {
     let given = [
         ("compensation", limits.compensation, "mm"),
+        ("rotation", limits.rotation, "rad"),
         ("rate", limits.rate, "mm/s"),
+        ("rotation_rate", limits.rotation_rate, "rad/s"),
         ("hold", limits.hold, "s"),
         ("fade", limits.fade, "s"),
     ];

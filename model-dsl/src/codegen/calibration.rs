@@ -192,12 +192,16 @@ fn limits(limits: &Limits) -> (TokenStream, TokenStream) {
         }
         None => quote! { None },
     };
-    let compensation = optional(limits.of_compensator().compensation);
+    let [compensation, rotation] =
+        [limits.of_compensator().compensation, limits.of_compensator().rotation].map(optional);
     let transition = limits.transition();
-    let (rate, hold, fade) = (optional(transition.rate), number(transition.hold), number(transition.fade));
+    let [rate, rotation_rate] = [transition.rate, transition.rotation_rate].map(optional);
+    let (hold, fade) = (number(transition.hold), number(transition.fade));
     (
-        quote! { ::abbe_runtime::Limits { compensation: #compensation } },
-        quote! { ::abbe_runtime::Transition { rate: #rate, hold: #hold, fade: #fade } },
+        quote! { ::abbe_runtime::Limits { compensation: #compensation, rotation: #rotation } },
+        quote! {
+            ::abbe_runtime::Transition { rate: #rate, rotation_rate: #rotation_rate, hold: #hold, fade: #fade }
+        },
     )
 }
 

@@ -207,6 +207,7 @@ fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
     let vary = directions.reads.axes;
     let known = fixed_directions(&directions).or_else(|| resting(equations));
     let squares = equations.squares().map(squares);
+    let turning = turning(equations);
     let held = held(equations, programs);
     let axes = Literal::usize_unsuffixed(equations.axes.len());
     let motions = Literal::usize_unsuffixed(equations.motions.len());
@@ -247,6 +248,7 @@ fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
                     None => directions.fill([f64::NAN; 3]),
                 }
             }
+            #turning
             fn directions_vary(&self) -> bool { #vary }
             #squares
             #known
@@ -271,7 +273,26 @@ fn squares(squares: [f64; 3]) -> TokenStream {
     quote! { fn squares(&self) -> Option<[f64; 3]> { Some([#(#squares),*]) } }
 }
 
-/// Which axes do not correct, where some do not.
+/// The error motions that rotary axes correct themselves, where there are any.
+fn turning(equations: &Equations) -> Option<TokenStream> {
+    let turning: Vec<_> = equations
+        .turning()
+        .iter()
+        .map(|own| {
+            let [axis, motion] = [own.axis, own.motion].map(Literal::usize_unsuffixed);
+            quote! { ::abbe_runtime::Turning { axis: #axis, motion: #motion } }
+        })
+        .collect();
+    // Always: see `abbe_runtime::Compensator`, which asks first whether there are any.
+    (!turning.is_empty()).then(|| {
+        quote! {
+            #[inline(always)]
+            fn turning(&self) -> &[::abbe_runtime::Turning] { &[#(#turning),*] }
+        }
+    })
+}
+
+/// Which axes no error of the tip moves, where there are such.
 fn resting(equations: &Equations) -> Option<TokenStream> {
     let rest = equations.resting();
     (!rest.is_empty()).then(|| quote! { fn resting(&self) -> &[bool] { &[#(#rest),*] } })

@@ -1,7 +1,7 @@
 //! One link of a chain. In: its mapping. Out: the link, or every mistake in it.
 
 use super::draft::DraftedLink;
-use super::fields::{self, items, text};
+use super::fields::{self, choice, items, text};
 use super::header::reference;
 use super::link::{Along, Branch, Link, LinkKind, Reference};
 use super::words::{exact_length, is_name};
@@ -25,8 +25,11 @@ pub(super) fn read_link<'n>(
 ) -> Option<DraftedLink<'n>> {
     let (word, name_node) = kind_of(node, diagnostics)?;
     let place = if matches!(word, "tool" | "part") { "offset" } else { "origin" };
-    let known = [word, "id", "along", place, "errors", "reference"];
-    let fields = fields::open(node, "a link", &known, diagnostics)?;
+    let known = [word, "id", "along", place, "errors", "reference", "corrects"];
+    // Only a rotary axis can be told that it does not correct.
+    let known =
+        if word == "rotary" { &known[..] } else { known.split_last().map_or(&[][..], |(_, rest)| rest) };
+    let fields = fields::open(node, "a link", known, diagnostics)?;
     let name = text(name_node, "the name of a link", diagnostics)?;
     let kind = kind(word, name, name_node.span, diagnostics);
     let id = match fields.get("id") {
@@ -37,6 +40,9 @@ pub(super) fn read_link<'n>(
         Some(node) => reference(node, diagnostics),
         None => default_reference,
     };
+    let corrects = fields.get("corrects").is_none_or(|node| {
+        choice(node, "`true` or `false`", &["true", "false"], diagnostics) != Some("false")
+    });
     let along = along(fields.entry("along"), kind, name_node.span, diagnostics);
     let (origin, origin_spans) = origin(fields.get(place), node.span, diagnostics);
     let errors = fields.get("errors");
@@ -56,6 +62,7 @@ pub(super) fn read_link<'n>(
         along: along?,
         origin,
         reference,
+        corrects,
         span: name_node.span,
     };
     Some(DraftedLink { link, origin_spans, errors })

@@ -115,7 +115,7 @@ fn drafted(
     origin: [Polynomial; 3],
     span: Span,
 ) -> DraftedLink<'static> {
-    let link = Link { id, kind, branch, along, origin, reference: Reference::Carriage, span };
+    let link = Link { id, kind, branch, along, origin, reference: Reference::Carriage, corrects: true, span };
     DraftedLink { link, origin_spans: [span; 3], errors: None }
 }
 

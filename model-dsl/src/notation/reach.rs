@@ -1,8 +1,8 @@
 //! Where error motions are felt and whether the slides can cancel them. In: equations. Out: for each error motion the
 //! directions that it reaches, and for each direction whether some command moves the tip along it.
 //!
-//! Compensation adds what the slides can add: the columns of the Jacobian, one for each slide that corrects. What no
-//! slide reaches is reported and left, and rotary axes do not correct (NOTATION.md, "The compensated command").
+//! Compensation adds what the slides can add: the columns of the Jacobian, one for each slide that corrects. A rotary axis
+//! cancels the error of its own angle. What neither reaches is reported and left.
 
 use abbe_runtime::Kinematics as _;
 
@@ -50,7 +50,12 @@ pub(super) fn cancelled(equations: &Equations) -> Vec<[Cancelled; 3]> {
             State { basis: basis(&machine, &positions), levers: machine.levers(&positions, &travels) }
         })
         .collect();
-    (0..equations.motions.len()).map(|motion| verdicts(&states, motion)).collect()
+    let own: Vec<usize> = equations.turning().iter().map(|own| own.motion).collect();
+    let verdict = |motion: usize| match own.contains(&motion) {
+        true => [Cancelled::Yes; 3],
+        false => verdicts(&states, motion),
+    };
+    (0..equations.motions.len()).map(verdict).collect()
 }
 
 /// The verdict on one error motion: what the slides leave of its lever arm, state by state.
@@ -107,12 +112,16 @@ pub(super) fn reached(equations: &Equations, motion: usize) -> Vec<Axis> {
     rows.map(|row| row.direction).collect()
 }
 
-/// Whether what reaches these directions can be compensated, in words: `yes`, `no`, `X; not Y`.
+/// Whether what reaches these directions can be compensated, in words: `yes`, `no`, `X; not Y`. The angle of a rotary axis may reach
+/// none of them, and is cancelled.
 pub(super) fn words(reached: &[Axis], cancelled: &[Cancelled; 3]) -> String {
     let those = |wanted: Cancelled| {
         let found = reached.iter().filter(|axis| cancelled[axis.index()] == wanted);
         found.map(Axis::to_string).collect::<Vec<_>>().join(", ")
     };
+    if reached.is_empty() && *cancelled == [Cancelled::Yes; 3] {
+        return "yes".to_owned();
+    }
     let (yes, part, no) = (those(Cancelled::Yes), those(Cancelled::InPart), those(Cancelled::No));
     match (yes.is_empty(), part.is_empty(), no.is_empty()) {
         (false, true, true) => "yes".to_owned(),

@@ -237,6 +237,23 @@ fn senses(equations: &Equations) -> Vec<String> {
     sentences
 }
 
+/// Which rotary axes correct their own angles, and which leave them to the slides.
+fn own_angles(equations: &Equations, names: Names) -> Vec<String> {
+    let own: Vec<&str> = equations
+        .turning()
+        .iter()
+        .filter_map(|own| equations.motions.get(own.motion))
+        .map(|motion| motion.printed(names))
+        .collect();
+    let left = equations.axes.iter().filter(|axis| axis.rotary && !axis.corrects_angle);
+    let left: Vec<&str> = left.map(|axis| axis.letter.as_str()).collect();
+    let corrected = (!own.is_empty())
+        .then(|| format!("A rotary axis corrects the error of its own angle itself: {}.", own.join(", ")));
+    let left =
+        (!left.is_empty()).then(|| format!("The own angle of {} is left to the slides.", left.join(" and ")));
+    corrected.into_iter().chain(left).collect()
+}
+
 fn conventions(equations: &Equations, names: Names) -> Vec<String> {
     let mut sentences: Vec<String> = [
         "P is the position of the tool tip relative to the part at the nominal contact point, in the part's frame, in mm.",
@@ -252,6 +269,7 @@ fn conventions(equations: &Equations, names: Names) -> Vec<String> {
     sentences.extend(senses(equations));
     if equations.axes.iter().any(|axis| axis.rotary) {
         sentences.push("Rotary axes turn by large angles; their sines and cosines are exact.".to_owned());
+        sentences.extend(own_angles(equations, names));
     }
     let against: Vec<&str> = equations
         .motions

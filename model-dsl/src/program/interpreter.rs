@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use abbe_runtime::math::sin_cos;
-use abbe_runtime::{Kinematics, Lanes, Real};
+use abbe_runtime::{Kinematics, Lanes, Real, Turning};
 
 use super::{Column, Input, Programs, Tape};
 use crate::equations::Equations;
@@ -21,6 +21,7 @@ pub struct Interpreter {
     travels: Vec<usize>,
     rotary: Vec<bool>,
     resting: Vec<bool>,
+    turning: Vec<Turning>,
     squares: Option<[f64; 3]>,
     motions: usize,
 }
@@ -39,6 +40,7 @@ impl Interpreter {
             travels: equations.travels.iter().map(|travel| travel.axis).collect(),
             rotary: equations.axes.iter().map(|axis| axis.rotary).collect(),
             resting: equations.resting(),
+            turning: equations.turning(),
             squares: equations.squares(),
             motions: equations.motions.len(),
         }
@@ -203,6 +205,10 @@ impl Kinematics for Interpreter {
 
     fn resting(&self) -> &[bool] {
         &self.resting
+    }
+
+    fn turning(&self) -> &[Turning] {
+        &self.turning
     }
 
     fn squares(&self) -> Option<[f64; 3]> {

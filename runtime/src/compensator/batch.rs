@@ -39,7 +39,8 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
     ///
     /// `out` holds a slice for each axis, into which the commands go; a row that is refused keeps its position there. Rows
     /// are taken side by side, [`Lanes::WIDTH`] of them, where the machine has
-    /// [`error_lanes`](Kinematics::error_lanes) and no correction is ramped; what remembers goes row by row.
+    /// [`error_lanes`](Kinematics::error_lanes), no correction is ramped and no rotary axis corrects its own angle; what remembers
+    /// goes row by row.
     ///
     /// # Errors
     /// Refuses the whole batch for a slice of the wrong length; nothing is written then. All other refusals stand in
@@ -55,7 +56,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         let mut block = Block::new(work, &self.batch_sizes())?;
         let mut first = 0_usize;
         for answers in answers.chunks_mut(Lanes::WIDTH) {
-            if self.prediction.needs.ramp {
+            if self.prediction.needs.ramp || !self.prediction.needs.turns.is_empty() {
                 self.rows(batch, first, &mut block, out, answers);
             } else {
                 self.block(batch, first, &mut block, out, answers);

@@ -4,7 +4,8 @@
 //! positions in the same state. It exists beside the search for the command, which asks it again and again.
 
 use super::inverse::Columns;
-use super::{Needs, Refusal, same_length};
+use super::turns::{Turned, Turns};
+use super::{Convergence, Needs, Refusal, copy, same_length};
 use crate::math::all_finite;
 use crate::sample::number;
 use crate::{ErrorMotions, Kinematics, MotionReader, Sample, Sines, TermState};
@@ -86,16 +87,74 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
         sum(self.kinematics, &self.sines, sample, position, self.travel, values)
     }
 
-    /// [`error`](Self::error) where a part of it is corrected in later cycles.
+    /// [`error`](Self::error) where a part of it is corrected in later cycles, without what rotary axes have corrected in this one.
     // Apart, as `corrected`: few machines have a ramp.
     #[cold]
     #[inline(never)]
     pub(super) fn error_behind_ramp(
         &mut self,
         sample: &Sample<'_>,
-        position: &[f64],
+        turned: Option<&Turned>,
+        out: &mut [f64],
     ) -> Result<[f64; 3], Refusal> {
-        self.error(sample, position)
+        let Some(turned) = turned else { return self.error(sample, out) };
+        let from = MotionReader::new(sample, out, self.states);
+        let mut values = self.motions.read(from, self.values).ok_or(Refusal::NotFinite)?;
+        let (turns, motions) = (&self.needs.turns, self.motions.motions());
+        for (motion, value) in values.as_mut().iter_mut().enumerate() {
+            *value -= turns.corrected(motion, motions, self.states, sample, out);
+        }
+        turned.stand(sample.position, out);
+        let error = sum(self.kinematics, &self.sines, sample, out, self.travel, Some(values));
+        turned.write(out);
+        error
+    }
+
+    /// Searches for the commands of the rotary axes that correct their own angles, and writes them to `out`, with the position of the
+    /// sample for all others. None where there are none; then nothing is written.
+    #[inline]
+    pub(super) fn turn(
+        &self,
+        sample: &Sample<'_>,
+        convergence: &Convergence,
+        out: &mut [f64],
+    ) -> Result<Option<Turned>, Refusal> {
+        // Asked of the machine first: where it is known when the code is compiled that none does, nothing is left of all this.
+        if self.kinematics.turning().is_empty() || self.needs.turns.is_empty() {
+            return Ok(None);
+        }
+        copy(sample.position, out);
+        let turns = &self.needs.turns;
+        turns.search(self.motions.motions(), self.states, sample, convergence, out).map(Some)
+    }
+
+    /// The part of the error that is left to slides in this cycle, where rotary axes have their commands; leaves in `out` the angles
+    /// wanted in their place.
+    #[inline(never)]
+    pub(super) fn left_to_slides(
+        &mut self,
+        sample: &Sample<'_>,
+        turned: &Turned,
+        out: &mut [f64],
+    ) -> Result<[f64; 3], Refusal> {
+        let from = MotionReader::of_corrected(sample, out, self.states);
+        let values = without(&self.needs.turns, self.motions.read(from, self.values));
+        turned.stand(sample.position, out);
+        sum(self.kinematics, &self.sines, sample, out, self.travel, values)
+    }
+
+    /// [`left_to_slides`](Self::left_to_slides) at a position that differs from that of the last reading for slides alone.
+    #[inline(never)]
+    pub(super) fn left_to_slides_again(
+        &mut self,
+        sample: &Sample<'_>,
+        turned: &Turned,
+        out: &mut [f64],
+    ) -> Result<[f64; 3], Refusal> {
+        let from = MotionReader::of_corrected(sample, out, self.states);
+        let values = without(&self.needs.turns, self.motions.read_moved(from, self.values));
+        turned.stand(sample.position, out);
+        sum(self.kinematics, &self.sines, sample, out, self.travel, values)
     }
 
     /// The part of the error that is corrected in this cycle; memories are read only.
@@ -132,6 +191,18 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
             None => Columns::Found { columns: found, resting: kinematics.resting() },
         }
     }
+}
+
+/// The values of the error motions without those of own angles, which rotary axes correct.
+#[inline]
+fn without<V: AsMut<[f64]>>(turns: &Turns, mut values: Option<V>) -> Option<V> {
+    let numbers = values.as_mut()?.as_mut();
+    for motion in turns.motions() {
+        if let Some(value) = numbers.get_mut(motion) {
+            *value = 0.0;
+        }
+    }
+    values
 }
 
 /// The sum of lever arms times the error motions.

@@ -10,8 +10,10 @@ use crate::math::sqrt;
 /// What a correction must not exceed.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Limits {
-    /// Greatest length of a correction over all axes, in mm; none: no limit. A NaN refuses every correction.
+    /// Greatest length of a correction over all slides, in mm; none: no limit. A NaN refuses every correction.
     pub compensation: Option<f64>,
+    /// Greatest correction of rotary axes, over all of them, in rad; none: no limit. A NaN refuses every correction.
+    pub rotation: Option<f64>,
 }
 
 impl Limits {
@@ -22,6 +24,15 @@ impl Limits {
         let correction = length();
         // Not `>`: also at NaN, which no comparison lets through.
         if correction <= limit { Ok(()) } else { Err(Refusal::OverLimit { correction, limit }) }
+    }
+
+    /// Refuses a correction of rotary axes over the limit.
+    pub(super) fn check_rotation(&self, correction: f64) -> Result<(), Refusal> {
+        match self.rotation {
+            None => Ok(()),
+            Some(limit) if correction <= limit => Ok(()),
+            Some(limit) => Err(Refusal::OverRotationLimit { correction, limit }),
+        }
     }
 }
 
@@ -46,7 +57,7 @@ pub(super) fn check_amplification([moved, corrected]: [f64; 2]) -> Result<(), Re
 pub struct Convergence {
     /// Greatest number of steps; a search that needs more is refused.
     pub iterations: u32,
-    /// Length over all axes below which a step ends the search, in mm.
+    /// Length over all slides below which a step ends the search, in mm; for the angles of rotary axes, in rad.
     pub tolerance: f64,
 }
 
@@ -61,7 +72,7 @@ impl Convergence {
 }
 
 impl Default for Convergence {
-    /// 20 steps, 1e-10 mm.
+    /// 20 steps, 1e-10 mm or rad.
     fn default() -> Self {
         Self { iterations: 20, tolerance: 1e-10 }
     }
@@ -113,14 +124,28 @@ pub enum Refusal {
     NotConverging {
         /// Steps taken.
         iterations: u32,
-        /// Length of the last step over all axes, in mm.
+        /// Length of the last step over all slides, in mm.
         distance: f64,
+    },
+    /// The search for the angles of the rotary axes did not settle: the error of an angle changes about as fast as the angle.
+    AngleNotConverging {
+        /// Steps taken.
+        iterations: u32,
+        /// The last step over all rotary axes, in rad.
+        angle: f64,
     },
     /// The correction is longer than the limit.
     OverLimit {
-        /// Length of the correction over all axes, in mm.
+        /// Length of the correction over all slides, in mm.
         correction: f64,
         /// The limit, in mm.
+        limit: f64,
+    },
+    /// The correction of the rotary axes is greater than its limit.
+    OverRotationLimit {
+        /// The correction over all rotary axes, in rad.
+        correction: f64,
+        /// The limit, in rad.
         limit: f64,
     },
     /// The axes would have to move far against one another to move the tip a little: in this pose they move it in nearly the same
@@ -143,6 +168,10 @@ impl fmt::Display for Refusal {
                 f,
                 "the compensated position is not found: step {iterations} still moves by {distance:.6} mm"
             ),
+            Self::AngleNotConverging { iterations, angle } => write!(
+                f,
+                "the compensated angle is not found: step {iterations} still turns by {angle:.9} rad"
+            ),
             Self::NearSingular { amplification } => write!(
                 f,
                 "axes would move {amplification:.0} times as far as the tip is to move: here two of them move it in nearly the same direction"
@@ -150,6 +179,10 @@ impl fmt::Display for Refusal {
             Self::OverLimit { correction, limit } => {
                 write!(f, "the correction of {correction:.6} mm is over the limit of {limit} mm")
             }
+            Self::OverRotationLimit { correction, limit } => write!(
+                f,
+                "the correction of {correction:.9} rad of the rotary axes is over the limit of {limit} rad"
+            ),
         }
     }
 }
@@ -174,6 +207,12 @@ pub enum SetupError {
         travel: usize,
         /// The axis it names.
         axis: usize,
+    },
+    /// An entry of [`Kinematics::turning`](crate::Kinematics::turning) names an axis or an error motion that the machine lacks,
+    /// stands before one of an earlier axis, or is more than three rotary axes have.
+    Turning {
+        /// Index of the entry.
+        turning: usize,
     },
     /// A term names an axis that the machine lacks.
     TermAxis {
@@ -210,6 +249,9 @@ impl fmt::Display for SetupError {
             }
             Self::TravelAxis { travel, axis } => {
                 write!(f, "travel {travel} names axis {axis}, which the machine lacks")
+            }
+            Self::Turning { turning } => {
+                write!(f, "entry {turning} of the angles that rotary axes correct is wrong")
             }
             Self::TermAxis { motion, term, axis } => {
                 write!(f, "term {term} of error motion {motion} names axis {axis}, which the machine lacks")

@@ -3,6 +3,7 @@
 //! In: the equations, the error motions and the storage of a caller. Out: the sensors needed and whether velocities are, or
 //! the first mistake. It exists so that the cycle itself has nothing left that can fail for a wrong set-up.
 
+use super::turns::Turns;
 use super::{SetupError, Work};
 use crate::{ErrorMotion, Kinematics, Term, TermState};
 
@@ -17,6 +18,8 @@ pub(super) struct Needs {
     pub(super) ramp: bool,
     /// Whether a term remembers anything from cycle to cycle.
     pub(super) memory: bool,
+    /// The angles that rotary axes correct themselves.
+    pub(super) turns: Turns,
 }
 
 /// The number of term states that a set of error motions needs: one for each term.
@@ -54,7 +57,8 @@ pub(super) fn check<K: Kinematics + ?Sized>(
     if let Some((travel, &axis)) = travels.iter().enumerate().find(|(_, axis)| **axis >= axes) {
         return Err(SetupError::TravelAxis { travel, axis });
     }
-    check_terms(motions, axes)
+    let needs = check_terms(motions, axes)?;
+    Ok(Needs { turns: Turns::new(kinematics, motions)?, ..needs })
 }
 
 /// Checks the terms of all error motions and gathers what they need.

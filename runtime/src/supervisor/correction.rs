@@ -6,6 +6,7 @@
 
 use super::Transition;
 use crate::math::sqrt;
+use crate::{Limits, Turning};
 
 /// Less of an offset, or of a step, counts as none: sums of time steps round.
 const NOTHING: f64 = 1e-9;
@@ -19,6 +20,8 @@ pub struct AxisMemory {
     wanted: f64,
     /// Made less wanted at the last switch.
     offset: f64,
+    /// Whether it is a rotary axis that corrects its own angle.
+    turns: bool,
 }
 
 impl AxisMemory {
@@ -43,9 +46,12 @@ pub(super) struct Correction<'a> {
 
 impl<'a> Correction<'a> {
     /// The correction that the memory holds, on its way to whatever is wanted first.
-    pub(super) fn new(axes: &'a mut [AxisMemory]) -> Self {
-        for axis in axes.iter_mut().filter(|axis| !axis.made.is_finite()) {
-            axis.made = 0.0;
+    pub(super) fn new(axes: &'a mut [AxisMemory], turning: &[Turning]) -> Self {
+        for (number, axis) in axes.iter_mut().enumerate() {
+            axis.turns = turning.iter().any(|turning| turning.axis == number);
+            if !axis.made.is_finite() {
+                axis.made = 0.0;
+            }
         }
         Self { axes, active: false, switched: true, left: 0.0 }
     }
@@ -60,9 +66,20 @@ impl<'a> Correction<'a> {
         self.switched = true;
     }
 
-    /// Length over all axes of the correction made.
+    /// Length over all slides of the correction made, mm.
     pub(super) fn length(&self) -> f64 {
-        length(self.axes, |axis| axis.made)
+        self.size(|axis| axis.made).slides
+    }
+
+    /// The size over all axes of a number for each.
+    fn size(&self, of: impl Fn(&AxisMemory) -> f64) -> Size {
+        let root = |turns: bool| {
+            sqrt(self.axes.iter().filter(|axis| axis.turns == turns).fold(0.0, |sum, axis| {
+                let part = of(axis);
+                sum + part * part
+            }))
+        };
+        Size { slides: root(false), turns: root(true) }
     }
 
     /// Takes what is wanted now: the compensator's commands less the positions where its correction is active, and else
@@ -76,7 +93,7 @@ impl<'a> Correction<'a> {
     }
 
     /// Takes the correction made one step further, and tells whether it is still on its way.
-    pub(super) fn follow(&mut self, transition: &Transition, limit: Option<f64>, time_step: f64) -> bool {
+    pub(super) fn follow(&mut self, transition: &Transition, limits: &Limits, time_step: f64) -> bool {
         if self.switched {
             self.switched = false;
             self.left = 1.0;
@@ -87,11 +104,12 @@ impl<'a> Correction<'a> {
         let left = if transition.fade > 0.0 { self.left - time_step / transition.fade } else { 0.0 };
         let fading = left > NOTHING;
         self.left = if fading { left } else { 0.0 };
-        let within = if fading { self.within(limit) } else { 1.0 };
+        let within = if fading { self.within(limits) } else { 1.0 };
         let left = self.left;
         let next = |axis: &AxisMemory| within * (axis.wanted + left * axis.offset);
-        let change = length(self.axes, |axis| next(axis) - axis.made);
-        let part = part_of_change(change, transition.rate, time_step);
+        let change = self.size(|axis| next(axis) - axis.made);
+        let part = part_of_change(change.slides, transition.rate, time_step);
+        let part = part.min(part_of_change(change.turns, transition.rotation_rate, time_step));
         for axis in &mut *self.axes {
             let next = next(axis);
             axis.made = if part < 1.0 { axis.made + part * (next - axis.made) } else { next };
@@ -99,12 +117,13 @@ impl<'a> Correction<'a> {
         fading || part < 1.0
     }
 
-    /// The factor that keeps a fading correction within the limit, or within what is made already where that is more.
-    fn within(&self, limit: Option<f64>) -> f64 {
+    /// The factor that keeps a fading correction within its limits, or within what is made already where that is more.
+    fn within(&self, limits: &Limits) -> f64 {
         let left = self.left;
-        let next = length(self.axes, |axis| axis.wanted + left * axis.offset);
-        let most = limit.map_or(f64::INFINITY, |limit| self.length().max(limit));
-        if next > most { most / next } else { 1.0 }
+        let next = self.size(|axis| axis.wanted + left * axis.offset);
+        let made = self.size(|axis| axis.made);
+        let slides = within(next.slides, limits.compensation, made.slides);
+        slides.min(within(next.turns, limits.rotation, made.turns))
     }
 
     /// Writes the commands, where they are not those of the compensator already.
@@ -129,10 +148,15 @@ fn part_of_change(change: f64, rate: Option<f64>, time_step: f64) -> f64 {
     if part > 0.0 { part } else { 0.0 }
 }
 
-/// Length over all axes of a number for each.
-fn length(axes: &[AxisMemory], of: impl Fn(&AxisMemory) -> f64) -> f64 {
-    sqrt(axes.iter().fold(0.0, |sum, axis| {
-        let part = of(axis);
-        sum + part * part
-    }))
+/// How large something is over all slides, in mm, and over all rotary axes that correct themselves, in rad.
+#[derive(Clone, Copy)]
+struct Size {
+    slides: f64,
+    turns: f64,
+}
+
+/// The factor that keeps what comes next within a limit, or within what is made already.
+fn within(next: f64, limit: Option<f64>, made: f64) -> f64 {
+    let most = limit.map_or(f64::INFINITY, |limit| made.max(limit));
+    if next > most { most / next } else { 1.0 }
 }

@@ -311,7 +311,7 @@ fn setting() -> impl Strategy<Value = Setting> {
     let steps = prop_oneof![3 => Just(20), 1 => 0..4_u32];
     (prop::bool::weighted(0.9), limit, steps).prop_map(|(enabled, compensation, iterations)| Setting {
         enabled,
-        limits: Limits { compensation },
+        limits: Limits { compensation, ..Limits::default() },
         convergence: Convergence { iterations, ..Convergence::default() },
     })
 }
@@ -457,7 +457,7 @@ fn each_row_is_refused_for_its_own_reason() {
     };
     let mut out = vec![0.0; 10];
     let (answers, _) = with(&Slide, &motions, |compensator| {
-        compensator.limits = Limits { compensation: Some(0.9) };
+        compensator.limits = Limits { compensation: Some(0.9), ..Limits::default() };
         batch(compensator, &rows, 0..10, &mut [&mut out]).unwrap()
     });
     assert_eq!(answers[1], Err(Refusal::NotFinite));

@@ -65,8 +65,11 @@ fn too_few_iterations_are_told() {
 #[test]
 fn a_correction_over_the_limit_is_refused_and_says_so() {
     let term = [Term::Constant { value: -0.25 }];
-    let limited =
-        |limit| move |c: &mut Compensator<'_, Slide>| c.limits = Limits { compensation: Some(limit) };
+    let limited = |limit| {
+        move |c: &mut Compensator<'_, Slide>| {
+            c.limits = Limits { compensation: Some(limit), ..Limits::default() }
+        }
+    };
     let (result, command) = run(&term, &at(&[5.0]), limited(0.2));
     assert_eq!(result, Err(Refusal::OverLimit { correction: 0.25, limit: 0.2 }));
     assert_eq!(command, 5.0);

@@ -107,7 +107,7 @@ proptest! {
     fn a_compensator_corrects_within_its_limit_or_not_at_all(cycles in prop::collection::vec(numbers(), 1..20)) {
         let terms = terms();
         let (result, _) = with(&LATHE, &motions(&terms), |compensator| {
-            compensator.limits = Limits { compensation: Some(LIMIT) };
+            compensator.limits = Limits { compensation: Some(LIMIT), ..Limits::default() };
             cycles.iter().try_for_each(|numbers| compensated(compensator, numbers))
         });
         result?;
@@ -121,7 +121,7 @@ proptest! {
         let (mut directions, mut values, mut travel) = ([[0.0; 3]; 2], [0.0; 4], [0.0; 1]);
         let work = Work { directions: &mut directions, motions: &mut values, travel: &mut travel };
         let mut compensator = Compensator::new(&LATHE, &motions, &mut states, work).unwrap();
-        compensator.limits = Limits { compensation: Some(LIMIT) };
+        compensator.limits = Limits { compensation: Some(LIMIT), ..Limits::default() };
         let (mut axes, mut readings, mut silence) = ([AxisMemory::default(); 2], [0.0], [0.0]);
         let memory = Memory { axes: &mut axes, temperature: &mut readings, silence: &mut silence };
         let mut supervisor = Supervisor::new(compensator, memory).unwrap();

@@ -16,3 +16,4 @@ mod skew;
 mod supervisor;
 mod tables;
 mod terms;
+mod turning;

@@ -66,14 +66,14 @@ fn rest(supervisor: &mut Supervisor<'_, Lathe>, temperature: f64) -> (Cycle, [f6
 fn plain(sample: &Sample<'_>, limit: Option<f64>) -> (Result<abbe_runtime::Outcome, Refusal>, [f64; 2]) {
     let mut out = [f64::NAN; 2];
     let (result, _) = with(&LATHE, &MOTIONS, |compensator| {
-        compensator.limits = Limits { compensation: limit };
+        compensator.limits = Limits { compensation: limit, ..Limits::default() };
         compensator.compensate(sample, &mut out)
     });
     (result, out)
 }
 
 fn fading(hold: f64, fade: f64) -> Transition {
-    Transition { rate: None, hold, fade }
+    Transition { hold, fade, ..Transition::default() }
 }
 
 fn length([x, z]: [f64; 2]) -> f64 {
@@ -171,7 +171,7 @@ fn a_sensor_that_never_spoke_lets_nothing_through() {
 fn a_refusal_fades_and_never_cuts() {
     supervised(fading(1.0, 0.004), |supervisor| {
         let full = (0..4).map(|_| rest(supervisor, 25.0).1).last().unwrap();
-        supervisor.compensator.limits = Limits { compensation: Some(0.001) };
+        supervisor.compensator.limits = Limits { compensation: Some(0.001), ..Limits::default() };
         for part in [0.75, 0.5, 0.25, 0.0] {
             let (cycle, made) = rest(supervisor, 25.0);
             assert_eq!(cycle.state, State::Refused);
@@ -244,7 +244,7 @@ fn a_restart_forgets_the_readings_and_leaves_the_correction_made() {
 
 #[test]
 fn what_has_arrived_stays_arrived_while_time_stands_still() {
-    supervised(Transition { rate: Some(2.0), hold: 1.0, fade: 0.001 }, |supervisor| {
+    supervised(Transition { rate: Some(2.0), fade: 0.001, ..Transition::default() }, |supervisor| {
         let (last, full) = (0..40).map(|_| rest(supervisor, 25.0)).last().unwrap();
         assert!(!last.settling && length(full) > 0.010, "{last:?}");
         let (position, mut out) = ([100.0, 300.0], [0.0; 2]);
@@ -285,7 +285,7 @@ fn the_storage_is_checked() {
 
 #[test]
 fn a_reversal_is_taken_over_as_fast_as_the_rate_lets_it() {
-    let transition = Transition { rate: Some(2.0), hold: 1.0, fade: 0.001 };
+    let transition = Transition { rate: Some(2.0), fade: 0.001, ..Transition::default() };
     supervised(transition, |supervisor| {
         // 2 um a cycle: the first correction takes its time too.
         let (mut made, mut cycles) = ([0.0; 2], 0);
@@ -366,7 +366,7 @@ proptest! {
     /// greatest limit in force.
     #[test]
     fn the_rate_holds_whatever_happens(events in events(), rate in 0.0..5.0_f64, fade in 0.0..0.02_f64) {
-        supervised(Transition { rate: Some(rate), hold: 0.003, fade }, |supervisor| {
+        supervised(Transition { rate: Some(rate), hold: 0.003, fade, ..Transition::default() }, |supervisor| {
             let (mut x, mut z, mut before, mut time) = (0.0, 0.0, [0.0; 2], 0.0);
             for event in events {
                 let [way_x, way_z] = event.way;
@@ -375,7 +375,7 @@ proptest! {
                     [x, z] = position;
                 }
                 supervisor.compensator.enabled = event.enabled;
-                supervisor.compensator.limits = Limits { compensation: event.limit };
+                supervisor.compensator.limits = Limits { compensation: event.limit, ..Limits::default() };
                 let mut out = [0.0; 2];
                 let given = [event.temperature];
                 let sample = Sample { time_step: event.time_step, ..sample(&position, &POSITIVE, &given) };

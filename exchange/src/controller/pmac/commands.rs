@@ -1,5 +1,6 @@
 //! Commands for a PMAC. In: effects. Out: text of `DEFINE COMP` and `DEFINE BLCOMP` with their entries; and back.
 
+use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
@@ -70,17 +71,22 @@ fn write_table(text: &mut String, motor: &str, head: &str, entries: &[i64]) {
 
 /// The entries from one spacing on, what lies below zero at the end, and the count length.
 ///
-/// One spacing more than the range is long: over it the end of the range goes over into its beginning.
+/// One spacing more than the range is long: over it the end of the range goes over into its beginning. The ends of a whole turn are
+/// one place, and need no spacing between them.
 fn entries(pmac: &Pmac, effect: &Effect, values: &[f64]) -> Result<(Vec<i64>, i64), Refused> {
     let (Some(from), Some(to)) = (counts(pmac, effect.source), counts(pmac, effect.target)) else {
-        return Err(Refused::new("a rotary axis has no table", "export slides"));
+        let help = "give the counts for a degree: --counts C=10000";
+        return Err(Refused::new("a rotary axis without counts has no table", help));
     };
     let below = effect.nodes.iter().filter(|place| **place < 0.0).count();
     let (negative, positive) = values.split_at(below.min(values.len()));
     let parts = |value: &f64| index_signed((value * to * PARTS).round());
     // The value at zero is zero, and stands last; the gap of one spacing takes the last value above.
-    let above = positive.iter().skip(1);
-    let gap = positive.last();
+    let (above, gap) = match positive.split_last() {
+        Some((_, above)) if is_a_turn(pmac, effect) => (above, None),
+        _ => (positive, positive.last()),
+    };
+    let above = above.iter().skip(1);
     let all: Vec<i64> = above.chain(gap).chain(negative).map(parts).chain([0]).collect();
     let step = effect.nodes.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
     let length = step * from * number(i64::try_from(all.len()).unwrap_or(i64::MAX));
@@ -89,6 +95,13 @@ fn entries(pmac: &Pmac, effect: &Effect, values: &[f64]) -> Result<(Vec<i64>, i6
         return Err(Refused::new(what, "choose a step that is, with --points or --range"));
     }
     Ok((all, index_signed(length.round())))
+}
+
+/// Whether the nodes of an effect are those of one whole turn of a rotary axis.
+fn is_a_turn(pmac: &Pmac, effect: &Effect) -> bool {
+    let ends = effect.nodes.first().zip(effect.nodes.last());
+    let turns = pmac.motors.get(effect.source).is_some_and(|motor| motor.turns);
+    turns && ends.is_some_and(|(first, last)| (last - first - TAU).abs() < 1e-9)
 }
 
 /// Reads commands into the controller.

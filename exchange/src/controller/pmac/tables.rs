@@ -36,8 +36,10 @@ pub(super) struct Screw {
 pub(super) struct Motor {
     /// Its number.
     pub(super) number: String,
-    /// Its counts for a mm; none for a rotary axis, which has no table.
+    /// Its counts for a mm, or for a rad of a rotary axis; none for a rotary axis whose counts are not said, which has no table.
     pub(super) counts: Option<f64>,
+    /// Whether it turns a rotary axis.
+    pub(super) turns: bool,
     /// Its backlash table.
     pub(super) backlash: Option<Rolling>,
     /// `Ixx86`, in sixteenths of a count.
@@ -69,7 +71,9 @@ pub(in super::super) fn controller(job: &Job<'_, '_>) -> Result<Pmac, Refused> {
             let help = format!("a motor goes by its number: --name {}=1", axis.letter);
             return Err(Refused::new(format!("`{number}` is no motor"), help));
         }
-        Ok(Motor { number, counts: counts.filter(|_| !axis.rotary), backlash: None, constant: 0.0 })
+        let unit = if axis.rotary { 1_f64.to_degrees() } else { 1.0 };
+        let (counts, turns) = (counts.map(|counts| counts * unit), axis.rotary);
+        Ok(Motor { number, counts, turns, backlash: None, constant: 0.0 })
     };
     Ok(Pmac { motors: axes.map(motor).collect::<Result<_, _>>()?, screws: Vec::new() })
 }

@@ -17,9 +17,11 @@ const FINEST: u32 = 20;
 pub(in super::super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
     let pmac = controller(job)?;
     let effects = Effects::new(job.geometry, job.space)?;
+    let mut written = Written::default();
     let (mut all, mut backlash) = (Vec::new(), Vec::new());
     for (source, range) in job.space.ranges.iter().enumerate() {
         if pmac.motors.get(source).is_none_or(|motor| motor.counts.is_none()) {
+            written.left_out.extend(left_out(job, source));
             continue;
         }
         let nodes = rolling_nodes(job, &effects, source, *range)?;
@@ -35,7 +37,6 @@ pub(in super::super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
     }
     all.sort_by(|one, other| other.largest().total_cmp(&one.largest()));
     let (kept, rest) = all.split_at(all.len().min(TABLES));
-    let mut written = Written::default();
     if let Some(largest) = rest.first() {
         written.left_out.push(format!(
             "{} tables, the largest of {:.1} um: a controller has {TABLES}, one for each motor",
@@ -51,6 +52,16 @@ pub(in super::super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
         "Ixx85 = 0 and no other buffers (I6, GATHER, ROTARY) while the tables are defined; I51 = 1 switches them on".to_owned(),
     ];
     Ok(written)
+}
+
+/// What is told of a rotary axis that corrects its angle and whose counts are not said.
+fn left_out(job: &Job<'_, '_>, axis: usize) -> Option<String> {
+    let geometry = job.geometry;
+    let own = geometry.equations.turning().into_iter().filter(|own| own.axis == axis);
+    let letter = &geometry.equations.axes.get(axis)?.letter;
+    own.into_iter().any(|own| !geometry.terms(own.motion).is_empty()).then(|| {
+        format!("the angle of {letter}: give the counts of its motor for a degree, --counts {letter}=10000")
+    })
 }
 
 /// Nodes at multiples of one step, zero among them, that cover the range: the control counts spacings from zero.

@@ -9,6 +9,7 @@ use super::super::lost::Target;
 use super::super::options::Sense;
 use super::super::refused::Refused;
 use abbe_runtime::Direction;
+use model_dsl::equations::AxisInfo;
 
 /// A table of the cross error compensation.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -50,7 +51,7 @@ pub(in super::super) fn controller(job: &Job<'_, '_>) -> Result<Sinumerik, Refus
     Ok(Sinumerik {
         names: job.names(|_, letter| format!("{letter}1"))?,
         units: axes.iter().map(|axis| if axis.rotary { 1_f64.to_degrees() } else { 1.0 }).collect(),
-        moved: axes.iter().map(|axis| axis.effect.is_some()).collect(),
+        moved: axes.iter().map(AxisInfo::corrects).collect(),
         screws: BTreeMap::new(),
         crosses: BTreeMap::new(),
         sense: job.options.sense,
@@ -62,7 +63,7 @@ impl Target for Sinumerik {
         let mut correction = vec![0.0; pose.position.len()];
         let mut add = |axis: usize, value: f64| {
             if let Some(slot) = correction.get_mut(axis).filter(|_| self.moved.get(axis) == Some(&true)) {
-                *slot += value;
+                *slot += value / self.unit(axis);
             }
         };
         for (axis, screw) in &self.screws {
@@ -79,8 +80,12 @@ impl Target for Sinumerik {
 impl Sinumerik {
     /// Where an axis stands, in the unit of the archive.
     fn place(&self, pose: &Pose, axis: usize) -> f64 {
-        let unit = self.units.get(axis).copied().unwrap_or(1.0);
-        pose.position.get(axis).map_or(f64::NAN, |place| place * unit)
+        pose.position.get(axis).map_or(f64::NAN, |place| place * self.unit(axis))
+    }
+
+    /// What the archive writes for a mm or a rad of an axis: 1, or the degrees of a radian.
+    pub(super) fn unit(&self, axis: usize) -> f64 {
+        self.units.get(axis).copied().unwrap_or(1.0)
     }
 
     /// What a cross table adds: its value; its product with the table that it is multiplied by; nothing where it is only a

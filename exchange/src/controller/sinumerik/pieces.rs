@@ -21,7 +21,7 @@ impl Piece {
         }
     }
 
-    /// The largest correction, mm.
+    /// The largest correction, mm; of a rotary axis as far from it as counts.
     pub(super) fn size(&self) -> f64 {
         match self {
             Self::Both(effect) | Self::Directed(effect) => effect.largest(),
@@ -56,7 +56,15 @@ impl Piece {
             Self::Product(Product { target, factors: [one, other], .. }) => {
                 let table = |factor, values, by| {
                     let Factor { source, nodes, .. }: &Factor = factor;
-                    Table { input: *source, output: *target, nodes, values, direction: 0, by }
+                    Table {
+                        input: *source,
+                        output: *target,
+                        nodes,
+                        values,
+                        direction: 0,
+                        by,
+                        is_factor: by == 0,
+                    }
                 };
                 // The number of a table is its index and one.
                 vec![table(one, signed(&one.values), index + 2), table(other, other.values.clone(), 0)]
@@ -79,10 +87,13 @@ pub(super) struct Table<'p> {
     pub(super) direction: i8,
     /// The number of the table that it is multiplied by; 0: none.
     pub(super) by: usize,
+    /// Whether it is only what another table is multiplied by.
+    pub(super) is_factor: bool,
 }
 
 impl<'p> Table<'p> {
     fn of(effect: &'p Effect, values: Vec<f64>, direction: i8) -> Self {
-        Self { input: effect.source, output: effect.target, nodes: &effect.nodes, values, direction, by: 0 }
+        let (input, output, nodes) = (effect.source, effect.target, &effect.nodes);
+        Self { input, output, nodes, values, direction, by: 0, is_factor: false }
     }
 }

@@ -117,14 +117,15 @@ fn cross(job: &Job<'_, '_>, control: &Sinumerik, mut pieces: Vec<Piece>, written
 }
 
 fn write_screw(text: &mut String, control: &Sinumerik, effect: &Effect, base: f64) {
-    let (Some(name), Some(unit)) = (control.names.get(effect.source), control.units.get(effect.source))
-    else {
-        return;
-    };
+    let Some(name) = control.names.get(effect.source) else { return };
+    let unit = control.unit(effect.source);
+    // A degree is worth more than a millimetre: of 1 m from the axis, a millionth of it is 17 nm.
+    let decimals = if unit > 1.0 { 8 } else { 6 };
     for (point, correction) in effect.mean().iter().enumerate() {
-        let _ = writeln!(text, "$AA_ENC_COMP[0,{point},{name}]={}", decimal(-(correction + base), 6));
+        let error = decimal(-(correction + base) * unit, decimals);
+        let _ = writeln!(text, "$AA_ENC_COMP[0,{point},{name}]={error}");
     }
-    for (key, value) in ["STEP", "MIN", "MAX"].into_iter().zip(reach(&effect.nodes, *unit)) {
+    for (key, value) in ["STEP", "MIN", "MAX"].into_iter().zip(reach(&effect.nodes, unit)) {
         let _ = writeln!(text, "$AA_ENC_COMP_{key}[0,{name}]={value}");
     }
     let _ = writeln!(text, "$AA_ENC_COMP_IS_MODULO[0,{name}]=0");
@@ -132,9 +133,11 @@ fn write_screw(text: &mut String, control: &Sinumerik, effect: &Effect, base: f6
 
 fn write_table(text: &mut String, control: &Sinumerik, index: usize, table: &Table<'_>) {
     let name = |axis: usize| control.names.get(axis).map_or("", String::as_str);
-    let unit = control.units.get(table.input).copied().unwrap_or(1.0);
+    let unit = control.unit(table.input);
+    // What another table is multiplied by is a number of its own, and no correction.
+    let of_output = if table.is_factor { 1.0 } else { control.unit(table.output) };
     for (point, value) in table.values.iter().enumerate() {
-        let _ = writeln!(text, "$AN_CEC[{index},{point}]={}", decimal(*value, 9));
+        let _ = writeln!(text, "$AN_CEC[{index},{point}]={}", decimal(value * of_output, 9));
     }
     let _ = writeln!(text, "$AN_CEC_INPUT_AXIS[{index}]=({})", name(table.input));
     let _ = writeln!(text, "$AN_CEC_OUTPUT_AXIS[{index}]=({})", name(table.output));

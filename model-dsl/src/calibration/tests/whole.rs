@@ -12,7 +12,7 @@ calibration: 1
 machine: test-mill
 source: measured with a laser, µm
 constants: {Xt: 1 in, Zt: 100 mm}
-limits: {compensation: 0.2 mm, rate: 120 mm/min, hold: 0 s, fade: 500 ms}
+limits: {compensation: 0.2 mm, rotation: 1 mrad, rate: 120 mm/min, rotation_rate: 60 mrad/min, hold: 0 s, fade: 500 ms}
 sensors: {start: {initial: body}, body: {mean: [T10, T21]}}
 errors:
   EXX:
@@ -28,8 +28,12 @@ errors:
     assert_eq!(calibration.machine.value, "test-mill");
     assert_eq!(calibration.source.as_deref(), Some("measured with a laser, µm"));
     assert_eq!(calibration.constants, [25.4, 100.0]);
-    assert_eq!(calibration.limits.of_compensator(), abbe_runtime::Limits { compensation: Some(0.2) });
-    let transition = abbe_runtime::Transition { rate: Some(2.0), hold: 0.0, fade: 0.5 };
+    assert_eq!(
+        calibration.limits.of_compensator(),
+        abbe_runtime::Limits { compensation: Some(0.2), rotation: Some(1e-3) }
+    );
+    let transition =
+        abbe_runtime::Transition { rate: Some(2.0), rotation_rate: Some(1e-3), hold: 0.0, fade: 0.5 };
     assert_eq!(calibration.limits.transition(), transition);
     let listed: Vec<_> =
         calibration.motions.iter().map(|listed| (listed.motion, listed.terms.len())).collect();

@@ -85,7 +85,7 @@ fn calibration(case: &Case) -> Calibration {
                 Some(reverse) => CurveValues::Directed { forward, reverse },
                 None => CurveValues::Both(forward),
             };
-            CalibratedTerm::Table { axis: table.axis, curve: Curve { nodes, values } }
+            CalibratedTerm::Table { axis: table.axis, curve: Curve::new(nodes, values) }
         }
     };
     let terms: Vec<_> = case.motions.iter().map(term).enumerate().collect();

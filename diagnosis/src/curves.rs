@@ -213,7 +213,7 @@ fn tables(study: &Study<'_>, axis: usize, travel: &Travel) -> Vec<Shape> {
             .filter(|n| held(n, &places))
             .collect(),
     };
-    nodes.into_iter().map(|nodes| Shape::Table { axis, nodes, directed: false }).collect()
+    nodes.into_iter().map(|nodes| Shape::Table { axis, nodes, directed: false, repeats: false }).collect()
 }
 
 /// Nodes at equal steps from one place to another, both included.

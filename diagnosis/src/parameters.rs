@@ -201,7 +201,7 @@ impl<'f> Described<'f> {
                 let list = self.powers(axis_unit(study, *axis)).into_iter().skip(1).collect();
                 vec![axis_name(study, *axis), Parameter::list("coefficients", list)]
             }
-            Shape::Table { axis, nodes, directed } => {
+            Shape::Table { axis, nodes, directed, .. } => {
                 let (axis_factor, axis_unit) = axis_unit(study, *axis);
                 let places = nodes.iter().map(|node| node * axis_factor).collect();
                 let at = Parameter { name: "at", value: ParameterValue::Places(places, axis_unit) };

@@ -109,6 +109,7 @@ fn table(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Effect> 
         axis: feature.axis,
         nodes: nodes(feature, &found.travels[feature.axis], &places_read(study, found, feature)),
         directed: feature.direction != 0.0,
+        repeats: false,
     };
     let motions = study.equations.motions.iter().enumerate();
     let tables: Vec<Effect> = motions

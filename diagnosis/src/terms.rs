@@ -51,7 +51,7 @@ pub(crate) enum Shape {
     /// Powers 0 to `degree` of x = (T - center) / scale of a sensor.
     SensorPolynomial { sensor: usize, degree: usize, center: f64, scale: f64 },
     /// A hat function for each node; for each direction of motion where it is directed.
-    Table { axis: usize, nodes: Vec<f64>, directed: bool },
+    Table { axis: usize, nodes: Vec<f64>, directed: bool, repeats: bool },
     /// -d/2, or the play operator -u/2.
     Backlash { axis: usize, wind_up: f64 },
     /// -d exp(-(t - t_reversal) / decay).
@@ -288,7 +288,9 @@ impl Shape {
                 polynomial::fill(rows.temperature(*sensor), *center, *scale, 0, out);
             }
             Self::Coupling { axis, degree: _, scale } => coupling::fill(rows, *axis, *scale, out),
-            Self::Table { axis, nodes, directed } => table::fill(rows, *axis, nodes, *directed, out),
+            Self::Table { axis, nodes, directed, repeats } => {
+                table::fill(rows, *axis, table::Nodes { nodes, repeats: *repeats }, *directed, out);
+            }
             Self::Backlash { axis, wind_up } => {
                 one(out, |out| backlash::fill(rows, *axis, *wind_up, memory, out))
             }
@@ -357,7 +359,8 @@ impl Shape {
         sum: &mut [f64],
     ) {
         match self {
-            Self::Table { axis, nodes, directed } => {
+            Self::Table { axis, nodes, directed, repeats } => {
+                let nodes = table::Nodes { nodes, repeats: *repeats };
                 table::add(rows, *axis, nodes, *directed, coefficients, sum);
             }
             // The position behind the loop is in the states already.

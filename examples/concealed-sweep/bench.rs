@@ -151,7 +151,7 @@ impl Bench {
             values.iter_mut().enumerate().for_each(|(node, value)| *value += along(node));
         }
         let nodes = CurveNodes::Uniform { start: low, step: (high - low) / (nodes - 1) as f64 };
-        Some(CalibratedTerm::Table { axis, curve: Curve { nodes, values: CurveValues::Both(values) } })
+        Some(CalibratedTerm::Table { axis, curve: Curve::new(nodes, CurveValues::Both(values)) })
     }
 
     /// The calibration as it comes back from its file.

@@ -135,7 +135,7 @@ pub(crate) fn draw(
                 any,
                 CalibratedTerm::Table {
                     axis,
-                    curve: Curve { nodes: CurveNodes::Uniform { start: low, step }, values },
+                    curve: Curve::new(CurveNodes::Uniform { start: low, step }, values),
                 },
             )
         }

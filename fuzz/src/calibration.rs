@@ -1,8 +1,6 @@
 //! Calibration files: read, written and read again, run in a compensator, and made into an exact machine.
 
-use abbe_runtime::{
-    Compensator, Direction, ErrorMotion, Limits, Sample, Term, TermState, Work, states_needed,
-};
+use abbe_runtime::{Compensator, Direction, ErrorMotion, Sample, Term, TermState, Work, states_needed};
 use model_dsl::Compiled;
 use model_dsl::calibration::{self, Calibration};
 use model_dsl::diagnostic::{Diagnostics, render};

@@ -29,6 +29,7 @@
 //! | E0425 | a term that cannot be compensated, from [`Calibration::refuse_uncompensable`] |
 //! | E0428, E0429 | an item of `times` that is not exactly one factor; a unit that the factors do not make the motion's |
 //! | W0401 | a derived sensor that no term uses |
+//! | W0403 | a table that repeats and whose ends have two values |
 //!
 //! Quantities have their own codes, E0301 to E0309: see [`crate::quantity`].
 

@@ -146,7 +146,7 @@ fn curve() -> impl Strategy<Value = Curve> {
         CurveNodes::At(at)
     });
     let nodes = prop_oneof![uniform, at];
-    (nodes, series(), series(), any::<bool>()).prop_map(|(nodes, forward, reverse, both)| {
+    (nodes, series(), series(), any::<[bool; 2]>()).prop_map(|(nodes, forward, reverse, [both, repeats])| {
         let length = match &nodes {
             CurveNodes::Uniform { .. } => forward.len(),
             CurveNodes::At(at) => at.len(),
@@ -156,7 +156,10 @@ fn curve() -> impl Strategy<Value = Curve> {
             true => CurveValues::Both(fit(forward)),
             false => CurveValues::Directed { forward: fit(forward), reverse: fit(reverse) },
         };
-        Curve { nodes, values }
+        let curve = Curve { nodes, values, repeats };
+        // Only what has a length can begin again after it.
+        let repeats = curve.period().is_some_and(|period| period > 0.0 && period.is_finite());
+        Curve { repeats, ..curve }
     })
 }
 
@@ -395,7 +398,7 @@ errors:
 fn long_tables_are_broken_into_lines_that_can_be_read() {
     let values: Vec<f64> = (0..500).map(|step| f64::from(step) / 700.0).collect();
     let nodes = CurveNodes::Uniform { start: 0.0, step: 1.0 };
-    let curve = Curve { nodes, values: CurveValues::Both(values) };
+    let curve = Curve::new(nodes, CurveValues::Both(values));
     let calibration =
         Calibration::new("mill", vec![0.0, 0.0]).with(&[(0, CalibratedTerm::Table { axis: 0, curve })]);
     let text = write(&calibration, &names());

@@ -24,6 +24,15 @@ pub fn sqrt(value: f64) -> f64 {
     return libm::sqrt(value);
 }
 
+/// The greatest whole number that is not above a number; NaN at NaN.
+#[must_use]
+pub fn floor(value: f64) -> f64 {
+    #[cfg(feature = "std")]
+    return value.floor();
+    #[cfg(not(feature = "std"))]
+    return libm::floor(value);
+}
+
 /// The exponential less one, `exp(value) - 1`, exact to the last digits for small values.
 #[must_use]
 pub fn exp_m1(value: f64) -> f64 {

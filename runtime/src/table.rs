@@ -8,7 +8,7 @@ mod place;
 
 use core::fmt;
 
-use crate::math::all_finite;
+use crate::math::{all_finite, floor};
 use crate::{Direction, Real};
 
 pub use self::bundle::Bundle;
@@ -69,6 +69,8 @@ pub enum TableError {
     },
     /// A start, a node or a value is NaN or infinite.
     NotFinite,
+    /// A table of one node cannot repeat itself.
+    Lone,
     /// In a [`Bundle`], a term is not a table over the axis and the even nodes of the first.
     Unlike {
         /// Index of that term.
@@ -89,6 +91,7 @@ impl fmt::Display for TableError {
                 write!(f, "node {index} (counted from 0) does not lie above the one before it")
             }
             Self::NotFinite => write!(f, "a start, a node or a value is not a finite number"),
+            Self::Lone => write!(f, "a table of one node cannot repeat itself"),
             Self::Unlike { index } => {
                 write!(
                     f,
@@ -105,10 +108,14 @@ impl core::error::Error for TableError {}
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Nodes<'a> {
     Even(Even),
-    At(&'a [f64]),
+    At {
+        at: &'a [f64],
+        /// Whether the table repeats itself after its last node.
+        repeats: bool,
+    },
 }
 
-/// A piecewise linear curve over the position of an axis, held constant outside its nodes.
+/// A piecewise linear curve over the position of an axis, held constant outside its nodes, or [repeated](Self::repeating).
 ///
 /// ```
 /// use abbe_runtime::{Direction, Table, Values};
@@ -149,7 +156,7 @@ impl<'a> Table<'a> {
             return Err(TableError::TooLong);
         }
         let last = nodes.saturating_sub(1);
-        Ok(Self::new(Nodes::Even(Even { start, per_unit, last }), values))
+        Ok(Self::new(Nodes::Even(Even { start, per_unit, last, repeats: false }), values))
     }
 
     /// A table whose nodes lie at the positions `at` (mm or rad), strictly ascending; read by binary search.
@@ -173,7 +180,29 @@ impl<'a> Table<'a> {
             }
             rest = others;
         }
-        Ok(Self::new(Nodes::At(at), values))
+        Ok(Self::new(Nodes::At { at, repeats: false }, values))
+    }
+
+    /// The table, which begins again after its last node: over a rotary axis that turns on and on, or over a screw whose turns are
+    /// alike. The last node is then the first one of the next turn; where their values differ, the table jumps there.
+    ///
+    /// ```
+    /// use abbe_runtime::{Direction, Table, Values};
+    /// let turn = Table::uniform(0.0, 90.0, Values::Both(&[0.0, 1.0, 2.0, 1.0, 0.0]))?.repeating()?;
+    /// assert_eq!(turn.value(720.0 + 45.0, Direction::Positive), 0.5);
+    /// assert_eq!(turn.value(-90.0, Direction::Positive), 1.0);
+    /// # Ok::<(), abbe_runtime::TableError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Refuses a table of one node, which has no length to repeat.
+    pub const fn repeating(self) -> Result<Self, TableError> {
+        let nodes = match self.nodes {
+            Nodes::Even(even) if even.last > 0 => Nodes::Even(Even { repeats: true, ..even }),
+            Nodes::At { at, .. } if at.len() > 1 => Nodes::At { at, repeats: true },
+            Nodes::Even(_) | Nodes::At { .. } => return Err(TableError::Lone),
+        };
+        Ok(Self { nodes, ..self })
     }
 
     const fn new(nodes: Nodes<'a>, values: Values<'a>) -> Self {
@@ -196,7 +225,7 @@ impl<'a> Table<'a> {
     pub fn value(&self, position: f64, direction: Direction) -> f64 {
         match self.nodes {
             Nodes::Even(even) => Place::new(even, 0, position, direction).read(self.curve(direction)),
-            Nodes::At(at) => read_at(self.curve(direction), at, position),
+            Nodes::At { at, repeats } => read_at(self.curve(direction), at, repeats, position),
         }
     }
 }
@@ -221,10 +250,14 @@ const fn check_values(values: Values<'_>, expected: Option<usize>) -> Result<(),
 }
 
 /// Reads a curve over ascending nodes by binary search. Ends are held; NaN at NaN.
-fn read_at(values: &[f64], at: &[f64], position: f64) -> f64 {
+fn read_at(values: &[f64], at: &[f64], repeats: bool, position: f64) -> f64 {
     if position.is_nan() {
         return f64::NAN;
     }
+    let position = match (at.first(), at.last()) {
+        (Some(first), Some(last)) if repeats => first + within_a_turn(position - first, last - first),
+        _ => position,
+    };
     let above = at.partition_point(|&node| node <= position);
     let Some(index) = above.checked_sub(1) else {
         return values.first().copied().unwrap_or(f64::NAN);
@@ -235,6 +268,12 @@ fn read_at(values: &[f64], at: &[f64], position: f64) -> f64 {
         }
         _ => values.last().copied().unwrap_or(f64::NAN),
     }
+}
+
+/// What is left of a way after all whole turns of a length: from 0 to that length, which rounding may reach; NaN at what is not finite.
+#[inline]
+fn within_a_turn(way: f64, length: f64) -> f64 {
+    way - length * floor(way / length)
 }
 
 /// Linear interpolation; exactly `low` at 0.

@@ -105,10 +105,9 @@ mod tests {
     #[test]
     fn a_table_ends_where_its_last_value_stands() {
         let values = CurveValues::Both(vec![0.0; 5]);
-        let uniform =
-            Curve { nodes: CurveNodes::Uniform { start: 100.0, step: -25.0 }, values: values.clone() };
+        let uniform = Curve::new(CurveNodes::Uniform { start: 100.0, step: -25.0 }, values.clone());
         assert_eq!(uniform.ends(), Some([100.0, 0.0]));
-        let at = Curve { nodes: CurveNodes::At(vec![1.0, 2.0, 4.0, 8.0, 16.0]), values };
+        let at = Curve::new(CurveNodes::At(vec![1.0, 2.0, 4.0, 8.0, 16.0]), values);
         assert_eq!(at.ends(), Some([1.0, 16.0]));
         let reach = uniform.ends().into_iter().flatten().fold(Stretch::NOTHING, Stretch::with);
         assert_eq!((reach.low, reach.high, reach.middle()), (0.0, 100.0, 50.0));

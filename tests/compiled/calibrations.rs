@@ -92,7 +92,7 @@ impl Followed {
     pub(super) fn with_long_tables(mut self, rng: &mut TestRng) -> Self {
         let nodes = || CurveNodes::Uniform { start: -300.0, step: 600.0 / LONG as f64 };
         for motion in 0..self.calibration.motions.len() {
-            let curve = Curve { nodes: nodes(), values: CurveValues::Both(draws(rng, 2e-5, LONG)) };
+            let curve = Curve::new(nodes(), CurveValues::Both(draws(rng, 2e-5, LONG)));
             self.calibration = self.calibration.with(&[(motion, CalibratedTerm::Table { axis: 0, curve })]);
         }
         self
@@ -288,7 +288,8 @@ fn curve(rng: &mut TestRng, size: f64) -> Curve {
         0 => CurveValues::Both(draws(rng, size, count)),
         _ => CurveValues::Directed { forward: draws(rng, size, count), reverse: draws(rng, size, count) },
     };
-    Curve { nodes, values }
+    let repeats = count > 1 && pick(rng, 3) == 0;
+    Curve { nodes, values, repeats }
 }
 
 /// The compiled side of [`Followed::at_run_time`].

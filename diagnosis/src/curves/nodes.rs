@@ -28,7 +28,7 @@ pub(super) fn thinned(
     noises: &[Vec<Noise>],
 ) -> Option<Shape> {
     let all = even(travel.low, travel.high, NODES);
-    let shape = |nodes: Vec<f64>| Shape::Table { axis, nodes, directed: false };
+    let shape = |nodes: Vec<f64>| Shape::Table { axis, nodes, directed: false, repeats: false };
     let mut regressors: Vec<Regressor> =
         kept.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
     regressors.push(Regressor::of(Effect { place, shape: shape(all.clone()) }));

@@ -61,7 +61,7 @@ fn of_recording(bench: &Bench, recording: &Recording) -> Vec<Vec<f64>> {
     let study = Study::new(bench.equations(), None, &[recording]);
     let travels = crate::travel::travels(&study, &engine::courses(&study, &Model::new()));
     let nodes = |shape: Shape| match shape {
-        Shape::Table { axis: 0, nodes, directed: false } => nodes,
+        Shape::Table { axis: 0, nodes, directed: false, repeats: false } => nodes,
         other => panic!("{other:?}"),
     };
     tables(&study, 0, &travels[0]).into_iter().map(nodes).collect()
@@ -107,7 +107,7 @@ fn no_node_stands_where_nothing_was_observed() {
 }
 
 fn table(nodes: &[f64], directed: bool, coefficients: &[f64]) -> Fitted {
-    let shape = Shape::Table { axis: 0, nodes: nodes.to_vec(), directed };
+    let shape = Shape::Table { axis: 0, nodes: nodes.to_vec(), directed, repeats: false };
     let place = Place::Motion { motion: 0, side: Side::After };
     Fitted { effect: Effect { place, shape }, coefficients: coefficients.to_vec() }
 }
@@ -204,7 +204,9 @@ fn a_curve_that_no_cubic_follows_is_a_table_at_the_stations() {
     let recording = stepped(&bench, errors, 9);
     let (model, [before, after]) = tried(&bench, &recording, &[3]);
     let [fitted] = model.as_slice() else { panic!("{model:?}") };
-    let Shape::Table { axis: 0, nodes, directed: false } = &fitted.effect.shape else { panic!("{fitted:?}") };
+    let Shape::Table { axis: 0, nodes, directed: false, repeats: false } = &fitted.effect.shape else {
+        panic!("{fitted:?}")
+    };
     let stations: Vec<f64> = (0..9).map(|n| 40.0 * f64::from(n)).collect();
     assert!(nodes.iter().zip(&stations).all(|(a, b)| (a - b).abs() < 1e-9) && nodes.len() == 9, "{nodes:?}");
     assert_eq!(fitted.effect.motion(), Some(bench.motion("EXX")));
@@ -282,7 +284,7 @@ fn waves_that_are_long_are_part_of_a_curve_and_short_ones_are_not() {
 fn a_table_with_nodes_at_one_place_is_active_there_alone() {
     // Most of the nodes lie on the dent, and most of the travel beside it.
     let nodes = vec![0.0, 100.0, 104.0, 108.0, 112.0, 116.0, 300.0];
-    let shape = Shape::Table { axis: 0, nodes, directed: false };
+    let shape = Shape::Table { axis: 0, nodes, directed: false, repeats: false };
     let place = Place::Motion { motion: 0, side: Side::After };
     let coefficients = vec![0.002, 0.002, 0.007, 0.012, 0.007, 0.002, 0.002];
     let table = Fitted { effect: Effect { place, shape }, coefficients };

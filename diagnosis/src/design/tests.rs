@@ -129,7 +129,11 @@ fn effects(study: &Study<'_>) -> Vec<Effect> {
     vec![
         machine("EXX", Side::After, Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 60.0 }),
         machine("EYX", Side::After, Shape::Backlash { axis: 0, wind_up: 8.0 }),
-        machine("EBX", Side::After, Shape::Table { axis: 0, nodes: vec![-60.0, 0.0, 60.0], directed: true }),
+        machine(
+            "EBX",
+            Side::After,
+            Shape::Table { axis: 0, nodes: vec![-60.0, 0.0, 60.0], directed: true, repeats: false },
+        ),
         machine("EAY", Side::After, Shape::Coupling { axis: 0, degree: 2, scale: 60.0 }),
         machine("ECX", Side::After, Shape::Growth { sensor: 0, reference: 20.0, time_constant: 9.0 }),
         machine("EXX", Side::After, Shape::Expansion { axis: 0, sensor: 0, reference: 20.0 }),

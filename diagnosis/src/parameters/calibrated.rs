@@ -45,11 +45,12 @@ impl Described<'_> {
                 let coefficients = in_position().into_iter().skip(1).collect();
                 CalibratedTerm::Coupling { axis: *axis, coefficients }
             }
-            Shape::Table { axis, nodes, directed } => CalibratedTerm::Table {
+            Shape::Table { axis, nodes, directed, repeats } => CalibratedTerm::Table {
                 axis: *axis,
                 curve: Curve {
                     nodes: CurveNodes::At(nodes.clone()),
                     values: self.curve(nodes.len(), *directed),
+                    repeats: *repeats,
                 },
             },
             Shape::Backlash { axis, wind_up } => {

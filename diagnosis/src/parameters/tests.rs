@@ -72,12 +72,12 @@ fn cases(study: &Study<'_>) -> Vec<Fitted> {
         fitted("EBX", Shape::Coupling { axis: 1, degree: 2, scale: 110.0 }, &[3e-5, -2e-5]),
         fitted(
             "EXX",
-            Shape::Table { axis: 0, nodes: vec![-30.0, 40.0, 110.0], directed: true },
+            Shape::Table { axis: 0, nodes: vec![-30.0, 40.0, 110.0], directed: true, repeats: false },
             &[1e-3, 2e-3, 0.0, 1e-3, -2e-3, 5e-3],
         ),
         fitted(
             "EXX",
-            Shape::Table { axis: 0, nodes: vec![-30.0, 40.0, 110.0], directed: false },
+            Shape::Table { axis: 0, nodes: vec![-30.0, 40.0, 110.0], directed: false, repeats: false },
             &[1e-3, 2e-3, -4e-3],
         ),
         fitted("EXX", Shape::Backlash { axis: 0, wind_up: 0.0 }, &[0.01]),

@@ -174,7 +174,7 @@ fn of_two_that_bend_alike_in_one_place_one_is_enough() {
         shape,
     };
     let nodes = vec![-40.0, -20.0, 0.0, 20.0, 40.0];
-    let table = Shape::Table { axis: 0, nodes, directed: false };
+    let table = Shape::Table { axis: 0, nodes, directed: false, repeats: false };
     let bow = Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 40.0 };
     let wave = |period| Shape::Cyclic { axis: 0, period, center: 0.0 };
     let effects = [

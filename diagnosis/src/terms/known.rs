@@ -89,7 +89,7 @@ fn table(axis: usize, curve: &Curve) -> (Shape, Vec<f64>) {
         nodes.reverse();
         values.chunks_mut(count.max(1)).for_each(<[f64]>::reverse);
     }
-    (Shape::Table { axis, nodes, directed }, values)
+    (Shape::Table { axis, nodes, directed, repeats: curve.repeats }, values)
 }
 
 fn nodes(nodes: &CurveNodes, count: usize) -> Vec<f64> {

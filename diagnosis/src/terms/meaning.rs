@@ -57,7 +57,7 @@ mod tests {
         let shapes = [
             Shape::Constant,
             Shape::Polynomial { axis: 0, degree: 1, center: 0.0, scale: 1.0 },
-            Shape::Table { axis: 0, nodes: vec![0.0, 1.0], directed: false },
+            Shape::Table { axis: 0, nodes: vec![0.0, 1.0], directed: false, repeats: false },
             Shape::Backlash { axis: 0, wind_up: 0.0 },
             Shape::ReversalSpike { axis: 0, decay: 1.0 },
             Shape::Cyclic { axis: 0, period: 1.0, center: 0.0 },

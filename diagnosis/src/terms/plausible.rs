@@ -139,7 +139,7 @@ mod tests {
     fn a_curve_is_as_large_as_what_it_goes_through_and_not_as_its_zero() {
         let polynomial = Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 100.0 };
         assert_eq!(size(&polynomial, &[7.0, -0.2, 0.1]), 0.2 + 0.1);
-        let table = Shape::Table { axis: 0, nodes: vec![0.0, 1.0, 2.0], directed: false };
+        let table = Shape::Table { axis: 0, nodes: vec![0.0, 1.0, 2.0], directed: false, repeats: false };
         assert_eq!(size(&table, &[5.0, 5.5, 4.5]), 0.5);
         // A slope of 4 thousandths over a slide is a printer's, of 4 hundredths nobody's.
         let along_x = |size: f64| {

@@ -7,7 +7,24 @@ use crate::states::Rows;
 pub(super) const MEANING: &str = "A curve along the axis that no smooth polynomial follows: a measured error of screw or guide, or \
     a damaged place.";
 
-pub(super) fn fill(rows: &Rows<'_>, axis: usize, nodes: &[f64], directed: bool, out: &mut [Vec<f64>]) {
+/// Where the values stand, in rising order, and whether they begin again after the last.
+#[derive(Clone, Copy)]
+pub(super) struct Nodes<'n> {
+    pub(super) nodes: &'n [f64],
+    pub(super) repeats: bool,
+}
+
+impl Nodes<'_> {
+    /// A position without the whole turns of a table that repeats.
+    fn within(self, position: f64) -> f64 {
+        match (self.nodes.first(), self.nodes.last()) {
+            (Some(first), Some(last)) if self.repeats => first + (position - first).rem_euclid(last - first),
+            _ => position,
+        }
+    }
+}
+
+pub(super) fn fill(rows: &Rows<'_>, axis: usize, nodes: Nodes<'_>, directed: bool, out: &mut [Vec<f64>]) {
     for column in out.iter_mut() {
         column.clear();
         column.resize(rows.len(), 0.0);
@@ -22,7 +39,7 @@ pub(super) fn fill(rows: &Rows<'_>, axis: usize, nodes: &[f64], directed: bool, 
 pub(super) fn add(
     rows: &Rows<'_>,
     axis: usize,
-    nodes: &[f64],
+    nodes: Nodes<'_>,
     directed: bool,
     values: &[f64],
     sum: &mut [f64],
@@ -36,13 +53,15 @@ pub(super) fn add(
 fn visit(
     rows: &Rows<'_>,
     axis: usize,
-    nodes: &[f64],
+    all: Nodes<'_>,
     directed: bool,
     mut each: impl FnMut(usize, usize, f64),
 ) {
     let axis = rows.axis(axis);
+    let nodes = all.nodes;
     for (row, (position, direction)) in axis.position.iter().zip(axis.direction).enumerate() {
         let shift = if directed && *direction < 0.0 { nodes.len() } else { 0 };
+        let position = &all.within(*position);
         let upper = nodes.partition_point(|node| node <= position);
         if position.is_nan() {
             each(row, shift, f64::NAN);

@@ -74,7 +74,7 @@ fn by_runtime(term: &CalibratedTerm, states: &States) -> Vec<f64> {
 }
 
 fn table(nodes: CurveNodes, values: CurveValues) -> CalibratedTerm {
-    CalibratedTerm::Table { axis: 0, curve: Curve { nodes, values } }
+    CalibratedTerm::Table { axis: 0, curve: Curve::new(nodes, values) }
 }
 
 #[test]
@@ -241,7 +241,7 @@ fn memory_goes_on_from_stretch_to_stretch() {
         Shape::Backlash { axis: 1, wind_up: 12.0 },
         Shape::Growth { sensor: 0, reference: 20.0, time_constant: 1.5 },
         Shape::ReversalSpike { axis: 0, decay: 0.2 },
-        Shape::Table { axis: 0, nodes: vec![-10.0, 20.0, 60.0], directed: true },
+        Shape::Table { axis: 0, nodes: vec![-10.0, 20.0, 60.0], directed: true, repeats: false },
     ];
     for shape in shapes {
         let fill = |pieces: &[std::ops::Range<usize>]| {

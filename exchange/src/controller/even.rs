@@ -12,12 +12,15 @@ pub(super) struct Even {
     pub step: f64,
     /// The values.
     pub values: Vec<f64>,
+    /// Whether it begins again after the last place: a turn of a rotary axis.
+    pub repeats: bool,
 }
 
 impl Even {
     /// The value at a place; 0 where there are none.
     pub(super) fn value(&self, place: f64) -> f64 {
-        Table::uniform(self.first, self.step, Values::Both(&self.values))
-            .map_or(0.0, |table| table.value(place, Direction::Positive))
+        let held = Table::uniform(self.first, self.step, Values::Both(&self.values));
+        let table = if self.repeats { held.and_then(Table::repeating) } else { held };
+        table.map_or(0.0, |table| table.value(place, Direction::Positive))
     }
 }

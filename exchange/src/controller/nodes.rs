@@ -115,7 +115,9 @@ impl Nodes {
             self.is_round(step) && whole(high - low) && self.own.iter().all(|place| whole(place - low));
         let number = (1..=1_000_000).find(|number| count(*number) * step > high - low - 0.5 * step)?;
         let finer = if self.curved { CURVED.div_ceil(number) } else { 1 };
-        even.then_some(number * finer)
+        // A step of degrees is round only for some numbers of intervals: 180 deg in 108, not in 102.
+        let round = (finer..=2 * finer).find(|finer| self.is_round(step / count(*finer))).unwrap_or(finer);
+        even.then_some(number * round)
     }
 
     /// The least number of intervals from the usual one on whose step is round.

@@ -51,7 +51,8 @@ fn size_text(size: Size) -> String {
 
 /// A number with as few decimals as it needs, three at most.
 fn short(number: f64) -> String {
-    let text = format!("{number:.3}");
+    // A zero from below has no sign.
+    let text = format!("{:.3}", if number.abs() < 5e-4 { 0.0 } else { number });
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 

@@ -115,7 +115,7 @@ fn sum_of_curves(grid: &Grid) -> Option<Vec<CalibratedTerm>> {
     let tables = grid.arguments.iter().zip(curves).enumerate().map(|(number, ((axis, nodes), curve))| {
         let base = if number == 0 { first } else { 0.0 };
         let values = CurveValues::Both(curve.into_iter().map(|value| value + base).collect());
-        CalibratedTerm::Table { axis: *axis, curve: Curve { nodes: CurveNodes::At(nodes.clone()), values } }
+        CalibratedTerm::Table { axis: *axis, curve: Curve::new(CurveNodes::At(nodes.clone()), values) }
     });
     Some(tables.collect())
 }

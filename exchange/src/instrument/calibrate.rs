@@ -305,7 +305,7 @@ impl Tabulated {
             Some((start, step)) => CurveNodes::Uniform { start, step },
             None => CurveNodes::At(self.nodes.clone()),
         };
-        calibration::Curve { nodes, values }
+        calibration::Curve::new(nodes, values)
     }
 }
 

@@ -1,11 +1,13 @@
 //! Measured curves: the term `table`.
 
+use std::f64::consts::TAU;
+
 use super::fields::filled_list;
 use super::parameters::Parameters;
 use super::series::{read_motion_unit, wrong_unit};
 use super::term::{CalibratedTerm, Curve, CurveNodes, CurveValues};
 use crate::diagnostic::Diagnostic;
-use crate::quantity;
+use crate::quantity::{self, Dimension};
 use crate::source::{Span, Spanned};
 use crate::yaml::Node;
 
@@ -24,7 +26,81 @@ pub(super) fn read_table(term: &mut Parameters<'_, '_, '_>) -> Option<Calibrated
             ascending(at, values)
         }
     };
-    Some(CalibratedTerm::Table { axis: axis?, curve: Curve { nodes, values } })
+    let axis = axis?;
+    let curve = repeated(term, axis, Curve::new(nodes, values))?;
+    Some(CalibratedTerm::Table { axis, curve })
+}
+
+/// Lengths that differ by less than this share of them are one: what rounding leaves of degrees.
+const SAME: f64 = 1e-9;
+
+/// The curve as it repeats: after the period that is given, or after one turn where it spans that of a rotary axis.
+fn repeated(term: &mut Parameters<'_, '_, '_>, axis: usize, curve: Curve) -> Option<Curve> {
+    let [first, last] = curve.ends()?;
+    let length = (last - first).abs();
+    let is = |period: f64| (length - period).abs() <= SAME * period;
+    let Some(node) = term.fields.get("period") else {
+        let spans_a_turn = term.position(Some(axis)) == Dimension::ANGLE && is(TAU);
+        let curve = Curve { repeats: spans_a_turn, ..curve };
+        if spans_a_turn {
+            warn_of_a_jump(term, term.key_span("axis"), &curve);
+        }
+        return Some(curve);
+    };
+    let period = term.quantity_in(node, "period", term.position(Some(axis)))?;
+    if period.value <= 0.0 || length > period.value * (1.0 + SAME) {
+        let message = format!("{} must not be shorter than the table", term.words("period"));
+        let mistake = Diagnostic::error("E0419", period.span, message);
+        term.report(mistake.help("it is the way from the first node to where the table begins again"));
+        return None;
+    }
+    if is(period.value) && length > 0.0 {
+        let curve = Curve { repeats: true, ..curve };
+        warn_of_a_jump(term, period.span, &curve);
+        return Some(curve);
+    }
+    Some(closed(curve, period.value))
+}
+
+/// The curve with its first value once more, a period behind its first node.
+fn closed(curve: Curve, period: f64) -> Curve {
+    let positions = curve.positions();
+    let (Some(first), Some(last)) = (positions.first().copied(), positions.last().copied()) else {
+        return curve;
+    };
+    let end = if last < first { first - period } else { first + period };
+    let close = |mut values: Vec<f64>| {
+        values.extend(values.first().copied());
+        values
+    };
+    let values = match curve.values {
+        CurveValues::Both(values) => CurveValues::Both(close(values)),
+        CurveValues::Directed { forward, reverse } => {
+            CurveValues::Directed { forward: close(forward), reverse: close(reverse) }
+        }
+    };
+    let (nodes, values) = match curve.nodes {
+        // One step further is the end already.
+        CurveNodes::Uniform { start, step } if (last + step - end).abs() <= SAME * period => {
+            (CurveNodes::Uniform { start, step }, values)
+        }
+        _ => ascending(positions.into_iter().chain([end]).collect(), values),
+    };
+    Curve { nodes, values, repeats: true }
+}
+
+/// Warns where the ends of a turn have two values: the correction jumps whenever the axis passes there.
+fn warn_of_a_jump(term: &mut Parameters<'_, '_, '_>, place: Span, curve: &Curve) {
+    let meets = |values: &[f64]| values.first() == values.last();
+    let meet = match &curve.values {
+        CurveValues::Both(values) => meets(values),
+        CurveValues::Directed { forward, reverse } => meets(forward) && meets(reverse),
+    };
+    if !meet {
+        let message = format!("the ends of {} are one place and have two values", term.what);
+        let warning = Diagnostic::warning("W0403", place, message).label("it repeats after its last node");
+        term.report(warning.help("write the mean of both at both ends: else the correction jumps there"));
+    }
 }
 
 enum Nodes {

@@ -2,6 +2,7 @@
 
 mod broken;
 mod refused;
+mod repeating;
 mod whole;
 
 use super::*;

@@ -166,6 +166,10 @@ pub const VOCABULARY: [Entry; 17] = [
             quantity("step", Kind::POSITION).bound(Bound::NotZero).role(Role::Place).one_of(),
             list("at", Kind::POSITION).one_of(),
             PER.or("each entry of `at` has its own unit"),
+            quantity("period", Kind::POSITION)
+                .bound(Bound::Positive)
+                .or("its ends are held; over one turn of a rotary axis it repeats after that")
+                .role(Role::Place),
             UNIT,
             NUMBERS.named("values").role(Role::Value).one_of(),
             NUMBERS.named("forward").role(Role::Linear).one_of(),

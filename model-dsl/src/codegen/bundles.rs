@@ -17,6 +17,7 @@ pub(super) struct EvenNodes {
     start: u64,
     step: u64,
     count: usize,
+    repeats: bool,
 }
 
 impl EvenNodes {
@@ -25,7 +26,8 @@ impl EvenNodes {
         let CalibratedTerm::Table { axis, curve } = term else { return None };
         let CurveNodes::Uniform { start, step } = curve.nodes else { return None };
         let count = curve.values.forward().len();
-        Some(Self { axis: *axis, start: start.to_bits(), step: step.to_bits(), count })
+        let (start, step) = (start.to_bits(), step.to_bits());
+        Some(Self { axis: *axis, start, step, count, repeats: curve.repeats })
     }
 }
 

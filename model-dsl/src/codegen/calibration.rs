@@ -414,7 +414,18 @@ fn table(curve: &Curve) -> TokenStream {
             quote! { at(#at, #values) }
         }
     };
-    table_of(&read)
+    let table = table_of(&read);
+    if curve.repeats { repeating(&table) } else { table }
+}
+
+/// A table that begins again after its last node.
+pub(super) fn repeating(table: &TokenStream) -> TokenStream {
+    quote! {
+        match #table.repeating() {
+            Ok(table) => table,
+            Err(_) => panic!("a table that cannot repeat itself"),
+        }
+    }
 }
 
 /// The table that a function of it makes.

@@ -84,7 +84,7 @@ impl<const CURVES: usize, const ROWS: usize> Bundle<CURVES, ROWS> {
         match term {
             Term::Table { axis, table } => match table.nodes {
                 Nodes::Even(even) if *axis == self.axis && even.is(self.even) => Some(*table),
-                Nodes::Even(_) | Nodes::At(_) => None,
+                Nodes::Even(_) | Nodes::At { .. } => None,
             },
             _ => None,
         }

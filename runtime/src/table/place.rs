@@ -3,7 +3,7 @@
 //! In: positions of an axis, and the direction of each. Out: the values there. It exists because the curves of an axis
 //! mostly have the same nodes, so that a place that was found for one of them serves all.
 
-use super::{Nodes, Table, between, read_at};
+use super::{Nodes, Table, between, read_at, within_a_turn};
 use crate::{Direction, Lanes, Real};
 
 /// Even nodes: the first, how many of them there are for each mm or rad, and the index of the last.
@@ -12,6 +12,8 @@ pub(super) struct Even {
     pub(super) start: f64,
     pub(super) per_unit: f64,
     pub(super) last: usize,
+    /// Whether what lies beyond the last node is read from the first one on.
+    pub(super) repeats: bool,
 }
 
 /// Where an axis lies between even nodes, in one row or in several, and the direction in which it moves there.
@@ -63,7 +65,7 @@ impl Table<'_> {
         let curve = self.curve(direction);
         match self.nodes {
             Nodes::Even(even) => known.insert(Place::new(even, axis, position, direction)).read(curve),
-            Nodes::At(at) => read_at(curve, at, position),
+            Nodes::At { at, repeats } => read_at(curve, at, repeats, position),
         }
     }
 
@@ -86,9 +88,9 @@ impl Table<'_> {
                     place.read(|| curves.next().unwrap_or_default())
                 }
             }
-            Nodes::At(at) => {
-                position.map(|position| curves.next().map_or(f64::NAN, |curve| read_at(curve, at, position)))
-            }
+            Nodes::At { at, repeats } => position.map(|position| {
+                curves.next().map_or(f64::NAN, |curve| read_at(curve, at, repeats, position))
+            }),
         }
     }
 }
@@ -148,6 +150,7 @@ impl Even {
         self.start.to_bits() == other.start.to_bits()
             && self.per_unit.to_bits() == other.per_unit.to_bits()
             && self.last == other.last
+            && self.repeats == other.repeats
     }
 
     /// The index of the node below a position, not above the last one, and what is left of a step from there; NaN is left of NaN.
@@ -156,6 +159,7 @@ impl Even {
     #[inline(always)]
     pub(super) fn place(self, position: f64) -> (usize, f64) {
         let count = self.count(position);
+        let count = if self.repeats { within_a_turn(count, self.last as f64) } else { count };
         let (below, part) = split(count);
         if below < self.last {
             (below, part)
@@ -173,9 +177,11 @@ impl Even {
 
     /// The same within the table: from 0 to the number of the last; NaN remains.
     #[inline]
-    fn steps<T: Real>(self, position: T) -> T {
-        let (zero, end) = (T::from(0.0), T::from(self.last as f64));
+    fn steps(self, position: Lanes) -> Lanes {
+        let (zero, end) = (Lanes::from(0.0), Lanes::from(self.last as f64));
         let count = self.count(position);
+        let count =
+            if self.repeats { count.map(|count| within_a_turn(count, self.last as f64)) } else { count };
         let inside = zero.above(count, zero, count);
         inside.above(end, end, inside)
     }

@@ -11,6 +11,8 @@ pub(super) struct PiecewiseLinear {
     forward: Vec<f64>,
     /// Empty where it is the same as forward.
     reverse: Vec<f64>,
+    /// Whether it begins again after its last node.
+    repeats: bool,
 }
 
 impl PiecewiseLinear {
@@ -35,13 +37,15 @@ impl PiecewiseLinear {
             && nodes.len() == forward.len()
             && (reverse.is_empty() || reverse.len() == nodes.len())
             && nodes.windows(2).all(|pair| pair.first() < pair.last());
-        if fits { Ok(Self { nodes, forward, reverse }) } else { Err(PlantError::Table) }
+        let repeats = curve.repeats;
+        if fits { Ok(Self { nodes, forward, reverse, repeats }) } else { Err(PlantError::Table) }
     }
 
     /// The value at a position for a direction of motion.
     pub(super) fn value(&self, position: f64, direction: f64) -> f64 {
         let backwards = direction < 0.0 && !self.reverse.is_empty();
         let values = if backwards { &self.reverse } else { &self.forward };
+        let position = self.within(position);
         let after = self.nodes.partition_point(|node| *node <= position);
         let at = |list: &[f64], index: usize| list.get(index).copied().unwrap_or(f64::NAN);
         if position.is_nan() {
@@ -53,5 +57,13 @@ impl PiecewiseLinear {
         let (left, right) = (at(&self.nodes, after - 1), at(&self.nodes, after));
         let share = (position - left) / (right - left);
         at(values, after - 1) * (1.0 - share) + at(values, after) * share
+    }
+
+    /// A position without the whole turns of a curve that repeats.
+    fn within(&self, position: f64) -> f64 {
+        match (self.nodes.first(), self.nodes.last()) {
+            (Some(first), Some(last)) if self.repeats => first + (position - first).rem_euclid(last - first),
+            _ => position,
+        }
     }
 }

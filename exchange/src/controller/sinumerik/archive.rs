@@ -12,6 +12,9 @@ use super::control::{Cross, Sinumerik};
 /// The form of a line, for findings.
 const FORM: &str = "a line is such as `$AA_ENC_COMP[0,3,X1]=0.012` or `$AN_CEC_STEP[0]=8.0`";
 
+/// A turn of a rotary axis, after which a table of it repeats: deg.
+const TURN: f64 = 360.0;
+
 /// The most points of a table that are read.
 const MOST: usize = 100_000;
 
@@ -102,13 +105,17 @@ impl Raw<'_> {
         let all = self.points.keys().copied().eq(0..points);
         let whole = (step * intervals - (last - first)).abs() <= 1e-6 * intervals.max(1.0);
         let modulo = self.entries.get("IS_MODULO").is_some_and(|value| value.text != "0");
-        if all && whole && !modulo && step > 0.0 && points > 1 {
-            return Some(Even { first, step, values: self.points.values().copied().collect() });
+        let turns = !modulo || (last - first - TURN).abs() < 1e-6;
+        if all && whole && turns && step > 0.0 && points > 1 {
+            let values = self.points.values().copied().collect();
+            return Some(Even { first, step, values, repeats: modulo });
         }
-        let what = if modulo {
-            "a table that repeats itself (IS_MODULO) is not followed".to_owned()
-        } else {
+        let what = if turns {
             format!("{points} points at steps of {step} do not reach from {first} to {last}")
+        } else {
+            format!(
+                "a table that repeats itself (IS_MODULO) goes over {TURN} deg, not from {first} to {last}"
+            )
         };
         let help =
             "points are counted from 0 without a gap, and STEP times their number less one is MAX - MIN";

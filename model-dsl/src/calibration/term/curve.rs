@@ -9,6 +9,8 @@ pub struct Curve {
     pub nodes: CurveNodes,
     /// What was measured there, mm or rad; one value a node.
     pub values: CurveValues,
+    /// Whether it begins again after its last node, which then is the first one of the next turn; else its ends are held.
+    pub repeats: bool,
 }
 
 /// The positions at which a curve was measured.
@@ -40,6 +42,17 @@ pub enum CurveValues {
 }
 
 impl Curve {
+    /// A curve whose ends are held.
+    pub fn new(nodes: CurveNodes, values: CurveValues) -> Self {
+        Self { nodes, values, repeats: false }
+    }
+
+    /// After which way it repeats, mm or rad; nothing where its ends are held.
+    pub fn period(&self) -> Option<f64> {
+        let [first, last] = self.ends()?;
+        self.repeats.then_some((last - first).abs())
+    }
+
     /// The curve as the runtime reads it.
     ///
     /// # Errors
@@ -50,20 +63,20 @@ impl Curve {
             CurveValues::Both(values) => Values::Both(values),
             CurveValues::Directed { forward, reverse } => Values::Directed { forward, reverse },
         };
-        match &self.nodes {
+        let table = match &self.nodes {
             CurveNodes::Uniform { start, step } => Table::uniform(*start, *step, values),
             CurveNodes::At(at) => Table::at(at, values),
-        }
+        }?;
+        if self.repeats { table.repeating() } else { Ok(table) }
     }
 
     /// The positions of its nodes, in the axis's mm or rad, in the order of the values.
     pub fn positions(&self) -> Vec<f64> {
         match &self.nodes {
             CurveNodes::At(places) => places.clone(),
-            // Every step is one value further.
             CurveNodes::Uniform { start, step } => {
-                let further = |place: &mut f64, _: &f64| Some(std::mem::replace(place, *place + step));
-                self.values.forward().iter().scan(*start, further).collect()
+                let numbers = std::iter::successors(Some(0.0), |number| Some(number + 1.0));
+                numbers.take(self.values.forward().len()).map(|number| start + step * number).collect()
             }
         }
     }

@@ -149,6 +149,7 @@ impl CalibratedTerm {
                     }
                     CurveNodes::At(at) => parts.extend([("at", Numbers(at)), ("per", Unit)]),
                 }
+                parts.extend(curve.period().map(|period| ("period", Number(period))));
                 match &curve.values {
                     CurveValues::Both(values) => parts.push(("values", Numbers(values))),
                     CurveValues::Directed { forward, reverse } => {

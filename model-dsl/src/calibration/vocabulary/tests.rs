@@ -14,9 +14,9 @@ fn terms() -> Vec<CalibratedTerm> {
         CurveValues::Both(vec![1.0, 2.0]),
         CurveValues::Directed { forward: vec![1.0, 2.0], reverse: vec![3.0, 4.0] },
     ];
-    let curves = nodes
-        .iter()
-        .flat_map(|nodes| values.iter().map(|values| Curve { nodes: nodes.clone(), values: values.clone() }));
+    let curves =
+        nodes.iter().flat_map(|nodes| values.iter().map(|values| Curve::new(nodes.clone(), values.clone())));
+    let curves = curves.flat_map(|curve| [Curve { repeats: true, ..curve.clone() }, curve]);
     let tables = curves.map(|curve| CalibratedTerm::Table { axis, curve });
     let inputs = [SeriesInput::Axis(axis), SeriesInput::Sensor(sensor)];
     let polynomials = inputs.map(|input| CalibratedTerm::Polynomial { input, coefficients: vec![1.0, 2.0] });

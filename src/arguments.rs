@@ -218,8 +218,8 @@ pub(crate) struct Simulate {
 
 #[derive(Args)]
 pub(crate) struct Calibrate {
-    /// The set-up file, which names the machine and for each measurement its file. Given files of instruments instead, the
-    /// command says what a set-up of them must hold.
+    /// The set-up file, which names the machine and for each measurement or correction its file. Given files of instruments or
+    /// controllers instead, the command says what a set-up of them must hold.
     #[arg(required = true, value_name = "SETUP")]
     pub(crate) files: Vec<PathBuf>,
     /// The calibration file to write.

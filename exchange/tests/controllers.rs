@@ -10,5 +10,7 @@ mod linuxcnc;
 mod machine;
 #[path = "controllers/refusals.rs"]
 mod refusals;
+#[path = "controllers/saved.rs"]
+mod saved;
 #[path = "controllers/signs.rs"]
 mod signs;

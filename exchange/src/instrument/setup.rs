@@ -4,6 +4,7 @@
 //! A set-up is the head of a calibration file (`machine`, `constants`, `limits`, `sensors`, and under `errors` what is known
 //! otherwise) with `measurements` in place of the numbers. That head is read by [`model_dsl::calibration`] itself.
 
+mod correction;
 mod counting;
 mod measurement;
 mod place;
@@ -17,13 +18,14 @@ use model_dsl::fields::{self, Fields};
 use model_dsl::source::{Span, Spanned};
 use model_dsl::yaml::{Node, NodeKind, Scalar};
 
+pub use correction::Correction;
 pub use counting::{Begin, Deviations, Order, Targets};
 pub use measurement::{Form, Measurement, Remove};
 pub use place::Place;
 pub use reference::Reference;
 use words::{FORM, first_key, keys, word};
 
-const KEYS: [&str; 10] = [
+const KEYS: [&str; 11] = [
     "setup",
     "machine",
     "source",
@@ -32,6 +34,7 @@ const KEYS: [&str; 10] = [
     "sensors",
     "errors",
     "volumetric",
+    "corrections",
     "references",
     "measurements",
 ];
@@ -48,7 +51,9 @@ pub struct Setup {
     pub references: Vec<Reference>,
     /// The file of a volumetric compensation whose error motions are taken over.
     pub volumetric: Option<Spanned<String>>,
-    /// The measurements, in the file's order; none only where there is a volumetric file.
+    /// Files of controllers whose corrections are taken over, in the file's order.
+    pub corrections: Vec<Correction>,
+    /// The measurements, in the file's order; none only where there is another file.
     pub measurements: Vec<Measurement>,
 }
 
@@ -114,8 +119,10 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
     let references = references.unwrap_or_default();
     let volumetric = fields.get("volumetric").map(|node| word(node, "`volumetric`", diagnostics));
     let volumetric = volumetric.map(|name| name.map(|name| name.map(str::to_owned)));
-    let measurements = match (fields.get("measurements"), &volumetric) {
-        (None, Some(_)) => Some(Vec::new()),
+    let corrections = fields.get("corrections").map(|node| correction::read(node, equations, diagnostics));
+    let is_other = volumetric.is_some() || corrections.is_some();
+    let measurements = match fields.get("measurements") {
+        None if is_other => Some(Vec::new()),
         _ => {
             let measurements = fields.need("measurements", wording, diagnostics);
             measurements.and_then(|node| read_measurements(node, equations, diagnostics))
@@ -125,7 +132,11 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
         Some(name) => Some(name?),
         None => None,
     };
-    let setup = Setup { known: known?, references, volumetric, measurements: measurements? };
+    let corrections = match corrections {
+        Some(corrections) => corrections?,
+        None => Vec::new(),
+    };
+    let setup = Setup { known: known?, references, volumetric, corrections, measurements: measurements? };
     setup.check(equations, diagnostics);
     Some(setup)
 }
@@ -169,23 +180,33 @@ fn read_measurements(
 }
 
 impl Setup {
-    /// Takes the error motions of the volumetric file over into what is known; each must be given nowhere else (E0911).
-    pub fn take_volumetric(
+    /// The files whose error motions are taken over.
+    pub fn taken(&self) -> impl Iterator<Item = &Spanned<String>> {
+        self.volumetric.iter().chain(self.corrections.iter().map(|one| &one.data))
+    }
+
+    /// Takes the error motions of a file over into what is known; each must be given nowhere else (E0911). `place` is where the
+    /// set-up names the file.
+    pub fn take(
         &mut self,
         terms: &[(usize, CalibratedTerm)],
+        place: Span,
         equations: &Equations,
         diagnostics: &mut Diagnostics,
     ) {
-        let place = self.volumetric.as_ref().map_or_else(Span::default, |name| name.span);
         for (number, motion) in equations.motions.iter().enumerate() {
             let measured = self.measurements.iter().find(|one| one.motion.value == number);
             let given = self.known.motions.iter().find(|known| known.motion == number);
             let other = measured.map(|one| one.motion.span).or(given.map(|known| known.span));
             if let (true, Some(other)) = (terms.iter().any(|(taken, _)| *taken == number), other) {
-                let message = format!("the volumetric file has {}, which stands here too", motion.name);
-                let mistake = Diagnostic::error("E0911", other, message);
-                let help = "leave it out here, or take its column out of the file";
-                diagnostics.push(mistake.also(place, "the volumetric file").help(help));
+                // What another file gave stands at no place of the set-up.
+                let (here, mistake) = if other == Span::default() {
+                    (place, format!("this file has {}, which another file has given already", motion.name))
+                } else {
+                    (other, format!("a file has {}, which stands here too", motion.name))
+                };
+                let mistake = Diagnostic::error("E0911", here, mistake).also(place, "the file");
+                diagnostics.push(mistake.help("leave it out here, or take it out of the file"));
             }
         }
         self.known = self.known.with(terms);

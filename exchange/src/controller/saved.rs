@@ -1,0 +1,124 @@
+//! What firmware and controllers have saved of a machine: bed meshes, skew factors, screw tables. In: a file, and what the user says
+//! of it. Out: the correction in it as the firmware applies it, and as error motions of a calibration.
+//!
+//! Such a file holds no errors but corrections: what is added to a command. Each reader says what its firmware adds, from the
+//! firmware's own code; [`terms`] makes errors of it, which for skew and meshes is minus the correction, exactly or to second order.
+
+mod choice;
+mod codes;
+mod heights;
+mod klipper;
+mod marlin;
+mod mesh;
+mod printed;
+mod screw;
+mod skew;
+mod terms;
+
+use model_dsl::calibration::{CalibratedTerm, Calibration};
+use model_dsl::diagnostic::{Diagnostic, Diagnostics};
+use model_dsl::equations::Equations;
+use model_dsl::source::{SourceFile, Span};
+
+use super::geometry::Geometry;
+use super::options::{Kind, Unit};
+use super::refused::Refused;
+use mesh::Mesh;
+use skew::Skew;
+
+/// Whose file it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SavedForm {
+    /// Klipper's configuration, with what `SAVE_CONFIG` wrote.
+    Klipper,
+    /// RepRapFirmware's `heightmap.csv`.
+    Heights,
+    /// Commands and printed meshes of Marlin, and commands of RepRapFirmware.
+    Codes,
+    /// LinuxCNC's screw compensation.
+    Screw,
+}
+
+/// What the user says of a file, where it does not say it itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SavedWanted {
+    /// The axis of a screw table: an index into [`Equations::axes`].
+    pub axis: Option<usize>,
+    /// What a screw table holds.
+    pub kind: Option<Kind>,
+    /// The unit of a screw table; by default mm.
+    pub unit: Option<Unit>,
+    /// From where to where a printed mesh reaches in X and in Y, mm.
+    pub reach: [Option<[f64; 2]>; 2],
+    /// The mesh to take, by its name.
+    pub mesh: Option<String>,
+    /// The skew to take, by its name.
+    pub skew: Option<String>,
+}
+
+/// What stands in a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Saved {
+    /// The heights of a bed.
+    pub(super) mesh: Option<Mesh>,
+    /// The axes that are not square.
+    pub(super) skew: Option<Skew>,
+    /// The table of a screw: positions in mm, and the trim that is added there, mm, forward and in reverse.
+    screw: Option<screw::Screw>,
+}
+
+/// The form of a text that looks like the file of a controller's correction.
+pub fn saved_form(text: &str) -> Option<SavedForm> {
+    if klipper::is_here(text) {
+        Some(SavedForm::Klipper)
+    } else if heights::is_here(text) {
+        Some(SavedForm::Heights)
+    } else if codes::is_here(text) || printed::is_here(text) {
+        Some(SavedForm::Codes)
+    } else if screw::is_here(text) {
+        Some(SavedForm::Screw)
+    } else {
+        None
+    }
+}
+
+/// The terms that a file adds to a calibration, with the numbers of their error motions. `known` gives the values of the
+/// machine's constants. What is wrong in the file goes to `diagnostics`.
+///
+/// # Errors
+/// A machine without slides X, Y, Z that do what the file corrects.
+pub fn saved_terms(
+    equations: &Equations,
+    known: &Calibration,
+    source: &SourceFile,
+    wanted: &SavedWanted,
+    diagnostics: &mut Diagnostics,
+) -> Result<Vec<(usize, CalibratedTerm)>, Refused> {
+    let Some(form) = saved_form(source.text()) else {
+        let message = "this is no file of a controller's correction";
+        let help = "the files that are read: Klipper's printer.cfg, RepRapFirmware's heightmap.csv, commands and printed meshes of \
+                    Marlin and RepRapFirmware, LinuxCNC's COMP_FILE";
+        diagnostics.push(Diagnostic::error("E0802", Span::default(), message).help(help));
+        return Ok(Vec::new());
+    };
+    let saved = read(form, source, wanted, diagnostics);
+    if diagnostics.has_errors() {
+        return Ok(Vec::new());
+    }
+    terms::of(&Geometry::new(equations, known), &saved)
+}
+
+/// Reads a file of a form.
+pub(super) fn read(
+    form: SavedForm,
+    source: &SourceFile,
+    wanted: &SavedWanted,
+    diagnostics: &mut Diagnostics,
+) -> Saved {
+    match form {
+        SavedForm::Klipper => klipper::read(source, wanted, diagnostics),
+        SavedForm::Heights => heights::read(source, diagnostics),
+        SavedForm::Codes => marlin::read(source, wanted, diagnostics),
+        SavedForm::Screw => screw::read(source, wanted, diagnostics),
+    }
+}

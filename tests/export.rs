@@ -32,13 +32,16 @@ fn rms(report: &str, line: &str) -> f64 {
 #[test]
 fn every_format_writes_files_and_tells_what_they_lose() {
     let counts = ["--counts", "X=10000", "--counts", "Y=10000", "--counts", "Z=10000"];
-    let formats: [(&str, &[&str], &[&str]); 6] = [
+    let formats: [(&str, &[&str], &[&str]); 9] = [
         ("linuxcnc", &[], &["x.comp", "y.comp", "z.comp"]),
         ("isg", &[], &["volumetric.csv"]),
         ("etalon", &[], &["volumetric.txt"]),
         ("sinumerik", &["--value", "error", "--tables", "60"], &["cec.ini", "eec.ini"]),
         ("heidenhain", &["--value", "error"], &["AXIS_X.COM", "AXIS_Y.COM", "AXIS_Z.COM"]),
         ("pmac", &counts, &["compensation.pmc"]),
+        ("marlin", &[], &["abbe.gcode"]),
+        ("klipper", &[], &["abbe.cfg"]),
+        ("reprap", &["--points", "11"], &["abbe.g", "heightmap.csv"]),
     ];
     for (format, more, files) in formats {
         let folder = folder(format);
@@ -216,11 +219,11 @@ fn what_printers_and_hobby_mills_have_saved_comes_in_as_a_calibration() {
     fs::write(at("set-up.yaml"), format!("{head}{corrections}errors: {{EXX: 3 um}}\n")).unwrap();
     let run = abbe(&["calibrate", &at("set-up.yaml")], "");
     assert!(run.status == 2 && run.err.contains("E0911") && run.err.contains("EXX: 3 um"), "{}", run.err);
-    let twice = "corrections:\n  - {data: x.comp, axis: X, type: 1}\n  - {data: x.comp, axis: X, type: 0}\n";
+    let twice = "corrections:\n  - {data: x.comp, axis: X, type: 1}\n  - {data: x.comp, axis: X, type: 1}\n";
     fs::write(at("set-up.yaml"), format!("{head}{twice}")).unwrap();
     let run = abbe(&["calibrate", &at("set-up.yaml")], "");
     assert!(
-        run.status == 2 && run.err.contains("E0911") && run.err.contains("another file has given"),
+        run.status == 2 && run.err.contains("E0911") && run.err.contains("another file has given already"),
         "{}",
         run.err
     );
@@ -232,11 +235,56 @@ fn what_printers_and_hobby_mills_have_saved_comes_in_as_a_calibration() {
         ("corrections: [{data: x.comp, axis: X, kind: 1}]\n", "E0903"),
         ("corrections: [{data: x.comp, x: [9 mm, 1 mm]}]\n", "E0904"),
         ("corrections: [{data: x.comp, axis: X}]\n", "E0804"),
+        ("corrections: [{data: x.comp, axis: X, type: 0}]\n", "E0803"),
         ("corrections: [{data: set-up.yaml}]\n", "E0802"),
         ("corrections: [{data: nowhere.cfg}]\n", "E0914"),
+        ("diagonals: {}\n", "E0901"),
+        ("diagonals: {XY: {AC: 140 mm, BD: 141 mm}}\n", "E0901"),
+        ("diagonals: {XY: {AC: 140 mm, BD: 99 mm, AD: 100 mm}}\n", "E0926"),
+        ("diagonals: {XY: {AC: 140 mm, BD: 140 mm, AD: 0 mm}}\n", "E0926"),
+        ("diagonals: {XY: {AC: 140, BD: 141 mm, AD: 100 mm}}\n", "E0306"),
+        ("diagonals: {XY: {AC: 141 mm, BD: 141.4 mm, AD: 100 mm}}\nerrors: {EC0Y: 1 mrad}\n", "E0911"),
     ] {
         fs::write(at("bad.yaml"), format!("{head}{bad}")).unwrap();
         let run = abbe(&["calibrate", &at("bad.yaml")], "");
         assert!(run.status == 2 && run.err.contains(code), "{bad}: {}", run.err);
     }
+}
+
+#[test]
+fn lengths_of_squares_are_squareness_as_klipper_and_marlin_have_it() {
+    let folder = folder("squares");
+    let at = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    // The example of Klipper's documentation, nearly square; the factors are Klipper's `calc_skew_factor`, worked out here anew.
+    let factor = |ac: f64, bd: f64, ad: f64| {
+        let side = (2.0 * ac * ac + 2.0 * bd * bd - 4.0 * ad * ad).sqrt() / 2.0;
+        (std::f64::consts::FRAC_PI_2 - ((ac * ac - side * side - ad * ad) / (2.0 * side * ad)).acos()).tan()
+    };
+    let [xy, xz, yz] = [factor(140.4, 142.8, 99.8), factor(141.6, 141.4, 99.8), factor(142.4, 142.1, 99.5)];
+    assert!(xy < -0.01 && xz > 0.001 && yz > 0.001, "{xy} {xz} {yz}");
+    let lengths = "diagonals:\n  XY: {AC: 140.4 mm, BD: 142.8 mm, AD: 99.8 mm}\n  XZ: {AC: 141.6 mm, BD: 141.4 mm, AD: 99.8 mm}\n  YZ: {AC: 142.4 mm, BD: 142.1 mm, AD: 99.5 mm}\n";
+    for machine in ["XYFZ", "YFXZ", "FXYZ"] {
+        let set_up =
+            format!("setup: 1\nmachine: {machine}\nconstants: {{Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}}\n{lengths}");
+        fs::write(at("set-up.yaml"), set_up).unwrap();
+        let run = abbe(&["calibrate", &at("set-up.yaml"), "--output", &at("printer.yaml"), "--force"], "");
+        assert_eq!(run.status, 0, "{}", run.err);
+        let run = abbe(&["compensate", &at("printer.yaml")], "x,y,z\n50,120,80\n");
+        let row = run.out.lines().nth(1).unwrap();
+        let commanded: Vec<f64> = row.split(',').skip(6).map(|cell| cell.parse().unwrap()).collect();
+        // Klipper's `calc_skew`.
+        let theirs = [50.0 - 120.0 * xy - 80.0 * (xz - xy * yz), 120.0 - 80.0 * yz, 80.0];
+        assert!(
+            commanded.iter().zip(theirs).all(|(ours, theirs)| (ours - theirs).abs() < 1e-6),
+            "{machine}: {row}, {theirs:?}"
+        );
+    }
+    // A machine without Z has one square; another one is refused.
+    fs::write(
+        at("set-up.yaml"),
+        format!("setup: 1\nmachine: FXY\nconstants: {{Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}}\n{lengths}"),
+    )
+    .unwrap();
+    let run = abbe(&["calibrate", &at("set-up.yaml")], "");
+    assert!(run.status == 2 && run.err.contains("E0906") && run.err.contains("no axis Z"), "{}", run.err);
 }

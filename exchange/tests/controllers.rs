@@ -8,6 +8,8 @@ mod carried;
 mod linuxcnc;
 #[path = "controllers/machine.rs"]
 mod machine;
+#[path = "controllers/printers.rs"]
+mod printers;
 #[path = "controllers/refusals.rs"]
 mod refusals;
 #[path = "controllers/saved.rs"]

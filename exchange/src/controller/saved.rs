@@ -15,7 +15,7 @@ mod screw;
 mod skew;
 mod terms;
 
-use model_dsl::calibration::{CalibratedTerm, Calibration};
+use model_dsl::calibration::{CalibratedTerm, Calibration, LARGEST_DISPLACEMENT};
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::source::{SourceFile, Span};
@@ -23,8 +23,11 @@ use model_dsl::source::{SourceFile, Span};
 use super::geometry::Geometry;
 use super::options::{Kind, Unit};
 use super::refused::Refused;
-use mesh::Mesh;
-use skew::Skew;
+pub(super) use codes::commands;
+pub(super) use heights::BEGIN as HEIGHTS;
+pub(super) use mesh::Mesh;
+pub(super) use skew::Skew;
+pub(super) use terms::slide;
 
 /// Whose file it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +70,31 @@ pub(super) struct Saved {
     screw: Option<screw::Screw>,
 }
 
+impl Saved {
+    /// Refuses what no working machine needs (E0803): mostly the unit is wrong, or the type of a screw table.
+    fn check_size(&self, diagnostics: &mut Diagnostics) {
+        let heights = self.mesh.iter().flat_map(Mesh::rows).flatten();
+        let trims = self.screw.iter().flat_map(|screw| screw.forward.iter().chain(&screw.reverse));
+        for (what, help, largest) in [
+            ("a height", "heights are in mm: see to the unit", largest(heights)),
+            (
+                "a trim",
+                "with type 0 the numbers are positions, with type 1 what is added to the command: see which it is",
+                largest(trims),
+            ),
+        ] {
+            if largest > LARGEST_DISPLACEMENT {
+                let message = format!("{what} of {largest:.1} mm is no small error");
+                diagnostics.push(Diagnostic::error("E0803", Span::default(), message).help(help));
+            }
+        }
+    }
+}
+
+fn largest<'v>(values: impl Iterator<Item = &'v f64>) -> f64 {
+    values.fold(0.0, |largest: f64, value| largest.max(value.abs()))
+}
+
 /// The form of a text that looks like the file of a controller's correction.
 pub fn saved_form(text: &str) -> Option<SavedForm> {
     if klipper::is_here(text) {
@@ -102,9 +130,23 @@ pub fn saved_terms(
         return Ok(Vec::new());
     };
     let saved = read(form, source, wanted, diagnostics);
+    saved.check_size(diagnostics);
     if diagnostics.has_errors() {
         return Ok(Vec::new());
     }
+    terms::of(&Geometry::new(equations, known), &saved)
+}
+
+/// The terms of axes that are not square: how much Y leans towards X, Z towards X and Z towards Y, for each mm.
+///
+/// # Errors
+/// A machine without slides X, Y, Z that lean so.
+pub fn skew_terms(
+    equations: &Equations,
+    known: &Calibration,
+    leans: [f64; 3],
+) -> Result<Vec<(usize, CalibratedTerm)>, Refused> {
+    let saved = Saved { skew: Some(Skew::of_factors(leans)), ..Saved::default() };
     terms::of(&Geometry::new(equations, known), &saved)
 }
 

@@ -6,6 +6,7 @@
 
 mod correction;
 mod counting;
+mod diagonals;
 mod measurement;
 mod place;
 mod reference;
@@ -25,7 +26,7 @@ pub use place::Place;
 pub use reference::Reference;
 use words::{FORM, first_key, keys, word};
 
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 12] = [
     "setup",
     "machine",
     "source",
@@ -35,6 +36,7 @@ const KEYS: [&str; 11] = [
     "errors",
     "volumetric",
     "corrections",
+    "diagonals",
     "references",
     "measurements",
 ];
@@ -53,6 +55,8 @@ pub struct Setup {
     pub volumetric: Option<Spanned<String>>,
     /// Files of controllers whose corrections are taken over, in the file's order.
     pub corrections: Vec<Correction>,
+    /// How much Y leans towards X, Z towards X and Z towards Y, for each mm, as the lengths of squares show it; and where they stand.
+    pub diagonals: Option<Spanned<[f64; 3]>>,
     /// The measurements, in the file's order; none only where there is another file.
     pub measurements: Vec<Measurement>,
 }
@@ -120,7 +124,8 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
     let volumetric = fields.get("volumetric").map(|node| word(node, "`volumetric`", diagnostics));
     let volumetric = volumetric.map(|name| name.map(|name| name.map(str::to_owned)));
     let corrections = fields.get("corrections").map(|node| correction::read(node, equations, diagnostics));
-    let is_other = volumetric.is_some() || corrections.is_some();
+    let diagonals = fields.entry("diagonals").map(|(key, node)| diagonals::read(node, key.span, diagnostics));
+    let is_other = volumetric.is_some() || corrections.is_some() || diagonals.is_some();
     let measurements = match fields.get("measurements") {
         None if is_other => Some(Vec::new()),
         _ => {
@@ -136,7 +141,12 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
         Some(corrections) => corrections?,
         None => Vec::new(),
     };
-    let setup = Setup { known: known?, references, volumetric, corrections, measurements: measurements? };
+    let diagonals = match diagonals {
+        Some(diagonals) => Some(diagonals?),
+        None => None,
+    };
+    let (known, measurements) = (known?, measurements?);
+    let setup = Setup { known, references, volumetric, corrections, diagonals, measurements };
     setup.check(equations, diagnostics);
     Some(setup)
 }
@@ -201,11 +211,11 @@ impl Setup {
             if let (true, Some(other)) = (terms.iter().any(|(taken, _)| *taken == number), other) {
                 // What another file gave stands at no place of the set-up.
                 let (here, mistake) = if other == Span::default() {
-                    (place, format!("this file has {}, which another file has given already", motion.name))
+                    (place, format!("this gives {}, which another file has given already", motion.name))
                 } else {
-                    (other, format!("a file has {}, which stands here too", motion.name))
+                    (other, format!("{} is given by a file or by lengths, and stands here too", motion.name))
                 };
-                let mistake = Diagnostic::error("E0911", here, mistake).also(place, "the file");
+                let mistake = Diagnostic::error("E0911", here, mistake).also(place, "given by this");
                 diagnostics.push(mistake.help("leave it out here, or take it out of the file"));
             }
         }

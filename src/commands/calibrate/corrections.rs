@@ -1,12 +1,12 @@
-//! The files of corrections that a set-up names. In: their names, and what the set-up says of them. Out: what they correct as error
-//! motions among what the set-up knows.
+//! Corrections that a set-up names, and squares that it measures by their lengths. In: the set-up. Out: the error motions of both among
+//! what it knows.
 
 use std::path::Path;
 
-use exchange::controller::saved_terms;
+use exchange::controller::{saved_terms, skew_terms};
 use exchange::instrument::Setup;
 use exchange::instrument::setup::Correction;
-use model_dsl::diagnostic::Diagnostics;
+use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
 
@@ -26,7 +26,23 @@ pub(super) fn take(
     for one in setup.corrections.clone() {
         take_one(setup, &one, source, path, equations, diagnostics)?;
     }
+    take_squares(setup, equations, diagnostics);
     Ok(())
+}
+
+/// Takes the leans of squares over; a machine that has no such slides is told (E0906).
+fn take_squares(setup: &mut Setup, equations: &Equations, diagnostics: &mut Diagnostics) {
+    let Some(leans) = setup.diagonals else { return };
+    match skew_terms(equations, &setup.known, leans.value) {
+        Ok(terms) => {
+            warn(&format!("{} terms of error motions from the lengths of squares", terms.len()));
+            setup.take(&terms, leans.span, equations, diagnostics);
+        }
+        Err(refused) => {
+            let mistake = Diagnostic::error("E0906", leans.span, refused.what);
+            diagnostics.push(mistake.help(refused.help.unwrap_or_default()));
+        }
+    }
 }
 
 fn take_one(

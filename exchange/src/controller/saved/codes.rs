@@ -6,10 +6,12 @@ use model_dsl::source::SourceFile;
 use crate::controller::lines::{Line, lines};
 
 /// A command and its letters, each with what stands behind it.
-pub(super) struct Command<'s> {
-    pub(super) line: Line<'s>,
-    pub(super) code: &'s str,
-    pub(super) letters: Vec<(char, Line<'s>)>,
+pub(in crate::controller) struct Command<'s> {
+    /// The whole line.
+    pub(in crate::controller) line: Line<'s>,
+    /// The command: `M852`.
+    pub(in crate::controller) code: &'s str,
+    letters: Vec<(char, Line<'s>)>,
 }
 
 impl<'s> Command<'s> {
@@ -35,7 +37,7 @@ pub(super) fn is_mesh_point(command: &Command<'_>) -> bool {
 }
 
 /// The commands of a file. What a terminal puts before them (`Recv:`, `echo:`) is left out, and so are comments.
-pub(super) fn commands(source: &SourceFile) -> impl Iterator<Item = Command<'_>> {
+pub(in crate::controller) fn commands(source: &SourceFile) -> impl Iterator<Item = Command<'_>> {
     lines(source, ";").filter_map(|line| {
         let words: Vec<Line<'_>> = line.words().collect();
         let begin = words.iter().position(|word| is_code(code_of(word.text)))?;

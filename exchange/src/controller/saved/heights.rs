@@ -14,7 +14,7 @@ use super::mesh::{Mesh, stepped};
 use crate::controller::lines::{Line, lines};
 
 /// How such a file begins.
-pub(super) const BEGIN: &str = "RepRapFirmware height map file";
+pub(in crate::controller) const BEGIN: &str = "RepRapFirmware height map file";
 
 /// The form of a file, for findings.
 const FORM: &str = "a height map has a line of its name, a line of labels, a line of the grid, and a row of heights for each place of the second axis";
@@ -38,8 +38,9 @@ fn mesh(source: &SourceFile, diagnostics: &mut Diagnostics) -> Option<Mesh> {
     let grid = HeightGrid::read(*labels, *numbers, diagnostics)?;
     let mut points = Vec::new();
     for row in rows {
+        let before = points.len();
         points.extend(row.cells(',').map(|cell| (cell.text != "0").then(|| cell.number(diagnostics))));
-        if points.len() % grid.counts[0] != 0 {
+        if points.len() - before != grid.counts[0] {
             malformed(Some(row), &format!("this row has not {} heights", grid.counts[0]), diagnostics);
             return None;
         }

@@ -18,7 +18,7 @@ const FORM: &str = "a printed mesh has rows such as ` 0 +0.080 -0.040 -0.115`, t
 
 /// Whether a text has such a mesh.
 pub(super) fn is_here(text: &str) -> bool {
-    text.lines().any(|line| is_head(line))
+    text.lines().any(is_head)
 }
 
 fn is_head(line: &str) -> bool {

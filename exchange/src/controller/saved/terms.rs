@@ -1,6 +1,6 @@
 //! A saved correction as error motions. In: a machine, and what a file holds. Out: terms, counted as the machine file counts them.
 
-use model_dsl::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, SeriesInput};
+use model_dsl::calibration::{CalibratedTerm, Curve, CurveNodes, CurveValues, LARGEST_ANGLE, SeriesInput};
 use model_dsl::equations::Motion;
 
 use super::Saved;
@@ -36,7 +36,8 @@ pub(super) fn of(geometry: &Geometry<'_>, saved: &Saved) -> Result<Vec<(usize, C
     Ok(terms)
 }
 
-/// For each skew the alignment error of its axis; where the machine file has none, the slope of its straightness.
+/// For each skew the alignment error of its axis; where the machine file has none, or where the angle is larger than an alignment error may
+/// be, the slope of its straightness. That is the same error: neither turns the carriage.
 fn of_skew(geometry: &Geometry<'_>, skew: &Skew) -> Result<Vec<(usize, CalibratedTerm)>, Refused> {
     let errors = skew.errors().ok_or_else(|| {
         Refused::new("these skew factors have no inverse", "look at the numbers of the file")
@@ -60,7 +61,8 @@ fn of_slope(
     slope: f64,
 ) -> Result<(usize, CalibratedTerm), Refused> {
     let axis = slide(geometry, along)?;
-    if let Some((motion, lever)) = alignment(geometry, axis, across) {
+    let small = slope.abs() <= LARGEST_ANGLE;
+    if let Some((motion, lever)) = alignment(geometry, axis, across).filter(|_| small) {
         return Ok((motion, CalibratedTerm::Constant { value: slope / lever }));
     }
     if let Some((motion, lever)) = displacement(geometry, axis, across) {
@@ -115,7 +117,10 @@ fn of_screw(geometry: &Geometry<'_>, screw: &Screw) -> Result<(usize, Calibrated
 }
 
 /// The slide X, Y or Z, which moves the tool along its own letter relative to the part.
-fn slide(geometry: &Geometry<'_>, direction: usize) -> Result<usize, Refused> {
+///
+/// # Errors
+/// A machine that has no such slide.
+pub(in crate::controller) fn slide(geometry: &Geometry<'_>, direction: usize) -> Result<usize, Refused> {
     let axis = named(geometry, letter(direction))?;
     if own_direction(geometry, axis) == Some(direction) {
         return Ok(axis);

@@ -45,7 +45,7 @@ pub(crate) enum Command {
     Plan(Plan),
     /// Write the recording that a calibration predicts: an exact machine, its instrument and their noise.
     Simulate(Simulate),
-    /// Make a calibration from instruments' files: lasers, levels, straightedges.
+    /// Make a calibration from instruments' files (lasers, levels, straightedges), or from what a controller corrects already.
     Calibrate(Calibrate),
     /// Change the coefficients of a calibration to what measured parts show.
     Update(Update),

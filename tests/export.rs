@@ -235,7 +235,7 @@ fn what_printers_and_hobby_mills_have_saved_comes_in_as_a_calibration() {
         ("corrections: [{data: x.comp, axis: X, kind: 1}]\n", "E0903"),
         ("corrections: [{data: x.comp, x: [9 mm, 1 mm]}]\n", "E0904"),
         ("corrections: [{data: x.comp, axis: X}]\n", "E0804"),
-        ("corrections: [{data: x.comp, axis: X, type: 0}]\n", "E0803"),
+        ("corrections: [{data: x.comp, axis: X, type: 0}]\n", "E0430"),
         ("corrections: [{data: set-up.yaml}]\n", "E0802"),
         ("corrections: [{data: nowhere.cfg}]\n", "E0914"),
         ("diagonals: {}\n", "E0901"),

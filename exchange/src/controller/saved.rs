@@ -25,7 +25,7 @@ use super::options::{Kind, Unit};
 use super::refused::Refused;
 pub(super) use codes::commands;
 pub(super) use heights::BEGIN as HEIGHTS;
-pub(super) use mesh::Mesh;
+pub(super) use mesh::{Mesh, over_two};
 pub(super) use skew::Skew;
 pub(super) use terms::slide;
 
@@ -71,7 +71,7 @@ pub(super) struct Saved {
 }
 
 impl Saved {
-    /// Refuses what no working machine needs (E0803): mostly the unit is wrong, or the type of a screw table.
+    /// Refuses what no working machine needs (E0430): mostly the unit is wrong, or the type of a screw table.
     fn check_size(&self, diagnostics: &mut Diagnostics) {
         let heights = self.mesh.iter().flat_map(Mesh::rows).flatten();
         let trims = self.screw.iter().flat_map(|screw| screw.forward.iter().chain(&screw.reverse));
@@ -85,7 +85,7 @@ impl Saved {
         ] {
             if largest > LARGEST_DISPLACEMENT {
                 let message = format!("{what} of {largest:.1} mm is no small error");
-                diagnostics.push(Diagnostic::error("E0803", Span::default(), message).help(help));
+                diagnostics.push(Diagnostic::error("E0430", Span::default(), message).help(help));
             }
         }
     }

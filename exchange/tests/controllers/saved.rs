@@ -301,8 +301,8 @@ fn what_a_file_does_not_say_is_asked_for_at_its_place() {
     let nothing = SavedWanted::default();
     let other = SavedWanted { kind: Some(Kind::Actual), ..screw.clone() };
     let cases: [(&str, &SavedWanted, &str, &str); 22] = [
-        (&mesh.replace("0.4", "400"), &nothing, "E0803", ""),
-        ("0 0.01 0.01\n500 0.02 0.03\n", &other, "E0803", ""),
+        (&mesh.replace("0.4", "400"), &nothing, "E0430", ""),
+        ("0 0.01 0.01\n500 0.02 0.03\n", &other, "E0430", ""),
         (&two, &nothing, "E0804", "b"),
         (&two, &named, "E0804", ""),
         (&mesh.replace("0.3, 0.4", "0.3, x4"), &nothing, "E0801", "x4"),

@@ -55,16 +55,25 @@ impl Mesh {
     /// row.
     pub(super) fn terms(&self, [along, across]: [usize; 2], factor: f64) -> Vec<CalibratedTerm> {
         let [places, rows] = self.nodes();
-        let row = |(number, heights): (usize, &[f64])| {
-            let values = heights.iter().map(|height| factor * height + 0.0).collect();
-            let curve = Curve { nodes: nodes(places), values: CurveValues::Both(values) };
-            let (at, values) = hat(rows, number);
-            let hat = Factor::Curve { axis: across, at, values };
-            CalibratedTerm::Table { axis: along, curve }.times(vec![hat])
-        };
-        let counts = self.rows().enumerate().filter(|(_, row)| row.iter().any(|height| *height != 0.0));
-        counts.map(row).collect()
+        let values: Vec<f64> = self.grid.values.iter().map(|height| factor * height + 0.0).collect();
+        over_two([(across, rows), (along, places)], &values)
     }
+}
+
+/// A grid over two axes as terms, the second axis running fastest: for each row a table over the second axis times a hat of the
+/// first one. Rows of zeros need none.
+pub(in crate::controller) fn over_two(
+    [(across, rows), (along, places)]: [(usize, &[f64]); 2],
+    values: &[f64],
+) -> Vec<CalibratedTerm> {
+    let term = |(number, row): (usize, &[f64])| {
+        let curve = Curve { nodes: nodes(places), values: CurveValues::Both(row.to_vec()) };
+        let (at, values) = hat(rows, number);
+        let hat = Factor::Curve { axis: across, at, values };
+        CalibratedTerm::Table { axis: along, curve }.times(vec![hat])
+    };
+    let all = values.chunks(places.len().max(1)).enumerate();
+    all.filter(|(_, row)| row.iter().any(|value| *value != 0.0)).map(term).collect()
 }
 
 /// 1 at a node, 0 at its neighbours.

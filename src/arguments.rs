@@ -45,7 +45,7 @@ pub(crate) enum Command {
     Plan(Plan),
     /// Write the recording that a calibration predicts: an exact machine, its instrument and their noise.
     Simulate(Simulate),
-    /// Make a calibration from instruments' files: lasers, levels, straightedges.
+    /// Make a calibration from instruments' files (lasers, levels, straightedges), or from what a controller corrects already.
     Calibrate(Calibrate),
     /// Change the coefficients of a calibration to what measured parts show.
     Update(Update),
@@ -218,8 +218,8 @@ pub(crate) struct Simulate {
 
 #[derive(Args)]
 pub(crate) struct Calibrate {
-    /// The set-up file, which names the machine and for each measurement its file. Given files of instruments instead, the
-    /// command says what a set-up of them must hold.
+    /// The set-up file, which names the machine and for each measurement or correction its file. Given files of instruments or
+    /// controllers instead, the command says what a set-up of them must hold.
     #[arg(required = true, value_name = "SETUP")]
     pub(crate) files: Vec<PathBuf>,
     /// The calibration file to write.

@@ -165,6 +165,8 @@ fn bench(code: &str) -> PathBuf {
     let sorted = "1,0,1\n1,100,2\n2,0,1\n2,100,2\n";
     write("sorted.csv", &table("run,target,deviation", "#unit,,mm,um\n", sorted));
     write("laser.yaml", &complete("set-up", "measurements: [{motion: EXX, data: x.rtl}]"));
+    let saved = "setup: 1\nmachine: XYFZ\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\ncorrections: [{data: saved.txt, axis: X, type: 1}]\n";
+    write("saved.yaml", saved);
     let tilting = "abbe: 1\nname: tilting\nsensitive: [X, Z]\nchain:\n  workpiece:\n    - {rotary: A, along: +A}\n  tool:\n    - {slide: X, along: +X}\n    - {slide: Z, along: +Z}\n    - {tool: tip}\n";
     write("tilting.yaml", tilting);
     let parallel = "abbe: 1\nname: parallel\nchain:\n  tool:\n    - {slide: X, along: +X}\n    - {slide: U, along: +X}\n    - {tool: tip}\n";
@@ -285,6 +287,10 @@ fn said(code: &str, folder: &Path, example: &Example, text: &str) -> String {
         ("measurement", _) => {
             fs::write(folder.join("x.rtl"), text).unwrap();
             abbe(&["calibrate", &at("laser.yaml")], "")
+        }
+        ("correction", _) => {
+            fs::write(folder.join("saved.txt"), text).unwrap();
+            abbe(&["calibrate", &at("saved.yaml")], "")
         }
         ("file", _) => {
             let ranges = ["X=0:500", "Y=0:300", "Z=0:200"].map(|range| ["--range", range]).concat();

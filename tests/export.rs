@@ -32,13 +32,16 @@ fn rms(report: &str, line: &str) -> f64 {
 #[test]
 fn every_format_writes_files_and_tells_what_they_lose() {
     let counts = ["--counts", "X=10000", "--counts", "Y=10000", "--counts", "Z=10000"];
-    let formats: [(&str, &[&str], &[&str]); 6] = [
+    let formats: [(&str, &[&str], &[&str]); 9] = [
         ("linuxcnc", &[], &["x.comp", "y.comp", "z.comp"]),
         ("isg", &[], &["volumetric.csv"]),
         ("etalon", &[], &["volumetric.txt"]),
         ("sinumerik", &["--value", "error", "--tables", "60"], &["cec.ini", "eec.ini"]),
         ("heidenhain", &["--value", "error"], &["AXIS_X.COM", "AXIS_Y.COM", "AXIS_Z.COM"]),
         ("pmac", &counts, &["compensation.pmc"]),
+        ("marlin", &[], &["abbe.gcode"]),
+        ("klipper", &[], &["abbe.cfg"]),
+        ("reprap", &["--points", "11"], &["abbe.g", "heightmap.csv"]),
     ];
     for (format, more, files) in formats {
         let folder = folder(format);
@@ -176,4 +179,112 @@ fn a_volumetric_file_comes_back_as_a_calibration() {
     fs::write(at("set-up.yaml"), twice).unwrap();
     let run = abbe(&["calibrate", &at("set-up.yaml")], "");
     assert!(run.status == 2 && run.err.contains("E0911"), "{}", run.err);
+}
+
+#[test]
+fn what_printers_and_hobby_mills_have_saved_comes_in_as_a_calibration() {
+    let folder = folder("saved");
+    let at = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let head = "setup: 1\nmachine: XYFZ\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\n";
+    let printer = "[bed_mesh]\nspeed: 120\n\n#*# <---------------------- SAVE_CONFIG ---------------------->\n#*# DO NOT EDIT THIS BLOCK OR BELOW.\n#*#\n#*# [bed_mesh default]\n#*# version = 1\n#*# points =\n#*# \t  0.100000, 0.300000\n#*# \t  -0.100000, 0.100000\n#*# x_count = 2\n#*# y_count = 2\n#*# mesh_x_pps = 2\n#*# mesh_y_pps = 2\n#*# algo = lagrange\n#*# tension = 0.2\n#*# min_x = 0.0\n#*# max_x = 200.0\n#*# min_y = 0.0\n#*# max_y = 200.0\n#*#\n#*# [skew_correction square]\n#*# xy_skew = 0.001\n#*# xz_skew = 0.0\n#*# yz_skew = 0.0\n";
+    fs::write(at("printer.cfg"), printer).unwrap();
+    fs::write(at("x.comp"), "0 0 0\n200 -0.05 -0.03\n").unwrap();
+    // Given alone, the files are answered with the set-up that they need.
+    let asked = abbe(&["calibrate", &at("printer.cfg"), &at("x.comp")], "");
+    assert!(
+        asked.status == 2
+            && asked.err.contains(
+                "corrections:\n      - {data: printer.cfg}\n      - {data: x.comp, axis: X, type: 1}"
+            ),
+        "{}",
+        asked.err
+    );
+    let corrections = "corrections:\n  - {data: printer.cfg}\n  - {data: x.comp, axis: X, type: 1}\n";
+    fs::write(at("set-up.yaml"), format!("{head}{corrections}")).unwrap();
+    let run = abbe(&["calibrate", &at("set-up.yaml"), "--output", &at("printer.yaml")], "");
+    assert_eq!(run.status, 0, "{}", run.err);
+    assert!(
+        run.err.contains("3 terms of error motions") && run.err.contains("1 terms of error motions"),
+        "{}",
+        run.err
+    );
+    // At 200 and 100 mm: the skew sends the tool 0.1 mm towards -X, the screw 0.05 mm; the bed is 0.2 mm high, the mean of 0.3 and 0.1.
+    let run = abbe(&["compensate", &at("printer.yaml")], "x,y,z,dir_x\n200,100,0,1\n");
+    let row = run.out.lines().nth(1).unwrap();
+    let commanded: Vec<f64> = row.split(',').rev().take(3).map(|cell| cell.parse().unwrap()).collect();
+    let [z, y, x] = commanded.try_into().unwrap();
+    // The table holds its end outside 200 mm, so that the screw's part is -0.05 mm but for its slope times 0.1 mm.
+    assert!((x - 199.85).abs() < 1e-4 && (y - 100.0_f64).abs() < 1e-9 && (z - 0.2_f64).abs() < 2e-4, "{row}");
+    // What two files give is given once.
+    fs::write(at("set-up.yaml"), format!("{head}{corrections}errors: {{EXX: 3 um}}\n")).unwrap();
+    let run = abbe(&["calibrate", &at("set-up.yaml")], "");
+    assert!(run.status == 2 && run.err.contains("E0911") && run.err.contains("EXX: 3 um"), "{}", run.err);
+    let twice = "corrections:\n  - {data: x.comp, axis: X, type: 1}\n  - {data: x.comp, axis: X, type: 1}\n";
+    fs::write(at("set-up.yaml"), format!("{head}{twice}")).unwrap();
+    let run = abbe(&["calibrate", &at("set-up.yaml")], "");
+    assert!(
+        run.status == 2 && run.err.contains("E0911") && run.err.contains("another file has given already"),
+        "{}",
+        run.err
+    );
+    for (bad, code) in [
+        ("corrections: []\n", "E0901"),
+        ("corrections: [{axis: X}]\n", "E0901"),
+        ("corrections: [{data: x.comp, axis: Q, type: 1}]\n", "E0906"),
+        ("corrections: [{data: x.comp, axis: X, type: 2}]\n", "E0907"),
+        ("corrections: [{data: x.comp, axis: X, kind: 1}]\n", "E0903"),
+        ("corrections: [{data: x.comp, x: [9 mm, 1 mm]}]\n", "E0904"),
+        ("corrections: [{data: x.comp, axis: X}]\n", "E0804"),
+        ("corrections: [{data: x.comp, axis: X, type: 0}]\n", "E0430"),
+        ("corrections: [{data: set-up.yaml}]\n", "E0802"),
+        ("corrections: [{data: nowhere.cfg}]\n", "E0914"),
+        ("diagonals: {}\n", "E0901"),
+        ("diagonals: {XY: {AC: 140 mm, BD: 141 mm}}\n", "E0901"),
+        ("diagonals: {XY: {AC: 140 mm, BD: 99 mm, AD: 100 mm}}\n", "E0926"),
+        ("diagonals: {XY: {AC: 140 mm, BD: 140 mm, AD: 0 mm}}\n", "E0926"),
+        ("diagonals: {XY: {AC: 140, BD: 141 mm, AD: 100 mm}}\n", "E0306"),
+        ("diagonals: {XY: {AC: 141 mm, BD: 141.4 mm, AD: 100 mm}}\nerrors: {EC0Y: 1 mrad}\n", "E0911"),
+    ] {
+        fs::write(at("bad.yaml"), format!("{head}{bad}")).unwrap();
+        let run = abbe(&["calibrate", &at("bad.yaml")], "");
+        assert!(run.status == 2 && run.err.contains(code), "{bad}: {}", run.err);
+    }
+}
+
+#[test]
+fn lengths_of_squares_are_squareness_as_klipper_and_marlin_have_it() {
+    let folder = folder("squares");
+    let at = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    // The example of Klipper's documentation, nearly square; the factors are Klipper's `calc_skew_factor`, worked out here anew.
+    let factor = |ac: f64, bd: f64, ad: f64| {
+        let side = (2.0 * ac * ac + 2.0 * bd * bd - 4.0 * ad * ad).sqrt() / 2.0;
+        (std::f64::consts::FRAC_PI_2 - ((ac * ac - side * side - ad * ad) / (2.0 * side * ad)).acos()).tan()
+    };
+    let [xy, xz, yz] = [factor(140.4, 142.8, 99.8), factor(141.6, 141.4, 99.8), factor(142.4, 142.1, 99.5)];
+    assert!(xy < -0.01 && xz > 0.001 && yz > 0.001, "{xy} {xz} {yz}");
+    let lengths = "diagonals:\n  XY: {AC: 140.4 mm, BD: 142.8 mm, AD: 99.8 mm}\n  XZ: {AC: 141.6 mm, BD: 141.4 mm, AD: 99.8 mm}\n  YZ: {AC: 142.4 mm, BD: 142.1 mm, AD: 99.5 mm}\n";
+    for machine in ["XYFZ", "YFXZ", "FXYZ"] {
+        let set_up =
+            format!("setup: 1\nmachine: {machine}\nconstants: {{Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}}\n{lengths}");
+        fs::write(at("set-up.yaml"), set_up).unwrap();
+        let run = abbe(&["calibrate", &at("set-up.yaml"), "--output", &at("printer.yaml"), "--force"], "");
+        assert_eq!(run.status, 0, "{}", run.err);
+        let run = abbe(&["compensate", &at("printer.yaml")], "x,y,z\n50,120,80\n");
+        let row = run.out.lines().nth(1).unwrap();
+        let commanded: Vec<f64> = row.split(',').skip(6).map(|cell| cell.parse().unwrap()).collect();
+        // Klipper's `calc_skew`.
+        let theirs = [50.0 - 120.0 * xy - 80.0 * (xz - xy * yz), 120.0 - 80.0 * yz, 80.0];
+        assert!(
+            commanded.iter().zip(theirs).all(|(ours, theirs)| (ours - theirs).abs() < 1e-6),
+            "{machine}: {row}, {theirs:?}"
+        );
+    }
+    // A machine without Z has one square; another one is refused.
+    fs::write(
+        at("set-up.yaml"),
+        format!("setup: 1\nmachine: FXY\nconstants: {{Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}}\n{lengths}"),
+    )
+    .unwrap();
+    let run = abbe(&["calibrate", &at("set-up.yaml")], "");
+    assert!(run.status == 2 && run.err.contains("E0906") && run.err.contains("no axis Z"), "{}", run.err);
 }

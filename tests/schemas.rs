@@ -311,6 +311,9 @@ fn mappings() -> Vec<(&'static str, String, String)> {
         }
     }
     add("set-up", "references: {a: {unheardof: 1}}", "/properties/references/additionalProperties");
+    add("set-up", "corrections: [{unheardof: 1}]", "/properties/corrections/items");
+    add("set-up", "diagonals: {unheardof: 1}", "/properties/diagonals");
+    add("set-up", "diagonals: {XY: {unheardof: 1}}", "/definitions/square");
     let measurement = "/properties/measurements/items";
     add("set-up", "measurements: [{unheardof: 1}]", measurement);
     for key in ["targets", "deviations"] {

@@ -9,7 +9,9 @@
 //! | E0801 | what should be a number is none |
 //! | E0802 | a line that has another form |
 //! | E0803 | a table that contradicts itself |
-//! | E0804 | a name that means no axis and no error motion |
+//! | E0804 | a name that means nothing here, or a name that is missing |
+//! | W0801 | points of a bed mesh that were not probed |
+//! | W0802 | lines that the controller leaves out |
 
 mod beyond;
 mod decimal;
@@ -29,8 +31,10 @@ mod nodes;
 mod options;
 mod parameters;
 mod pmac;
+mod printer;
 mod refused;
 mod report;
+mod saved;
 mod sinumerik;
 mod space;
 mod taken;
@@ -46,5 +50,6 @@ pub use nodes::{Nodes, Spacing};
 pub use options::{Format, Kind, Options, Sense, Unit};
 pub use refused::Refused;
 pub use report::text;
+pub use saved::{SavedForm, SavedWanted, saved_form, saved_terms, skew_terms};
 pub use space::{Space, Wanted};
 pub use taken::{VolumetricForm, volumetric_form, volumetric_terms};

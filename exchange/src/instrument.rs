@@ -56,6 +56,7 @@ mod squareness;
 mod uncertainty;
 mod view;
 
+pub(crate) use calibrate::even;
 pub use calibrate::{Findings, MeasuredMotion, Outcome, calibrate};
 pub use curve::{Curve, Mean};
 pub use lever::Levers;

@@ -8,7 +8,11 @@ mod carried;
 mod linuxcnc;
 #[path = "controllers/machine.rs"]
 mod machine;
+#[path = "controllers/printers.rs"]
+mod printers;
 #[path = "controllers/refusals.rs"]
 mod refusals;
+#[path = "controllers/saved.rs"]
+mod saved;
 #[path = "controllers/signs.rs"]
 mod signs;

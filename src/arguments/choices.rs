@@ -107,6 +107,12 @@ pub(crate) enum ExportFormat {
     Heidenhain,
     /// Delta Tau PMAC: DEFINE COMP and DEFINE BLCOMP.
     Pmac,
+    /// Marlin: skew and bed mesh, M852 and M421.
+    Marlin,
+    /// Klipper: profiles of skew and bed mesh.
+    Klipper,
+    /// RepRapFirmware: skew and bed mesh, M556 and heightmap.csv.
+    Reprap,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -1,6 +1,7 @@
 //! `abbe calibrate`: instruments' files into a calibration. In: a set-up file and the files that it names. Out: what they show,
 //! with uncertainties, as text or JSON, and the calibration.
 
+mod corrections;
 mod files;
 mod volumetric;
 
@@ -63,6 +64,7 @@ impl Read {
         let setup = setup::read(&root, &equations, &mut diagnostics);
         let mut setup = setup.filter(|_| !diagnostics.has_errors()).ok_or_else(|| wrong(&diagnostics))?;
         volumetric::take(&mut setup, &source, path, &equations, &mut diagnostics)?;
+        corrections::take(&mut setup, &source, path, &equations, &mut diagnostics)?;
         if diagnostics.has_errors() {
             return Err(wrong(&diagnostics));
         }
@@ -78,8 +80,8 @@ impl Read {
     /// All files that were read.
     fn others(&self, path: &Path) -> Vec<PathBuf> {
         let machine = path.with_file_name(&self.setup.known.machine.value);
-        let volumetric = self.setup.volumetric.iter().map(|name| path.with_file_name(&name.value));
-        self.data_paths.iter().cloned().chain(volumetric).chain([path.to_owned(), machine]).collect()
+        let taken = self.setup.taken().map(|name| path.with_file_name(&name.value));
+        self.data_paths.iter().cloned().chain(taken).chain([path.to_owned(), machine]).collect()
     }
 
     fn outcome(&self) -> Result<Outcome, Failure> {
@@ -99,9 +101,9 @@ impl Read {
         let mut new = outcome.calibration.clone();
         new.machine.value = machine_name(&new.machine.value, path, &folder(target))?;
         let about = [format!("Written by abbe calibrate from {}.", path.display())];
-        let volumetric = self.setup.volumetric.as_ref();
-        let taken = volumetric
-            .map(|name| format!("Error motions that are not measured are those of {}.", name.value));
+        let names: Vec<&str> = self.setup.taken().map(|name| name.value.as_str()).collect();
+        let taken = (!names.is_empty())
+            .then(|| format!("Error motions that are not measured are those of {}.", names.join(", ")));
         let about = about.into_iter().chain(taken).chain(report::comments(outcome, &self.equations));
         let comments: String = about.map(|line| comment(&line)).collect();
         let text = comments + &calibration::write(&new, &self.equations.names());

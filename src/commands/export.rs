@@ -208,6 +208,9 @@ fn format(command: &Export) -> Format {
         ExportFormat::Sinumerik => Format::Sinumerik,
         ExportFormat::Heidenhain => Format::Heidenhain,
         ExportFormat::Pmac => Format::Pmac,
+        ExportFormat::Marlin => Format::Marlin,
+        ExportFormat::Klipper => Format::Klipper,
+        ExportFormat::Reprap => Format::RepRap,
     }
 }
 

@@ -78,6 +78,7 @@ fn file(kind: &str) -> &str {
         "path" => "path file",
         "set-up" => "set-up file",
         "measurement" => "measurement as a laser's program writes it",
+        "correction" => "correction as a controller saves it",
         "volumetric" => "file for a volumetric compensation, ISG CSV",
         "equations" => "equation file for the machine excello-921",
         other => other,

@@ -9,6 +9,7 @@ use super::geometry::Geometry;
 use super::job::{Controller, File, Job, Written};
 use super::lost::{Lost, Target};
 use super::options::{Format, Options};
+use super::printer::{self, Firmware};
 use super::refused::Refused;
 use super::space::Space;
 use super::{etalon, heidenhain, isg, linuxcnc, pmac, sinumerik};
@@ -53,6 +54,9 @@ pub fn export(
         Format::Sinumerik => sinumerik::written(&job),
         Format::Heidenhain => heidenhain::written(&job),
         Format::Pmac => pmac::written(&job),
+        Format::Marlin => printer::written(&job, Firmware::Marlin),
+        Format::Klipper => printer::written(&job, Firmware::Klipper),
+        Format::RepRap => printer::written(&job, Firmware::RepRap),
     }?;
     let read = check(geometry, space, format, options, &sources(&files)).map_err(|error| match error {
         Unusable::Refused(refused) => refused,
@@ -105,6 +109,9 @@ pub fn check(
         Format::Sinumerik => Box::new(sinumerik::controller(&job)?),
         Format::Heidenhain => Box::new(heidenhain::controller(&job)?),
         Format::Pmac => Box::new(pmac::controller(&job)?),
+        Format::Marlin => Box::new(printer::controller(&job, Firmware::Marlin)?),
+        Format::Klipper => Box::new(printer::controller(&job, Firmware::Klipper)?),
+        Format::RepRap => Box::new(printer::controller(&job, Firmware::RepRap)?),
     };
     for (source, axis) in files {
         let mut diagnostics = Diagnostics::new();

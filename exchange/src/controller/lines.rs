@@ -16,21 +16,32 @@ pub(super) struct Line<'s> {
 pub(super) fn lines<'s>(source: &'s SourceFile, comment: &'static str) -> impl Iterator<Item = Line<'s>> {
     let text = source.text();
     text.split_inclusive('\n').filter_map(move |line| {
-        let start = line.as_ptr().addr() - text.as_ptr().addr();
-        let told = line.split(comment).next().unwrap_or_default();
-        let trimmed = told.trim();
-        let from = start + told.find(trimmed).unwrap_or_default();
-        (!trimmed.is_empty()).then_some(Line { text: trimmed, span: Span::new(from, from + trimmed.len()) })
+        let told = Line::of(text, line.split(comment).next().unwrap_or_default().trim());
+        (!told.text.is_empty()).then_some(told)
     })
 }
 
 impl<'s> Line<'s> {
+    /// A part of a whole text, with its place in it.
+    pub(super) fn of(whole: &'s str, part: &'s str) -> Self {
+        let from = part.as_ptr().addr().saturating_sub(whole.as_ptr().addr());
+        Self { text: part, span: Span::new(from, from + part.len()) }
+    }
+
+    /// A part of the line, with its place.
+    pub(super) fn part(self, part: &'s str) -> Self {
+        let Self { span, .. } = Self::of(self.text, part);
+        Self { text: part, span: Span::new(self.span.start + span.start, self.span.start + span.end) }
+    }
+
     /// Its words, each with its place.
     pub(super) fn words(self) -> impl Iterator<Item = Line<'s>> {
-        self.text.split_whitespace().map(move |word| {
-            let from = self.span.start + (word.as_ptr().addr() - self.text.as_ptr().addr());
-            Line { text: word, span: Span::new(from, from + word.len()) }
-        })
+        self.text.split_whitespace().map(move |word| self.part(word))
+    }
+
+    /// What stands between separators, without the space around it, each with its place.
+    pub(super) fn cells(self, separator: char) -> impl Iterator<Item = Line<'s>> {
+        self.text.split(separator).map(move |cell| self.part(cell.trim()))
     }
 
     /// A finite number, or a finding.

@@ -102,6 +102,11 @@ impl Table {
         self.entries.is_empty()
     }
 
+    /// The nominal positions of the entries, in the machine's unit.
+    pub fn nominals(&self) -> impl Iterator<Item = f64> {
+        self.entries.iter().map(|entry| entry.nominal)
+    }
+
     /// What is added to the joint's command, in the machine's unit: straight lines between entries, constant outside.
     pub fn trim(&self, position: f64, direction: Direction) -> f64 {
         let of = |entry: &Entry| match direction {

@@ -106,18 +106,47 @@ impl Nodes {
         Ok(self.spread(intervals))
     }
 
+    /// Nodes at equal steps of any length, for a mesh whose ends and count are told: those of the calibration, but no more than the
+    /// controller takes.
+    ///
+    /// # Errors
+    /// More points asked for than the controller takes, or fewer than two.
+    pub fn spread_evenly(&self, spacing: Spacing) -> Result<Vec<f64>, Refused> {
+        let intervals = match spacing.points {
+            Some(points) => intervals(points, &self.letter)?,
+            None => self.at_most(spacing.most.saturating_sub(1).max(1)),
+        };
+        self.check_count(intervals.saturating_add(1), spacing)?;
+        Ok(self.spread(intervals))
+    }
+
+    /// The number of equal steps on which all own nodes lie, finer where something is curved, but not more than a bound: so that the
+    /// own nodes stay among them if they can.
+    fn at_most(&self, most: usize) -> usize {
+        let Some(own) = self.even_intervals().filter(|own| *own <= most) else { return most.min(CURVED) };
+        let finer = if self.curved { CURVED.div_ceil(own).min(most / own) } else { 1 };
+        own * finer
+    }
+
     /// The number of equal steps on which all own nodes lie; finer where something is curved.
     fn own_intervals(&self) -> Option<usize> {
+        let number = self.even_intervals()?;
+        let finer = if self.curved { CURVED.div_ceil(number) } else { 1 };
+        // A step of degrees is round only for some numbers of intervals: 180 deg in 108, not in 102.
+        let [low, high] = self.range;
+        let is_round = |finer: &usize| self.is_round((high - low) / count(number * finer));
+        Some(number * (finer..=2 * finer).find(is_round).unwrap_or(finer))
+    }
+
+    /// The number of equal steps on which all own nodes lie.
+    fn even_intervals(&self) -> Option<usize> {
         let [low, high] = self.range;
         let step = self.own.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
         let whole = |length: f64| ((length / step).round() * step - length).abs() < 1e-6;
         let even =
             self.is_round(step) && whole(high - low) && self.own.iter().all(|place| whole(place - low));
         let number = (1..=1_000_000).find(|number| count(*number) * step > high - low - 0.5 * step)?;
-        let finer = if self.curved { CURVED.div_ceil(number) } else { 1 };
-        // A step of degrees is round only for some numbers of intervals: 180 deg in 108, not in 102.
-        let round = (finer..=2 * finer).find(|finer| self.is_round(step / count(*finer))).unwrap_or(finer);
-        even.then_some(number * round)
+        even.then_some(number)
     }
 
     /// The least number of intervals from the usual one on whose step is round.

@@ -15,6 +15,12 @@ pub enum Format {
     Heidenhain,
     /// Delta Tau PMAC: `DEFINE COMP` and `DEFINE BLCOMP`.
     Pmac,
+    /// Marlin: `M852` and `M421`.
+    Marlin,
+    /// Klipper: saved profiles of a skew and of a bed mesh.
+    Klipper,
+    /// RepRapFirmware: `M556` and `heightmap.csv`.
+    RepRap,
 }
 
 /// What a controller does with a number of a table.

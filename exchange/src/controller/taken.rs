@@ -11,6 +11,7 @@ use super::grid::Grid;
 use super::job::Controller;
 use super::parameters::motion_of;
 use super::refused::Refused;
+use super::saved::over_two;
 use super::volumetric::Volumetric;
 use super::{etalon, isg};
 
@@ -63,10 +64,11 @@ pub fn volumetric_terms(
             continue;
         };
         grid.values.iter_mut().for_each(|value| *value *= sign);
-        match sum_of_curves(&grid) {
+        match sum_of_curves(&grid).or_else(|| sum_over_rows(&grid)) {
             Some(curves) => terms.extend(curves.into_iter().map(|term| (motion, term))),
             None => {
-                let message = format!("{name} is no sum of functions of one axis each");
+                let message =
+                    format!("{name} is no sum of functions of one axis each, and depends on more than two");
                 let help = "terms of a calibration add; measure the axes apart, or keep this motion in the controller";
                 diagnostics.push(Diagnostic::error("E0803", Span::default(), message).help(help));
             }
@@ -88,6 +90,17 @@ pub fn volumetric_form(text: &str) -> Option<VolumetricForm> {
 fn loaded<C: Controller>(mut controller: C, source: &SourceFile, diagnostics: &mut Diagnostics) -> C {
     controller.load(source, None, diagnostics);
     controller
+}
+
+/// For each row of a grid over two axes a table times a hat function, which is bilinear between the points as the controller is;
+/// nothing where there are not two axes with two nodes each.
+fn sum_over_rows(grid: &Grid) -> Option<Vec<CalibratedTerm>> {
+    match grid.arguments.as_slice() {
+        [(across, rows), (along, places)] if rows.len() > 1 && places.len() > 1 => {
+            Some(over_two([(*across, rows), (*along, places)], &grid.values))
+        }
+        _ => None,
+    }
 }
 
 /// A table for each argument, the first holding the value at the first nodes of all; nothing where they do not add up to the

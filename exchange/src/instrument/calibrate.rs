@@ -310,7 +310,7 @@ impl Tabulated {
 }
 
 /// Start and step of nodes that are evenly spaced to the last digit that is kept.
-fn even(nodes: &[f64]) -> Option<(f64, f64)> {
+pub(crate) fn even(nodes: &[f64]) -> Option<(f64, f64)> {
     let (start, next) = (*nodes.first()?, *nodes.get(1)?);
     let step = super::placed::tidy(next - start);
     let expected = (0..).map(|number: u32| super::placed::tidy(start + f64::from(number) * step));

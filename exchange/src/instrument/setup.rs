@@ -4,7 +4,9 @@
 //! A set-up is the head of a calibration file (`machine`, `constants`, `limits`, `sensors`, and under `errors` what is known
 //! otherwise) with `measurements` in place of the numbers. That head is read by [`model_dsl::calibration`] itself.
 
+mod correction;
 mod counting;
+mod diagonals;
 mod measurement;
 mod place;
 mod reference;
@@ -17,13 +19,14 @@ use model_dsl::fields::{self, Fields};
 use model_dsl::source::{Span, Spanned};
 use model_dsl::yaml::{Node, NodeKind, Scalar};
 
+pub use correction::Correction;
 pub use counting::{Begin, Deviations, Order, Targets};
 pub use measurement::{Form, Measurement, Remove};
 pub use place::Place;
 pub use reference::Reference;
 use words::{FORM, first_key, keys, word};
 
-const KEYS: [&str; 10] = [
+const KEYS: [&str; 12] = [
     "setup",
     "machine",
     "source",
@@ -32,6 +35,8 @@ const KEYS: [&str; 10] = [
     "sensors",
     "errors",
     "volumetric",
+    "corrections",
+    "diagonals",
     "references",
     "measurements",
 ];
@@ -48,7 +53,11 @@ pub struct Setup {
     pub references: Vec<Reference>,
     /// The file of a volumetric compensation whose error motions are taken over.
     pub volumetric: Option<Spanned<String>>,
-    /// The measurements, in the file's order; none only where there is a volumetric file.
+    /// Files of controllers whose corrections are taken over, in the file's order.
+    pub corrections: Vec<Correction>,
+    /// How much Y leans towards X, Z towards X and Z towards Y, for each mm, as the lengths of squares show it; and where they stand.
+    pub diagonals: Option<Spanned<[f64; 3]>>,
+    /// The measurements, in the file's order; none only where there is another file.
     pub measurements: Vec<Measurement>,
 }
 
@@ -114,8 +123,11 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
     let references = references.unwrap_or_default();
     let volumetric = fields.get("volumetric").map(|node| word(node, "`volumetric`", diagnostics));
     let volumetric = volumetric.map(|name| name.map(|name| name.map(str::to_owned)));
-    let measurements = match (fields.get("measurements"), &volumetric) {
-        (None, Some(_)) => Some(Vec::new()),
+    let corrections = fields.get("corrections").map(|node| correction::read(node, equations, diagnostics));
+    let diagonals = fields.entry("diagonals").map(|(key, node)| diagonals::read(node, key.span, diagnostics));
+    let is_other = volumetric.is_some() || corrections.is_some() || diagonals.is_some();
+    let measurements = match fields.get("measurements") {
+        None if is_other => Some(Vec::new()),
         _ => {
             let measurements = fields.need("measurements", wording, diagnostics);
             measurements.and_then(|node| read_measurements(node, equations, diagnostics))
@@ -125,7 +137,16 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
         Some(name) => Some(name?),
         None => None,
     };
-    let setup = Setup { known: known?, references, volumetric, measurements: measurements? };
+    let corrections = match corrections {
+        Some(corrections) => corrections?,
+        None => Vec::new(),
+    };
+    let diagonals = match diagonals {
+        Some(diagonals) => Some(diagonals?),
+        None => None,
+    };
+    let (known, measurements) = (known?, measurements?);
+    let setup = Setup { known, references, volumetric, corrections, diagonals, measurements };
     setup.check(equations, diagnostics);
     Some(setup)
 }
@@ -169,23 +190,33 @@ fn read_measurements(
 }
 
 impl Setup {
-    /// Takes the error motions of the volumetric file over into what is known; each must be given nowhere else (E0911).
-    pub fn take_volumetric(
+    /// The files whose error motions are taken over.
+    pub fn taken(&self) -> impl Iterator<Item = &Spanned<String>> {
+        self.volumetric.iter().chain(self.corrections.iter().map(|one| &one.data))
+    }
+
+    /// Takes the error motions of a file over into what is known; each must be given nowhere else (E0911). `place` is where the
+    /// set-up names the file.
+    pub fn take(
         &mut self,
         terms: &[(usize, CalibratedTerm)],
+        place: Span,
         equations: &Equations,
         diagnostics: &mut Diagnostics,
     ) {
-        let place = self.volumetric.as_ref().map_or_else(Span::default, |name| name.span);
         for (number, motion) in equations.motions.iter().enumerate() {
             let measured = self.measurements.iter().find(|one| one.motion.value == number);
             let given = self.known.motions.iter().find(|known| known.motion == number);
             let other = measured.map(|one| one.motion.span).or(given.map(|known| known.span));
             if let (true, Some(other)) = (terms.iter().any(|(taken, _)| *taken == number), other) {
-                let message = format!("the volumetric file has {}, which stands here too", motion.name);
-                let mistake = Diagnostic::error("E0911", other, message);
-                let help = "leave it out here, or take its column out of the file";
-                diagnostics.push(mistake.also(place, "the volumetric file").help(help));
+                // What another file gave stands at no place of the set-up.
+                let (here, mistake) = if other == Span::default() {
+                    (place, format!("this gives {}, which another file has given already", motion.name))
+                } else {
+                    (other, format!("{} is given by a file or by lengths, and stands here too", motion.name))
+                };
+                let mistake = Diagnostic::error("E0911", here, mistake).also(place, "given by this");
+                diagnostics.push(mistake.help("leave it out here, or take it out of the file"));
             }
         }
         self.known = self.known.with(terms);

@@ -128,6 +128,19 @@ fn a_product_of_two_positions_is_carried_by_a_grid() {
     assert!(export.left_out.is_empty(), "{:?}", export.left_out);
     assert!((export.lost.without.largest - 14.5e-3).abs() < 1e-5, "{:?}", export.lost);
     assert!(export.lost.lost.largest < second_order(&export.lost), "{:?}", export.lost);
+    // What was written is taken back: a grid over two axes is a table for each of its rows, times a hat function.
+    let source = SourceFile::new("volumetric", export.files[0].text.clone());
+    let empty = Calibration::new("m", machine.calibration.constants.clone());
+    let mut diagnostics = Diagnostics::new();
+    let terms =
+        volumetric_terms(&machine.equations, &empty, &source, VolumetricForm::Isg, &mut diagnostics).unwrap();
+    assert!(diagnostics.is_empty());
+    let taken = empty.with(&terms);
+    let (ours, theirs) = (machine.geometry(), Geometry::new(&machine.equations, &taken));
+    for pose in machine.space().poses(&ours) {
+        let [one, other] = [ours.error(&pose).unwrap(), theirs.error(&pose).unwrap()];
+        assert!(one.iter().zip(other).all(|(one, other)| (one - other).abs() < 1e-8), "{one:?} {other:?}");
+    }
     // The other format has tables of one axis, and says so.
     let export = machine.export(Format::Etalon, &options()).unwrap();
     let said: Vec<String> = export.left_out.iter().map(ToString::to_string).collect();

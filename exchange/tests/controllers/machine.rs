@@ -79,3 +79,17 @@ pub(crate) fn options() -> Options {
 pub(crate) fn text<'e>(export: &'e Export, name: &str) -> &'e str {
     &export.files.iter().find(|file| file.name == name).unwrap().text
 }
+
+/// Bilinear interpolation in rows of heights over two ranges, the edges held outside: what every firmware of printers does.
+pub(crate) fn bilinear<R: AsRef<[f64]>>(rows: &[R], ends: [[f64; 2]; 2], place: [f64; 2]) -> f64 {
+    let cell = |place: f64, [from, to]: [f64; 2], points: usize| {
+        let last = u32::try_from(points - 1).unwrap();
+        let share = ((place - from) / (to - from)).clamp(0.0, 1.0) * f64::from(last);
+        let cell = (0..last).rev().find(|cell| f64::from(*cell) <= share).unwrap();
+        (usize::try_from(cell).unwrap(), share - f64::from(cell))
+    };
+    let (i, s) = cell(place[0], ends[0], rows[0].as_ref().len());
+    let (j, t) = cell(place[1], ends[1], rows.len());
+    let along = |j: usize| rows[j].as_ref()[i] * (1.0 - s) + rows[j].as_ref()[i + 1] * s;
+    along(j) * (1.0 - t) + along(j + 1) * t
+}

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use exchange::controller::volumetric_form;
+use exchange::controller::{SavedForm, saved_form, volumetric_form};
 use exchange::instrument::file;
 
 use crate::failure::Failure;
@@ -27,9 +27,9 @@ pub(super) fn setup_among(files: &[PathBuf]) -> Result<&Path, Failure> {
     }
 }
 
-/// Whether a file is what an instrument wrote, by its name or its first words.
+/// Whether a file is what an instrument or a controller wrote, by its name or its first words.
 fn is_of_an_instrument(path: &Path) -> Result<bool, Failure> {
-    const NAMES: [&str; 6] = ["csv", "rtl", "rta", "rtx", "rts", "txt"];
+    const NAMES: [&str; 11] = ["csv", "rtl", "rta", "rtx", "rts", "txt", "cfg", "comp", "g", "gcode", "log"];
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     if NAMES.iter().any(|name| ending.eq_ignore_ascii_case(name)) {
         return Ok(true);
@@ -39,14 +39,28 @@ fn is_of_an_instrument(path: &Path) -> Result<bool, Failure> {
 
 /// What a set-up of these files must say.
 fn to_fill_in(data: &[&PathBuf]) -> String {
-    let head = "error: an instrument's file does not say which motion of which machine it shows, from where and in which sense\nhelp: write a set-up file and give that; for example\n\n    setup: 1\n    machine: XYFZ\n    constants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}\n";
-    let is_volumetric =
-        |path: &&&PathBuf| load::read(path).is_ok_and(|file| volumetric_form(file.text()).is_some());
-    let (volumetric, measured): (Vec<&&PathBuf>, Vec<&&PathBuf>) = data.iter().partition(is_volumetric);
+    let head = "error: the file of an instrument or a controller does not say which motion of which machine it shows, from where and in which sense\nhelp: write a set-up file and give that; for example\n\n    setup: 1\n    machine: XYFZ\n    constants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}\n";
+    let text_of = |path: &Path| load::read(path).map(|file| file.text().to_owned()).unwrap_or_default();
+    let is_volumetric = |path: &&&PathBuf| volumetric_form(&text_of(path)).is_some();
+    let (volumetric, others): (Vec<&&PathBuf>, Vec<&&PathBuf>) = data.iter().partition(is_volumetric);
+    let form = |path: &&PathBuf| saved_form(&text_of(path));
+    let (saved, measured): (Vec<&&PathBuf>, Vec<&&PathBuf>) =
+        others.into_iter().partition(|path| form(path).is_some());
     let name = |path: &Path| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     let mut text = head.to_owned();
     for path in volumetric {
         text += &format!("    volumetric: {}\n", name(path));
+    }
+    if !saved.is_empty() {
+        text += "    corrections:\n";
+    }
+    for path in saved {
+        let more = match form(path) {
+            Some(SavedForm::Screw) => ", axis: X, type: 1",
+            Some(SavedForm::Codes) => ", x: [10 mm, 210 mm], y: [10 mm, 210 mm]",
+            _ => "",
+        };
+        text += &format!("      - {{data: {}{more}}}\n", name(path));
     }
     if !measured.is_empty() {
         text += "    measurements:\n";

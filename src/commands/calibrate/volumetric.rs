@@ -33,7 +33,7 @@ pub(super) fn take(
     if findings.has_errors() {
         return Err(not(Failure::Wrong(rendered(&file, &findings))));
     }
-    setup.take_volumetric(&terms, equations, diagnostics);
+    setup.take(&terms, name.span, equations, diagnostics);
     warn(&format!("{} terms of error motions from {}", terms.len(), file.name()));
     Ok(())
 }

@@ -1,0 +1,68 @@
+//! Corrections that a set-up names, and squares that it measures by their lengths. In: the set-up. Out: the error motions of both among
+//! what it knows.
+
+use std::path::Path;
+
+use exchange::controller::{saved_terms, skew_terms};
+use exchange::instrument::Setup;
+use exchange::instrument::setup::Correction;
+use model_dsl::diagnostic::{Diagnostic, Diagnostics};
+use model_dsl::equations::Equations;
+use model_dsl::source::SourceFile;
+
+use crate::failure::Failure;
+use crate::load;
+use crate::output::{rendered, show, warn};
+use crate::recorded::unusable;
+
+/// Takes all of them over; what is wrong in one stands at its place there, below the place of its name (E0914).
+pub(super) fn take(
+    setup: &mut Setup,
+    source: &SourceFile,
+    path: &Path,
+    equations: &Equations,
+    diagnostics: &mut Diagnostics,
+) -> Result<(), Failure> {
+    for one in setup.corrections.clone() {
+        take_one(setup, &one, source, path, equations, diagnostics)?;
+    }
+    take_squares(setup, equations, diagnostics);
+    Ok(())
+}
+
+/// Takes the leans of squares over; a machine that has no such slides is told (E0906).
+fn take_squares(setup: &mut Setup, equations: &Equations, diagnostics: &mut Diagnostics) {
+    let Some(leans) = setup.diagonals else { return };
+    match skew_terms(equations, &setup.known, leans.value) {
+        Ok(terms) => {
+            warn(&format!("{} terms of error motions from the lengths of squares", terms.len()));
+            setup.take(&terms, leans.span, equations, diagnostics);
+        }
+        Err(refused) => {
+            let mistake = Diagnostic::error("E0906", leans.span, refused.what);
+            diagnostics.push(mistake.help(refused.help.unwrap_or_default()));
+        }
+    }
+}
+
+fn take_one(
+    setup: &mut Setup,
+    one: &Correction,
+    source: &SourceFile,
+    path: &Path,
+    equations: &Equations,
+    diagnostics: &mut Diagnostics,
+) -> Result<(), Failure> {
+    let not = |failure: Failure| unusable(source, "E0914", "file", &one.data, failure);
+    let file = load::read(&path.with_file_name(&one.data.value)).map_err(not)?;
+    let mut findings = Diagnostics::new();
+    let terms = saved_terms(equations, &setup.known, &file, &one.wanted, &mut findings);
+    let terms = terms.map_err(|refused| not(Failure::Wrong(refused.to_string())))?;
+    if findings.has_errors() {
+        return Err(not(Failure::Wrong(rendered(&file, &findings))));
+    }
+    show(&file, &findings);
+    setup.take(&terms, one.data.span, equations, diagnostics);
+    warn(&format!("{} terms of error motions from {}", terms.len(), file.name()));
+    Ok(())
+}

@@ -16,3 +16,5 @@ mod refusals;
 mod saved;
 #[path = "controllers/signs.rs"]
 mod signs;
+#[path = "controllers/turns.rs"]
+mod turns;

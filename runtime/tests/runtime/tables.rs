@@ -253,3 +253,46 @@ fn a_threshold_of_zero_turns_at_every_step_back() {
         assert_eq!(tracker.update(1.0), Direction::Positive);
     }
 }
+
+proptest! {
+    /// A table that repeats has the same value a whole number of turns away, on even nodes and on listed ones, alone and side by side.
+    #[test]
+    fn a_table_that_repeats_is_the_same_after_any_turn(
+        values in prop::collection::vec(-1.0..1.0_f64, 2..12), start in -10.0..10.0_f64, backwards in any::<bool>(),
+        place in 0.0..1.0_f64, turns in -50..50_i32,
+    ) {
+        let mut values = values;
+        values.extend(values.first().copied());
+        let step = if backwards { -0.5 } else { 0.5 };
+        let length = 0.5 * (values.len() - 1) as f64;
+        let even = Table::uniform(start, step, Values::Both(&values)).unwrap();
+        let mut at: Vec<f64> = (0..values.len()).map(|node| start + step * node as f64).collect();
+        let mut listed = values.clone();
+        if backwards {
+            at.reverse();
+            listed.reverse();
+        }
+        let at = Table::at(&at, Values::Both(&listed)).unwrap();
+        let here = start + step.signum() * place * length;
+        let held = even.value(here, Direction::Positive);
+        let there = here + f64::from(turns) * length;
+        for table in [even.repeating().unwrap(), at.repeating().unwrap()] {
+            let found = table.value(there, Direction::Positive);
+            // Rounding of the place, times the steepest part of the curve.
+            prop_assert!((found - held).abs() < 1e-11, "{found} is not {held}");
+        }
+    }
+}
+
+#[test]
+fn a_table_that_repeats_jumps_where_its_ends_differ_and_knows_no_other_end() {
+    let table = Table::uniform(0.0, 90.0, Values::Both(&[0.0, 1.0, 2.0, 3.0, 4.0])).unwrap();
+    let turn = table.repeating().unwrap();
+    let read = |table: &Table<'_>, place| table.value(place, Direction::Negative);
+    assert_eq!([-45.0, 405.0, 360.0].map(|place| read(&table, place)), [0.0, 4.0, 4.0]);
+    assert_eq!([-45.0, 405.0, 360.0].map(|place| read(&turn, place)), [3.5, 0.5, 0.0]);
+    assert!(read(&turn, f64::NAN).is_nan() && read(&turn, f64::INFINITY).is_nan());
+    for lone in [Table::uniform(0.0, 1.0, Values::Both(&[1.0])), Table::at(&[0.0], Values::Both(&[1.0]))] {
+        assert_eq!(lone.unwrap().repeating(), Err(TableError::Lone));
+    }
+}

@@ -167,6 +167,45 @@ pub unsafe extern "C" fn abbe_enable(handle: *const Abbe, enabled: bool) -> Stat
     Status::Done
 }
 
+/// Takes a tool of the calibration by its name, from the next cycle on and without a jump; null: the constants of the calibration
+/// itself. `12` is `T12` where no tool is called `12`. A name that no tool has is out of range, and nothing changes.
+///
+/// # Safety
+/// `handle` is null or from `abbe_open` and not closed; `name` is null or a string that ends in a zero byte.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn abbe_set_tool(handle: *const Abbe, name: *const c_char) -> Status {
+    // SAFETY: null or from `abbe_open` and not closed.
+    let Some(abbe) = (unsafe { handle.as_ref() }) else { return Status::NullPointer };
+    // SAFETY: not null where it is asked, and a string that ends in a zero byte; it is read in this call only.
+    let name = (!name.is_null()).then(|| unsafe { CStr::from_ptr(name) });
+    // What is not UTF-8 is the name of no tool.
+    match name.map(CStr::to_str).transpose() {
+        Ok(name) => abbe.enter(|controller| controller.set_tool(name)),
+        Err(_) => Status::OutOfRange,
+    }
+}
+
+/// Takes these constants of the machine, in mm, in the order of `abbe_constant_name`, from the next cycle on and without a jump: the
+/// lengths of a tool that the controller itself knows.
+///
+/// # Safety
+/// `handle` is null or from `abbe_open` and not closed; `constants` is null or to `count` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn abbe_set_constants(
+    handle: *const Abbe,
+    constants: *const f64,
+    count: usize,
+) -> Status {
+    // SAFETY: null or from `abbe_open` and not closed.
+    let Some(abbe) = (unsafe { handle.as_ref() }) else { return Status::NullPointer };
+    if count != abbe.names.constants.len() {
+        return Status::WrongLength;
+    }
+    // SAFETY: null or to as many numbers, which the lines above have found to be those of the machine.
+    let Some(constants) = (unsafe { slice(constants, count) }) else { return Status::NullPointer };
+    abbe.enter(|controller| controller.set_constants(constants))
+}
+
 /// Forgets what terms, sensors and axes remember, as if the machine had just started: after homing, say. The correction made
 /// stays, and goes from there to what is wanted next.
 ///
@@ -246,6 +285,48 @@ pub unsafe extern "C" fn abbe_sensor_name(handle: *const Abbe, sensor: usize) ->
     // SAFETY: null or from `abbe_open` and not closed.
     let abbe = unsafe { handle.as_ref() };
     abbe.and_then(|abbe| abbe.names.sensors.get(sensor)).map_or(ptr::null(), |name| name.as_ptr())
+}
+
+/// How many tools the calibration has; 0 for a null pointer.
+///
+/// # Safety
+/// `handle` is null or from `abbe_open` and not closed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn abbe_tools(handle: *const Abbe) -> usize {
+    // SAFETY: null or from `abbe_open` and not closed.
+    unsafe { handle.as_ref() }.map_or(0, |abbe| abbe.names.tools.len())
+}
+
+/// The name of a tool, in the order of the calibration; null where there is none. It lives as long as the handle.
+///
+/// # Safety
+/// `handle` is null or from `abbe_open` and not closed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn abbe_tool_name(handle: *const Abbe, tool: usize) -> *const c_char {
+    // SAFETY: null or from `abbe_open` and not closed.
+    let abbe = unsafe { handle.as_ref() };
+    abbe.and_then(|abbe| abbe.names.tools.get(tool)).map_or(ptr::null(), |name| name.as_ptr())
+}
+
+/// How many constants the machine has; 0 for a null pointer.
+///
+/// # Safety
+/// `handle` is null or from `abbe_open` and not closed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn abbe_constants(handle: *const Abbe) -> usize {
+    // SAFETY: null or from `abbe_open` and not closed.
+    unsafe { handle.as_ref() }.map_or(0, |abbe| abbe.names.constants.len())
+}
+
+/// The name of a constant of the machine, such as `Zt`; null where there is none. It lives as long as the handle.
+///
+/// # Safety
+/// `handle` is null or from `abbe_open` and not closed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn abbe_constant_name(handle: *const Abbe, constant: usize) -> *const c_char {
+    // SAFETY: null or from `abbe_open` and not closed.
+    let abbe = unsafe { handle.as_ref() };
+    abbe.and_then(|abbe| abbe.names.constants.get(constant)).map_or(ptr::null(), |name| name.as_ptr())
 }
 
 /// The name of the machine that was compiled in; null for a null pointer. It lives as long as the handle.

@@ -9,11 +9,12 @@ mod tracks;
 
 use std::fmt;
 
-use abbe_runtime::{Kinematics, SetupError};
+use abbe_runtime::SetupError;
 use model_dsl::calibration::{Calibration, NotCompensable};
 
 use self::running::Running;
 use self::tracks::Tracks;
+use crate::machine::ChangingMachine;
 use crate::status::{Cycle, Status};
 
 /// What a controller knows in one servo cycle, borrowed from it.
@@ -69,7 +70,7 @@ impl Controller {
     /// # Errors
     /// Refuses a calibration that the runtime cannot run.
     pub fn new(
-        machine: Box<dyn Kinematics + Send>,
+        machine: Box<dyn ChangingMachine>,
         rotary: impl Iterator<Item = bool>,
         calibration: Calibration,
     ) -> Result<Self, SetupFailure> {
@@ -89,6 +90,21 @@ impl Controller {
     pub fn restart(&mut self) {
         self.tracks.restart();
         self.running.restart();
+    }
+
+    /// Takes a tool of the calibration, by its name; without one, the constants of the calibration itself. The correction fades to
+    /// that of the new lever arms.
+    pub fn set_tool(&mut self, name: Option<&str>) -> Status {
+        if self.running.set_tool(name) { Status::Done } else { Status::OutOfRange }
+    }
+
+    /// Takes these constants of the machine, in mm, in place of those of the calibration and its tools. The correction fades to that of
+    /// the new lever arms.
+    pub fn set_constants(&mut self, constants: &[f64]) -> Status {
+        if !constants.iter().all(|constant| constant.is_finite()) {
+            return Status::OutOfRange;
+        }
+        if self.running.set_constants(constants) { Status::Done } else { Status::WrongLength }
     }
 
     /// What is to be added to the position of each axis, mm or rad, as the last cycle found it; 0 before the first.

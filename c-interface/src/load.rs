@@ -5,6 +5,7 @@
 
 use std::path::Path;
 
+use abbe_runtime::Exchanged;
 use model_dsl::calibration::CompiledIn;
 use model_dsl::diagnostic::{Diagnostics, render};
 use model_dsl::source::SourceFile;
@@ -41,10 +42,10 @@ pub fn load<M: CompiledMachine>(path: &Path) -> Result<Loaded, String> {
     let Some(calibration) = calibration else { return Err(warnings) };
     let machine = M::with_constants(&calibration.constants)
         .ok_or_else(|| format!("error: {}: not the constants of {}", path.display(), M::NAME))?;
-    let names = ForC::new::<M>(calibration.sensors.inputs().map(|(_, sensor)| sensor.name.value.as_str()))
+    let names = ForC::new::<M>(&calibration)
         .map_err(|name| format!("error: {}: a name with a zero byte: {name:?}", path.display()))?;
     let rotary = M::AXES.iter().map(|&(_, rotary)| rotary);
-    let controller = Controller::new(Box::new(machine), rotary, calibration)
+    let controller = Controller::new(Box::new(Exchanged::new(machine)), rotary, calibration)
         .map_err(|error| format!("error: {}: {error}", path.display()))?;
     Ok(Loaded { controller, names, warnings })
 }

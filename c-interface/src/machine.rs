@@ -5,8 +5,8 @@
 
 use std::ffi::CString;
 
-use abbe_runtime::Kinematics;
-use model_dsl::calibration::{AxisName, MachineNames, MotionName};
+use abbe_runtime::{Exchanged, Kinematics};
+use model_dsl::calibration::{AxisName, Calibration, MachineNames, MotionName};
 
 /// A constant of a machine by its name, with its value in mm where the machine file gives one.
 pub type ConstantOfMachine = (&'static str, Option<f64>);
@@ -19,7 +19,7 @@ pub type AxisOfMachine = (&'static str, bool);
 pub type MotionOfMachine = (&'static str, bool, Option<&'static str>, bool);
 
 /// A machine compiled to Rust. `abbe expand --c-abi` writes the implementation; nobody else needs one.
-pub trait CompiledMachine: Kinematics + Send + Sized + 'static {
+pub trait CompiledMachine: Kinematics + Copy + Send + 'static {
     /// The machine's name, by which calibrations refer to it.
     const NAME: &'static str;
     /// Its constants, in the order of [`CompiledMachine::with_constants`].
@@ -36,6 +36,19 @@ pub trait CompiledMachine: Kinematics + Send + Sized + 'static {
 
     /// The machine with these constants, in mm; none where they are too few or too many.
     fn with_constants(constants: &[f64]) -> Option<Self>;
+}
+
+/// A machine whose constants may be changed between two cycles: another tool.
+pub trait ChangingMachine: Kinematics + Send {
+    /// Puts these constants, in mm, in the place of those that are there; whether they are as many as the machine has.
+    fn change(&self, constants: &[f64]) -> bool;
+}
+
+impl<M: CompiledMachine> ChangingMachine for Exchanged<M> {
+    fn change(&self, constants: &[f64]) -> bool {
+        let machine = M::with_constants(constants);
+        machine.map(|machine| self.exchange(machine)).is_some()
+    }
 }
 
 /// The names of a machine, as a calibration is read against them.
@@ -65,19 +78,28 @@ pub struct ForC {
     pub axes: Vec<(CString, bool)>,
     /// Each temperature sensor, in the order of temperatures.
     pub sensors: Vec<CString>,
+    /// Each tool of the calibration.
+    pub tools: Vec<CString>,
+    /// Each constant of the machine.
+    pub constants: Vec<CString>,
 }
 
 impl ForC {
-    /// The names of the machine `M`, and these of sensors.
+    /// The names of the machine `M`, and those of the sensors and tools of a calibration of it.
     ///
     /// # Errors
     /// Gives the name that C cannot read, since there is a zero byte in it.
-    pub fn new<'s, M: CompiledMachine>(sensors: impl Iterator<Item = &'s str>) -> Result<Self, String> {
+    pub fn new<M: CompiledMachine>(calibration: &Calibration) -> Result<Self, String> {
+        let sensors = calibration.sensors.inputs().map(|(_, sensor)| sensor.name.value.as_str());
+        let tools = calibration.tools.iter().map(|tool| tool.name.value.as_str());
+        let constants = M::CONSTANTS.iter().map(|&(name, _)| name);
         let axes = M::AXES.iter().map(|&(letter, rotary)| Ok((c_string(letter)?, rotary)));
         Ok(Self {
             machine: c_string(M::NAME)?,
             axes: axes.collect::<Result<_, String>>()?,
             sensors: sensors.map(c_string).collect::<Result<_, _>>()?,
+            tools: tools.map(c_string).collect::<Result<_, _>>()?,
+            constants: constants.map(c_string).collect::<Result<_, _>>()?,
         })
     }
 }

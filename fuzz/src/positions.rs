@@ -63,7 +63,7 @@ fn compensate(bytes: &[u8], calibration: &Calibration, equations: &Equations) {
     let Some(header) = rows.next() else { return };
     let units = rows.next_if(|row| row.get(0).is_some_and(|cell| cell.trim_ascii() == b"#unit"));
     let sensors = calibration.sensors.inputs().map(|(_, sensor)| sensor.name.value.as_str()).collect();
-    let wanted = Wanted { equations, sensors, time: Some("a term".to_owned()) };
+    let wanted = Wanted { equations, sensors, time: Some("a term".to_owned()), tools: true };
     let layout = match Layout::read(&header, units.as_ref(), &wanted) {
         Ok(layout) => layout,
         Err(mistakes) => return assert!(mistakes.iter().all(|mistake| !mistake.is_empty())),
@@ -73,7 +73,7 @@ fn compensate(bytes: &[u8], calibration: &Calibration, equations: &Equations) {
     assert!(layout.unread.len() <= header.len() && !output_columns(equations).is_empty());
     assert!(layout.unread.iter().all(|name| quoted(name).len() <= 200));
     let columns = layout.axes.clone();
-    let mut state = State::new(layout, true, &calibration.sensors, &vec![5e-4; equations.axes.len()]);
+    let mut state = State::new(layout, true, &calibration, &vec![5e-4; equations.axes.len()]);
     let terms: Vec<Vec<Term<'_>>> = (0..equations.motions.len())
         .map(|motion| calibration.runtime(motion).flatten().flatten().collect())
         .collect();

@@ -48,6 +48,7 @@ mod series;
 mod small;
 mod spelling;
 mod term;
+mod tools;
 pub mod vocabulary;
 mod write;
 mod write_term;
@@ -76,6 +77,8 @@ pub struct Calibration {
     pub source: Option<String>,
     /// The values of the machine's constants in mm, in the order of [`MachineNames::constants`].
     pub constants: Vec<f64>,
+    /// The tools, in the order of the file.
+    pub tools: Vec<Tool>,
     /// What a correction may not exceed.
     pub limits: Limits,
     /// The temperature sensors that the terms read, and those that are derived from others.
@@ -84,6 +87,25 @@ pub struct Calibration {
     pub motions: Vec<CalibratedMotion>,
     /// Those of [`MachineNames::unseen`] that the file lists. They have no effect, and are written back.
     pub unseen: Vec<CalibratedMotion>,
+}
+
+/// A tool: the machine's constants with what is different with it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Tool {
+    /// Its name, such as `T12`.
+    pub name: Spanned<String>,
+    /// The values of the machine's constants in mm, in the order of [`MachineNames::constants`].
+    pub constants: Vec<f64>,
+}
+
+impl Calibration {
+    /// The number in [`Calibration::tools`] of a tool, by its name; `12` is `T12` where no tool is called `12`.
+    #[must_use]
+    pub fn tool(&self, name: &str) -> Option<usize> {
+        let named = |name: &str| self.tools.iter().position(|tool| tool.name.value == name);
+        let is_number = !name.is_empty() && name.bytes().all(|digit| digit.is_ascii_digit());
+        named(name).or_else(|| is_number.then(|| named(&format!("T{name}")))?)
+    }
 }
 
 /// What a correction may not exceed, and how a controller goes from one correction to another.

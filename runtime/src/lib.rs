@@ -114,6 +114,7 @@ extern crate std;
 
 mod compensator;
 mod direction;
+mod exchanged;
 mod factor;
 mod kinematics;
 mod lanes;
@@ -130,6 +131,7 @@ pub use compensator::{
     SetupError, Work, states_needed,
 };
 pub use direction::{Direction, DirectionTracker};
+pub use exchanged::Exchanged;
 pub use factor::{Factor, Within};
 pub use kinematics::{Kinematics, Sines, Turning};
 pub use lanes::Lanes;

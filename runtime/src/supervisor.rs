@@ -177,6 +177,11 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Supervisor<'a, K, M> 
         self.correction.switch();
     }
 
+    /// Lets the correction fade from the one made last to what is wanted from the next cycle on: after another tool has come, say.
+    pub const fn switch(&mut self) {
+        self.correction.switch();
+    }
+
     /// One cycle: writes to `out` the command for this sample.
     ///
     /// A position that is not finite is refused as a whole and passes unchanged, while the correction of the other axes

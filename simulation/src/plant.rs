@@ -175,18 +175,7 @@ impl Plant {
     ///
     /// [`PlantError::OtherMachine`] where names or constants do not belong to the machine.
     pub fn perfect(machine: &Machine, names: &MachineNames, constants: &[f64]) -> Result<Self, PlantError> {
-        let calibration = Calibration {
-            machine: model_dsl::source::Spanned::new(
-                machine.name.clone(),
-                model_dsl::source::Span::default(),
-            ),
-            source: None,
-            constants: constants.to_vec(),
-            limits: model_dsl::calibration::Limits::default(),
-            sensors: Sensors::default(),
-            motions: Vec::new(),
-            unseen: Vec::new(),
-        };
+        let calibration = Calibration::new(machine.name.clone(), constants.to_vec());
         Self::new(machine, names, &calibration)
     }
 

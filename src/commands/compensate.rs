@@ -7,7 +7,7 @@ use std::cell::RefCell;
 use std::io::{self, IsTerminal};
 use std::rc::Rc;
 
-use abbe_runtime::{Compensator, ErrorMotion, TermState, Work, states_needed};
+use abbe_runtime::{Compensator, ErrorMotion, Exchanged, TermState, Work, states_needed};
 use csv::ByteRecord;
 use model_dsl::calibration::factor::FactorPart;
 use model_dsl::calibration::vocabulary::{self, Key, Kind};
@@ -22,7 +22,7 @@ use crate::output::warn;
 use crate::positions::{Layout, State, Summary, Wanted, output_columns, quoted};
 use crate::progress::Progress;
 use crate::written;
-use answering::{Answering, Input};
+use answering::{Answering, Input, Machines};
 
 /// Bytes that are read at once, where there are as many.
 const CAPACITY: usize = 1 << 16;
@@ -46,7 +46,8 @@ pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
     }
     let terms = calibrated.terms(|left_out| warn(&left_out));
     let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
-    let machine = Interpreter::new(&calibrated.equations, &calibrated.calibration.constants);
+    let machines = machines(&calibrated);
+    let machine = Exchanged::new(&machines.without);
     let mut states = vec![TermState::default(); states_needed(&motions)];
     let equations = &calibrated.equations;
     let mut directions = vec![[0.0; 3]; equations.axes.len()];
@@ -55,7 +56,7 @@ pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
     let mut compensator = Compensator::new(&machine, &motions, &mut states, work)
         .map_err(|error| Failure::Wrong(format!("error: the calibration cannot be run: {error}")))?;
     compensator.limits = calibrated.calibration.limits.of_compensator();
-    let mut rows = Rows::open(&calibrated, command, compensator)?;
+    let mut rows = Rows::open(&calibrated, command, (&machines, &machine), compensator)?;
     // Rows on a terminal are their own progress, and whoever types them needs none.
     let seen = command.quiet || io::stdout().is_terminal() || io::stdin().is_terminal();
     let progress = Progress::new(seen, "compensating");
@@ -63,6 +64,16 @@ pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
     drop(progress);
     let drawn = rows.finish(done)?;
     command.map.as_ref().zip(drawn).map_or(Ok(()), |(target, drawing)| written::whole(target, &drawing))
+}
+
+/// The machine without a tool and with each.
+fn machines(calibrated: &Calibrated) -> Machines {
+    let of = |constants: &[f64]| Interpreter::new(&calibrated.equations, constants);
+    let calibration = &calibrated.calibration;
+    Machines {
+        without: of(&calibration.constants),
+        with: calibration.tools.iter().map(|tool| of(&tool.constants)).collect(),
+    }
 }
 
 /// The rows on their way from standard input to standard output.
@@ -79,10 +90,11 @@ impl<'c> Rows<'c> {
     fn open(
         calibrated: &'c Calibrated,
         command: &Compensate,
-        compensator: Compensator<'c, Interpreter>,
+        (machines, machine): (&'c Machines, &'c Exchanged<&'c Interpreter>),
+        compensator: Compensator<'c, Exchanged<&'c Interpreter>>,
     ) -> Result<Self, Failure> {
         let equations = &calibrated.equations;
-        let mut answering = Answering::new(equations, compensator, command.skip_bad);
+        let mut answering = Answering::new(equations, (machines, machine), compensator, command.skip_bad);
         answering.summary = command.summary.then(Summary::default);
         answering.map = command.map.as_ref().map(|_| Map::new(equations, &calibrated.calibration));
         let answering = Rc::new(RefCell::new(answering));
@@ -111,11 +123,11 @@ impl<'c> Rows<'c> {
             .iter()
             .map(|axis| if axis.rotary { command.hysteresis.to_radians() } else { command.hysteresis })
             .collect();
-        let sensors = &calibrated.calibration.sensors;
+        let calibration = &calibrated.calibration;
         Ok(Self {
             reader,
             answering,
-            state: State::new(layout, wanted.time.is_some(), sensors, &hysteresis),
+            state: State::new(layout, wanted.time.is_some(), calibration, &hysteresis),
             first: (more && !units).then_some(second),
             row: 0,
         })
@@ -131,7 +143,10 @@ impl<'c> Rows<'c> {
             let taken = self.state.take(&row);
             let mut answering = self.answering.borrow_mut();
             match taken {
-                Ok(()) => answering.take(&mut row, self.row, &self.state.sample())?,
+                Ok(()) => {
+                    answering.change_tool(self.state.tool())?;
+                    answering.take(&mut row, self.row, &self.state.sample())?;
+                }
                 Err(mistake) => answering.refuse(&row, self.row, &mistake)?,
             }
         }
@@ -201,7 +216,12 @@ fn wanted(calibrated: &Calibrated) -> Wanted<'_> {
     let sensors =
         calibrated.calibration.sensors.inputs().map(|(_, sensor)| sensor.name.value.as_str()).collect();
     let mut motions = calibrated.calibration.motions.iter();
-    Wanted { equations: &calibrated.equations, sensors, time: motions.find_map(timed) }
+    Wanted {
+        equations: &calibrated.equations,
+        sensors,
+        time: motions.find_map(timed),
+        tools: !calibrated.calibration.tools.is_empty(),
+    }
 }
 
 /// What of an error motion depends on the time between rows, in words.

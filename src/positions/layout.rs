@@ -18,6 +18,8 @@ pub(crate) struct Wanted<'a> {
     pub(crate) sensors: Vec<&'a str>,
     /// Why a time is needed, where one is.
     pub(crate) time: Option<String>,
+    /// Whether a column may name the tool of each row.
+    pub(crate) tools: bool,
 }
 
 /// The columns that the output adds: the error in each sensitive direction, the compensated position of each axis.
@@ -54,6 +56,8 @@ pub(crate) struct Layout {
     pub(crate) sensors: Vec<Column>,
     /// The time.
     pub(crate) time: Option<Column>,
+    /// The name of the tool, where the file gives it.
+    pub(crate) tool: Option<usize>,
     /// The header's cells.
     pub(crate) header: Vec<String>,
     /// The units written, one a column, where the file has a row of them.
@@ -148,6 +152,7 @@ impl Reader<'_> {
             Some(why) => Some(self.required("t", "s", &format!("the time, which {why} needs"))),
             None => self.optional("t", "s"),
         };
+        let tool = if wanted.tools { self.find("tool") } else { None };
         let unread = self.header.iter().zip(&self.read).filter(|(_, read)| !**read);
         Layout {
             width: self.header.len(),
@@ -156,6 +161,7 @@ impl Reader<'_> {
             travels,
             sensors,
             time,
+            tool,
             unread: unread.map(|(name, _)| name.clone()).collect(),
             header: self.header.clone(),
             units: self.units.clone(),

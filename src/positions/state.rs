@@ -3,15 +3,23 @@
 
 use abbe_runtime::{Direction, DirectionTracker, Sample};
 use csv::ByteRecord;
-use model_dsl::calibration::{SensorReadings, Sensors};
+use model_dsl::calibration::{Calibration, SensorReadings};
+use model_dsl::suggest::nearest;
 
 use super::{Column, Layout};
+
+/// So many tools are told where one is not known.
+const MOST_TOOLS_TOLD: usize = 10;
 
 /// The machine's state, from row to row.
 pub(crate) struct State<'s> {
     layout: Layout,
     /// Whether a term needs to know how fast the axes move.
     timed: bool,
+    /// The calibration, which has the tools.
+    calibration: &'s Calibration,
+    /// The number of the tool in this row; none: the constants of the calibration itself.
+    tool: Option<usize>,
     sensors: SensorReadings<'s>,
     input_columns: Vec<Option<Column>>,
     /// For each column that is read its number in this row, in mm, rad, s or degC.
@@ -30,7 +38,8 @@ pub(crate) struct State<'s> {
 
 impl<'s> State<'s> {
     /// The state before the first row; `hysteresis` is in mm or rad, one for each axis.
-    pub(crate) fn new(layout: Layout, timed: bool, sensors: &'s Sensors, hysteresis: &[f64]) -> Self {
+    pub(crate) fn new(layout: Layout, timed: bool, calibration: &'s Calibration, hysteresis: &[f64]) -> Self {
+        let sensors = &calibration.sensors;
         let axes = layout.axes.len();
         let mut input_columns = vec![None; sensors.len()];
         for ((index, _), column) in sensors.inputs().zip(&layout.sensors) {
@@ -40,6 +49,8 @@ impl<'s> State<'s> {
         }
         Self {
             timed,
+            calibration,
+            tool: None,
             sensors: SensorReadings::of_terms(sensors),
             input_columns,
             numbers: vec![f64::NAN; layout.width],
@@ -62,12 +73,37 @@ impl<'s> State<'s> {
             let hint = if row.len() > self.layout.width { "; a decimal comma would do that" } else { "" };
             return Err(format!("{} cells under {} columns{hint}", row.len(), self.layout.width));
         }
+        let tool = self.find_tool(row)?;
         self.check(row)?;
+        self.tool = tool;
         self.read_positions();
         self.read_directions(row)?;
         self.read_time();
         self.read_temperatures();
         Ok(())
+    }
+
+    /// The number of the tool in the row that was taken last; none: the constants of the calibration itself.
+    pub(crate) fn tool(&self) -> Option<usize> {
+        self.tool
+    }
+
+    /// The tool that a row names; an empty cell names none.
+    fn find_tool(&self, row: &ByteRecord) -> Result<Option<usize>, String> {
+        let Some(index) = self.layout.tool else { return Ok(None) };
+        let name = text(row, index);
+        if name.is_empty() {
+            return Ok(None);
+        }
+        let found = self.calibration.tool(name);
+        found.map(Some).ok_or_else(|| {
+            let tools = || self.calibration.tools.iter().map(|tool| tool.name.value.as_str());
+            let help = match nearest(name, tools()) {
+                Some(near) => format!("is it `{near}`?"),
+                None => format!("there are {}", tools().take(MOST_TOOLS_TOLD).collect::<Vec<_>>().join(", ")),
+            };
+            format!("column `tool`: the calibration has no tool `{}`; {help}", quoted(name))
+        })
     }
 
     /// The state as the runtime reads it.

@@ -4,14 +4,15 @@
 //! calibration, error motions the terms, and the supervisor both: each stage here owns the one before it.
 
 use abbe_runtime::{
-    AxisMemory, Compensator, ErrorMotion, Kinematics, Memory, Sample, State, Supervisor, Term, TermState,
-    Work, states_needed,
+    AxisMemory, Compensator, ErrorMotion, Memory, Sample, State, Supervisor, Term, TermState, Work,
+    states_needed,
 };
 use model_dsl::calibration::{Calibration, SensorReadings};
 use self_cell::{MutBorrow, self_cell};
 
 use super::tracks::Tracks;
 use super::{Inputs, SetupFailure};
+use crate::machine::ChangingMachine;
 use crate::status::{Cycle, Status};
 
 /// The terms of each error motion.
@@ -38,7 +39,7 @@ self_cell! {
 
 /// All that a supervisor borrows.
 struct Parts {
-    machine: Box<dyn Kinematics + Send>,
+    machine: Box<dyn ChangingMachine>,
     motions: CalibratedMotions,
     storage: MutBorrow<Storage>,
 }
@@ -56,7 +57,7 @@ struct Storage {
 
 /// The supervisor, and the sensors that the calibration derives from others.
 struct Supervision<'a> {
-    supervisor: Supervisor<'a, dyn Kinematics + Send>,
+    supervisor: Supervisor<'a, dyn ChangingMachine>,
     readings: SensorReadings<'a>,
 }
 
@@ -91,7 +92,7 @@ enum Place {
 impl Running {
     /// Starts a machine with its calibration, switched off.
     pub(super) fn start(
-        machine: Box<dyn Kinematics + Send>,
+        machine: Box<dyn ChangingMachine>,
         calibration: Calibration,
     ) -> Result<Self, SetupFailure> {
         let places = places(&calibration);
@@ -123,6 +124,26 @@ impl Running {
             running.readings = SensorReadings::of_terms(parts.sensors());
             running.supervisor.restart();
         });
+    }
+
+    /// Takes a tool of the calibration, or the constants of the calibration itself; whether there is such a tool.
+    pub(super) fn set_tool(&mut self, name: Option<&str>) -> bool {
+        self.supervised.with_dependent_mut(|parts, running| {
+            let calibration = parts.motions.borrow_owner().borrow_owner();
+            let constants = match name {
+                None => Some(&calibration.constants),
+                Some(name) => calibration
+                    .tool(name)
+                    .and_then(|tool| calibration.tools.get(tool))
+                    .map(|tool| &tool.constants),
+            };
+            constants.is_some_and(|constants| running.change(parts, constants))
+        })
+    }
+
+    /// Takes these constants of the machine; whether they are as many as it has.
+    pub(super) fn set_constants(&mut self, constants: &[f64]) -> bool {
+        self.supervised.with_dependent_mut(|parts, running| running.change(parts, constants))
     }
 
     /// One cycle; every length has been checked.
@@ -160,7 +181,7 @@ impl Parts {
 }
 
 impl Storage {
-    fn new(machine: &dyn Kinematics, motions: &[ErrorMotion<'_>]) -> Self {
+    fn new(machine: &dyn ChangingMachine, motions: &[ErrorMotion<'_>]) -> Self {
         Self {
             states: vec![TermState::default(); states_needed(motions)],
             directions: vec![[0.0; 3]; machine.axes()],
@@ -174,6 +195,15 @@ impl Storage {
 }
 
 impl Supervision<'_> {
+    /// Takes other constants of the machine; whether they are as many as it has.
+    fn change(&mut self, parts: &Parts, constants: &[f64]) -> bool {
+        let changed = parts.machine.change(constants);
+        if changed {
+            self.supervisor.switch();
+        }
+        changed
+    }
+
     /// Takes the temperatures of a cycle over to all sensors of the calibration; one that no term reads is never silent.
     fn hear(&mut self, places: &[Place], given: &[f64], all: &mut [f64]) {
         let input = |sensor: usize| match places.get(sensor) {

@@ -11,6 +11,7 @@ use abbe_runtime::Kinematics;
 pub(crate) const MACHINE: &str = "abbe: 1\nname: stage\ntopology: FX\nsensitive: [X]\n";
 
 /// The topology FX in the direction X: `EXX + Zt*EBX - Yt*ECX`.
+#[derive(Clone, Copy)]
 pub(crate) struct Stage {
     constants: [f64; 3],
 }

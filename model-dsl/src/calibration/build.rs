@@ -10,6 +10,7 @@ impl Calibration {
             machine: unplaced(machine.into()),
             source: None,
             constants,
+            tools: Vec::new(),
             limits: Limits::default(),
             sensors: Sensors::default(),
             motions: Vec::new(),

@@ -6,6 +6,7 @@ use super::parameters::Context;
 use super::read_term::{Item, read_item, read_plain};
 use super::sensors::{Sensors, read_derived};
 use super::small::refuse_large;
+use super::tools::read_tools;
 use super::{CalibratedMotion, Calibration, Limits, Ramp};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::quantity::{self, Dimension};
@@ -14,7 +15,8 @@ use crate::suggest::nearest;
 use crate::yaml::{Node, NodeKind};
 use std::collections::BTreeMap;
 
-const KEYS: [&str; 7] = ["calibration", "machine", "source", "constants", "limits", "sensors", "errors"];
+const KEYS: [&str; 8] =
+    ["calibration", "machine", "source", "constants", "tools", "limits", "sensors", "errors"];
 
 /// Reads the name of the machine that a calibration is for, and nothing else.
 ///
@@ -60,6 +62,7 @@ fn read_all(root: &Node, names: &MachineNames, diagnostics: &mut Diagnostics) ->
     }
     let source = fields.get("source").and_then(|node| word(node, "`source`", diagnostics));
     let constants = read_constants(&fields, names, diagnostics);
+    let tools = present(&fields, "tools").map(|node| read_tools(node, names, &constants, diagnostics));
     let limits =
         present(&fields, "limits").map(|node| read_limits(node, fields.key_span("limits"), diagnostics));
     let sensors = present(&fields, "sensors").map(|node| read_derived(node, diagnostics));
@@ -73,6 +76,7 @@ fn read_all(root: &Node, names: &MachineNames, diagnostics: &mut Diagnostics) ->
         machine,
         source: source.map(|text| text.value),
         constants,
+        tools: tools.unwrap_or_default(),
         limits: limits.unwrap_or_default(),
         sensors,
         motions,
@@ -133,7 +137,7 @@ fn missing_constant(name: &str, names: &MachineNames, span: Span) -> Diagnostic 
     Diagnostic::error("E0406", span, message).help(format!("add `{name}: ... mm` to `constants`"))
 }
 
-fn check_constant(name: &Spanned<String>, names: &MachineNames, diagnostics: &mut Diagnostics) {
+pub(super) fn check_constant(name: &Spanned<String>, names: &MachineNames, diagnostics: &mut Diagnostics) {
     let mut known = names.constants.iter().map(|(known, _)| known.as_str());
     if known.clone().any(|known| known == name.value) {
         return;

@@ -6,7 +6,7 @@ use super::spelling::{Item, braces, brackets, quantity, sentence, term, word};
 use super::term::CalibratedTerm;
 use super::vocabulary::{INSIDE_LOOP, RAMP};
 use super::write_term::{Context, UNKNOWN, parameters};
-use super::{CalibratedMotion, Calibration, Limits};
+use super::{CalibratedMotion, Calibration, Limits, Tool};
 
 /// Writes a calibration: a term a line, in mm, rad, s and degC, so that no number is converted and [`super::read`] gives
 /// back every bit of it.
@@ -24,6 +24,7 @@ pub fn write(calibration: &Calibration, names: &MachineNames) -> String {
         text += &format!("source: {}\n", sentence(source));
     }
     text += &constants(calibration, names);
+    text += &tools(calibration, names);
     text += &limits(&calibration.limits);
     text += &derived(&calibration.sensors);
     if !(calibration.motions.is_empty() && calibration.unseen.is_empty()) {
@@ -39,6 +40,18 @@ fn constants(calibration: &Calibration, names: &MachineNames) -> String {
     let given = names.constants.iter().zip(&calibration.constants);
     let given: Vec<_> = given.map(|((name, _), value)| (word(name), quantity(*value, "mm"))).collect();
     if given.is_empty() { String::new() } else { format!("constants: {}\n", braces(given)) }
+}
+
+/// The tools, each with the constants that are different with it.
+fn tools(calibration: &Calibration, names: &MachineNames) -> String {
+    let line = |tool: &Tool| {
+        let differs = names.constants.iter().zip(tool.constants.iter().zip(&calibration.constants));
+        let differs = differs.filter(|(_, (with, without))| with.to_bits() != without.to_bits());
+        let given = differs.map(|((name, _), (value, _))| (word(name), quantity(*value, "mm")));
+        format!("  {}: {}\n", word(&tool.name.value), braces(given))
+    };
+    let lines: String = calibration.tools.iter().map(line).collect();
+    if lines.is_empty() { lines } else { format!("tools:\n{lines}") }
 }
 
 fn limits(limits: &Limits) -> String {

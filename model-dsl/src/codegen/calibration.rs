@@ -15,6 +15,7 @@ use super::{docs, factors, measured};
 use crate::calibration::vocabulary::{RAMP, Role};
 use crate::calibration::{
     CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Limits, NotCompensable, Part, SeriesInput,
+    Tool,
 };
 use crate::equations::{Equations, Motion};
 
@@ -150,7 +151,8 @@ fn items(calibration: &Calibration, motions: &[WrittenMotion], bundles: &Bundles
         Some(source) => format!("The numbers of one machine, compiled in. Source: {source}."),
         None => "The numbers of one machine, compiled in.".to_owned(),
     });
-    let constants = calibration.constants.iter().map(|constant| number(*constant));
+    let constants = with_constants(&calibration.constants);
+    let tools = tools(&calibration.tools);
     let (limits, transition) = limits(&calibration.limits);
     let measured = measured();
     let count = Literal::usize_unsuffixed(motions.iter().map(|motion| motion.terms.len()).sum());
@@ -170,7 +172,8 @@ fn items(calibration: &Calibration, motions: &[WrittenMotion], bundles: &Bundles
         #measured
         impl Calibration {
             /// The machine with the constants of the calibration.
-            pub const MACHINE: Machine = Machine { constants: Constants::from_array([#(#constants),*]) };
+            pub const MACHINE: Machine = #constants;
+            #tools
             /// What a correction must not exceed.
             pub const LIMITS: ::abbe_runtime::Limits = #limits;
             /// How a supervisor goes from one correction to another.
@@ -181,6 +184,27 @@ fn items(calibration: &Calibration, motions: &[WrittenMotion], bundles: &Bundles
             #bundles
         }
     }
+}
+
+/// The machine with these constants.
+fn with_constants(constants: &[f64]) -> TokenStream {
+    let constants = constants.iter().map(|constant| number(*constant));
+    quote! { Machine { constants: Constants::from_array([#(#constants),*]) } }
+}
+
+/// The machine with each tool, where there are any.
+fn tools(tools: &[Tool]) -> Option<TokenStream> {
+    let count = Literal::usize_unsuffixed(tools.len());
+    let entries = tools.iter().map(|tool| {
+        let (name, machine) = (&tool.name.value, with_constants(&tool.constants));
+        quote! { (#name, #machine) }
+    });
+    (!tools.is_empty()).then(|| {
+        quote! {
+            /// The tools by their names: the machine with the constants of each, for [`abbe_runtime::Exchanged`].
+            pub const TOOLS: [(&'static str, Machine); #count] = [#(#entries),*];
+        }
+    })
 }
 
 /// What the calibration limits: for the compensator, and for the supervisor.

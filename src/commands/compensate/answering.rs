@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::io::{self, Read};
 use std::rc::Rc;
 
-use abbe_runtime::{Compensator, Sample};
+use abbe_runtime::{Compensator, Exchanged, Sample};
 use csv::ByteRecord;
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
@@ -53,10 +53,20 @@ impl Read for Input<'_> {
     }
 }
 
+/// The machine without a tool, and with each tool of the calibration.
+pub(super) struct Machines {
+    pub(super) without: Interpreter,
+    pub(super) with: Vec<Interpreter>,
+}
+
 /// Those who answer: the compensator, and all that hears of its answers.
 pub(super) struct Answering<'c> {
     equations: &'c Equations,
-    compensator: Compensator<'c, Interpreter>,
+    compensator: Compensator<'c, Exchanged<&'c Interpreter>>,
+    machines: &'c Machines,
+    machine: &'c Exchanged<&'c Interpreter>,
+    /// The tool of the rows that are pending.
+    tool: Option<usize>,
     pending: Pending,
     writer: csv::Writer<io::StdoutLock<'static>>,
     number: Decimal,
@@ -77,13 +87,17 @@ impl<'c> Answering<'c> {
     /// Nobody has asked yet.
     pub(super) fn new(
         equations: &'c Equations,
-        compensator: Compensator<'c, Interpreter>,
+        (machines, machine): (&'c Machines, &'c Exchanged<&'c Interpreter>),
+        compensator: Compensator<'c, Exchanged<&'c Interpreter>>,
         skip_bad: bool,
     ) -> Self {
         let mut builder = csv::WriterBuilder::new();
         Self {
             equations,
             compensator,
+            machines,
+            machine,
+            tool: None,
             pending: Pending::default(),
             writer: builder.flexible(true).buffer_capacity(CAPACITY).from_writer(io::stdout().lock()),
             number: Decimal::default(),
@@ -105,6 +119,17 @@ impl<'c> Answering<'c> {
         let axes = layout.axes.iter().map(|column| units.get(column.index).cloned().unwrap_or_default());
         let mark = std::iter::once("#unit".to_owned());
         self.writer.write_record(mark.chain(units.iter().cloned()).chain(errors).chain(axes)).map_err(closed)
+    }
+
+    /// Takes the tool of the next row: the rows before it are answered with theirs.
+    pub(super) fn change_tool(&mut self, tool: Option<usize>) -> Result<(), Failure> {
+        if tool != self.tool {
+            self.answer()?;
+            let with = tool.and_then(|tool| self.machines.with.get(tool));
+            self.machine.exchange(with.unwrap_or(&self.machines.without));
+            self.tool = tool;
+        }
+        Ok(())
     }
 
     /// Takes a row with the state of the machine in it; leaves another record in its place.

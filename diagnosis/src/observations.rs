@@ -15,7 +15,8 @@ use crate::model::{Effect, Model, Place};
 use crate::parallel;
 use crate::side::Side;
 use crate::study::{Channel, Kind, Study};
-use crate::terms::Setting;
+use crate::recording::PartReading;
+use crate::terms::{Setting, SettingKind};
 
 pub(crate) use passage::{Moved, Passage};
 
@@ -92,8 +93,12 @@ impl<'c> Frame<'c> {
         let tip = |d: usize, row: usize| self.nominal[d][row] + self.error[d][row];
         let moved_in = |d: usize, row: usize| tip(d, row) - self.reference[d][row];
         let moved = |row: usize| [moved_in(0, row), moved_in(1, row), moved_in(2, row)];
+        let lie = study.scenes[scene].lie.as_ref();
         let predicted: Vec<f64> = match channel.kind {
-            Kind::Tip(d) => (0..self.len()).map(|row| tip(d, row)).collect(),
+            Kind::Tip(d) => match lie {
+                Some(lie) => (0..self.len()).map(|row| lie.moved(self.tip(row))[d]).collect(),
+                None => (0..self.len()).map(|row| tip(d, row)).collect(),
+            },
             Kind::Radius { center, radius } => {
                 let (center, radius) = ballbar(scene, model, center, radius);
                 let distance = |row: usize| length(self.spoke(center, row)) - radius;
@@ -102,7 +107,10 @@ impl<'c> Frame<'c> {
             Kind::Along(n) => (0..self.len()).map(|row| dot(n, moved(row))).collect(),
             Kind::Normal => {
                 let normal = |row| self.normal(study, scene, row);
-                (0..self.len()).map(|row| dot(normal(row), moved(row))).collect()
+                let lies = |row: usize| {
+                    lie.map_or_else(|| moved(row), |lie| minus(lie.moved(self.tip(row)), at(&self.reference, row)))
+                };
+                (0..self.len()).map(|row| dot(normal(row), lies(row))).collect()
             }
             Kind::Turn(about) => self.turned(about),
             Kind::Stage(axis) => {
@@ -129,6 +137,12 @@ impl<'c> Frame<'c> {
         let mut values = self.residual(study, scene, channel, model);
         values.iter_mut().zip(settings).for_each(|(value, setting)| *value -= setting);
         values
+    }
+
+    /// The tip with its error.
+    fn tip(&self, row: usize) -> [f64; 3] {
+        let part = |d: usize| self.nominal[d][row] + self.error[d][row];
+        [part(0), part(1), part(2)]
     }
 
     /// From the centre to the tip.
@@ -174,7 +188,7 @@ impl<'c> Frame<'c> {
         side: Side,
     ) -> Vec<Option<Vec<f64>>> {
         let rows = self.len();
-        if let Kind::Tip(d) = channel.kind {
+        if let (Kind::Tip(d), None) = (channel.kind, study.scenes[scene].lie) {
             return self.levers.iter().map(|parts| lever(&parts[d], rows)).collect();
         }
         if let Kind::Drive(axis) = channel.kind {
@@ -187,7 +201,8 @@ impl<'c> Frame<'c> {
         of.iter().map(|parts| projected(parts, &directions)).collect()
     }
 
-    /// What a channel sees of the tip, or of its rotation; nothing of either where it is a drive's own feedback.
+    /// What a channel sees of the tip, or of its rotation; nothing of either where it is a drive's own feedback. Of a part that lies turned
+    /// it sees the directions in the part.
     pub(crate) fn sight(
         &self,
         study: &Study<'_>,
@@ -196,8 +211,10 @@ impl<'c> Frame<'c> {
         model: &Model,
     ) -> Sight {
         let everywhere = |direction: [f64; 3]| vec![direction; self.len()];
+        let lie = study.scenes[scene].lie.as_ref();
+        let in_part = |direction: [f64; 3]| lie.map_or(direction, |lie| lie.back(direction));
         let directions = match channel.kind {
-            Kind::Tip(d) => everywhere([0, 1, 2].map(|other| if other == d { 1.0 } else { 0.0 })),
+            Kind::Tip(d) => everywhere(in_part(along(d))),
             Kind::Radius { center, radius } => {
                 let leans = study.scenes[scene].leans;
                 let mut directions = self.spokes(ballbar(scene, model, center, radius).0);
@@ -207,7 +224,7 @@ impl<'c> Frame<'c> {
                 directions
             }
             Kind::Along(n) | Kind::Turn(n) => everywhere(n),
-            Kind::Normal => (0..self.len()).map(|row| self.normal(study, scene, row)).collect(),
+            Kind::Normal => (0..self.len()).map(|row| in_part(self.normal(study, scene, row))).collect(),
             Kind::Stage(axis) => everywhere(stage_direction(study, axis, &self.turns)),
             Kind::Drive(_) => everywhere([0.0; 3]),
         };
@@ -262,12 +279,36 @@ impl<'c> Frame<'c> {
                 Some((0..self.len()).map(|row| -dot(n, way(row))).collect())
             }
             Setting::Clock => self.clock(study, scene, channel, model),
+            Setting::Displacement { direction } => {
+                self.of_part(study, scene, channel.kind, |read, _| read[direction])
+            }
+            Setting::Rotation { direction } => {
+                let lie = study.scenes[scene].lie.as_ref()?;
+                self.of_part(study, scene, channel.kind, |read, place| lie.levers(read, place)[direction])
+            }
         }
+    }
+
+    /// What a channel that reads a part sees of it, from the direction of the reading and the nominal place of the tip: that from which
+    /// the lever arms of error motions are counted too.
+    fn of_part(
+        &self,
+        study: &Study<'_>,
+        scene: usize,
+        kind: Kind,
+        seen: impl Fn([f64; 3], [f64; 3]) -> f64,
+    ) -> Option<Vec<f64>> {
+        let read = |row: usize| match kind {
+            Kind::Tip(d) => Some(along(d)),
+            Kind::Normal => Some(self.normal(study, scene, row)),
+            _ => None,
+        };
+        (0..self.len()).map(|row| Some(seen(read(row)?, at(&self.nominal, row)))).collect()
     }
 
     fn direction(&self, kind: Kind) -> Option<[f64; 3]> {
         match kind {
-            Kind::Tip(d) => Some([0, 1, 2].map(|other| if other == d { 1.0 } else { 0.0 })),
+            Kind::Tip(d) => Some(along(d)),
             Kind::Along(n) => Some(n),
             _ => None,
         }
@@ -303,7 +344,7 @@ impl<'c> Frame<'c> {
         for fitted in model {
             let setting = fitted.effect.setting_of(scene);
             if let (Some(setting), [coefficient]) = (setting, fitted.coefficients.as_slice())
-                && (setting.of_a_run() || matches!(setting, Setting::Offset { .. } | Setting::Cosine))
+                && (setting.of_a_run() || matches!(setting, Setting::Offset { .. } | Setting::Cosine) || setting.kind() == SettingKind::Datum)
                 && let Some(column) = self.setting(study, scene, number, setting, model)
             {
                 for (sum, value) in sum.iter_mut().zip(column) {
@@ -361,6 +402,15 @@ fn stage_direction(study: &Study<'_>, axis: usize, turns: &[[Column<'_>; 3]]) ->
     own.map_or([0.0; 3], |own| [0, 1, 2].map(|d| own[d].at(0)))
 }
 
+/// A direction of the part's frame.
+fn along(direction: usize) -> [f64; 3] {
+    [0, 1, 2].map(|other| if other == direction { 1.0 } else { 0.0 })
+}
+
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
 fn first_known(values: &[f64]) -> f64 {
     values.iter().copied().find(|value| value.is_finite()).unwrap_or_default()
 }
@@ -389,6 +439,34 @@ pub(crate) fn residuals(study: &Study<'_>, scene: usize, model: &Model, course: 
     });
     residuals
 }
+
+/// The readings of a part as the calibration leaves them, evenly from all rows: enough to tell how it lies.
+pub(crate) fn part_readings(study: &Study<'_>, scene: usize, course: &Course) -> Vec<PartReading> {
+    let known = &study.scenes[scene];
+    let stride = known.rows().div_ceil(MOST_READINGS).max(1);
+    let of_frame = |frame: &Frame<'_>| {
+        let first = frame.first_row().next_multiple_of(stride) - frame.first_row();
+        let mut readings = Vec::new();
+        for channel in &known.channels {
+            let left = frame.residual(study, scene, channel, &Vec::new());
+            for row in (first..frame.len()).step_by(stride) {
+                let direction = match channel.kind {
+                    Kind::Tip(d) => along(d),
+                    Kind::Normal => frame.normal(study, scene, row),
+                    _ => continue,
+                };
+                readings.push(PartReading { direction, place: frame.tip(row), deviation: left[row] });
+            }
+        }
+        readings
+    };
+    let mut all = Vec::new();
+    each_frame(study, scene, &Vec::new(), course, of_frame, |_, readings| all.extend(readings));
+    all
+}
+
+/// The most rows from which is told how a part lies.
+const MOST_READINGS: usize = 10_000;
 
 /// Runs through the rows of a scene in stretches: `work` on all processors, `take` in the order of the rows.
 pub(crate) fn each_frame<T: Send>(

@@ -127,8 +127,11 @@ impl Lie {
 
     /// The freedoms that the readings show, each beside those before it.
     fn seen(&self, readings: &[PartReading], constant: bool) -> Vec<usize> {
-        let known: Vec<[f64; FREEDOMS]> =
-            readings.iter().filter(|reading| reading.is_known()).map(|reading| self.effects(reading)).collect();
+        let known: Vec<[f64; FREEDOMS]> = readings
+            .iter()
+            .filter(|reading| reading.is_known())
+            .map(|reading| self.effects(reading))
+            .collect();
         let places = readings.iter().filter(|reading| reading.is_known());
         let size = places.map(|reading| self.arm(reading.place).norm()).fold(0.0, f64::max);
         let mut basis: Vec<DVector<f64>> = Vec::new();
@@ -213,7 +216,8 @@ pub fn turned(readings: &[PartReading]) -> Option<Turned> {
     let planes = [("X", 1, 2), ("Y", 2, 0), ("Z", 0, 1)];
     let found = planes.into_iter().filter_map(|(about, first, second)| {
         let along = |axis: usize| -> Vec<PartReading> {
-            let own = |reading: &&PartReading| reading.direction.get(axis) == Some(&1.0) && reading.is_known();
+            let own =
+                |reading: &&PartReading| reading.direction.get(axis) == Some(&1.0) && reading.is_known();
             readings.iter().filter(own).copied().collect()
         };
         let (one, other) = (Side::of(&along(first), second)?, Side::of(&along(second), first)?);

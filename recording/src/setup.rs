@@ -154,7 +154,8 @@ impl<'c> Context<'c> {
         if !seen {
             let message = "no channel shows how a part lies, and `datum` is that of a part";
             let mistake = Diagnostic::error("E0618", written.span, message);
-            diagnostics.push(mistake.help("add the channel `measured.x`, `.y` or `.z`, or leave `datum` out"));
+            diagnostics
+                .push(mistake.help("add the channel `measured.x`, `.y` or `.z`, or leave `datum` out"));
             return None;
         }
         Some(true)

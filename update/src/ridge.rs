@@ -31,7 +31,8 @@ pub(crate) fn solve(problem: &Problem) -> Option<Solution> {
     let spread = remaining.iter().zip(&unknown).map(|(remaining, seen)| {
         expected.map(|expected| expected * (1.0 - seen * seen + remaining * remaining).max(0.0).sqrt())
     });
-    let root = expected.map(|expected| decomposition.root(&all_of(known, problem.jacobian.ncols())) * expected);
+    let root =
+        expected.map(|expected| decomposition.root(&all_of(known, problem.jacobian.ncols())) * expected);
     Some(Solution {
         root,
         moved: decomposition.seen().to_vec(),

@@ -62,7 +62,12 @@ pub(crate) fn effects(point: &Point, setting: &Setting, directions: [bool; 3]) -
 }
 
 /// The rotations of the parts whose datum is free, with what the solution leaves of them.
-pub(crate) fn rotations(all: &Points, fitted: &[&Point], solution: &Solution, directions: [bool; 3]) -> Vec<Rotation> {
+pub(crate) fn rotations(
+    all: &Points,
+    fitted: &[&Point],
+    solution: &Solution,
+    directions: [bool; 3],
+) -> Vec<Rotation> {
     let mut found = Vec::new();
     for (number, setting) in all.settings.iter().enumerate() {
         let own: Vec<&Point> = fitted.iter().copied().filter(|point| point.setting == number).collect();

@@ -21,11 +21,7 @@ pub(crate) struct Problem {
 
 impl Problem {
     /// The system of some points.
-    pub(crate) fn of(
-        points: &[&Point],
-        coefficients: &[Coefficient],
-        freedom: Freedom<'_>,
-    ) -> Self {
+    pub(crate) fn of(points: &[&Point], coefficients: &[Coefficient], freedom: Freedom<'_>) -> Self {
         let datum = Datum::of(points, freedom);
         let share = |row: usize, column: usize| {
             points.get(row).and_then(|point| point.shares.get(column)).copied().unwrap_or(0.0)

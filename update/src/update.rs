@@ -4,8 +4,8 @@ use model_dsl::calibration::Calibration;
 use nalgebra::DVector;
 
 use crate::coefficient::{Coefficient, Coefficients, coefficients, set};
-use crate::error::UpdateError;
 use crate::datum::Freedom;
+use crate::error::UpdateError;
 use crate::nullspace::{Alike, relations};
 use crate::points::{Machine, Point};
 use crate::residuals::{Residual, residuals};

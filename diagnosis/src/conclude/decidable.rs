@@ -55,6 +55,7 @@ pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
     }
     sentences.extend(study.scenes.iter().filter_map(|scene| end_points(study, scene)));
     sentences.extend(study.scenes.iter().filter_map(unturned));
+    sentences.extend(turned_alike(study));
     sentences.extend(clamped(study));
     if study.scenes.iter().all(|scene| scene.run_numbers().len() < 2) {
         sentences.push(
@@ -80,6 +81,23 @@ fn unturned(scene: &Scene<'_>) -> Option<String> {
         format!(
             "How the part of {} is turned cannot be decided, because its points lie in line with what was measured of them.",
             scene.recording.file
+        )
+    })
+}
+
+/// What the free rotations of all parts leave open of the machine: what it turns alike wherever its axes stand.
+fn turned_alike(study: &Study<'_>) -> Option<String> {
+    let free = |scene: &Scene<'_>, about: usize| scene.lie.as_ref().is_some_and(|lie| lie.rotations[about]);
+    let about = ["X", "Y", "Z"].into_iter().enumerate();
+    let about: Vec<&str> = about
+        .filter(|(number, _)| study.scenes.iter().all(|scene| free(scene, *number)))
+        .map(|(_, letter)| letter)
+        .collect();
+    (!about.is_empty()).then(|| {
+        format!(
+            "Whether the machine turns all that it makes about {} by a constant angle cannot be decided from these recordings, because \
+             each part was clamped anew (`datum: free`) and lies turned by an angle of its own.",
+            about.join(" or ")
         )
     })
 }

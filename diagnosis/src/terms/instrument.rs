@@ -79,6 +79,15 @@ impl Setting {
         matches!(self, Self::RunOffset { .. } | Self::RunEccentricity { .. })
     }
 
+    /// Whether it adds to a reading what it does times its size, whatever the size. Others act exactly.
+    pub(crate) fn adds(self) -> bool {
+        self.of_a_run()
+            || matches!(
+                self,
+                Self::Offset { .. } | Self::Cosine | Self::Displacement { .. } | Self::Rotation { .. }
+            )
+    }
+
     /// Which setting it is.
     pub(crate) fn kind(self) -> SettingKind {
         match self {

@@ -80,7 +80,8 @@ fn levers_are_what_a_little_more_rotation_does() {
     for axis in 0..3 {
         let mut more = [0.0; 3];
         more[axis] = small;
-        let further = Lie { rotation: UnitQuaternion::from_scaled_axis(Vector3::from(more)) * lie.rotation, ..lie };
+        let further =
+            Lie { rotation: UnitQuaternion::from_scaled_axis(Vector3::from(more)) * lie.rotation, ..lie };
         let along = |lie: &Lie| Vector3::from(lie.moved(place)).dot(&Vector3::from(direction));
         let slope = (along(&further) - along(&lie)) / small;
         assert!((slope - lie.levers(direction, place)[axis]).abs() < 1e-4, "{axis}");

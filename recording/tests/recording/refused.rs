@@ -248,7 +248,14 @@ fn datums() {
     let of = |value: &str| format!("setup: {{datum: {value}}}\nholdout");
     refused(POSITION, "holdout", &of("fixed"), "E0604", "fixed", "leave `datum` out");
     refused(POSITION, "holdout", &of("[free]"), "E0604", "[free]", "");
-    refused(BALLBAR, "radius: 150 mm", "radius: 150 mm, datum: free", "E0616", "datum", "`center` and `radius`");
+    refused(
+        BALLBAR,
+        "radius: 150 mm",
+        "radius: 150 mm, datum: free",
+        "E0616",
+        "datum",
+        "`center` and `radius`",
+    );
     refused(LATHE, "axis: X", "axis: X, datum: free", "E0616", "datum", "`axis` and `direction`");
     // The angle of a rotary stage and a drive's own feedback say nothing of a part.
     let stage = "{recording: 1, machine: FC, instrument: position, data: d.csv, setup: {},

@@ -144,7 +144,7 @@ impl<'c> Context<'c> {
         let written = word(node, "`datum`", diagnostics)?;
         if written.value != "free" {
             let message = format!("`datum` is `free`, found `{}`", written.value);
-            let help = "leave `datum` out where the part was measured as it was clamped when it was made";
+            let help = "write `datum: free`; leave `datum` out where the part was measured as it was clamped when it was made";
             diagnostics.push(Diagnostic::error(FORM, written.span, message).help(help));
             return None;
         }

@@ -59,8 +59,8 @@ const SEEN: f64 = 0.01;
 /// The most steps to the rotation. Each step squares the angle that is left.
 const STEPS: usize = 30;
 
-/// A step by a smaller angle ends them, rad: it moves no part by a picometre.
-const DONE: f64 = 1e-13;
+/// A step by a smaller angle ends them, rad: it moves a metre by 0.1 nm, and what is left after it is its square.
+const DONE: f64 = 1e-10;
 
 impl Lie {
     /// How a part lay of which these are the readings. `constant` says whether a constant of all readings is free besides, as the zero

@@ -2,6 +2,7 @@
 
 #![expect(
     clippy::unwrap_used,
+    clippy::panic,
     reason = "a panic is the report of a test, also from a function that tests share"
 )]
 

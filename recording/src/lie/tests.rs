@@ -130,7 +130,8 @@ fn a_rotation_is_told_and_a_squareness_or_a_scale_is_not() {
     assert_eq!(found.about, "Z");
     assert!((found.angle - angle).abs() < 1e-6 && found.share > 0.99, "{found:?}");
     let none: [[[f64; 3]; 3]; 4] = [
-        // A squareness over a part that is as long as this one, and over a narrow one below; a scale; a trapeze.
+        // A squareness over a part that is as long as this one, and over a narrow one below; a scale; both sides towards each
+        // other.
         [[1.0, -angle, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         [[1.0, 0.0, 0.0], [angle, 1.0, 0.0], [0.0, 0.0, 1.0]],
         [[1.0 + angle, 0.0, 0.0], [0.0, 1.0 - angle, 0.0], [0.0, 0.0, 1.0]],

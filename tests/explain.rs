@@ -14,7 +14,7 @@ use crate::shipped::root;
 use crate::tidy::rust_files;
 
 /// Settings of instruments that a diagnosis tells.
-const SETTINGS: [&str; 5] = ["eccentricity", "radius", "cosine", "clock", "offset"];
+const SETTINGS: [&str; 6] = ["eccentricity", "radius", "cosine", "clock", "datum", "offset"];
 
 /// Codes whose example would be too long for a page, or is no text.
 const WITHOUT_EXAMPLE: [&str; 3] = ["E0003", "E0115", "E0921"];

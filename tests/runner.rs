@@ -41,6 +41,7 @@ mod odd_machines;
 mod oracle;
 mod page;
 mod pictures;
+mod plates;
 mod processors;
 mod published_table;
 mod python;

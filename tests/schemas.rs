@@ -356,6 +356,7 @@ fn mappings() -> Vec<(&'static str, String, String)> {
     }
     let pointer = format!("{instruments}/properties/ballbar/properties/eccentricity");
     add("path", "instrument: {ballbar: {eccentricity: {unheardof: 1}}}", &pointer);
+    add("path", "instrument: position\ndatum: {unheardof: 1}", "/properties/datum");
     add("path", "noise: {unheardof: 1}", "/definitions/noise/anyOf/1");
     for noise in ["correlated", "walk", "outliers"] {
         let pointer = format!("/definitions/noise/anyOf/1/properties/{noise}");

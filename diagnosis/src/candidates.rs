@@ -7,7 +7,7 @@ use crate::answers::answers;
 use crate::model::{Effect, Place};
 use crate::ranges::shortest_step;
 use crate::side::Side;
-use crate::study::{Kind, Study};
+use crate::study::{Kind, Scene, Study};
 use crate::terms::{REFERENCE_TEMPERATURE, Setting, Shape};
 use crate::travel::Travel;
 
@@ -31,8 +31,19 @@ pub(crate) fn always(study: &Study<'_>) -> Vec<Effect> {
                 effects.push(Effect::setting(number, Setting::Offset { channel }));
             }
         }
+        effects.extend(datum(scene).map(|setting| Effect::setting(number, setting)));
     }
     effects
+}
+
+/// How the part of a recording lies, where that is free, beside the zeros of its channels: each that a recording shows.
+fn datum<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = Setting> + 's {
+    scene.lie.iter().flat_map(|lie| {
+        let along = (0..3).filter(|direction| lie.displacements[*direction]);
+        let about = (0..3).filter(|direction| lie.rotations[*direction]);
+        let along = along.filter(|_| scene.is_probed()).map(|direction| Setting::Displacement { direction });
+        along.chain(about.map(|direction| Setting::Rotation { direction }))
+    })
 }
 
 /// All candidates but waves, in order of simplicity.

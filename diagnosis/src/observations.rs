@@ -4,7 +4,9 @@
 //! gain there: the lever arm in the observed direction. A regressor is gain times term. The position behind a loop and what
 //! the calibration says are taken exactly; error motions of the model act to first order, as in the compensation.
 
+mod parts;
 mod passage;
+mod settings;
 
 use std::ops::Range;
 
@@ -15,9 +17,10 @@ use crate::model::{Effect, Model, Place};
 use crate::parallel;
 use crate::side::Side;
 use crate::study::{Channel, Kind, Study};
-use crate::terms::Setting;
 
+pub(crate) use parts::part_readings;
 pub(crate) use passage::{Moved, Passage};
+use settings::ballbar;
 
 /// In which direction a channel sees the tip, or about which it sees it turn, in every row of a stretch.
 pub(crate) struct Sight {
@@ -92,8 +95,12 @@ impl<'c> Frame<'c> {
         let tip = |d: usize, row: usize| self.nominal[d][row] + self.error[d][row];
         let moved_in = |d: usize, row: usize| tip(d, row) - self.reference[d][row];
         let moved = |row: usize| [moved_in(0, row), moved_in(1, row), moved_in(2, row)];
+        let lie = study.scenes[scene].lie.as_ref();
         let predicted: Vec<f64> = match channel.kind {
-            Kind::Tip(d) => (0..self.len()).map(|row| tip(d, row)).collect(),
+            Kind::Tip(d) => match lie {
+                Some(lie) => (0..self.len()).map(|row| lie.moved(self.tip(row))[d]).collect(),
+                None => (0..self.len()).map(|row| tip(d, row)).collect(),
+            },
             Kind::Radius { center, radius } => {
                 let (center, radius) = ballbar(scene, model, center, radius);
                 let distance = |row: usize| length(self.spoke(center, row)) - radius;
@@ -102,7 +109,13 @@ impl<'c> Frame<'c> {
             Kind::Along(n) => (0..self.len()).map(|row| dot(n, moved(row))).collect(),
             Kind::Normal => {
                 let normal = |row| self.normal(study, scene, row);
-                (0..self.len()).map(|row| dot(normal(row), moved(row))).collect()
+                let lies = |row: usize| {
+                    lie.map_or_else(
+                        || moved(row),
+                        |lie| minus(lie.moved(self.tip(row)), at(&self.reference, row)),
+                    )
+                };
+                (0..self.len()).map(|row| dot(normal(row), lies(row))).collect()
             }
             Kind::Turn(about) => self.turned(about),
             Kind::Stage(axis) => {
@@ -129,6 +142,12 @@ impl<'c> Frame<'c> {
         let mut values = self.residual(study, scene, channel, model);
         values.iter_mut().zip(settings).for_each(|(value, setting)| *value -= setting);
         values
+    }
+
+    /// The tip with its error.
+    fn tip(&self, row: usize) -> [f64; 3] {
+        let part = |d: usize| self.nominal[d][row] + self.error[d][row];
+        [part(0), part(1), part(2)]
     }
 
     /// From the centre to the tip.
@@ -174,7 +193,7 @@ impl<'c> Frame<'c> {
         side: Side,
     ) -> Vec<Option<Vec<f64>>> {
         let rows = self.len();
-        if let Kind::Tip(d) = channel.kind {
+        if let (Kind::Tip(d), None) = (channel.kind, study.scenes[scene].lie) {
             return self.levers.iter().map(|parts| lever(&parts[d], rows)).collect();
         }
         if let Kind::Drive(axis) = channel.kind {
@@ -187,7 +206,8 @@ impl<'c> Frame<'c> {
         of.iter().map(|parts| projected(parts, &directions)).collect()
     }
 
-    /// What a channel sees of the tip, or of its rotation; nothing of either where it is a drive's own feedback.
+    /// What a channel sees of the tip, or of its rotation; nothing of either where it is a drive's own feedback. Of a part that lies turned
+    /// it sees the directions in the part.
     pub(crate) fn sight(
         &self,
         study: &Study<'_>,
@@ -196,8 +216,10 @@ impl<'c> Frame<'c> {
         model: &Model,
     ) -> Sight {
         let everywhere = |direction: [f64; 3]| vec![direction; self.len()];
+        let lie = study.scenes[scene].lie.as_ref();
+        let in_part = |direction: [f64; 3]| lie.map_or(direction, |lie| lie.back(direction));
         let directions = match channel.kind {
-            Kind::Tip(d) => everywhere([0, 1, 2].map(|other| if other == d { 1.0 } else { 0.0 })),
+            Kind::Tip(d) => everywhere(in_part(along(d))),
             Kind::Radius { center, radius } => {
                 let leans = study.scenes[scene].leans;
                 let mut directions = self.spokes(ballbar(scene, model, center, radius).0);
@@ -207,7 +229,7 @@ impl<'c> Frame<'c> {
                 directions
             }
             Kind::Along(n) | Kind::Turn(n) => everywhere(n),
-            Kind::Normal => (0..self.len()).map(|row| self.normal(study, scene, row)).collect(),
+            Kind::Normal => (0..self.len()).map(|row| in_part(self.normal(study, scene, row))).collect(),
             Kind::Stage(axis) => everywhere(stage_direction(study, axis, &self.turns)),
             Kind::Drive(_) => everywhere([0.0; 3]),
         };
@@ -223,110 +245,6 @@ impl<'c> Frame<'c> {
         };
         (0..self.len()).map(unit).collect()
     }
-
-    /// How a channel sees a setting of its instrument; `None` where it does not.
-    pub(crate) fn setting(
-        &self,
-        study: &Study<'_>,
-        scene: usize,
-        number: usize,
-        setting: Setting,
-        model: &Model,
-    ) -> Option<Vec<f64>> {
-        let channel = &study.scenes[scene].channels[number];
-        let radial = |value: &dyn Fn(usize) -> f64| match channel.kind {
-            Kind::Radius { .. } => Some((0..self.len()).map(value).collect()),
-            _ => None,
-        };
-        match setting {
-            Setting::Offset { channel } => (channel == number).then(|| vec![1.0; self.len()]),
-            Setting::RunOffset { channel, run } => (channel == number).then(|| {
-                let runs = &study.scenes[scene].recording.run[self.rows.clone()];
-                runs.iter().map(|known| if *known == run { 1.0 } else { 0.0 }).collect()
-            }),
-            Setting::Radius => radial(&|_| -1.0),
-            Setting::Eccentricity { direction } | Setting::RunEccentricity { direction, .. } => {
-                let Kind::Radius { center, radius } = channel.kind else { return None };
-                let spokes = self.spokes(ballbar(scene, model, center, radius).0);
-                let runs = &study.scenes[scene].recording.run[self.rows.clone()];
-                let counts = |row: usize| match setting {
-                    Setting::RunEccentricity { run, .. } => runs[row] == run,
-                    _ => true,
-                };
-                radial(&|row| if counts(row) { -spokes[row][direction] } else { 0.0 })
-            }
-            Setting::Cosine => {
-                let travelled = |d: usize, row: usize| self.nominal[d][row] - self.start[d];
-                let way = |row: usize| [travelled(0, row), travelled(1, row), travelled(2, row)];
-                let n = self.direction(channel.kind)?;
-                Some((0..self.len()).map(|row| -dot(n, way(row))).collect())
-            }
-            Setting::Clock => self.clock(study, scene, channel, model),
-        }
-    }
-
-    fn direction(&self, kind: Kind) -> Option<[f64; 3]> {
-        match kind {
-            Kind::Tip(d) => Some([0, 1, 2].map(|other| if other == d { 1.0 } else { 0.0 })),
-            Kind::Along(n) => Some(n),
-            _ => None,
-        }
-    }
-
-    /// What a second of delay does to a channel: minus the velocity that it sees.
-    fn clock(
-        &self,
-        study: &Study<'_>,
-        scene: usize,
-        channel: &Channel<'_>,
-        model: &Model,
-    ) -> Option<Vec<f64>> {
-        if !channel.kind.outside() {
-            return None;
-        }
-        let gains = self.gains(study, scene, channel, model, Side::Drive);
-        let mut sum = vec![0.0; self.len()];
-        for (axis, own) in study.own.iter().enumerate() {
-            let slope = &self.course.shown.axes[axis].clock_slope[self.rows.clone()];
-            if let Some(gain) = own.and_then(|own| gains[own].as_ref()) {
-                for ((sum, gain), slope) in sum.iter_mut().zip(gain).zip(slope) {
-                    *sum += gain * slope;
-                }
-            }
-        }
-        Some(sum)
-    }
-
-    /// What the instrument's settings in the model add to the reading of a channel, but for those that act exactly.
-    pub(crate) fn settings(&self, study: &Study<'_>, scene: usize, number: usize, model: &Model) -> Vec<f64> {
-        let mut sum = vec![0.0; self.len()];
-        for fitted in model {
-            let setting = fitted.effect.setting_of(scene);
-            if let (Some(setting), [coefficient]) = (setting, fitted.coefficients.as_slice())
-                && (setting.of_a_run() || matches!(setting, Setting::Offset { .. } | Setting::Cosine))
-                && let Some(column) = self.setting(study, scene, number, setting, model)
-            {
-                for (sum, value) in sum.iter_mut().zip(column) {
-                    *sum += coefficient * value;
-                }
-            }
-        }
-        sum
-    }
-}
-
-/// The true centre and radius of a ballbar under a model.
-fn ballbar(scene: usize, model: &Model, mut center: [f64; 3], mut radius: f64) -> ([f64; 3], f64) {
-    for fitted in model {
-        if let [coefficient] = fitted.coefficients.as_slice() {
-            match fitted.effect.setting_of(scene) {
-                Some(Setting::Eccentricity { direction }) => center[direction] += coefficient,
-                Some(Setting::Radius) => radius += coefficient,
-                _ => {}
-            }
-        }
-    }
-    (center, radius)
 }
 
 /// What of lever arms lies in the direction of each row; `None` where that is nothing in all of them.
@@ -359,6 +277,15 @@ fn seen(gain: Vec<f64>) -> Option<Vec<f64>> {
 fn stage_direction(study: &Study<'_>, axis: usize, turns: &[[Column<'_>; 3]]) -> [f64; 3] {
     let own = study.own[axis].and_then(|own| turns.get(own));
     own.map_or([0.0; 3], |own| [0, 1, 2].map(|d| own[d].at(0)))
+}
+
+/// A direction of the part's frame.
+fn along(direction: usize) -> [f64; 3] {
+    [0, 1, 2].map(|other| if other == direction { 1.0 } else { 0.0 })
+}
+
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 fn first_known(values: &[f64]) -> f64 {

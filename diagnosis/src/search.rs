@@ -356,7 +356,13 @@ fn zeroed(design: &Design, products: &DMatrix<f64>, always: usize) -> Swept {
     let is_zero = |number: &usize| {
         matches!(
             design.regressors[*number].effect.shape,
-            Shape::Instrument(Setting::Offset { .. } | Setting::Radius | Setting::RunOffset { .. })
+            Shape::Instrument(
+                Setting::Offset { .. }
+                    | Setting::Radius
+                    | Setting::RunOffset { .. }
+                    | Setting::Displacement { .. }
+                    | Setting::Rotation { .. }
+            )
         )
     };
     for number in (0..always).filter(is_zero) {

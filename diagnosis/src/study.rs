@@ -15,7 +15,8 @@ use crate::course::{Course, LastCourse};
 use crate::legs::GAP;
 use crate::model::{Effect, Fitted, Place};
 use crate::noise;
-use crate::recording::{Instrument, Recording};
+use crate::observations;
+use crate::recording::{Instrument, Lie, Recording};
 use crate::returns::{Return, Returns};
 use crate::rounded;
 use crate::side::Side;
@@ -73,6 +74,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) at_rest: bool,
     /// The directions in which the path leaves the plane of a ballbar's centre; the others a ballbar does not show.
     pub(crate) leans: [bool; 3],
+    /// How the part lies where it was measured, where that is free.
+    pub(crate) lie: Option<Lie>,
     /// The course that was worked out last.
     pub(crate) last_course: LastCourse,
     /// What may come back in it.
@@ -187,6 +190,10 @@ impl<'a> Study<'a> {
         let mut study = Self { equations, sensors, loads, scenes, known, own, crossings };
         for scene in 0..study.scenes.len() {
             let course = Course::new(&study, scene, &[]);
+            if study.scenes[scene].recording.free_datum {
+                let readings = observations::part_readings(&study, scene, &course);
+                study.scenes[scene].lie = Some(Lie::of(&readings, study.scenes[scene].is_probed()));
+            }
             study.scenes[scene].returns = Returns::new(&study, scene, &course.shown);
             study.scenes[scene].last_course = LastCourse::default();
         }
@@ -293,6 +300,7 @@ impl<'a> Scene<'a> {
             observed: observed(&given),
             corners: corners(recording, &given),
             leans: leans(recording, &given.programmed, &built.interpreter),
+            lie: None,
             built,
             recording,
             given,
@@ -304,6 +312,11 @@ impl<'a> Scene<'a> {
     /// How many rows there are.
     pub(crate) fn rows(&self) -> usize {
         self.recording.time.len()
+    }
+
+    /// Whether it is read along normals, from one zero.
+    pub(crate) fn is_probed(&self) -> bool {
+        self.channels.iter().any(|channel| channel.kind == Kind::Normal)
     }
 
     /// Whether a channel is a drive's own feedback.

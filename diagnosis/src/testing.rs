@@ -161,6 +161,7 @@ pub(crate) fn recording(simulated: Simulated) -> Recording {
     let mut recording = Recording {
         file: "test.yaml".to_owned(),
         instrument: set_up(&simulated.instrument),
+        free_datum: simulated.free_datum,
         holdout: (!simulated.holdout.is_empty()).then(|| simulated.holdout.clone()),
         normal: simulated.normals,
         time: simulated.time,

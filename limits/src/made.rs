@@ -12,6 +12,7 @@ pub(crate) fn recording(simulated: Simulated, file: &str) -> Option<Recording> {
         file: file.to_owned(),
         title: simulated.title,
         instrument,
+        free_datum: simulated.free_datum,
         time: simulated.time,
         run: simulated.run,
         axes: axes

@@ -65,6 +65,8 @@ impl Move {
         };
         let simulated = simulate(&plant, &scenario).ok()?;
         let mut recording = made::recording(simulated, &self.words)?;
+        // What was clamped anew once is clamped anew again.
+        recording.free_datum |= base.recording.free_datum;
         read_by_drives(base, &mut recording);
         Base::new(&self.words, base.compiled.clone(), base.calibration.clone(), recording).ok()
     }

@@ -43,6 +43,8 @@ pub struct Header {
     pub constants: Vec<(usize, f64)>,
     /// What measured, and how it was set up.
     pub instrument: Instrument,
+    /// Whether the part lies with a displacement and a rotation of its own.
+    pub free_datum: bool,
     /// The direction of all readings of a probe, where the set-up gives it in place of channels: a unit vector.
     pub normal: Option<[f64; 3]>,
     /// The file of the data, a path from the recording's own folder.
@@ -161,6 +163,7 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
         calibration,
         constants,
         instrument: setup.instrument,
+        free_datum: setup.free_datum,
         normal: setup.normal,
         data: data?,
         channels: channels.known,

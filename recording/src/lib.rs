@@ -38,6 +38,7 @@ mod channel;
 mod data;
 mod direction;
 mod header;
+mod lie;
 mod position;
 mod runs;
 mod setup;
@@ -50,6 +51,7 @@ pub use channel::{Channel, ChannelKind};
 pub use data::{DataError, Place};
 pub use direction::own_direction;
 pub use header::{Extra, Header, calibration_of, machine_of, read_header};
+pub use lie::{Lie, PartReading, Turned, clamped_anew, turned};
 
 /// One recording, in mm, rad, s, degC and the units of its loads. All columns have one entry a row.
 #[derive(Clone, Debug, Default)]
@@ -60,6 +62,8 @@ pub struct Recording {
     pub title: Option<String>,
     /// What measured, and how it was set up.
     pub instrument: Instrument,
+    /// Whether the part was clamped anew where it was measured, so that it lies there with a displacement and a rotation of its own.
+    pub free_datum: bool,
     /// Time since the first row, s; strictly increasing.
     pub time: Vec<f64>,
     /// The repeat that each row belongs to; 1 everywhere where the recording does not tell.

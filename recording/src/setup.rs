@@ -46,15 +46,16 @@ impl Kind {
     /// The keys of its set-up.
     fn keys(self) -> &'static [&'static str] {
         match self {
-            Self::Position => &[],
+            Self::Position => &["datum"],
             Self::Ballbar => &["center", "radius"],
-            Self::Linear | Self::Straightness | Self::Angular | Self::Probe => &["axis", "direction"],
+            Self::Linear | Self::Straightness | Self::Angular => &["axis", "direction"],
+            Self::Probe => &["axis", "direction", "datum"],
         }
     }
 }
 
 /// The keys of all set-ups.
-const KEYS: [&str; 4] = ["center", "radius", "axis", "direction"];
+const KEYS: [&str; 5] = ["center", "radius", "axis", "direction", "datum"];
 
 /// The sine of 5 degrees: how far a direction may be off the one that it must have.
 const OBLIQUE: f64 = 0.087;
@@ -65,6 +66,8 @@ pub(super) struct Setup {
     pub(super) instrument: Instrument,
     /// The direction of all readings of a probe, where no channels give it.
     pub(super) normal: Option<[f64; 3]>,
+    /// Whether the part lies with a displacement and a rotation of its own.
+    pub(super) free_datum: bool,
 }
 
 /// What the set-up of each instrument is read from.
@@ -93,14 +96,15 @@ pub(super) fn read_setup(
     let place = entry.map_or(instrument.span, |(key, _)| key.span);
     let context = Context { instrument, fields, place, equations, channels };
     context.refuse_foreign(entry.map(|(_, node)| node), diagnostics);
-    let plain = |instrument| Some(Setup { instrument, normal: None });
+    let free_datum = context.free_datum(diagnostics)?;
+    let plain = |instrument| Some(Setup { instrument, normal: None, free_datum });
     match instrument.value {
         Kind::Position => plain(Instrument::Position),
         Kind::Ballbar => plain(context.ballbar(diagnostics)?),
         Kind::Linear => plain(Instrument::Linear(context.linear(diagnostics)?)),
         Kind::Straightness => plain(Instrument::Straightness(context.straightness(diagnostics)?)),
         Kind::Angular => plain(context.angular(diagnostics)?),
-        Kind::Probe => context.probe(diagnostics),
+        Kind::Probe => context.probe(free_datum, diagnostics),
     }
 }
 
@@ -116,7 +120,7 @@ impl<'c> Context<'c> {
             let name = self.instrument.value.name();
             let message = format!("the instrument `{name}` has no `{}` in its set-up", key.value);
             let help = match own {
-                [] => "it needs no set-up: leave it out".to_owned(),
+                ["datum"] => "leave it out: its set-up has `datum` alone".to_owned(),
                 _ => format!("it is set up with {}", quoted(own)),
             };
             diagnostics.push(Diagnostic::error("E0616", key.span, message).help(help));
@@ -131,6 +135,30 @@ impl<'c> Context<'c> {
     fn missing(&self, key: &str, help: &str, diagnostics: &mut Diagnostics) {
         let message = format!("the instrument `{}` needs `{key}` in `setup`", self.instrument.value.name());
         diagnostics.push(Diagnostic::error("E0615", self.place, message).help(help));
+    }
+
+    /// Whether the part was clamped anew (`datum: free`); nothing at all after a finding.
+    fn free_datum(&self, diagnostics: &mut Diagnostics) -> Option<bool> {
+        let own = self.instrument.value.keys().contains(&"datum");
+        let Some(node) = self.get("datum").filter(|_| own) else { return Some(false) };
+        let written = word(node, "`datum`", diagnostics)?;
+        if written.value != "free" {
+            let message = format!("`datum` is `free`, found `{}`", written.value);
+            let help = "write `datum: free`; leave `datum` out where the part was measured as it was clamped when it was made";
+            diagnostics.push(Diagnostic::error(FORM, written.span, message).help(help));
+            return None;
+        }
+        let places = |channel: &ChannelKind| matches!(channel, ChannelKind::Measured(_));
+        let seen = self.instrument.value == Kind::Probe
+            || self.channels.known.iter().any(|channel| places(&channel.kind));
+        if !seen {
+            let message = "no channel shows how a part lies, and `datum` is that of a part";
+            let mistake = Diagnostic::error("E0618", written.span, message);
+            diagnostics
+                .push(mistake.help("add the channel `measured.x`, `.y` or `.z`, or leave `datum` out"));
+            return None;
+        }
+        Some(true)
     }
 
     fn ballbar(&self, diagnostics: &mut Diagnostics) -> Option<Instrument> {
@@ -222,7 +250,7 @@ impl<'c> Context<'c> {
     }
 
     /// A probe's direction: from channels or from the set-up, and not from both.
-    fn probe(&self, diagnostics: &mut Diagnostics) -> Option<Setup> {
+    fn probe(&self, free_datum: bool, diagnostics: &mut Diagnostics) -> Option<Setup> {
         self.axis(diagnostics)?;
         let direction = self.direction(diagnostics)?;
         let normals =
@@ -230,7 +258,7 @@ impl<'c> Context<'c> {
         let first = normals.into_iter().next();
         // What is there wrongly is not missing.
         let named = |name: &str| self.channels.names.iter().any(|known| known == name);
-        let setup = |normal| Some(Setup { instrument: Instrument::Probe, normal });
+        let setup = |normal| Some(Setup { instrument: Instrument::Probe, normal, free_datum });
         match (direction, first) {
             (Some(direction), Some(normal)) => {
                 let message = "a probe has a `direction`, or channels `normal.x`, and not both";

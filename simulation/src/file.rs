@@ -36,6 +36,7 @@ use model_dsl::quantity::Dimension;
 use model_dsl::source::{Span, Spanned};
 use model_dsl::yaml::Node;
 
+use crate::datum::Datum;
 use crate::instrument::Instrument;
 use crate::noise::Noise;
 use crate::path::{Path, Shape};
@@ -54,7 +55,7 @@ pub struct PathFile {
     pub shape: Span,
 }
 
-const KEYS: [&str; 18] = [
+const KEYS: [&str; 19] = [
     "path",
     "title",
     "at",
@@ -65,6 +66,7 @@ const KEYS: [&str; 18] = [
     "pause",
     "instrument",
     "clock",
+    "datum",
     "offset",
     "noise",
     "missing",
@@ -239,6 +241,7 @@ fn measurement(
     let angular = instrument.as_ref().is_some_and(Instrument::angular);
     let kind = if angular { Dimension::ANGLE } else { Dimension::LENGTH };
     let clock = section.quantity_or("clock", Dimension::TIME, 0.0, context);
+    let datum = section.part("datum", |node, name| datum(node, name, instrument.as_ref(), context));
     let fixture = section.not_negative("fixture", Dimension::LENGTH, 0.0, context);
     let missing = section.part("missing", |node, name| noises::missing(node, name, context));
     let drive = section.part("drive", |node, name| drive(node, name, context));
@@ -254,6 +257,7 @@ fn measurement(
     let measurement = Measurement {
         instrument,
         clock: clock?,
+        datum: datum?,
         offset: offset?,
         noise: noise?.unwrap_or_default(),
         missing: missing?.unwrap_or_default(),
@@ -264,6 +268,25 @@ fn measurement(
         seed: seed?,
     };
     Some((measurement, drive_terms))
+}
+
+/// How the part lies: `{x: 0.2 mm, c: 0.03 deg}`. Of instruments that measure no part it is refused (E0703).
+fn datum(
+    node: &Node,
+    name: Span,
+    instrument: Option<&Instrument>,
+    context: &mut Context<'_>,
+) -> Option<Datum> {
+    if let Some(other) = instrument.filter(|instrument| !instrument.measures_parts()) {
+        let message = format!("`datum` is how a part lies, and this `{}` measures none", other.name());
+        let help = "leave `datum` out, or take `position` along x, y or z, or `probe`";
+        context.report(Diagnostic::error("E0703", name, message).help(help));
+        return None;
+    }
+    let section = Section::open(node, name, "`datum`", &["x", "y", "z", "a", "b", "c"], context)?;
+    let [x, y, z] = ["x", "y", "z"].map(|key| section.quantity_or(key, Dimension::LENGTH, 0.0, context));
+    let [a, b, c] = ["a", "b", "c"].map(|key| section.quantity_or(key, Dimension::ANGLE, 0.0, context));
+    Some(Datum { displacement: [x?, y?, z?], rotation: [a?, b?, c?] })
 }
 
 type Drive = (Vec<usize>, Noise, DriveTerms);

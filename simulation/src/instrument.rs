@@ -129,6 +129,15 @@ impl Instrument {
         }
     }
 
+    /// Whether it measures points of a part.
+    pub(crate) fn measures_parts(&self) -> bool {
+        match self {
+            Self::Position { directions, .. } => *directions != [false; 3],
+            Self::Probe { .. } => true,
+            _ => false,
+        }
+    }
+
     /// Whether it takes its centre or radius from the path's circle.
     pub(crate) fn needs_circle(&self) -> bool {
         matches!(

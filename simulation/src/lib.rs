@@ -39,6 +39,7 @@
 //! ```
 
 mod commands;
+mod datum;
 pub mod file;
 mod instrument;
 mod legs;
@@ -51,6 +52,7 @@ mod surroundings;
 pub mod write;
 
 pub use commands::{Column, Commands};
+pub use datum::Datum;
 pub use instrument::{Channel, Instrument, Normal};
 pub use path::Path;
 pub use plant::{DEADBAND, Effect, History, Moment, Plant, PlantError, Pose, Servo, State, names_of};

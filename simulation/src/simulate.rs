@@ -11,6 +11,7 @@ use std::fmt;
 use nalgebra::{Rotation3, Vector3};
 
 use crate::commands::{Column, Commands};
+use crate::datum::Datum;
 use crate::instrument::{Channel, Instrument};
 use crate::legs::stretches;
 use crate::noise::{Missing, Noise};
@@ -45,6 +46,8 @@ pub struct Measurement {
     pub instrument: Instrument,
     /// The instrument shows at t the state at t minus this, s. What a row commands is not late.
     pub clock: f64,
+    /// How the part lies where it is measured, where it was clamped anew there.
+    pub datum: Option<Datum>,
     /// Added to every reading: an arbitrary zero, mm or rad.
     pub offset: f64,
     /// The noise of each channel, mm or rad.
@@ -69,6 +72,7 @@ impl Measurement {
         Self {
             instrument,
             clock: 0.0,
+            datum: None,
             offset: 0.0,
             noise: Noise::default(),
             missing: Missing::default(),
@@ -88,7 +92,7 @@ pub struct Reading {
     pub channel: Channel,
     /// As the instrument shows it, with noise, disturbances and gaps (NaN): mm or rad.
     pub values: Vec<f64>,
-    /// As it would be without them; eccentricity, cosine, clock and offset are in it.
+    /// As it would be without them; eccentricity, cosine, clock, datum and offset are in it.
     pub clean: Vec<f64>,
 }
 
@@ -99,6 +103,8 @@ pub struct Simulated {
     pub title: Option<String>,
     /// The instrument, with everything that the path told of it.
     pub instrument: Instrument,
+    /// Whether the part was clamped anew where it was measured.
+    pub free_datum: bool,
     /// Time since the recording began.
     pub time: Vec<f64>,
     /// The repeat that each row belongs to, from 1.
@@ -320,6 +326,7 @@ fn join(
     Ok(Simulated {
         title: None,
         instrument: measurement.instrument.clone(),
+        free_datum: measurement.datum.is_some(),
         actual,
         readings,
         normals,

@@ -59,7 +59,7 @@ pub fn recording(simulated: &Simulated, head: &Head) -> String {
         };
         let _ = writeln!(text, "  {channel}: {{column: {column}{unit}}}");
     }
-    text.push_str(&setup(&simulated.instrument, &head.axes));
+    text.push_str(&setup(simulated, &head.axes));
     if !simulated.holdout.is_empty() {
         let runs: Vec<String> = simulated.holdout.iter().map(i64::to_string).collect();
         let _ = writeln!(text, "holdout: {{runs: [{}]}}", runs.join(", "));
@@ -160,9 +160,12 @@ impl<'s> Columns<'s> {
 }
 
 /// The set-up of an instrument, as a line of the recording.
-fn setup(instrument: &Instrument, axes: &[AxisName]) -> String {
+fn setup(simulated: &Simulated, axes: &[AxisName]) -> String {
     let letter = |axis: usize| axes.get(axis).map_or("", |axis| axis.letter.as_str());
-    match instrument {
+    match &simulated.instrument {
+        Instrument::Position { .. } | Instrument::Probe { .. } if simulated.free_datum => {
+            "setup: {datum: free}\n".to_owned()
+        }
         Instrument::Position { .. } | Instrument::Probe { .. } => String::new(),
         Instrument::Ballbar { center, radius, .. } => {
             let lengths = center.unwrap_or_default().map(|entry| format!("{} mm", plain(entry)));

@@ -23,6 +23,7 @@ pub mod report;
 mod residuals;
 mod ridge;
 mod select;
+mod setting;
 mod singular;
 mod solution;
 mod update;
@@ -33,6 +34,7 @@ use recording::Recording;
 
 pub use error::UpdateError;
 pub use residuals::{Figures, Residual};
+pub use setting::Rotation;
 pub use update::{Change, Fixed, Part, Relation, Update};
 
 /// What an update starts from.
@@ -79,7 +81,7 @@ pub struct Options {
     /// the report, rows times 2.2e-16 (equation E20).
     pub tolerance: Option<f64>,
     /// The directions X, Y, Z in which the zero of each part is free: what a setting-up puts there says nothing of the
-    /// machine.
+    /// machine. The zero of a part whose recording says that its datum is free is free in all of them, and its rotation too.
     pub datum: [bool; 3],
     /// Whether the parts were made with the calibration's own compensation switched on: then the deviations are what it
     /// left, and the prediction is not taken off once more.

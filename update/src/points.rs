@@ -3,17 +3,19 @@
 //! In: recordings and the coefficients of a calibration. Out: for each reading its direction, its deviation and, for each
 //! coefficient A, the displacement along the direction that A itself makes there: `(n . L) phi A`. A relative change dA adds
 //! dA times that. What the calibration itself predicts is no sum of these, but the product of finite matrices. Rows are gone
-//! through in their order, also those without a reading: they show from where an axis came.
+//! through in their order, also those without a reading: they show from where an axis came. A part whose datum is free is then turned to
+//! where its readings have it ([`crate::setting`]), and directions and lever arms are those of the part that is turned.
 
 use abbe_runtime::{Direction, DirectionTracker, ErrorMotion, Sample, Term, TermState};
 use model_dsl::calibration::{Calibration, SensorReadings};
 use model_dsl::equations::Equations;
 use model_dsl::exact::{Columns, ExactProduct};
 use model_dsl::program::Interpreter;
-use recording::{Instrument, Recording};
+use recording::{Instrument, PartReading, Recording};
 
 use crate::coefficient::Coefficient;
 use crate::error::UpdateError;
+use crate::setting::Setting;
 use crate::update::Part;
 
 /// How far an axis must move back before its direction turns, mm or rad: the rounding of a programmed position.
@@ -30,16 +32,19 @@ pub(crate) struct Point {
     pub(crate) deviation: f64,
     /// Whether it is kept for the test.
     pub(crate) held_out: bool,
-    /// What the calibration predicts there, mm.
-    pub(crate) predicted: f64,
+    /// What is expected there, mm: what the calibration predicts, unless the machine has taken it off, of the part as it lies.
+    pub(crate) expected: f64,
     /// What each coefficient displaces it by, mm.
     pub(crate) shares: Vec<f64>,
+    /// What each radian more of the part's rotation about X, Y and Z makes of it, mm; 0 where the part does not turn.
+    pub(crate) levers: [f64; 3],
 }
 
-/// All readings, and the parts that they are of.
+/// All readings, the parts that they are of, and how these were set up.
 pub(crate) struct Points {
     pub(crate) points: Vec<Point>,
     pub(crate) parts: Vec<Part>,
+    pub(crate) settings: Vec<Setting>,
 }
 
 /// What the points are taken with.
@@ -47,13 +52,14 @@ pub(crate) struct Machine<'m> {
     pub(crate) equations: &'m Equations,
     pub(crate) calibration: &'m Calibration,
     pub(crate) coefficients: &'m [Coefficient],
+    /// Whether it has taken off what the calibration predicts.
+    pub(crate) compensated: bool,
 }
 
 impl Machine<'_> {
     /// The readings of all recordings.
     pub(crate) fn points(&self, recordings: &[&Recording]) -> Result<Points, UpdateError> {
-        let mut all = Points { points: Vec::new(), parts: Vec::new() };
-        let mut settings = 0;
+        let mut all = Points { points: Vec::new(), parts: Vec::new(), settings: Vec::new() };
         for (number, recording) in recordings.iter().enumerate() {
             if !matches!(recording.instrument, Instrument::Probe | Instrument::Position) {
                 return Err(UpdateError::Instrument { recording: number });
@@ -62,8 +68,11 @@ impl Machine<'_> {
             let interpreter = Interpreter::new(self.equations, &constants);
             let exact = ExactProduct::new(self.equations, &constants);
             let course = Course::of(self, recording, number)?;
-            let (points, left_out) = course.points(&interpreter, &exact, settings);
-            settings += course.runs.len();
+            let rows = course.rows(&interpreter, &exact);
+            let settings: Vec<Setting> =
+                (0..course.runs.len()).map(|place| course.setting(number, place, &rows)).collect();
+            let (points, left_out) = course.points(&rows, &settings, all.settings.len());
+            all.settings.extend(settings);
             all.parts.push(Part {
                 file: recording.file.clone(),
                 title: recording.title.clone(),
@@ -75,6 +84,40 @@ impl Machine<'_> {
             all.points.extend(points);
         }
         Ok(all)
+    }
+}
+
+/// A row that holds a reading.
+struct Row {
+    /// Its setting-up, by the place of its run among those of the recording.
+    setting: usize,
+    held_out: bool,
+    /// The tip as programmed, and how far the calibration has it off, mm.
+    nominal: [f64; 3],
+    error: [f64; 3],
+    /// The value of each coefficient's term with the coefficient 1.
+    values: Vec<f64>,
+    /// The lever arms of the error motions.
+    levers: Vec<[f64; 3]>,
+    /// Directions, and the deviations along them.
+    readings: Vec<([f64; 3], f64)>,
+}
+
+impl Row {
+    /// Where the point is expected of a part that lies as its frame says.
+    fn place(&self, compensated: bool) -> [f64; 3] {
+        if compensated { self.nominal } else { minus(self.nominal, self.error.map(|part| -part)) }
+    }
+
+    /// The readings beside where they are expected.
+    fn part_readings(&self, compensated: bool) -> impl Iterator<Item = PartReading> {
+        let place = self.place(compensated);
+        let off = minus(place, self.nominal);
+        self.readings.iter().map(move |(direction, deviation)| PartReading {
+            direction: *direction,
+            place,
+            deviation: deviation - dot(*direction, off),
+        })
     }
 }
 
@@ -110,15 +153,10 @@ impl<'c> Course<'c> {
         unknown.map(|(axis, _)| axis.letter.clone()).collect()
     }
 
-    /// The readings, and how many could not be used because a position is missing in their row.
-    fn points(
-        &self,
-        interpreter: &Interpreter,
-        exact: &ExactProduct,
-        settings: usize,
-    ) -> (Vec<Point>, usize) {
+    /// The rows that hold a reading.
+    fn rows(&self, interpreter: &Interpreter, exact: &ExactProduct) -> Vec<Row> {
         let mut states = self.states();
-        let (mut points, mut left_out) = (Vec::new(), 0);
+        let mut rows = Vec::new();
         for row in 0..self.recording.time.len() {
             let position: Vec<f64> = self.positions.iter().map(|column| cell(column, row)).collect();
             let values = states.next(row, &position, self);
@@ -129,17 +167,54 @@ impl<'c> Course<'c> {
             }
             let travel: Vec<f64> =
                 self.machine.equations.travels.iter().map(|travel| cell(&position, travel.axis)).collect();
-            let levers = interpreter.levers(&position, &travel);
-            let error = self.error(exact, &position, &travel, &values);
             let run = self.recording.run.get(row).copied().unwrap_or(1);
-            let setting = settings + self.runs.iter().position(|known| *known == run).unwrap_or(0);
-            let held_out = self.recording.holdout.as_ref().is_some_and(|runs| runs.contains(&run));
-            for (direction, deviation) in readings {
-                let shares = self.shares(&values, &levers, direction);
-                let predicted = dot(direction, error);
-                let known = [deviation, predicted].iter().chain(&shares).all(|number| number.is_finite());
+            rows.push(Row {
+                setting: self.runs.iter().position(|known| *known == run).unwrap_or(0),
+                held_out: self.recording.holdout.as_ref().is_some_and(|runs| runs.contains(&run)),
+                nominal,
+                error: self.error(exact, &position, &travel, &values),
+                levers: interpreter.levers(&position, &travel),
+                values,
+                readings,
+            });
+        }
+        rows
+    }
+
+    /// A setting-up by the place of its run: how the part lies in it.
+    fn setting(&self, number: usize, place: usize, rows: &[Row]) -> Setting {
+        let own = rows.iter().filter(|row| row.setting == place);
+        let each = own.flat_map(|row| row.part_readings(self.machine.compensated));
+        let run = self.runs.get(place).copied().unwrap_or(1);
+        Setting::of(self.recording, (number, run), &each.collect::<Vec<PartReading>>())
+    }
+
+    /// The readings, and how many could not be used because a position is missing in their row. `first` is the number of the first
+    /// setting-up among those of all recordings.
+    fn points(&self, rows: &[Row], settings: &[Setting], first: usize) -> (Vec<Point>, usize) {
+        let (mut points, mut left_out) = (Vec::new(), 0);
+        for row in rows {
+            let lie = settings.get(row.setting).and_then(|setting| setting.lie.as_ref());
+            let place = row.place(self.machine.compensated);
+            for (direction, deviation) in &row.readings {
+                let in_part = lie.map_or(*direction, |lie| lie.back(*direction));
+                let shares = self.shares(&row.values, &row.levers, in_part);
+                let predicted = dot(*direction, row.error);
+                let moved = lie.map_or(0.0, |lie| dot(*direction, minus(lie.moved(place), place)));
+                let expected = if self.machine.compensated { 0.0 } else { predicted } + moved;
+                // Like the error motions' own: what a rotation of the machine makes too is exactly the same.
+                let levers = lie.map_or([0.0; 3], |lie| lie.levers(*direction, row.nominal));
+                let known = [*deviation, predicted].iter().chain(&shares).all(|number| number.is_finite());
                 if known {
-                    points.push(Point { setting, direction, deviation, held_out, predicted, shares });
+                    points.push(Point {
+                        setting: first + row.setting,
+                        direction: *direction,
+                        deviation: *deviation,
+                        held_out: row.held_out,
+                        expected,
+                        shares,
+                        levers,
+                    });
                 } else {
                     left_out += 1;
                 }
@@ -285,4 +360,10 @@ fn cell(column: &[f64], row: usize) -> f64 {
 
 fn dot(left: [f64; 3], right: [f64; 3]) -> f64 {
     left.iter().zip(right).map(|(left, right)| left * right).sum()
+}
+
+fn minus(left: [f64; 3], right: [f64; 3]) -> [f64; 3] {
+    let mut left = left;
+    left.iter_mut().zip(right).for_each(|(left, right)| *left -= right);
+    left
 }

@@ -31,7 +31,10 @@ pub(crate) fn solve(problem: &Problem) -> Option<Solution> {
     let spread = remaining.iter().zip(&unknown).map(|(remaining, seen)| {
         expected.map(|expected| expected * (1.0 - seen * seen + remaining * remaining).max(0.0).sqrt())
     });
+    let root =
+        expected.map(|expected| decomposition.root(&all_of(known, problem.jacobian.ncols())) * expected);
     Some(Solution {
+        root,
         moved: decomposition.seen().to_vec(),
         spread: spread.collect(),
         leverage: decomposition.leverage(&weights),
@@ -40,6 +43,12 @@ pub(crate) fn solve(problem: &Problem) -> Option<Solution> {
         alternatives: vec![Vec::new(); change.len()],
         change,
     })
+}
+
+/// The factors of all singular directions: what the points do not show is as free as it was expected to be.
+fn all_of(mut known: Vec<f64>, count: usize) -> Vec<f64> {
+    known.resize(count, 1.0);
+    known
 }
 
 /// The strength of least generalised cross-validation.

@@ -185,6 +185,7 @@ impl<'p> Search<'p> {
             change: DVector::zeros(all),
             moved: vec![false; all],
             spread: vec![None; all],
+            root: own.root.as_ref().map(|root| DMatrix::zeros(all, root.ncols())),
             alternatives: vec![Vec::new(); all],
             ..own.clone()
         };
@@ -192,6 +193,9 @@ impl<'p> Search<'p> {
             solution.change[*column] = own.change[place];
             solution.moved[*column] = true;
             solution.spread[*column] = own.spread[place];
+            if let (Some(root), Some(known)) = (&mut solution.root, &own.root) {
+                root.row_mut(*column).copy_from(&known.row(place));
+            }
         }
         Some(Fit { solution, price, leave_one_out })
     }

@@ -95,6 +95,7 @@ impl Decomposition {
         Solution {
             moved: self.seen.clone(),
             spread: spread.collect(),
+            root: noise.map(|noise| self.root(&factors) * noise),
             leverage: self.leverage(&vec![1.0; self.rank]),
             noise,
             expected: None,
@@ -139,6 +140,16 @@ impl Decomposition {
             scale * sum.sqrt()
         };
         self.scale.iter().enumerate().map(one).collect()
+    }
+
+    /// The relative changes that one unit along each singular direction makes, each direction with its factor: a row for each
+    /// coefficient, a column for each factor.
+    pub(crate) fn root(&self, factors: &[f64]) -> DMatrix<f64> {
+        DMatrix::from_fn(self.scale.len(), factors.len(), |coefficient, k| {
+            let scale = self.scale.get(coefficient).copied().unwrap_or(0.0);
+            let factor = factors.get(k).copied().unwrap_or(0.0);
+            self.v.get((coefficient, k)).map_or(0.0, |v| v * factor * scale)
+        })
     }
 
     /// The diagonal of the matrix that makes predictions of readings, each singular direction with its weight.

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::coefficient::Coefficient;
-use crate::datum::Datum;
+use crate::datum::{Datum, Freedom};
 use crate::number;
 use crate::points::Point;
 
@@ -21,19 +21,13 @@ pub(crate) struct Problem {
 
 impl Problem {
     /// The system of some points.
-    pub(crate) fn of(
-        points: &[&Point],
-        coefficients: &[Coefficient],
-        free: [bool; 3],
-        compensated: bool,
-    ) -> Self {
-        let datum = Datum::of(points, free);
+    pub(crate) fn of(points: &[&Point], coefficients: &[Coefficient], freedom: Freedom<'_>) -> Self {
+        let datum = Datum::of(points, freedom);
         let share = |row: usize, column: usize| {
             points.get(row).and_then(|point| point.shares.get(column)).copied().unwrap_or(0.0)
         };
         let jacobian = DMatrix::from_fn(points.len(), coefficients.len(), share);
-        let left =
-            points.iter().map(|point| point.deviation - if compensated { 0.0 } else { point.predicted });
+        let left = points.iter().map(|point| point.deviation - point.expected);
         let residual = DVector::from_iterator(points.len(), left);
         Self {
             jacobian: datum.without_columns(&jacobian),
@@ -82,6 +76,8 @@ pub(crate) struct Solution {
     pub(crate) moved: Vec<bool>,
     /// The standard uncertainty of each relative change; nothing where no reading is left to tell the noise.
     pub(crate) spread: Vec<Option<f64>>,
+    /// The relative changes, a row each, whose squares sum up to their covariance; nothing where the noise is not known.
+    pub(crate) root: Option<DMatrix<f64>>,
     /// How much each reading decides its own prediction, 0 to 1.
     pub(crate) leverage: Vec<f64>,
     /// The standard deviation of the readings that the rest shows, mm.

@@ -4,10 +4,12 @@ use model_dsl::calibration::Calibration;
 use nalgebra::DVector;
 
 use crate::coefficient::{Coefficient, Coefficients, coefficients, set};
+use crate::datum::Freedom;
 use crate::error::UpdateError;
 use crate::nullspace::{Alike, relations};
-use crate::points::{Machine, Point, Points};
+use crate::points::{Machine, Point};
 use crate::residuals::{Residual, residuals};
+use crate::setting::{Rotation, Setting, rotations};
 use crate::singular::{Decomposition, Scaling};
 use crate::solution::{Problem, Solution};
 use crate::{Inputs, Method, Options, ridge, select};
@@ -27,6 +29,11 @@ pub struct Update {
     pub datum: Vec<&'static str>,
     /// How many zeros that are.
     pub zeros: usize,
+    /// How the parts lie whose recordings say that their datum is free, as the solution leaves it; a rotation that the points do not show
+    /// is not among them.
+    pub rotations: Vec<Rotation>,
+    /// What to look at, a sentence each: parts that a rotation explains, and whose recordings do not speak of one.
+    pub hints: Vec<String>,
     /// How many coefficients could be moved.
     pub unknowns: usize,
     /// How many singular values of the scaled system count.
@@ -120,15 +127,21 @@ pub(crate) fn update(inputs: &Inputs<'_>, options: &Options) -> Result<Update, U
     if moving.is_empty() {
         return Err(UpdateError::NothingToMove);
     }
-    let machine =
-        Machine { equations: inputs.equations, calibration: inputs.calibration, coefficients: &moving };
-    let Points { points, parts } = machine.points(&inputs.recordings)?;
-    let (held_out, fitted): (Vec<&Point>, Vec<&Point>) = points.iter().partition(|point| point.held_out);
+    let machine = Machine {
+        equations: inputs.equations,
+        calibration: inputs.calibration,
+        coefficients: &moving,
+        compensated: options.compensated,
+    };
+    let all = machine.points(&inputs.recordings)?;
+    let (held_out, fitted): (Vec<&Point>, Vec<&Point>) = all.points.iter().partition(|point| point.held_out);
     if fitted.is_empty() {
         return Err(UpdateError::NoPoints);
     }
     let free = sensitive(inputs, options.datum);
-    let problem = Problem::of(&fitted, &moving, free, options.compensated);
+    let freedom =
+        Freedom { settings: &all.settings, directions: free, sensitive: sensitive(inputs, [true; 3]) };
+    let problem = Problem::of(&fitted, &moving, freedom);
     let system = Decomposition::of(&problem.jacobian, Scaling::Greatest, options.tolerance)
         .ok_or(UpdateError::NoDecomposition)?;
     let solution = match options.method {
@@ -138,14 +151,14 @@ pub(crate) fn update(inputs: &Inputs<'_>, options: &Options) -> Result<Update, U
     };
     let finite = |solution: &Solution| solution.change.iter().all(|change| change.is_finite());
     let solution = solution.filter(finite).ok_or(UpdateError::NoDecomposition)?;
-    let test = Problem::of(&held_out, &moving, free, options.compensated);
+    let test = Problem::of(&held_out, &moving, freedom);
     let alike = relations(&system.null_space());
     let left = problem.left(&solution.change);
     let nothing = vec![0.0; problem.rows()];
+    let rotations = rotations(&all, &fitted, &solution, freedom.sensitive);
     Ok(Update {
         machine: inputs.equations.machine.clone(),
         options: *options,
-        parts,
         points: fitted.len(),
         datum: ["X", "Y", "Z"]
             .into_iter()
@@ -153,7 +166,9 @@ pub(crate) fn update(inputs: &Inputs<'_>, options: &Options) -> Result<Update, U
             .filter(|(_, free)| *free)
             .map(|(name, _)| name)
             .collect(),
-        zeros: problem.datum.freedoms(),
+        zeros: problem.datum.freedoms().saturating_sub(rotations.len()),
+        rotations,
+        hints: hints(&all.parts, &all.settings),
         unknowns: moving.len(),
         rank: system.rank,
         tolerance: system.tolerance,
@@ -170,7 +185,17 @@ pub(crate) fn update(inputs: &Inputs<'_>, options: &Options) -> Result<Update, U
         relations: alike.iter().map(|alike| relation(alike, &moving)).collect(),
         fixed,
         calibration: changed(inputs.calibration, &moving, &solution.change),
+        parts: all.parts,
     })
+}
+
+/// What is said of parts that a rotation explains and whose recordings do not speak of one: of each recording once.
+fn hints(parts: &[Part], settings: &[Setting]) -> Vec<String> {
+    let found = (0..parts.len()).filter_map(|number| {
+        let mut own = settings.iter().filter(|setting| setting.recording == number);
+        Some((parts.get(number)?.file.as_str(), own.find_map(|setting| setting.turned)?))
+    });
+    recording::clamped_anew(&found.collect::<Vec<_>>()).into_iter().collect()
 }
 
 /// The directions in which a zero is free: of those asked for the ones that the machine's equations know.

@@ -5,10 +5,12 @@
 
 use crate::answers::answers;
 use crate::audit::gross;
+use crate::course::Course;
 use crate::crossing;
 use crate::diagnosis::Change;
 use crate::model::{Fitted, Model};
-use crate::recording::Instrument;
+use crate::observations;
+use crate::recording::{Instrument, clamped_anew, turned};
 use crate::study::{Channel, Scene, Study};
 use crate::terms::Setting;
 use crate::zeros;
@@ -52,6 +54,9 @@ pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
         ));
     }
     sentences.extend(study.scenes.iter().filter_map(|scene| end_points(study, scene)));
+    sentences.extend(study.scenes.iter().filter_map(unturned));
+    sentences.extend(turned_alike(study));
+    sentences.extend(clamped(study));
     if study.scenes.iter().all(|scene| scene.run_numbers().len() < 2) {
         sentences.push(
             "Whether runs repeat cannot be decided from this recording, because there is one run.".to_owned(),
@@ -67,6 +72,49 @@ pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
         )
     }));
     sentences
+}
+
+/// What the points of parts leave open of how these lay where they were measured: a rotation that is free and that they do not show.
+fn unturned(scene: &Scene<'_>) -> Option<String> {
+    let lie = scene.lie.as_ref()?;
+    (lie.rotations == [false; 3]).then(|| {
+        format!(
+            "How the part of {} is turned cannot be decided, because its points lie in line with what was measured of them.",
+            scene.recording.file
+        )
+    })
+}
+
+/// What the free rotations of all parts leave open of the machine: what it turns alike wherever its axes stand.
+fn turned_alike(study: &Study<'_>) -> Option<String> {
+    let free = |scene: &Scene<'_>, about: usize| scene.lie.as_ref().is_some_and(|lie| lie.rotations[about]);
+    let about = ["X", "Y", "Z"].into_iter().enumerate();
+    let about: Vec<&str> = about
+        .filter(|(number, _)| study.scenes.iter().all(|scene| free(scene, *number)))
+        .map(|(_, letter)| letter)
+        .collect();
+    (!about.is_empty()).then(|| {
+        format!(
+            "Whether the machine turns all that it makes about {} by a constant angle cannot be decided from these recordings, because \
+             each part was clamped anew (`datum: free`) and lies turned by an angle of its own.",
+            about.join(" or ")
+        )
+    })
+}
+
+/// What is said of parts that a rotation explains and whose recordings do not speak of one. Points that were taken at rest are those of
+/// parts: on the way round a circle, what a loop lags behind is a rotation too.
+fn clamped(study: &Study<'_>) -> Option<String> {
+    let parts = study.scenes.iter().enumerate().filter_map(|(number, scene)| {
+        let plain = scene.lie.is_none() && scene.recording.instrument == Instrument::Position;
+        if !plain || !scene.sparse() {
+            return None;
+        }
+        let course = Course::new(study, number, &[]);
+        let turned = turned(&observations::part_readings(study, number, &course))?;
+        Some((scene.recording.file.as_str(), turned))
+    });
+    clamped_anew(&parts.collect::<Vec<_>>())
 }
 
 /// What commands that are end points leave open.

@@ -44,7 +44,7 @@ pub(super) fn report(
         let names = number.checked_sub(found.always).map_or(&[] as &[Effect], |place| &names[place]);
         let alternatives = told(study, &fitted.effect, names);
         let Some(motion) = fitted.effect.motion() else {
-            if let Some(setting) = setting(found, number, alternatives) {
+            if let Some(setting) = setting(study, found, number, alternatives) {
                 diagnosis.settings.push(setting);
             }
             continue;
@@ -148,14 +148,23 @@ fn told(study: &Study<'_>, effect: &Effect, names: &[Effect]) -> Vec<Alternative
 }
 
 /// A setting of an instrument, where the data demand it: it is far from zero.
-fn setting(found: &Found, number: usize, alternatives: Vec<Alternative>) -> Option<SettingFinding> {
+fn setting(
+    study: &Study<'_>,
+    found: &Found,
+    number: usize,
+    alternatives: Vec<Alternative>,
+) -> Option<SettingFinding> {
     let fitted = &found.fit.model[number];
     let (crate::model::Place::Instrument { recording }, Shape::Instrument(setting)) =
         (fitted.effect.place, &fitted.effect.shape)
     else {
         return None;
     };
-    let (value, variance) = (*fitted.coefficients.first()?, found.fit.covariances[number][(0, 0)]);
+    let (fitted, variance) = (*fitted.coefficients.first()?, found.fit.covariances[number][(0, 0)]);
+    let value = match setting {
+        Setting::Rotation { direction } => rotation(study, &found.fit.model, recording)?[*direction],
+        _ => fitted,
+    };
     let half = WIDTH_95 * variance.max(0.0).sqrt();
     if value.abs() < DEMANDED * half / WIDTH_95 {
         return None;
@@ -169,6 +178,8 @@ fn setting(found: &Found, number: usize, alternatives: Vec<Alternative>) -> Opti
     let parameter = match setting {
         Setting::Offset { .. } | Setting::RunOffset { .. } | Setting::RunEccentricity { .. } => return None,
         Setting::Eccentricity { direction } => Parameter::fitted(["x", "y", "z"][*direction], plain("mm")),
+        Setting::Displacement { direction } => Parameter::fitted(["x", "y", "z"][*direction], plain("mm")),
+        Setting::Rotation { direction } => Parameter::fitted(["a", "b", "c"][*direction], plain("rad")),
         Setting::Radius => Parameter::fitted("offset", plain("mm")),
         Setting::Clock => Parameter::fitted("offset", plain("s")),
         Setting::Cosine => {
@@ -180,10 +191,21 @@ fn setting(found: &Found, number: usize, alternatives: Vec<Alternative>) -> Opti
     Some(SettingFinding { recording, term: setting.name(), parameters: vec![parameter], alternatives })
 }
 
+/// How the part of a recording is turned: as its readings alone have it, and what the model adds to that, rad.
+fn rotation(study: &Study<'_>, model: &Model, recording: usize) -> Option<[f64; 3]> {
+    let mut more = [0.0; 3];
+    for fitted in model {
+        if let Some(Setting::Rotation { direction }) = fitted.effect.setting_of(recording) {
+            more[direction] += fitted.coefficients.first()?;
+        }
+    }
+    study.scenes[recording].lie.as_ref().map(|lie| lie.rotation_after(more))
+}
+
 /// A setting of an instrument is told from this many standard deviations on.
 const DEMANDED: f64 = 4.0;
 
-/// The directions of one eccentricity, brought together.
+/// The directions of one eccentricity or datum, brought together.
 fn joined(settings: Vec<SettingFinding>) -> Vec<SettingFinding> {
     let mut joined: Vec<SettingFinding> = Vec::new();
     for setting in settings {

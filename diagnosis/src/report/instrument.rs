@@ -41,6 +41,10 @@ fn meaning(term: &str) -> &'static str {
         Some(SettingKind::Clock) => {
             "The instrument's clock is off: it shows at a time what was so before, by the offset."
         }
+        Some(SettingKind::Datum) => {
+            "The part lies turned where it was measured, right-handed about X (a), Y (b) and Z (c) of its frame, and a probed one \
+             displaced (x, y, z)."
+        }
         Some(SettingKind::Offset) | None => "",
     }
 }

@@ -17,12 +17,15 @@ pub(crate) enum SettingKind {
     Cosine,
     /// The time of the readings.
     Clock,
+    /// How the part lies.
+    Datum,
     /// The zero.
     Offset,
 }
 
 impl SettingKind {
-    const ALL: [Self; 5] = [Self::Eccentricity, Self::Radius, Self::Cosine, Self::Clock, Self::Offset];
+    const ALL: [Self; 6] =
+        [Self::Eccentricity, Self::Radius, Self::Cosine, Self::Clock, Self::Datum, Self::Offset];
 
     /// The name in reports.
     pub(crate) fn name(self) -> &'static str {
@@ -31,6 +34,7 @@ impl SettingKind {
             Self::Radius => "radius",
             Self::Cosine => "cosine",
             Self::Clock => "clock",
+            Self::Datum => "datum",
             Self::Offset => "offset",
         }
     }
@@ -57,6 +61,10 @@ pub(crate) enum Setting {
     Cosine,
     /// `measured(t)` shows the state at t - offset, s.
     Clock,
+    /// How the part lies where it was measured, where that is free: displaced along one direction, mm, beside the zeros of channels.
+    Displacement { direction: usize },
+    /// The same, turned about one direction, rad: beside how the readings alone have it.
+    Rotation { direction: usize },
     /// The zero of one channel.
     Offset { channel: usize },
     /// The zero of one channel in one run, where runs do not repeat.
@@ -71,6 +79,15 @@ impl Setting {
         matches!(self, Self::RunOffset { .. } | Self::RunEccentricity { .. })
     }
 
+    /// Whether it adds to a reading what it does times its size, whatever the size. Others act exactly.
+    pub(crate) fn adds(self) -> bool {
+        self.of_a_run()
+            || matches!(
+                self,
+                Self::Offset { .. } | Self::Cosine | Self::Displacement { .. } | Self::Rotation { .. }
+            )
+    }
+
     /// Which setting it is.
     pub(crate) fn kind(self) -> SettingKind {
         match self {
@@ -78,6 +95,7 @@ impl Setting {
             Self::Radius => SettingKind::Radius,
             Self::Cosine => SettingKind::Cosine,
             Self::Clock => SettingKind::Clock,
+            Self::Displacement { .. } | Self::Rotation { .. } => SettingKind::Datum,
             Self::Offset { .. } | Self::RunOffset { .. } => SettingKind::Offset,
         }
     }

@@ -13,6 +13,7 @@ mod audit;
 mod beside;
 mod common;
 mod confusions;
+mod datum;
 mod drives;
 mod each_term;
 mod evidence;

@@ -26,6 +26,7 @@ pub(super) fn settle(
         file: name.to_owned(),
         title: header.title.clone(),
         instrument: header.instrument.clone(),
+        free_datum: header.free_datum,
         axes: vec![AxisChannels::default(); header.axes.len()],
         constants: header.constants.clone(),
         holdout: header.holdout.clone(),

@@ -244,6 +244,26 @@ fn set_ups() {
 }
 
 #[test]
+fn datums() {
+    let of = |value: &str| format!("setup: {{datum: {value}}}\nholdout");
+    refused(POSITION, "holdout", &of("fixed"), "E0604", "fixed", "leave `datum` out");
+    refused(POSITION, "holdout", &of("[free]"), "E0604", "[free]", "");
+    refused(
+        BALLBAR,
+        "radius: 150 mm",
+        "radius: 150 mm, datum: free",
+        "E0616",
+        "datum",
+        "`center` and `radius`",
+    );
+    refused(LATHE, "axis: X", "axis: X, datum: free", "E0616", "datum", "`axis` and `direction`");
+    // The angle of a rotary stage and a drive's own feedback say nothing of a part.
+    let stage = "{recording: 1, machine: FC, instrument: position, data: d.csv, setup: {},
+        channels: {time: {column: t, unit: s}, measured.c: {column: c, unit: deg}}}";
+    refused(stage, "setup: {}", "setup: {datum: free}", "E0618", "free", "add the channel `measured.x`");
+}
+
+#[test]
 fn straightness_and_angles() {
     let straight = LATHE.replace("linear", "straightness").replace("axis: X", "axis: X, direction: Z");
     refused(&straight, ", direction: Z", "", "E0615", "setup", "add `direction: Y`");

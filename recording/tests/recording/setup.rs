@@ -110,3 +110,18 @@ channels:
     let error = recording(text, "t,d,nx,nz\n0,5,0,0\n").unwrap_err();
     assert!(error.to_string().contains("length zero"), "{error}");
 }
+
+#[test]
+fn the_datum_of_a_part_is_free_where_it_says_so() {
+    let part = |setup: &str| {
+        let text = format!(
+            "recording: 1\nmachine: XYFZ\ninstrument: position\ndata: d.csv\nchannels:\n  time: {{column: t, unit: s}}\n  \
+             command.x: {{column: x, unit: mm}}\n  measured.x: {{column: mx, unit: mm}}\n{setup}"
+        );
+        recording(&text, "t,x,mx\n0,1,2\n").unwrap().free_datum
+    };
+    assert!(part("setup: {datum: free}\n"));
+    assert!(!part("setup: {}\n") && !part(""));
+    let probed = with("XYFZ", "x y z", "probe", "um", "{direction: Z, datum: free}");
+    assert!(probed.free_datum && probed.normal == Some([0.0, 0.0, 1.0]));
+}

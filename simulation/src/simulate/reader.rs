@@ -22,6 +22,8 @@ pub(super) struct Reader<'r> {
 impl Reader<'_> {
     pub(super) fn readings(&self, poses: &[Pose]) -> Vec<Reading> {
         let instrument = &self.measurement.instrument;
+        let lying = self.lying(poses);
+        let poses = lying.as_deref().unwrap_or(poses);
         let clean = self.read(poses);
         let mut values = match self.displaced(poses) {
             Some(displaced) => self.read(&displaced),
@@ -58,6 +60,12 @@ impl Reader<'_> {
 
     fn command(&self, row: usize) -> Vec<f64> {
         self.positions.iter().map(|column| column.get(row).copied().unwrap_or(f64::NAN)).collect()
+    }
+
+    /// The poses as the part lies where it was clamped anew.
+    fn lying(&self, poses: &[Pose]) -> Option<Vec<Pose>> {
+        let datum = self.measurement.datum?;
+        Some(poses.iter().map(|pose| Pose { tip: datum.found(pose.tip), ..*pose }).collect())
     }
 
     /// The poses with the part displaced in its fixture, another way in every run.

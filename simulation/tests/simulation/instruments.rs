@@ -1,7 +1,7 @@
 //! Instruments, each against its own short formula.
 
 use simulation::path::{Path, Shape, Stations, Stroke};
-use simulation::{Commands, Instrument, Measurement, Normal, replay, simulate};
+use simulation::{Commands, Datum, Instrument, Measurement, Normal, replay, simulate, write};
 
 use crate::common::{Built, circle, line, path, plant, scenario};
 
@@ -72,6 +72,44 @@ fn a_probe_reads_along_its_normals() {
         assert!((across[row] - x / 30.0).abs() < 1e-12 && (along[row] - y / 30.0).abs() < 1e-12);
         assert_eq!(up[row], 0.0);
         assert!((reading - (0.003 * x + 0.004 * y) / 30.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_part_that_was_clamped_anew_is_read_turned_and_displaced() {
+    let plant = plant("XYFZ", "{EYY: 4 um}");
+    let angle = 0.5_f64.to_radians();
+    let lying = |instrument: Instrument| {
+        let mut wanted = scenario(path(circle(60.0), 20.0, 5.0), instrument);
+        wanted.path.at = vec![vec![100.0], vec![50.0], vec![-20.0]];
+        let straight = simulate(&plant, &wanted).unwrap();
+        wanted.measurement.datum =
+            Some(Datum { displacement: [0.3, -0.2, 0.1], rotation: [angle, 0.0, 0.0] });
+        let turned = simulate(&plant, &wanted).unwrap();
+        assert!(turned.free_datum && !straight.free_datum);
+        (straight, turned)
+    };
+    let (straight, turned) = lying(Instrument::position());
+    let [x, y, z] = [0, 1, 2].map(|channel: usize| &straight.readings[channel].values);
+    for row in 0..x.len() {
+        // About X, by the matrix written out: Y goes towards Z.
+        let expected = [
+            x[row] + 0.3,
+            angle.cos() * y[row] - angle.sin() * z[row] - 0.2,
+            angle.sin() * y[row] + angle.cos() * z[row] + 0.1,
+        ];
+        for (channel, expected) in expected.iter().enumerate() {
+            assert!((turned.readings[channel].values[row] - expected).abs() < 1e-10);
+        }
+    }
+    let head = |simulated| write::recording(simulated, &write::Head::default());
+    assert!(head(&turned).contains("setup: {datum: free}\n") && !head(&straight).contains("setup"));
+    // A probe from above sees the height alone.
+    let (_, probed) = lying(Instrument::Probe { normal: Normal::Fixed([0.0, 0.0, 1.0]) });
+    for (row, read) in probed.readings[0].values.iter().enumerate() {
+        // The tool is 120 mm long, and Z stands at -20 mm.
+        let found = angle.sin() * y[row] + angle.cos() * z[row] + 0.1;
+        assert!((read - (found - 100.0)).abs() < 1e-10, "{row}");
     }
 }
 

@@ -6,7 +6,7 @@ use model_dsl::yaml;
 use simulation::file::{self, PathFile};
 use simulation::noise::{Correlated, Noise};
 use simulation::path::{Shape, Stations, Stroke};
-use simulation::{Instrument, Normal};
+use simulation::{Datum, Instrument, Normal};
 
 use crate::common::Built;
 
@@ -62,6 +62,21 @@ fn a_file_says_everything_that_a_scenario_holds() {
         (scenario.holdout.as_slice(), measurement.drives.as_slice()),
         ([4].as_slice(), [0, 1].as_slice())
     );
+}
+
+#[test]
+fn a_part_lies_as_its_datum_says() {
+    let of = |instrument: &str, datum: &str| {
+        format!("{HEAD}circle: {{plane: XY, radius: 0.1 m}}\ninstrument: {instrument}\ndatum: {datum}\n")
+    };
+    let file = good("XYFZ", &of("{position: [x, y]}", "{x: 200 um, c: -0.5 mrad}"));
+    let expected = Datum { displacement: [0.2, 0.0, 0.0], rotation: [0.0, 0.0, -5e-4] };
+    assert_eq!(file.scenario.measurement.datum, Some(expected));
+    let file = good("XYFZ", &of("{probe: {normal: Z}}", "{}"));
+    assert_eq!(file.scenario.measurement.datum, Some(Datum::default()));
+    let (_, findings) = read("XYFZ", &of("{position: [x, y]}", "{d: 1 deg, a: 1 mm}"));
+    let codes: Vec<(&str, &str)> = findings.iter().map(|(code, text, _)| (*code, text.as_str())).collect();
+    assert_eq!(codes, [("E0703", "d"), ("E0307", "mm")]);
 }
 
 #[test]
@@ -124,6 +139,12 @@ fn mistakes_are_told_where_they_are() {
         ("recording: 1\n".to_owned(), "E0702", "recording", "a path file begins with `path: 1`"),
         ("calibration: 1\n".to_owned(), "E0702", "calibration", "a path file begins with `path: 1`"),
         (both("sede: 3\n"), "E0703", "sede", "did you mean `seed`?"),
+        (
+            with(&format!("{shape}instrument: {{linear: {{axis: X}}}}\ndatum: {{c: 1 deg}}\n")),
+            "E0703",
+            "datum",
+            "leave `datum` out, or take `position` along x, y or z, or `probe`",
+        ),
         (both("noise: {whyte: 1 um}\n"), "E0703", "whyte", "did you mean `white`?"),
         (both("missing: {blocks: 1}\n"), "E0701", "missing", "add `length: ...`"),
         (both("drive: 3\n"), "E0704", "3", "write `key: value` pairs, such as `axes: ...`"),

@@ -3,6 +3,7 @@
 use serde_json::{Value, json as object};
 
 use crate::residuals::{Figures, Residual};
+use crate::setting::Rotation;
 use crate::update::{Change, Part, Update};
 
 /// The update as one JSON object with the schema `abbe-update/1`. Lengths are in mm.
@@ -14,7 +15,9 @@ pub fn json(update: &Update) -> String {
         "compensated": update.options.compensated,
         "parts": update.parts.iter().map(part).collect::<Vec<Value>>(),
         "points": update.points,
-        "datum": {"directions": update.datum, "zeros": update.zeros},
+        "datum": {"directions": update.datum, "zeros": update.zeros,
+                  "rotations": update.rotations.iter().map(rotation).collect::<Vec<Value>>()},
+        "hints": update.hints,
         "unknowns": update.unknowns,
         "rank": update.rank,
         "tolerance": update.tolerance,
@@ -39,6 +42,11 @@ pub fn json(update: &Update) -> String {
 fn part(part: &Part) -> Value {
     object!({"file": part.file, "title": part.title, "points": part.points, "held_out": part.held_out,
              "left_out": part.left_out, "taken_as_zero": part.standing})
+}
+
+fn rotation(rotation: &Rotation) -> Value {
+    object!({"file": rotation.file, "run": rotation.run, "about": rotation.about,
+             "angle": {"value": rotation.angle, "uncertainty": rotation.uncertainty, "unit": "rad"}})
 }
 
 fn residual(residual: &Residual) -> Value {

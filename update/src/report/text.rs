@@ -4,6 +4,7 @@ use diagnosis::report::{WIDTH, paragraph, plain};
 
 use crate::Method;
 use crate::residuals::Residual;
+use crate::setting::Rotation;
 use crate::update::{Change, Part, Relation, Update};
 
 /// How many changes are listed; JSON has all of them.
@@ -17,6 +18,8 @@ pub fn text(update: &Update) -> String {
     let mut text = format!("Update of {} by {}\n\n", plain(&update.machine), update.options.method.name());
     text += &update.parts.iter().map(part).collect::<String>();
     text += &wrapped(&datum(update), "", "");
+    text += &rotations(update);
+    text += &update.hints.iter().map(|hint| wrapped(hint, "", "   ")).collect::<String>();
     text += &wrapped(&system(update), "", "");
     text += &figures("What is left, um (absolute values)", &update.residuals);
     text += &figures("What is left at the held-out points, um", &update.held_out);
@@ -55,6 +58,31 @@ fn datum(update: &Update) -> String {
         false => "",
     };
     zero + compensated
+}
+
+/// How the parts lie whose datum is free.
+fn rotations(update: &Update) -> String {
+    if update.rotations.is_empty() {
+        return String::new();
+    }
+    let several = |file: &str| {
+        let mut runs = update.rotations.iter().filter(|one| one.file == file).map(|one| one.run);
+        let first = runs.next();
+        runs.any(|run| Some(run) != first)
+    };
+    let line = |one: &Rotation| {
+        let run = if several(&one.file) { format!(", run {}", one.run) } else { String::new() };
+        wrapped(&format!("{}{run}: {} about {}", one.file, angle(one), one.about), "   ", "      ")
+    };
+    let lines: String = update.rotations.iter().map(line).collect();
+    format!("The datum of these parts is free, and they lie turned by\n{lines}")
+}
+
+/// An angle with its standard uncertainty, in urad and in degrees.
+fn angle(rotation: &Rotation) -> String {
+    let angle = rotation.angle;
+    let uncertainty = rotation.uncertainty.map_or(String::new(), |size| format!(" +- {:.1}", size * 1e6));
+    format!("{:.1}{uncertainty} urad ({:.4} deg)", angle * 1e6, angle.to_degrees())
 }
 
 fn system(update: &Update) -> String {

@@ -1,0 +1,36 @@
+//! Readings of parts. In: a recording of a part. Out: each reading beside where the calibration expects it, from which it is told how the
+//! part lay.
+
+use super::{Frame, along, each_frame};
+use crate::course::Course;
+use crate::model::Model;
+use crate::recording::PartReading;
+use crate::study::{Kind, Study};
+
+/// The readings of a part as the calibration leaves them, evenly from all rows: enough to tell how it lies.
+pub(crate) fn part_readings(study: &Study<'_>, scene: usize, course: &Course) -> Vec<PartReading> {
+    let known = &study.scenes[scene];
+    let stride = known.rows().div_ceil(MOST_READINGS).max(1);
+    let of_frame = |frame: &Frame<'_>| {
+        let first = frame.first_row().next_multiple_of(stride) - frame.first_row();
+        let mut readings = Vec::new();
+        for channel in &known.channels {
+            let left = frame.residual(study, scene, channel, &Model::new());
+            for row in (first..frame.len()).step_by(stride) {
+                let direction = match channel.kind {
+                    Kind::Tip(d) => along(d),
+                    Kind::Normal => frame.normal(study, scene, row),
+                    _ => continue,
+                };
+                readings.push(PartReading { direction, place: frame.tip(row), deviation: left[row] });
+            }
+        }
+        readings
+    };
+    let mut all = Vec::new();
+    each_frame(study, scene, &Model::new(), course, of_frame, |_, readings| all.extend(readings));
+    all
+}
+
+/// The most rows from which is told how a part lies.
+const MOST_READINGS: usize = 10_000;

@@ -1,0 +1,147 @@
+//! Parts that were turned by known angles: the matrices stand here, written out.
+
+use super::*;
+
+/// A part of places, turned by a matrix about a centre, displaced, and read along the directions of the frame.
+fn read(
+    places: &[[f64; 3]],
+    matrix: [[f64; 3]; 3],
+    shift: [f64; 3],
+    directions: &[usize],
+) -> Vec<PartReading> {
+    let center = [40.0, -20.0, 5.0];
+    let each = places.iter().flat_map(|place| {
+        directions.iter().map(move |axis| {
+            let arm = [0, 1, 2].map(|part: usize| place[part] - center[part]);
+            let found = center[*axis] + (0..3).map(|part| matrix[*axis][part] * arm[part]).sum::<f64>();
+            let mut direction = [0.0; 3];
+            direction[*axis] = 1.0;
+            PartReading { direction, place: *place, deviation: found + shift[*axis] - place[*axis] }
+        })
+    });
+    each.collect()
+}
+
+/// Points through a box of so many millimetres along X, Y, Z.
+fn points(size: [f64; 3]) -> Vec<[f64; 3]> {
+    let thirds = || [0.0, 0.3, 1.0].into_iter();
+    let all = thirds().flat_map(|x| thirds().flat_map(move |y| thirds().map(move |z| [x, y, z])));
+    all.map(|share| [0, 1, 2].map(|axis: usize| 10.0 + share[axis] * size[axis])).collect()
+}
+
+fn about_z(angle: f64) -> [[f64; 3]; 3] {
+    [[angle.cos(), -angle.sin(), 0.0], [angle.sin(), angle.cos(), 0.0], [0.0, 0.0, 1.0]]
+}
+
+fn about_x(angle: f64) -> [[f64; 3]; 3] {
+    [[1.0, 0.0, 0.0], [0.0, angle.cos(), -angle.sin()], [0.0, angle.sin(), angle.cos()]]
+}
+
+#[test]
+fn a_rotation_is_found_exactly_also_a_large_one() {
+    for degrees in [0.0, 1e-3, -0.029, 0.5, 5.0, -40.0] {
+        let angle = f64::to_radians(degrees);
+        let flat: Vec<PartReading> =
+            read(&points([300.0, 200.0, 0.0]), about_z(angle), [0.2, -0.1, 0.0], &[0, 1]);
+        let lie = Lie::of(&flat, false);
+        assert_eq!((lie.displacements, lie.rotations), ([true, true, false], [false, false, true]));
+        assert!((lie.rotation()[2] - angle).abs() < 1e-12, "{degrees}: {:?}", lie.rotation());
+        let room = Lie::of(&read(&points([300.0, 200.0, 90.0]), about_x(angle), [0.3; 3], &[0, 1, 2]), false);
+        assert_eq!(room.rotations, [true; 3]);
+        let expected = [angle, 0.0, 0.0];
+        assert!(room.rotation().iter().zip(expected).all(|(one, other)| (one - other).abs() < 1e-12));
+    }
+}
+
+#[test]
+fn the_part_is_moved_to_where_it_was_read() {
+    let places = points([300.0, 200.0, 90.0]);
+    let readings = read(&places, about_x(0.02), [0.0; 3], &[0, 1, 2]);
+    let lie = Lie::of(&readings, false);
+    // What is left is one displacement, that of the middle.
+    let left: Vec<f64> = readings
+        .iter()
+        .filter(|reading| reading.direction[1] == 1.0)
+        .map(|reading| reading.deviation - (lie.moved(reading.place)[1] - reading.place[1]))
+        .collect();
+    assert!(left.iter().all(|one| (one - left[0]).abs() < 1e-10));
+    // The direction that is read along Y lies in the part as the matrix, turned back, has it.
+    let back = lie.back([0.0, 1.0, 0.0]);
+    let expected = [0.0, 0.02_f64.cos(), -0.02_f64.sin()];
+    assert!(back.iter().zip(expected).all(|(one, other)| (one - other).abs() < 1e-12), "{back:?}");
+}
+
+#[test]
+fn levers_are_what_a_little_more_rotation_does() {
+    let readings = read(&points([300.0, 200.0, 90.0]), about_z(0.3), [0.0; 3], &[0, 1, 2]);
+    let lie = Lie::of(&readings, false);
+    let (place, direction) = ([250.0, 30.0, 80.0], [0.36, 0.48, -0.8]);
+    let small = 1e-6;
+    for axis in 0..3 {
+        let mut more = [0.0; 3];
+        more[axis] = small;
+        let further =
+            Lie { rotation: UnitQuaternion::from_scaled_axis(Vector3::from(more)) * lie.rotation, ..lie };
+        let along = |lie: &Lie| Vector3::from(lie.moved(place)).dot(&Vector3::from(direction));
+        let slope = (along(&further) - along(&lie)) / small;
+        assert!((slope - lie.levers(direction, place)[axis]).abs() < 1e-4, "{axis}");
+    }
+}
+
+#[test]
+fn what_the_readings_cannot_show_is_not_free() {
+    let unturned = about_z(0.0);
+    let seen = |size: [f64; 3], directions: &[usize]| {
+        Lie::of(&read(&points(size), unturned, [0.0; 3], directions), false).rotations
+    };
+    // A flat part, one with holes of unlike depth, and one that is as deep as it is wide.
+    assert_eq!(seen([300.0, 200.0, 0.0], &[0, 1]), [false, false, true]);
+    assert_eq!(seen([300.0, 200.0, 1.0], &[0, 1]), [false, false, true]);
+    assert_eq!(seen([300.0, 200.0, 200.0], &[0, 1]), [true; 3]);
+    // Heights alone show a tilt; a line in X read along X shows none.
+    assert_eq!(seen([300.0, 200.0, 0.0], &[2]), [true, true, false]);
+    assert_eq!(seen([300.0, 0.0, 0.0], &[0]), [false; 3]);
+    assert_eq!(seen([300.0, 0.0, 0.0], &[0, 1, 2]), [false, true, true]);
+    assert_eq!(Lie::of(&[], false).rotations, [false; 3]);
+}
+
+#[test]
+fn a_constant_of_all_readings_takes_the_place_of_a_displacement() {
+    let heights = read(&points([300.0, 200.0, 0.0]), about_x(0.001), [0.0, 0.0, 0.4], &[2]);
+    assert_eq!(Lie::of(&heights, false).displacements, [false, false, true]);
+    let zeroed = Lie::of(&heights, true);
+    assert_eq!((zeroed.displacements, zeroed.rotations), ([false; 3], [true, true, false]));
+    assert!((zeroed.rotation()[0] - 0.001).abs() < 1e-12);
+}
+
+#[test]
+fn missing_readings_are_none() {
+    let mut readings = read(&points([300.0, 200.0, 0.0]), about_z(0.001), [0.0; 3], &[0, 1]);
+    readings[3].deviation = f64::NAN;
+    readings[8].place[1] = f64::NAN;
+    assert!((Lie::of(&readings, false).rotation()[2] - 0.001).abs() < 1e-12);
+}
+
+#[test]
+fn a_rotation_is_told_and_a_squareness_or_a_scale_is_not() {
+    let places = points([300.0, 200.0, 0.0]);
+    let angle = 5e-4;
+    let found = turned(&read(&places, about_z(angle), [0.1, 0.2, 0.0], &[0, 1])).unwrap();
+    assert_eq!(found.about, "Z");
+    assert!((found.angle - angle).abs() < 1e-6 && found.share > 0.99, "{found:?}");
+    let none: [[[f64; 3]; 3]; 4] = [
+        // A squareness over a part that is as long as this one, and over a narrow one below; a scale; both sides towards each
+        // other.
+        [[1.0, -angle, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        [[1.0, 0.0, 0.0], [angle, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        [[1.0 + angle, 0.0, 0.0], [0.0, 1.0 - angle, 0.0], [0.0, 0.0, 1.0]],
+        [[1.0, angle, 0.0], [angle, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    ];
+    for matrix in none {
+        assert_eq!(turned(&read(&places, matrix, [0.0; 3], &[0, 1])), None, "{matrix:?}");
+        assert_eq!(turned(&read(&points([300.0, 20.0, 0.0]), matrix, [0.0; 3], &[0, 1])), None, "{matrix:?}");
+    }
+    // One direction shows no rotation, and five readings are too few.
+    assert_eq!(turned(&read(&places, about_z(angle), [0.0; 3], &[0])), None);
+    assert_eq!(turned(&read(&places[..5], about_z(angle), [0.0; 3], &[0, 1])), None);
+}

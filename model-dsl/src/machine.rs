@@ -136,7 +136,7 @@ fn build(
     drive::settle(&drives, &chain, diagnostics);
     let links_are_distinct = !diagnostics.iter().any(|known| matches!(known.code, "E0123" | "E0124"));
     if links_are_distinct {
-        names::check_names(&motions, &constants, &chain, diagnostics);
+        names::check_names(&motions, &constants, &chain, &header.sensitive, diagnostics);
     }
     if diagnostics.has_errors() {
         return None;

@@ -335,3 +335,16 @@ fn letters_hold_for_their_section_only() {
     assert!(report(&lathe, text).agrees());
     assert_eq!(mistakes(&lathe, &format!("{text}[c]\ndPx = b\n")), [("E0504", "b".to_owned())]);
 }
+
+/// What is printed of a machine with rotary axes agrees with it exactly, its brackets taken as letters.
+#[test]
+fn factored_equations_agree_with_what_was_derived() {
+    for name in ["trunnion-5axis", "head-table-5axis"] {
+        let compiled = machine(name);
+        let lines = crate::notation::error_lines(&compiled.equations, crate::equations::Names::Iso);
+        let statement =
+            |line: &String| if line.starts_with('L') { format!("let {line}\n") } else { format!("{line}\n") };
+        let report = report(&compiled, &lines.iter().map(statement).collect::<String>());
+        assert!(report.agrees() && report.equations.len() == 3, "{name}: {}", report.text());
+    }
+}

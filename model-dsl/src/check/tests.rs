@@ -348,3 +348,23 @@ fn factored_equations_agree_with_what_was_derived() {
         assert!(report.agrees() && report.equations.len() == 3, "{name}: {}", report.text());
     }
 }
+
+/// C stands on the bed; Z is out of line about X, and Y is not.
+#[test]
+fn an_error_may_be_counted_from_another_axis_where_that_is_the_same() {
+    let compiled = crate::compile_word("CFXYZ", &mut Diagnostics::new()).expect("a word");
+    let full = crate::notation::error_lines(&compiled.equations, crate::equations::Names::Iso);
+    let with = |name: &str| {
+        let lines = full.iter().map(|line| line.replace("EA0C", name));
+        lines
+            .map(|line| if line.starts_with('L') { format!("let {line}\n") } else { format!("{line}\n") })
+            .collect::<String>()
+    };
+    for name in ["EA(0Y)C", "EA(OY)C", "A(0Y)C", "AOC", "EAOC"] {
+        assert!(report(&compiled, &with(name)).agrees(), "{name}");
+    }
+    let Err(refused) = run(&compiled, &with("EA(0Z)C")) else { panic!("EA(0Z)C is another error") };
+    let first = refused.iter().next().expect("a mistake");
+    assert_eq!((first.code, first.label.as_str()), ("E0504", "counted from Z, EA(0Z)C is EA0C - EA0Z"));
+    assert!(report(&compiled, &with("(EA(0Y)C)")).agrees());
+}

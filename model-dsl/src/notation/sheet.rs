@@ -8,7 +8,7 @@ use super::letter::Letter;
 use super::tree::{self, Expression};
 use crate::algebra::{Axis, Monomial, Symbol};
 use crate::equations::{Equations, Motion, Names, Row, Term};
-use crate::machine::{Branch, Link, LinkKind, Reference};
+use crate::machine::{Branch, Counted, Link, LinkKind, Reference};
 
 /// An equation: a letter and what it equals.
 pub(super) struct Statement {
@@ -154,15 +154,33 @@ fn motions(equations: &Equations, names: Names, written: &Brackets) -> Vec<Motio
         let motion = equations.motions.get(number);
         found.zip(motion).map(|(term, motion)| written.expression(&motion.printed_arm(&term.arm, names)))
     };
+    let known = equations.names().motions;
+    let counted = |number: usize| known.get(number).map_or(&[][..], |known| known.counted.as_slice());
     let entry = |(number, motion): (usize, &Motion)| MotionEntry {
         letter: Letter::motion(motion, names),
         iso: motion.name.clone(),
-        meaning: motion.meaning.clone(),
+        meaning: meaning(equations, motion, counted(number)),
         unit: if motion.angular { "rad" } else { "mm" },
         against_iso: motion.is_printed_against_iso(names),
         arms: equations.rows.iter().map(|row| arm(row, number)).collect(),
     };
     equations.motions.iter().enumerate().map(entry).collect()
+}
+
+/// What an error motion is; of the place of a rotary axis also its names in ISO 230-7 and, counted from another axis, ISO 230-1.
+fn meaning(equations: &Equations, motion: &Motion, counted: &[Counted]) -> String {
+    if !is_place_of_rotary(equations, motion) {
+        return motion.meaning.clone();
+    }
+    let (letter, id) = (motion.kind.letter(), &motion.link);
+    let same = counted.iter().filter(|one| one.is == motion.name);
+    let same: String = same.map(|one| format!(", E{letter}(0{}){id}", one.from)).collect();
+    format!("{}; also {letter}O{id}{same}", motion.meaning)
+}
+
+fn is_place_of_rotary(equations: &Equations, motion: &Motion) -> bool {
+    let link = equations.links.get(motion.body);
+    motion.alignment && link.is_some_and(|link| matches!(link.kind, LinkKind::Rotary(_)))
 }
 
 fn quantities(equations: &Equations) -> Vec<QuantityEntry> {
@@ -257,6 +275,13 @@ fn conventions(equations: &Equations, names: Names, written: &Brackets) -> Vec<S
     sentences.extend(senses(equations));
     if equations.axes.iter().any(|axis| axis.rotary) {
         sentences.push("Rotary axes turn by large angles; their sines and cosines are exact.".to_owned());
+    }
+    if equations.motions.iter().any(|motion| is_place_of_rotary(equations, motion)) {
+        sentences.push(
+            "The place of a rotary axis is EX0C here, XOC in ISO 230-7; EA(0Y)C, as ISO 230-1 writes, counts from Y, and stands \
+             beside EA0C where both are the same."
+                .to_owned(),
+        );
     }
     if written.definitions().next().is_some() {
         sentences.push("A bracket that occurs more than once has a name, which begins with L.".to_owned());

@@ -4,6 +4,7 @@
 //! link stands in its branch and every error motion on its link, or a list of located
 //! mistakes. What a machine means, its equations, is the business of [`crate::derivation`].
 
+mod budget;
 mod chain;
 mod constants;
 mod draft;
@@ -121,7 +122,7 @@ fn read_node(root: &Node, diagnostics: &mut Diagnostics) -> Option<Machine> {
 }
 
 /// The keys of a machine file.
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 12] = [
     "abbe",
     "name",
     "title",
@@ -129,6 +130,7 @@ const KEYS: [&str; 11] = [
     "sensitive",
     "reference",
     "motions",
+    "budget",
     "constants",
     "topology",
     "chain",
@@ -143,6 +145,7 @@ fn build(
     diagnostics: &mut Diagnostics,
 ) -> Option<Machine> {
     let motions = read_motion::collect(&chain, diagnostics);
+    let motions = budget::kept(header.budget, &chain, motions, diagnostics);
     read_motion::check_references(&motions, &chain, header.relative, diagnostics);
     let constants = constants::settle(declared, &chain, diagnostics);
     drive::settle(&drives, &chain, diagnostics);

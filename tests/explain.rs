@@ -154,6 +154,15 @@ fn error_motions_are_told_by_their_names() {
         }
     }
     assert!(page("EA(0Z)C").contains("EA(0Z)C, as ISO 230-1 writes, is the same error counted from Z."));
+    for (name, told) in [
+        ("EX0B", "EX(0C)B is the same place counted from C, where B stands on that"),
+        ("EX0C", "EX(0B)C is the same place counted from B, where C stands on that"),
+        ("EA(0X)C", "X does not show it, since it runs in that direction: EA(0X)C is refused"),
+        ("EX(0Y)C", "Y is a slide and has no place of its own: EX(0Y)C is refused"),
+    ] {
+        let page = page(name).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(page.contains(told), "{name}: {page}");
+    }
     for name in ["EX0Y", "EQX", "EXQ", "EXX(0Y)", "E(0Y)C"] {
         assert_eq!(abbe(&["explain", name], "").status, 2, "{name}");
     }

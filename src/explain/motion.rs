@@ -45,30 +45,44 @@ fn what(motion: &NamedMotion) -> String {
 
 fn spellings(motion: &NamedMotion) -> String {
     let (letter, axis) = (motion.kind.letter(), motion.axis);
-    let standard = if motion.rotary { ", as ISO 230-7 and the literature write it" } else { "" };
+    let standard = if motion.rotary { ", the name in ISO 230-7 and the literature" } else { "" };
     format!(
-        "Also read as {letter}0{axis}, E{letter}O{axis} and {letter}O{axis}, with the letter O{standard}."
+        "Also read as {letter}0{axis}, and with the letter O as E{letter}O{axis} and {letter}O{axis}{standard}."
     )
 }
 
 /// What the name says that counts from another axis: that which was asked for, or one for example.
 fn counted(motion: &NamedMotion) -> String {
     let (name, letter, axis) = (&motion.name, motion.kind.letter(), motion.axis);
-    if !motion.kind.angular() {
-        let from = motion.counted_from.as_deref().unwrap_or("B");
+    let letters = if motion.kind.angular() { "XYZ" } else { "ABC" };
+    let own = direction(motion.kind.axis());
+    let example = letters.chars().find(|other| *other != axis && !own.contains(*other));
+    let from = motion.counted_from.clone().or_else(|| example.map(String::from)).unwrap_or_default();
+    let counted = format!("E{letter}(0{from}){axis}");
+    if own.contains(&from) {
         return format!(
-            "E{letter}(0{from}){axis} is the same place counted from the rotary axis {from}, where {axis} stands on that."
+            "{from} does not show it, since it runs in that direction: {counted} is refused (E0146)."
         );
     }
-    let example = || {
-        Axis::ALL
-            .into_iter()
-            .map(Axis::letter)
-            .find(|other| *other != axis && *other != motion.kind.axis().letter())
-    };
-    let from = motion.counted_from.clone().or_else(|| example().map(String::from)).unwrap_or_default();
+    if motion.kind.angular() {
+        return format!(
+            "{counted}, as ISO 230-1 writes, is the same error counted from {from}. It is read for {name} on a machine where both are \
+             equal, since nothing else lies between {from} and {axis}; elsewhere it is refused, with what it is (E0146)."
+        );
+    }
+    if "XYZUVW".contains(&from) {
+        return format!("{from} is a slide and has no place of its own: {counted} is refused (E0146).");
+    }
     format!(
-        "E{letter}(0{from}){axis}, as ISO 230-1 writes, is the same error counted from {from}. It is read for {name} on a machine where \
-         both are equal, since nothing else lies between {from} and {axis}; elsewhere it is refused, with what it is (E0146)."
+        "{counted} is the same place counted from {from}, where {axis} stands on that; elsewhere it is refused (E0146)."
     )
+}
+
+/// The letters of the axes that run in a direction, or turn about it.
+fn direction(axis: Axis) -> &'static str {
+    match axis {
+        Axis::X => "XUA",
+        Axis::Y => "YVB",
+        Axis::Z => "ZWC",
+    }
 }

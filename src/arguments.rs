@@ -55,7 +55,7 @@ pub(crate) enum Command {
     Export(Export),
     /// Write a commented machine file to start from.
     New(New),
-    /// Explain a diagnostic code or a term, with an example; alone: list them.
+    /// Explain a diagnostic code, a term or the name of an error motion; alone: list them.
     Explain(Explain),
     /// Print the completions of a shell for this command line.
     Completions(Completions),
@@ -335,8 +335,8 @@ pub(crate) struct New {
 
 #[derive(Args)]
 pub(crate) struct Explain {
-    /// A code such as E0307, or a term such as backlash.
-    #[arg(value_name = "CODE|TERM")]
+    /// A code such as E0307, a term such as backlash, or an error motion such as EX0C.
+    #[arg(value_name = "CODE|TERM|MOTION")]
     pub(crate) name: Option<String>,
 }
 

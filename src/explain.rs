@@ -1,10 +1,11 @@
-//! What a code of a diagnostic, a term of the vocabulary and a factor mean. In: a name. Out: a page for a person, or the names that
+//! What a code of a diagnostic, a term of the vocabulary, a factor and the name of an error motion mean. In: a name. Out: a page for a person, or the names that
 //! are near to it.
 //!
 //! The texts stand in files beside this one, in the form that [`entry`] reads: one source for the command and for the tables
 //! of the reference, which are compared with it.
 
 mod entry;
+mod motion;
 mod page;
 
 use model_dsl::calibration::factor::vocabulary::{FACTOR_NAMES, FactorEntry, FactorKind};
@@ -53,7 +54,8 @@ pub(crate) fn overview() -> String {
     page::overview(&codes(), &terms(), &factors())
 }
 
-/// The page of a code, a term or a factor; a name that is both a term and a factor gives both. Letter case and `_` for `-` do not matter.
+/// The page of a code, a term, a factor or an error motion; a name that is both a term and a factor gives both. Letter case and `_`
+/// for `-` do not matter.
 ///
 /// # Errors
 ///
@@ -68,7 +70,7 @@ pub(crate) fn page(name: &str) -> Result<String, Vec<&'static str>> {
     let factors = factors();
     let factor = factors.iter().find(|(_, entry)| is(entry)).map(|(known, entry)| page::factor(known, entry));
     let pages: Vec<String> = term.into_iter().chain(factor).collect();
-    if pages.is_empty() { Err(near(&name)) } else { Ok(pages.join("\n")) }
+    if pages.is_empty() { motion::page(&name).ok_or_else(|| near(&name)) } else { Ok(pages.join("\n")) }
 }
 
 /// The names nearest to one that is none, the nearest first.

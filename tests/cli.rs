@@ -467,7 +467,7 @@ fn check_reads_what_derive_prints() {
         let derived = abbe(&["derive", machine], "").out;
         let rows = derived
             .lines()
-            .skip_while(|line| !line.starts_with("Px"))
+            .skip_while(|line| !line.starts_with("let ") && !line.starts_with("Px"))
             .take_while(|line| *line != "Error motions");
         let printed = file("derived", machine, &rows.collect::<Vec<_>>().join("\n"));
         let run = abbe(&["check", machine, &printed], "");

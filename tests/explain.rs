@@ -135,6 +135,39 @@ fn names_are_found_however_they_are_written() {
     assert_eq!(page("Reversal_Spike"), page("reversal-spike"));
 }
 
+/// Every spelling of an error motion gives the page of the name that Abbe prints.
+#[test]
+fn error_motions_are_told_by_their_names() {
+    for (names, title, unit) in [
+        (["EX0C", "XOC", "EXOC", "x0c"], "EX0C: place of the axis of C in X", "a length, mm"),
+        (["EA0C", "AOC", "EA(0Y)C", "EA(OZ)C"], "EA0C: tilt of the axis of C about X", "an angle, rad"),
+        (
+            ["EC0Y", "COY", "EC(0X)Y", "ecoy"],
+            "EC0Y: alignment: line of motion of Y turned about Z",
+            "an angle, rad",
+        ),
+        (["EXX", "exx", "EXX ", " EXX"], "EXX: positioning error of X", "a length, mm"),
+    ] {
+        for name in names {
+            let page = page(name);
+            assert!(page.starts_with(&format!("{title}\n")) && page.contains(unit), "{name}: {page}");
+        }
+    }
+    assert!(page("EA(0Z)C").contains("EA(0Z)C, as ISO 230-1 writes, is the same error counted from Z."));
+    for (name, told) in [
+        ("EX0B", "EX(0C)B is the same place counted from C, where B stands on that"),
+        ("EX0C", "EX(0B)C is the same place counted from B, where C stands on that"),
+        ("EA(0X)C", "X does not show it, since it runs in that direction: EA(0X)C is refused"),
+        ("EX(0Y)C", "Y is a slide and has no place of its own: EX(0Y)C is refused"),
+    ] {
+        let page = page(name).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(page.contains(told), "{name}: {page}");
+    }
+    for name in ["EX0Y", "EQX", "EXQ", "EXX(0Y)", "E(0Y)C"] {
+        assert_eq!(abbe(&["explain", name], "").status, 2, "{name}");
+    }
+}
+
 #[test]
 fn unknown_names_are_refused_with_those_nearby() {
     for (name, help) in [
@@ -143,7 +176,7 @@ fn unknown_names_are_refused_with_those_nearby() {
         ("banana", "`abbe explain` alone lists all codes and terms"),
     ] {
         let run = abbe(&["explain", name], "");
-        let told = format!("error: `{name}` is no diagnostic and no term\nhelp: {help}\n");
+        let told = format!("error: `{name}` is no diagnostic, no term and no error motion\nhelp: {help}\n");
         assert_eq!((run.status, run.out.as_str(), run.err), (2, "", told));
     }
 }

@@ -36,5 +36,7 @@ mod status;
 pub use abi::{Abbe, Sample, open};
 pub use controller::{Controller, Inputs, SetupFailure};
 pub use load::{Loaded, load};
-pub use machine::{AxisOfMachine, CompiledMachine, ConstantOfMachine, ForC, MotionOfMachine};
+pub use machine::{
+    AxisOfMachine, CompiledMachine, ConstantOfMachine, CountedOfMachine, ForC, MotionOfMachine,
+};
 pub use status::{Cycle, Refused, Status};

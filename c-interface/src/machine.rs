@@ -7,6 +7,7 @@ use std::ffi::CString;
 
 use abbe_runtime::{Exchanged, Kinematics};
 use model_dsl::calibration::{AxisName, Calibration, MachineNames, MotionName};
+use model_dsl::machine::Counted;
 
 /// A constant of a machine by its name, with its value in mm where the machine file gives one.
 pub type ConstantOfMachine = (&'static str, Option<f64>);
@@ -17,6 +18,9 @@ pub type AxisOfMachine = (&'static str, bool);
 /// An error motion by its name, whether it is an angle (rad) rather than a length (mm), the letter of its link's axis, and whether
 /// it is the motion of that axis along itself, or about itself.
 pub type MotionOfMachine = (&'static str, bool, Option<&'static str>, bool);
+
+/// An alignment error by its name, the id of another axis, and what it is counted from that one, in names of the machine.
+pub type CountedOfMachine = (&'static str, &'static str, &'static str);
 
 /// A machine compiled to Rust. `abbe expand --c-abi` writes the implementation; nobody else needs one.
 pub trait CompiledMachine: Kinematics + Copy + Send + 'static {
@@ -30,6 +34,8 @@ pub trait CompiledMachine: Kinematics + Copy + Send + 'static {
     const MOTIONS: &'static [MotionOfMachine];
     /// Those without a lever at the tool tip, which a calibration may list.
     const UNSEEN: &'static [MotionOfMachine] = &[];
+    /// What its alignment errors are, each counted from the axes that show it.
+    const COUNTED: &'static [CountedOfMachine] = &[];
     /// Its equations, as `abbe derive --format json --names iso` prints them: a machine file that says something else is
     /// not the one that was compiled.
     const EQUATIONS: &'static str;
@@ -60,13 +66,16 @@ pub(crate) fn names<M: CompiledMachine>() -> MachineNames {
             .iter()
             .map(|&(letter, rotary)| AxisName { letter: letter.to_owned(), rotary })
             .collect(),
-        motions: M::MOTIONS.iter().map(|motion| motion_name(*motion)).collect(),
-        unseen: M::UNSEEN.iter().map(|motion| motion_name(*motion)).collect(),
+        motions: M::MOTIONS.iter().map(|motion| motion_name::<M>(*motion)).collect(),
+        unseen: M::UNSEEN.iter().map(|motion| motion_name::<M>(*motion)).collect(),
     }
 }
 
-fn motion_name((name, angular, axis, own): MotionOfMachine) -> MotionName {
-    MotionName { name: name.to_owned(), angular, axis: axis.map(str::to_owned), own }
+fn motion_name<M: CompiledMachine>((name, angular, axis, own): MotionOfMachine) -> MotionName {
+    let counted = M::COUNTED.iter().filter(|(motion, ..)| *motion == name);
+    let counted =
+        counted.map(|(_, from, is)| Counted { from: (*from).to_owned(), is: (*is).to_owned() }).collect();
+    MotionName { name: name.to_owned(), angular, axis: axis.map(str::to_owned), own, counted }
 }
 
 /// The names that C asks for.

@@ -101,6 +101,7 @@ fn answer(
     if let Err(mistake) = state.take(row) {
         return assert!(!mistake.is_empty());
     }
+    assert_eq!(state.tool(), None, "the calibrations have no tools");
     let Ok(outcome) = compensator.compensate(&state.sample(), compensated) else { return };
     let positions =
         compensated.iter().zip(columns).map(|(value, column)| value / column.factor - column.offset);

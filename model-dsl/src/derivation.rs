@@ -19,6 +19,7 @@ use crate::equations::{AxisInfo, ConstantInfo, Equations, Motion, Row, Term, Tra
 use crate::machine::{Branch, Element, ElementKind, Link, LinkKind, Machine, body_sign};
 
 pub use link_matrix::matrix as link_matrix;
+pub use meaning::{NamedMotion, named};
 
 /// Derives the error equations of a machine; warnings go to `diagnostics`.
 pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {

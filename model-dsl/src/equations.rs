@@ -15,6 +15,7 @@ use abbe_runtime::Turning;
 
 use crate::algebra::{Axis, Name, Polynomial, to_f64};
 use crate::calibration::{AxisName, MachineNames, MotionName};
+use crate::machine::reference::{Placed, counted};
 use crate::machine::{Branch, Element, Link, MotionKind};
 
 /// The error equations of one machine.
@@ -176,6 +177,11 @@ impl Motion {
         names == Names::Symbols && self.symbol_against_iso
     }
 
+    /// The motion as it places its link.
+    fn placed(&self) -> Placed<'_> {
+        Placed { name: &self.name, link: self.body, kind: self.kind, rotates: self.rotates, sign: self.sign }
+    }
+
     /// An arm of the motion as that of what is printed.
     pub fn printed_arm(&self, arm: &Polynomial, names: Names) -> Polynomial {
         if self.is_printed_against_iso(names) { -arm } else { arm.clone() }
@@ -260,11 +266,14 @@ impl Equations {
     /// The names that a calibration of the machine may use.
     pub fn names(&self) -> MachineNames {
         let axis_letter = |axis: usize| self.axes.get(axis).map(|axis| axis.letter.clone());
+        let all = || self.motions.iter().chain(&self.unseen);
+        let placed: Vec<Placed<'_>> = all().map(Motion::placed).collect();
         let named = |motion: &Motion| MotionName {
             name: motion.name.clone(),
             angular: motion.angular,
             axis: motion.axis.and_then(axis_letter),
             own: self.own_axis(motion).is_some(),
+            counted: counted(&self.links, &placed, &motion.placed()),
         };
         MachineNames {
             machine: self.machine.clone(),

@@ -77,7 +77,7 @@ fn tokens(text: &str) -> Result<Vec<Token<'_>>, ExpressionError> {
         let length = if first.is_whitespace() {
             first.len_utf8()
         } else if first.is_ascii_alphabetic() {
-            rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len())
+            name_length(rest)
         } else if first.is_ascii_digit() || first == '.' {
             number_length(rest)
         } else if "+-*/^()".contains(first) {
@@ -92,6 +92,23 @@ fn tokens(text: &str) -> Result<Vec<Token<'_>>, ExpressionError> {
         rest = &rest[length..];
     }
     Ok(found)
+}
+
+/// The length of the name at the beginning: letters, digits and `_`, and between these once another axis, `EA(0Y)C`.
+fn name_length(text: &str) -> usize {
+    let plain = plain_length(text);
+    let counted = || {
+        let inside = text[plain..].strip_prefix("(0").or_else(|| text[plain..].strip_prefix("(O"))?;
+        let from = plain_length(inside);
+        let after = inside[from..].strip_prefix(')').filter(|_| from > 0)?;
+        let link = plain_length(after);
+        (link > 0).then(|| text.len() - after.len() + link)
+    };
+    counted().unwrap_or(plain)
+}
+
+fn plain_length(text: &str) -> usize {
+    text.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(text.len())
 }
 
 /// The length of the number at the beginning: digits, one point, and an exponent if digits follow it.

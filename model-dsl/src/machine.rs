@@ -4,6 +4,7 @@
 //! link stands in its branch and every error motion on its link, or a list of located
 //! mistakes. What a machine means, its equations, is the business of [`crate::derivation`].
 
+mod budget;
 mod chain;
 mod constants;
 mod draft;
@@ -15,6 +16,7 @@ mod motion;
 mod names;
 mod read_link;
 mod read_motion;
+pub(crate) mod reference;
 mod topology;
 mod usual_motions;
 mod words;
@@ -23,7 +25,10 @@ pub use constants::Constant;
 pub use drive::{Drive, Element, ElementKind};
 pub use link::{Along, Branch, Link, LinkKind, Reference};
 pub(crate) use motion::body_sign;
-pub use motion::{Motion, MotionKind, MotionName, parse_name};
+pub use motion::{Motion, MotionKind, MotionName, parse_name, without_reference};
+pub(crate) use read_link::own_direction;
+pub(crate) use read_motion::kind_of;
+pub use reference::Counted;
 pub use topology::{TopologyWord, template};
 
 use crate::algebra::Axis;
@@ -62,6 +67,13 @@ impl Machine {
     /// The links of one branch, from the bed outwards, with their numbers in [`Machine::links`].
     pub fn branch(&self, branch: Branch) -> impl Iterator<Item = (usize, &Link)> {
         self.links.iter().enumerate().filter(move |(_, link)| link.branch == branch)
+    }
+
+    /// What an alignment error is, counted from each other axis that shows it, by its number in [`Machine::motions`]; none for any
+    /// other error motion.
+    pub fn counted(&self, motion: usize) -> Vec<Counted> {
+        let placed = reference::placed(&self.links, &self.motions, self.relative);
+        placed.get(motion).map(|own| reference::counted(&self.links, &placed, own)).unwrap_or_default()
     }
 
     /// The links that a program moves, in the order X Y Z U V W A B C, with their numbers.
@@ -110,7 +122,7 @@ fn read_node(root: &Node, diagnostics: &mut Diagnostics) -> Option<Machine> {
 }
 
 /// The keys of a machine file.
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 12] = [
     "abbe",
     "name",
     "title",
@@ -118,6 +130,7 @@ const KEYS: [&str; 11] = [
     "sensitive",
     "reference",
     "motions",
+    "budget",
     "constants",
     "topology",
     "chain",
@@ -132,11 +145,13 @@ fn build(
     diagnostics: &mut Diagnostics,
 ) -> Option<Machine> {
     let motions = read_motion::collect(&chain, diagnostics);
+    let motions = budget::kept(header.budget, &chain, motions, diagnostics);
+    read_motion::check_references(&motions, &chain, header.relative, diagnostics);
     let constants = constants::settle(declared, &chain, diagnostics);
     drive::settle(&drives, &chain, diagnostics);
     let links_are_distinct = !diagnostics.iter().any(|known| matches!(known.code, "E0123" | "E0124"));
     if links_are_distinct {
-        names::check_names(&motions, &constants, &chain, diagnostics);
+        names::check_names(&motions, &constants, &chain, &header.sensitive, diagnostics);
     }
     if diagnostics.has_errors() {
         return None;

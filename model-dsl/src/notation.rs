@@ -4,8 +4,10 @@
 //! where (order, signs, brackets, how a name is split into letter and subscript) is decided once, while the
 //! tree is built; a writer only spells it, so that no two formats can say different things.
 
+mod brackets;
 mod chain;
 mod example;
+mod factored;
 mod formula;
 mod html;
 mod json;
@@ -59,7 +61,7 @@ pub fn print(equations: &Equations, format: Format, names: Names) -> String {
         Format::Latex => latex::page(&sheet()),
         Format::Html => page(equations, names, &[]),
         Format::Maxima => maxima::batch(&sheet()),
-        Format::Python => python::module(&sheet(), equations),
+        Format::Python => python::module(&sheet()),
         Format::Json => json::object(equations),
     }
 }
@@ -77,13 +79,14 @@ pub fn drawing(equations: &Equations, names: Names) -> String {
     chain::drawing(equations, names).file(&format!("{}{paper}{style}", pages::svg::COLOURS))
 }
 
-/// The error of each direction as one line of plain text: `dPx = dxx - dxz + ...`.
+/// The error of each direction as one line of plain text: `dPx = dxx - dxz + ...`. Before these stand the brackets that have a name,
+/// `Ly = y - Ya + Yt`, where the machine has rotary axes.
 pub fn error_lines(equations: &Equations, names: Names) -> Vec<String> {
     let sheet = sheet::Sheet::new(equations, names);
-    let line = |row: &sheet::SheetRow| {
-        format!("{} = {}", row.error.left.plain, writer::line(&text::Plain, &row.error.right))
+    let line = |statement: &sheet::Statement| {
+        format!("{} = {}", statement.left.plain, writer::line(&text::Plain, &statement.right))
     };
-    sheet.rows.iter().map(line).collect()
+    sheet.brackets.iter().chain(sheet.rows.iter().map(|row| &row.error)).map(line).collect()
 }
 
 /// A polynomial as plain infix text, `-x*cos(c) + Zt`, which [`crate::expression::parse`] reads back.

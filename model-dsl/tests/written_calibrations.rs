@@ -27,6 +27,7 @@ fn names() -> MachineNames {
         angular,
         axis: axis.map(str::to_owned),
         own: matches!(name, "EXX" | "EYY" | "ECC"),
+        counted: Vec::new(),
     };
     MachineNames {
         machine: "mill".to_owned(),

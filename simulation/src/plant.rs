@@ -115,13 +115,14 @@ pub fn names_of(machine: &Machine) -> MachineNames {
     let letter = |kind: LinkKind| kind.letter().map(String::from);
     let axes = machine.axes();
     let constants = machine.constants.iter();
-    let motions = machine.motions.iter().map(|motion| {
+    let motions = machine.motions.iter().enumerate().map(|(number, motion)| {
         let link = machine.links.get(motion.link);
         MotionName {
             name: motion.name.clone(),
             angular: motion.kind.angular(),
             axis: link.and_then(|link| letter(link.kind)),
             own: link.is_some_and(|link| is_own(link, motion.kind)),
+            counted: machine.counted(number),
         }
     });
     MachineNames {

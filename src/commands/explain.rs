@@ -1,4 +1,4 @@
-//! `abbe explain`: what a diagnostic or a term means. In: its name, or none. Out: its page, or the list of all.
+//! `abbe explain`: what a diagnostic, a term or an error motion means. In: its name, or none. Out: its page, or the list of all.
 
 use crate::arguments::Explain;
 use crate::explain;
@@ -21,5 +21,5 @@ fn unknown(name: &str, near: &[&str]) -> String {
         [one] => format!("did you mean {one}?"),
         [others @ .., last] => format!("did you mean {} or {last}?", others.join(", ")),
     };
-    format!("error: `{}` is no diagnostic and no term\nhelp: {help}", name.escape_debug())
+    format!("error: `{}` is no diagnostic, no term and no error motion\nhelp: {help}", name.escape_debug())
 }

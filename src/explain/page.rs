@@ -8,7 +8,7 @@ use model_dsl::calibration::factor::vocabulary::{FactorEntry, FactorHolds, Measu
 
 use super::entry::Entry;
 
-const WIDTH: usize = 100;
+pub(super) const WIDTH: usize = 100;
 
 /// Everything there is to explain, a line each.
 pub(super) fn overview(
@@ -28,7 +28,7 @@ pub(super) fn overview(
     for code in codes {
         line(&mut text, code.name, 7, code.title);
     }
-    text.push_str("\n`abbe explain NAME` tells more of each.\n");
+    text.push_str("\n`abbe explain NAME` tells more of each, and of an error motion by its name, such as EX0C or EA(0Y)C.\n");
     text
 }
 

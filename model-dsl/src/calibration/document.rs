@@ -253,6 +253,11 @@ fn without_effect(name: &Spanned<String>, names: &MachineNames) -> Diagnostic {
 fn unknown_motion(name: &Spanned<String>, names: &MachineNames) -> Diagnostic {
     let message = format!("{} has no error motion `{}`", names.machine, name.value);
     let mistake = Diagnostic::error("E0407", name.span, message);
+    if let Some(reason) = names.miscounted(&name.value) {
+        return mistake
+            .label(reason)
+            .help("write the alignment error without an axis: it counts from the frame before its link");
+    }
     // A motion of a link is no suggestion for an alignment error: both may be angles, and mean other things.
     let aligns = |name: &str| name.contains('0');
     let alike = names.motions.iter().map(|motion| motion.name.as_str());

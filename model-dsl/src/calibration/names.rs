@@ -1,5 +1,7 @@
 //! The names of a machine that its calibration may use, and how they are looked up.
 
+use crate::machine::reference::difference;
+use crate::machine::{Counted, without_reference};
 use crate::quantity::Dimension;
 
 /// The names of one machine: what a calibration of it can speak of.
@@ -37,6 +39,8 @@ pub struct MotionName {
     pub axis: Option<String>,
     /// Whether it is the motion of that axis along itself, or about itself: EXX of X, ECC of C.
     pub own: bool,
+    /// What an alignment error is, counted from each other axis that shows it.
+    pub counted: Vec<Counted>,
 }
 
 impl MachineNames {
@@ -45,7 +49,7 @@ impl MachineNames {
         self.axes.iter().position(|axis| axis.letter == letter)
     }
 
-    /// The index of an error motion; alignment errors also as `C0Y` and `COY`.
+    /// The index of an error motion; alignment errors also as `C0Y` and `COY`, and as `EC(0X)Y` where it is the same counted from X.
     pub fn motion(&self, name: &str) -> Option<usize> {
         named(&self.motions, name)
     }
@@ -53,6 +57,14 @@ impl MachineNames {
     /// The index of an error motion without a lever, under the same spellings.
     pub fn unseen_motion(&self, name: &str) -> Option<usize> {
         named(&self.unseen, name)
+    }
+
+    /// Why a name such as `EC(0X)Y` is not that of an alignment error of this machine, though `EC0Y` is.
+    pub fn miscounted(&self, name: &str) -> Option<String> {
+        let (plain, from) = without_reference(name)?;
+        let plain = alignment_name(&plain)?;
+        let known = self.motions.iter().chain(&self.unseen).find(|motion| motion.name == plain)?;
+        difference(name, &plain, from, &known.counted)
     }
 
     /// The axis whose own motion, actual minus commanded, an error motion is: X for EXX, C for ECC.
@@ -84,11 +96,13 @@ impl MotionName {
 
 /// The index of a motion by its name.
 fn named(motions: &[MotionName], name: &str) -> Option<usize> {
-    let exact = motions.iter().position(|motion| motion.name == name);
-    exact.or_else(|| {
-        let alignment = alignment_name(name)?;
-        motions.iter().position(|motion| motion.name == alignment)
-    })
+    let of = |name: &str| motions.iter().position(|motion| motion.name == name);
+    if let Some((plain, from)) = without_reference(name) {
+        let found = of(&alignment_name(&plain)?)?;
+        let motion = motions.get(found)?;
+        return difference(name, &motion.name, from, &motion.counted).is_none().then_some(found);
+    }
+    of(name).or_else(|| of(&alignment_name(name)?))
 }
 
 /// `EC0Y` for `C0Y`, `COY` and `ECOY`; nothing for what is not spelled like an alignment error.
@@ -110,6 +124,27 @@ mod tests {
         }
         for name in ["EXX", "XX", "", "E", "C0", "\u{b5}0Y", "c0Y"] {
             assert_eq!(alignment_name(name), None, "{name}");
+        }
+    }
+
+    /// C stands on the bed; Z is out of line about X, and Y is not.
+    #[test]
+    fn alignment_errors_may_be_counted_from_another_axis_where_that_is_the_same() {
+        let names = crate::compile_word("CFXYZ", &mut crate::diagnostic::Diagnostics::new());
+        let names = names.expect("a word").equations.names();
+        let own = names.motion("EA0C");
+        assert!(own.is_some());
+        for name in ["EA(0Y)C", "EA(OY)C", "A(0Y)C", "AOC", "A0C", "EAOC"] {
+            assert_eq!((names.motion(name), names.miscounted(name)), (own, None), "{name}");
+        }
+        for (name, reason) in [
+            ("EA(0Z)C", Some("counted from Z, EA(0Z)C is EA0C - EA0Z")),
+            ("EA(0X)C", Some("X is no axis from which EA0C can be counted")),
+            ("EA(0Y)Q", None),
+            ("EA(Y)C", None),
+            ("EA(0)C", None),
+        ] {
+            assert_eq!((names.motion(name), names.miscounted(name).as_deref()), (None, reason), "{name}");
         }
     }
 }

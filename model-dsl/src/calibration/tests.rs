@@ -17,6 +17,7 @@ pub(super) fn names() -> MachineNames {
         angular,
         axis: axis.map(str::to_owned),
         own: matches!(name, "EXX" | "EYY" | "ECC"),
+        counted: Vec::new(),
     };
     MachineNames {
         machine: "test-mill".to_owned(),

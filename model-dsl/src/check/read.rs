@@ -302,11 +302,15 @@ fn value(
             }
             return None;
         };
-        diagnostics.push(
-            Diagnostic::error("E0504", span, format!("`{name}` is not known here"))
+        let unknown = Diagnostic::error("E0504", span, format!("`{name}` is not known here"));
+        diagnostics.push(match vocabulary.miscounted(&name) {
+            Some(reason) => {
+                unknown.label(reason).help("write the alignment error without an axis, or the sum")
+            }
+            None => unknown
                 .label("neither an error motion nor a position, constant or travel of the machine")
                 .suggest(vocabulary.nearest(&name)),
-        );
+        });
         told.push(name);
         if told.len() == MOST_UNKNOWN {
             return None;

@@ -335,3 +335,36 @@ fn letters_hold_for_their_section_only() {
     assert!(report(&lathe, text).agrees());
     assert_eq!(mistakes(&lathe, &format!("{text}[c]\ndPx = b\n")), [("E0504", "b".to_owned())]);
 }
+
+/// What is printed of a machine with rotary axes agrees with it exactly, its brackets taken as letters.
+#[test]
+fn factored_equations_agree_with_what_was_derived() {
+    for name in ["trunnion-5axis", "head-table-5axis"] {
+        let compiled = machine(name);
+        let lines = crate::notation::error_lines(&compiled.equations, crate::equations::Names::Iso);
+        let statement =
+            |line: &String| if line.starts_with('L') { format!("let {line}\n") } else { format!("{line}\n") };
+        let report = report(&compiled, &lines.iter().map(statement).collect::<String>());
+        assert!(report.agrees() && report.equations.len() == 3, "{name}: {}", report.text());
+    }
+}
+
+/// C stands on the bed; Z is out of line about X, and Y is not.
+#[test]
+fn an_error_may_be_counted_from_another_axis_where_that_is_the_same() {
+    let compiled = crate::compile_word("CFXYZ", &mut Diagnostics::new()).expect("a word");
+    let full = crate::notation::error_lines(&compiled.equations, crate::equations::Names::Iso);
+    let with = |name: &str| {
+        let lines = full.iter().map(|line| line.replace("EA0C", name));
+        lines
+            .map(|line| if line.starts_with('L') { format!("let {line}\n") } else { format!("{line}\n") })
+            .collect::<String>()
+    };
+    for name in ["EA(0Y)C", "EA(OY)C", "A(0Y)C", "AOC", "EAOC"] {
+        assert!(report(&compiled, &with(name)).agrees(), "{name}");
+    }
+    let Err(refused) = run(&compiled, &with("EA(0Z)C")) else { panic!("EA(0Z)C is another error") };
+    let first = refused.iter().next().expect("a mistake");
+    assert_eq!((first.code, first.label.as_str()), ("E0504", "counted from Z, EA(0Z)C is EA0C - EA0Z"));
+    assert!(report(&compiled, &with("(EA(0Y)C)")).agrees());
+}

@@ -2,6 +2,7 @@
 //! which every error motion goes by its ISO name, however the file calls it.
 
 use crate::algebra::{Monomial, Polynomial, Symbol};
+use crate::machine::reference::difference;
 use crate::machine::{Machine, parse_name};
 use crate::suggest::nearest;
 
@@ -91,16 +92,31 @@ impl<'m> Vocabulary<'m> {
         known.cloned().or_else(|| self.alias(name))
     }
 
-    /// A motion by another spelling of its ISO name: `C0Y` and `COY` for `EC0Y`.
+    /// A motion by another spelling of its ISO name: `C0Y` and `COY` for `EC0Y`, and `EC(0X)Y` where it is the same counted from X.
     fn alias(&self, name: &str) -> Option<Name> {
-        let found = self.machine.motions.iter().find(|motion| {
+        let (found, reason) = self.spelled(name)?;
+        let symbol = Symbol::Motion(self.machine.motions.get(found)?.name.as_str().into());
+        reason.is_none().then(|| Name { name: name.to_owned(), symbol, negative: false })
+    }
+
+    /// Why a name such as `EC(0X)Y` is not that of an alignment error of this machine, though `EC0Y` is.
+    pub(super) fn miscounted(&self, name: &str) -> Option<String> {
+        self.spelled(name)?.1
+    }
+
+    /// The motion that another spelling names, and why it is another one where that is counted from an axis.
+    fn spelled(&self, name: &str) -> Option<(usize, Option<String>)> {
+        let motions = self.machine.motions.iter().enumerate();
+        let mut named = motions.filter_map(|(number, motion)| {
             let id = self.machine.links.get(motion.link).map_or("", |link| link.id.as_str());
-            parse_name(name, id).is_some_and(|parsed| {
-                parsed.letter == motion.kind.letter() && parsed.alignment == motion.kind.alignment()
-            })
+            let parsed = parse_name(name, id)?;
+            let same = parsed.letter == motion.kind.letter() && parsed.alignment == motion.kind.alignment();
+            same.then_some((number, motion, parsed.counted_from))
         });
-        let symbol = Symbol::Motion(found?.name.as_str().into());
-        Some(Name { name: name.to_owned(), symbol, negative: false })
+        let (number, motion, from) = named.next()?;
+        let reason =
+            from.and_then(|from| difference(name, &motion.name, &from, &self.machine.counted(number)));
+        Some((number, reason))
     }
 }
 

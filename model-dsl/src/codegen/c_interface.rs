@@ -6,6 +6,7 @@ use quote::quote;
 
 use crate::calibration::{CompiledIn, MachineNames, MotionName};
 use crate::equations::Equations;
+use crate::machine::Counted;
 
 /// The implementation of `abbe_c::CompiledMachine`, and `abbe_open`.
 pub(super) fn all(equations: &Equations) -> TokenStream {
@@ -43,6 +44,11 @@ fn compiled_machine(equations: &Equations) -> TokenStream {
         let (letter, rotary) = (&axis.letter, axis.rotary);
         quote! { (#letter, #rotary) }
     });
+    let counted = motions.iter().chain(&unseen).flat_map(|motion| {
+        let name = &motion.name;
+        motion.counted.iter().map(move |Counted { from, is }| quote! { (#name, #from, #is) })
+    });
+    let counted: Vec<_> = counted.collect();
     let [motions, unseen] = [motions, unseen].map(|motions| motions.iter().map(named).collect::<Vec<_>>());
     let json = CompiledIn::of_equations(equations);
     let measured = super::measured();
@@ -54,6 +60,7 @@ fn compiled_machine(equations: &Equations) -> TokenStream {
             const AXES: &'static [::abbe_c::AxisOfMachine] = &[#(#axes),*];
             const MOTIONS: &'static [::abbe_c::MotionOfMachine] = &[#(#motions),*];
             const UNSEEN: &'static [::abbe_c::MotionOfMachine] = &[#(#unseen),*];
+            const COUNTED: &'static [::abbe_c::CountedOfMachine] = &[#(#counted),*];
             const EQUATIONS: &'static str = #json;
             fn with_constants(constants: &[f64]) -> Option<Self> {
                 let constants = constants.try_into().ok()?;

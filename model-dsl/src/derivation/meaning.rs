@@ -1,6 +1,52 @@
-//! What an error motion is, in words. In: a motion and its link. Out: a line for people.
+//! What an error motion is, in words. In: a motion and its link, or its name alone. Out: a line for people.
 
-use crate::machine::{Link, LinkKind, Motion, MotionKind};
+use crate::algebra::Polynomial;
+use crate::machine::{
+    Along, Branch, Link, LinkKind, Motion, MotionKind, Reference, kind_of, own_direction, parse_name,
+};
+use crate::source::Span;
+
+/// An error motion of an axis, as its name alone tells it.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct NamedMotion {
+    /// The name as Abbe prints it: `EA0C` for `AOC` and `EA(0Y)C`.
+    pub name: String,
+    /// What it is, in words.
+    pub meaning: String,
+    /// What it does to its link.
+    pub kind: MotionKind,
+    /// The letter of the axis.
+    pub axis: char,
+    /// Whether the axis turns.
+    pub rotary: bool,
+    /// The axis from which the name counts it.
+    pub counted_from: Option<String>,
+}
+
+/// An error motion by its name, of an axis with a letter of ISO 841 and no other id; none for a name that is not one. The place of
+/// a slide is none: that is its origin.
+pub fn named(name: &str) -> Option<NamedMotion> {
+    let axis = name.chars().last().filter(|letter| "XYZUVWABC".contains(*letter))?;
+    let rotary = "ABC".contains(axis);
+    let parsed = parse_name(name, &axis.to_string())?;
+    let kind = kind_of(&parsed)?;
+    if matches!(kind, MotionKind::Offset(_)) && !rotary {
+        return None;
+    }
+    let link = Link {
+        id: axis.to_string(),
+        kind: if rotary { LinkKind::Rotary(axis) } else { LinkKind::Slide(axis) },
+        branch: Branch::Tool,
+        along: Along { axis: own_direction(axis), sign: 1 },
+        origin: std::array::from_fn(|_| Polynomial::zero()),
+        reference: Reference::Carriage,
+        corrects: true,
+        span: Span::default(),
+    };
+    let motion = Motion::plain(0, &link, kind, None);
+    let meaning = of(&motion, &link);
+    Some(NamedMotion { name: motion.name, meaning, kind, axis, rotary, counted_from: parsed.counted_from })
+}
 
 /// A short description: "positioning error of X", "squareness: Y turned about Z".
 pub(super) fn of(motion: &Motion, link: &Link) -> String {

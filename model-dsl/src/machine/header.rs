@@ -1,10 +1,11 @@
 //! The head of a machine file: version, names, sensitive directions and conventions.
 
+use super::budget::{self, Budget};
 use super::fields::{Fields, choice, items, keys, text};
 use super::link::Reference;
 use crate::algebra::Axis;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::source::Span;
+use crate::source::{Span, Spanned};
 use crate::yaml::Node;
 
 /// What the head of a machine file says.
@@ -16,6 +17,7 @@ pub(super) struct Header {
     pub(super) sensitive_spans: Vec<(Axis, Span)>,
     pub(super) reference: Reference,
     pub(super) relative: bool,
+    pub(super) budget: Spanned<Budget>,
 }
 
 impl Header {
@@ -29,6 +31,7 @@ impl Header {
             sensitive_spans: Vec::new(),
             reference: Reference::Carriage,
             relative: false,
+            budget: Spanned::new(Budget::Full, Span::default()),
         }
     }
 }
@@ -53,6 +56,9 @@ pub(super) fn read(fields: Fields<'_>, diagnostics: &mut Diagnostics) -> Header 
     if let Some(node) = fields.get("motions") {
         let word = choice(node, "a meaning of error motions", &["body", "relative"], diagnostics);
         header.relative = word == Some("relative");
+    }
+    if let Some(node) = fields.get("budget") {
+        header.budget = budget::read(node, diagnostics);
     }
     header
 }

@@ -1,7 +1,8 @@
 //! Error motions: what a link does beside what it was told.
 //!
 //! Names are those of ISO 230-1: `E`, a direction (X Y Z along, A B C about), a link; with a
-//! zero between (`EC0Y`, also read as C0Y or COY) an alignment error of an axis.
+//! zero between (`EC0Y`, also read as C0Y or COY) an alignment error of an axis, and with a zero and another axis between, `EC(0X)Y`,
+//! the same counted from that axis.
 
 use super::link::{Branch, Link, LinkKind};
 use crate::algebra::{Axis, Name};
@@ -70,6 +71,8 @@ pub struct Motion {
     pub rotates: bool,
     /// Where the file names it itself.
     pub span: Option<Span>,
+    /// The axis from which the file counts it, in a name such as `EA(0Y)C`.
+    pub counted_from: Option<String>,
 }
 
 /// A name split into its parts.
@@ -81,10 +84,26 @@ pub struct MotionName {
     pub alignment: bool,
     /// The link's id.
     pub link: String,
+    /// The id of the axis from which it is counted: Y of `EA(0Y)C`.
+    pub counted_from: Option<String>,
 }
 
-/// Reads a name for a link of the given id: `EXX`, `EC0Y`, `C0Y`, `COY`.
+/// A name without the axis from which it is counted, and that axis: `EA0C` and Y for `EA(0Y)C`. The zero may be the letter O.
+pub fn without_reference(name: &str) -> Option<(String, &str)> {
+    let (front, rest) = name.split_once('(')?;
+    let (inner, id) = rest.split_once(')')?;
+    let from = inner.strip_prefix(['0', 'O']).filter(|from| !from.is_empty())?;
+    Some((format!("{front}0{id}"), from))
+}
+
+/// Reads a name for a link of the given id: `EXX`, `EC0Y`, `C0Y`, `COY`, `EC(0X)Y`.
 pub fn parse_name(name: &str, id: &str) -> Option<MotionName> {
+    if let Some((plain, from)) = without_reference(name) {
+        let counted_from = Some(from.to_owned());
+        return parse_name(&plain, id)
+            .filter(|known| known.alignment)
+            .map(|known| MotionName { counted_from, ..known });
+    }
     let front = name.strip_suffix(id)?;
     let (letters, alignment) = match front.strip_suffix(['0', 'O']) {
         Some(letters) => (letters, true),
@@ -94,16 +113,31 @@ pub fn parse_name(name: &str, id: &str) -> Option<MotionName> {
         ([b'E', letter], _) | ([letter], true) => *letter as char,
         _ => return None,
     };
-    "XYZABC".contains(letter).then(|| MotionName { letter, alignment, link: id.to_owned() })
+    "XYZABC".contains(letter).then(|| MotionName {
+        letter,
+        alignment,
+        link: id.to_owned(),
+        counted_from: None,
+    })
 }
 
 impl Motion {
     /// A motion under its own name, in the ISO sense.
-    pub(super) fn plain(number: usize, link: &Link, kind: MotionKind, span: Option<Span>) -> Self {
+    pub(crate) fn plain(number: usize, link: &Link, kind: MotionKind, span: Option<Span>) -> Self {
         let name = kind.name(&link.id);
         let symbol = name.clone();
-        let (symbol_span, travel) = (None, None);
-        Self { name, symbol, symbol_span, link: number, kind, sign: 1, travel, rotates: false, span }
+        Self {
+            name,
+            symbol,
+            symbol_span: None,
+            link: number,
+            kind,
+            sign: 1,
+            travel: None,
+            rotates: false,
+            span,
+            counted_from: None,
+        }
     }
 }
 

@@ -5,18 +5,21 @@ use std::fmt;
 use super::constants::Constant;
 use super::draft::Chain;
 use super::motion::Motion;
+use crate::algebra::Axis;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::Span;
 
 /// Checks that positions, constants, travels, symbols and ISO names are distinct. Names that become
-/// fields of one record of the generated code stay distinct in lower case too.
+/// fields of one record of the generated code stay distinct in lower case too, and none is that of the position or of the
+/// error in a sensitive direction, as the equations print it.
 pub(super) fn check_names(
     motions: &[Motion],
     constants: &[Constant],
     chain: &Chain<'_>,
+    sensitive: &[Axis],
     diagnostics: &mut Diagnostics,
 ) {
-    let mut names = Names::default();
+    let mut names = Names { taken: Vec::new(), sensitive };
     for drafted in chain.links.iter().filter(|drafted| drafted.link.is_axis()) {
         names.take(&drafted.link.variable(), What::Position, drafted.link.span, diagnostics);
     }
@@ -65,17 +68,29 @@ impl fmt::Display for What {
     }
 }
 
-/// The names taken so far, what each stands for, and where.
-#[derive(Default)]
-struct Names(Vec<(String, What, Span)>);
+/// The names taken so far, what each stands for, and where; and the directions of which equations are printed.
+struct Names<'m> {
+    taken: Vec<(String, What, Span)>,
+    sensitive: &'m [Axis],
+}
 
-impl Names {
+impl Names<'_> {
     fn take(&mut self, name: &str, what: What, span: Span, diagnostics: &mut Diagnostics) {
         let clash = |known: &str, other: What| {
             let one_record = what == other && what.makes_fields();
             known == name || one_record && known.eq_ignore_ascii_case(name)
         };
-        match self.0.iter().find(|(known, other, _)| clash(known, *other)) {
+        if let Some(printed) = self.printed(name) {
+            diagnostics.push(
+                Diagnostic::error("E0135", span, format!("`{name}` would stand for two things"))
+                    .label(format!("stands for {what} here, and in printed equations for {printed}"))
+                    .help(format!(
+                        "choose another name, such as `{name}_` or `{}`",
+                        name.to_ascii_lowercase()
+                    )),
+            );
+        }
+        match self.taken.iter().find(|(known, other, _)| clash(known, *other)) {
             // Two alignment errors may act over the same travel.
             Some((known, What::Travel, _)) if what == What::Travel && known == name => {}
             Some((known, other, first)) => diagnostics.push(
@@ -84,7 +99,21 @@ impl Names {
                     .also(*first, format!("`{known}` stands for {other} here"))
                     .help("choose another name; upper and lower case alone do not tell two of a kind apart"),
             ),
-            None => self.0.push((name.to_owned(), what, span)),
+            None => self.taken.push((name.to_owned(), what, span)),
         }
+    }
+
+    /// What printed equations call by this name.
+    fn printed(&self, name: &str) -> Option<String> {
+        let (error, direction) = match name.strip_prefix('d') {
+            Some(rest) => (true, rest.strip_prefix('P')?),
+            None => (false, name.strip_prefix('P')?),
+        };
+        let what = if error { "the error of the tool tip" } else { "the position of the tool tip" };
+        if direction.is_empty() {
+            return Some(what.to_owned());
+        }
+        let own = |axis: &&Axis| axis.letter().to_ascii_lowercase().to_string() == direction;
+        self.sensitive.iter().find(own).map(|axis| format!("{what} in {axis}"))
     }
 }

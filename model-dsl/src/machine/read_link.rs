@@ -135,7 +135,7 @@ fn kind(word: &str, name: &str, span: Span, diagnostics: &mut Diagnostics) -> Op
 }
 
 /// The direction that an axis letter names: X for X and U, and for the rotation A about it.
-fn own_direction(letter: char) -> Axis {
+pub(crate) fn own_direction(letter: char) -> Axis {
     match letter {
         'X' | 'U' | 'A' => Axis::X,
         'Y' | 'V' | 'B' => Axis::Y,

@@ -5,6 +5,7 @@ use super::draft::{Chain, DraftedLink};
 use super::fields::{self, choice, items, text};
 use super::link::{Link, LinkKind};
 use super::motion::{Motion, MotionKind, MotionName, parse_name};
+use super::reference;
 use super::usual_motions::usual;
 use super::words::is_name;
 use crate::algebra::{Axis, Name};
@@ -77,8 +78,8 @@ fn named(
     diagnostics: &mut Diagnostics,
 ) -> Option<Motion> {
     let link = &drafted.link;
-    let kind = parse_name(name, &link.id).and_then(|parsed| kind_of(&parsed));
-    let Some(kind) = kind else {
+    let parsed = parse_name(name, &link.id);
+    let Some((parsed, kind)) = parsed.and_then(|parsed| kind_of(&parsed).map(|kind| (parsed, kind))) else {
         diagnostics.push(misnamed(name, span, link, chain));
         return None;
     };
@@ -91,7 +92,38 @@ fn named(
         diagnostics.push(misaligned(name, span, kind, link));
         return None;
     }
-    Some(Motion::plain(number, link, kind, Some(span)))
+    Some(Motion { counted_from: parsed.counted_from, ..Motion::plain(number, link, kind, Some(span)) })
+}
+
+/// Reports each alignment error that the file counts from an axis from which it is another one.
+pub(super) fn check_references(
+    motions: &[Motion],
+    chain: &Chain<'_>,
+    relative: bool,
+    diagnostics: &mut Diagnostics,
+) {
+    let links: Vec<Link> = chain.links.iter().map(|drafted| drafted.link.clone()).collect();
+    let placed = reference::placed(&links, motions, relative);
+    for (motion, own) in motions.iter().zip(&placed) {
+        let (Some(from), Some(span), Some(link)) =
+            (&motion.counted_from, motion.span, links.get(motion.link))
+        else {
+            continue;
+        };
+        let name = format!("E{}(0{from}){}", motion.kind.letter(), link.id);
+        let counted = reference::counted(&links, &placed, own);
+        if let Some(reason) = reference::difference(&name, &motion.name, from, &counted) {
+            let same: Vec<&str> =
+                counted.iter().filter(|one| one.is == motion.name).map(|one| one.from.as_str()).collect();
+            let error =
+                Diagnostic::error("E0146", span, format!("{name} is not {} here", motion.name)).label(reason);
+            let help = format!("write `{}`, which counts from the frame before {}", motion.name, link.id);
+            diagnostics.push(match same.as_slice() {
+                [] => error.help(help),
+                axes => error.help(format!("{help}; it is the same counted from {}", axes.join(", "))),
+            });
+        }
+    }
 }
 
 /// An alignment error that its link cannot have.
@@ -110,7 +142,7 @@ fn misaligned(name: &str, span: Span, kind: MotionKind, link: &Link) -> Diagnost
     ))
 }
 
-fn kind_of(name: &MotionName) -> Option<MotionKind> {
+pub(crate) fn kind_of(name: &MotionName) -> Option<MotionKind> {
     let (axis, angular) = match name.letter {
         'X' => (Axis::X, false),
         'Y' => (Axis::Y, false),

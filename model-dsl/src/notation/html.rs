@@ -45,13 +45,14 @@ pub(super) fn page(sheet: &Sheet, equations: &Equations, names: Names, published
     let rows: String = sheet.rows.iter().map(direction).collect();
     let title = sheet.heading();
     let body = format!(
-        "<h1>{}</h1>\n{}<h2>The chain</h2>\n{}{rows}\
+        "<h1>{}</h1>\n{}<h2>The chain</h2>\n{}{}{rows}\
          <h2>Error motions and their lever arms</h2>\n{}\
          <h2>Positions and constants</h2>\n{}{}\
          <h2>Conventions in force</h2>\n{}{}",
         escape(&title),
         source.unwrap_or_default(),
         the_chain(sheet, equations, names),
+        brackets(sheet),
         motions(sheet, equations),
         quantities(sheet),
         agreement(published),
@@ -68,6 +69,16 @@ fn the_chain(sheet: &Sheet, equations: &Equations, names: Names) -> String {
          <p>{}</p>\n<figure class=\"chain\">\n{}<figcaption>{SYMBOLS}</figcaption>\n</figure>\n",
         escape(&sheet.chain.join(" ")),
         chain::drawing(equations, names).inline(),
+    )
+}
+
+fn brackets(sheet: &Sheet) -> String {
+    if sheet.brackets.is_empty() {
+        return String::new();
+    }
+    let equations: String = sheet.brackets.iter().map(equation).collect();
+    format!(
+        "<h2>Brackets with a name</h2>\n<p>Each occurs more than once below.</p>\n<div class=\"wide\">\n{equations}</div>\n"
     )
 }
 

@@ -2,39 +2,71 @@
 //!
 //! An arm is that of the motion under its ISO name. A term holds `"symbol_sign": -1` where the symbol is counted against the
 //! ISO sense: its arm is the opposite one.
+//!
+//! Where the machine has rotary axes, `brackets` gives names to what occurs more than once, and `factored` says the same as the
+//! expression before it, in these names; an expression without it is the shortest one already.
 
-use super::infix;
-use crate::equations::{Equations, Row, Term};
+use super::brackets::Brackets;
+use super::text::Plain;
+use super::tree::Expression;
+use super::{infix, sheet, writer};
+use crate::equations::{Equations, Names, Row, Term};
 
 /// The whole object, with a line end after it.
 pub(super) fn object(equations: &Equations) -> String {
-    let rows: Vec<String> = equations.rows.iter().map(|one| row(one, equations)).collect();
+    let written = Brackets::new(equations, sheet::taken_names(equations, &[Names::Iso, Names::Symbols]));
+    let rows: Vec<String> = equations.rows.iter().map(|one| row(one, equations, &written)).collect();
     format!(
-        "{{\n  \"schema\": \"abbe-equations/1\",\n  \"machine\": {},\n  \"directions\": [{}]\n}}\n",
+        "{{\n  \"schema\": \"abbe-equations/1\",\n  \"machine\": {},\n{}  \"directions\": [{}]\n}}\n",
         string(&equations.machine),
+        brackets(&written),
         rows.join(", ")
     )
 }
 
-fn row(row: &Row, equations: &Equations) -> String {
-    let terms: Vec<String> = row.terms.iter().filter_map(|one| term(one, equations)).collect();
+/// The named brackets, each before those in which it stands; no line where there are none.
+fn brackets(written: &Brackets) -> String {
+    let bracket = |(letter, value): (&super::letter::Letter, Expression)| {
+        let value = string(&writer::line(&Plain, &value));
+        format!("\n    {{\"name\": {}, \"value\": {value}}}", string(&letter.plain))
+    };
+    let brackets: Vec<String> = written.definitions().map(bracket).collect();
+    if brackets.is_empty() {
+        String::new()
+    } else {
+        format!("  \"brackets\": [{}\n  ],\n", brackets.join(","))
+    }
+}
+
+fn row(row: &Row, equations: &Equations, written: &Brackets) -> String {
+    let terms: Vec<String> = row.terms.iter().filter_map(|one| term(one, equations, written)).collect();
+    let nominal = infix(&row.nominal);
+    let factored = factored("\n    \"nominal_factored\"", &nominal, &written.sum(&row.nominal));
     format!(
-        "{{\n    \"direction\": {},\n    \"nominal\": {},\n    \"terms\": [{}]\n  }}",
+        "{{\n    \"direction\": {},\n    \"nominal\": {}{factored},\n    \"terms\": [{}]\n  }}",
         string(&row.direction.to_string()),
-        string(&infix(&row.nominal)),
+        string(&nominal),
         terms.join(",")
     )
 }
 
-fn term(term: &Term, equations: &Equations) -> Option<String> {
+fn term(term: &Term, equations: &Equations, written: &Brackets) -> Option<String> {
     let motion = equations.motions.get(term.motion)?;
     let sign = if motion.symbol_against_iso { ", \"symbol_sign\": -1" } else { "" };
+    let arm = infix(&term.arm);
+    let factored = factored(" \"factored\"", &arm, &written.expression(&term.arm));
     Some(format!(
-        "\n      {{\"motion\": {}, \"symbol\": {}, \"arm\": {}{sign}}}",
+        "\n      {{\"motion\": {}, \"symbol\": {}, \"arm\": {}{factored}{sign}}}",
         string(&motion.name),
         string(&motion.symbol),
-        string(&infix(&term.arm))
+        string(&arm)
     ))
+}
+
+/// A key with the factored form of an expression, where that differs from the expanded one.
+fn factored(key: &str, expanded: &str, factored: &Expression) -> String {
+    let factored = writer::line(&Plain, factored);
+    if factored == expanded { String::new() } else { format!(",{key}: {}", string(&factored)) }
 }
 
 /// A JSON string with its quotation marks.

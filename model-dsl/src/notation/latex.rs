@@ -59,9 +59,11 @@ pub(super) fn page(sheet: &Sheet) -> String {
         text.push_str(&format!("Source: {}\n\n", escape(source)));
     }
     text.push_str(&format!("{}\n", escape(&sheet.chain.join(" "))));
+    if !sheet.brackets.is_empty() {
+        text.push_str(&aligned(&sheet.brackets.iter().map(equation).collect::<Vec<_>>()));
+    }
     for row in &sheet.rows {
-        let statements = [equation(&row.position), equation(&row.error)].join(" \\\\\n");
-        text.push_str(&format!("\\begin{{align*}}\n{statements}\n\\end{{align*}}\n"));
+        text.push_str(&aligned(&[equation(&row.position), equation(&row.error)]));
     }
     text.push_str(&motions(sheet));
     text.push_str(&quantities(sheet));
@@ -71,6 +73,11 @@ pub(super) fn page(sheet: &Sheet) -> String {
     }
     text.push_str("\\end{itemize}\n\\end{document}\n");
     text
+}
+
+/// Equations below each other.
+fn aligned(equations: &[String]) -> String {
+    format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", equations.join(" \\\\\n"))
 }
 
 /// One equation of an `align*`, broken where its plain text would be too wide.

@@ -85,6 +85,12 @@ impl Letter {
         Self { plain: plain.to_owned(), difference: false, base, subscript }
     }
 
+    /// A bracket: L with a subscript.
+    pub(super) fn bracket(subscript: String) -> Self {
+        let plain = format!("L{subscript}");
+        Self { plain, difference: false, base: Base::Letter('L'), subscript: Some(subscript) }
+    }
+
     /// The position `P` of a direction, or its error; `plain` is its name in plain text.
     pub(super) fn position(plain: String, direction: Axis, difference: bool) -> Self {
         let subscript = Some(direction.letter().to_ascii_lowercase().to_string());

@@ -103,6 +103,10 @@ pub(super) fn batch(sheet: &Sheet) -> String {
             motion.iso, motion.meaning, motion.unit
         )));
     }
+    if !sheet.brackets.is_empty() {
+        text.push('\n');
+        text.extend(sheet.brackets.iter().map(assignment));
+    }
     for row in &sheet.rows {
         text.push('\n');
         text.push_str(&assignment(&row.error));

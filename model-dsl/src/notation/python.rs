@@ -1,13 +1,12 @@
-//! Equations for Python. In: a sheet, and the equations behind it. Out: a module without dependencies, whose functions take numbers, NumPy
+//! Equations for Python. In: a sheet. Out: a module without dependencies, whose functions take numbers, NumPy
 //! arrays or SymPy symbols: whoever checks a machine in a notebook has its nominal position, its error and its lever arms.
 
 use super::letter::Letter;
 use super::number::Number;
-use super::sheet::Sheet;
-use super::tree::{self, Expression, Function};
+use super::sheet::{Sheet, Statement};
+use super::tree::{Expression, Function};
 use super::wrap;
 use super::writer::{Signs, Writer, pieces};
-use crate::equations::Equations;
 
 /// Keywords of Python, and the names that the functions of the module use.
 const RESERVED: [&str; 41] = [
@@ -83,7 +82,7 @@ impl Writer for Python {
 }
 
 /// The module.
-pub(super) fn module(sheet: &Sheet, equations: &Equations) -> String {
+pub(super) fn module(sheet: &Sheet) -> String {
     let source = sheet.source.as_ref().map(|source| format!("\nSource: {source}")).unwrap_or_default();
     let about = format!(
         "{}\n\nThe error equations of the tool tip relative to the part, to first order. Lengths in mm, angles in rad.{source}\n\n\
@@ -99,18 +98,15 @@ pub(super) fn module(sheet: &Sheet, equations: &Equations) -> String {
         format!("\"\"\"{}\"\"\"\n\nimport math\nimport operator\n", quoted(&about)),
         dictionary("VALUES", "Positions, travels and constants.", values),
         dictionary("MOTIONS", "Error motions.", motions),
-        nominal(sheet, equations),
+        nominal(sheet),
         error(sheet),
         levers(sheet),
     ]
     .join("\n")
 }
 
-fn nominal(sheet: &Sheet, equations: &Equations) -> String {
-    let rows = equations.rows.iter().map(|row| {
-        let position = tree::polynomial(&row.nominal);
-        entry(&row.direction.to_string(), &position)
-    });
+fn nominal(sheet: &Sheet) -> String {
+    let rows = sheet.rows.iter().map(|row| entry(&row.direction.to_string(), &row.whole));
     let about = "The position of the tool tip without errors, by direction, mm.";
     function("nominal(values, functions=math)", about, &values(sheet), rows)
 }
@@ -149,19 +145,30 @@ fn function(head: &str, about: &str, names: &str, entries: impl Iterator<Item = 
     )
 }
 
-/// The names of positions, travels and constants.
+/// The names of positions, travels and constants, and the brackets made of them.
 fn values(sheet: &Sheet) -> String {
     let name = |letter: &Letter| format!("    {} = values[\"{}\"]\n", Python.letter(letter), letter.plain);
-    sheet.quantities.iter().map(|one| name(&one.letter)).collect()
+    let values = sheet.quantities.iter().map(|one| name(&one.letter));
+    values.chain(sheet.brackets.iter().map(bracket)).collect()
+}
+
+/// A bracket under its name.
+fn bracket(statement: &Statement) -> String {
+    bracketed(&format!("    {} = (", Python.letter(&statement.left)), &statement.right, ")")
 }
 
 /// An expression under a key, in brackets, so that it may go on in the next line.
 fn entry(key: &str, expression: &Expression) -> String {
+    bracketed(&format!("        \"{key}\": ("), expression, "),")
+}
+
+/// An expression between a head that opens a bracket and a tail that closes it.
+fn bracketed(head: &str, expression: &Expression, tail: &str) -> String {
     let mut pieces = pieces(&Python, expression);
     if let Some(last) = pieces.last_mut() {
-        last.text.push_str("),");
+        last.text.push_str(tail);
     }
-    wrap::equation(&format!("        \"{key}\": ("), &pieces)
+    wrap::equation(head, &pieces)
 }
 
 /// Names with what they mean.

@@ -3,11 +3,12 @@
 
 use std::collections::BTreeSet;
 
+use super::brackets::Brackets;
 use super::letter::Letter;
 use super::tree::{self, Expression};
 use crate::algebra::{Axis, Monomial, Symbol};
-use crate::equations::{Equations, Names, Row, Term};
-use crate::machine::{Branch, Link, LinkKind, Reference};
+use crate::equations::{Equations, Motion, Names, Row, Term};
+use crate::machine::{Branch, Counted, Link, LinkKind, Reference};
 
 /// An equation: a letter and what it equals.
 pub(super) struct Statement {
@@ -29,6 +30,8 @@ pub(super) struct SheetRow {
     pub(super) nominal: Expression,
     /// The offsets: constants alone.
     pub(super) offsets: Expression,
+    /// The nominal position with the offsets.
+    pub(super) whole: Expression,
 }
 
 /// An error motion in the list.
@@ -67,6 +70,8 @@ pub(super) struct Sheet {
     pub(super) source: Option<String>,
     /// What carries the tool and the part.
     pub(super) chain: Vec<String>,
+    /// The brackets that have a name, each before those in which it stands.
+    pub(super) brackets: Vec<Statement>,
     /// One for each sensitive direction.
     pub(super) rows: Vec<SheetRow>,
     /// The error motions.
@@ -80,16 +85,20 @@ pub(super) struct Sheet {
 impl Sheet {
     /// Settles what a page says.
     pub(super) fn new(equations: &Equations, names: Names) -> Self {
-        let taken = taken_names(equations, names);
+        let written = Brackets::new(equations, taken_names(equations, &[names]));
         Self {
             machine: equations.machine.clone(),
             title: equations.title.clone(),
             source: equations.source.clone(),
             chain: chain(equations),
-            rows: equations.rows.iter().map(|one| row(one, equations, names, &taken)).collect(),
-            motions: motions(equations, names),
+            brackets: written
+                .definitions()
+                .map(|(left, right)| Statement { left: left.clone(), right })
+                .collect(),
+            rows: equations.rows.iter().map(|one| row(one, equations, names, &written)).collect(),
+            motions: motions(equations, names, &written),
             quantities: quantities(equations),
-            conventions: conventions(equations, names),
+            conventions: conventions(equations, names, &written),
         }
     }
 
@@ -102,39 +111,35 @@ impl Sheet {
     }
 }
 
-fn taken_names(equations: &Equations, names: Names) -> BTreeSet<String> {
+/// The names of positions, travels and constants, and of error motions by these names.
+pub(super) fn taken_names(equations: &Equations, names: &[Names]) -> BTreeSet<String> {
     let quantities = quantities(equations).into_iter().map(|entry| entry.letter.plain);
-    quantities.chain(equations.motions.iter().map(|motion| motion.printed(names).to_owned())).collect()
+    let motions = equations.motions.iter();
+    let motions = motions.flat_map(|motion| names.iter().map(|names| motion.printed(*names).to_owned()));
+    quantities.chain(motions).collect()
 }
 
-/// `Px`, or `Px_` where the machine has something of that name.
-fn free_name(front: &str, direction: Axis, taken: &BTreeSet<String>) -> String {
-    let mut name = format!("{front}{}", direction.letter().to_ascii_lowercase());
-    while taken.contains(&name) {
-        name.push('_');
-    }
-    name
-}
-
-fn row(row: &Row, equations: &Equations, names: Names, taken: &BTreeSet<String>) -> SheetRow {
-    let letter = |front, difference| {
-        Letter::position(free_name(front, row.direction, taken), row.direction, difference)
+fn row(row: &Row, equations: &Equations, names: Names, written: &Brackets) -> SheetRow {
+    let letter = |front: &str, difference| {
+        let plain = format!("{front}{}", row.direction.letter().to_ascii_lowercase());
+        Letter::position(plain, row.direction, difference)
     };
     let nominal = row.nominal.part(moves);
     let offsets = row.nominal.part(|monomial| !moves(monomial));
-    let mut parts = tree::parts(&nominal);
-    parts.extend(tree::parts(&offsets));
+    let mut parts = written.parts(&nominal);
+    parts.extend(written.parts(&offsets));
     parts.push(tree::plus(letter("dP", true)));
     let terms = row.terms.iter().filter_map(|term| {
         let motion = equations.motions.get(term.motion)?;
-        Some(tree::term(&motion.printed_arm(&term.arm, names), Letter::motion(motion, names)))
+        Some(written.term(&motion.printed_arm(&term.arm, names), Letter::motion(motion, names)))
     });
     SheetRow {
         direction: row.direction,
         position: Statement { left: letter("P", false), right: tree::sum(parts) },
         error: Statement { left: letter("dP", true), right: tree::sum(terms.collect()) },
-        nominal: tree::polynomial(&nominal),
-        offsets: tree::polynomial(&offsets),
+        nominal: written.sum(&nominal),
+        offsets: written.sum(&offsets),
+        whole: written.sum(&row.nominal),
     }
 }
 
@@ -143,21 +148,39 @@ fn moves(monomial: &Monomial) -> bool {
     monomial.factors().iter().any(|(symbol, _)| !matches!(symbol, Symbol::Constant(_)))
 }
 
-fn motions(equations: &Equations, names: Names) -> Vec<MotionEntry> {
+fn motions(equations: &Equations, names: Names, written: &Brackets) -> Vec<MotionEntry> {
     let arm = |row: &Row, number: usize| {
         let found: Option<&Term> = row.terms.iter().find(|term| term.motion == number);
         let motion = equations.motions.get(number);
-        found.zip(motion).map(|(term, motion)| tree::polynomial(&motion.printed_arm(&term.arm, names)))
+        found.zip(motion).map(|(term, motion)| written.expression(&motion.printed_arm(&term.arm, names)))
     };
-    let entry = |(number, motion): (usize, &crate::equations::Motion)| MotionEntry {
+    let known = equations.names().motions;
+    let counted = |number: usize| known.get(number).map_or(&[][..], |known| known.counted.as_slice());
+    let entry = |(number, motion): (usize, &Motion)| MotionEntry {
         letter: Letter::motion(motion, names),
         iso: motion.name.clone(),
-        meaning: motion.meaning.clone(),
+        meaning: meaning(equations, motion, counted(number)),
         unit: if motion.angular { "rad" } else { "mm" },
         against_iso: motion.is_printed_against_iso(names),
         arms: equations.rows.iter().map(|row| arm(row, number)).collect(),
     };
     equations.motions.iter().enumerate().map(entry).collect()
+}
+
+/// What an error motion is; of the place of a rotary axis also its names in ISO 230-7 and, counted from another axis, ISO 230-1.
+fn meaning(equations: &Equations, motion: &Motion, counted: &[Counted]) -> String {
+    if !is_place_of_rotary(equations, motion) {
+        return motion.meaning.clone();
+    }
+    let (letter, id) = (motion.kind.letter(), &motion.link);
+    let same = counted.iter().filter(|one| one.is == motion.name);
+    let same: String = same.map(|one| format!(", E{letter}(0{}){id}", one.from)).collect();
+    format!("{}; also {letter}O{id}{same}", motion.meaning)
+}
+
+fn is_place_of_rotary(equations: &Equations, motion: &Motion) -> bool {
+    let link = equations.links.get(motion.body);
+    motion.alignment && link.is_some_and(|link| matches!(link.kind, LinkKind::Rotary(_)))
 }
 
 fn quantities(equations: &Equations) -> Vec<QuantityEntry> {
@@ -254,7 +277,7 @@ fn own_angles(equations: &Equations, names: Names) -> Vec<String> {
     corrected.into_iter().chain(left).collect()
 }
 
-fn conventions(equations: &Equations, names: Names) -> Vec<String> {
+fn conventions(equations: &Equations, names: Names, written: &Brackets) -> Vec<String> {
     let mut sentences: Vec<String> = [
         "P is the position of the tool tip relative to the part at the nominal contact point, in the part's frame, in mm.",
         "Each P is the nominal position, then the offsets, then the error dP; compensation adds -dP.",
@@ -270,6 +293,16 @@ fn conventions(equations: &Equations, names: Names) -> Vec<String> {
     if equations.axes.iter().any(|axis| axis.rotary) {
         sentences.push("Rotary axes turn by large angles; their sines and cosines are exact.".to_owned());
         sentences.extend(own_angles(equations, names));
+    }
+    if equations.motions.iter().any(|motion| is_place_of_rotary(equations, motion)) {
+        sentences.push(
+            "The place of a rotary axis is EX0C here, XOC in ISO 230-7; EA(0Y)C, as ISO 230-1 writes, counts from Y, and stands \
+             beside EA0C where both are the same."
+                .to_owned(),
+        );
+    }
+    if written.definitions().next().is_some() {
+        sentences.push("A bracket that occurs more than once has a name, which begins with L.".to_owned());
     }
     let against: Vec<&str> = equations
         .motions

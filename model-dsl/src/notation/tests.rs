@@ -185,15 +185,3 @@ fn hostile_words_stay_words() {
     );
     assert!(print(&equations, Format::Maxima, Names::Iso).contains("* / $x_1$"));
 }
-
-#[test]
-fn a_machine_with_its_own_px_keeps_it() {
-    let mut equations = equations("excello-921");
-    for motion in &mut equations.motions {
-        if motion.symbol == "dxx" {
-            motion.symbol = "dPx".to_owned();
-        }
-    }
-    let text = print(&equations, Format::Text, Names::Symbols);
-    assert!(text.contains("\ndPx_ = dPx - dxz"), "{text}");
-}

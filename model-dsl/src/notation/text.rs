@@ -45,6 +45,10 @@ pub(super) fn page(sheet: &Sheet) -> String {
     for sentence in &sheet.chain {
         text.push_str(&wrap::words("", sentence));
     }
+    if !sheet.brackets.is_empty() {
+        text.push('\n');
+        text.extend(sheet.brackets.iter().map(bracket));
+    }
     for row in &sheet.rows {
         text.push('\n');
         for statement in [&row.position, &row.error] {
@@ -60,6 +64,11 @@ pub(super) fn page(sheet: &Sheet) -> String {
         text.push_str(&wrap::words("  - ", sentence));
     }
     text
+}
+
+/// A named bracket, as an equation file gives a letter: what is printed can be checked as it stands.
+fn bracket(statement: &Statement) -> String {
+    wrap::equation(&format!("let {} = ", statement.left.plain), &pieces(&Plain, &statement.right))
 }
 
 fn equation(statement: &Statement) -> String {

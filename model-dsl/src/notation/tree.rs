@@ -80,16 +80,29 @@ pub(super) fn parts(polynomial: &Polynomial) -> Vec<Signed> {
         .collect()
 }
 
-/// An error motion times its lever arm: `Zt*eyx`, `-(x - X1)*eyz` with the leading minus drawn out.
-pub(super) fn term(arm: &Polynomial, motion: Letter) -> Signed {
-    let negative = arm.leads_negative();
-    let arm = if negative { -arm } else { arm.clone() };
-    let mut found = match arm.terms().next() {
-        Some((monomial, value)) if arm.size() == 1 => written_factors(monomial, value),
-        _ => vec![Expression::Group(Box::new(polynomial(&arm)))],
+/// A number, a bracket and symbols as one product with its sign.
+pub(super) fn signed_product(value: &Rational, bracket: Option<Expression>, symbols: &Monomial) -> Signed {
+    let written = match bracket {
+        None => factors(symbols, value),
+        Some(bracket) => {
+            let mut written = written_factors(symbols, value);
+            let after_number = usize::from(!value.abs().is_one());
+            written.insert(after_number.min(written.len()), bracket);
+            written
+        }
     };
-    found.push(Expression::Letter(motion));
-    Signed { negative, value: product(found) }
+    Signed { negative: value.is_negative(), value: product(written) }
+}
+
+/// A product, with a letter as its last factor; the number 1 is dropped.
+pub(super) fn times(value: Expression, letter: Letter) -> Expression {
+    let mut found = match value {
+        Expression::Product(factors) => factors,
+        one if one == Expression::Number(Number::new(&Rational::one())) => Vec::new(),
+        other => vec![other],
+    };
+    found.push(Expression::Letter(letter));
+    product(found)
 }
 
 /// A letter with a plus sign.

@@ -5,7 +5,13 @@ use crate::calibration::AxisName;
 
 fn names() -> MachineNames {
     let axis = |letter: &str, rotary| AxisName { letter: letter.to_owned(), rotary };
-    let motion = |name: &str, angular| MotionName { name: name.to_owned(), angular, axis: None, own: false };
+    let motion = |name: &str, angular| MotionName {
+        name: name.to_owned(),
+        angular,
+        axis: None,
+        own: false,
+        counted: Vec::new(),
+    };
     MachineNames {
         machine: "mill".to_owned(),
         constants: Vec::new(),

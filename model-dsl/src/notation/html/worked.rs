@@ -7,6 +7,7 @@ use pages::text::escape;
 
 use crate::algebra::Axis;
 use crate::equations::Equations;
+use crate::notation::brackets::Brackets;
 use crate::notation::example::Example;
 use crate::notation::mathml::{letter, worked};
 use crate::notation::sheet::Sheet;
@@ -25,11 +26,16 @@ pub(super) fn section(sheet: &Sheet, equations: &Equations, example: &Example) -
     // Of what is printed the value is chosen.
     let sign = if entry.against_iso { -1.0 } else { 1.0 };
     let error = example.error().map(|part| sign * part);
-    for (row, arm) in sheet.rows.iter().zip(&entry.arms) {
-        let Some(arm) = arm else { continue };
+    for row in &sheet.rows {
         let direction = row.direction;
+        let arm = equations.arm(direction, example.motion);
+        if arm.is_zero() {
+            continue;
+        }
         let size = short(error[direction.index()] * 1e3);
-        let names = (&row.error.left, arm, &entry.letter);
+        // Spelled out, so that each number stands where its name stood.
+        let arm = Brackets::default().expression(&if entry.against_iso { -&arm } else { arm });
+        let names = (&row.error.left, &arm, &entry.letter);
         formulas.push_str(&worked(names, &values, (&micro, &size)));
         meanings.push(meaning(direction, &size));
     }

@@ -1,0 +1,88 @@
+//! What the name of an error motion means. In: a name of ISO 230-1 or ISO 230-7, in any spelling that files may use. Out: its page.
+
+use std::fmt::Write;
+
+use model_dsl::algebra::Axis;
+use model_dsl::derivation::{NamedMotion, named};
+use model_dsl::machine::MotionKind;
+use textwrap::fill;
+
+use super::page::WIDTH;
+
+/// The page of an error motion; none for a name that is not one. Letter case does not matter.
+pub(super) fn page(name: &str) -> Option<String> {
+    let motion = named(&name.to_ascii_uppercase())?;
+    let mut text = format!("{}: {}\n\n", motion.name, motion.meaning);
+    let mut paragraph = |words: &str| {
+        // A page is text: writing to it cannot fail.
+        let _ = writeln!(text, "{}", fill(words, WIDTH));
+    };
+    paragraph(&what(&motion));
+    if motion.kind.alignment() {
+        paragraph("");
+        paragraph(&spellings(&motion));
+        paragraph("");
+        paragraph(&counted(&motion));
+    }
+    Some(text)
+}
+
+fn what(motion: &NamedMotion) -> String {
+    let axis = motion.axis;
+    let unit = if motion.kind.angular() { "an angle, rad" } else { "a length, mm" };
+    match motion.kind {
+        MotionKind::Alignment(_) if !motion.rotary => format!(
+            "An alignment error, {unit}: the line of motion of {axis} is turned, and its carriage is not. It counts from the frame before {axis}."
+        ),
+        MotionKind::Alignment(_) | MotionKind::Offset(_) => format!(
+            "A location error, {unit}: where the axis of {axis} stands, whatever its position. It counts from the frame before {axis} on the chain."
+        ),
+        _ => format!(
+            "An error motion, {unit}: what {axis} does beside what it was told, at each of its positions. ISO 230-1 and ISO 230-7 call it the same."
+        ),
+    }
+}
+
+fn spellings(motion: &NamedMotion) -> String {
+    let (letter, axis) = (motion.kind.letter(), motion.axis);
+    let standard = if motion.rotary { ", the name in ISO 230-7 and the literature" } else { "" };
+    format!(
+        "Also read as {letter}0{axis}, and with the letter O as E{letter}O{axis} and {letter}O{axis}{standard}."
+    )
+}
+
+/// What the name says that counts from another axis: that which was asked for, or one for example.
+fn counted(motion: &NamedMotion) -> String {
+    let (name, letter, axis) = (&motion.name, motion.kind.letter(), motion.axis);
+    let letters = if motion.kind.angular() { "XYZ" } else { "ABC" };
+    let own = direction(motion.kind.axis());
+    let example = letters.chars().find(|other| *other != axis && !own.contains(*other));
+    let from = motion.counted_from.clone().or_else(|| example.map(String::from)).unwrap_or_default();
+    let counted = format!("E{letter}(0{from}){axis}");
+    if own.contains(&from) {
+        return format!(
+            "{from} does not show it, since it runs in that direction: {counted} is refused (E0146)."
+        );
+    }
+    if motion.kind.angular() {
+        return format!(
+            "{counted}, as ISO 230-1 writes, is the same error counted from {from}. It is read for {name} on a machine where both are \
+             equal, since nothing else lies between {from} and {axis}; elsewhere it is refused, with what it is (E0146)."
+        );
+    }
+    if "XYZUVW".contains(&from) {
+        return format!("{from} is a slide and has no place of its own: {counted} is refused (E0146).");
+    }
+    format!(
+        "{counted} is the same place counted from {from}, where {axis} stands on that; elsewhere it is refused (E0146)."
+    )
+}
+
+/// The letters of the axes that run in a direction, or turn about it.
+fn direction(axis: Axis) -> &'static str {
+    match axis {
+        Axis::X => "XUA",
+        Axis::Y => "YVB",
+        Axis::Z => "ZWC",
+    }
+}

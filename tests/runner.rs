@@ -56,6 +56,7 @@ mod simulate;
 mod snapshots;
 mod terminal;
 mod tidy;
+mod tools;
 mod vocabulary;
 mod yaml;
 

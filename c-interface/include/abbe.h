@@ -68,7 +68,7 @@ enum AbbeRefused
   ABBE_REFUSED_TIME_STEP = 2,
   // The search for the command does not settle: the error changes about as fast as the position.
   ABBE_REFUSED_NOT_CONVERGING = 3,
-  // The correction is longer than the limit of the calibration.
+  // The correction is longer than the limit of the calibration, of slides or of rotary axes.
   ABBE_REFUSED_OVER_LIMIT = 4,
   // A length that does not fit: a fault of Abbe.
   ABBE_REFUSED_LENGTH = 5,
@@ -145,6 +145,23 @@ AbbeStatus abbe_update(const struct Abbe *handle,
 AbbeStatus abbe_enable(const struct Abbe *handle,
                        bool enabled);
 
+// Takes a tool of the calibration by its name, from the next cycle on and without a jump; null: the constants of the calibration
+// itself. `12` is `T12` where no tool is called `12`. A name that no tool has is out of range, and nothing changes.
+//
+// # Safety
+// `handle` is null or from `abbe_open` and not closed; `name` is null or a string that ends in a zero byte.
+AbbeStatus abbe_set_tool(const struct Abbe *handle,
+                         const char *name);
+
+// Takes these constants of the machine, in mm, in the order of `abbe_constant_name`, from the next cycle on and without a jump: the
+// lengths of a tool that the controller itself knows.
+//
+// # Safety
+// `handle` is null or from `abbe_open` and not closed; `constants` is null or to `count` numbers.
+AbbeStatus abbe_set_constants(const struct Abbe *handle,
+                              const double *constants,
+                              size_t count);
+
 // Forgets what terms, sensors and axes remember, as if the machine had just started: after homing, say. The correction made
 // stays, and goes from there to what is wanted next.
 //
@@ -193,6 +210,32 @@ size_t abbe_sensors(const struct Abbe *handle);
 // `handle` is null or from `abbe_open` and not closed.
 const char *abbe_sensor_name(const struct Abbe *handle,
                              size_t sensor);
+
+// How many tools the calibration has; 0 for a null pointer.
+//
+// # Safety
+// `handle` is null or from `abbe_open` and not closed.
+size_t abbe_tools(const struct Abbe *handle);
+
+// The name of a tool, in the order of the calibration; null where there is none. It lives as long as the handle.
+//
+// # Safety
+// `handle` is null or from `abbe_open` and not closed.
+const char *abbe_tool_name(const struct Abbe *handle,
+                           size_t tool);
+
+// How many constants the machine has; 0 for a null pointer.
+//
+// # Safety
+// `handle` is null or from `abbe_open` and not closed.
+size_t abbe_constants(const struct Abbe *handle);
+
+// The name of a constant of the machine, such as `Zt`; null where there is none. It lives as long as the handle.
+//
+// # Safety
+// `handle` is null or from `abbe_open` and not closed.
+const char *abbe_constant_name(const struct Abbe *handle,
+                               size_t constant);
 
 // The name of the machine that was compiled in; null for a null pointer. It lives as long as the handle.
 //

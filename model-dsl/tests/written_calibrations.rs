@@ -11,7 +11,7 @@ use std::path::Path;
 
 use model_dsl::calibration::{
     AxisName, CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Factor, LARGEST_ANGLE, Limits,
-    MachineNames, MotionName, SensorKind, SeriesInput, Within, machine_of, read, write,
+    MachineNames, MotionName, SensorKind, SeriesInput, Tool, Within, machine_of, read, write,
 };
 use model_dsl::diagnostic::{Diagnostics, render};
 use model_dsl::source::{SourceFile, Span, Spanned};
@@ -78,8 +78,9 @@ fn said(calibration: &Calibration) -> Said {
     let Limits { compensation, rotation, rate, rotation_rate, hold, fade } = calibration.limits;
     let limits =
         [compensation, rotation, rate, rotation_rate, hold, fade].map(|limit| limit.map(|limit| limit.value));
+    let tools: Vec<_> = calibration.tools.iter().map(|tool| (&tool.name.value, &tool.constants)).collect();
     let head = format!(
-        "{:?} {:?} {:?} {limits:?}",
+        "{:?} {:?} {:?} {tools:?} {limits:?}",
         calibration.machine.value, calibration.source, calibration.constants
     );
     let term = |term: &CalibratedTerm| {
@@ -263,15 +264,22 @@ fn calibration() -> impl Strategy<Value = Calibration> {
     let terms = || prop::collection::vec(term(), 0..8);
     let limit = || prop::option::of(positive());
     let limits = [limit(), limit(), limit(), limit(), limit(), limit()];
-    let head = (prop::option::of(text()), limits, [number(), number()], text());
+    // No two tools have one name.
+    let tools = prop::collection::btree_map(text(), [number(), number()], 0..3);
+    let head = (prop::option::of(text()), limits, [number(), number()], (text(), tools));
     (derived, order, terms(), terms(), head, text()).prop_map(|(derived, order, first, then, head, name)| {
-        let (source, limits, constants, machine) = head;
+        let (source, limits, constants, (machine, tools)) = head;
         let [compensation, rotation, rate, rotation_rate, hold, fade] =
             limits.map(|limit| limit.map(|limit| Spanned::new(limit, Span::default())));
         let mut calibration = read_back(&sensors_alone(&derived, &order), &names());
         calibration.machine.value = machine;
         calibration.source = source;
         calibration.constants = constants.to_vec();
+        let tool = |(name, constants): (String, [f64; 2])| Tool {
+            name: Spanned::new(name, Span::default()),
+            constants: constants.to_vec(),
+        };
+        calibration.tools = tools.into_iter().map(tool).collect();
         calibration.limits = Limits { compensation, rotation, rate, rotation_rate, hold, fade };
         let known = ["spindle", "d0", "d1", "d2", name.as_str()];
         let calibration = extended(calibration, first, &known);

@@ -9,12 +9,12 @@ use abbe_runtime::{
 };
 use model_dsl::calibration::{
     CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Factor, Ramp, SensorReadings, SeriesInput,
-    Within,
+    Tool, Within,
 };
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
-use model_dsl::source::SourceFile;
+use model_dsl::source::{SourceFile, Span, Spanned};
 use proptest::prelude::Rng;
 use proptest::test_runner::TestRng;
 
@@ -84,6 +84,12 @@ impl Followed {
                 .into_iter()
                 .collect();
         }
+        // Half of them with a tool, in whose place the constants themselves are others.
+        if pick(rng, 2) == 0 {
+            let constants = calibration.constants.iter().map(|constant| constant + 50.0).collect();
+            let constants = std::mem::replace(&mut calibration.constants, constants);
+            calibration.tools.push(Tool { name: Spanned::new("T1".to_owned(), Span::default()), constants });
+        }
         let cycles = (0..CYCLES).map(|_| Cycle::draw(rng, equations.axes.len())).collect();
         Self { calibration, cycles }
     }
@@ -100,8 +106,9 @@ impl Followed {
 
     /// The calls by which the compiled calibration answers every cycle.
     pub(super) fn program(&self, number: usize) -> String {
+        let machine = if self.calibration.tools.is_empty() { "MACHINE" } else { "TOOLS[0].1" };
         let mut text = format!(
-            "    {{ const MACHINE: m{number}::Machine = m{number}::Calibration::MACHINE;\n\
+            "    {{ const MACHINE: m{number}::Machine = m{number}::Calibration::{machine};\n\
              let mut follow = Follow::new(&MACHINE, &m{number}::Calibration, m{number}::Calibration::TERMS);\n"
         );
         let sensors = self.calibration.sensors.iter().any(|sensor| sensor.used);
@@ -130,7 +137,8 @@ impl Followed {
 
     /// What the runtime answers, a line for each cycle, with the interpreter and terms in slices.
     pub(super) fn at_run_time(&self, equations: &Equations) -> Vec<String> {
-        let kinematics = Interpreter::new(equations, &self.calibration.constants);
+        let tool = self.calibration.tools.first().map(|tool| &tool.constants);
+        let kinematics = Interpreter::new(equations, tool.unwrap_or(&self.calibration.constants));
         let terms: Vec<Vec<Term<'_>>> = (0..equations.motions.len())
             .map(|motion| self.calibration.runtime(motion).flat_map(Result::unwrap).collect())
             .collect();

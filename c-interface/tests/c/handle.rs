@@ -118,6 +118,60 @@ fn a_correction_may_take_the_place_of_its_position() {
     unsafe { abbe_close(handle) };
 }
 
+/// A stage whose X is turned about Y, with two tools of other lengths.
+const TOOLS: &str =
+    "limits: {fade: 1 s}\ntools: {T2: {Zt: 150 mm}, long: {Zt: 300 mm}}\nerrors: {EBX: 100 urad}\n";
+
+#[test]
+fn a_tool_changes_the_lever_arms_without_a_jump() {
+    let folder = Folder::new();
+    let handle = opened(&folder.file("stage.yaml", &stage::calibration(TOOLS))).unwrap();
+    let sample = sample(&[50.0], &[]);
+    let mut correction = f64::NAN;
+    // So many cycles of 0.1 s; what each of them makes in um.
+    let mut run = |cycles: usize| -> Vec<f64> {
+        let cycle = |_| {
+            // SAFETY: a handle, a sample with its numbers, and room for what is written.
+            let status =
+                unsafe { abbe_update(handle, &raw const sample, &raw mut correction, ptr::null_mut()) };
+            assert_eq!(status, Status::Active);
+            (correction * 1e4).round() / 10.0
+        };
+        (0..cycles).map(cycle).collect()
+    };
+    // SAFETY: a handle, and strings and numbers that live as long as the calls.
+    unsafe {
+        assert_eq!(abbe_enable(handle, true), Status::Done);
+        assert_eq!(run(10), [-1.0, -2.0, -3.0, -4.0, -5.0, -6.0, -7.0, -8.0, -9.0, -10.0]);
+        // 100 urad of 150 mm and no longer of 100 mm: 5 um more, over a second.
+        assert_eq!(abbe_set_tool(handle, c"2".as_ptr()), Status::Done);
+        assert_eq!(
+            run(12),
+            [-10.5, -11.0, -11.5, -12.0, -12.5, -13.0, -13.5, -14.0, -14.5, -15.0, -15.0, -15.0]
+        );
+        for unknown in [c"3".as_ptr(), c"T".as_ptr(), c"\xff".as_ptr()] {
+            assert_eq!(abbe_set_tool(handle, unknown), Status::OutOfRange);
+        }
+        assert_eq!(run(1), [-15.0]);
+        assert_eq!(abbe_set_constants(handle, [0.0, 0.0, 50.0].as_ptr(), 3), Status::Done);
+        assert_eq!(run(11).last(), Some(&-5.0));
+        assert_eq!(abbe_set_constants(handle, [0.0, 0.0].as_ptr(), 2), Status::WrongLength);
+        assert_eq!(abbe_set_constants(handle, [0.0, 0.0, f64::NAN].as_ptr(), 3), Status::OutOfRange);
+        assert_eq!(abbe_set_constants(handle, ptr::null(), 3), Status::NullPointer);
+        assert_eq!(run(1), [-5.0]);
+        assert_eq!(abbe_set_tool(handle, ptr::null()), Status::Done);
+        assert_eq!(run(11).last(), Some(&-10.0));
+        assert_eq!(abbe_set_tool(ptr::null(), ptr::null()), Status::NullPointer);
+        assert_eq!(abbe_set_constants(ptr::null(), ptr::null(), 3), Status::NullPointer);
+        assert_eq!((abbe_tools(handle), abbe_constants(handle)), (2, 3));
+        assert_eq!(CStr::from_ptr(abbe_tool_name(handle, 1)), c"long");
+        assert_eq!(CStr::from_ptr(abbe_constant_name(handle, 2)), c"Zt");
+        assert!(abbe_tool_name(handle, 2).is_null() && abbe_constant_name(handle, 3).is_null());
+        assert_eq!((abbe_tools(ptr::null()), abbe_constants(ptr::null())), (0, 0));
+        abbe_close(handle);
+    }
+}
+
 #[test]
 fn names_are_those_of_the_machine_and_its_calibration() {
     let handle = stage();

@@ -61,7 +61,7 @@ impl Kinematics for Slide {
 /// A T-base lathe: the carriage Z holds the part, so that +Z of the axis moves the tip towards -Z of the part; the
 /// slide X holds the tool. X and Z are sensitive. Motions: EXX, EZZ, EBX (lever: overhang and tip), EB0Z (lever: the
 /// travel of Z).
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Lathe {
     /// Tool offsets Xt and Zt, mm.
     pub(crate) tool: [f64; 2],

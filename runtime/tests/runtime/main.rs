@@ -8,6 +8,7 @@ mod batch;
 mod bundles;
 mod common;
 mod cycle;
+mod exchanged;
 mod hostile;
 mod inverse;
 mod ramp;

@@ -9,7 +9,7 @@ use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 
 pub(crate) use choices::{
-    CalibrateFormat, Color, EvaluationFormat, ExportFormat, ExportUnit, ExportValue, Format, LimitsFormat,
+    CalibrateFormat, Color, EvaluationFormat, ExportFormat, ExportValue, Format, LimitsFormat, LinearUnit,
     Names, ReportFormat, UpdateFormat, UpdateMethod,
 };
 pub(crate) use values::Datum;
@@ -170,6 +170,12 @@ pub(crate) struct Compensate {
     /// rotary axis. It concerns axes without a `dir_` column.
     #[arg(long, default_value_t = 0.001, value_parser = non_negative)]
     pub(crate) hysteresis: f64,
+    /// Take the tools of LinuxCNC's table (tool.tbl) in place of the calibration's own.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) tools: Option<PathBuf>,
+    /// The unit of the offsets in that table.
+    #[arg(long, value_enum, default_value_t = LinearUnit::Mm, requires = "tools")]
+    pub(crate) tools_unit: LinearUnit,
     /// Leave rows out that cannot be read or compensated, and count them on standard error.
     #[arg(long)]
     pub(crate) skip_bad: bool,
@@ -315,7 +321,7 @@ pub(crate) struct Export {
     pub(crate) kind: Option<u8>,
     /// LinuxCNC: the machine's unit of length; by default mm.
     #[arg(long, value_enum)]
-    pub(crate) unit: Option<ExportUnit>,
+    pub(crate) unit: Option<LinearUnit>,
     /// Sinumerik: the number of tables that CEC has; by default 8.
     #[arg(long)]
     pub(crate) tables: Option<usize>,

@@ -87,3 +87,54 @@ fn mistakes_in_tools_are_told_at_their_places() {
         assert!(run.err.contains(place), "{tools}: {}", run.err);
     }
 }
+
+#[test]
+fn the_table_of_linuxcnc_is_read() {
+    let with = file("linuxcnc.yaml", &calibration("Xt: 1 mm, Yt: 0 mm, Zt: 40 mm", ""));
+    let table = "; tools of the mill\nT1 P1 Z80 D6 ;end mill\nt12  P2 X-2.5 Y+0 Z+6e1 I10 J20 Q3\n\nT3 P3\n";
+    let table = file("tool.tbl", table);
+    let rows = "x,y,z,tool\n100,0,0,\n100,0,0,1\n100,0,0,T12\n100,0,0,3\n";
+    let run = abbe(&["compensate", &with, "--tools", &table], rows);
+    assert_eq!((run.status, run.err.as_str()), (0, ""));
+    let alone = |constants: &str| {
+        let one = file("one-of-table.yaml", &calibration(constants, ""));
+        compensated(&one, "x,y,z\n100,0,0\n").out.lines().nth(1).unwrap()["100,0,0".len()..].to_owned()
+    };
+    // A tool longer by 80 mm has its tip lower by 80 mm.
+    let expected = [
+        alone("Xt: 1 mm, Yt: 0 mm, Zt: 40 mm"),
+        alone("Xt: 1 mm, Yt: 0 mm, Zt: -40 mm"),
+        alone("Xt: 3.5 mm, Yt: 0 mm, Zt: -20 mm"),
+        alone("Xt: 1 mm, Yt: 0 mm, Zt: 40 mm"),
+    ];
+    let found: Vec<&str> = run.out.lines().skip(1).collect();
+    for ((line, tool), expected) in found.iter().zip(["", "1", "T12", "3"]).zip(expected) {
+        assert_eq!(*line, format!("100,0,0,{tool}{expected}"));
+    }
+    // In inches.
+    let inches = file("inches.tbl", "T1 Z1\n");
+    let run =
+        abbe(&["compensate", &with, "--tools", &inches, "--tools-unit", "in"], "x,y,z,tool\n100,0,0,1\n");
+    assert_eq!(
+        run.out.lines().nth(1).unwrap(),
+        format!("100,0,0,1{}", alone("Xt: 1 mm, Yt: 0 mm, Zt: 14.6 mm"))
+    );
+}
+
+#[test]
+fn what_is_wrong_in_a_table_of_tools_is_told_at_its_place() {
+    let with = file("table.yaml", &calibration("Xt: 1 mm, Yt: 0 mm, Zt: 40 mm", ""));
+    for (table, code, place) in [
+        ("T1 Z80x\n", "E0801", "80x"),
+        ("P1 Z80\n", "E0802", "P1 Z80"),
+        ("T1 E80\n", "E0802", "E80"),
+        ("T1 Z80\nT1 Z90\n", "E0803", "T1"),
+        ("T1 W80\n", "E0804", "W80"),
+    ] {
+        let table = file("wrong.tbl", table);
+        let run = abbe(&["compensate", &with, "--tools", &table], "x,y,z,tool\n0,0,0,1\n");
+        assert_eq!(run.status, 2, "{}", run.err);
+        assert!(run.err.contains(&format!("error[{code}]")) && run.err.contains(place), "{}", run.err);
+        assert_eq!(run.out, "");
+    }
+}

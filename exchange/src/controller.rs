@@ -38,6 +38,7 @@ mod saved;
 mod sinumerik;
 mod space;
 mod taken;
+mod tool_table;
 mod volumetric;
 
 pub use beyond::Beyond;
@@ -53,3 +54,4 @@ pub use report::text;
 pub use saved::{SavedForm, SavedWanted, saved_form, saved_terms, skew_terms};
 pub use space::{Space, Wanted};
 pub use taken::{VolumetricForm, volumetric_form, volumetric_terms};
+pub use tool_table::tool_table;

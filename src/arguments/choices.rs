@@ -124,7 +124,7 @@ pub(crate) enum ExportValue {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum ExportUnit {
+pub(crate) enum LinearUnit {
     /// Millimetres.
     Mm,
     /// Inches.

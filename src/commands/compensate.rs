@@ -5,20 +5,24 @@ mod answering;
 
 use std::cell::RefCell;
 use std::io::{self, IsTerminal};
+use std::path::Path;
 use std::rc::Rc;
 
 use abbe_runtime::{Compensator, ErrorMotion, Exchanged, TermState, Work, states_needed};
 use csv::ByteRecord;
+use exchange::controller::Unit;
 use model_dsl::calibration::factor::FactorPart;
 use model_dsl::calibration::vocabulary::{self, Key, Kind};
-use model_dsl::calibration::{CalibratedMotion, CalibratedTerm, Factor, Part};
+use model_dsl::calibration::{CalibratedMotion, CalibratedTerm, Factor, Part, Tool};
+use model_dsl::diagnostic::Diagnostics;
 use model_dsl::program::Interpreter;
 
 use crate::arguments::Compensate;
 use crate::calibrated::{self, Calibrated};
 use crate::failure::Failure;
+use crate::load;
 use crate::map::Map;
-use crate::output::warn;
+use crate::output::{rendered, warn};
 use crate::positions::{Layout, State, Summary, Wanted, output_columns, quoted};
 use crate::progress::Progress;
 use crate::written;
@@ -35,7 +39,11 @@ const TOLD: u64 = 4096;
 
 /// Runs the command.
 pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
-    let calibrated = calibrated::read(&command.calibration)?;
+    let mut calibrated = calibrated::read(&command.calibration)?;
+    if let Some(path) = &command.tools {
+        calibrated.calibration.tools = tool_table(&calibrated, path, command.tools_unit.into())?;
+    }
+    let calibrated = calibrated;
     if let Some(target) = &command.map {
         let machine = command.calibration.with_file_name(&calibrated.calibration.machine.value);
         written::check_picture(target, "--map", &[command.calibration.clone(), machine], command.force)?;
@@ -64,6 +72,15 @@ pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
     drop(progress);
     let drawn = rows.finish(done)?;
     command.map.as_ref().zip(drawn).map_or(Ok(()), |(target, drawing)| written::whole(target, &drawing))
+}
+
+/// The tools of LinuxCNC's table.
+fn tool_table(calibrated: &Calibrated, path: &Path, unit: Unit) -> Result<Vec<Tool>, Failure> {
+    let source = load::read(path)?;
+    let mut diagnostics = Diagnostics::new();
+    let (equations, calibration) = (&calibrated.equations, &calibrated.calibration);
+    let tools = exchange::controller::tool_table(equations, calibration, &source, unit, &mut diagnostics);
+    if diagnostics.has_errors() { Err(Failure::Wrong(rendered(&source, &diagnostics))) } else { Ok(tools) }
 }
 
 /// The machine without a tool and with each.

@@ -9,7 +9,7 @@ use exchange::controller::{Kind, Unit};
 use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
 
-use crate::arguments::{Export, ExportFormat, ExportUnit, ExportValue};
+use crate::arguments::{Export, ExportFormat, ExportValue, LinearUnit};
 use crate::calibrated;
 use crate::failure::Failure;
 use crate::load;
@@ -182,14 +182,20 @@ fn wanted(command: &Export, equations: &Equations) -> Wanted {
     }
 }
 
+impl From<LinearUnit> for Unit {
+    fn from(unit: LinearUnit) -> Self {
+        match unit {
+            LinearUnit::Mm => Self::MM,
+            LinearUnit::In => Self::INCH,
+        }
+    }
+}
+
 fn options(command: &Export) -> Options {
     Options {
         points: command.points,
         kind: if command.kind == Some(0) { Kind::Actual } else { Kind::Trim },
-        unit: match command.unit {
-            None | Some(ExportUnit::Mm) => Unit::MM,
-            Some(ExportUnit::In) => Unit::INCH,
-        },
+        unit: command.unit.map_or(Unit::MM, Unit::from),
         sense: command.value.map(|value| match value {
             ExportValue::Error => Sense::Error,
             ExportValue::Correction => Sense::Correction,

@@ -122,6 +122,55 @@ static inline void read_shared(const struct trunnion *machine, const double p[5]
     }
 }
 
+/* The commands of A and C at which they stand at the angles wanted: c + e(c) = target, e being the error of each one's own angle. */
+static inline int turn_axes(const struct trunnion *machine, const double target[5], const long reverse[5],
+                            double command[5])
+{
+    const struct table *a = &machine->tables[3 * EACH + 3], *c = &machine->tables[4 * EACH + 5];
+    for (int step = 1; step <= MOST_STEPS; ++step) {
+        double to_a = target[3] - lookup(a, command[3], reverse[3]) - machine->fixed.ea0a;
+        double to_c = target[4] - lookup(c, command[4], reverse[4]) - machine->fixed.ec0c;
+        double da = to_a - command[3], dc = to_c - command[4];
+        command[3] = to_a;
+        command[4] = to_c;
+        if (da * da + dc * dc <= TOLERANCE * TOLERANCE)
+            return step;
+    }
+    return 0;
+}
+
+#define DEFINE_TURNING(name, read)                                                                                    \
+    int trunnion_turning_##name(const struct trunnion *machine, const double target[5], const long reverse[5],        \
+                                double command[5])                                                                    \
+    {                                                                                                                  \
+        struct motions e = machine->fixed;                                                                            \
+        struct turn turn = turned(target);                                                                            \
+        double before[3] = {0}, own[3], move[3];                                                                      \
+        memcpy(command, target, AXES * sizeof *command);                                                              \
+        if (!turn_axes(machine, target, reverse, command))                                                            \
+            return 0;                                                                                                 \
+        read(machine, command, reverse, SLIDES, AXES, &e);                                                            \
+        e.eaa = e.ea0a = e.ecc = e.ec0c = 0.0;                                                                        \
+        for (int step = 1; step <= MOST_STEPS; ++step) {                                                              \
+            double square = 0.0;                                                                                      \
+            read(machine, command, reverse, 0, SLIDES, &e);                                                           \
+            in_trunnion(&machine->constants, command, &turn, &e, own);                                                \
+            move[0] = own[0];                                                                                         \
+            move[1] = turn.cos_a * own[1] + turn.sin_a * own[2];                                                      \
+            move[2] = turn.cos_a * own[2] - turn.sin_a * own[1];                                                      \
+            for (int axis = 0; axis < SLIDES; ++axis) {                                                               \
+                double change = move[axis] - before[axis];                                                            \
+                square += change * change;                                                                            \
+                command[axis] = target[axis] - move[axis];                                                            \
+                before[axis] = move[axis];                                                                            \
+            }                                                                                                          \
+            if (square <= TOLERANCE * TOLERANCE)                                                                      \
+                return step;                                                                                          \
+        }                                                                                                              \
+        memcpy(command, target, AXES * sizeof *command);                                                              \
+        return 0;                                                                                                      \
+    }
+
 #define DEFINE_CYCLES(name, read)                                                                                     \
     void trunnion_error_##name(const struct trunnion *machine, const double p[5], const long reverse[5],              \
                                double out[3])                                                                         \
@@ -161,3 +210,5 @@ static inline void read_shared(const struct trunnion *machine, const double p[5]
 
 DEFINE_CYCLES(own, read_own)
 DEFINE_CYCLES(shared, read_shared)
+DEFINE_TURNING(own, read_own)
+DEFINE_TURNING(shared, read_shared)

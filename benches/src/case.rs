@@ -81,15 +81,30 @@ fn range(variable: &str) -> (f64, f64) {
     }
 }
 
+/// The name of the five-axis machine whose rotary axes correct their own angles, with this behind it.
+const TURNING: &str = "-turning";
+
+/// The text of a machine's file. Where nothing else is said, rotary axes leave their angles to the slides.
+///
+/// # Errors
+/// Tells a file that cannot be read.
+pub fn machine_file(name: &str) -> std::io::Result<String> {
+    let (file, turning) = name.strip_suffix(TURNING).map_or((name, false), |file| (file, true));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../machines").join(file).with_extension("yaml");
+    let text = std::fs::read_to_string(path)?;
+    let leave = |text: String, axis: &str| {
+        text.replace(&format!("along: {axis}\n"), &format!("along: {axis}\n      corrects: false\n"))
+    };
+    Ok(if turning { text } else { ["-A", "-C"].into_iter().fold(text, leave) })
+}
+
 impl Case {
     /// The case of a shipped machine.
     ///
     /// # Errors
     /// Tells a machine file that cannot be read or compiled.
     pub fn new(name: &'static str) -> Result<Self, Box<dyn Error>> {
-        let path =
-            Path::new(env!("CARGO_MANIFEST_DIR")).join("../machines").join(name).with_extension("yaml");
-        let source = SourceFile::new(name, std::fs::read_to_string(path)?);
+        let source = SourceFile::new(name, machine_file(name)?);
         let compiled = model_dsl::compile(&source, &mut Diagnostics::new())
             .ok_or("the machine file does not compile")?;
         let names: Vec<String> =

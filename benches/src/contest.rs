@@ -35,7 +35,7 @@ impl Group {
 }
 
 /// The machines of the comparison.
-pub const MACHINES: [&str; 3] = ["excello-921", "xyfz-mill", "trunnion-5axis"];
+pub const MACHINES: [&str; 4] = ["excello-921", "xyfz-mill", "trunnion-5axis", "trunnion-5axis-turning"];
 
 /// What answers.
 pub trait Contestant {

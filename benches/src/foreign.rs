@@ -37,6 +37,8 @@ unsafe extern "C" {
         reverse: *const c_long,
         out: *mut f64,
     ) -> c_int;
+    fn trunnion_turning_own(m: *const u8, p: *const f64, reverse: *const c_long, out: *mut f64) -> c_int;
+    fn trunnion_turning_shared(m: *const u8, p: *const f64, reverse: *const c_long, out: *mut f64) -> c_int;
 }
 
 /// The code of a symbolic tool for the three machines: position, constants, motions, out.
@@ -85,6 +87,11 @@ fn hand(machine: usize) -> Option<Hand> {
             equations: trunnion_equations,
             errors: [trunnion_error_own, trunnion_error_shared],
             commands: [trunnion_compensate_own, trunnion_compensate_shared],
+        },
+        Hand {
+            equations: trunnion_equations,
+            errors: [trunnion_error_own, trunnion_error_shared],
+            commands: [trunnion_turning_own, trunnion_turning_shared],
         },
     ];
     hands.into_iter().nth(machine)

@@ -10,7 +10,7 @@ use abbe_runtime::{
 
 use crate::case::{Case, Values};
 use crate::contest::{Answering, Contestant, EXACT, Group};
-use crate::machines::{excello_921, trunnion_5axis, xyfz_mill};
+use crate::machines::{excello_921, trunnion_5axis, trunnion_5axis_turning, xyfz_mill};
 
 /// The contestants of a machine.
 pub(crate) fn contestants(case: &'static Case, group: Group) -> Vec<Box<dyn Contestant>> {
@@ -68,6 +68,7 @@ pub(crate) fn contestants(case: &'static Case, group: Group) -> Vec<Box<dyn Cont
         "excello-921" => of!(excello_921, 2),
         "xyfz-mill" => of!(xyfz_mill, 3),
         "trunnion-5axis" => of!(trunnion_5axis, 5),
+        "trunnion-5axis-turning" => of!(trunnion_5axis_turning, 5),
         _ => Vec::new(),
     }
 }

@@ -328,7 +328,7 @@ pub(crate) struct Export {
     /// Sinumerik, HEIDENHAIN, PMAC: the controller's name of an axis, or its motor's number, as in X=MX1.
     #[arg(long, value_name = "AXIS=NAME", value_parser = name)]
     pub(crate) name: Vec<(String, String)>,
-    /// PMAC: counts of an axis's motor for a mm, as in X=10000.
+    /// PMAC: counts of an axis's motor for a mm, or for a degree of a rotary axis, as in X=10000.
     #[arg(long, value_name = "AXIS=COUNTS", value_parser = place)]
     pub(crate) counts: Vec<(String, f64)>,
 }

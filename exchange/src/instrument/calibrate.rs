@@ -1,6 +1,8 @@
 //! All measurements of a set-up together. In: the set-up, its files, the machine. Out: the error motions that they show, the
 //! squarenesses, and the calibration that holds them.
 
+use std::f64::consts::TAU;
+
 use model_dsl::calibration::{self, CalibratedTerm, Calibration, CurveNodes, CurveValues};
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
@@ -93,7 +95,7 @@ pub fn calibrate(
     if findings.setup.has_errors() {
         return None;
     }
-    let calibration = filled(&setup.known, &motions, &squarenesses);
+    let calibration = filled(equations, &setup.known, &motions, &squarenesses);
     Some(Outcome { machine: equations.machine.clone(), motions, squarenesses, calibration })
 }
 
@@ -278,10 +280,18 @@ fn is_new(
 }
 
 /// What was known with what was measured.
-fn filled(known: &Calibration, motions: &[MeasuredMotion], squarenesses: &[Squareness]) -> Calibration {
+fn filled(
+    equations: &Equations,
+    known: &Calibration,
+    motions: &[MeasuredMotion],
+    squarenesses: &[Squareness],
+) -> Calibration {
     let mut terms: Vec<(usize, CalibratedTerm)> = Vec::new();
     for one in motions {
-        terms.push((one.motion, CalibratedTerm::Table { axis: one.axis, curve: one.table.curve() }));
+        let rotary = equations.axes.get(one.axis).is_some_and(|axis| axis.rotary);
+        let curve = one.table.curve();
+        let curve = if rotary { closed(curve) } else { curve };
+        terms.push((one.motion, CalibratedTerm::Table { axis: one.axis, curve }));
         if let Some(lost_motion) = one.table.lost_motion {
             terms.push((one.motion, CalibratedTerm::Backlash { axis: one.axis, lost_motion, wind_up: 0.0 }));
         }
@@ -307,6 +317,31 @@ impl Tabulated {
         };
         calibration::Curve::new(nodes, values)
     }
+}
+
+/// How far the ends of a table over one turn may be from a turn, in rad: the digits that are kept of a node.
+const A_TURN: f64 = 1e-9;
+
+/// A curve over a rotary axis: where it spans one turn its ends are one place, which was measured twice, and have the mean of both.
+fn closed(curve: calibration::Curve) -> calibration::Curve {
+    let turns = curve.ends().is_some_and(|[first, last]| ((last - first).abs() - TAU).abs() < A_TURN);
+    if !turns {
+        return curve;
+    }
+    let meet = |mut values: Vec<f64>| {
+        if let [first, .., last] = values.as_mut_slice() {
+            *first = super::placed::tidy(f64::midpoint(*first, *last));
+            *last = *first;
+        }
+        values
+    };
+    let values = match curve.values {
+        CurveValues::Both(values) => CurveValues::Both(meet(values)),
+        CurveValues::Directed { forward, reverse } => {
+            CurveValues::Directed { forward: meet(forward), reverse: meet(reverse) }
+        }
+    };
+    calibration::Curve { values, repeats: true, ..curve }
 }
 
 /// Start and step of nodes that are evenly spaced to the last digit that is kept.

@@ -7,7 +7,7 @@ use model_dsl::source::Span;
 
 use super::measured::{Measured, Sense};
 use super::sense;
-use super::setup::{Begin, Measurement};
+use super::setup::{Begin, Measurement, as_dimension};
 use super::view::View;
 
 /// The readings of one measurement, by position.
@@ -96,7 +96,10 @@ fn the_unit(
     at: Span,
     diagnostics: &mut Diagnostics,
 ) -> Option<Unit> {
-    let usual = dimension.usual_unit();
+    // Nobody gives the targets of a rotary axis in millionths of a radian.
+    let of_rotary_axis = dimension == Dimension::ANGLE && what == "targets";
+    let usual = if of_rotary_axis { "deg".to_owned() } else { dimension.usual_unit() };
+    let [in_setup, in_file] = [in_setup, in_file].map(|unit| unit.map(|unit| as_dimension(unit, dimension)));
     let mistake = match (in_setup, in_file) {
         (None, None) => {
             let message = format!("neither the file nor the set-up tells the unit of the {what}");

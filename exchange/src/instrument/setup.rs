@@ -24,6 +24,7 @@ pub use counting::{Begin, Deviations, Order, Targets};
 pub use measurement::{Form, Measurement, Remove};
 pub use place::Place;
 pub use reference::Reference;
+pub(super) use words::as_dimension;
 use words::{FORM, first_key, keys, word};
 
 const KEYS: [&str; 12] = [

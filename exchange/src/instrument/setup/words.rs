@@ -49,13 +49,21 @@ pub(super) fn unit(
     diagnostics: &mut Diagnostics,
 ) -> Option<Unit> {
     let unit = quantity::read_unit(node, what, diagnostics)?;
-    if unit.value.dimension == dimension {
-        return Some(unit.value);
+    let read = as_dimension(unit.value, dimension);
+    if read.dimension == dimension {
+        return Some(read);
     }
     let message = format!("{what} is that of {}", dimension.name());
     let help = format!("write a unit such as `{}`", dimension.usual_unit());
     diagnostics.push(Diagnostic::error("E0908", unit.span, message).help(help));
     None
+}
+
+/// A unit where one of a dimension is asked for: a length for each length, such as the mm/m of a level or of a Renishaw file, is a small
+/// angle, 1 mm/m being 1 mrad.
+pub(in crate::instrument) fn as_dimension(unit: Unit, dimension: Dimension) -> Unit {
+    let is_angle = dimension == Dimension::ANGLE && unit.dimension == Dimension::NONE;
+    if is_angle { Unit { dimension, ..unit } } else { unit }
 }
 
 /// Where a file speaks for the first time.

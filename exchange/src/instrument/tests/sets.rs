@@ -114,6 +114,38 @@ fn a_rotary_axis_is_calibrated_in_angles() {
     assert_near(&values, &[0.0, 1.745_33e-4, -1.745_33e-4], 1e-9);
 }
 
+/// Millimetres for each metre are milliradians, as a level and a Renishaw file have them.
+#[test]
+fn lengths_for_each_length_are_an_angle() {
+    let text = "target,deviation\n#unit,deg,mm/m\n0,0\n90,0.02\n";
+    let one = outcome("XYZFC", "  - {motion: ECC, data: d}", &[text.to_owned()]).0.unwrap();
+    assert_near(&values(&one).1, &[0.0, 2e-5], 1e-12);
+    let text = "target,deviation\n0,0\n90,20\n";
+    let set = "  - {motion: ECC, data: d, targets: {unit: deg}, deviations: {unit: um/m}}";
+    let one = outcome("XYZFC", set, &[text.to_owned()]).0.unwrap();
+    assert_near(&values(&one).1, &[0.0, 2e-5], 1e-12);
+}
+
+/// 0 and 360 deg are one place, measured twice.
+#[test]
+fn the_ends_of_a_turn_have_the_mean_of_both() {
+    let text = "target,deviation\n#unit,deg,urad\n0,10\n120,40\n240,-20\n360,16\n";
+    let curve = |text: String| {
+        let one = outcome("XYZFC", "  - {motion: ECC, data: d}", &[text]).0.unwrap();
+        match one.calibration.motions[0].terms[0].value.clone() {
+            CalibratedTerm::Table { curve, .. } => curve,
+            other => panic!("{other:?}"),
+        }
+    };
+    let turn = curve(text.to_owned());
+    assert!(turn.repeats);
+    assert_near(turn.values.forward(), &[13e-6, 40e-6, -20e-6, 13e-6], 1e-12);
+    // Without a whole turn between them the ends are two places.
+    let part = curve(text.replace("360", "350"));
+    assert!(!part.repeats);
+    assert_near(part.values.forward(), &[10e-6, 40e-6, -20e-6, 16e-6], 1e-12);
+}
+
 const SQUARE: &str = "setup: 1\nmachine: m\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\nreferences: {square: {angle: 4 urad, uncertainty: 1 urad}}\nmeasurements:\n";
 
 fn straight(slope: f64) -> String {

@@ -258,7 +258,8 @@ pub(crate) struct Update {
     /// The share of the matrix's norm up to which singular values count as zero; readings times 2.2e-16 by default.
     #[arg(long, value_parser = non_negative)]
     pub(crate) tolerance: Option<f64>,
-    /// Where the zero of a part is free: `free` in all directions, `none`, or some such as `z` or `x,z`.
+    /// Where the zero of a part is free: `free` in all directions, `turned` where the part may lie turned too, `none`, or some
+    /// such as `z` or `x,z`.
     #[arg(long, default_value = "free", value_parser = datum)]
     pub(crate) datum: Datum,
     /// The parts were made with this calibration's compensation switched on.

@@ -68,6 +68,9 @@ fn an_update_with_free_datums_finds_the_squareness_of_the_mill() {
         assert!((angle - documented).abs() < 0.0015, "{name}: {angle} deg");
     }
     assert_eq!(updated["hints"].as_array().unwrap().len(), 0);
+    // The command line says the same of recordings that do not.
+    let Some((mill, silent)) = self::plates("turned", "") else { return };
+    assert_eq!(json(&["update", &mill, "--datum", "turned"], &silent)["changes"], updated["changes"]);
 }
 
 #[test]

@@ -21,7 +21,10 @@ use crate::written::{self, comment, folder};
 /// Runs the command.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let known = calibrated::read(&arguments.calibration)?;
-    let parts = recorded::read_all(&arguments.measurements, arguments.quiet)?;
+    let mut parts = recorded::read_all(&arguments.measurements, arguments.quiet)?;
+    if arguments.datum.turned {
+        parts.iter_mut().for_each(|part| part.recording.free_datum = true);
+    }
     check_machine(arguments, &known, &parts)?;
     if let Some(target) = &arguments.output {
         check_target(target, arguments, &known, &parts)?;
@@ -53,7 +56,7 @@ fn options(arguments: &Arguments) -> Options {
             UpdateMethod::Select => Method::Select,
         },
         tolerance: arguments.tolerance,
-        datum: arguments.datum.0,
+        datum: arguments.datum.displaced,
         compensated: arguments.compensated,
     }
 }

@@ -12,7 +12,7 @@ use crate::math::{all_finite, floor};
 use crate::{Direction, Real};
 
 pub use self::bundle::Bundle;
-use self::place::{Even, MOST};
+use self::place::{Even, Last, MOST};
 pub(crate) use self::place::{LanePlace, Place};
 
 /// The values of a table at its nodes: one curve, or one for each direction of motion.
@@ -156,7 +156,7 @@ impl<'a> Table<'a> {
             return Err(TableError::TooLong);
         }
         let last = nodes.saturating_sub(1);
-        Ok(Self::new(Nodes::Even(Even { start, per_unit, last, repeats: false }), values))
+        Ok(Self::new(Nodes::Even(Even { start, per_unit, last: Last::new(last, false) }), values))
     }
 
     /// A table whose nodes lie at the positions `at` (mm or rad), strictly ascending; read by binary search.
@@ -198,7 +198,9 @@ impl<'a> Table<'a> {
     /// Refuses a table of one node, which has no length to repeat.
     pub const fn repeating(self) -> Result<Self, TableError> {
         let nodes = match self.nodes {
-            Nodes::Even(even) if even.last > 0 => Nodes::Even(Even { repeats: true, ..even }),
+            Nodes::Even(even) if even.last.index() > 0 => {
+                Nodes::Even(Even { last: Last::new(even.last.index(), true), ..even })
+            }
             Nodes::At { at, .. } if at.len() > 1 => Nodes::At { at, repeats: true },
             Nodes::Even(_) | Nodes::At { .. } => return Err(TableError::Lone),
         };

@@ -60,7 +60,7 @@ impl<const CURVES: usize, const ROWS: usize> Bundle<CURVES, ROWS> {
         else {
             return Err(if CURVES == 0 { TableError::Empty } else { TableError::Unlike { index: 0 } });
         };
-        let expected = even.last.saturating_add(1);
+        let expected = even.last.index().saturating_add(1);
         if ROWS != expected {
             return Err(TableError::Lengths { expected, found: ROWS });
         }

@@ -6,14 +6,34 @@
 use super::{Nodes, Table, between, read_at, within_a_turn};
 use crate::{Direction, Lanes, Real};
 
-/// Even nodes: the first, how many of them there are for each mm or rad, and the index of the last.
+/// Even nodes: the first, how many of them there are for each mm or rad, and the last.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Even {
     pub(super) start: f64,
     pub(super) per_unit: f64,
-    pub(super) last: usize,
-    /// Whether what lies beyond the last node is read from the first one on.
-    pub(super) repeats: bool,
+    pub(super) last: Last,
+}
+
+/// The index of the last node, and whether what lies beyond it is read from the first one on.
+// In one number, so that tables are told apart by as many comparisons as if none repeated.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct Last(usize);
+
+impl Last {
+    pub(super) const fn new(index: usize, repeats: bool) -> Self {
+        // No table has half as many nodes as there are numbers.
+        Self(index << 1 | repeats as usize)
+    }
+
+    #[inline(always)]
+    pub(super) const fn index(self) -> usize {
+        self.0 >> 1
+    }
+
+    #[inline(always)]
+    const fn repeats(self) -> bool {
+        self.0 & 1 == 1
+    }
 }
 
 /// Where an axis lies between even nodes, in one row or in several, and the direction in which it moves there.
@@ -107,7 +127,7 @@ impl Place {
     #[inline(always)]
     pub(super) fn new(even: Even, axis: usize, position: f64, direction: Direction) -> Self {
         let (below, part) = even.place(position);
-        let above = below.saturating_add(1).min(even.last);
+        let above = below.saturating_add(1).min(even.last.index());
         Self { axis, even, below, above, part, direction }
     }
 
@@ -125,7 +145,7 @@ impl LanePlace {
         for (below, part) in below.iter_mut().zip(part.iter_mut()) {
             (*below, *part) = split(*part);
         }
-        let above = below.map(|node| node.saturating_add(1).min(even.last));
+        let above = below.map(|node| node.saturating_add(1).min(even.last.index()));
         Self { axis, even, below, above, part, direction }
     }
 
@@ -149,8 +169,7 @@ impl Even {
         // Bits compare faster than numbers; none of these is NaN.
         self.start.to_bits() == other.start.to_bits()
             && self.per_unit.to_bits() == other.per_unit.to_bits()
-            && self.last == other.last
-            && self.repeats == other.repeats
+            && self.last.0 == other.last.0
     }
 
     /// The index of the node below a position, not above the last one, and what is left of a step from there; NaN is left of NaN.
@@ -159,13 +178,14 @@ impl Even {
     #[inline(always)]
     pub(super) fn place(self, position: f64) -> (usize, f64) {
         let count = self.count(position);
-        let count = if self.repeats { within_a_turn(count, self.last as f64) } else { count };
+        let last = self.last.index();
+        let count = if self.last.repeats() { within_a_turn(count, last as f64) } else { count };
         let (below, part) = split(count);
-        if below < self.last {
+        if below < last {
             (below, part)
         } else {
             core::hint::cold_path();
-            (if count < 0.0 { 0 } else { self.last }, count.clamp(0.0, 0.0))
+            (if count < 0.0 { 0 } else { last }, count.clamp(0.0, 0.0))
         }
     }
 
@@ -178,10 +198,10 @@ impl Even {
     /// The same within the table: from 0 to the number of the last; NaN remains.
     #[inline]
     fn steps(self, position: Lanes) -> Lanes {
-        let (zero, end) = (Lanes::from(0.0), Lanes::from(self.last as f64));
+        let last = self.last.index() as f64;
+        let (zero, end) = (Lanes::from(0.0), Lanes::from(last));
         let count = self.count(position);
-        let count =
-            if self.repeats { count.map(|count| within_a_turn(count, self.last as f64)) } else { count };
+        let count = if self.last.repeats() { count.map(|count| within_a_turn(count, last)) } else { count };
         let inside = zero.above(count, zero, count);
         inside.above(end, end, inside)
     }

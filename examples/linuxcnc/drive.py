@@ -63,9 +63,9 @@ def approach():
     move("G1 X60 Y40 Z-110")
 
 
-def run_program():
+def run_program(name):
     mode(linuxcnc.MODE_AUTO)
-    command.program_open("mill.ngc")
+    command.program_open(name)
     command.auto(linuxcnc.AUTO_RUN, 0)
     wait("the program does not begin", lambda: stat.interp_state != linuxcnc.INTERP_IDLE)
     wait("the program does not end", idle)
@@ -105,7 +105,7 @@ def home():
         sys.exit("an axis that is not homed is compensated")
     compensate(False)
     command.home(-1)
-    wait("the joints are not homed", lambda: all(stat.homed[:3]))
+    wait("the joints are not homed", lambda: all(stat.homed[: stat.joints]))
 
 
 def main():
@@ -115,14 +115,14 @@ def main():
             home()
             approach()
             phase(OFF)
-            run_program()
+            run_program("mill.ngc")
             phase(SETTING_UP)
             approach()
             phase(STANDING)
             compensate(True)
             settled("1")
             phase(ON)
-            run_program()
+            run_program("mill.ngc")
             phase(MOVING)
             mode(linuxcnc.MODE_MDI)
             command.mdi("G1 X240 Y200 Z-10 F3000")

@@ -8,10 +8,12 @@
 //! cargo run --example linuxcnc -- samples SAMPLES RECORDING
 //! cargo run --example linuxcnc -- diagnosis DIAGNOSIS
 //! cargo run --example linuxcnc -- screw SAMPLES TYPE:FILE...
+//! cargo run --example linuxcnc -- five SAMPLES
 //! ```
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
 
+mod five;
 mod samples;
 mod screw;
 
@@ -45,7 +47,11 @@ fn main() -> ExitCode {
         ["samples", samples, recording] => judge_samples(samples, recording),
         ["diagnosis", diagnosis] => judge_diagnosis(diagnosis),
         ["screw", samples, ref files @ ..] => judge_screws(samples, files),
-        _ => Err("samples SAMPLES RECORDING, diagnosis DIAGNOSIS, or screw SAMPLES TYPE:FILE...".into()),
+        ["five", samples] => five::judge(samples),
+        _ => {
+            Err("samples SAMPLES RECORDING, diagnosis DIAGNOSIS, screw SAMPLES TYPE:FILE... or five SAMPLES"
+                .into())
+        }
     };
     match judged {
         Ok(()) => ExitCode::SUCCESS,
@@ -85,7 +91,7 @@ fn judge_samples(path: &str, recording: &str) -> Result<(), Complaint> {
     judge_errors(&of(Phase::Off), &of(Phase::On))?;
     judge_steps(&samples)?;
     judge_following(&samples)?;
-    tell_times(&samples);
+    tell_times(of(Phase::On).iter().map(|sample| sample.nanoseconds).collect());
     fs::write(recording, samples::table(&of(Phase::Off)))?;
     Ok(())
 }
@@ -94,28 +100,43 @@ fn judge_samples(path: &str, recording: &str) -> Result<(), Complaint> {
 fn judge_errors(off: &[&Sample], on: &[&Sample]) -> Result<(), Complaint> {
     // Both must be the whole program: two circles and two diagonals, which take more than 10 s.
     hold(off.len() > 10_000 && on.len() > 10_000, "the program was not sampled as a whole")?;
-    for (what, figure) in [("rms", rms as fn(&[&Sample]) -> f64), ("greatest", greatest)] {
+    let errors =
+        |samples: &[&Sample]| samples.iter().map(|sample| sample.error() * 1e3).collect::<Vec<f64>>();
+    let compared = compare("error at the tool", "um", &[off, on].map(errors));
+    hold(compared.least > 20.0, "the mill hardly errs: there is nothing to be shown")?;
+    hold(compared.left < LEFT, "too much of the error is left")
+}
+
+/// Errors without compensation and with it, of their mean and of their greatest.
+struct Compared {
+    /// The lesser of both without compensation.
+    least: f64,
+    /// The greater part that is left of them.
+    left: f64,
+}
+
+/// Tells of errors without compensation and with it.
+fn compare(what: &str, unit: &str, [off, on]: &[Vec<f64>; 2]) -> Compared {
+    let mut compared = Compared { least: f64::INFINITY, left: 0.0 };
+    for (which, figure) in [("rms", rms as fn(&[f64]) -> f64), ("greatest", greatest)] {
         let (without, with) = (figure(off), figure(on));
         let part = with / without;
         println!(
-            "error at the tool, {what}: {:.2} um without compensation, {:.2} um with it, {:.1} %",
-            without * 1e3,
-            with * 1e3,
+            "{what}, {which}: {without:.2} {unit} without compensation, {with:.2} {unit} with it, {:.1} %",
             part * 100.0
         );
-        hold(without > 0.02, "the mill hardly errs: there is nothing to be shown")?;
-        hold(part < LEFT, "too much of the error is left")?;
+        compared = Compared { least: compared.least.min(without), left: compared.left.max(part) };
     }
-    Ok(())
+    compared
 }
 
-fn rms(samples: &[&Sample]) -> f64 {
-    let sum: f64 = samples.iter().map(|sample| sample.error().powi(2)).sum();
-    (sum / samples.len() as f64).sqrt()
+fn rms(errors: &[f64]) -> f64 {
+    let sum: f64 = errors.iter().map(|error| error.powi(2)).sum();
+    (sum / errors.len() as f64).sqrt()
 }
 
-fn greatest(samples: &[&Sample]) -> f64 {
-    samples.iter().map(|sample| sample.error()).fold(0.0, f64::max)
+fn greatest(errors: &[f64]) -> f64 {
+    errors.iter().copied().fold(0.0, f64::max)
 }
 
 /// How far the corrections go in one cycle: no further than the rate lets them at any time, and while they fade in at rest, where
@@ -161,9 +182,7 @@ fn judge_following(samples: &[Sample]) -> Result<(), Complaint> {
 }
 
 /// How long a cycle of Abbe takes. It is told and not judged: what else the machine does in that time counts too.
-fn tell_times(samples: &[Sample]) {
-    let mut times: Vec<f64> =
-        samples.iter().filter(|sample| sample.phase == Phase::On).map(|sample| sample.nanoseconds).collect();
+fn tell_times(mut times: Vec<f64>) {
     times.sort_by(f64::total_cmp);
     let at = |part: f64| {
         let index =

@@ -1,15 +1,15 @@
 /*
- * A mill with errors, for tests: a HAL component of LinuxCNC between commands and feedback.
+ * A machine with errors, for tests: a HAL component of LinuxCNC between commands and feedback.
  *
- * In: the command of each drive, and a temperature. Out: what each drive's encoder says, and where the tip of the tool truly
- * stands relative to the part. It exists as an oracle that shares nothing with Abbe: rigid bodies with finite
- * rotations, a play that is a play, and its own numbers, which mill-12.yaml states as a calibration would.
- *
- *     bed -> Y saddle -> X table -> part        bed -> Z head -> tool
+ * In: the command of each drive, the position that was wanted of it, and a temperature. Out: what each drive's encoder says, where the
+ * tip of the tool truly stands relative to the part, where it should, and by how much the tool is turned. It exists as an oracle
+ * that shares nothing with Abbe: rigid bodies with finite rotations, a play that is a play, and numbers of its own. Which machine
+ * it is, and its numbers, stand in the header that it is compiled with: -DMACHINE='"mill.h"'.
  *
  * The drives follow their commands at once: what they would lag behind is no error of the geometry.
  */
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "rtapi.h"
@@ -17,15 +17,37 @@
 #include "hal.h"
 
 MODULE_AUTHOR("Abbe");
-MODULE_DESCRIPTION("A mill with errors, for tests");
+MODULE_DESCRIPTION("A machine with errors, for tests");
 MODULE_LICENSE("Dual MIT/GPL");
 
-enum { X, Y, Z, AXES };
+/* Displacements in X, Y, Z and rotations about them: what a slide and a rotary axis do, and what each does beside it. */
+enum { X, Y, Z, A, B, C, MOTIONS };
 
-/* Lost motion of each axis, mm. */
-static const double LOST_MOTION[AXES] = {0.009, 0.012, 0.005};
-/* From the origin of the head to the tip of the tool, mm. */
-static const double TOOL = 120;
+/* What an axis does beside what it was told, mm or rad: a curve and a wave of its position q, mm or rad. */
+typedef struct {
+    double curve[3]; /* of 1, q and q^2 */
+    double amplitude, period, phase;
+} Motion;
+
+/* An axis, in the frame of the body that carries it. All directions are those of that frame. */
+typedef struct {
+    char letter;
+    bool carries_part;
+    int along, way; /* X to C, and +1 or -1: how its body moves when it is programmed forwards */
+    double origin[3];
+    double play;             /* mm, or rad */
+    double expansion;        /* 1/K, from 20 degC */
+    Motion motion[MOTIONS];  /* that of its own direction counts along its way */
+    double aligned[MOTIONS]; /* of the line that a slide moves along, or of the axis that is turned about, and its zero */
+} Link;
+
+/* `links` from the bed outwards, and in the frames of the last bodies `tool`, the tip, and `part`, the origin. */
+#include MACHINE
+
+enum { LINKS = sizeof links / sizeof *links };
+
+/* Which errors a machine has. */
+typedef enum { NONE, OWN_ANGLES, ALL } Errors;
 
 typedef struct {
     double row[3][3];
@@ -36,17 +58,27 @@ typedef struct {
     double place[3];
 } Body;
 
+/* The tool as the part sees it. */
 typedef struct {
-    hal_float_t *cmd[AXES];
-    hal_float_t *fb[AXES];
-    hal_float_t *tip[AXES];
-    hal_float_t *temperature;
+    double tip[3], direction[3];
+} Tool;
+
+typedef struct {
+    hal_float_t *position[LINKS]; /* in: what is wanted, in the units of the joint */
+    hal_float_t *cmd[LINKS];      /* in: what the drive is told */
+    hal_float_t *fb[LINKS];       /* out: what its encoder says */
+    hal_float_t *tip[3];          /* out: mm */
+    hal_float_t *nominal[3];      /* out: where the tip would be with all positions as wanted and no errors, mm */
+    hal_float_t *error[3];        /* out: the tip from there, mm */
+    hal_float_t *turned;          /* out: the angle from the direction of the tool to the one without errors, arcsec */
+    hal_float_t *turned_own;      /* out: that angle if rotary axes erred by nothing but their own angles, arcsec */
+    hal_float_t *temperature;     /* in: degC */
 } Pins;
 
 static int component = -1;
 static Pins *pins;
-/* Where each slide stands behind its play, mm. */
-static double slide[AXES];
+/* Where each axis stands behind its play: mm, or rad. */
+static double axis[LINKS];
 
 static Rotation product(const Rotation *a, const Rotation *b) {
     Rotation c;
@@ -75,95 +107,146 @@ static void apply(const Rotation *rotation, const double *vector, double *to) {
     }
 }
 
+/* The other way. */
+static void take_back(const Rotation *rotation, const double *vector, double *to) {
+    for (int i = 0; i < 3; i++) {
+        to[i] = 0;
+        for (int j = 0; j < 3; j++) to[i] += rotation->row[j][i] * vector[j];
+    }
+}
+
 /* A point of a body, in the frame that the body stands in. */
 static void outside(const Body *body, const double *point, double *to) {
     apply(&body->rotation, point, to);
     for (int i = 0; i < 3; i++) to[i] += body->place[i];
 }
 
-/* The other way. */
-static void inside(const Body *body, const double *point, double *to) {
-    double from[3];
-    for (int i = 0; i < 3; i++) from[i] = point[i] - body->place[i];
-    for (int i = 0; i < 3; i++) {
-        to[i] = 0;
-        for (int j = 0; j < 3; j++) to[i] += body->rotation.row[j][i] * from[j];
+static bool turns(const Link *link) {
+    return link->along >= A;
+}
+
+static bool errs(const Link *link, int motion, Errors errors) {
+    return errors == ALL || (errors == OWN_ANGLES && turns(link) && motion == link->along);
+}
+
+static double at(const Motion *motion, double q) {
+    double wave = motion->period == 0 ? 0 : motion->amplitude * sin(2 * M_PI * q / motion->period + motion->phase);
+    return motion->curve[0] + motion->curve[1] * q + motion->curve[2] * q * q + wave;
+}
+
+/* The body of an axis at a position q, in the frame of the body that carries it. */
+static Body moved(const Link *link, double q, double temperature, Errors errors) {
+    double motion[MOTIONS], aligned[MOTIONS], own[MOTIONS] = {0};
+    for (int i = X; i < MOTIONS; i++) {
+        motion[i] = errs(link, i, errors) ? at(&link->motion[i], q) : 0;
+        aligned[i] = errs(link, i, errors) ? link->aligned[i] : 0;
     }
-}
-
-/* The table moves towards -X for +X. It is long, and grows with its temperature. */
-static Body table(double x, double temperature) {
-    double scale = 60e-6 * x - 9e-8 * x * x + 11e-6 * (temperature - 20) * x;
-    double roll = 0.12e-6 * x, pitch = 30e-6 - 0.35e-6 * x, yaw = 0.2e-6 * x;
-    return (Body){turned(roll, pitch, yaw), {-(x + scale), 8e-5 * x - 3e-7 * x * x, 5e-5 * x}};
-}
-
-/* The saddle moves towards -Y for +Y, along a line that is not square to X. */
-static Body saddle(double y) {
-    const double not_square = 140e-6;
-    double scale = -90e-6 * y;
-    double pitch = 0.25e-6 * y, roll = -0.1e-6 * y, yaw = 0.15e-6 * y;
-    Rotation line = turned(0, 0, not_square);
-    double along[3] = {0, -y, 0};
-    Body body = {turned(pitch, roll, yaw), {0, 0, 0}};
-    apply(&line, along, body.place);
-    body.place[X] += 4e-5 * y - 2e-7 * y * y;
-    body.place[Y] -= scale;
+    double growth = errors == ALL ? link->expansion * (temperature - 20) * q : 0;
+    own[link->along] = link->way * (q + motion[link->along] + aligned[link->along] + growth);
+    motion[link->along] = aligned[link->along] = 0;
+    Rotation line = turned(aligned[A], aligned[B], aligned[C]);
+    Body body = {turned(motion[A], motion[B], motion[C]), {0, 0, 0}};
+    apply(&line, own, body.place);
+    if (turns(link)) {
+        Rotation tilted = product(&line, &body.rotation), about = turned(own[A], own[B], own[C]);
+        body.rotation = product(&tilted, &about);
+    }
+    for (int i = X; i <= Z; i++) body.place[i] += link->origin[i] + aligned[i] + motion[i];
     return body;
 }
 
-/* The head moves towards +Z for +Z, along a line that is square to neither X nor Y. */
-static Body head(double z) {
-    const double not_square_to_y = -80e-6, not_square_to_x = 70e-6;
-    double scale = 110e-6 * z;
-    double pitch = 0.3e-6 * z, yaw = -0.2e-6 * z;
-    Rotation line = turned(not_square_to_y, not_square_to_x, 0);
-    double along[3] = {0, 0, z};
-    Body body = {turned(pitch, yaw, 0), {0, 0, 0}};
-    apply(&line, along, body.place);
-    body.place[X] += 3e-5 * z;
-    body.place[Z] += scale;
+/* The last body of a branch, in the frame of the bed. */
+static Body end(bool carries_part, const double *position, double temperature, Errors errors) {
+    Body body = {turned(0, 0, 0), {0, 0, 0}};
+    for (int i = 0; i < LINKS; i++) {
+        if (links[i].carries_part != carries_part) continue;
+        Body next = moved(&links[i], position[i], temperature, errors);
+        Body carried = {product(&body.rotation, &next.rotation), {0, 0, 0}};
+        outside(&body, next.place, carried.place);
+        body = carried;
+    }
     return body;
 }
 
-/* A slide follows its screw when that has gone through its play. */
-static void take_along(int axis, double screw) {
-    double play = LOST_MOTION[axis] / 2;
-    slide[axis] = fmin(fmax(slide[axis], screw - play), screw + play);
+static Tool seen(const double *position, double temperature, Errors errors) {
+    Body of_part = end(true, position, temperature, errors), of_tool = end(false, position, temperature, errors);
+    const double up[3] = {0, 0, 1};
+    double zero[3], tip[3], way[3], direction[3];
+    outside(&of_part, part, zero);
+    outside(&of_tool, tool, tip);
+    for (int i = X; i <= Z; i++) way[i] = tip[i] - zero[i];
+    apply(&of_tool.rotation, up, direction);
+    Tool view;
+    take_back(&of_part.rotation, way, view.tip);
+    take_back(&of_part.rotation, direction, view.direction);
+    return view;
+}
+
+/* The small angle between the directions of two tools, arcsec. */
+static double between(const Tool *a, const Tool *b) {
+    double square = 0;
+    for (int i = X; i <= Z; i++) square += pow(a->direction[i] - b->direction[i], 2);
+    return sqrt(square) * 180 / M_PI * 3600;
+}
+
+/* An axis follows its drive when that has gone through its play. */
+static void take_along(int i, double drive) {
+    double play = links[i].play / 2;
+    axis[i] = fmin(fmax(axis[i], drive - play), drive + play);
 }
 
 static void update(void *unused, long period) {
     (void)unused;
     (void)period;
-    for (int axis = X; axis < AXES; axis++) {
-        double screw = *pins->cmd[axis];
-        *pins->fb[axis] = screw;
-        take_along(axis, screw);
+    double wanted[LINKS], temperature = *pins->temperature;
+    for (int i = 0; i < LINKS; i++) {
+        double unit = turns(&links[i]) ? M_PI / 180 : 1;
+        wanted[i] = *pins->position[i] * unit;
+        *pins->fb[i] = *pins->cmd[i];
+        take_along(i, *pins->cmd[i] * unit);
     }
-    Body of_table = table(slide[X], *pins->temperature), of_saddle = saddle(slide[Y]), of_head = head(slide[Z]);
-    const double tool[3] = {0, 0, TOOL};
-    double tip[3], on_saddle[3], on_part[3];
-    outside(&of_head, tool, tip);
-    inside(&of_saddle, tip, on_saddle);
-    inside(&of_table, on_saddle, on_part);
-    for (int axis = X; axis < AXES; axis++) *pins->tip[axis] = on_part[axis];
+    Tool nominal = seen(wanted, temperature, NONE), actual = seen(axis, temperature, ALL);
+    Tool own = seen(axis, temperature, OWN_ANGLES);
+    for (int i = X; i <= Z; i++) {
+        *pins->tip[i] = actual.tip[i];
+        *pins->nominal[i] = nominal.tip[i];
+        *pins->error[i] = actual.tip[i] - nominal.tip[i];
+    }
+    *pins->turned = between(&actual, &nominal);
+    *pins->turned_own = between(&own, &nominal);
+}
+
+static int axis_pins(int i) {
+    char letter = links[i].letter;
+    /* As after a motion towards greater positions. */
+    axis[i] = -links[i].play / 2;
+    return hal_pin_float_newf(HAL_IN, &pins->position[i], component, "plant.%c.position", letter) ||
+           hal_pin_float_newf(HAL_IN, &pins->cmd[i], component, "plant.%c.cmd", letter) ||
+           hal_pin_float_newf(HAL_OUT, &pins->fb[i], component, "plant.%c.fb", letter);
+}
+
+static int direction_pins(int i) {
+    char letter = "xyz"[i];
+    return hal_pin_float_newf(HAL_OUT, &pins->tip[i], component, "plant.%c.tip", letter) ||
+           hal_pin_float_newf(HAL_OUT, &pins->nominal[i], component, "plant.%c.nominal", letter) ||
+           hal_pin_float_newf(HAL_OUT, &pins->error[i], component, "plant.%c.error", letter);
 }
 
 static int export_pins(void) {
-    static const char letters[] = "xyz";
     pins = hal_malloc(sizeof *pins);
     if (pins == NULL) return -1;
     memset(pins, 0, sizeof *pins);
-    for (int axis = X; axis < AXES; axis++) {
-        if (hal_pin_float_newf(HAL_IN, &pins->cmd[axis], component, "plant.%c.cmd", letters[axis]) ||
-            hal_pin_float_newf(HAL_OUT, &pins->fb[axis], component, "plant.%c.fb", letters[axis]) ||
-            hal_pin_float_newf(HAL_OUT, &pins->tip[axis], component, "plant.%c.tip", letters[axis])) {
-            return -1;
-        }
-        /* As after a motion towards greater positions. */
-        slide[axis] = -LOST_MOTION[axis] / 2;
+    for (int i = 0; i < LINKS; i++) {
+        if (axis_pins(i)) return -1;
     }
-    if (hal_pin_float_newf(HAL_IN, &pins->temperature, component, "plant.temperature")) return -1;
+    for (int i = X; i <= Z; i++) {
+        if (direction_pins(i)) return -1;
+    }
+    if (hal_pin_float_newf(HAL_OUT, &pins->turned, component, "plant.turned") ||
+        hal_pin_float_newf(HAL_OUT, &pins->turned_own, component, "plant.turned-own") ||
+        hal_pin_float_newf(HAL_IN, &pins->temperature, component, "plant.temperature")) {
+        return -1;
+    }
     return hal_export_funct("plant.update", update, NULL, 1, 0, component);
 }
 

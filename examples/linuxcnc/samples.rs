@@ -1,5 +1,5 @@
-//! The samples of `halsampler`. In: its text, a line for each servo cycle. Out: typed samples; and those of them that make a
-//! recording, as a table.
+//! The samples of `halsampler`. In: its text, a line for each servo cycle. Out: typed samples of the mill; and those of them that
+//! make a recording, as a table.
 
 use std::error::Error;
 use std::fmt::Write;
@@ -70,30 +70,46 @@ pub(crate) fn length(vector: [f64; 3]) -> f64 {
     vector.iter().map(|part| part * part).sum::<f64>().sqrt()
 }
 
-/// Reads all samples; the last line may be cut off.
+/// Reads all samples of the mill.
 pub(crate) fn read(text: &str) -> Result<Vec<Sample>, Box<dyn Error>> {
-    let whole = text.rfind('\n').map_or("", |end| &text[..end]);
-    whole.lines().map(sample).collect()
+    rows(text)?.into_iter().map(sample).collect()
 }
 
-fn sample(line: &str) -> Result<Sample, Box<dyn Error>> {
+/// The columns of all samples; the last line may be cut off.
+pub(crate) fn rows<const COLUMNS: usize>(text: &str) -> Result<Vec<[f64; COLUMNS]>, Box<dyn Error>> {
+    let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+    whole.lines().map(row).collect()
+}
+
+fn row<const COLUMNS: usize>(line: &str) -> Result<[f64; COLUMNS], Box<dyn Error>> {
     let numbers: Result<Vec<f64>, _> = line.split_whitespace().map(str::parse).collect();
-    let not_one = || format!("not a sample: {line}");
-    let columns: [f64; COLUMNS] = numbers.map_err(|_| not_one())?.try_into().map_err(|_| not_one())?;
-    let [phase, x, y, z, tip_x, tip_y, tip_z, dx, dy, dz, fx, fy, fz, temperature, status, nanoseconds, on] =
-        columns;
+    let columns = numbers.ok().and_then(|numbers| numbers.try_into().ok());
+    columns.ok_or_else(|| format!("not a sample: {line}").into())
+}
+
+/// What a number of `drive.py` stands for.
+pub(crate) fn phase(number: f64) -> Result<Phase, Box<dyn Error>> {
     let phases = [Phase::SettingUp, Phase::Off, Phase::On, Phase::Standing, Phase::Moving, Phase::Silent];
-    let numbered = (0..).zip(phases).find(|(number, _)| f64::from(*number) == phase);
-    let (_, phase) = numbered.ok_or_else(not_one)?;
-    let status = (-10..10).find(|number| f64::from(*number) == status).ok_or_else(not_one)?;
+    let numbered = (0..).zip(phases).find(|(phase, _)| f64::from(*phase) == number);
+    numbered.map(|(_, phase)| phase).ok_or_else(|| format!("no phase: {number}").into())
+}
+
+/// A status of Abbe.
+pub(crate) fn status(number: f64) -> Result<i32, Box<dyn Error>> {
+    (-10..10).find(|status| f64::from(*status) == number).ok_or_else(|| format!("no status: {number}").into())
+}
+
+fn sample(columns: [f64; COLUMNS]) -> Result<Sample, Box<dyn Error>> {
+    let [number, x, y, z, tip_x, tip_y, tip_z, dx, dy, dz, fx, fy, fz, temperature, status, nanoseconds, on] =
+        columns;
     Ok(Sample {
-        phase,
+        phase: phase(number)?,
         position: [x, y, z],
         tip: [tip_x, tip_y, tip_z],
         correction: [dx, dy, dz],
         following: [fx, fy, fz],
         temperature,
-        status,
+        status: self::status(status)?,
         nanoseconds,
         machine_on: on == 1.0,
     })

@@ -21,7 +21,7 @@ def main():
             command.teleop_enable(0)
             command.wait_complete()
             command.home(-1)
-            wait("the joints are not homed", lambda: all(stat.homed[:3]))
+            wait("the joints are not homed", lambda: all(stat.homed[: stat.joints]))
             for block in PATH:
                 move(block)
             time.sleep(0.2)

@@ -60,6 +60,8 @@ typedef struct {
     hal_s32_t *status;     /* out: AbbeStatus */
     hal_s32_t *refused;    /* out: AbbeRefused */
     hal_float_t *error[3]; /* out: what the model says without compensation, X Y Z of the part, mm */
+    hal_s32_t *tool;       /* in: the number of the tool; 0: none */
+    hal_bit_t *no_tool;    /* out: the calibration has no tool of that number, and its constants themselves count */
     hal_s32_t *time;       /* out: how long the last cycle took, ns */
     hal_s32_t *time_max;   /* in, out: the longest one, ns; 0 begins anew */
 } Pins;
@@ -70,6 +72,7 @@ static Pins *pins;
 static size_t axes, sensors;
 static double mm[MOST_AXES]; /* mm or rad in one unit of the joint */
 static bool was_homed;
+static int last_tool;
 
 /* Before the motion controller: what the drives answer, without what was added to their commands. */
 static void read_feedback(void *unused, long period) {
@@ -86,6 +89,30 @@ static bool all_homed(void) {
         if (!*pins->axis[i].homed) return false;
     }
     return true;
+}
+
+/* The digits of a number above zero, which end with a zero byte. */
+static void digits(int number, char *to, size_t size) {
+    char reversed[16];
+    size_t count = 0, i = 0;
+    for (; number > 0 && count < sizeof reversed; number /= 10) reversed[count++] = '0' + number % 10;
+    for (; count > 0 && i + 1 < size; i++) to[i] = reversed[--count];
+    to[i] = 0;
+}
+
+/* Takes another tool when its number changes: that of the calibration's name, or none. */
+static void change_tool(void) {
+    int tool = *pins->tool;
+    if (tool == last_tool) return;
+    char name[16];
+    digits(tool, name, sizeof name);
+    AbbeStatus status = tool > 0 ? abbe_set_tool(abbe, name) : ABBE_STATUS_OUT_OF_RANGE;
+    bool known = status == ABBE_STATUS_DONE;
+    if (!known) status = abbe_set_tool(abbe, NULL);
+    /* Another call was inside: it is tried again in the next cycle. */
+    if (status != ABBE_STATUS_DONE) return;
+    *pins->no_tool = tool != 0 && !known;
+    last_tool = tool;
 }
 
 static void tell(AbbeStatus status, const AbbeCycle *cycle) {
@@ -116,6 +143,7 @@ static void correct(long period) {
     was_homed = homed;
     *pins->enabled = homed && *pins->enable;
     abbe_enable(abbe, *pins->enabled);
+    change_tool();
     AbbeSample sample = {position, direction, axes, temperature, sensors, period * 1e-9};
     AbbeStatus status = abbe_update(abbe, &sample, correction, &cycle);
     if (status >= 0) {
@@ -186,6 +214,8 @@ static int machine_pins(void) {
            hal_pin_bit_newf(HAL_OUT, &pins->fault, component, "abbe.fault") ||
            hal_pin_s32_newf(HAL_OUT, &pins->status, component, "abbe.status") ||
            hal_pin_s32_newf(HAL_OUT, &pins->refused, component, "abbe.refused") ||
+           hal_pin_s32_newf(HAL_IN, &pins->tool, component, "abbe.tool") ||
+           hal_pin_bit_newf(HAL_OUT, &pins->no_tool, component, "abbe.no-tool") ||
            hal_pin_s32_newf(HAL_OUT, &pins->time, component, "abbe.time") ||
            hal_pin_s32_newf(HAL_IO, &pins->time_max, component, "abbe.time-max");
 }

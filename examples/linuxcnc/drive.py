@@ -108,6 +108,14 @@ def home():
     wait("the joints are not homed", lambda: all(stat.homed[: stat.joints]))
 
 
+def change_tools():
+    """The calibration has a tool 7 and no tool 9. The plant has one tool, so that no correction is judged here."""
+    for number, lacks in ((7, "FALSE"), (9, "TRUE"), (0, "FALSE")):
+        hal("setp", "abbe.tool", number)
+        wait(f"abbe.no-tool is not {lacks} with tool {number}", lambda lacks=lacks: pin("abbe.no-tool") == lacks)
+        settled("1")
+
+
 def main():
     with open("samples.txt", "w") as samples, subprocess.Popen(["halsampler"], stdout=samples) as sampler:
         try:
@@ -137,6 +145,7 @@ def main():
             hal("setp", "abbe.sensor.table.valid", 1)
             settled("1")
             phase(SETTING_UP)
+            change_tools()
             time.sleep(0.2)
             if pin("sampler.0.overruns") != "0":
                 sys.exit("samples are lost: this machine is too busy to be looked at")

@@ -81,7 +81,7 @@
 //! let mut values = [0.0; 1];
 //! let work = Work { directions: &mut directions, motions: &mut values, travel: &mut [] };
 //! let mut compensator = Compensator::new(&Slide, &motions, &mut states, work)?;
-//! compensator.limits = Limits { compensation: Some(0.2) };
+//! compensator.limits = Limits { compensation: Some(0.2), ..Limits::default() };
 //!
 //! let mut tracker = DirectionTracker::new(0.001);
 //! tracker.update(0.0);

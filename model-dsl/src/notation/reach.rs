@@ -112,6 +112,13 @@ pub(super) fn reached(equations: &Equations, motion: usize) -> Vec<Axis> {
     rows.map(|row| row.direction).collect()
 }
 
+/// The parts of the tool's direction that a motion reaches, where that is derived.
+pub(super) fn tilted(equations: &Equations, motion: usize) -> impl Iterator<Item = char> {
+    let rows = equations.orientation.iter();
+    let seen = rows.filter(move |row| row.terms.iter().any(|term| term.motion == motion));
+    seen.map(|row| row.direction.direction_letter())
+}
+
 /// Whether what reaches these directions can be compensated, in words: `yes`, `no`, `X; not Y`. The angle of a rotary axis may reach
 /// none of them, and is cancelled.
 pub(super) fn words(reached: &[Axis], cancelled: &[Cancelled; 3]) -> String {

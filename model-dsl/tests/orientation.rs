@@ -301,7 +301,9 @@ fn programs_read_it_too() {
     let page = print(&head, Format::Html, Names::Symbols);
     assert!(page.contains("<h2>Direction of the tool</h2>"));
     // EBB moves a tip at [Xt, Yt, Zt] in X and Z, and turns the tool in these directions.
-    assert!(page.contains("<td>X, Z, I, K</td>"), "{page}");
+    assert!(page.contains("<td>rad</td><td>X, Z, I, K</td><td>yes</td>"), "{page}");
+    let page = print(&derived(TIP_IN_THE_FRAME), Format::Html, Names::Symbols);
+    assert!(page.contains("<td>rad</td><td>J</td><td>no</td>"), "no slide turns a tool: {page}");
     assert!(!error_lines(&head, Names::Iso).iter().any(|line| line.starts_with("dI")));
     let plain = compile_word("FB", &mut Diagnostics::new()).unwrap().equations;
     for format in [Format::Text, Format::Latex, Format::Html, Format::Json, Format::Maxima, Format::Python] {

@@ -51,9 +51,11 @@ pub(super) fn cancelled(equations: &Equations) -> Vec<[Cancelled; 3]> {
         })
         .collect();
     let own: Vec<usize> = equations.turning().iter().map(|own| own.motion).collect();
-    let verdict = |motion: usize| match own.contains(&motion) {
-        true => [Cancelled::Yes; 3],
-        false => verdicts(&states, motion),
+    let verdict = |motion: usize| match (own.contains(&motion), reached(equations, motion).is_empty()) {
+        (true, _) => [Cancelled::Yes; 3],
+        // It turns the tool, and slides do not.
+        (false, true) => [Cancelled::No; 3],
+        (false, false) => verdicts(&states, motion),
     };
     (0..equations.motions.len()).map(verdict).collect()
 }

@@ -74,6 +74,18 @@ fn a_rotary_axis_corrects_its_own_part_of_the_direction() {
     assert!(run.err.contains("  with compensation     14.4 to  14.4 arcsec\n"), "{}", run.err);
 }
 
+/// B lags by 10 urad; after it turns back the tool leans by as much the other way. A quarter of the ramp later a quarter of these 20 urad is
+/// corrected: 15 urad are left, 3.1 arc seconds.
+#[test]
+fn what_a_ramp_leaves_for_later_is_told() {
+    let errors = "errors: {EBB: [{backlash: {lost_motion: 20 urad, ramp: 4 s}}]}\n";
+    let run =
+        compensated("leaning-ramp", HEAD, errors, "t,x,z,b\n0,0,0,0\n1,0,0,10\n2,0,0,9\n", &["--summary"]);
+    assert_eq!(run.status, 0, "{}", run.err);
+    let told = "  without compensation   2.1 to   2.1 arcsec\n  with compensation      0.0 to   3.1 arcsec\n";
+    assert!(run.err.contains(told), "{}", run.err);
+}
+
 /// A rotation about the tip itself has no lever there, and is seen all the same.
 #[test]
 fn what_only_turns_the_tool_is_told() {

@@ -5,8 +5,8 @@
 //! along the tool's branch, seen from the inverse of the product along the part's branch,
 //! is the tool relative to the part (equation (3-15) of the Excello report, (A.11) of NISTIR 6722).
 //! Its origin gives the rows of the tool tip, its rotation the turns that an angular instrument sees, and the direction
-//! of the tool where the machine file asks for it. All are vectors, and are carried through the links one by one: the whole product, whose rotation grows
-//! threefold with every rotary axis, is nowhere written out.
+//! of the tool where the machine file asks for it. All are vectors, and are carried through the links one by one: the whole
+//! product, whose rotation grows threefold with every rotary axis, is nowhere written out.
 
 mod link_matrix;
 mod meaning;

@@ -5,9 +5,9 @@
 //! where `P` is the tool tip relative to the part in the part's frame (mm), `e_j` the error
 //! motions (mm or rad) and `arm_dj` their lever arms, exact polynomials of positions,
 //! constants and the sines and cosines of rotary axes. An error motion that a direction does
-//! not see has no term there; no arm is zero. The direction of the tool, where the machine file asks for it, is three rows of
-//! the same kind, `T_d = nominal_d + sum over j of arm_dj * e_j`, in pure numbers. The rotation of the tool relative to the part is
-//! the same kind of sum, `w_a = sum over j of turn_aj * e_j` for a = A, B, C: what an angular
+//! not see has no term there; no arm is zero. The direction of the tool, where the machine
+//! file asks for it, is three rows of the same kind, in pure numbers. The rotation of the tool
+//! relative to the part is the same kind of sum, `w_a = sum over j of turn_aj * e_j` for a = A, B, C: what an angular
 //! instrument and the encoder of a rotary stage see.
 
 use std::fmt;

@@ -9,6 +9,7 @@ use crate::positions::Lean;
 
 /// Follows the error motions of a machine that derives the direction of its tool.
 pub(super) struct Leaning<'c> {
+    /// With any tool: no constant of a machine turns one.
     machine: &'c Interpreter,
     motions: &'c [ErrorMotion<'c>],
     /// What each term remembers, motion by motion: the same as the compensator's.

@@ -179,7 +179,7 @@ pub(crate) struct Compensate {
     /// Leave rows out that cannot be read or compensated, and count them on standard error.
     #[arg(long)]
     pub(crate) skip_bad: bool,
-    /// Tell on standard error how long the errors are without compensation and with it.
+    /// Tell on standard error how long the errors are without compensation and with it, and how far the tool leans where its direction is derived.
     #[arg(long)]
     pub(crate) summary: bool,
     /// Leave terms out that no controller can compensate in real time, naming each on standard error.

@@ -9,4 +9,4 @@ use layout::Column;
 pub(crate) use layout::{Layout, Wanted, output_columns};
 pub(crate) use pending::Pending;
 pub(crate) use state::{State, quoted};
-pub(crate) use summary::Summary;
+pub(crate) use summary::{Lean, Summary};

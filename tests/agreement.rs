@@ -231,6 +231,47 @@ pub(crate) fn turns_add(case: &Case<'_>, seed: u64) -> Result<(), TestCaseError>
     Ok(())
 }
 
+/// The direction of the tool where the file asks for it: without errors, motion by motion, and with all of them.
+///
+/// One angle `e` alone turns the tool about one direction that stays. The directions at `e` and `-e` differ by `2 sin(e)` times the
+/// derivative, however large it is. With all angles together the product of two of them is left over.
+pub(crate) fn the_tool_points_as_the_exact_machine(case: &Case<'_>, seed: u64) -> Result<(), TestCaseError> {
+    const ANGLE: f64 = 1e-3;
+    let pointed = |errors: BTreeMap<String, f64>| {
+        exact::direction(case.machine, &State { errors, ..case.state.clone() })
+    };
+    let there = case.interpreter.direction(&case.position).expect("a file that asks for the direction");
+    same("direction", there, pointed(BTreeMap::new()), 1.0)?;
+    let error = |motions: &[f64]| {
+        let found = case.interpreter.direction_error(&case.position, &case.travel, motions);
+        found.expect("a file that asks for the direction")
+    };
+    let alone = |name: &str| {
+        let [ahead, behind] =
+            [ANGLE, -ANGLE].map(|angle| pointed(BTreeMap::from([(name.to_owned(), angle)])));
+        std::array::from_fn(|part| (ahead[part] - behind[part]) / (2.0 * ANGLE.sin()))
+    };
+    for (number, motion) in case.equations.motions.iter().enumerate() {
+        let mut motions = vec![0.0; case.equations.motions.len()];
+        motions[number] = 1.0;
+        same(&motion.name, error(&motions), alone(&motion.name), 1.0)?;
+    }
+    for motion in &case.equations.unseen {
+        same(&motion.name, [0.0; 3], alone(&motion.name), 1.0)?;
+    }
+    let errors = case.errors(seed);
+    let (first, real) = (error(&errors), exact::direction(case.machine, &case.with(&errors, 1.0)));
+    let angles = Sizes::of(case.machine, &case.with(&errors, 1.0)).angles;
+    let across: f64 = first.iter().zip(there).map(|(error, direction)| error * direction).sum();
+    prop_assert!(across.abs() <= 1e-13 * (1.0 + angles), "the length changes by {across:e}");
+    for part in 0..3 {
+        let (defect, allowed) =
+            ((real[part] - there[part] - first[part]).abs(), angles.powi(2) / 2.0 + 1e-13);
+        prop_assert!(defect <= allowed, "part {part}: {defect:e} > {allowed:e}");
+    }
+    Ok(())
+}
+
 /// The product of finite matrices against the oracle's, number by number, with errors a hundred times what machines have.
 pub(crate) fn the_product_is_the_exact_machine(case: &Case<'_>, seed: u64) -> Result<(), TestCaseError> {
     let errors: Vec<f64> = case.errors(seed).iter().map(|error| 100.0 * error).collect();
@@ -267,7 +308,21 @@ fn all_laws(machine: &Machine, text: &str, seed: u64) -> Result<(), TestCaseErro
     turns_are_those_of_the_exact_machine(&case)?;
     turns_add(&case, seed)?;
     the_product_is_the_exact_machine(&case, seed)?;
-    remainder_is_of_second_order(&case, seed)
+    remainder_is_of_second_order(&case, seed)?;
+    laws_of_the_direction(machine, text, seed)
+}
+
+/// The laws of a machine that derives the direction of its tool; those of the tip hold for it as well.
+fn laws_of_the_direction(machine: &Machine, text: &str, seed: u64) -> Result<(), TestCaseError> {
+    let equations = compiled(&asking(text));
+    let case = Case::new(machine, &equations, state(machine, seed));
+    agrees_with_dual_numbers(&case, seed)?;
+    the_tool_points_as_the_exact_machine(&case, seed)
+}
+
+/// A machine file that asks for the direction of the tool.
+pub(crate) fn asking(text: &str) -> String {
+    format!("{text}orientation: true\n")
 }
 
 proptest! {
@@ -312,7 +367,8 @@ fn every_shipped_machine() {
                 .and_then(|()| squares_are_those_of_the_directions(&case))
                 .and_then(|()| turns_are_those_of_the_exact_machine(&case))
                 .and_then(|()| turns_add(&case, seed))
-                .and_then(|()| remainder_is_of_second_order(&case, seed));
+                .and_then(|()| remainder_is_of_second_order(&case, seed))
+                .and_then(|()| laws_of_the_direction(&machine, &shipped.text(), seed));
             laws.unwrap_or_else(|error| panic!("{}: {error}", shipped.name));
         }
     }

@@ -15,7 +15,7 @@ use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 
 use self::calibrations::Followed;
-use crate::agreement::{Case, compiled, levers_are_dual_numbers};
+use crate::agreement::{Case, asking, compiled, levers_are_dual_numbers};
 use crate::oracle::Machine;
 use crate::random::{machines, of_word, state};
 use crate::shipped::{axis, root, tip, with};
@@ -46,6 +46,8 @@ fn drawn() -> Vec<Drawn> {
             turned_further()
         };
         let text = yaml::text(&machine, number.is_multiple_of(2));
+        // Every third derives the direction of its tool.
+        let text = if number.is_multiple_of(3) { asking(&text) } else { text };
         let equations = compiled(&text);
         // Terms take the compiler longer than equations: one calibration in four has some.
         let most = if number.is_multiple_of(4) { 3 } else { 0 };
@@ -80,12 +82,12 @@ fn list(numbers: &[f64]) -> String {
     format!("&{numbers:?}")
 }
 
-/// One line of numbers for each machine and point: error, directions, nominal, lever arms, as bits. Then one for each cycle of
-/// its calibration.
+/// One line of numbers for each machine and point: error, directions, nominal, the direction of the tool and its error where these are
+/// derived, lever arms, as bits. Then one for each cycle of its calibration.
 fn program(machines: &[Drawn]) -> String {
     let mut text = String::from(
         "//! Machines.\nuse abbe_runtime::Kinematics;\n\
-         fn say<const N: usize>(machine: &dyn Kinematics, position: &[f64], travel: &[f64], motions: &[f64], nominal: [f64; 3], levers: [[f64; 3]; N]) {\n\
+         fn say<const N: usize>(machine: &dyn Kinematics, position: &[f64], travel: &[f64], motions: &[f64], nominal: [f64; 3], tool: &[[f64; 3]], levers: [[f64; 3]; N]) {\n\
              let mut directions = vec![[0.0; 3]; position.len()];\n\
              machine.directions(position, &mut directions);\n\
              let error = machine.error(position, travel, motions);\n\
@@ -93,7 +95,7 @@ fn program(machines: &[Drawn]) -> String {
              machine.turn(position, &mut sines);\n\
              machine.directions_with(&sines, position, &mut turned);\n\
              assert!(turned == directions && machine.error_with(&sines, position, travel, motions) == error);\n\
-             let all = error.iter().chain(directions.iter().flatten()).chain(&nominal).chain(levers.iter().flatten());\n\
+             let all = error.iter().chain(directions.iter().flatten()).chain(&nominal).chain(tool.iter().flatten()).chain(levers.iter().flatten());\n\
              println!(\"{}\", all.map(|number| number.to_bits().to_string()).collect::<Vec<_>>().join(\" \"));\n\
          }\n",
     );
@@ -113,13 +115,20 @@ fn program(machines: &[Drawn]) -> String {
             } else {
                 format!("&m{number}::Travels::from_array(*{}), ", list(&case.travel))
             };
+            let tool = if equations.orientation.is_empty() {
+                "&[]".to_owned()
+            } else {
+                format!("&[machine.direction(&axes), machine.direction_error(&axes, {travels}&motions)]")
+            };
             let _ = writeln!(
                 text,
                 "    {{ let machine = m{number}::Machine {{ constants: m{number}::Constants::from_array(*{}) }};\n\
                  let axes = m{number}::Axes::from_array(*{});\n\
-                 say(&machine, {}, {}, {}, machine.nominal(&axes), machine.levers(&axes, {travels})); }}",
+                 let motions = m{number}::Motions::from_array(*{});\n\
+                 say(&machine, {}, {}, {}, machine.nominal(&axes), {tool}, machine.levers(&axes, {travels})); }}",
                 list(&constants),
                 list(&case.position),
+                list(&case.errors(seed)),
                 list(&case.position),
                 list(&case.travel),
                 list(&case.errors(seed)),
@@ -172,6 +181,7 @@ fn random_machines_and_calibrations_compiled() {
     let printed = printed(&machines);
     let mut lines = printed.lines();
     let (mut cycles, mut compensated) = (0, 0);
+    let (mut asked, mut leaning) = (0, 0);
     for Drawn { machine, text, equations, followed } in &machines {
         for seed in 0..POINTS {
             let case = Case::new(machine, equations, state(machine, seed));
@@ -183,12 +193,17 @@ fn random_machines_and_calibrations_compiled() {
             let error = interpreter.error(&case.position, &case.travel, &case.errors(seed));
             let levers = interpreter.levers(&case.position, &case.travel);
             let nominal = interpreter.nominal(&case.position);
-            let all = [error].into_iter().chain(directions).chain([nominal]).chain(levers).flatten();
+            let direction = interpreter.direction(&case.position);
+            let error_of_it = interpreter.direction_error(&case.position, &case.travel, &case.errors(seed));
+            let tool: Vec<[f64; 3]> = direction.into_iter().chain(error_of_it).collect();
+            (asked, leaning) =
+                (asked + tool.len(), leaning + tool.iter().filter(|own| own[0] != 0.0).count());
+            let before = 6 + 3 * case.position.len() + 3 * tool.len();
+            let all =
+                [error].into_iter().chain(directions).chain([nominal]).chain(tool).chain(levers).flatten();
             assert_eq!(numbers, all.collect::<Vec<_>>(), "point {seed} of\n{text}");
-            let levers: Vec<[f64; 3]> = numbers[6 + 3 * case.position.len()..]
-                .chunks(3)
-                .map(|arm| [arm[0], arm[1], arm[2]])
-                .collect();
+            let levers: Vec<[f64; 3]> =
+                numbers[before..].chunks(3).map(|arm| [arm[0], arm[1], arm[2]]).collect();
             levers_are_dual_numbers(&case, &levers).unwrap_or_else(|error| panic!("{error}\n{text}"));
         }
         for (cycle, expected) in followed.at_run_time(equations).iter().enumerate() {
@@ -201,4 +216,5 @@ fn random_machines_and_calibrations_compiled() {
     assert_eq!(lines.next(), None);
     // A refusal says little: were most cycles refused, the lines above would hold almost nothing.
     assert!(compensated > cycles / 2, "{compensated} of {cycles} cycles were compensated");
+    assert!(asked >= 90 && leaning > asked / 3, "{leaning} of {asked} directions and errors lie along X too");
 }

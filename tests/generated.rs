@@ -12,7 +12,7 @@ use model_dsl::program::Interpreter;
 use model_dsl::source::SourceFile;
 use proc_macro2::TokenStream;
 
-use crate::agreement::compiled;
+use crate::agreement::{asking, compiled};
 use crate::oracle::draw;
 use crate::shipped::{SHIPPED, root};
 
@@ -396,10 +396,12 @@ fn fresh_code_passes_the_strictest_compiler() {
     fs::write(folder.join("numbers.yaml"), numbers).unwrap();
     let code = model_dsl::calibrated_rust_for(folder.join("small.yaml"), folder.join("numbers.yaml"));
     module("calibrated-small", &code.unwrap());
-    for (name, links) in HARD {
-        let source = SourceFile::new(format!("{name}.yaml"), hard(name, links));
+    let plain = HARD.map(|(name, links)| (name.to_owned(), hard(name, links)));
+    let pointing = plain.clone().map(|(name, text)| (format!("pointing-{name}"), asking(&text)));
+    for (name, text) in plain.into_iter().chain(pointing) {
+        let source = SourceFile::new(format!("{name}.yaml"), text);
         let (tokens, _, _) = model_dsl::rust_tokens(&source).unwrap_or_else(|told| panic!("{told}"));
-        module(name, &model_dsl::codegen::file(&tokens, name).unwrap());
+        module(&name, &model_dsl::codegen::file(&tokens, &name).unwrap());
     }
     fs::write(folder.join("src/lib.rs"), library).unwrap();
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());

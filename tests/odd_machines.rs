@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use crate::cli::{Run, abbe, column};
 
 /// Files in a folder of the test's own; the path of the first.
-fn files(test: &str, files: &[(&str, &str)]) -> String {
+pub(crate) fn files(test: &str, files: &[(&str, &str)]) -> String {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("odd-machines").join(test);
     fs::create_dir_all(&folder).unwrap();
     for (name, text) in files {

@@ -188,6 +188,22 @@ impl Machine {
         names
     }
 
+    /// The direction of the tool in its own frame: along the last spindle before it that no rotary axis follows, else Z.
+    pub(crate) fn tool_axis(&self) -> [f64; 3] {
+        let mut axis = [0.0, 0.0, 1.0];
+        for link in &self.tool {
+            match link.kind {
+                Kind::Rotary(_) => axis = [0.0, 0.0, 1.0],
+                Kind::Spindle => {
+                    axis = [0.0; 3];
+                    axis[link.along] = if link.backwards { -1.0 } else { 1.0 };
+                }
+                _ => {}
+            }
+        }
+        axis
+    }
+
     /// Both branches with numbers in them: the part's, the tool's.
     pub(crate) fn bodies(&self, state: &State) -> [Vec<Body>; 2] {
         for name in state.errors.keys() {

@@ -1,4 +1,4 @@
-//! Equations for Python, run by Python. In: the shipped machines, and numbers drawn at random. Out: the numbers of the interpreter.
+//! Equations for Python, run by Python. In: the shipped machines, which derive the direction of their tools too, and numbers drawn at random. Out: the numbers of the interpreter.
 //!
 //! Where no Python is installed the test says so.
 
@@ -12,7 +12,7 @@ use model_dsl::notation::{Format, print};
 use model_dsl::program::Interpreter;
 use serde_json::{Map, Value};
 
-use crate::agreement::compiled;
+use crate::agreement::{asking, compiled};
 use crate::oracle::draw;
 use crate::shipped::SHIPPED;
 
@@ -30,7 +30,8 @@ for name, given in json.load(open(sys.argv[1] + '/given.json')).items():
     for motion, arms in module.levers(values).items():
         for direction, arm in arms.items():
             summed[direction] = summed.get(direction, 0.0) + arm * motions[motion]
-    answers[name] = [module.nominal(values), module.error(values, motions), summed, module.error(values, {})]
+    answers[name] = [module.nominal(values), module.error(values, motions), summed, module.error(values, {}),
+                     module.direction(values), module.direction_error(values, motions)]
 json.dump(answers, sys.stdout)
 ";
 
@@ -62,7 +63,7 @@ fn python_says_what_the_interpreter_says() {
     let mut all = Map::new();
     let mut machines = Vec::new();
     for (number, shipped) in SHIPPED.iter().enumerate() {
-        let equations = compiled(&shipped.text());
+        let equations = compiled(&asking(&shipped.text()));
         for names in [Names::Iso, Names::Symbols] {
             let module = format!("machine_{number}_{}", if names == Names::Iso { "iso" } else { "symbols" });
             fs::write(folder.join(format!("{module}.py")), print(&equations, Format::Python, names)).unwrap();
@@ -92,6 +93,14 @@ fn python_says_what_the_interpreter_says() {
         let interpreter = Interpreter::new(&equations, &constants);
         let nominal = interpreter.nominal(&positions);
         let error = interpreter.error(&positions, &travels, &motions);
+        let points = interpreter.direction(&positions).unwrap();
+        let leans = interpreter.direction_error(&positions, &travels, &motions).unwrap();
+        for (part, letter) in ["I", "J", "K"].into_iter().enumerate() {
+            for (which, expected) in [(4, points[part]), (5, leans[part])] {
+                let said = answers[&module][which][letter].as_f64().unwrap();
+                assert!((said - expected).abs() < 1e-12, "{name} {letter} {which}: {said} {expected}");
+            }
+        }
         for row in &equations.rows {
             let (place, direction) = (row.direction.index(), row.direction.to_string());
             let said = |which: usize| answers[&module][which][&direction].as_f64().unwrap();

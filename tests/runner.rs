@@ -42,6 +42,7 @@ mod oracle;
 mod page;
 mod pictures;
 mod plates;
+mod pointing;
 mod processors;
 mod published_table;
 mod python;

@@ -6,7 +6,8 @@
 //!
 //! An equation file holds `#` comments, `[section]` headers and lines `NAME = expression`, continued by
 //! indentation. `Px` is the nominal position and the error together, `dPx` or `Ex` the error alone, in x, y or
-//! z. A section `[significant]` lists a selection: motions that occur nowhere in it are left out, not missing.
+//! z; `I`, `J`, `K` and `dI`, `dJ`, `dK` are the same of the direction of the tool. A section `[significant]` lists a
+//! selection: motions that occur nowhere in it are left out, not missing.
 //! A section `[carriage X]` lists entries `T(i,j)` of the homogeneous transformation of one link, and
 //! `[carriage X significant]` a selection of its error motions. `let gamma = -EAX` gives a letter to a motion
 //! or position for the rest of a section.
@@ -44,6 +45,10 @@ pub enum Target {
     Position(Axis),
     /// `dPx` or `Ex`: the error alone.
     Error(Axis),
+    /// `I`: the direction of the tool along a direction of the part, and its error.
+    Direction(Axis),
+    /// `dI`: the error of the tool's direction alone.
+    DirectionError(Axis),
     /// `T(i,j)`: an entry of a link's homogeneous transformation.
     Entry {
         /// The number of the link in [`Machine::links`].

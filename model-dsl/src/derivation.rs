@@ -4,9 +4,9 @@
 //! file names in vain. Each link is a matrix from the frame before it to its own; the product
 //! along the tool's branch, seen from the inverse of the product along the part's branch,
 //! is the tool relative to the part (equation (3-15) of the Excello report, (A.11) of NISTIR 6722).
-//! Its origin gives the rows of the tool tip, its rotation the turns that an angular instrument sees. Both are
-//! vectors, and are carried through the links one by one: the whole product, whose rotation grows
-//! threefold with every rotary axis, is nowhere written out.
+//! Its origin gives the rows of the tool tip, its rotation the turns that an angular instrument sees, and the direction
+//! of the tool where the machine file asks for it. All are vectors, and are carried through the links one by one: the whole
+//! product, whose rotation grows threefold with every rotary axis, is nowhere written out.
 
 mod link_matrix;
 mod meaning;
@@ -25,7 +25,8 @@ pub use meaning::{NamedMotion, named};
 pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
     let (tip, turn) = relative(machine);
     let tip = &tip;
-    let kept = seen_motions(machine, tip);
+    let direction = machine.orientation.then(|| relative_direction(machine));
+    let kept = seen_motions(machine, tip, direction.as_ref());
     warn_unseen(machine, &kept, diagnostics);
     let rows = rows(machine, tip, &kept);
     warn_undriven(machine, &rows, diagnostics);
@@ -43,6 +44,7 @@ pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
         unseen: unseen.map(|number| motion(machine, number, &travels)).collect(),
         travels,
         rows,
+        orientation: direction.iter().flat_map(|entries| rows_of(machine, entries, &kept)).collect(),
         turns: turn.each_ref().map(|entry| terms(machine, entry, &kept)),
     }
 }
@@ -52,12 +54,24 @@ pub fn relative_position(machine: &Machine) -> [FirstOrder; 3] {
     relative(machine).0
 }
 
+/// The direction of the tool in the part's frame, a vector of length 1 to first order in the machine's motions by their numbers.
+pub fn relative_direction(machine: &Machine) -> [FirstOrder; 3] {
+    let along = machine.tool_axis();
+    let mut direction = <[FirstOrder; 3]>::default();
+    direction[along.axis.index()] = FirstOrder::nominal(Polynomial::integer(along.sign));
+    inwards(machine).fold(direction, |direction, link| link.carry(&direction))
+}
+
 /// The tool tip in the frame of the part, and the small rotation of the tool by the errors, in its directions.
 fn relative(machine: &Machine) -> ([FirstOrder; 3], [FirstOrder; 3]) {
+    inwards(machine).fold(Default::default(), |(tip, turn), link| (link.place(&tip), seen_from(&link, &turn)))
+}
+
+/// The matrices from the tool inwards to the bed, and on to the part.
+fn inwards(machine: &Machine) -> impl Iterator<Item = Htm> {
     let links = |branch| machine.branch(branch).map(|(number, _)| link_matrix(machine, number));
     let from_bed: Vec<Htm> = links(Branch::Tool).collect();
-    let inwards = from_bed.into_iter().rev().chain(links(Branch::Workpiece).map(|link| link.inverse()));
-    inwards.fold(Default::default(), |(tip, turn), link| (link.place(&tip), seen_from(&link, &turn)))
+    from_bed.into_iter().rev().chain(links(Branch::Workpiece).map(|link| link.inverse()))
 }
 
 /// The rotation by the errors of a link and of what stands on it, in the frame before the link.
@@ -70,10 +84,12 @@ fn is_sensitive(machine: &Machine, direction: Axis) -> bool {
     machine.sensitive.contains(&direction)
 }
 
-/// The motions that some sensitive direction sees, or that a rotary axis corrects itself, by their numbers in the machine.
-fn seen_motions(machine: &Machine, tip: &[FirstOrder; 3]) -> Vec<usize> {
+/// The motions that some sensitive direction sees, or the direction of the tool where that is derived, or that a rotary axis
+/// corrects itself, by their numbers in the machine.
+fn seen_motions(machine: &Machine, tip: &[FirstOrder; 3], direction: Option<&[FirstOrder; 3]>) -> Vec<usize> {
     let rows = Axis::ALL.into_iter().zip(tip).filter(|(direction, _)| is_sensitive(machine, *direction));
-    let seen = rows.flat_map(|(_, entry)| entry.error_part().map(|(motion, _)| motion));
+    let entries = rows.map(|(_, entry)| entry).chain(direction.into_iter().flatten());
+    let seen = entries.flat_map(|entry| entry.error_part().map(|(motion, _)| motion));
     let corrected = (0..machine.motions.len()).filter(|motion| is_own_angle(machine, *motion));
     let mut seen: Vec<usize> = seen.chain(corrected).collect();
     seen.sort_unstable();
@@ -90,8 +106,13 @@ fn is_own_angle(machine: &Machine, motion: usize) -> bool {
 }
 
 fn rows(machine: &Machine, tip: &[FirstOrder; 3], kept: &[usize]) -> Vec<Row> {
-    let sensitive = Axis::ALL.into_iter().zip(tip).filter(|(direction, _)| is_sensitive(machine, *direction));
-    sensitive.map(|(direction, entry)| row(machine, direction, entry, kept)).collect()
+    rows_of(machine, tip, kept).into_iter().filter(|row| is_sensitive(machine, row.direction)).collect()
+}
+
+/// A row for each of the three entries of a vector.
+fn rows_of(machine: &Machine, vector: &[FirstOrder; 3], kept: &[usize]) -> Vec<Row> {
+    let entries = Axis::ALL.into_iter().zip(vector);
+    entries.map(|(direction, entry)| row(machine, direction, entry, kept)).collect()
 }
 
 fn row(machine: &Machine, direction: Axis, entry: &FirstOrder, kept: &[usize]) -> Row {

@@ -5,8 +5,9 @@
 //! where `P` is the tool tip relative to the part in the part's frame (mm), `e_j` the error
 //! motions (mm or rad) and `arm_dj` their lever arms, exact polynomials of positions,
 //! constants and the sines and cosines of rotary axes. An error motion that a direction does
-//! not see has no term there; no arm is zero. The rotation of the tool relative to the part is
-//! the same kind of sum, `w_a = sum over j of turn_aj * e_j` for a = A, B, C: what an angular
+//! not see has no term there; no arm is zero. The direction of the tool, where the machine
+//! file asks for it, is three rows of the same kind, in pure numbers. The rotation of the tool
+//! relative to the part is the same kind of sum, `w_a = sum over j of turn_aj * e_j` for a = A, B, C: what an angular
 //! instrument and the encoder of a rotary stage see.
 
 use std::fmt;
@@ -39,10 +40,15 @@ pub struct Equations {
     pub constants: Vec<ConstantInfo>,
     /// The error motions that some row sees, by axis, alignment errors last.
     pub motions: Vec<Motion>,
-    /// The error motions of the machine that no row sees: none of them has a lever at the tool tip.
+    /// The error motions of the machine that no row sees: none of them has a lever at the tool tip, nor turns the direction of the
+    /// tool where that is derived.
     pub unseen: Vec<Motion>,
     /// One row for each sensitive direction, in order.
     pub rows: Vec<Row>,
+    /// The direction of the tool from its tip towards the spindle, in the part's frame: I, J, K, a vector of length 1, with its error in
+    /// rad, whichever directions are sensitive. Three rows in the order X, Y, Z; none where the machine file does not ask for it
+    /// (`orientation: true`). The error is square to the nominal direction: to first order a length does not change.
+    pub orientation: Vec<Row>,
     /// The rotation of the tool relative to the part by the errors, rad, right-handed about X, Y, Z of the part's
     /// frame, whichever directions are sensitive: for each of the three the angles that it sees, with their factors,
     /// which are pure numbers (+1 and -1, or sines and cosines of rotary axes). Of the motions above only: one that
@@ -142,7 +148,7 @@ pub struct Row {
 pub struct Term {
     /// The number of the motion in [`Equations::motions`].
     pub motion: usize,
-    /// The lever arm: a pure number for a displacement, mm for an angle; in a rotation a pure number.
+    /// The lever arm: a pure number for a displacement, mm for an angle; in a rotation or a direction of the tool a pure number.
     pub arm: Polynomial,
 }
 
@@ -196,8 +202,18 @@ impl Equations {
 
     /// The lever arm of a motion in a direction; zero where it has none.
     pub fn arm(&self, direction: Axis, motion: usize) -> Polynomial {
-        let term = self.row(direction).and_then(|row| row.terms.iter().find(|term| term.motion == motion));
-        term.map(|term| term.arm.clone()).unwrap_or_default()
+        arm_in(self.row(direction), motion)
+    }
+
+    /// A row of the direction of the tool, where that is derived.
+    pub fn orientation_row(&self, direction: Axis) -> Option<&Row> {
+        self.orientation.iter().find(|row| row.direction == direction)
+    }
+
+    /// What a motion changes of the direction of the tool in a direction of the part's frame, for each rad of it: a pure number; zero
+    /// where it changes nothing, and where no direction is derived.
+    pub fn tilt(&self, direction: Axis, motion: usize) -> Polynomial {
+        arm_in(self.orientation_row(direction), motion)
     }
 
     /// The rotation of the tool relative to the part about a direction of the part's frame, right-handed, for each rad
@@ -287,6 +303,12 @@ impl Equations {
             unseen: self.unseen.iter().map(named).collect(),
         }
     }
+}
+
+/// The lever arm of a motion in a row; zero where it has none.
+fn arm_in(row: Option<&Row>, motion: usize) -> Polynomial {
+    let term = row.and_then(|row| row.terms.iter().find(|term| term.motion == motion));
+    term.map(|term| term.arm.clone()).unwrap_or_default()
 }
 
 impl fmt::Display for Axis {

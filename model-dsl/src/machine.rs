@@ -53,6 +53,8 @@ pub struct Machine {
     pub sensitive_spans: Vec<(Axis, Span)>,
     /// Whether error motions are those of the tool relative to the part (`motions: relative`).
     pub relative: bool,
+    /// Whether the direction of the tool is derived beside its tip (`orientation: true`).
+    pub orientation: bool,
     /// The named offsets, in order of first mention or as declared.
     pub constants: Vec<Constant>,
     /// The links of both branches, each branch from the bed outwards, the part's branch first.
@@ -67,6 +69,16 @@ impl Machine {
     /// The links of one branch, from the bed outwards, with their numbers in [`Machine::links`].
     pub fn branch(&self, branch: Branch) -> impl Iterator<Item = (usize, &Link)> {
         self.links.iter().enumerate().filter(move |(_, link)| link.branch == branch)
+    }
+
+    /// The direction of the tool from its tip towards the spindle, in the tool's frame: along the spindle that carries it, +Z where
+    /// none does. A rotary axis between both carries the tool, and no spindle then.
+    pub fn tool_axis(&self) -> Along {
+        let branch: Vec<&Link> = self.branch(Branch::Tool).map(|(_, link)| link).collect();
+        let outwards = branch.into_iter().rev();
+        let mut behind = outwards.take_while(|link| !matches!(link.kind, LinkKind::Rotary(_)));
+        let spindle = behind.find(|link| link.kind == LinkKind::Spindle);
+        spindle.map_or(Along { axis: Axis::Z, sign: 1 }, |spindle| spindle.along)
     }
 
     /// What an alignment error is, counted from each other axis that shows it, by its number in [`Machine::motions`]; none for any
@@ -122,7 +134,7 @@ fn read_node(root: &Node, diagnostics: &mut Diagnostics) -> Option<Machine> {
 }
 
 /// The keys of a machine file.
-const KEYS: [&str; 12] = [
+const KEYS: [&str; 13] = [
     "abbe",
     "name",
     "title",
@@ -130,6 +142,7 @@ const KEYS: [&str; 12] = [
     "sensitive",
     "reference",
     "motions",
+    "orientation",
     "budget",
     "constants",
     "topology",
@@ -151,7 +164,8 @@ fn build(
     drive::settle(&drives, &chain, diagnostics);
     let links_are_distinct = !diagnostics.iter().any(|known| matches!(known.code, "E0123" | "E0124"));
     if links_are_distinct {
-        names::check_names(&motions, &constants, &chain, &header.sensitive, diagnostics);
+        let printed = names::Printed { sensitive: &header.sensitive, orientation: header.orientation };
+        names::check_names(&motions, &constants, &chain, printed, diagnostics);
     }
     if diagnostics.has_errors() {
         return None;
@@ -164,6 +178,7 @@ fn build(
         sensitive: header.sensitive,
         sensitive_spans: header.sensitive_spans,
         relative: header.relative,
+        orientation: header.orientation,
         constants,
         links: chain.links.into_iter().map(|drafted| drafted.link).collect(),
         motions,

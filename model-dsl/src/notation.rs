@@ -82,11 +82,23 @@ pub fn drawing(equations: &Equations, names: Names) -> String {
 /// The error of each direction as one line of plain text: `dPx = dxx - dxz + ...`. Before these stand the brackets that have a name,
 /// `Ly = y - Ya + Yt`, where the machine has rotary axes.
 pub fn error_lines(equations: &Equations, names: Names) -> Vec<String> {
-    let sheet = sheet::Sheet::new(equations, names);
+    let sheet = sheet::Sheet::new(&Equations { orientation: Vec::new(), ..equations.clone() }, names);
+    lines(&sheet, &sheet.rows)
+}
+
+/// The error of each part of the tool's direction as one line of plain text, `dI = EBX + ...`, with its own brackets before, as in
+/// [`error_lines`]; none where it is not derived.
+pub fn direction_error_lines(equations: &Equations, names: Names) -> Vec<String> {
+    let sheet = sheet::Sheet::new(&Equations { rows: Vec::new(), ..equations.clone() }, names);
+    lines(&sheet, &sheet.orientation)
+}
+
+/// The named brackets, then the errors of rows.
+fn lines(sheet: &sheet::Sheet, rows: &[sheet::SheetRow]) -> Vec<String> {
     let line = |statement: &sheet::Statement| {
         format!("{} = {}", statement.left.plain, writer::line(&text::Plain, &statement.right))
     };
-    sheet.brackets.iter().chain(sheet.rows.iter().map(|row| &row.error)).map(line).collect()
+    sheet.brackets.iter().chain(rows.iter().map(|row| &row.error)).map(line).collect()
 }
 
 /// A polynomial as plain infix text, `-x*cos(c) + Zt`, which [`crate::expression::parse`] reads back.

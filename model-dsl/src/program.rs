@@ -13,7 +13,7 @@ mod tape;
 pub use builder::Builder;
 pub use column::Column;
 pub use interpreter::Interpreter;
-pub use machine_programs::Programs;
+pub use machine_programs::{OrientationPrograms, Programs};
 pub use tape::Tape;
 
 use std::fmt;

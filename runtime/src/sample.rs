@@ -47,7 +47,8 @@ impl Sample<'_> {
 
     /// Whether every number of the sample is finite.
     #[inline]
-    pub(crate) fn is_finite(&self) -> bool {
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
         let slices = [self.position, self.travel, self.velocity, self.temperature];
         slices.into_iter().fold(self.time_step * 0.0, nothing) == 0.0
     }

@@ -2,6 +2,7 @@
 //! standard output, row by row, in constant memory.
 
 mod answering;
+mod leaning;
 
 use std::cell::RefCell;
 use std::io::{self, IsTerminal};
@@ -27,6 +28,7 @@ use crate::positions::{Layout, State, Summary, Wanted, output_columns, quoted};
 use crate::progress::Progress;
 use crate::written;
 use answering::{Answering, Input, Machines};
+use leaning::Leaning;
 
 /// Bytes that are read at once, where there are as many.
 const CAPACITY: usize = 1 << 16;
@@ -64,7 +66,8 @@ pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
     let mut compensator = Compensator::new(&machine, &motions, &mut states, work)
         .map_err(|error| Failure::Wrong(format!("error: the calibration cannot be run: {error}")))?;
     compensator.limits = calibrated.calibration.limits.of_compensator();
-    let mut rows = Rows::open(&calibrated, command, (&machines, &machine), compensator)?;
+    let leaning = Leaning::new(equations, &machines.without, &motions);
+    let mut rows = Rows::open(&calibrated, command, (&machines, &machine), (compensator, leaning))?;
     // Rows on a terminal are their own progress, and whoever types them needs none.
     let seen = command.quiet || io::stdout().is_terminal() || io::stdin().is_terminal();
     let progress = Progress::new(seen, "compensating");
@@ -108,10 +111,11 @@ impl<'c> Rows<'c> {
         calibrated: &'c Calibrated,
         command: &Compensate,
         (machines, machine): (&'c Machines, &'c Exchanged<&'c Interpreter>),
-        compensator: Compensator<'c, Exchanged<&'c Interpreter>>,
+        (compensator, leaning): (Compensator<'c, Exchanged<&'c Interpreter>>, Option<Leaning<'c>>),
     ) -> Result<Self, Failure> {
         let equations = &calibrated.equations;
         let mut answering = Answering::new(equations, (machines, machine), compensator, command.skip_bad);
+        answering.leaning = leaning;
         answering.summary = command.summary.then(Summary::default);
         answering.map = command.map.as_ref().map(|_| Map::new(equations, &calibrated.calibration));
         let answering = Rc::new(RefCell::new(answering));

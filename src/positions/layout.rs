@@ -22,10 +22,12 @@ pub(crate) struct Wanted<'a> {
     pub(crate) tools: bool,
 }
 
-/// The columns that the output adds: the error in each sensitive direction, the compensated position of each axis.
+/// The columns that the output adds: the error in each sensitive direction, that of the tool's direction where it is derived, the
+/// compensated position of each axis.
 pub(crate) fn output_columns(equations: &Equations) -> Vec<String> {
-    let errors =
-        equations.rows.iter().map(|row| format!("error_{}", row.direction.letter().to_ascii_lowercase()));
+    let tip = equations.rows.iter().map(|row| row.direction.letter());
+    let direction = equations.orientation.iter().map(|row| row.direction.direction_letter());
+    let errors = tip.chain(direction).map(|letter| format!("error_{}", letter.to_ascii_lowercase()));
     let positions = equations.axes.iter().map(|axis| format!("{}_comp", axis.variable));
     errors.chain(positions).collect()
 }

@@ -1,16 +1,27 @@
-//! How long the errors are without compensation and with it, over all rows, in a few words.
+//! How long the errors are without compensation and with it, over all rows, in a few words; and how far the tool leans, where its
+//! direction is derived.
 
 use std::fmt;
 
 use abbe_runtime::Outcome;
 use abbe_runtime::math::length;
 
-/// Lengths of errors over the rows so far: mm.
+/// Lengths of errors over the rows so far: mm; and of those of the tool's direction, rad.
 #[derive(Default)]
 pub(crate) struct Summary {
     rows: u64,
     without: Range,
     with: Range,
+    leaning: Option<(Range, Range)>,
+}
+
+/// The error of the tool's direction at a position, in the frame of the part: rad.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lean {
+    /// Without compensation.
+    pub(crate) without: [f64; 3],
+    /// Where rotary axes have corrected their own angles.
+    pub(crate) with: [f64; 3],
 }
 
 #[derive(Default)]
@@ -20,11 +31,16 @@ struct Range {
 }
 
 impl Summary {
-    /// Takes the outcome of one row.
-    pub(crate) fn take(&mut self, outcome: &Outcome) {
+    /// Takes the outcome of one row, and the error of the tool's direction where that is derived.
+    pub(crate) fn take(&mut self, outcome: &Outcome, lean: Option<&Lean>) {
         self.rows += 1;
         self.without.take(length(outcome.error));
         self.with.take(length(outcome.remaining));
+        if let Some(lean) = lean {
+            let (without, with) = self.leaning.get_or_insert_default();
+            without.take(length(lean.without));
+            with.take(length(lean.with));
+        }
     }
 }
 
@@ -33,13 +49,17 @@ impl Range {
         self.least = Some(self.least.map_or(value, |least| least.min(value)));
         self.most = self.most.max(value);
     }
+
+    /// In a unit of which so many are one of its own; of both units whose tenth no machine tool repeats.
+    fn written(&self, unit: &str, factor: f64) -> String {
+        format!("{:5.1} to {:5.1} {unit}", self.least.unwrap_or_default() * factor, self.most * factor)
+    }
 }
 
-impl fmt::Display for Range {
-    /// In micrometres, whose tenth no machine tool repeats.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:5.1} to {:5.1} um", self.least.unwrap_or_default() * 1e3, self.most * 1e3)
-    }
+/// Both ranges under a sentence.
+fn both(f: &mut fmt::Formatter<'_>, without: &Range, with: &Range, unit: &str, factor: f64) -> fmt::Result {
+    writeln!(f, "  without compensation {}", without.written(unit, factor))?;
+    write!(f, "  with compensation    {}", with.written(unit, factor))
 }
 
 impl fmt::Display for Summary {
@@ -50,7 +70,9 @@ impl fmt::Display for Summary {
             return write!(f, "No position was compensated.");
         }
         writeln!(f, "Distance of the tool tip from its target at {rows} position{plural}, by the model:")?;
-        writeln!(f, "  without compensation {}", self.without)?;
-        write!(f, "  with compensation    {}", self.with)
+        both(f, &self.without, &self.with, "um", 1e3)?;
+        let Some((without, with)) = &self.leaning else { return Ok(()) };
+        writeln!(f, "\nAngle of the tool's direction from its target, by the model:")?;
+        both(f, without, with, "arcsec", 1.0_f64.to_degrees() * 3600.0)
     }
 }

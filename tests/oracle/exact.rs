@@ -1,6 +1,6 @@
 //! Exact homogeneous transformations over numbers: finite rotations, nothing linearised.
 //!
-//! In: the bodies of both branches. Out: the tool tip in the part's frame, as it really stands, and how the tool is turned.
+//! In: the bodies of both branches. Out: the tool tip in the part's frame, as it really stands, how the tool is turned, and where it points.
 
 use nalgebra::{IsometryMatrix3, Rotation3, Translation3, Vector3};
 
@@ -9,6 +9,11 @@ use super::{Body, Machine, State};
 /// The tool tip in the part's frame, mm.
 pub(crate) fn tip(machine: &Machine, state: &State) -> [f64; 3] {
     pose(machine, state).translation.vector.into()
+}
+
+/// The direction of the tool from its tip towards the spindle, in the part's frame.
+pub(crate) fn direction(machine: &Machine, state: &State) -> [f64; 3] {
+    (pose(machine, state).rotation * Vector3::from(machine.tool_axis())).into()
 }
 
 /// By what the tool is turned away from where it stands without errors: a rotation vector in the part's frame, rad.

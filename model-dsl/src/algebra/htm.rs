@@ -48,6 +48,15 @@ impl Axis {
         }
     }
 
+    /// The letter of a direction vector's part along this direction, as programs of controllers have it: `I`, `J` or `K`.
+    pub fn direction_letter(self) -> char {
+        match self {
+            Self::X => 'I',
+            Self::Y => 'J',
+            Self::Z => 'K',
+        }
+    }
+
     /// The letter of the rotation about this direction: `A`, `B` or `C`.
     pub fn rotation_letter(self) -> char {
         match self {
@@ -128,10 +137,13 @@ impl Htm {
 
     /// Where a point given in the inner frame stands in the outer one.
     pub fn place(&self, point: &Vector) -> Vector {
-        std::array::from_fn(|row| {
-            let turned = sum_of_three(|k| &self.rotation[row][k] * &point[k]);
-            &turned + &self.translation[row]
-        })
+        let carried = self.carry(point);
+        std::array::from_fn(|row| &carried[row] + &self.translation[row])
+    }
+
+    /// A vector of the inner frame in the outer one, which has no place: a direction.
+    pub fn carry(&self, vector: &Vector) -> Vector {
+        std::array::from_fn(|row| sum_of_three(|k| &self.rotation[row][k] * &vector[k]))
     }
 
     /// A small vector of the inner frame, all of it error, in the directions of the outer one.

@@ -7,7 +7,7 @@ use super::read::{Printed, Section, WHOLE_ERROR};
 use super::{Comparison, Finding, Nominal, Report, Target, Verdict};
 use crate::algebra::{Axis, Monomial, Polynomial, Rational, Symbol};
 use crate::derivation::link_matrix;
-use crate::equations::Equations;
+use crate::equations::{Equations, Row};
 use crate::machine::Machine;
 use crate::source::SourceFile;
 
@@ -68,7 +68,7 @@ fn comparison(
 fn unchecked(equations: &Equations, compared: &[Comparison]) -> Vec<Axis> {
     let direction = |one: &Comparison| match one.target {
         Target::Position(axis) | Target::Error(axis) => Some(axis),
-        Target::Entry { .. } => None,
+        Target::Direction(_) | Target::DirectionError(_) | Target::Entry { .. } => None,
     };
     let covered: BTreeSet<Axis> = compared.iter().filter_map(direction).collect();
     let rows = equations.rows.iter().map(|row| row.direction);
@@ -107,19 +107,25 @@ fn degree(monomial: &Monomial) -> u32 {
 
 fn derived(machine: &Machine, equations: &Equations, target: &Target) -> Side {
     match target {
-        Target::Position(axis) => {
-            let nominal = equations.row(*axis).map(|row| row.nominal.clone()).unwrap_or_default();
-            Side { nominal, ..error(equations, *axis) }
-        }
-        Target::Error(axis) => error(equations, *axis),
+        Target::Position(axis) => whole(equations, equations.row(*axis)),
+        Target::Error(axis) => error(equations, equations.row(*axis)),
+        Target::Direction(axis) => whole(equations, equations.orientation_row(*axis)),
+        Target::DirectionError(axis) => error(equations, equations.orientation_row(*axis)),
         Target::Entry { link, row, column } => {
             entry(machine, *link, row.wrapping_sub(1), column.wrapping_sub(1))
         }
     }
 }
 
-fn error(equations: &Equations, axis: Axis) -> Side {
-    let terms = equations.row(axis).map(|row| row.terms.as_slice()).unwrap_or_default();
+/// A row with its nominal part.
+fn whole(equations: &Equations, row: Option<&Row>) -> Side {
+    let nominal = row.map(|row| row.nominal.clone()).unwrap_or_default();
+    Side { nominal, ..error(equations, row) }
+}
+
+/// The error of a row alone.
+fn error(equations: &Equations, row: Option<&Row>) -> Side {
+    let terms = row.map(|row| row.terms.as_slice()).unwrap_or_default();
     let arm = |term: &crate::equations::Term| {
         equations.motions.get(term.motion).map(|motion| (motion.name.clone(), term.arm.clone()))
     };

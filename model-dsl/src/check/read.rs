@@ -192,6 +192,13 @@ fn target(
     let found = direction(&left.value).or_else(|| entry(&left.value, link));
     let problem = match (&found, link) {
         (Some(Target::Entry { .. }), Some(_)) => return found,
+        (Some(Target::Direction(axis) | Target::DirectionError(axis)), None) => {
+            if equations.orientation_row(*axis).is_some() {
+                return found;
+            }
+            diagnostics.push(no_direction(left, equations));
+            return None;
+        }
         (Some(Target::Position(axis) | Target::Error(axis)), None) => {
             if equations.row(*axis).is_some() {
                 return found;
@@ -205,7 +212,7 @@ fn target(
         (_, None) => (
             "E0502",
             "is no left side of an equation",
-            "write `Px` for position and error, `dPx` or `Ex` for the error alone; `T(i,j)` belongs under `[carriage X]`",
+            "write `Px` for position and error, `dPx` or `Ex` for the error alone, `I` or `dI` for the direction of the tool; `T(i,j)` belongs under `[carriage X]`",
         ),
     };
     let (code, what, help) = problem;
@@ -224,8 +231,28 @@ fn insensitive(axis: Axis, left: &Spanned<String>, equations: &Equations) -> Dia
         .help(format!("sensitive directions: {}", derived.join(", ")))
 }
 
-/// `Px`, `dPx` or `Ex`, the direction in either case.
+fn no_direction(left: &Spanned<String>, equations: &Equations) -> Diagnostic {
+    let message = format!("{} derives no direction of the tool", equations.machine);
+    Diagnostic::error("E0505", left.span, message)
+        .label("the machine file does not ask for it")
+        .help("write `orientation: true` into the machine file, or take the equation out")
+}
+
+/// `Px`, `dPx` or `Ex`, the direction in either case; `I` or `dI`.
 fn direction(left: &str) -> Option<Target> {
+    of_tool(left).or_else(|| of_tip(left))
+}
+
+/// `I`, `J` or `K`, or the error of it.
+fn of_tool(left: &str) -> Option<Target> {
+    let (make, letter): (fn(Axis) -> Target, _) = match left.strip_prefix('d') {
+        Some(letter) => (Target::DirectionError, letter),
+        None => (Target::Direction, left),
+    };
+    Axis::ALL.into_iter().find(|axis| axis.direction_letter().to_string() == letter).map(make)
+}
+
+fn of_tip(left: &str) -> Option<Target> {
     let axis = match left.chars().last()?.to_ascii_lowercase() {
         'x' => Axis::X,
         'y' => Axis::Y,
@@ -247,14 +274,17 @@ fn entry(left: &str, link: Option<usize>) -> Option<Target> {
     Some(Target::Entry { link: link?, row: number(row)?, column: number(column)? })
 }
 
-/// The symbol that stands for the whole error of a direction, where `Px` is printed as `... + dPx`.
+/// The symbol that stands for the whole error, where `Px` is printed as `... + dPx`, or `I` as `... + dI`.
 pub(super) const WHOLE_ERROR: &str = "dP";
 
-/// `dPx` or `Ex` in the equation of `Px`: the error is printed in an equation of its own.
+/// `dPx` or `Ex` in the equation of `Px`, `dI` in that of `I`: the error is printed in an equation of its own.
 fn whole_error(name: &str, target: Option<&Target>) -> Option<Symbol> {
-    let Some(Target::Position(axis)) = target else { return None };
-    let same = matches!(direction(name), Some(Target::Error(other)) if other == *axis);
-    same.then(|| Symbol::Motion(WHOLE_ERROR.into()))
+    let error = match target? {
+        Target::Position(axis) => Target::Error(*axis),
+        Target::Direction(axis) => Target::DirectionError(*axis),
+        _ => return None,
+    };
+    (direction(name) == Some(error)).then(|| Symbol::Motion(WHOLE_ERROR.into()))
 }
 
 /// Reads a right side. After an unknown name the rest is read again without asking for that name.

@@ -3,8 +3,8 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::equations::{Equations, Motion, Names};
-use crate::notation::{error_lines, infix};
+use crate::equations::{Equations, Motion, Names, Row};
+use crate::notation::{direction_error_lines, error_lines, infix};
 
 /// Documentation as attributes, one a line, so that it is printed as `///` lines.
 pub(super) fn attributes(text: &str) -> TokenStream {
@@ -39,10 +39,20 @@ pub(super) fn error_equations(equations: &Equations) -> String {
 
 /// The equations of the nominal position, one line a direction.
 pub(super) fn nominal_equations(equations: &Equations) -> String {
-    let line = |row: &crate::equations::Row| {
-        format!("P{} = {}", row.direction.letter().to_ascii_lowercase(), infix(&row.nominal))
-    };
+    let line =
+        |row: &Row| format!("P{} = {}", row.direction.letter().to_ascii_lowercase(), infix(&row.nominal));
     block(&equations.rows.iter().map(line).collect::<Vec<_>>())
+}
+
+/// The equations of the tool's direction without errors, one line a direction.
+pub(super) fn direction_equations(equations: &Equations) -> String {
+    let line = |row: &Row| format!("{} = {}", row.direction.direction_letter(), infix(&row.nominal));
+    block(&equations.orientation.iter().map(line).collect::<Vec<_>>())
+}
+
+/// The equations of its error, one line a direction.
+pub(super) fn direction_error_equations(equations: &Equations) -> String {
+    block(&direction_error_lines(equations, Names::Symbols))
 }
 
 fn block(lines: &[String]) -> String {

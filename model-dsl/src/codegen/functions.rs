@@ -1,5 +1,5 @@
-//! The functions of a machine: position, error, lever arms, directions, and the interface that
-//! the runtime's compensator calls.
+//! The functions of a machine: position, error, lever arms, directions, that of its tool where the machine file asks for it,
+//! and the interface that the runtime's compensator calls.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -9,7 +9,7 @@ use super::held::Held;
 use super::structs::of_any;
 use super::{docs, measured};
 use crate::equations::Equations;
-use crate::program::Programs;
+use crate::program::{OrientationPrograms, Programs};
 
 /// All functions of a machine.
 pub(super) fn all(equations: &Equations, programs: &Programs) -> TokenStream {
@@ -17,6 +17,7 @@ pub(super) fn all(equations: &Equations, programs: &Programs) -> TokenStream {
     let error = error(equations, programs);
     let levers = levers(equations, programs);
     let directions = directions(equations, programs);
+    let orientation = programs.orientation.as_ref().map(|programs| orientation(equations, programs));
     let kinematics = kinematics(equations, programs);
     let (measured, name) = (measured(), &equations.machine);
     quote! {
@@ -28,6 +29,7 @@ pub(super) fn all(equations: &Equations, programs: &Programs) -> TokenStream {
             #error
             #levers
             #directions
+            #orientation
         }
         #kinematics
     }
@@ -193,6 +195,40 @@ fn directions(equations: &Equations, programs: &Programs) -> TokenStream {
                     [#(#effects),*]
                 }
             }
+        }
+    }
+}
+
+/// The direction of the tool, and its error.
+fn orientation(equations: &Equations, programs: &OrientationPrograms) -> TokenStream {
+    let nominal = body(equations, &programs.nominal, Numbers::Plain);
+    let error = body(equations, &programs.error, Numbers::Plain);
+    let about_nominal = docs::attributes(&format!(
+        "The direction of the tool without errors, from its tip towards the spindle: I, J, K in the part's frame, pure numbers, a vector of length 1.\n\n{}\n\n{}.",
+        docs::direction_equations(equations),
+        programs.nominal.operations()
+    ));
+    let about_error = docs::attributes(&format!(
+        "The error of the tool's direction to first order, actual minus nominal: I, J, K in the part's frame \\[rad\\], square to [`Machine::direction`].\n\n{}\n\n{}.",
+        docs::direction_error_equations(equations),
+        programs.error.operations()
+    ));
+    let (axes, prelude) = (unused("axes", nominal.reads.axes), nominal.prelude());
+    let Body { bindings, results, .. } = nominal;
+    let (parameters, motions) = (parameters(equations, &error), unused("motions", error.reads.motions));
+    let (prelude_of_error, bindings_of_error, errors) = (error.prelude(), &error.bindings, &error.results);
+    quote! {
+        #about_nominal
+        #[must_use]
+        pub fn direction(&self, #axes: &Axes) -> [f64; 3] {
+            #prelude #bindings
+            [#(#results),*]
+        }
+        #about_error
+        #[must_use]
+        pub fn direction_error(&self, #parameters, #motions: &Motions) -> [f64; 3] {
+            #prelude_of_error #bindings_of_error
+            [#(#errors),*]
         }
     }
 }

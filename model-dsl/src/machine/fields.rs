@@ -62,3 +62,8 @@ pub(super) fn choice<'c>(
     }
     found
 }
+
+/// Reads `true` or `false`; none for any other word, which is reported.
+pub(super) fn truth(node: &Node, diagnostics: &mut Diagnostics) -> Option<bool> {
+    choice(node, "`true` or `false`", &["true", "false"], diagnostics).map(|word| word == "true")
+}

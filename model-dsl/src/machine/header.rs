@@ -1,7 +1,7 @@
 //! The head of a machine file: version, names, sensitive directions and conventions.
 
 use super::budget::{self, Budget};
-use super::fields::{Fields, choice, items, keys, text};
+use super::fields::{Fields, choice, items, keys, text, truth};
 use super::link::Reference;
 use crate::algebra::Axis;
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -17,6 +17,7 @@ pub(super) struct Header {
     pub(super) sensitive_spans: Vec<(Axis, Span)>,
     pub(super) reference: Reference,
     pub(super) relative: bool,
+    pub(super) orientation: bool,
     pub(super) budget: Spanned<Budget>,
 }
 
@@ -31,6 +32,7 @@ impl Header {
             sensitive_spans: Vec::new(),
             reference: Reference::Carriage,
             relative: false,
+            orientation: false,
             budget: Spanned::new(Budget::Full, Span::default()),
         }
     }
@@ -56,6 +58,9 @@ pub(super) fn read(fields: Fields<'_>, diagnostics: &mut Diagnostics) -> Header 
     if let Some(node) = fields.get("motions") {
         let word = choice(node, "a meaning of error motions", &["body", "relative"], diagnostics);
         header.relative = word == Some("relative");
+    }
+    if let Some(node) = fields.get("orientation") {
+        header.orientation = truth(node, diagnostics) == Some(true);
     }
     if let Some(node) = fields.get("budget") {
         header.budget = budget::read(node, diagnostics);

@@ -11,15 +11,15 @@ use crate::source::Span;
 
 /// Checks that positions, constants, travels, symbols and ISO names are distinct. Names that become
 /// fields of one record of the generated code stay distinct in lower case too, and none is that of the position or of the
-/// error in a sensitive direction, as the equations print it.
+/// error in a sensitive direction, or of the direction of the tool, as the equations print it.
 pub(super) fn check_names(
     motions: &[Motion],
     constants: &[Constant],
     chain: &Chain<'_>,
-    sensitive: &[Axis],
+    printed: Printed<'_>,
     diagnostics: &mut Diagnostics,
 ) {
-    let mut names = Names { taken: Vec::new(), sensitive };
+    let mut names = Names { taken: Vec::new(), printed };
     for drafted in chain.links.iter().filter(|drafted| drafted.link.is_axis()) {
         names.take(&drafted.link.variable(), What::Position, drafted.link.span, diagnostics);
     }
@@ -68,10 +68,19 @@ impl fmt::Display for What {
     }
 }
 
-/// The names taken so far, what each stands for, and where; and the directions of which equations are printed.
+/// Of what equations are printed.
+#[derive(Clone, Copy)]
+pub(super) struct Printed<'m> {
+    /// The directions in which the tip is derived.
+    pub(super) sensitive: &'m [Axis],
+    /// Whether the direction of the tool is.
+    pub(super) orientation: bool,
+}
+
+/// The names taken so far, what each stands for, and where; and of what equations are printed.
 struct Names<'m> {
     taken: Vec<(String, What, Span)>,
-    sensitive: &'m [Axis],
+    printed: Printed<'m>,
 }
 
 impl Names<'_> {
@@ -80,7 +89,7 @@ impl Names<'_> {
             let one_record = what == other && what.makes_fields();
             known == name || one_record && known.eq_ignore_ascii_case(name)
         };
-        if let Some(printed) = self.printed(name) {
+        if let Some(printed) = self.printed.meaning(name) {
             diagnostics.push(
                 Diagnostic::error("E0135", span, format!("`{name}` would stand for two things"))
                     .label(format!("stands for {what} here, and in printed equations for {printed}"))
@@ -102,13 +111,17 @@ impl Names<'_> {
             None => self.taken.push((name.to_owned(), what, span)),
         }
     }
+}
 
+impl Printed<'_> {
     /// What printed equations call by this name.
-    fn printed(&self, name: &str) -> Option<String> {
-        let (error, direction) = match name.strip_prefix('d') {
-            Some(rest) => (true, rest.strip_prefix('P')?),
-            None => (false, name.strip_prefix('P')?),
-        };
+    fn meaning(&self, name: &str) -> Option<String> {
+        let (error, plain) = name.strip_prefix('d').map_or((false, name), |rest| (true, rest));
+        if self.orientation && Axis::ALL.iter().any(|axis| axis.direction_letter().to_string() == plain) {
+            let what = if error { "the error of the tool's direction" } else { "the tool's direction" };
+            return Some(what.to_owned());
+        }
+        let direction = plain.strip_prefix('P')?;
         let what = if error { "the error of the tool tip" } else { "the position of the tool tip" };
         if direction.is_empty() {
             return Some(what.to_owned());

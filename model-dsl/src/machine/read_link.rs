@@ -1,7 +1,7 @@
 //! One link of a chain. In: its mapping. Out: the link, or every mistake in it.
 
 use super::draft::DraftedLink;
-use super::fields::{self, choice, items, text};
+use super::fields::{self, items, text, truth};
 use super::header::reference;
 use super::link::{Along, Branch, Link, LinkKind, Reference};
 use super::words::{exact_length, is_name};
@@ -40,9 +40,7 @@ pub(super) fn read_link<'n>(
         Some(node) => reference(node, diagnostics),
         None => default_reference,
     };
-    let corrects = fields.get("corrects").is_none_or(|node| {
-        choice(node, "`true` or `false`", &["true", "false"], diagnostics) != Some("false")
-    });
+    let corrects = fields.get("corrects").is_none_or(|node| truth(node, diagnostics) != Some(false));
     let along = along(fields.entry("along"), kind, name_node.span, diagnostics);
     let (origin, origin_spans) = origin(fields.get(place), node.span, diagnostics);
     let errors = fields.get("errors");

@@ -2,7 +2,7 @@
 //! nothing, for the usual set. Out: the error motions of the machine, in printing order.
 
 use super::draft::{Chain, DraftedLink};
-use super::fields::{self, choice, items, text};
+use super::fields::{self, choice, items, text, truth};
 use super::link::{Link, LinkKind};
 use super::motion::{Motion, MotionKind, MotionName, parse_name};
 use super::reference;
@@ -206,8 +206,7 @@ fn detail(node: &Node, motion: &mut Motion, link: &Link, diagnostics: &mut Diagn
                 motion.travel = name(node, "a travel", diagnostics).map(|name| Spanned::new(name, node.span));
             }
             if let Some((_, node)) = rotates {
-                motion.rotates =
-                    choice(node, "`true` or `false`", &["true", "false"], diagnostics) == Some("true");
+                motion.rotates = truth(node, diagnostics) == Some(true);
             }
         }
     }

@@ -22,8 +22,9 @@ pub(super) struct Brackets(Vec<(Sum, Letter)>);
 impl Brackets {
     /// Finds the brackets of all equations of a machine; `taken` are names that stand for something else.
     pub(super) fn new(equations: &Equations, taken: BTreeSet<String>) -> Self {
-        let arms = || equations.rows.iter().flat_map(|row| row.terms.iter().map(|term| &term.arm));
-        let nominals = || equations.rows.iter().map(|row| &row.nominal);
+        let rows = || equations.rows.iter().chain(&equations.orientation);
+        let arms = || rows().flat_map(|row| row.terms.iter().map(|term| &term.arm));
+        let nominals = || rows().map(|row| &row.nominal);
         let mut counted = Counted::default();
         if any_turns(arms().chain(nominals())) {
             nominals().for_each(|nominal| counted.inside(&Sum::new(nominal)));

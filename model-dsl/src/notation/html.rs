@@ -42,7 +42,7 @@ const SYMBOLS: &str = "A slide is a double arrow, its full head where the progra
 pub(super) fn page(sheet: &Sheet, equations: &Equations, names: Names, published: &[Published]) -> String {
     let source = sheet.source.as_ref();
     let source = source.map(|text| format!("<p class=\"source\">Source: {}</p>\n", escape(text)));
-    let rows: String = sheet.rows.iter().map(direction).collect();
+    let rows = sheet.rows.iter().map(direction).chain([orientation(sheet)]).collect::<String>();
     let title = sheet.heading();
     let body = format!(
         "<h1>{}</h1>\n{}<h2>The chain</h2>\n{}{}{rows}\
@@ -95,29 +95,51 @@ fn direction(row: &SheetRow) -> String {
     )
 }
 
+/// The direction of the tool, where it is derived.
+fn orientation(sheet: &Sheet) -> String {
+    if sheet.orientation.is_empty() {
+        return String::new();
+    }
+    let rows = sheet.orientation.iter().flat_map(|row| [&row.position, &row.error]);
+    let equations: String = rows.map(equation).collect();
+    format!(
+        "<h2>Direction of the tool</h2>\n<p>From its tip towards the spindle, in the part's frame; its error in rad.</p>\n\
+         <div class=\"wide\">\n{equations}</div>\n"
+    )
+}
+
 fn motions(sheet: &Sheet, equations: &Equations) -> String {
     let arms: String = sheet.rows.iter().map(|row| format!("<th>Arm in {}</th>", row.direction)).collect();
     let entries = sheet.motions.iter().zip(reach::cancelled(equations)).enumerate();
     let rows: String = entries
-        .map(|(number, (entry, cancelled))| motion(entry, &reach::reached(equations, number), &cancelled))
+        .map(|(number, (entry, cancelled))| {
+            let tilted: Vec<char> = reach::tilted(equations, number).collect();
+            motion(entry, &reach::reached(equations, number), &tilted, &cancelled)
+        })
         .collect();
+    let of_tool = if sheet.orientation.is_empty() {
+        ""
+    } else {
+        " I, J and K are the direction of the tool, which the slides leave as it is."
+    };
     format!(
         "<div class=\"wide\"><table class=\"motions\">\n<thead><tr><th>Symbol</th><th>ISO 230-1</th><th>Meaning</th>\
          <th>Unit</th><th>Reaches</th><th>Compensable</th>{arms}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n\
          <p>Compensable is what slides cancel by moving the tip; the rest is told and left, and rotary axes do not \
          correct. This is the geometry: which terms of a motion a controller can know in time is told by the calibration \
-         (E0425).</p>\n"
+         (E0425).{of_tool}</p>\n"
     )
 }
 
-fn motion(motion: &MotionEntry, reached: &[Axis], cancelled: &[Cancelled; 3]) -> String {
+fn motion(motion: &MotionEntry, reached: &[Axis], tilted: &[char], cancelled: &[Cancelled; 3]) -> String {
     let against = if motion.against_iso { " (counted against the ISO sense)" } else { "" };
     let cell = |found: &Option<super::tree::Expression>| match found {
         Some(found) => format!("<td>{}</td>", arm(found)),
         None => "<td class=\"none\">none</td>".to_owned(),
     };
     let arms: String = motion.arms.iter().map(cell).collect();
-    let directions: Vec<String> = reached.iter().map(|axis| axis.to_string()).collect();
+    let tip = reached.iter().map(|axis| axis.letter());
+    let directions: Vec<String> = tip.chain(tilted.iter().copied()).map(String::from).collect();
     format!(
         "<tr><td>{}</td><td>{}</td><td>{}{against}</td><td>{}</td><td>{}</td><td>{}</td>{arms}</tr>\n",
         letter(&motion.letter),

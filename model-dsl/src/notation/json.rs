@@ -3,6 +3,8 @@
 //! An arm is that of the motion under its ISO name. A term holds `"symbol_sign": -1` where the symbol is counted against the
 //! ISO sense: its arm is the opposite one.
 //!
+//! Where the direction of the tool is derived, `orientation` holds it as `directions` holds the tip: I, J, K.
+//!
 //! Where the machine has rotary axes, `brackets` gives names to what occurs more than once, and `factored` says the same as the
 //! expression before it, in these names; an expression without it is the shortest one already.
 
@@ -10,17 +12,25 @@ use super::brackets::Brackets;
 use super::text::Plain;
 use super::tree::Expression;
 use super::{infix, sheet, writer};
+use crate::algebra::Axis;
 use crate::equations::{Equations, Names, Row, Term};
 
 /// The whole object, with a line end after it.
 pub(super) fn object(equations: &Equations) -> String {
     let written = Brackets::new(equations, sheet::taken_names(equations, &[Names::Iso, Names::Symbols]));
-    let rows: Vec<String> = equations.rows.iter().map(|one| row(one, equations, &written)).collect();
+    let rows = |rows: &[Row], letter: fn(Axis) -> char| {
+        let rows = rows.iter().map(|one| row(one, letter(one.direction), equations, &written));
+        rows.collect::<Vec<_>>().join(", ")
+    };
+    let orientation = match equations.orientation.as_slice() {
+        [] => String::new(),
+        own => format!(",\n  \"orientation\": [{}]", rows(own, Axis::direction_letter)),
+    };
     format!(
-        "{{\n  \"schema\": \"abbe-equations/1\",\n  \"machine\": {},\n{}  \"directions\": [{}]\n}}\n",
+        "{{\n  \"schema\": \"abbe-equations/1\",\n  \"machine\": {},\n{}  \"directions\": [{}]{orientation}\n}}\n",
         string(&equations.machine),
         brackets(&written),
-        rows.join(", ")
+        rows(&equations.rows, Axis::letter)
     )
 }
 
@@ -38,13 +48,13 @@ fn brackets(written: &Brackets) -> String {
     }
 }
 
-fn row(row: &Row, equations: &Equations, written: &Brackets) -> String {
+fn row(row: &Row, letter: char, equations: &Equations, written: &Brackets) -> String {
     let terms: Vec<String> = row.terms.iter().filter_map(|one| term(one, equations, written)).collect();
     let nominal = infix(&row.nominal);
     let factored = factored("\n    \"nominal_factored\"", &nominal, &written.sum(&row.nominal));
     format!(
         "{{\n    \"direction\": {},\n    \"nominal\": {}{factored},\n    \"terms\": [{}]\n  }}",
-        string(&row.direction.to_string()),
+        string(&letter.to_string()),
         string(&nominal),
         terms.join(",")
     )

@@ -62,7 +62,7 @@ pub(super) fn page(sheet: &Sheet) -> String {
     if !sheet.brackets.is_empty() {
         text.push_str(&aligned(&sheet.brackets.iter().map(equation).collect::<Vec<_>>()));
     }
-    for row in &sheet.rows {
+    for row in sheet.rows.iter().chain(&sheet.orientation) {
         text.push_str(&aligned(&[equation(&row.position), equation(&row.error)]));
     }
     text.push_str(&motions(sheet));

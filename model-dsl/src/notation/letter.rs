@@ -91,6 +91,13 @@ impl Letter {
         Self { plain, difference: false, base: Base::Letter('L'), subscript: Some(subscript) }
     }
 
+    /// A part of the direction of the tool, `I`, or its error.
+    pub(super) fn of_tool(direction: Axis, difference: bool) -> Self {
+        let letter = direction.direction_letter();
+        let plain = if difference { format!("d{letter}") } else { letter.to_string() };
+        Self { plain, difference, base: Base::Letter(letter), subscript: None }
+    }
+
     /// The position `P` of a direction, or its error; `plain` is its name in plain text.
     pub(super) fn position(plain: String, direction: Axis, difference: bool) -> Self {
         let subscript = Some(direction.letter().to_ascii_lowercase().to_string());

@@ -1,4 +1,5 @@
-//! Input for Maxima. In: a sheet. Out: a batch file that assigns the error and the position of each direction.
+//! Input for Maxima. In: a sheet. Out: a batch file that assigns the error and the position of each direction, then those of the
+//! direction of the tool where it is derived.
 //!
 //! Numbers are exact fractions, and a name that Maxima keeps for itself gets an underscore.
 
@@ -107,7 +108,7 @@ pub(super) fn batch(sheet: &Sheet) -> String {
         text.push('\n');
         text.extend(sheet.brackets.iter().map(assignment));
     }
-    for row in &sheet.rows {
+    for row in sheet.rows.iter().chain(&sheet.orientation) {
         text.push('\n');
         text.push_str(&assignment(&row.error));
         text.push_str(&assignment(&row.position));

@@ -94,15 +94,32 @@ pub(super) fn module(sheet: &Sheet) -> String {
         let against = if one.against_iso { ", counted against the ISO sense" } else { "" };
         (one.letter.plain.as_str(), format!("{}, {} ({}{against})", one.iso, one.meaning, one.unit))
     });
-    [
+    let mut parts = vec![
         format!("\"\"\"{}\"\"\"\n\nimport math\nimport operator\n", quoted(&about)),
         dictionary("VALUES", "Positions, travels and constants.", values),
         dictionary("MOTIONS", "Error motions.", motions),
         nominal(sheet),
         error(sheet),
         levers(sheet),
-    ]
-    .join("\n")
+    ];
+    if !sheet.orientation.is_empty() {
+        parts.extend([direction(sheet), direction_error(sheet)]);
+    }
+    parts.join("\n")
+}
+
+fn direction(sheet: &Sheet) -> String {
+    let rows = sheet.orientation.iter().map(|row| entry(&row.position.left.plain, &row.whole));
+    let about =
+        "The direction of the tool without errors, from its tip towards the spindle, a vector of length 1.";
+    function("direction(values, functions=math)", about, &values(sheet), rows)
+}
+
+fn direction_error(sheet: &Sheet) -> String {
+    let rows = sheet.orientation.iter().map(|row| entry(&row.position.left.plain, &row.error.right));
+    let about = "The error of the direction of the tool, rad; motions that are not given are 0.";
+    let head = "direction_error(values, motions, functions=math)";
+    function(head, about, &format!("{}{}", values(sheet), given(sheet)), rows)
 }
 
 fn nominal(sheet: &Sheet) -> String {
@@ -112,13 +129,18 @@ fn nominal(sheet: &Sheet) -> String {
 }
 
 fn error(sheet: &Sheet) -> String {
-    let names = sheet.motions.iter().map(|motion| &motion.letter);
-    let motions: String = names
-        .map(|letter| format!("    {} = motions.get(\"{}\", 0)\n", Python.letter(letter), letter.plain))
-        .collect();
     let rows = sheet.rows.iter().map(|row| entry(&row.direction.to_string(), &row.error.right));
     let about = "The error of the tool tip, by direction, mm; motions that are not given are 0.";
-    function("error(values, motions, functions=math)", about, &format!("{}{motions}", values(sheet)), rows)
+    let names = format!("{}{}", values(sheet), given(sheet));
+    function("error(values, motions, functions=math)", about, &names, rows)
+}
+
+/// The names of the error motions, as far as they are given.
+fn given(sheet: &Sheet) -> String {
+    let names = sheet.motions.iter().map(|motion| &motion.letter);
+    names
+        .map(|letter| format!("    {} = motions.get(\"{}\", 0)\n", Python.letter(letter), letter.plain))
+        .collect()
 }
 
 fn levers(sheet: &Sheet) -> String {

@@ -51,9 +51,11 @@ pub(super) fn cancelled(equations: &Equations) -> Vec<[Cancelled; 3]> {
         })
         .collect();
     let own: Vec<usize> = equations.turning().iter().map(|own| own.motion).collect();
-    let verdict = |motion: usize| match own.contains(&motion) {
-        true => [Cancelled::Yes; 3],
-        false => verdicts(&states, motion),
+    let verdict = |motion: usize| match (own.contains(&motion), reached(equations, motion).is_empty()) {
+        (true, _) => [Cancelled::Yes; 3],
+        // It turns the tool, and slides do not.
+        (false, true) => [Cancelled::No; 3],
+        (false, false) => verdicts(&states, motion),
     };
     (0..equations.motions.len()).map(verdict).collect()
 }
@@ -110,6 +112,13 @@ fn dot(left: &[f64; 3], right: &[f64; 3]) -> f64 {
 pub(super) fn reached(equations: &Equations, motion: usize) -> Vec<Axis> {
     let rows = equations.rows.iter().filter(|row| row.terms.iter().any(|term| term.motion == motion));
     rows.map(|row| row.direction).collect()
+}
+
+/// The parts of the tool's direction that a motion reaches, where that is derived.
+pub(super) fn tilted(equations: &Equations, motion: usize) -> impl Iterator<Item = char> {
+    let rows = equations.orientation.iter();
+    let seen = rows.filter(move |row| row.terms.iter().any(|term| term.motion == motion));
+    seen.map(|row| row.direction.direction_letter())
 }
 
 /// Whether what reaches these directions can be compensated, in words: `yes`, `no`, `X; not Y`. The angle of a rotary axis may reach

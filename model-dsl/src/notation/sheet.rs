@@ -74,6 +74,8 @@ pub(super) struct Sheet {
     pub(super) brackets: Vec<Statement>,
     /// One for each sensitive direction.
     pub(super) rows: Vec<SheetRow>,
+    /// Those of the direction of the tool, where it is derived.
+    pub(super) orientation: Vec<SheetRow>,
     /// The error motions.
     pub(super) motions: Vec<MotionEntry>,
     /// Positions, travels and constants.
@@ -95,7 +97,12 @@ impl Sheet {
                 .definitions()
                 .map(|(left, right)| Statement { left: left.clone(), right })
                 .collect(),
-            rows: equations.rows.iter().map(|one| row(one, equations, names, &written)).collect(),
+            rows: equations.rows.iter().map(|one| row(one, equations, names, &written, of_tip)).collect(),
+            orientation: equations
+                .orientation
+                .iter()
+                .map(|one| row(one, equations, names, &written, Letter::of_tool))
+                .collect(),
             motions: motions(equations, names, &written),
             quantities: quantities(equations),
             conventions: conventions(equations, names, &written),
@@ -111,6 +118,12 @@ impl Sheet {
     }
 }
 
+/// The letter of a direction of the tip, or of its error.
+fn of_tip(direction: Axis, difference: bool) -> Letter {
+    let front = if difference { "dP" } else { "P" };
+    Letter::position(format!("{front}{}", direction.letter().to_ascii_lowercase()), direction, difference)
+}
+
 /// The names of positions, travels and constants, and of error motions by these names.
 pub(super) fn taken_names(equations: &Equations, names: &[Names]) -> BTreeSet<String> {
     let quantities = quantities(equations).into_iter().map(|entry| entry.letter.plain);
@@ -119,24 +132,27 @@ pub(super) fn taken_names(equations: &Equations, names: &[Names]) -> BTreeSet<St
     quantities.chain(motions).collect()
 }
 
-fn row(row: &Row, equations: &Equations, names: Names, written: &Brackets) -> SheetRow {
-    let letter = |front: &str, difference| {
-        let plain = format!("{front}{}", row.direction.letter().to_ascii_lowercase());
-        Letter::position(plain, row.direction, difference)
-    };
+fn row(
+    row: &Row,
+    equations: &Equations,
+    names: Names,
+    written: &Brackets,
+    letter: fn(Axis, bool) -> Letter,
+) -> SheetRow {
+    let letter = |difference| letter(row.direction, difference);
     let nominal = row.nominal.part(moves);
     let offsets = row.nominal.part(|monomial| !moves(monomial));
     let mut parts = written.parts(&nominal);
     parts.extend(written.parts(&offsets));
-    parts.push(tree::plus(letter("dP", true)));
+    parts.push(tree::plus(letter(true)));
     let terms = row.terms.iter().filter_map(|term| {
         let motion = equations.motions.get(term.motion)?;
         Some(written.term(&motion.printed_arm(&term.arm, names), Letter::motion(motion, names)))
     });
     SheetRow {
         direction: row.direction,
-        position: Statement { left: letter("P", false), right: tree::sum(parts) },
-        error: Statement { left: letter("dP", true), right: tree::sum(terms.collect()) },
+        position: Statement { left: letter(false), right: tree::sum(parts) },
+        error: Statement { left: letter(true), right: tree::sum(terms.collect()) },
         nominal: written.sum(&nominal),
         offsets: written.sum(&offsets),
         whole: written.sum(&row.nominal),
@@ -289,6 +305,13 @@ fn conventions(equations: &Equations, names: Names, written: &Brackets) -> Vec<S
     ]
     .map(str::to_owned)
     .to_vec();
+    if !equations.orientation.is_empty() {
+        sentences.push(
+            "I, J, K are the direction of the tool from its tip towards the spindle, in the part's frame, a vector of length 1; dI, dJ, dK \
+             are its error in rad, which slides leave as it is."
+                .to_owned(),
+        );
+    }
     sentences.extend(senses(equations));
     if equations.axes.iter().any(|axis| axis.rotary) {
         sentences.push("Rotary axes turn by large angles; their sines and cosines are exact.".to_owned());

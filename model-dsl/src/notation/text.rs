@@ -49,7 +49,7 @@ pub(super) fn page(sheet: &Sheet) -> String {
         text.push('\n');
         text.extend(sheet.brackets.iter().map(bracket));
     }
-    for row in &sheet.rows {
+    for row in sheet.rows.iter().chain(&sheet.orientation) {
         text.push('\n');
         for statement in [&row.position, &row.error] {
             text.push_str(&equation(statement));

@@ -1,12 +1,12 @@
 //! Running a machine from its equations. In: its programs, and positions one by one or in columns. Out: nominal
-//! positions, errors, lever arms and turns as numbers, the same bits either way.
+//! positions, errors, lever arms, turns and the direction of the tool as numbers, the same bits either way.
 
 use std::borrow::Cow;
 
 use abbe_runtime::math::sin_cos;
 use abbe_runtime::{Kinematics, Lanes, Real, Turning};
 
-use super::{Column, Input, Programs, Tape};
+use super::{Column, Input, OrientationPrograms, Programs, Tape};
 use crate::equations::Equations;
 
 /// A machine that is run from its programs, without generated code: slower, and the same numbers.
@@ -17,6 +17,7 @@ pub struct Interpreter {
     levers: Tape,
     turns: Tape,
     directions: Tape,
+    orientation: Option<Orientation>,
     constants: Vec<f64>,
     travels: Vec<usize>,
     rotary: Vec<bool>,
@@ -24,6 +25,19 @@ pub struct Interpreter {
     turning: Vec<Turning>,
     squares: Option<[f64; 3]>,
     motions: usize,
+}
+
+/// The direction of the tool, and its error.
+#[derive(Clone, Debug)]
+struct Orientation {
+    nominal: Tape,
+    error: Tape,
+}
+
+impl Orientation {
+    fn new(programs: &OrientationPrograms) -> Self {
+        Self { nominal: Tape::new(&programs.nominal), error: Tape::new(&programs.error) }
+    }
 }
 
 impl Interpreter {
@@ -36,6 +50,7 @@ impl Interpreter {
             levers: Tape::new(&programs.levers),
             turns: Tape::new(&programs.turns),
             directions: Tape::new(&programs.directions),
+            orientation: programs.orientation.as_ref().map(Orientation::new),
             constants: constants.to_vec(),
             travels: equations.travels.iter().map(|travel| travel.axis).collect(),
             rotary: equations.axes.iter().map(|axis| axis.rotary).collect(),
@@ -60,6 +75,18 @@ impl Interpreter {
     /// Z of the part's frame; 0 for displacements.
     pub fn turns(&self, position: &[f64], travel: &[f64]) -> Vec<[f64; 3]> {
         self.run(&self.turns, position, travel, &[]).chunks(3).map(triple).collect()
+    }
+
+    /// The direction of the tool without errors, from its tip towards the spindle: I, J, K in the part's frame, pure numbers, a vector of
+    /// length 1. None where the machine file does not ask for it (`orientation: true`).
+    pub fn direction(&self, position: &[f64]) -> Option<[f64; 3]> {
+        Some(triple(&self.run(&self.orientation.as_ref()?.nominal, position, &[], &[])))
+    }
+
+    /// The error of that direction to first order, actual minus nominal: I, J, K in rad, square to the direction. NaN for a slice of the
+    /// wrong length; none where the machine file does not ask for the direction.
+    pub fn direction_error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> Option<[f64; 3]> {
+        Some(self.sum_in(&self.orientation.as_ref()?.error, position, travel, motions))
     }
 
     /// [`Interpreter::nominal`] of many positions: a column for each of X, Y, Z.
@@ -96,13 +123,13 @@ impl Interpreter {
         triples(self.run_columns(&self.turns, positions, travels))
     }
 
-    /// The error of one row, or of several side by side; NaN for a slice of the wrong length.
-    fn error_in<T: Real>(&self, position: &[T], travel: &[T], motions: &[T]) -> [T; 3] {
+    /// A sum over the error motions in one row, or in several side by side; NaN for a slice of the wrong length.
+    fn sum_in<T: Real>(&self, tape: &Tape, position: &[T], travel: &[T], motions: &[T]) -> [T; 3] {
         let lengths = (position.len(), travel.len(), motions.len());
         if lengths != (self.rotary.len(), self.travels.len(), self.motions) {
             return [f64::NAN.into(); 3];
         }
-        triple(&self.run(&self.error, position, travel, motions))
+        triple(&self.run(tape, position, travel, motions))
     }
 
     fn run<T: Real>(&self, tape: &Tape, position: &[T], travel: &[T], motions: &[T]) -> Vec<T> {
@@ -185,11 +212,11 @@ impl Kinematics for Interpreter {
     }
 
     fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
-        self.error_in(position, travel, motions)
+        self.sum_in(&self.error, position, travel, motions)
     }
 
     fn error_lanes(&self, position: &[Lanes], travel: &[Lanes], motions: &[Lanes]) -> Option<[Lanes; 3]> {
-        Some(self.error_in(position, travel, motions))
+        Some(self.sum_in(&self.error, position, travel, motions))
     }
 
     fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {

@@ -1,5 +1,5 @@
 //! The programs of one machine. In: its equations. Out: the position, the error, the lever
-//! arms, the turns and the directions of its axes as programs.
+//! arms, the turns, the directions of its axes and the direction of its tool as programs.
 
 use super::{Builder, Input, Program};
 use crate::algebra::{Axis, Polynomial, Symbol};
@@ -18,6 +18,17 @@ pub struct Programs {
     pub turns: Program,
     /// For each axis the displacement of the tip for each mm of programmed motion: X, Y, Z.
     pub directions: Program,
+    /// The direction of the tool, where the machine derives it.
+    pub orientation: Option<OrientationPrograms>,
+}
+
+/// The programs of the direction of the tool, in the part's frame.
+#[derive(Clone, Debug)]
+pub struct OrientationPrograms {
+    /// The direction without errors: I, J, K, pure numbers.
+    pub nominal: Program,
+    /// Its error: I, J, K in rad.
+    pub error: Program,
 }
 
 impl Programs {
@@ -38,10 +49,14 @@ impl Programs {
         });
         Self {
             nominal: program(&mut Axis::ALL.into_iter().map(|direction| nominal(equations, direction))),
-            error: error(equations, &resolve),
+            error: error(equations, &resolve, Equations::arm),
             levers: program(&mut arms.into_iter()),
             turns: program(&mut turns.into_iter()),
             directions: program(&mut effects),
+            orientation: (!equations.orientation.is_empty()).then(|| OrientationPrograms {
+                nominal: program(&mut equations.orientation.iter().map(|row| row.nominal.clone())),
+                error: error(equations, &resolve, Equations::tilt),
+            }),
         }
     }
 }
@@ -50,12 +65,15 @@ fn nominal(equations: &Equations, direction: Axis) -> Polynomial {
     equations.row(direction).map(|row| row.nominal.clone()).unwrap_or_default()
 }
 
+/// The lever arm of a motion in a direction.
+type Arm = fn(&Equations, Axis, usize) -> Polynomial;
+
 /// The error in the three directions. Motions that act with the same lever arms everywhere, up
 /// to a common sign, are added first and multiplied once.
-fn error(equations: &Equations, resolve: &dyn Fn(&Symbol) -> Option<Input>) -> Program {
+fn error(equations: &Equations, resolve: &dyn Fn(&Symbol) -> Option<Input>, arm: Arm) -> Program {
     let mut builder = Builder::new(resolve);
     let mut rows: [Polynomial; 3] = std::array::from_fn(|_| Polynomial::zero());
-    for (number, (arms, motions)) in groups(equations).into_iter().enumerate() {
+    for (number, (arms, motions)) in groups(equations, arm).into_iter().enumerate() {
         let group = Symbol::Motion(format!("#{number}").into());
         builder.define(group.clone(), &motions);
         for (row, arm) in rows.iter_mut().zip(&arms) {
@@ -66,11 +84,14 @@ fn error(equations: &Equations, resolve: &dyn Fn(&Symbol) -> Option<Input>) -> P
     builder.finish()
 }
 
-/// Motions with equal or opposite lever arms in all directions: the arms, and the signed sum of the motions.
-fn groups(equations: &Equations) -> Vec<([Polynomial; 3], Polynomial)> {
+/// Motions with equal or opposite lever arms in all directions: the arms, and the signed sum of the motions. One without an arm is in none.
+fn groups(equations: &Equations, arm: Arm) -> Vec<([Polynomial; 3], Polynomial)> {
     let mut groups: Vec<([Polynomial; 3], Polynomial)> = Vec::new();
     for (number, motion) in equations.motions.iter().enumerate() {
-        let arms = Axis::ALL.map(|direction| equations.arm(direction, number));
+        let arms = Axis::ALL.map(|direction| arm(equations, direction, number));
+        if arms.iter().all(Polynomial::is_zero) {
+            continue;
+        }
         let opposite = arms.each_ref().map(|arm| -arm);
         let symbol = Polynomial::symbol(Symbol::Motion(motion.name.as_str().into()));
         let known = groups.iter_mut().find(|(known, _)| *known == arms || *known == opposite);

@@ -11,10 +11,11 @@ use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
 
 use super::CAPACITY;
+use super::leaning::Leaning;
 use crate::decimal::Decimal;
 use crate::failure::Failure;
 use crate::map::Map;
-use crate::positions::{Layout, Pending, Summary, quoted};
+use crate::positions::{Layout, Lean, Pending, Summary, quoted};
 
 /// The longest row, in bytes; what is longer is no table, and would have to be kept as a whole.
 const LONGEST_ROW: u64 = 1 << 20;
@@ -68,6 +69,10 @@ pub(super) struct Answering<'c> {
     /// The tool of the rows that are pending.
     tool: Option<usize>,
     pending: Pending,
+    /// What follows the direction of the tool, where the machine derives it.
+    pub(super) leaning: Option<Leaning<'c>>,
+    /// The error of that direction in the rows that are pending; nothing where it is not derived.
+    leans: Vec<Lean>,
     writer: csv::Writer<io::StdoutLock<'static>>,
     number: Decimal,
     skip_bad: bool,
@@ -99,6 +104,8 @@ impl<'c> Answering<'c> {
             machine,
             tool: None,
             pending: Pending::default(),
+            leaning: None,
+            leans: Vec::new(),
             writer: builder.flexible(true).buffer_capacity(CAPACITY).from_writer(io::stdout().lock()),
             number: Decimal::default(),
             skip_bad,
@@ -115,7 +122,8 @@ impl<'c> Answering<'c> {
         self.pending = Pending::new(layout, &self.compensator);
         self.writer.write_record(layout.header.iter().chain(&added)).map_err(closed)?;
         let Some(units) = &layout.units else { return Ok(()) };
-        let errors = self.equations.rows.iter().map(|_| "mm".to_owned());
+        let tip = self.equations.rows.iter().map(|_| "mm".to_owned());
+        let errors = tip.chain(self.equations.orientation.iter().map(|_| "rad".to_owned()));
         let axes = layout.axes.iter().map(|column| units.get(column.index).cloned().unwrap_or_default());
         let mark = std::iter::once("#unit".to_owned());
         self.writer.write_record(mark.chain(units.iter().cloned()).chain(errors).chain(axes)).map_err(closed)
@@ -140,6 +148,7 @@ impl<'c> Answering<'c> {
         sample: &Sample<'_>,
     ) -> Result<(), Failure> {
         self.pending.push(row, number, sample);
+        self.leans.extend(self.leaning.as_mut().map(|leaning| leaning.take(sample)));
         if self.pending.is_full() { self.answer() } else { Ok(()) }
     }
 
@@ -157,6 +166,7 @@ impl<'c> Answering<'c> {
         }
         let done = self.answer_rows();
         self.pending.clear();
+        self.leans.clear();
         done
     }
 
@@ -168,8 +178,9 @@ impl<'c> Answering<'c> {
             let (record, number) = self.pending.record(row);
             match self.pending.answer(row) {
                 Ok(outcome) => {
-                    self.write(row, &outcome.error)?;
-                    self.summary.iter_mut().for_each(|summary| summary.take(&outcome));
+                    let lean = self.leans.get(row).copied();
+                    self.write(row, &outcome.error, lean.as_ref())?;
+                    self.summary.iter_mut().for_each(|summary| summary.take(&outcome, lean.as_ref()));
                     self.map.iter_mut().for_each(|map| self.pending.show(row, map));
                 }
                 Err(refusal) => {
@@ -181,12 +192,13 @@ impl<'c> Answering<'c> {
     }
 
     /// Writes the input's cells, the errors and the compensated positions in the units of their columns.
-    fn write(&mut self, row: usize, error: &[f64; 3]) -> Result<(), Failure> {
+    fn write(&mut self, row: usize, error: &[f64; 3], lean: Option<&Lean>) -> Result<(), Failure> {
         for cell in self.pending.record(row).0 {
             self.writer.write_field(cell).map_err(closed)?;
         }
         let errors = self.equations.rows.iter().map(|row| error[row.direction.index()]);
-        for value in errors.chain(self.pending.commands(row)) {
+        let leans = lean.iter().flat_map(|lean| lean.without);
+        for value in errors.chain(leans).chain(self.pending.commands(row)) {
             self.writer.write_field(self.number.text(value)).map_err(closed)?;
         }
         self.writer.write_record(None::<&[u8]>).map_err(closed)

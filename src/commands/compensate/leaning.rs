@@ -1,0 +1,79 @@
+//! The error of the tool's direction, row by row. In: samples, in their order. Out: that error at the position of each, without
+//! compensation and with it. It exists beside the compensator, which moves the tip and knows no direction of the tool.
+
+use abbe_runtime::{ErrorMotion, Sample, TermState, Turning, states_needed};
+use model_dsl::equations::Equations;
+use model_dsl::program::Interpreter;
+
+use crate::positions::Lean;
+
+/// Follows the error motions of a machine that derives the direction of its tool.
+pub(super) struct Leaning<'c> {
+    /// With any tool: no constant of a machine turns one.
+    machine: &'c Interpreter,
+    motions: &'c [ErrorMotion<'c>],
+    /// What each term remembers, motion by motion: the same as the compensator's.
+    states: Vec<TermState>,
+    values: Vec<f64>,
+    /// No travel turns the tool, whatever it is.
+    travel: Vec<f64>,
+    turning: Vec<Turning>,
+}
+
+impl<'c> Leaning<'c> {
+    /// Before the first row; none for a machine that does not derive the direction of its tool.
+    pub(super) fn new(
+        equations: &Equations,
+        machine: &'c Interpreter,
+        motions: &'c [ErrorMotion<'c>],
+    ) -> Option<Self> {
+        (!equations.orientation.is_empty()).then(|| Self {
+            machine,
+            motions,
+            states: vec![TermState::default(); states_needed(motions)],
+            values: vec![0.0; motions.len()],
+            travel: vec![0.0; equations.travels.len()],
+            turning: equations.turning(),
+        })
+    }
+
+    /// Takes the memories over to the next row, and gives what the direction of the tool is wrong by at its position.
+    pub(super) fn take(&mut self, sample: &Sample<'_>) -> Lean {
+        // The compensator refuses such a row, and remembers nothing of it.
+        if !sample.is_finite() {
+            return Lean { without: [f64::NAN; 3], with: [f64::NAN; 3] };
+        }
+        let without = self.read(sample);
+        let with = if self.turning.is_empty() { without } else { self.read_turned(sample) };
+        Lean { without, with }
+    }
+
+    fn read(&mut self, sample: &Sample<'_>) -> [f64; 3] {
+        let mut rest = self.states.as_mut_slice();
+        for (motion, value) in self.motions.iter().zip(&mut self.values) {
+            let (own, others) = rest.split_at_mut_checked(motion.terms.len()).unwrap_or_default();
+            motion.advance(sample, own);
+            *value = motion.value(sample, own);
+            rest = others;
+        }
+        self.error(sample)
+    }
+
+    /// The same without what rotary axes correct of their own angles in this row.
+    fn read_turned(&mut self, sample: &Sample<'_>) -> [f64; 3] {
+        let mut rest = self.states.as_slice();
+        for (number, (motion, value)) in self.motions.iter().zip(&mut self.values).enumerate() {
+            let (own, others) = rest.split_at_checked(motion.terms.len()).unwrap_or_default();
+            if self.turning.iter().any(|turning| turning.motion == number) {
+                *value -= motion.corrected(sample, own);
+            }
+            rest = others;
+        }
+        self.error(sample)
+    }
+
+    fn error(&self, sample: &Sample<'_>) -> [f64; 3] {
+        let error = self.machine.direction_error(sample.position, &self.travel, &self.values);
+        error.unwrap_or([f64::NAN; 3])
+    }
+}

@@ -130,6 +130,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
 
     /// The part of the error that is left to slides in this cycle, where rotary axes have their commands; leaves in `out` the angles
     /// wanted in their place.
+    // Apart, as what follows: few machines have such axes, and the others' calls stay as small as they were.
     #[inline(never)]
     pub(super) fn left_to_slides(
         &mut self,

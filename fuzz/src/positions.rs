@@ -73,7 +73,7 @@ fn compensate(bytes: &[u8], calibration: &Calibration, equations: &Equations) {
     assert!(layout.unread.len() <= header.len() && !output_columns(equations).is_empty());
     assert!(layout.unread.iter().all(|name| quoted(name).len() <= 200));
     let columns = layout.axes.clone();
-    let mut state = State::new(layout, true, &calibration, &vec![5e-4; equations.axes.len()]);
+    let mut state = State::new(layout, true, calibration, &vec![5e-4; equations.axes.len()]);
     let terms: Vec<Vec<Term<'_>>> = (0..equations.motions.len())
         .map(|motion| calibration.runtime(motion).flatten().flatten().collect())
         .collect();

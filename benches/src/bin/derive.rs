@@ -113,6 +113,7 @@ fn made(series: &str, count: &str) -> Result<Machine, Box<dyn Error>> {
         }
     };
     let mut machine = Machine {
+        orientation: false,
         name: format!("{series}-{count}"),
         title: None,
         source: None,
@@ -161,6 +162,7 @@ fn join(machine: &mut Machine, id: String, kind: LinkKind, along: Axis, origin: 
             sign: 1,
             travel: None,
             rotates: false,
+            counted_from: None,
             span: None,
         }));
     }

@@ -33,7 +33,8 @@ pub struct Inputs<'a> {
 /// No reversal asks for more, in mm, where the calibration has no limit.
 const LARGEST: f64 = 0.1;
 
-/// The same of a rotary axis, in rad: 200 arcsec.
+/// The same of a rotary axis, in rad: 200 arcsec, several times the play of a worm. It only bounds for how long directions
+/// are not looked for, where a calibration has a rate and no limit.
 const LARGEST_ROTATION: f64 = 1e-3;
 
 /// Why there is no controller for a calibration.

@@ -8,7 +8,7 @@ use model_dsl::suggest::nearest;
 
 use super::{Column, Layout};
 
-/// So many tools are told where one is not known.
+/// The most tools that a message lists: more than a line of a terminal are not read.
 const MOST_TOOLS_TOLD: usize = 10;
 
 /// The machine's state, from row to row.

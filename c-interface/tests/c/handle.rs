@@ -128,7 +128,7 @@ fn a_tool_changes_the_lever_arms_without_a_jump() {
     let handle = opened(&folder.file("stage.yaml", &stage::calibration(TOOLS))).unwrap();
     let sample = sample(&[50.0], &[]);
     let mut correction = f64::NAN;
-    // So many cycles of 0.1 s; what each of them makes in um.
+    // Runs some cycles of 0.1 s, and gives the correction of each in um.
     let mut run = |cycles: usize| -> Vec<f64> {
         let cycle = |_| {
             // SAFETY: a handle, a sample with its numbers, and room for what is written.

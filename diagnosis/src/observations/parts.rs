@@ -32,5 +32,5 @@ pub(crate) fn part_readings(study: &Study<'_>, scene: usize, course: &Course) ->
     all
 }
 
-/// The most rows from which is told how a part lies.
+/// The most rows that are looked at to tell how a part lies: its three angles are known from some dozen, and more only cost time.
 const MOST_READINGS: usize = 10_000;

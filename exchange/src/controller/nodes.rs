@@ -1,6 +1,8 @@
 //! Where the values of a table stand. In: what the calibration's terms over an axis are, and the range. Out: nodes at which
 //! straight lines between them say the same, or say it closely.
 
+use std::f64::consts::TAU;
+
 use model_dsl::calibration::vocabulary::Form;
 use model_dsl::calibration::{CalibratedTerm, Calibration, Factor, Part};
 use model_dsl::equations::Equations;
@@ -15,6 +17,12 @@ const SAME: f64 = 1e-9;
 
 /// Positions are written with six decimals.
 const DECIMALS: f64 = 1e6;
+
+/// Whether the nodes of a rotary axis are those of one whole turn, after which a table of it repeats.
+pub(super) fn is_a_turn(nodes: &[f64]) -> bool {
+    let ends = nodes.first().zip(nodes.last());
+    ends.is_some_and(|(first, last)| (last - first - TAU).abs() < SAME)
+}
 
 /// Where a table is to have its values.
 #[derive(Clone, Copy, Debug, PartialEq)]

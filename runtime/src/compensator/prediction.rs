@@ -104,8 +104,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
         for (motion, value) in values.as_mut().iter_mut().enumerate() {
             *value -= turns.corrected(motion, motions, self.states, sample, out);
         }
-        turned.stand(sample.position, out);
-        let error = sum(self.kinematics, &self.sines, sample, out, self.travel, Some(values));
+        let error = standing(self.kinematics, &self.sines, (sample, turned), out, self.travel, Some(values));
         turned.write(out);
         error
     }
@@ -140,8 +139,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
     ) -> Result<[f64; 3], Refusal> {
         let from = MotionReader::of_corrected(sample, out, self.states);
         let values = without(&self.needs.turns, self.motions.read(from, self.values));
-        turned.stand(sample.position, out);
-        sum(self.kinematics, &self.sines, sample, out, self.travel, values)
+        standing(self.kinematics, &self.sines, (sample, turned), out, self.travel, values)
     }
 
     /// [`left_to_slides`](Self::left_to_slides) at a position that differs from that of the last reading for slides alone.
@@ -154,8 +152,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
     ) -> Result<[f64; 3], Refusal> {
         let from = MotionReader::of_corrected(sample, out, self.states);
         let values = without(&self.needs.turns, self.motions.read_moved(from, self.values));
-        turned.stand(sample.position, out);
-        sum(self.kinematics, &self.sines, sample, out, self.travel, values)
+        standing(self.kinematics, &self.sines, (sample, turned), out, self.travel, values)
     }
 
     /// The part of the error that is corrected in this cycle; memories are read only.
@@ -204,6 +201,20 @@ fn without<V: AsMut<[f64]>>(turns: &Turns, mut values: Option<V>) -> Option<V> {
         }
     }
     values
+}
+
+/// [`sum`] with the lever arms of rotary axes that stand at the angles wanted, which are left in `out`.
+#[inline(always)]
+fn standing<K: Kinematics + ?Sized>(
+    kinematics: &K,
+    sines: &Sines,
+    (sample, turned): (&Sample<'_>, &Turned),
+    out: &mut [f64],
+    travel: &mut [f64],
+    values: Option<impl AsRef<[f64]>>,
+) -> Result<[f64; 3], Refusal> {
+    turned.stand(sample.position, out);
+    sum(kinematics, sines, sample, out, travel, values)
 }
 
 /// The sum of lever arms times the error motions.

@@ -1,6 +1,5 @@
 //! Commands for a PMAC. In: effects. Out: text of `DEFINE COMP` and `DEFINE BLCOMP` with their entries; and back.
 
-use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
@@ -8,6 +7,7 @@ use model_dsl::source::SourceFile;
 
 use super::super::effects::Effect;
 use super::super::lines::{Line, lines};
+use super::super::nodes::is_a_turn;
 use super::super::refused::Refused;
 use super::tables::{PARTS, Pmac, Rolling, Screw, TABLES, index_signed, number};
 
@@ -83,7 +83,7 @@ fn entries(pmac: &Pmac, effect: &Effect, values: &[f64]) -> Result<(Vec<i64>, i6
     let parts = |value: &f64| index_signed((value * to * PARTS).round());
     // The value at zero is zero, and stands last; the gap of one spacing takes the last value above.
     let (above, gap) = match positive.split_last() {
-        Some((_, above)) if is_a_turn(pmac, effect) => (above, None),
+        Some((_, above)) if goes_round(pmac, effect) => (above, None),
         _ => (positive, positive.last()),
     };
     let above = above.iter().skip(1);
@@ -97,11 +97,9 @@ fn entries(pmac: &Pmac, effect: &Effect, values: &[f64]) -> Result<(Vec<i64>, i6
     Ok((all, index_signed(length.round())))
 }
 
-/// Whether the nodes of an effect are those of one whole turn of a rotary axis.
-fn is_a_turn(pmac: &Pmac, effect: &Effect) -> bool {
-    let ends = effect.nodes.first().zip(effect.nodes.last());
-    let turns = pmac.motors.get(effect.source).is_some_and(|motor| motor.turns);
-    turns && ends.is_some_and(|(first, last)| (last - first - TAU).abs() < 1e-9)
+/// Whether an effect is over one whole turn of a rotary axis.
+fn goes_round(pmac: &Pmac, effect: &Effect) -> bool {
+    pmac.motors.get(effect.source).is_some_and(|motor| motor.turns) && is_a_turn(&effect.nodes)
 }
 
 /// Reads commands into the controller.

@@ -10,7 +10,7 @@ use crate::controller::decimal::decimal;
 use crate::controller::job::Written;
 use crate::controller::saved::{HEIGHTS, Mesh, Skew};
 
-/// The height over which `M556` is told deviations, mm.
+/// The height over which `M556` is told deviations, mm. The deviations scale with it, so that any height tells the same.
 const HEIGHT: f64 = 100.0;
 
 /// The name of the profiles in Klipper's file.

@@ -90,13 +90,13 @@ fn nodes(places: &[f64]) -> CurveNodes {
     }
 }
 
-/// So many places from one end to the other, to a millionth of a millimetre.
+/// Evenly spaced places from one end to the other, rounded to a millionth of a millimetre.
 pub(super) fn spread([from, to]: [f64; 2], count: usize) -> Vec<f64> {
     let last = number(count.saturating_sub(1).max(1));
     (0..count).map(|place| millionth(from + (to - from) * number(place) / last)).collect()
 }
 
-/// So many places at equal steps.
+/// Places at equal steps from a first one on.
 pub(super) fn stepped(from: f64, step: f64, count: usize) -> Vec<f64> {
     (0..count).map(|place| millionth(from + step * number(place))).collect()
 }

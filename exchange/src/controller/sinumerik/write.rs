@@ -1,13 +1,12 @@
 //! Archives for a SINUMERIK. In: a correction taken apart. Out: `$AA_ENC_COMP` of what each axis does to itself, and `$AN_CEC` of
 //! what axes do to each other, the largest first, as many tables as the control has.
 
-use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use super::super::decimal::decimal;
 use super::super::effects::{Effect, Effects, LEAST, Product};
 use super::super::job::{File, Job, Written};
-use super::super::nodes::Spacing;
+use super::super::nodes::{Spacing, is_a_turn};
 use super::super::refused::Refused;
 use super::control::{Sinumerik, controller};
 use super::pieces::{Piece, Table};
@@ -129,7 +128,7 @@ fn write_screw(text: &mut String, control: &Sinumerik, effect: &Effect, base: f6
     for (key, value) in ["STEP", "MIN", "MAX"].into_iter().zip(reach(&effect.nodes, unit)) {
         let _ = writeln!(text, "$AA_ENC_COMP_{key}[0,{name}]={value}");
     }
-    let modulo = u8::from(is_a_turn(&effect.nodes, unit));
+    let modulo = u8::from(unit > 1.0 && is_a_turn(&effect.nodes));
     let _ = writeln!(text, "$AA_ENC_COMP_IS_MODULO[0,{name}]={modulo}");
 }
 
@@ -148,14 +147,8 @@ fn write_table(text: &mut String, control: &Sinumerik, index: usize, table: &Tab
     }
     let _ = writeln!(text, "$AN_CEC_DIRECTION[{index}]={}", table.direction);
     let _ = writeln!(text, "$AN_CEC_MULT_BY_TABLE[{index}]={}", table.by);
-    let modulo = u8::from(is_a_turn(table.nodes, unit));
+    let modulo = u8::from(unit > 1.0 && is_a_turn(table.nodes));
     let _ = writeln!(text, "$AN_CEC_IS_MODULO[{index}]={modulo}");
-}
-
-/// Whether nodes are those of one whole turn of a rotary axis, after which the table repeats.
-fn is_a_turn(nodes: &[f64], unit: f64) -> bool {
-    let ends = nodes.first().zip(nodes.last());
-    unit > 1.0 && ends.is_some_and(|(first, last)| (last - first - TAU).abs() < 1e-9)
 }
 
 /// The step, the first and the last place, in the unit of the archive.

@@ -1,7 +1,7 @@
 //! The workspace of a map. In: the tables of a calibration and the positions that were read. Out: for each axis from where to
 //! where the map reaches.
 
-use model_dsl::calibration::{CalibratedTerm, Calibration};
+use model_dsl::calibration::Calibration;
 use model_dsl::equations::Equations;
 
 /// A stretch of an axis, mm or rad; nothing yet where the ends are crossed.
@@ -53,10 +53,8 @@ impl Space {
         let mut tables = vec![Stretch::NOTHING; equations.axes.len()];
         let terms = calibration.motions.iter().flat_map(|motion| &motion.terms);
         for term in terms {
-            if let CalibratedTerm::Table { axis, curve } = &term.value
-                && let Some(slot) = tables.get_mut(*axis)
-            {
-                *slot = curve.ends().into_iter().flatten().fold(*slot, Stretch::with);
+            for (axis, slot) in tables.iter_mut().enumerate() {
+                *slot = term.value.nodes(axis).into_iter().fold(*slot, Stretch::with);
             }
         }
         Self { read: vec![Stretch::NOTHING; tables.len()], tables }

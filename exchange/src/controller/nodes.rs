@@ -51,7 +51,7 @@ impl Nodes {
     pub fn new(equations: &Equations, calibration: &Calibration, axis: usize, range: [f64; 2]) -> Self {
         let terms = calibration.motions.iter().flat_map(|motion| &motion.terms).map(|term| &term.value);
         let info = equations.axes.get(axis);
-        let mut own: Vec<f64> = terms.clone().flat_map(|term| nodes(term, axis)).chain(range).collect();
+        let mut own: Vec<f64> = terms.clone().flat_map(|term| term.nodes(axis)).chain(range).collect();
         own.retain(|place| (range[0]..=range[1]).contains(place));
         own.sort_by(f64::total_cmp);
         own.dedup_by(|next, place| *next - *place < SAME);
@@ -204,21 +204,6 @@ fn intervals(points: usize, letter: &str) -> Result<usize, Refused> {
 /// A count as a number; exact, since none comes near 2^32.
 fn count(number: usize) -> f64 {
     f64::from(u32::try_from(number).unwrap_or(u32::MAX))
-}
-
-fn nodes(term: &CalibratedTerm, axis: usize) -> Vec<f64> {
-    let mut nodes = match term.core() {
-        CalibratedTerm::Table { axis: over, curve } if *over == axis => curve.positions(),
-        _ => Vec::new(),
-    };
-    for factor in term.factors() {
-        if let Factor::Curve { axis: over, at, .. } = factor
-            && *over == axis
-        {
-            nodes.extend(at);
-        }
-    }
-    nodes
 }
 
 /// Whether a term is no straight line over an axis, tables apart.

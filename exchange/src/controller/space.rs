@@ -2,7 +2,7 @@
 //! at which tables of one axis hold exactly, and poses all over the workspace.
 
 use abbe_runtime::Direction;
-use model_dsl::calibration::{CalibratedTerm, Calibration};
+use model_dsl::calibration::Calibration;
 use model_dsl::equations::Equations;
 
 use super::geometry::{Geometry, Pose};
@@ -145,16 +145,12 @@ fn range(
     })
 }
 
-/// From the first to the last node of all tables over an axis.
+/// From the first to the last node of all tables and curves over an axis.
 fn tables(calibration: &Calibration, axis: usize) -> Option<[f64; 2]> {
     let terms = calibration.motions.iter().flat_map(|motion| &motion.terms);
-    let ends = terms.filter_map(|term| match &term.value {
-        CalibratedTerm::Table { axis: over, curve } if *over == axis => curve.ends(),
-        _ => None,
-    });
-    let (low, high) = ends
-        .flatten()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), end| (low.min(end), high.max(end)));
+    let nodes = terms.flat_map(|term| term.value.nodes(axis));
+    let (low, high) =
+        nodes.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), node| (low.min(node), high.max(node)));
     (low < high).then_some([low, high])
 }
 

@@ -2,7 +2,7 @@
 //! compensation; and signs by hand.
 
 use abbe_runtime::Direction;
-use exchange::controller::{Export, Format, Options, Pose, Unusable, check};
+use exchange::controller::{Export, Format, Options, Pose, Space, Unusable, Wanted, check};
 use model_dsl::source::SourceFile;
 
 use crate::machine::{Machine, bilinear, options, text};
@@ -232,4 +232,17 @@ fn other_machines_and_other_files_are_refused() {
     let checked = check(&machine.geometry(), &machine.space(), Format::RepRap, &options(), &both).unwrap();
     let one = check(&machine.geometry(), &machine.space(), Format::RepRap, &options(), &both[..1]).unwrap();
     assert!(checked.lost != one.lost);
+}
+
+/// A mesh is a table over one axis for each place of the other: both say how far their axis goes.
+#[test]
+fn the_places_of_a_curve_say_how_far_its_axis_goes() {
+    let row = "EZX: [{table: {axis: X, start: 20 mm, step: 100 mm, unit: um, values: [0, 10, 30], \
+               times: [{curve: Y, at: [-40 mm, 10 mm, 60 mm], values: [0, 1, 0]}]}}]";
+    let mut machine = Machine::of("YFXZ", &[row.to_owned()]);
+    let wanted = |z| Wanted { ranges: vec![("Z".to_owned(), z)], reference: Vec::new() };
+    let space = Space::new(&machine.equations, &machine.calibration, &wanted([0.0, 50.0])).unwrap();
+    assert_eq!(space.ranges, [[20.0, 220.0], [-40.0, 60.0], [0.0, 50.0]]);
+    machine.calibration.motions.clear();
+    assert!(Space::new(&machine.equations, &machine.calibration, &wanted([0.0, 50.0])).is_err());
 }

@@ -232,6 +232,22 @@ impl CalibratedTerm {
         }
     }
 
+    /// The positions of an axis at which it was measured, in mm or rad: the nodes of its table, and of the curves among its factors.
+    pub fn nodes(&self, axis: usize) -> Vec<f64> {
+        let mut nodes = match self.core() {
+            Self::Table { axis: over, curve } if *over == axis => curve.positions(),
+            _ => Vec::new(),
+        };
+        for factor in self.factors() {
+            if let Factor::Curve { axis: over, at, .. } = factor
+                && *over == axis
+            {
+                nodes.extend(at);
+            }
+        }
+        nodes
+    }
+
     /// Its factors; none of most terms.
     pub fn factors(&self) -> &[Factor] {
         match self {

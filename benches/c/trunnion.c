@@ -122,6 +122,51 @@ static inline void read_shared(const struct trunnion *machine, const double p[5]
     }
 }
 
+#define DEFINE_SLIDES(name, read)                                                                                     \
+    /* The commands of the slides, those of A and C being there; the number of steps, or 0 where it does not end. */  \
+    static inline int slides_##name(const struct trunnion *machine, const double target[5], const long reverse[5],    \
+                                    const struct turn *turn, struct motions *e, double command[5])                    \
+    {                                                                                                                 \
+        double before[3] = {0}, own[3], move[3];                                                                      \
+        for (int step = 1; step <= MOST_STEPS; ++step) {                                                              \
+            double square = 0.0;                                                                                      \
+            read(machine, command, reverse, 0, SLIDES, e);                                                            \
+            in_trunnion(&machine->constants, command, turn, e, own);                                                  \
+            move[0] = own[0];                                                                                         \
+            move[1] = turn->cos_a * own[1] + turn->sin_a * own[2];                                                    \
+            move[2] = turn->cos_a * own[2] - turn->sin_a * own[1];                                                    \
+            for (int axis = 0; axis < SLIDES; ++axis) {                                                               \
+                double change = move[axis] - before[axis];                                                            \
+                square += change * change;                                                                            \
+                command[axis] = target[axis] - move[axis];                                                            \
+                before[axis] = move[axis];                                                                            \
+            }                                                                                                         \
+            if (square <= TOLERANCE * TOLERANCE)                                                                      \
+                return step;                                                                                          \
+        }                                                                                                             \
+        memcpy(command, target, AXES * sizeof *command);                                                              \
+        return 0;                                                                                                     \
+    }
+
+#define DEFINE_CYCLES(name, read)                                                                                     \
+    void trunnion_error_##name(const struct trunnion *machine, const double p[5], const long reverse[5],              \
+                               double out[3])                                                                         \
+    {                                                                                                                 \
+        struct motions e = machine->fixed;                                                                            \
+        read(machine, p, reverse, 0, AXES, &e);                                                                       \
+        trunnion_equations(&machine->constants, p, &e, out);                                                          \
+    }                                                                                                                 \
+                                                                                                                      \
+    int trunnion_compensate_##name(const struct trunnion *machine, const double target[5], const long reverse[5],     \
+                                   double command[5])                                                                 \
+    {                                                                                                                 \
+        struct motions e = machine->fixed;                                                                            \
+        struct turn turn = turned(target);                                                                            \
+        memcpy(command, target, AXES * sizeof *command);                                                              \
+        read(machine, target, reverse, SLIDES, AXES, &e);                                                             \
+        return slides_##name(machine, target, reverse, &turn, &e, command);                                           \
+    }
+
 /* The commands of A and C at which they stand at the angles wanted: c + e(c) = target, e being the error of each one's own angle. */
 static inline int turn_axes(const struct trunnion *machine, const double target[5], const long reverse[5],
                             double command[5])
@@ -142,72 +187,19 @@ static inline int turn_axes(const struct trunnion *machine, const double target[
 #define DEFINE_TURNING(name, read)                                                                                    \
     int trunnion_turning_##name(const struct trunnion *machine, const double target[5], const long reverse[5],        \
                                 double command[5])                                                                    \
-    {                                                                                                                  \
+    {                                                                                                                 \
         struct motions e = machine->fixed;                                                                            \
         struct turn turn = turned(target);                                                                            \
-        double before[3] = {0}, own[3], move[3];                                                                      \
         memcpy(command, target, AXES * sizeof *command);                                                              \
         if (!turn_axes(machine, target, reverse, command))                                                            \
             return 0;                                                                                                 \
         read(machine, command, reverse, SLIDES, AXES, &e);                                                            \
         e.eaa = e.ea0a = e.ecc = e.ec0c = 0.0;                                                                        \
-        for (int step = 1; step <= MOST_STEPS; ++step) {                                                              \
-            double square = 0.0;                                                                                      \
-            read(machine, command, reverse, 0, SLIDES, &e);                                                           \
-            in_trunnion(&machine->constants, command, &turn, &e, own);                                                \
-            move[0] = own[0];                                                                                         \
-            move[1] = turn.cos_a * own[1] + turn.sin_a * own[2];                                                      \
-            move[2] = turn.cos_a * own[2] - turn.sin_a * own[1];                                                      \
-            for (int axis = 0; axis < SLIDES; ++axis) {                                                               \
-                double change = move[axis] - before[axis];                                                            \
-                square += change * change;                                                                            \
-                command[axis] = target[axis] - move[axis];                                                            \
-                before[axis] = move[axis];                                                                            \
-            }                                                                                                          \
-            if (square <= TOLERANCE * TOLERANCE)                                                                      \
-                return step;                                                                                          \
-        }                                                                                                              \
-        memcpy(command, target, AXES * sizeof *command);                                                              \
-        return 0;                                                                                                      \
+        return slides_##name(machine, target, reverse, &turn, &e, command);                                           \
     }
 
-#define DEFINE_CYCLES(name, read)                                                                                     \
-    void trunnion_error_##name(const struct trunnion *machine, const double p[5], const long reverse[5],              \
-                               double out[3])                                                                         \
-    {                                                                                                                  \
-        struct motions e = machine->fixed;                                                                            \
-        read(machine, p, reverse, 0, AXES, &e);                                                                       \
-        trunnion_equations(&machine->constants, p, &e, out);                                                          \
-    }                                                                                                                  \
-                                                                                                                       \
-    int trunnion_compensate_##name(const struct trunnion *machine, const double target[5], const long reverse[5],     \
-                                   double command[5])                                                                 \
-    {                                                                                                                  \
-        struct motions e = machine->fixed;                                                                            \
-        struct turn turn = turned(target);                                                                            \
-        double before[3] = {0}, own[3], move[3];                                                                      \
-        memcpy(command, target, AXES * sizeof *command);                                                              \
-        read(machine, target, reverse, SLIDES, AXES, &e);                                                             \
-        for (int step = 1; step <= MOST_STEPS; ++step) {                                                              \
-            double square = 0.0;                                                                                      \
-            read(machine, command, reverse, 0, SLIDES, &e);                                                           \
-            in_trunnion(&machine->constants, command, &turn, &e, own);                                                \
-            move[0] = own[0];                                                                                         \
-            move[1] = turn.cos_a * own[1] + turn.sin_a * own[2];                                                      \
-            move[2] = turn.cos_a * own[2] - turn.sin_a * own[1];                                                      \
-            for (int axis = 0; axis < SLIDES; ++axis) {                                                               \
-                double change = move[axis] - before[axis];                                                            \
-                square += change * change;                                                                            \
-                command[axis] = target[axis] - move[axis];                                                            \
-                before[axis] = move[axis];                                                                            \
-            }                                                                                                          \
-            if (square <= TOLERANCE * TOLERANCE)                                                                      \
-                return step;                                                                                          \
-        }                                                                                                              \
-        memcpy(command, target, AXES * sizeof *command);                                                              \
-        return 0;                                                                                                      \
-    }
-
+DEFINE_SLIDES(own, read_own)
+DEFINE_SLIDES(shared, read_shared)
 DEFINE_CYCLES(own, read_own)
 DEFINE_CYCLES(shared, read_shared)
 DEFINE_TURNING(own, read_own)

@@ -8,7 +8,8 @@ use crate::diagnostic::Diagnostics;
 use crate::equations::{Equations, Names};
 use crate::source::SourceFile;
 
-const MACHINES: [&str; 9] = [
+/// All shipped machines.
+pub(super) const MACHINES: [&str; 9] = [
     "excello-921",
     "nist-turning-center",
     "postech-mill",
@@ -20,7 +21,8 @@ const MACHINES: [&str; 9] = [
     "head-table-5axis",
 ];
 
-fn equations(name: &str) -> Equations {
+/// The equations of a shipped machine.
+pub(super) fn equations(name: &str) -> Equations {
     let path = format!("{}/../machines/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
     let source = SourceFile::new(name, std::fs::read_to_string(path).expect("a shipped machine"));
     let mut diagnostics = Diagnostics::new();

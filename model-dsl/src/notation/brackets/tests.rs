@@ -7,25 +7,9 @@ use proptest::prelude::*;
 use crate::algebra::{Axis, Polynomial, Symbol};
 use crate::diagnostic::Diagnostics;
 use crate::equations::{Equations, Names};
+use crate::notation::tests::{MACHINES, equations};
 use crate::notation::{Format, error_lines, print};
 use crate::source::SourceFile;
-
-const SHIPPED: [&str; 9] = [
-    "excello-921",
-    "nist-turning-center",
-    "postech-mill",
-    "fxyz-mill",
-    "xfyz-mill",
-    "xyfz-mill",
-    "xyzf-mill",
-    "trunnion-5axis",
-    "head-table-5axis",
-];
-
-fn shipped(name: &str) -> Equations {
-    let path = format!("{}/../machines/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
-    file(&std::fs::read_to_string(path).expect("a shipped machine"))
-}
 
 fn file(text: &str) -> Equations {
     let source = SourceFile::new("machine.yaml", text.to_owned());
@@ -137,8 +121,8 @@ fn assert_same(equations: &Equations, point: u64) {
 
 #[test]
 fn shipped_machines_print_what_was_derived() {
-    for name in SHIPPED {
-        let equations = shipped(name);
+    for name in MACHINES {
+        let equations = equations(name);
         (0..20).for_each(|point| assert_same(&equations, point));
     }
 }
@@ -165,7 +149,7 @@ proptest! {
 
 #[test]
 fn lengths_stand_together_and_brackets_have_names() {
-    let text = print(&shipped("trunnion-5axis"), Format::Text, Names::Iso);
+    let text = print(&equations("trunnion-5axis"), Format::Text, Names::Iso);
     // Worked by hand: the part's frame is that of A turned by c, A's that of the bed turned by a.
     for line in [
         "let Lx = x - Xc + Xt",
@@ -175,7 +159,7 @@ fn lengths_stand_together_and_brackets_have_names() {
     ] {
         assert!(text.lines().any(|one| one == line), "{line}\nis not in\n{text}");
     }
-    let spelled = print(&shipped("trunnion-5axis"), Format::Json, Names::Iso);
+    let spelled = print(&equations("trunnion-5axis"), Format::Json, Names::Iso);
     for part in [
         r#""nominal": "y*sin(a) + z*cos(a) - Ya*sin(a) + Yt*sin(a) - Za*cos(a) - Zc + Zt*cos(a)""#,
         r#""nominal_factored": "Ly*sin(a) + Lz*cos(a) - Zc""#,
@@ -187,8 +171,8 @@ fn lengths_stand_together_and_brackets_have_names() {
 
 #[test]
 fn a_machine_of_slides_has_no_names_for_brackets() {
-    for name in SHIPPED.into_iter().filter(|name| !name.ends_with("5axis")) {
-        let equations = shipped(name);
+    for name in MACHINES.into_iter().filter(|name| !name.ends_with("5axis")) {
+        let equations = equations(name);
         assert!(!print(&equations, Format::Json, Names::Iso).contains("factored"), "{name}");
         assert_eq!(error_lines(&equations, Names::Iso).len(), equations.rows.len(), "{name}");
     }
@@ -209,7 +193,7 @@ fn names_of_brackets_are_free_ones() {
 /// By hand: C turns what stands above it about Y, and its frame is turned by c against that before it.
 #[test]
 fn a_lever_arm_is_spelled_out_where_nothing_is_named() {
-    let equations = shipped("head-table-5axis");
+    let equations = equations("head-table-5axis");
     let motion = equations.motions.iter().position(|motion| motion.name == "EBC").expect("the motion");
     let arm = super::Brackets::default().expression(&equations.arm(Axis::X, motion));
     let line = crate::notation::writer::line(&crate::notation::text::Plain, &arm);

@@ -7,7 +7,7 @@
 
 use model_dsl::calibration::factor::dimension_of;
 use model_dsl::calibration::vocabulary::{Base, Form, Given, Holds, Key, Role, State};
-use model_dsl::calibration::{CalibratedTerm, Calibration, MachineNames, MotionName, Part};
+use model_dsl::calibration::{CalibratedTerm, Calibration, CurveValues, MachineNames, MotionName, Part};
 use model_dsl::quantity::Dimension;
 
 use crate::update::Fixed;
@@ -80,27 +80,53 @@ pub(crate) fn coefficients(calibration: &Calibration, names: &MachineNames) -> C
 pub(crate) fn set(calibration: &mut Calibration, coefficient: &Coefficient, value: f64) {
     let [listed, place, number] = coefficient.place;
     let motion = calibration.motions.get_mut(listed);
-    let term = motion.and_then(|motion| motion.terms.get_mut(place));
-    if let Some((_, slot)) = term.and_then(|term| numbers(&mut term.value).into_iter().nth(number)) {
+    let Some(term) = motion.and_then(|motion| motion.terms.get_mut(place)) else { return };
+    let closed = is_closed(&term.value);
+    if let Some((_, slot)) = numbers(&mut term.value).into_iter().nth(number) {
         *slot = value;
+    }
+    if closed {
+        close(&mut term.value);
+    }
+}
+
+/// Whether a term is a table that repeats, and whose ends, which are one place, have one value: it stays so.
+fn is_closed(term: &CalibratedTerm) -> bool {
+    let CalibratedTerm::Table { curve, .. } = term.core() else { return false };
+    let meets = |values: &[f64]| values.first() == values.last();
+    curve.repeats
+        && match &curve.values {
+            CurveValues::Both(values) => meets(values),
+            CurveValues::Directed { forward, reverse } => meets(forward) && meets(reverse),
+        }
+}
+
+/// Gives the last node of a table the value of the first.
+fn close(term: &mut CalibratedTerm) {
+    for (_, values) in term.linear_mut() {
+        if let [first, .., last] = values {
+            *last = *first;
+        }
     }
 }
 
 /// The numbers in which the value of a term is linear, each with its name behind that of the term; none for terms that no
-/// point of a part shows.
+/// point of a part shows. The last node of a table that repeats is its first one.
 fn numbers(term: &mut CalibratedTerm) -> Vec<(String, &mut f64)> {
     let entry = term.kind().entry();
     if unseen(term).is_some() {
         return Vec::new();
     }
     let first = term.kind().first_power();
+    let twice = usize::from(is_closed(term));
     let lists = term.linear_mut().into_iter().flat_map(|(key, values)| {
         let key = entry.key(key);
         // What is the value of the term itself needs no name.
         let word = key.filter(|key| key.role != Role::Value).map(|key| format!(".{}", key.name));
         let is_list = key.is_some_and(|key| key.holds == Holds::Numbers);
         let word = word.unwrap_or_default();
-        values.iter_mut().enumerate().map(move |(k, value)| {
+        let own = values.len().saturating_sub(twice);
+        values.iter_mut().take(own).enumerate().map(move |(k, value)| {
             let name = if is_list { format!("{word}[{}]", first + k) } else { word.clone() };
             (name, value)
         })
@@ -134,6 +160,9 @@ fn unit_term(term: &CalibratedTerm, number: usize) -> CalibratedTerm {
     let mut unit = term.clone();
     for (place, (_, value)) in numbers(&mut unit).into_iter().enumerate() {
         *value = if place == number { 1.0 } else { 0.0 };
+    }
+    if is_closed(term) {
+        close(&mut unit);
     }
     unit
 }

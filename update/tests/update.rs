@@ -6,7 +6,7 @@
     reason = "a panic is the report of a test, also from a function that tests share"
 )]
 
-use model_dsl::calibration::{self, Calibration};
+use model_dsl::calibration::{self, CalibratedTerm, Calibration};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
 use model_dsl::{Compiled, compile_word, yaml};
@@ -192,6 +192,32 @@ fn a_table_is_moved_as_a_whole_and_its_zeros_stand() {
             .iter()
             .all(|(name, value)| (after(name) - value).abs() < 4e-4)
     );
+}
+
+/// The ends of a table that repeats are one place: they are one coefficient, and stay one value.
+#[test]
+fn the_ends_of_a_table_that_repeats_are_one_coefficient() {
+    let bench = Bench::new();
+    let text = |values: &str| {
+        format!(
+            "calibration: 1\nmachine: XYFZ\nconstants: {{Xt: 0 mm, Yt: 0 mm, Zt: 50 mm}}\nerrors:\n  EXX: [{{table: {{start: 0 mm, step: 10 mm, period: 40 mm, unit: um, values: [{values}]}}}}]\n"
+        )
+    };
+    let recording = bench.measured(&bench.read(&text("9, -6, 4, 7")), 0.0, 9);
+    let known = bench.read(&text("3, -2, 1, 5"));
+    let updated = bench.update(&known, &[&recording], absolute(Method::Svd)).unwrap();
+    let mut names: Vec<&str> = updated.changes.iter().map(|change| change.name.as_str()).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["EXX.table[0]", "EXX.table[1]", "EXX.table[2]", "EXX.table[3]"]);
+    let CalibratedTerm::Table { curve, .. } = &updated.calibration.motions[0].terms[0].value else {
+        panic!()
+    };
+    let expected = [9e-3, -6e-3, 4e-3, 7e-3, 9e-3];
+    // There is no noise: what is left is the error over the way of the error, some 1e-3 of it at the steepest.
+    let close =
+        curve.values.forward().iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-5);
+    assert!(close && curve.repeats, "{curve:?}");
+    assert_eq!(curve.values.forward().first(), curve.values.forward().last());
 }
 
 #[test]

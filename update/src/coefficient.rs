@@ -7,7 +7,7 @@
 
 use model_dsl::calibration::factor::dimension_of;
 use model_dsl::calibration::vocabulary::{Base, Form, Given, Holds, Key, Role, State};
-use model_dsl::calibration::{CalibratedTerm, Calibration, CurveValues, MachineNames, MotionName, Part};
+use model_dsl::calibration::{CalibratedTerm, Calibration, MachineNames, MotionName, Part};
 use model_dsl::quantity::Dimension;
 
 use crate::update::Fixed;
@@ -92,13 +92,7 @@ pub(crate) fn set(calibration: &mut Calibration, coefficient: &Coefficient, valu
 
 /// Whether a term is a table that repeats, and whose ends, which are one place, have one value: it stays so.
 fn is_closed(term: &CalibratedTerm) -> bool {
-    let CalibratedTerm::Table { curve, .. } = term.core() else { return false };
-    let meets = |values: &[f64]| values.first() == values.last();
-    curve.repeats
-        && match &curve.values {
-            CurveValues::Both(values) => meets(values),
-            CurveValues::Directed { forward, reverse } => meets(forward) && meets(reverse),
-        }
+    matches!(term.core(), CalibratedTerm::Table { curve, .. } if curve.repeats && curve.meets())
 }
 
 /// Gives the last node of a table the value of the first.

@@ -91,12 +91,7 @@ fn closed(curve: Curve, period: f64) -> Curve {
 
 /// Warns where the ends of a turn have two values: the correction jumps whenever the axis passes there.
 fn warn_of_a_jump(term: &mut Parameters<'_, '_, '_>, place: Span, curve: &Curve) {
-    let meets = |values: &[f64]| values.first() == values.last();
-    let meet = match &curve.values {
-        CurveValues::Both(values) => meets(values),
-        CurveValues::Directed { forward, reverse } => meets(forward) && meets(reverse),
-    };
-    if !meet {
+    if !curve.meets() {
         let message = format!("the ends of {} are one place and have two values", term.what);
         let warning = Diagnostic::warning("W0403", place, message).label("it repeats after its last node");
         term.report(warning.help("write the mean of both at both ends: else the correction jumps there"));

@@ -53,6 +53,15 @@ impl Curve {
         self.repeats.then_some((last - first).abs())
     }
 
+    /// Whether its first and its last node have one value, in both directions of motion.
+    pub fn meets(&self) -> bool {
+        let meets = |values: &[f64]| values.first() == values.last();
+        match &self.values {
+            CurveValues::Both(values) => meets(values),
+            CurveValues::Directed { forward, reverse } => meets(forward) && meets(reverse),
+        }
+    }
+
     /// The curve as the runtime reads it.
     ///
     /// # Errors

@@ -5,26 +5,18 @@
 //! 2 the command or a file is wrong. No mathematics stands here.
 
 mod arguments;
-mod calibrated;
 mod commands;
 mod decimal;
-mod explain;
-mod failure;
-mod load;
 mod map;
 mod output;
 mod positions;
 mod progress;
-mod recorded;
-mod shipped;
-mod topology;
-mod written;
 
 use std::process::ExitCode;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
-use failure::Failure;
+use workshop::failure::Failure;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
@@ -32,8 +24,8 @@ fn main() -> ExitCode {
     match run(&arguments) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            failure.report();
-            failure.status()
+            output::report(&failure);
+            status(&failure)
         }
     }
 }
@@ -56,5 +48,14 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Explain(command) => commands::explain::run(command),
         Command::Completions(command) => commands::completions::run(command),
         Command::Man(command) => commands::man::run(command),
+    }
+}
+
+/// The exit status of a failure.
+fn status(failure: &Failure) -> ExitCode {
+    match failure {
+        Failure::No(_) => ExitCode::from(1),
+        Failure::Wrong(_) => ExitCode::from(2),
+        Failure::ClosedPipe => ExitCode::SUCCESS,
     }
 }

@@ -12,9 +12,9 @@ use abbe_runtime::{Compensator, Kinematics};
 use model_dsl::calibration::Calibration;
 use model_dsl::equations::Equations;
 
-use crate::failure::Failure;
 use field::Field;
 use space::Space;
+use workshop::failure::Failure;
 
 /// What a map is drawn from.
 pub(crate) struct Map<'m> {
@@ -43,14 +43,14 @@ impl<'m> Map<'m> {
         compensator: &mut Compensator<'_, K>,
     ) -> Result<String, Failure> {
         if self.rows == 0 && compensator.sensors() > 0 {
-            return Err(Failure::No(
+            return Err(Failure::no(
                 "error: no map can be drawn: the calibration reads temperatures, and no row has them"
                     .to_owned(),
             ));
         }
         let slides = self.space.slides(self.equations);
         if slides.is_empty() {
-            return Err(Failure::No(
+            return Err(Failure::no(
                 "error: no map can be drawn: no slide has a table in the calibration or two positions on standard input\n\
                  help: give two opposite corners of the workspace as rows"
                     .to_owned(),

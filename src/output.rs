@@ -1,15 +1,18 @@
 //! Words on standard output and standard error. In: text. Out: all of it, or a failure.
 
+use std::cell::RefCell;
 use std::io::{self, IsTerminal, Write};
 
 use anstream::stream::RawStream;
 use anstream::{AutoStream, ColorChoice};
 use diagnosis::report::{Terminal, WIDTH};
-use model_dsl::diagnostic::{Diagnostics, render};
+use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
+use workshop::failure::Failure;
+use workshop::told::{Listener, Words};
 
 use crate::arguments::Color;
-use crate::failure::Failure;
+use crate::progress::Progress;
 
 /// Decides for the whole program what is coloured.
 pub(crate) fn color(choice: Color) {
@@ -45,18 +48,54 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 
 /// Shows diagnostics on standard error, coloured where a person reads it.
 pub(crate) fn show(source: &SourceFile, diagnostics: &Diagnostics) {
-    if !diagnostics.is_empty() {
-        warn(&rendered(source, diagnostics));
-    }
-}
-
-/// The diagnostics of a file as text, coloured where a person reads standard error.
-pub(crate) fn rendered(source: &SourceFile, diagnostics: &Diagnostics) -> String {
-    render(source, diagnostics, is_colored(&io::stderr()))
+    say(&Words::marked(source, diagnostics));
 }
 
 /// Writes a line for people to standard error.
 pub(crate) fn warn(text: &str) {
-    // A command does its work even where nobody listens to its warnings.
-    let _ = writeln!(io::stderr(), "{}", text.trim_end());
+    say(&text.into());
+}
+
+/// Says on standard error why the command stopped.
+pub(crate) fn report(failure: &Failure) {
+    if let Some(words) = failure.words() {
+        say(words);
+    }
+}
+
+/// Writes words to standard error, coloured where a person reads it.
+fn say(words: &Words) {
+    if !words.is_empty() {
+        // A command does its work even where nobody listens: there is nobody left to tell.
+        let _ = writeln!(io::stderr(), "{}", words.text(is_colored(&io::stderr())));
+    }
+}
+
+/// The person at the terminal.
+#[derive(Default)]
+pub(crate) struct Person {
+    quiet: bool,
+    /// The line about the work that began last.
+    line: RefCell<Option<Progress>>,
+}
+
+impl Person {
+    /// A person who wants to see how far the work is, unless `quiet`.
+    pub(crate) fn new(quiet: bool) -> Self {
+        Self { quiet, line: RefCell::default() }
+    }
+}
+
+impl Listener for Person {
+    fn hear(&self, words: &Words) {
+        say(words);
+    }
+
+    fn begin(&self, step: &str) {
+        self.line.replace(Some(Progress::new(self.quiet, step)));
+    }
+
+    fn end(&self) {
+        self.line.replace(None);
+    }
 }

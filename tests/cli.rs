@@ -380,7 +380,7 @@ fn a_reader_that_goes_away_is_no_failure() {
 
 #[test]
 fn the_shipped_list_is_the_folder() {
-    let listed = fs::read_to_string(root().join("src/shipped.rs")).unwrap();
+    let listed = fs::read_to_string(root().join("workshop/src/shipped.rs")).unwrap();
     for entry in fs::read_dir(root().join("machines")).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
         assert!(listed.contains(&format!("\"../machines/{name}\"")), "machines/{name} is not shipped");

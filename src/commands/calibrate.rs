@@ -15,14 +15,14 @@ use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
 use model_dsl::yaml;
+use workshop::failure::Failure;
+use workshop::load;
+use workshop::named::machine_name;
+use workshop::recorded::unusable;
+use workshop::written::{self, comment, folder};
 
-use super::simulate::machine_name;
 use crate::arguments::{Calibrate, CalibrateFormat};
-use crate::failure::Failure;
-use crate::load;
-use crate::output::{print, rendered, show};
-use crate::recorded::unusable;
-use crate::written::{self, comment, folder};
+use crate::output::{Person, print, show};
 
 /// Runs the command.
 pub(crate) fn run(arguments: &Calibrate) -> Result<(), Failure> {
@@ -55,10 +55,10 @@ impl Read {
     fn new(path: &Path) -> Result<Self, Failure> {
         let source = load::read(path)?;
         let mut diagnostics = Diagnostics::new();
-        let wrong = |diagnostics: &Diagnostics| Failure::Wrong(rendered(&source, diagnostics));
+        let wrong = |diagnostics: &Diagnostics| Failure::marked(&source, diagnostics);
         let root = yaml::read(&source, &mut diagnostics).ok_or_else(|| wrong(&diagnostics))?;
         let name = setup::machine_of(&root, &mut diagnostics).ok_or_else(|| wrong(&diagnostics))?;
-        let loaded = load::machine(&name.value, path.parent())
+        let loaded = load::machine(&name.value, path.parent(), &Person::default())
             .map_err(|failure| unusable(&source, "E0913", "machine", &name, failure))?;
         let equations = loaded.compiled.equations;
         let setup = setup::read(&root, &equations, &mut diagnostics);
@@ -90,7 +90,7 @@ impl Read {
         for (file, found) in self.data.iter().zip(&findings.data) {
             show(&file.source, found);
         }
-        let wrong = || Failure::Wrong(rendered(&self.source, &findings.setup));
+        let wrong = || Failure::marked(&self.source, &findings.setup);
         let outcome = outcome.ok_or_else(wrong)?;
         show(&self.source, &findings.setup);
         Ok(outcome)
@@ -138,6 +138,6 @@ fn read_data(
             show(&measured.source, &diagnostics);
             Ok(measured)
         }
-        None => Err(not(Failure::Wrong(rendered(&source, &diagnostics)))),
+        None => Err(not(Failure::marked(&source, &diagnostics))),
     }
 }

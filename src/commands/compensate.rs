@@ -17,16 +17,16 @@ use model_dsl::calibration::vocabulary::{self, Key, Kind};
 use model_dsl::calibration::{CalibratedMotion, CalibratedTerm, Factor, Part, Tool};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::program::Interpreter;
+use workshop::calibrated::{self, Calibrated};
+use workshop::failure::Failure;
+use workshop::load;
+use workshop::written;
 
 use crate::arguments::Compensate;
-use crate::calibrated::{self, Calibrated};
-use crate::failure::Failure;
-use crate::load;
 use crate::map::Map;
-use crate::output::{rendered, warn};
+use crate::output::{Person, warn};
 use crate::positions::{Layout, State, Summary, Wanted, output_columns, quoted};
 use crate::progress::Progress;
-use crate::written;
 use answering::{Answering, Input, Machines};
 use leaning::Leaning;
 
@@ -41,7 +41,7 @@ const TOLD: u64 = 4096;
 
 /// Runs the command.
 pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
-    let mut calibrated = calibrated::read(&command.calibration)?;
+    let mut calibrated = calibrated::read(&command.calibration, &Person::default())?;
     if let Some(path) = &command.tools {
         calibrated.calibration.tools = tool_table(&calibrated, path, command.tools_unit.into())?;
     }
@@ -64,7 +64,7 @@ pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
     let (mut values, mut travel) = (vec![0.0; equations.motions.len()], vec![0.0; equations.travels.len()]);
     let work = Work { directions: &mut directions, motions: &mut values, travel: &mut travel };
     let mut compensator = Compensator::new(&machine, &motions, &mut states, work)
-        .map_err(|error| Failure::Wrong(format!("error: the calibration cannot be run: {error}")))?;
+        .map_err(|error| Failure::wrong(format!("error: the calibration cannot be run: {error}")))?;
     compensator.limits = calibrated.calibration.limits.of_compensator();
     let leaning = Leaning::new(equations, &machines.without, &motions);
     let mut rows = Rows::open(&calibrated, command, (&machines, &machine), (compensator, leaning))?;
@@ -83,7 +83,7 @@ fn tool_table(calibrated: &Calibrated, path: &Path, unit: Unit) -> Result<Vec<To
     let mut diagnostics = Diagnostics::new();
     let (equations, calibration) = (&calibrated.equations, &calibrated.calibration);
     let tools = exchange::controller::tool_table(equations, calibration, &source, unit, &mut diagnostics);
-    if diagnostics.has_errors() { Err(Failure::Wrong(rendered(&source, &diagnostics))) } else { Ok(tools) }
+    if diagnostics.has_errors() { Err(Failure::marked(&source, &diagnostics)) } else { Ok(tools) }
 }
 
 /// The machine without a tool and with each.
@@ -125,7 +125,7 @@ impl<'c> Rows<'c> {
             builder.has_headers(false).flexible(true).buffer_capacity(CAPACITY).from_reader(input);
         let mut header = ByteRecord::new();
         if !read(&mut reader, &answering, &mut header)? {
-            return Err(Failure::No(
+            return Err(Failure::no(
                 "error: standard input is empty; it begins with a header such as `x,y,z`".to_owned(),
             ));
         }
@@ -135,7 +135,9 @@ impl<'c> Rows<'c> {
         let wanted = wanted(calibrated);
         let layout = Layout::read(&header, units.then_some(&second), &wanted).map_err(|mistakes| {
             let told = mistakes.iter().take(MOST_TOLD);
-            Failure::Wrong(told.map(|mistake| format!("error: standard input: {mistake}\n")).collect())
+            Failure::wrong(
+                told.map(|mistake| format!("error: standard input: {mistake}\n")).collect::<String>(),
+            )
         })?;
         tell_unread(&layout.unread);
         answering.borrow_mut().begin(&layout, output_columns(equations))?;
@@ -199,7 +201,7 @@ impl<'c> Rows<'c> {
         }
         done?;
         if skipped > 0 && skipped + 1 == self.row {
-            return Err(Failure::No("error: standard input: no row could be compensated".to_owned()));
+            return Err(Failure::no("error: standard input: no row could be compensated".to_owned()));
         }
         answering.draw().transpose()
     }
@@ -227,7 +229,7 @@ fn read<'c>(
         match (answering.borrow_mut().failure.take(), error.into_kind()) {
             (Some(failure), _) => failure,
             (None, csv::ErrorKind::Io(error)) => Failure::io("cannot read standard input", &error),
-            (None, other) => Failure::No(format!("error: cannot read standard input: {other:?}")),
+            (None, other) => Failure::no(format!("error: cannot read standard input: {other:?}")),
         }
     })
 }

@@ -2,9 +2,9 @@
 //! arguments that the program reads.
 
 use clap::CommandFactory;
+use workshop::failure::Failure;
 
 use crate::arguments::{Arguments, Completions};
-use crate::failure::Failure;
 use crate::output;
 
 /// Runs the command.

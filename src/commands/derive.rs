@@ -4,15 +4,15 @@ use model_dsl::check;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations;
 use model_dsl::notation::{self, Published};
+use workshop::failure::Failure;
+use workshop::load::{self, Loaded};
 
 use crate::arguments::{Derive, Format, Names};
-use crate::failure::Failure;
-use crate::load::{self, Loaded};
-use crate::output;
+use crate::output::{self, Person};
 
 /// Runs the command.
 pub(crate) fn run(command: &Derive) -> Result<(), Failure> {
-    let loaded = load::machine(&command.machine, None)?;
+    let loaded = load::machine(&command.machine, None, &Person::default())?;
     let format = match command.format {
         Format::Text => notation::Format::Text,
         Format::Latex => notation::Format::Latex,

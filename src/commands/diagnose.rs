@@ -1,38 +1,40 @@
 //! `abbe diagnose`: what the model leaves out. In: recordings. Out: the diagnosis as text, JSON or a page, and the
 //! calibration with what was found.
 
-pub(super) mod files;
-mod improved;
 pub(super) mod origin;
 
 use std::path::PathBuf;
 
 use diagnosis::diagnosis::Diagnosis;
 use diagnosis::report::{self, Origin};
-use diagnosis::{Chains, Inputs};
+
+use workshop::diagnosed::diagnose;
+use workshop::failure::Failure;
+use workshop::improved;
+use workshop::named::{self, Files};
+use workshop::recorded::{self, Recorded};
 
 use crate::arguments::{Diagnose, ReportFormat};
-use crate::failure::Failure;
-use crate::output::{print, terminal};
+use crate::output::{Person, print, terminal};
 use crate::progress::Progress;
-use crate::recorded::{self, Recorded};
-use files::Files;
 
 /// Runs the command. Status 0 whatever is found.
 pub(crate) fn run(arguments: &Diagnose) -> Result<(), Failure> {
     let paths: Vec<PathBuf> = arguments.recordings.iter().chain(&arguments.holdout).cloned().collect();
-    let recorded = recorded::read_all(&paths, arguments.quiet)?;
+    let recorded = recorded::read_all(&paths, &Person::new(arguments.quiet))?;
     let inputs: Vec<(Files, &Recorded)> =
         recorded.iter().zip(&paths).map(|(recorded, path)| (Files::of(recorded, path), recorded)).collect();
     let Some((first_files, first)) = inputs.first() else { return Ok(()) };
     if let Some(target) = &arguments.write_calibration {
-        files::check_target(target, &inputs)?;
+        named::check_target(target, &inputs)?;
     }
     let diagnosis = diagnosed(arguments, &recorded)?;
     // The report is shown also where the calibration cannot be written, the calibration is written also where the reader
     // of the report is gone.
     let target = arguments.write_calibration.as_ref();
-    let written = target.map_or(Ok(()), |target| improved::write(target, first, first_files, &diagnosis));
+    let written = target.map_or(Ok(()), |target| {
+        improved::write(target, first, first_files, &diagnosis, &Person::new(arguments.quiet))
+    });
     print(&match arguments.format {
         ReportFormat::Text => report::text_on(&diagnosis, terminal()),
         ReportFormat::Json => report::json(&diagnosis),
@@ -59,29 +61,7 @@ fn page(
 /// The diagnosis of the recordings, the last of which is held out where the arguments say so.
 fn diagnosed(arguments: &Diagnose, recorded: &[Recorded]) -> Result<Diagnosis, Failure> {
     let (fitted, held_out) = recorded.split_at(arguments.recordings.len().min(recorded.len()));
-    let Some(first) = fitted.first() else { return Ok(Diagnosis::default()) };
-    let derive = first.topology.as_ref().map(|topology| |word: &str| topology.derive(word));
-    let inputs = Inputs {
-        equations: &first.equations,
-        calibration: first.calibration.as_ref().map(|known| &known.calibration),
-        recordings: fitted.iter().map(|recorded| &recorded.recording).collect(),
-        holdout: held_out.first().map(|recorded| &recorded.recording),
-        calibration_file: first.calibration.as_ref().map(|known| &known.source),
-        chains: first.topology.as_ref().zip(derive.as_ref()).map(|(topology, derive)| Chains {
-            file: &topology.file,
-            word: &topology.word,
-            derive,
-        }),
-    };
     let progress = Progress::new(arguments.quiet, "reading the machine");
-    let mut show = |now: diagnosis::Progress| progress.part(now.step, now.done);
-    let diagnosis = match arguments.format {
-        ReportFormat::Html => diagnosis::diagnose_with_pictures(&inputs, &mut show),
-        ReportFormat::Text | ReportFormat::Json => diagnosis::diagnose(&inputs, &mut show),
-    };
-    drop(progress);
-    if diagnosis.recordings.iter().all(|recording| recording.samples == 0) {
-        return Err(Failure::No("error: the recordings hold no sample that could be used".to_owned()));
-    }
-    Ok(diagnosis)
+    let pictured = matches!(arguments.format, ReportFormat::Html);
+    diagnose(fitted, held_out.first(), pictured, &mut |now| progress.part(now.step, now.done))
 }

@@ -2,17 +2,17 @@
 //! or a page.
 
 use evaluation::{Inputs, report};
+use workshop::failure::Failure;
+use workshop::recorded;
 
 use super::diagnose::origin::word;
 use crate::arguments::{Evaluate, EvaluationFormat};
-use crate::failure::Failure;
-use crate::output::print;
+use crate::output::{Person, print};
 use crate::progress::Progress;
-use crate::recorded;
 
 /// Runs the command. Status 1 where the recording gives no figure at all; the report says why.
 pub(crate) fn run(arguments: &Evaluate) -> Result<(), Failure> {
-    let recorded = recorded::read(&arguments.recording, arguments.quiet)?;
+    let recorded = recorded::read(&arguments.recording, &Person::new(arguments.quiet))?;
     let progress = Progress::new(arguments.quiet, "evaluating");
     let evaluation = evaluation::evaluate(&Inputs {
         equations: &recorded.equations,
@@ -28,5 +28,5 @@ pub(crate) fn run(arguments: &Evaluate) -> Result<(), Failure> {
             report::html(&evaluation, &format!("abbe evaluate {recording} --format html > evaluation.html"))
         }
     })?;
-    if evaluation.gives_any() { Ok(()) } else { Err(Failure::No(String::new())) }
+    if evaluation.gives_any() { Ok(()) } else { Err(Failure::no("")) }
 }

@@ -6,24 +6,25 @@ use model_dsl::calibration::{Calibration, CompiledIn};
 use model_dsl::codegen;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::Equations;
+use workshop::failure::Failure;
+use workshop::load;
 
 use crate::arguments::Expand;
-use crate::failure::Failure;
-use crate::{load, output};
+use crate::output::{self, Person};
 
 /// Runs the command.
 pub(crate) fn run(command: &Expand) -> Result<(), Failure> {
-    let loaded = load::machine(&command.machine, None)?;
+    let loaded = load::machine(&command.machine, None, &Person::default())?;
     let equations = &loaded.compiled.equations;
     let tokens = match &command.calibration {
         Some(path) => codegen::calibrated_tokens(equations, &calibration(equations, path)?)
-            .map_err(|error| Failure::Wrong(format!("error: {}: {error}", path.display())))?,
+            .map_err(|error| Failure::wrong(format!("error: {}: {error}", path.display())))?,
         None if command.c_abi => codegen::c_tokens(equations),
         None => codegen::tokens(equations),
     };
     let name = Path::new(&loaded.origin).file_name().map(|name| name.to_string_lossy().into_owned());
     let code = codegen::file(&tokens, &name.unwrap_or(loaded.origin)).map_err(|error| {
-        Failure::Wrong(format!("error: the generated code does not parse ({error}); this is a fault of Abbe"))
+        Failure::wrong(format!("error: the generated code does not parse ({error}); this is a fault of Abbe"))
     })?;
     output::print(&code)
 }
@@ -38,6 +39,6 @@ fn calibration(equations: &Equations, path: &Path) -> Result<Calibration, Failur
             output::show(&source, &diagnostics);
             Ok(calibration)
         }
-        None => Err(Failure::Wrong(output::rendered(&source, &diagnostics))),
+        None => Err(Failure::marked(&source, &diagnostics)),
     }
 }

@@ -1,8 +1,9 @@
 //! `abbe explain`: what a diagnostic, a term or an error motion means. In: its name, or none. Out: its page, or the list of all.
 
+use workshop::explain;
+use workshop::failure::Failure;
+
 use crate::arguments::Explain;
-use crate::explain;
-use crate::failure::Failure;
 use crate::output;
 
 /// Runs the command.
@@ -10,7 +11,7 @@ pub(crate) fn run(command: &Explain) -> Result<(), Failure> {
     let Some(name) = &command.name else { return output::print(&explain::overview()) };
     match explain::page(name) {
         Ok(page) => output::print(&page),
-        Err(near) => Err(Failure::Wrong(unknown(name, &near))),
+        Err(near) => Err(Failure::wrong(unknown(name, &near))),
     }
 }
 

@@ -8,20 +8,20 @@ use exchange::controller::{self, Format, Geometry, Options, Refused, Sense, Spac
 use exchange::controller::{Kind, Unit};
 use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
+use workshop::calibrated;
+use workshop::failure::Failure;
+use workshop::load;
+use workshop::written;
 
 use crate::arguments::{Export, ExportFormat, ExportValue, LinearUnit};
-use crate::calibrated;
-use crate::failure::Failure;
-use crate::load;
-use crate::output::print;
-use crate::written;
+use crate::output::{Person, print};
 
 /// The cross tables that a Sinumerik has where nothing else is said.
 const TABLES: usize = 8;
 
 /// Runs the command.
 pub(crate) fn run(command: &Export) -> Result<(), Failure> {
-    let calibrated = calibrated::read(&command.calibration)?;
+    let calibrated = calibrated::read(&command.calibration, &Person::default())?;
     if !command.leave_out_uncompensable {
         calibrated.refuse_uncompensable()?;
     }
@@ -67,7 +67,7 @@ fn check(command: &Export, geometry: &Geometry<'_>, space: &Space) -> Result<(),
     let checked = controller::check(geometry, space, format(command), &options(command), &files);
     let checked = checked.map_err(|error| match error {
         Unusable::Refused(reason) => refused(reason),
-        Unusable::File(text) => Failure::Wrong(text),
+        Unusable::File(text) => Failure::wrong(text),
     })?;
     let mut text = listed("what the controller leaves out", checked.findings.into_iter());
     text += &controller::text(geometry, space, &checked.lost);
@@ -98,7 +98,7 @@ fn axis_of(letter: &str, equations: &Equations) -> Option<usize> {
 fn check_targets(command: &Export, targets: &[PathBuf]) -> Result<(), Failure> {
     for target in targets {
         if target.exists() && !command.force {
-            return Err(Failure::Wrong(format!(
+            return Err(Failure::wrong(format!(
                 "error: {} is there already\nhelp: --output takes another folder, --force replaces the file",
                 target.display()
             )));
@@ -108,7 +108,7 @@ fn check_targets(command: &Export, targets: &[PathBuf]) -> Result<(), Failure> {
         return Ok(());
     }
     let folder = command.output.display();
-    Err(Failure::Wrong(format!(
+    Err(Failure::wrong(format!(
         "error: there is no such folder {folder}\nhelp: --output takes a folder that is there"
     )))
 }
@@ -127,7 +127,7 @@ fn check_options(command: &Export) -> Result<(), Failure> {
     let stray = options.into_iter().find(|(_, given, formats)| *given && !formats.contains(&command.format));
     let Some((option, _, formats)) = stray else { return Ok(()) };
     let names: Vec<String> = formats.iter().map(|format| name(*format)).collect();
-    Err(Failure::Wrong(format!(
+    Err(Failure::wrong(format!(
         "error: {option} says nothing to {}\nhelp: leave it out; it is an option of {}",
         name(command.format),
         names.join(", ")
@@ -150,7 +150,7 @@ fn check_names(command: &Export, equations: &Equations) -> Result<(), Failure> {
     }
     match command.counts.iter().find(|(_, counts)| *counts <= 0.0) {
         Some((axis, _)) => {
-            Err(Failure::Wrong(format!("error: --counts {axis}=...: write a number above zero")))
+            Err(Failure::wrong(format!("error: --counts {axis}=...: write a number above zero")))
         }
         None => Ok(()),
     }
@@ -158,7 +158,7 @@ fn check_names(command: &Export, equations: &Equations) -> Result<(), Failure> {
 
 fn no_axis(option: &str, axis: &str, equations: &Equations) -> Failure {
     let axes: Vec<&str> = equations.axes.iter().map(|axis| axis.letter.as_str()).collect();
-    Failure::Wrong(format!(
+    Failure::wrong(format!(
         "error: {option} {axis}=...: {} has no such axis\nhelp: its axes are {}",
         equations.machine,
         axes.join(", ")
@@ -221,5 +221,5 @@ fn format(command: &Export) -> Format {
 }
 
 fn refused(reason: Refused) -> Failure {
-    Failure::Wrong(reason.to_string())
+    Failure::wrong(reason.to_string())
 }

@@ -13,18 +13,18 @@ use limits::trial::Known;
 use model_dsl::Compiled;
 use model_dsl::calibration::MachineNames;
 use model_dsl::suggest::nearest;
+use workshop::failure::Failure;
+use workshop::recorded::{self, Recorded};
 
 use super::diagnose::origin::word;
 use crate::arguments::{Asked, Limits, LimitsFormat};
-use crate::failure::Failure;
-use crate::output::print;
+use crate::output::{Person, print};
 use crate::progress::Progress;
-use crate::recorded::{self, Recorded};
 
 /// Runs the command. Status 1 where no effect can be injected into the recording.
 pub(crate) fn run(arguments: &Limits) -> Result<(), Failure> {
     let asked = &arguments.asked;
-    let recorded = recorded::read(&arguments.recording, asked.quiet)?;
+    let recorded = recorded::read(&arguments.recording, &Person::new(asked.quiet))?;
     check_names(&asked.only, &recorded.equations.names())?;
     let progress = Progress::new(asked.quiet, "diagnosing the recording as it is");
     let name = arguments.recording.display().to_string();
@@ -72,7 +72,7 @@ pub(super) fn tell(
 
 /// Why nothing can be injected.
 pub(super) fn cannot(name: &str, reason: &str) -> Failure {
-    Failure::No(format!("error: no effect can be injected into {name}: {reason}"))
+    Failure::no(format!("error: no effect can be injected into {name}: {reason}"))
 }
 
 /// Refuses a name that is neither a kind, a motion nor an axis.
@@ -90,7 +90,7 @@ pub(super) fn check_names(only: &[String], names: &MachineNames) -> Result<(), F
             )
         }
     };
-    Err(Failure::Wrong(format!("error: `{wrong}` is no effect, error motion or axis\nhelp: {help}")))
+    Err(Failure::wrong(format!("error: `{wrong}` is no effect, error motion or axis\nhelp: {help}")))
 }
 
 /// The command that makes the page again.

@@ -6,11 +6,11 @@ use std::path::Path;
 
 use clap::{Command, CommandFactory};
 use clap_mangen::Man as Page;
+use workshop::failure::Failure;
+use workshop::written;
 
 use crate::arguments::{Arguments, Man};
-use crate::failure::Failure;
 use crate::output;
-use crate::written;
 
 /// Runs the command.
 pub(crate) fn run(command: &Man) -> Result<(), Failure> {

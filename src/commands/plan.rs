@@ -5,14 +5,15 @@ use limits::plan::driven;
 use model_dsl::Compiled;
 use model_dsl::calibration::Calibration;
 use simulation::Plant;
+use workshop::calibrated::{self, Calibrated};
+use workshop::failure::Failure;
+use workshop::load;
 
 use super::diagnose::origin::word;
 use super::limits::{answered, cannot, check_names, options, tell};
 use super::simulate::{read_path, wrong};
 use crate::arguments::Plan;
-use crate::calibrated::{self, Calibrated};
-use crate::failure::Failure;
-use crate::load;
+use crate::output::Person;
 use crate::progress::Progress;
 
 /// Runs the command. Status 1 where the path shows no effect.
@@ -38,10 +39,10 @@ pub(crate) fn run(arguments: &Plan) -> Result<(), Failure> {
 /// The machine as it is known: with its calibration, or without any error.
 fn machine(arguments: &Plan) -> Result<Calibrated, Failure> {
     if let Some(calibration) = &arguments.calibration {
-        return calibrated::read(calibration);
+        return calibrated::read(calibration, &Person::default());
     }
     let name = arguments.machine.as_deref().unwrap_or_default();
-    let loaded = load::machine(name, None)?;
+    let loaded = load::machine(name, None, &Person::default())?;
     let Compiled { machine, equations } = loaded.compiled;
     let constants = equations.constants.iter().map(|constant| constant.default.unwrap_or_default()).collect();
     let calibration = Calibration::new(name, constants);

@@ -2,7 +2,6 @@
 
 mod replay;
 
-use std::ffi::OsStr;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -14,20 +13,20 @@ use simulation::file::{self, PathFile};
 use simulation::picture;
 use simulation::write::{self, Head};
 use simulation::{Plant, Simulated};
+use workshop::calibrated::{self, Calibrated};
+use workshop::failure::Failure;
+use workshop::load;
+use workshop::named::{Files, machine_name, relative};
+use workshop::recorded::{self, Recorded};
+use workshop::written;
 
-use super::diagnose::files::Files;
 use crate::arguments::Simulate;
-use crate::calibrated::{self, Calibrated};
-use crate::failure::Failure;
-use crate::load;
-use crate::output::{rendered, show, warn};
+use crate::output::{Person, show, warn};
 use crate::progress::Progress;
-use crate::recorded::{self, Recorded};
-use crate::written;
 
 /// Runs the command.
 pub(crate) fn run(command: &Simulate) -> Result<(), Failure> {
-    let calibrated = calibrated::read(&command.calibration)?;
+    let calibrated = calibrated::read(&command.calibration, &Person::default())?;
     let names = calibrated.equations.names();
     let known = command.known.as_deref().map(|known| known_calibration(known, &names)).transpose()?;
     let output = Output::of(&command.output);
@@ -98,9 +97,9 @@ fn driven(
 fn replayed(command: &Simulate, calibrated: &Calibrated, names: &MachineNames) -> Result<Simulated, Failure> {
     if command.seed.is_some() {
         let help = "help: leave --seed out: what a calibration predicts for a recording has no noise";
-        return Err(Failure::Wrong(format!("error: {} is a recording\n{help}", command.path.display())));
+        return Err(Failure::wrong(format!("error: {} is a recording\n{help}", command.path.display())));
     }
-    let recorded = recorded::read(&command.path, command.quiet)?;
+    let recorded = recorded::read(&command.path, &Person::new(command.quiet))?;
     if is_reordered(&recorded, names) {
         warn(&format!(
             "warning: {} is a recording of {}; what is simulated is {}, which has the same axes in another order",
@@ -109,7 +108,7 @@ fn replayed(command: &Simulate, calibrated: &Calibrated, names: &MachineNames) -
             names.machine
         ));
     } else if recorded.equations.names() != *names {
-        return Err(Failure::Wrong(format!(
+        return Err(Failure::wrong(format!(
             "error: {} is a recording of {}, {} a calibration of {}\nhelp: give both for the same machine",
             command.path.display(),
             recorded.equations.machine,
@@ -145,7 +144,7 @@ fn plant(calibrated: &Calibrated, names: &MachineNames) -> Result<Plant, Failure
 }
 
 pub(super) fn wrong(error: &dyn std::fmt::Display) -> Failure {
-    Failure::Wrong(format!("error: {error}"))
+    Failure::wrong(format!("error: {error}"))
 }
 
 /// Whether a file is a recording rather than a path; what else it may be is told by who reads paths.
@@ -171,15 +170,15 @@ pub(super) fn read_path(
             show(source, &diagnostics);
             Ok(file)
         }
-        None => Err(Failure::Wrong(rendered(source, &diagnostics))),
+        None => Err(Failure::marked(source, &diagnostics)),
     }
 }
 
 /// The calibration that the recording names: one of the same machine.
 fn known_calibration(path: &Path, names: &MachineNames) -> Result<PathBuf, Failure> {
-    let known = calibrated::read(path)?;
+    let known = calibrated::read(path, &Person::default())?;
     if known.equations.names() != *names {
-        return Err(Failure::Wrong(format!(
+        return Err(Failure::wrong(format!(
             "error: {} is a calibration of {}, not of {}\nhelp: --known takes another calibration of the same machine",
             path.display(),
             known.equations.machine,
@@ -214,7 +213,7 @@ impl Output {
     fn check(&self, force: bool) -> Result<(), Failure> {
         let there = [self.recording.clone(), self.data_path()].into_iter().find(|path| path.exists());
         match there.filter(|_| !force) {
-            Some(path) => Err(Failure::Wrong(format!(
+            Some(path) => Err(Failure::wrong(format!(
                 "error: {} is there already\nhelp: --output takes another place, --force replaces it",
                 path.display()
             ))),
@@ -241,34 +240,4 @@ impl Output {
             .map_err(|error| Failure::io(&format!("cannot make {}", folder.display()), &error))?;
         Ok(folder)
     }
-}
-
-/// The machine as the recording names it: a file's path from the recording's folder, or the name as it is.
-pub(super) fn machine_name(name: &str, calibration: &Path, folder: &Path) -> Result<String, Failure> {
-    let file = calibration.parent().map_or_else(|| PathBuf::from(name), |parent| parent.join(name));
-    if file.is_file() { relative(folder, &file) } else { Ok(name.to_owned()) }
-}
-
-/// The path of a file as seen from a folder; the whole path where they have nothing in common. Refused where it is no text,
-/// since no file could name it.
-fn relative(folder: &Path, file: &Path) -> Result<String, Failure> {
-    let text = |part: &OsStr| part.to_str().map(str::to_owned).ok_or_else(|| nameless(file));
-    let (Ok(from), Ok(to)) = (folder.canonicalize(), file.canonicalize()) else {
-        return text(file.as_os_str());
-    };
-    let common = from.components().zip(to.components()).take_while(|(left, right)| left == right).count();
-    let up = from.components().skip(common).map(|_| Ok("..".to_owned()));
-    let down = to.components().skip(common).map(|part| text(part.as_os_str()));
-    match common {
-        // Not even the drive is the same.
-        0 => text(to.as_os_str()),
-        _ => Ok(up.chain(down).collect::<Result<Vec<_>, _>>()?.join("/")),
-    }
-}
-
-fn nameless(file: &Path) -> Failure {
-    Failure::Wrong(format!(
-        "error: {} cannot be named in the new file: its path is not UTF-8 text\nhelp: write the new file beside it, or rename its folders",
-        file.display()
-    ))
 }

@@ -7,21 +7,21 @@ use model_dsl::calibration;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::yaml;
 use update::{Inputs, Method, Options, Update, UpdateError, report};
+use workshop::calibrated::{self, Calibrated};
+use workshop::failure::Failure;
+use workshop::named::Files;
+use workshop::named::machine_name;
+use workshop::recorded::{self, Recorded};
+use workshop::written::{self, comment, folder};
 
-use super::diagnose::files::Files;
-use super::simulate::machine_name;
 use crate::arguments::{Update as Arguments, UpdateFormat, UpdateMethod};
-use crate::calibrated::{self, Calibrated};
-use crate::failure::Failure;
-use crate::output::{print, rendered, warn};
+use crate::output::{Person, print, warn};
 use crate::progress::Progress;
-use crate::recorded::{self, Recorded};
-use crate::written::{self, comment, folder};
 
 /// Runs the command.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let known = calibrated::read(&arguments.calibration)?;
-    let mut parts = recorded::read_all(&arguments.measurements, arguments.quiet)?;
+    let known = calibrated::read(&arguments.calibration, &Person::default())?;
+    let mut parts = recorded::read_all(&arguments.measurements, &Person::new(arguments.quiet))?;
     if arguments.datum.turned {
         parts.iter_mut().for_each(|part| part.recording.free_datum = true);
     }
@@ -65,7 +65,7 @@ fn options(arguments: &Arguments) -> Options {
 fn check_machine(arguments: &Arguments, known: &Calibrated, parts: &[Recorded]) -> Result<(), Failure> {
     for part in parts {
         if part.equations.names() != known.equations.names() {
-            return Err(Failure::Wrong(format!(
+            return Err(Failure::wrong(format!(
                 "error: {} is a recording of {}, {} a calibration of {}\nhelp: give both for the same machine",
                 part.source.name(),
                 part.equations.machine,
@@ -93,7 +93,7 @@ fn check_target(
     parts: &[Recorded],
 ) -> Result<(), Failure> {
     let wrong = |what: &str, help: &str| {
-        Err(Failure::Wrong(format!("error: {} {what}\nhelp: {help}", target.display())))
+        Err(Failure::wrong(format!("error: {} {what}\nhelp: {help}", target.display())))
     };
     if !folder(target).is_dir() {
         return wrong("cannot be written: there is no such folder", "--output takes the name of a file");
@@ -127,15 +127,15 @@ fn refused(error: &UpdateError, parts: &[Recorded]) -> Failure {
                 "abbe diagnose reads all instruments; a part is measured along normals or in positions";
             (*recording, "E0627", "instrument", help.to_owned())
         }
-        _ => return Failure::No(format!("error: {error}")),
+        _ => return Failure::no(format!("error: {error}")),
     };
-    let Some(part) = parts.get(number) else { return Failure::No(format!("error: {error}")) };
+    let Some(part) = parts.get(number) else { return Failure::no(format!("error: {error}")) };
     let root = yaml::read(&part.source, &mut Diagnostics::new());
     let entries = root.as_ref().and_then(|root| root.entries()).unwrap_or(&[]);
     let place = entries.iter().find(|(name, _)| name.value == key).map(|(name, _)| name.span);
     let mut diagnostics = Diagnostics::new();
     diagnostics.push(Diagnostic::error(code, place.unwrap_or_default(), error.to_string()).help(help));
-    Failure::Wrong(rendered(&part.source, &diagnostics))
+    Failure::marked(&part.source, &diagnostics)
 }
 
 /// Writes the new calibration, its machine file named from its own folder.

@@ -9,11 +9,11 @@ use exchange::instrument::setup::Correction;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
+use workshop::failure::Failure;
+use workshop::load;
+use workshop::recorded::unusable;
 
-use crate::failure::Failure;
-use crate::load;
-use crate::output::{rendered, show, warn};
-use crate::recorded::unusable;
+use crate::output::{show, warn};
 
 /// Takes all of them over; what is wrong in one stands at its place there, below the place of its name (E0914).
 pub(super) fn take(
@@ -57,9 +57,9 @@ fn take_one(
     let file = load::read(&path.with_file_name(&one.data.value)).map_err(not)?;
     let mut findings = Diagnostics::new();
     let terms = saved_terms(equations, &setup.known, &file, &one.wanted, &mut findings);
-    let terms = terms.map_err(|refused| not(Failure::Wrong(refused.to_string())))?;
+    let terms = terms.map_err(|refused| not(Failure::wrong(refused.to_string())))?;
     if findings.has_errors() {
-        return Err(not(Failure::Wrong(rendered(&file, &findings))));
+        return Err(not(Failure::marked(&file, &findings)));
     }
     show(&file, &findings);
     setup.take(&terms, one.data.span, equations, diagnostics);

@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 
 use exchange::controller::{SavedForm, saved_form, volumetric_form};
 use exchange::instrument::file;
-
-use crate::failure::Failure;
-use crate::load;
+use workshop::failure::Failure;
+use workshop::load;
 
 /// The set-up, which is given alone.
 pub(super) fn setup_among(files: &[PathBuf]) -> Result<&Path, Failure> {
@@ -19,11 +18,11 @@ pub(super) fn setup_among(files: &[PathBuf]) -> Result<&Path, Failure> {
     }
     match (files, data.as_slice()) {
         ([setup], []) => Ok(setup),
-        (_, []) => Err(Failure::Wrong(
+        (_, []) => Err(Failure::wrong(
             "error: one set-up makes one calibration\nhelp: name all files under its `measurements`"
                 .to_owned(),
         )),
-        (_, data) => Err(Failure::Wrong(to_fill_in(data))),
+        (_, data) => Err(Failure::wrong(to_fill_in(data))),
     }
 }
 

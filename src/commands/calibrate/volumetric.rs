@@ -7,11 +7,11 @@ use exchange::instrument::Setup;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
+use workshop::failure::Failure;
+use workshop::load;
+use workshop::recorded::unusable;
 
-use crate::failure::Failure;
-use crate::load;
-use crate::output::{rendered, warn};
-use crate::recorded::unusable;
+use crate::output::warn;
 
 /// Takes the file over, where the set-up names one; what is wrong in it stands at its place there, below the place of its name
 /// (E0914).
@@ -29,9 +29,9 @@ pub(super) fn take(
     let form = volumetric_form(file.text()).unwrap_or(VolumetricForm::Isg);
     let mut findings = Diagnostics::new();
     let terms = volumetric_terms(equations, &setup.known, &file, form, &mut findings);
-    let terms = terms.map_err(|refused| not(Failure::Wrong(refused.to_string())))?;
+    let terms = terms.map_err(|refused| not(Failure::wrong(refused.to_string())))?;
     if findings.has_errors() {
-        return Err(not(Failure::Wrong(rendered(&file, &findings))));
+        return Err(not(Failure::marked(&file, &findings)));
     }
     setup.take(&terms, name.span, equations, diagnostics);
     warn(&format!("{} terms of error motions from {}", terms.len(), file.name()));

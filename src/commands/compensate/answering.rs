@@ -9,11 +9,11 @@ use abbe_runtime::{Compensator, Exchanged, Sample};
 use csv::ByteRecord;
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
+use workshop::failure::Failure;
 
 use super::CAPACITY;
 use super::leaning::Leaning;
 use crate::decimal::Decimal;
-use crate::failure::Failure;
 use crate::map::Map;
 use crate::positions::{Layout, Lean, Pending, Summary, quoted};
 
@@ -45,7 +45,7 @@ impl Read for Input<'_> {
         }
         if self.taken.saturating_sub(answering.begun) > LONGEST_ROW {
             let mistake = "error: standard input: a row is longer than 1 MiB";
-            answering.failure = Some(Failure::No(mistake.to_owned()));
+            answering.failure = Some(Failure::no(mistake.to_owned()));
             return Err(io::Error::other("the row is too long"));
         }
         let read = self.stdin.read(buffer)?;
@@ -173,7 +173,7 @@ impl<'c> Answering<'c> {
     fn answer_rows(&mut self) -> Result<(), Failure> {
         self.pending
             .compensate(&mut self.compensator)
-            .map_err(|refusal| Failure::Wrong(format!("error: the rows cannot be compensated: {refusal}")))?;
+            .map_err(|refusal| Failure::wrong(format!("error: the rows cannot be compensated: {refusal}")))?;
         for row in 0..self.pending.len() {
             let (record, number) = self.pending.record(row);
             match self.pending.answer(row) {
@@ -223,7 +223,7 @@ fn bad(row: &ByteRecord, number: u64, mistake: &str, skip: bool, skipped: &mut u
     }
     let cells: Vec<_> = row.iter().take(12).map(|cell| quoted(&String::from_utf8_lossy(cell))).collect();
     let cells = cells.join(",");
-    Err(Failure::No(format!(
+    Err(Failure::no(format!(
         "error: standard input, row {number} under the header (`{cells}`): {mistake}\nhelp: --skip-bad leaves such rows out and counts them"
     )))
 }
@@ -231,6 +231,6 @@ fn bad(row: &ByteRecord, number: u64, mistake: &str, skip: bool, skipped: &mut u
 fn closed(error: csv::Error) -> Failure {
     match error.into_kind() {
         csv::ErrorKind::Io(error) => Failure::io("cannot write to standard output", &error),
-        other => Failure::Wrong(format!("error: cannot write to standard output: {other:?}")),
+        other => Failure::wrong(format!("error: cannot write to standard output: {other:?}")),
     }
 }

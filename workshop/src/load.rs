@@ -11,26 +11,26 @@ use model_dsl::suggest::nearest;
 use model_dsl::{Compiled, compile, compile_word};
 
 use crate::failure::Failure;
-use crate::output::{rendered, show};
 use crate::shipped;
+use crate::told::{Listener, Words};
 
 /// A machine and the file (or word) that it came from.
-pub(crate) struct Loaded {
+pub struct Loaded {
     /// The file's name for people: its path, or the shipped file's.
-    pub(crate) origin: String,
+    pub origin: String,
     /// The file itself; none of a bare word.
-    pub(crate) source: Option<SourceFile>,
+    pub source: Option<SourceFile>,
     /// The compiled machine.
-    pub(crate) compiled: Compiled,
+    pub compiled: Compiled,
     /// The equations that were published about it, where the program has them.
-    pub(crate) published: Option<SourceFile>,
+    pub published: Option<SourceFile>,
 }
 
 /// No byte beyond this one is read: a larger file is refused, and a device may have no end.
 const MOST_BYTES: u64 = 8 * 1024 * 1024;
 
 /// Reads a text file.
-pub(crate) fn read(path: &Path) -> Result<SourceFile, Failure> {
+pub fn read(path: &Path) -> Result<SourceFile, Failure> {
     let text = String::from_utf8(bytes(path)?).map_err(|error| {
         cannot(path, &format!("it is not UTF-8 text (byte {})", error.utf8_error().valid_up_to()))
     })?;
@@ -38,7 +38,7 @@ pub(crate) fn read(path: &Path) -> Result<SourceFile, Failure> {
 }
 
 /// Reads a file that need not be text.
-pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+pub fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     let bytes = head(path)?;
     if u64::try_from(bytes.len()).is_ok_and(|length| length > MOST_BYTES) {
         return Err(too_large(path));
@@ -47,7 +47,7 @@ pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
 }
 
 /// The beginning of a file that can be read again; nothing of a pipe, which can not.
-pub(crate) fn head_of_file(path: &Path) -> Result<Option<Vec<u8>>, Failure> {
+pub fn head_of_file(path: &Path) -> Result<Option<Vec<u8>>, Failure> {
     let is_file = std::fs::metadata(path).is_ok_and(|there| there.is_file());
     is_file.then(|| head(path)).transpose()
 }
@@ -62,7 +62,7 @@ fn head(path: &Path) -> Result<Vec<u8>, Failure> {
 }
 
 fn cannot(path: &Path, why: &str) -> Failure {
-    Failure::Wrong(format!("error: cannot read {}: {why}", path.display()))
+    Failure::wrong(format!("error: cannot read {}: {why}", path.display()))
 }
 
 fn too_large(path: &Path) -> Failure {
@@ -71,44 +71,44 @@ fn too_large(path: &Path) -> Failure {
     let mut diagnostics = Diagnostics::new();
     diagnostics
         .push(Diagnostic::error("E0003", Span::default(), message).help("split it, or thin out its tables"));
-    Failure::Wrong(rendered(&source, &diagnostics))
+    Failure::marked(&source, &diagnostics)
 }
 
 /// Compiles what the user named; paths are counted from `folder` where it is given.
-pub(crate) fn machine(name: &str, folder: Option<&Path>) -> Result<Loaded, Failure> {
+pub fn machine(name: &str, folder: Option<&Path>, listener: &dyn Listener) -> Result<Loaded, Failure> {
     let path = folder.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
     // A pipe is a file too, as in `abbe derive <(...)`.
     let there = std::fs::metadata(&path).ok();
     if there.as_ref().is_some_and(|there| !there.is_dir()) {
-        return from_source(&read(&path)?);
+        return from_source(&read(&path)?, listener);
     }
     if let Some(text) = shipped::machine(name) {
-        return from_source(&SourceFile::new(format!("machines/{name}.yaml"), text));
+        return from_source(&SourceFile::new(format!("machines/{name}.yaml"), text), listener);
     }
     // A word of capital letters is a topology, right or wrong.
     if !name.is_empty() && name.len() <= 8 && name.bytes().all(|letter| letter.is_ascii_uppercase()) {
         return from_word(name);
     }
     match there {
-        Some(_) => Err(Failure::Wrong(format!(
+        Some(_) => Err(Failure::wrong(format!(
             "error: {} is a folder\nhelp: write the path of a machine file in it",
             path.display()
         ))),
-        None => Err(Failure::Wrong(unknown(name))),
+        None => Err(Failure::wrong(unknown(name))),
     }
 }
 
-fn from_source(source: &SourceFile) -> Result<Loaded, Failure> {
+fn from_source(source: &SourceFile, listener: &dyn Listener) -> Result<Loaded, Failure> {
     let mut diagnostics = Diagnostics::new();
     match compile(source, &mut diagnostics) {
         Some(compiled) => {
-            show(source, &diagnostics);
+            listener.hear(&Words::marked(source, &diagnostics));
             let published = shipped::published(source.text());
             let published = published.map(|(name, text)| SourceFile::new(name, text));
             let origin = source.name().to_owned();
             Ok(Loaded { origin, source: Some(source.clone()), compiled, published })
         }
-        None => Err(Failure::Wrong(rendered(source, &diagnostics))),
+        None => Err(Failure::marked(source, &diagnostics)),
     }
 }
 
@@ -116,7 +116,7 @@ fn from_word(word: &str) -> Result<Loaded, Failure> {
     let source = SourceFile::new("topology", word);
     let mut diagnostics = Diagnostics::new();
     let compiled = compile_word(word, &mut diagnostics);
-    let compiled = compiled.ok_or_else(|| Failure::Wrong(rendered(&source, &diagnostics)))?;
+    let compiled = compiled.ok_or_else(|| Failure::marked(&source, &diagnostics))?;
     Ok(Loaded { origin: format!("the topology {word}"), source: None, compiled, published: None })
 }
 

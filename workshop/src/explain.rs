@@ -50,7 +50,7 @@ fn factors() -> Vec<(&'static FactorEntry, Entry<'static>)> {
 }
 
 /// All codes and terms, a line each.
-pub(crate) fn overview() -> String {
+pub fn overview() -> String {
     page::overview(&codes(), &terms(), &factors())
 }
 
@@ -60,7 +60,7 @@ pub(crate) fn overview() -> String {
 /// # Errors
 ///
 /// The nearest names, at most three, where there is no page of this one.
-pub(crate) fn page(name: &str) -> Result<String, Vec<&'static str>> {
+pub fn page(name: &str) -> Result<String, Vec<&'static str>> {
     let name = name.trim().replace('_', "-");
     let is = |entry: &Entry<'_>| entry.name.eq_ignore_ascii_case(&name);
     if let Some(code) = codes().iter().find(|entry| is(entry)) {

@@ -10,26 +10,26 @@ use model_dsl::calibration::{self, Calibration};
 use model_dsl::source::SourceFile;
 use similar::TextDiff;
 
-use super::files::Files;
-use crate::commands::simulate::machine_name;
 use crate::failure::Failure;
-use crate::output::warn;
+use crate::named::{Files, machine_name};
 use crate::recorded::Recorded;
+use crate::told::{Listener, Words};
 use crate::written::{self, comment, folder};
 
 /// Writes the known calibration mended, with the findings added; without either it is written as it is, with a warning.
-pub(super) fn write(
+pub fn write(
     target: &Path,
     recorded: &Recorded,
     files: &Files,
     diagnosis: &Diagnosis,
+    listener: &dyn Listener,
 ) -> Result<(), Failure> {
     let equations = diagnosis.mended.as_ref().map_or(&recorded.equations, |mended| &mended.equations);
     let machine = machine_file(target, recorded, diagnosis);
     if let Some((path, _)) = &machine
         && path.exists()
     {
-        return Err(Failure::Wrong(format!(
+        return Err(Failure::wrong(format!(
             "error: {} is there already, and a machine file is never written over\nhelp: take it away, or give \
              --write-calibration another name",
             path.display()
@@ -47,7 +47,7 @@ pub(super) fn write(
     if let Some((path, staged)) = beside {
         staged.keep().map_err(|error| written::cannot_write(&path, &error))?;
     }
-    tell(target, diagnosis);
+    tell(target, diagnosis, listener);
     Ok(())
 }
 
@@ -62,7 +62,7 @@ fn machine_file(target: &Path, recorded: &Recorded, diagnosis: &Diagnosis) -> Op
 
 /// What the findings change in the known calibration, both as they would be written beside the recording: a unified diff.
 /// Empty where there are none.
-pub(super) fn change(recorded: &Recorded, files: &Files, diagnosis: &Diagnosis) -> Result<String, Failure> {
+pub fn change(recorded: &Recorded, files: &Files, diagnosis: &Diagnosis) -> Result<String, Failure> {
     if diagnosis.findings.is_empty() && diagnosis.model.is_empty() {
         return Ok(String::new());
     }
@@ -171,16 +171,17 @@ fn rms(diagnosis: &Diagnosis) -> String {
 }
 
 /// What whoever uses the file should know.
-fn tell(target: &Path, diagnosis: &Diagnosis) {
+fn tell(target: &Path, diagnosis: &Diagnosis, listener: &dyn Listener) {
+    let warn = |text: String| listener.hear(&Words::from(text));
     let target = target.display();
     for change in diagnosis.model.iter().filter(|change| matches!(change.file, WrongFile::Recording(_))) {
-        warn(&format!("note: {target} does not mend {}: {}; {}", change.name, change.fault, change.remedy));
+        warn(format!("note: {target} does not mend {}: {}; {}", change.name, change.fault, change.remedy));
     }
     if diagnosis.findings.is_empty() && diagnosis.model.is_empty() {
-        warn(&format!("warning: no term was found: {target} holds what was known before, and nothing more"));
+        warn(format!("warning: no term was found: {target} holds what was known before, and nothing more"));
     }
     for finding in diagnosis.findings.iter().filter(|finding| !finding.compensable) {
-        warn(&format!(
+        warn(format!(
             "note: {} of {} in {target} cannot be compensated in real time; abbe compensate needs --leave-out-uncompensable",
             finding.term, finding.motion
         ));

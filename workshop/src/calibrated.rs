@@ -13,63 +13,59 @@ use model_dsl::yaml;
 
 use crate::failure::Failure;
 use crate::load;
-use crate::output::{rendered, show};
+use crate::told::{Listener, Words};
 
 /// A machine with the numbers of one specimen.
-pub(crate) struct Calibrated {
+pub struct Calibrated {
     /// The validated chain.
-    pub(crate) machine: Machine,
+    pub machine: Machine,
     /// The machine's equations.
-    pub(crate) equations: Equations,
+    pub equations: Equations,
     /// Its numbers.
-    pub(crate) calibration: Calibration,
+    pub calibration: Calibration,
     /// Its file.
-    pub(crate) source: SourceFile,
+    pub source: SourceFile,
 }
 
 /// Reads a calibration file and compiles the machine that it names.
-pub(crate) fn read(path: &Path) -> Result<Calibrated, Failure> {
+pub fn read(path: &Path, listener: &dyn Listener) -> Result<Calibrated, Failure> {
     let source = load::read(path)?;
     let mut diagnostics = Diagnostics::new();
-    let wrong = |diagnostics: &Diagnostics| Failure::Wrong(rendered(&source, diagnostics));
+    let wrong = |diagnostics: &Diagnostics| Failure::marked(&source, diagnostics);
     let root = yaml::read(&source, &mut diagnostics).ok_or_else(|| wrong(&diagnostics))?;
     let name = calibration::machine_of(&root, &mut diagnostics).ok_or_else(|| wrong(&diagnostics))?;
-    let machine = load::machine(&name.value, path.parent()).map_err(|failure| match failure {
-        Failure::Wrong(text) => {
+    let machine = load::machine(&name.value, path.parent(), listener).map_err(|failure| match failure {
+        Failure::Wrong(reason) => {
             let unusable =
                 Diagnostic::error("E0426", name.span, format!("machine `{}` cannot be used", name.value))
                     .label("named here; the reason stands below");
             let mut diagnostics = Diagnostics::new();
             diagnostics.push(unusable);
-            Failure::Wrong(format!("{}\n{text}", wrong_text(&source, &diagnostics)))
+            Failure::Wrong(Words::marked(&source, &diagnostics).then(reason))
         }
         other => other,
     })?;
     let (machine, equations) = (machine.compiled.machine, machine.compiled.equations);
     let calibration = calibration::read(&root, &equations.names(), &mut diagnostics);
     let calibration = calibration.filter(|_| !diagnostics.has_errors()).ok_or_else(|| wrong(&diagnostics))?;
-    show(&source, &diagnostics);
+    listener.hear(&Words::marked(&source, &diagnostics));
     Ok(Calibrated { machine, equations, calibration, source })
-}
-
-fn wrong_text(source: &SourceFile, diagnostics: &Diagnostics) -> String {
-    rendered(source, diagnostics).trim_end().to_owned()
 }
 
 impl Calibrated {
     /// Refuses the terms that cannot be compensated in real time, all of them, by name.
-    pub(crate) fn refuse_uncompensable(&self) -> Result<(), Failure> {
+    pub fn refuse_uncompensable(&self) -> Result<(), Failure> {
         let mut diagnostics = Diagnostics::new();
         self.calibration.refuse_uncompensable(&self.equations.names(), &mut diagnostics);
         if diagnostics.is_empty() {
             return Ok(());
         }
         let help = "help: --leave-out-uncompensable compensates the other terms without them";
-        Err(Failure::Wrong(format!("{}\n{help}", wrong_text(&self.source, &diagnostics))))
+        Err(Failure::Wrong(Words::marked(&self.source, &diagnostics).then(help)))
     }
 
     /// The compensable terms of every error motion, in the order of the equations; `left_out` hears of the others.
-    pub(crate) fn terms(&self, mut left_out: impl FnMut(String)) -> Vec<Vec<Term<'_>>> {
+    pub fn terms(&self, mut left_out: impl FnMut(String)) -> Vec<Vec<Term<'_>>> {
         let motions = self.equations.motions.iter().enumerate();
         motions
             .map(|(number, motion)| {

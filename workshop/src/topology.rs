@@ -8,16 +8,17 @@ use model_dsl::{compile, compile_word, yaml};
 use crate::load::Loaded;
 
 /// The topology word of a machine, and the file that has it.
-pub(crate) struct Topology {
-    pub(crate) word: String,
+pub struct Topology {
+    /// The word.
+    pub word: String,
     /// The file's name; of a bare word the word itself.
-    pub(crate) file: String,
+    pub file: String,
     source: Option<SourceFile>,
 }
 
 impl Topology {
     /// The word of a machine, where it has one: a chain that is written out has none.
-    pub(crate) fn of(loaded: &Loaded) -> Option<Self> {
+    pub fn of(loaded: &Loaded) -> Option<Self> {
         let word = loaded.compiled.machine.topology.clone()?;
         let source = loaded.source.clone();
         let file = source.as_ref().map_or(&*word, |source| source.name()).to_owned();
@@ -25,7 +26,7 @@ impl Topology {
     }
 
     /// The equations of the machine with another word; `None` where that is no machine.
-    pub(crate) fn derive(&self, word: &str) -> Option<Equations> {
+    pub fn derive(&self, word: &str) -> Option<Equations> {
         let mut diagnostics = Diagnostics::new();
         let compiled = match &self.source {
             Some(source) => compile(&self.rewritten(source, word)?, &mut diagnostics),
@@ -35,7 +36,7 @@ impl Topology {
     }
 
     /// The machine file with another word.
-    pub(crate) fn file_with(&self, word: &str) -> Option<SourceFile> {
+    pub fn file_with(&self, word: &str) -> Option<SourceFile> {
         self.source.as_ref().and_then(|source| self.rewritten(source, word))
     }
 

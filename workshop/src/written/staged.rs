@@ -18,14 +18,14 @@ const MOST_ATTEMPTS: u32 = 1000;
 
 /// A file that is complete and has not got its name yet; dropped before, it is gone.
 #[derive(Debug)]
-pub(crate) struct Staged {
+pub struct Staged {
     /// Where it is, and its name; nothing where the content is at its place already.
     names: Option<(PathBuf, PathBuf)>,
 }
 
 impl Staged {
     /// Writes the content beside the place of `target`, to the disk.
-    pub(crate) fn write(target: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<Self> {
+    pub fn write(target: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<Self> {
         let target = behind_links(target)?;
         let there = match fs::metadata(&target) {
             Ok(there) => Some(there),
@@ -50,7 +50,7 @@ impl Staged {
     }
 
     /// Gives the file its name.
-    pub(crate) fn keep(mut self) -> io::Result<()> {
+    pub fn keep(mut self) -> io::Result<()> {
         if let Some((part, target)) = &self.names {
             fs::rename(part, target)?;
             self.names = None;

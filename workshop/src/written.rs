@@ -14,11 +14,11 @@ use model_dsl::source::SourceFile;
 use model_dsl::yaml;
 
 use crate::failure::Failure;
-use crate::output::rendered;
+use crate::told::Words;
 use staged::Staged;
 
 /// The folder of a file.
-pub(crate) fn folder(file: &Path) -> PathBuf {
+pub fn folder(file: &Path) -> PathBuf {
     match file.parent() {
         Some(parent) if parent != Path::new("") => parent.to_owned(),
         _ => PathBuf::from("."),
@@ -26,7 +26,7 @@ pub(crate) fn folder(file: &Path) -> PathBuf {
 }
 
 /// A line of comment: it ends with its line, and a file's name in it must not end it.
-pub(crate) fn comment(text: &str) -> String {
+pub fn comment(text: &str) -> String {
     let control =
         |letter: char| letter.is_control() || matches!(letter, '\u{2028}' | '\u{2029}' | '\u{feff}');
     let text: String = text.chars().map(|letter| if control(letter) { ' ' } else { letter }).collect();
@@ -34,40 +34,34 @@ pub(crate) fn comment(text: &str) -> String {
 }
 
 /// Writes a calibration; nothing is written that the compiler would not take.
-pub(crate) fn calibration(target: &Path, text: &str, equations: &Equations) -> Result<(), Failure> {
+pub fn calibration(target: &Path, text: &str, equations: &Equations) -> Result<(), Failure> {
     let source = SourceFile::new(target.display().to_string(), text);
     let mut diagnostics = Diagnostics::new();
     let root = yaml::read(&source, &mut diagnostics);
     let read = root.and_then(|root| calibration::read(&root, &equations.names(), &mut diagnostics));
     match read {
         Some(_) => whole(target, text),
-        None => Err(Failure::Wrong(format!(
-            "{}\nerror: the calibration was not written, since it could not be read again; this is a fault of Abbe",
-            rendered(&source, &diagnostics).trim_end()
+        None => Err(Failure::Wrong(Words::marked(&source, &diagnostics).then(
+            "error: the calibration was not written, since it could not be read again; this is a fault of Abbe",
         ))),
     }
 }
 
 /// Refuses a place for a picture that cannot be written to, is one of the files that the command reads or writes besides, or is
 /// there already, unless `force` replaces it: before any work is done. `option` is the option that named it.
-pub(crate) fn check_picture(
-    target: &Path,
-    option: &str,
-    others: &[PathBuf],
-    force: bool,
-) -> Result<(), Failure> {
+pub fn check_picture(target: &Path, option: &str, others: &[PathBuf], force: bool) -> Result<(), Failure> {
     check_new(target, (option, "picture.svg"), others, force)
 }
 
 /// The same for a file of any kind; the option comes with an example of a name.
-pub(crate) fn check_new(
+pub fn check_new(
     target: &Path,
     (option, example): (&str, &str),
     others: &[PathBuf],
     force: bool,
 ) -> Result<(), Failure> {
     let wrong = |what: &str, help: &str| {
-        Err(Failure::Wrong(format!("error: {} {what}\nhelp: {help}", target.display())))
+        Err(Failure::wrong(format!("error: {} {what}\nhelp: {help}", target.display())))
     };
     let name = format!("{option} takes the name of a file such as {example}");
     if target.file_name().is_none() || target.is_dir() {
@@ -88,31 +82,28 @@ pub(crate) fn check_new(
 }
 
 /// Refuses a place whose folder is not there.
-pub(crate) fn check_folder(target: &Path, option: &str) -> Result<(), Failure> {
+pub fn check_folder(target: &Path, option: &str) -> Result<(), Failure> {
     if folder(target).is_dir() {
         return Ok(());
     }
-    Err(Failure::Wrong(format!(
+    Err(Failure::wrong(format!(
         "error: {} cannot be written: there is no such folder\nhelp: {option} takes the name of a file in a folder that is there",
         target.display()
     )))
 }
 
 /// Writes a file that gets its name only when it is complete and on the disk; what stood there before is replaced.
-pub(crate) fn whole(target: &Path, text: &str) -> Result<(), Failure> {
+pub fn whole(target: &Path, text: &str) -> Result<(), Failure> {
     let cannot = |error: io::Error| cannot_write(target, &error);
     staged(target, |file| file.write_all(text.as_bytes()))?.keep().map_err(cannot)
 }
 
 /// Writes a file beside its place, so that it can get its name together with others.
-pub(crate) fn staged(
-    target: &Path,
-    fill: impl FnOnce(&mut File) -> io::Result<()>,
-) -> Result<Staged, Failure> {
+pub fn staged(target: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<Staged, Failure> {
     Staged::write(target, fill).map_err(|error| cannot_write(target, &error))
 }
 
 /// Why a file could not be written.
-pub(crate) fn cannot_write(target: &Path, error: &io::Error) -> Failure {
+pub fn cannot_write(target: &Path, error: &io::Error) -> Failure {
     Failure::io(&format!("cannot write {}", target.display()), error)
 }

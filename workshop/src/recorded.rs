@@ -14,24 +14,23 @@ use recording::{self, Header, Recording};
 use crate::calibrated::{self, Calibrated};
 use crate::failure::Failure;
 use crate::load;
-use crate::output::{rendered, show, warn};
-use crate::progress::Progress;
+use crate::told::{Listener, Words};
 use crate::topology::Topology;
 
 /// A recording and all that it names.
-pub(crate) struct Recorded {
+pub struct Recorded {
     /// The recording file.
-    pub(crate) source: SourceFile,
+    pub source: SourceFile,
     /// The equations of the machine that was recorded.
-    pub(crate) equations: Equations,
+    pub equations: Equations,
     /// The machine that was recorded.
-    pub(crate) machine: Machine,
+    pub machine: Machine,
     /// Where they come from a topology word: the word, and its file.
-    pub(crate) topology: Option<Topology>,
+    pub topology: Option<Topology>,
     /// What is already known of it, where the recording names a calibration.
-    pub(crate) calibration: Option<Calibrated>,
+    pub calibration: Option<Calibrated>,
     /// The data.
-    pub(crate) recording: Recording,
+    pub recording: Recording,
     /// The calibration's file, where there is one.
     calibration_path: Option<PathBuf>,
     /// Where the file names its machine and its calibration.
@@ -44,32 +43,32 @@ struct Named {
 }
 
 /// Reads a recording file, its data, and the machine and the calibration that it names. All paths in the file are
-/// counted from its own folder. `quiet` shows no progress.
-pub(crate) fn read(path: &Path, quiet: bool) -> Result<Recorded, Failure> {
+/// counted from its own folder.
+pub fn read(path: &Path, listener: &dyn Listener) -> Result<Recorded, Failure> {
     let source = load::read(path)?;
     let folder = path.parent();
     let mut diagnostics = Diagnostics::new();
     let root = yaml::read(&source, &mut diagnostics).ok_or_else(|| wrong(&source, &diagnostics))?;
     let name = recording::machine_of(&root, &mut diagnostics).ok_or_else(|| wrong(&source, &diagnostics))?;
-    let loaded = load::machine(&name.value, folder)
+    let loaded = load::machine(&name.value, folder, listener)
         .map_err(|failure| unusable(&source, "E0622", "machine", &name, failure))?;
     let topology = Topology::of(&loaded);
     let Compiled { machine, equations } = loaded.compiled;
     let header = recording::read_header(&root, &equations, &mut diagnostics);
     let header = header.filter(|_| !diagnostics.has_errors()).ok_or_else(|| wrong(&source, &diagnostics))?;
-    show(&source, &diagnostics);
+    listener.hear(&Words::marked(&source, &diagnostics));
     let calibration_path = header.calibration.as_ref().map(|name| in_folder(folder, &name.value));
-    let calibration = read_calibration(&source, &header, calibration_path.as_deref(), &equations)?;
-    let recording = read_data(&header, folder, &source, quiet)?;
+    let calibration = read_calibration(&source, &header, calibration_path.as_deref(), &equations, listener)?;
+    let recording = read_data(&header, folder, &source, listener)?;
     let named = Named { machine: name.span, calibration: header.calibration.map(|name| name.span) };
     Ok(Recorded { source, equations, machine, topology, calibration, recording, calibration_path, named })
 }
 
 /// Reads several recordings of one machine with one calibration.
-pub(crate) fn read_all(paths: &[PathBuf], quiet: bool) -> Result<Vec<Recorded>, Failure> {
+pub fn read_all(paths: &[PathBuf], listener: &dyn Listener) -> Result<Vec<Recorded>, Failure> {
     let mut all: Vec<Recorded> = Vec::new();
     for path in paths {
-        let mut recorded = read(path, quiet)?;
+        let mut recorded = read(path, listener)?;
         if let Some(first) = all.first() {
             first.take_other(&mut recorded)?;
         }
@@ -83,10 +82,11 @@ fn read_calibration(
     header: &Header,
     path: Option<&Path>,
     equations: &Equations,
+    listener: &dyn Listener,
 ) -> Result<Option<Calibrated>, Failure> {
     let (Some(name), Some(path)) = (&header.calibration, path) else { return Ok(None) };
-    let calibrated =
-        calibrated::read(path).map_err(|failure| unusable(source, "E0623", "calibration", name, failure))?;
+    let calibrated = calibrated::read(path, listener)
+        .map_err(|failure| unusable(source, "E0623", "calibration", name, failure))?;
     let of = &calibrated.equations;
     if of.names() == equations.names() {
         return Ok(Some(calibrated));
@@ -105,16 +105,15 @@ fn read_data(
     header: &Header,
     folder: Option<&Path>,
     source: &SourceFile,
-    quiet: bool,
+    listener: &dyn Listener,
 ) -> Result<Recording, Failure> {
     let path = in_folder(folder, &header.data.value);
-    // The line of progress is gone before anything is said.
-    let progress = Progress::new(quiet, &format!("reading {}", path.display()));
+    listener.begin(&format!("reading {}", path.display()));
     let read = header.read_data(&path);
-    drop(progress);
-    let mut recording = read.map_err(|error| Failure::No(error.to_string()))?;
+    listener.end();
+    let mut recording = read.map_err(|error| Failure::no(error.to_string()))?;
     for note in &recording.notes {
-        warn(&format!("note: {note}"));
+        listener.hear(&format!("note: {note}").into());
     }
     source.name().clone_into(&mut recording.file);
     Ok(recording)
@@ -125,7 +124,7 @@ fn in_folder(folder: Option<&Path>, name: &str) -> PathBuf {
 }
 
 fn wrong(source: &SourceFile, diagnostics: &Diagnostics) -> Failure {
-    Failure::Wrong(rendered(source, diagnostics))
+    Failure::marked(source, diagnostics)
 }
 
 fn one(source: &SourceFile, diagnostic: Diagnostic) -> Failure {
@@ -135,7 +134,7 @@ fn one(source: &SourceFile, diagnostic: Diagnostic) -> Failure {
 }
 
 /// What a recording names cannot be used, for a reason that was found in another file.
-pub(crate) fn unusable(
+pub fn unusable(
     source: &SourceFile,
     code: &'static str,
     what: &str,
@@ -146,7 +145,7 @@ pub(crate) fn unusable(
     let mistake = Diagnostic::error(code, name.span, format!("{what} `{}` cannot be used", name.value));
     let mut diagnostics = Diagnostics::new();
     diagnostics.push(mistake.label("named here; the reason stands below"));
-    Failure::Wrong(format!("{}\n{reason}", rendered(source, &diagnostics).trim_end()))
+    Failure::Wrong(Words::marked(source, &diagnostics).then(reason))
 }
 
 /// Whether calibrations differ in nothing that acts, or in constants alone.
@@ -245,8 +244,8 @@ mod tests {
 
     fn wrong<T>(result: Result<T, Failure>) -> String {
         match result {
-            Err(Failure::Wrong(text) | Failure::No(text)) => text,
-            _ => panic!("it was read"),
+            Err(failure) => failure.words().unwrap().text(false),
+            Ok(_) => panic!("it was read"),
         }
     }
 
@@ -254,12 +253,12 @@ mod tests {
     fn everything_is_found_from_the_recording_s_folder() {
         let text = recording("machine: stage.yaml\ncalibration: known.yaml");
         let folder = folder("found", &[("r.yaml", &text)]);
-        let recorded = read(&folder.join("r.yaml"), true).ok().unwrap();
+        let recorded = read(&folder.join("r.yaml"), &()).ok().unwrap();
         assert_eq!(recorded.equations.machine, "stage");
         assert!(recorded.calibration.is_some());
         assert_eq!(recorded.recording.time, [0.0, 1.0]);
         assert_eq!(recorded.recording.file, folder.join("r.yaml").display().to_string());
-        let both = read_all(&[folder.join("r.yaml"), folder.join("r.yaml")], true).ok().unwrap();
+        let both = read_all(&[folder.join("r.yaml"), folder.join("r.yaml")], &()).ok().unwrap();
         assert_eq!(both.len(), 2);
     }
 
@@ -284,7 +283,7 @@ mod tests {
         ];
         for (name, text, code, part) in files {
             let folder = folder("marked", &[(name, &text)]);
-            let said = wrong(read(&folder.join(name), true));
+            let said = wrong(read(&folder.join(name), &()));
             assert!(said.contains(code) && said.contains(part), "{said}");
         }
     }
@@ -296,7 +295,7 @@ mod tests {
         let files = [("one.yaml", one.as_str()), ("two.yaml", two.as_str()), ("three.yaml", three.as_str())];
         let folder = folder("together", &files);
         for other in ["two.yaml", "three.yaml"] {
-            let said = wrong(read_all(&[folder.join("one.yaml"), folder.join(other)], true));
+            let said = wrong(read_all(&[folder.join("one.yaml"), folder.join(other)], &()));
             assert!(said.contains("E0625") && said.contains("one.yaml") && said.contains(other), "{said}");
         }
     }

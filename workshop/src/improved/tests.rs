@@ -8,7 +8,7 @@ use model_dsl::calibration::{CalibratedTerm, SensorKind, SeriesInput};
 
 use super::*;
 use crate::calibrated;
-use crate::commands::diagnose::files::check_target;
+use crate::named::check_target;
 use crate::recorded;
 
 /// A folder that goes with its test.
@@ -31,7 +31,7 @@ impl Folder {
         );
         let path = self.0.join("r.yaml");
         fs::write(&path, text).unwrap();
-        let recorded = recorded::read(&path, true).unwrap_or_else(|failure| panic!("{}", words(&failure)));
+        let recorded = recorded::read(&path, &()).unwrap_or_else(|failure| panic!("{}", words(&failure)));
         let files = Files::of(&recorded, &path);
         (recorded, files)
     }
@@ -48,10 +48,7 @@ impl Drop for Folder {
 }
 
 fn words(failure: &Failure) -> String {
-    match failure {
-        Failure::No(text) | Failure::Wrong(text) => text.clone(),
-        Failure::ClosedPipe => "closed".to_owned(),
-    }
+    failure.words().map_or_else(|| "closed".to_owned(), |words| words.text(false))
 }
 
 /// A finding that reads sensor 0 of its own, if any.
@@ -87,23 +84,23 @@ fn written(
     files: &Files,
     findings: Vec<Finding>,
 ) -> calibrated::Calibrated {
-    write(target, recorded, files, &diagnosis(findings))
+    write(target, recorded, files, &diagnosis(findings), &())
         .unwrap_or_else(|failure| panic!("{}", words(&failure)));
-    calibrated::read(target).unwrap_or_else(|failure| panic!("{}", words(&failure)))
+    calibrated::read(target, &()).unwrap_or_else(|failure| panic!("{}", words(&failure)))
 }
 
 const BACKLASH: CalibratedTerm = CalibratedTerm::Backlash { axis: 0, lost_motion: 0.0098, wind_up: 0.0 };
 
 #[test]
 fn every_calibration_that_comes_with_the_program_takes_a_finding_and_keeps_the_rest() {
-    let shipped = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("calibrations");
+    let shipped = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../calibrations");
     let mut tried = 0;
     for entry in fs::read_dir(shipped).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_none_or(|extension| extension != "yaml") {
             continue;
         }
-        let known = calibrated::read(&path).ok().unwrap();
+        let known = calibrated::read(&path, &()).ok().unwrap();
         let folder = Folder::new(&format!("shipped-{tried}"));
         let name = path.display().to_string();
         let (recorded, files) = folder.recorded(&known.calibration.machine.value, Some(&name));
@@ -205,7 +202,7 @@ fn what_could_not_be_read_is_not_written_and_leaves_what_stood_there() {
     fs::write(&target, "kept").unwrap();
     let broken = CalibratedTerm::Lag { axis: 0, gain: f64::NAN, frequency: 0.0 };
     let findings = vec![finding(&recorded, "EXX", broken, None)];
-    assert!(write(&target, &recorded, &files, &diagnosis(findings)).is_err());
+    assert!(write(&target, &recorded, &files, &diagnosis(findings), &()).is_err());
     assert_eq!(fs::read_to_string(&target).unwrap(), "kept");
 }
 

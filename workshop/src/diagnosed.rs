@@ -1,0 +1,45 @@
+//! A diagnosis of recordings that were read. In: recordings of one machine, those that are fitted and one that is held out. Out: what
+//! the model leaves out.
+
+use diagnosis::diagnosis::Diagnosis;
+use diagnosis::{Chains, Inputs, Progress};
+
+use crate::failure::Failure;
+use crate::recorded::Recorded;
+
+/// Diagnoses recordings of one machine with one calibration, as [`crate::recorded::read_all`] has read them; `pictured` keeps what a
+/// page draws besides. `show` hears how far the work is.
+///
+/// # Errors
+///
+/// [`Failure::No`] where no recording holds a sample that could be used.
+pub fn diagnose(
+    fitted: &[Recorded],
+    held_out: Option<&Recorded>,
+    pictured: bool,
+    show: &mut dyn FnMut(Progress),
+) -> Result<Diagnosis, Failure> {
+    let Some(first) = fitted.first() else { return Ok(Diagnosis::default()) };
+    let derive = first.topology.as_ref().map(|topology| |word: &str| topology.derive(word));
+    let inputs = Inputs {
+        equations: &first.equations,
+        calibration: first.calibration.as_ref().map(|known| &known.calibration),
+        recordings: fitted.iter().map(|recorded| &recorded.recording).collect(),
+        holdout: held_out.map(|recorded| &recorded.recording),
+        calibration_file: first.calibration.as_ref().map(|known| &known.source),
+        chains: first.topology.as_ref().zip(derive.as_ref()).map(|(topology, derive)| Chains {
+            file: &topology.file,
+            word: &topology.word,
+            derive,
+        }),
+    };
+    let mut show = |now: Progress| show(now);
+    let diagnosis = match pictured {
+        true => diagnosis::diagnose_with_pictures(&inputs, &mut show),
+        false => diagnosis::diagnose(&inputs, &mut show),
+    };
+    if diagnosis.recordings.iter().all(|recording| recording.samples == 0) {
+        return Err(Failure::no("error: the recordings hold no sample that could be used"));
+    }
+    Ok(diagnosis)
+}

@@ -383,7 +383,7 @@ fn the_shipped_list_is_the_folder() {
     let listed = fs::read_to_string(root().join("workshop/src/shipped.rs")).unwrap();
     for entry in fs::read_dir(root().join("machines")).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
-        assert!(listed.contains(&format!("\"../machines/{name}\"")), "machines/{name} is not shipped");
+        assert!(listed.contains(&format!("/machines/{name}\"")), "machines/{name} is not shipped");
     }
 }
 

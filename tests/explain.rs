@@ -49,6 +49,7 @@ fn emitted() -> BTreeSet<String> {
         "diagnosis/src",
         "update/src",
         "exchange/src",
+        "workshop/src",
         "src",
     ] {
         for path in rust_files(&root().join(folder)) {

@@ -1,7 +1,7 @@
 //! What a code of a diagnostic, a term of the vocabulary, a factor and the name of an error motion mean. In: a name. Out: a page for a person, or the names that
 //! are near to it.
 //!
-//! The texts stand in files beside this one, in the form that [`entry`] reads: one source for the command and for the tables
+//! The texts stand in files beside this one, in the form that `entry` reads: one source for the command and for the tables
 //! of the reference, which are compared with it.
 
 mod entry;

@@ -53,7 +53,7 @@ pub(crate) enum Command {
     Evaluate(Evaluate),
     /// Write the files that a controller loads, and tell what they cannot carry.
     Export(Export),
-    /// Write a commented machine file to start from.
+    /// Write a commented file to start from: of a machine, a calibration, a recording, a set-up or a path.
     New(New),
     /// Explain a diagnostic code, a term or the name of an error motion; alone: list them.
     Explain(Explain),
@@ -335,9 +335,53 @@ pub(crate) struct Export {
 }
 
 #[derive(Args)]
+#[command(args_conflicts_with_subcommands = true)]
 pub(crate) struct New {
+    /// The kind of file; a topology word alone is a machine.
+    #[command(subcommand)]
+    pub(crate) file: Option<NewFile>,
     /// A topology word: axes that carry the part, F for the bed, axes that carry the tool.
-    pub(crate) topology: String,
+    #[arg(required = true)]
+    pub(crate) topology: Option<String>,
+    /// The file to write; by default it is printed.
+    #[arg(long, global = true, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Replace a file that is there already.
+    #[arg(long, global = true, requires = "output")]
+    pub(crate) force: bool,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum NewFile {
+    /// A machine file of a topology word, with its chain written out.
+    Machine {
+        /// Axes that carry the part, F for the bed, axes that carry the tool.
+        topology: String,
+    },
+    /// A calibration file with every constant and error motion of a machine, all zero.
+    Calibration {
+        /// A machine file, the name of a shipped machine, or a topology word such as XYFZ.
+        machine: String,
+    },
+    /// A recording file for the columns of a table.
+    Recording {
+        /// The table: its first line has the names of the columns.
+        data: PathBuf,
+        /// The machine that was recorded.
+        #[arg(long)]
+        machine: Option<String>,
+    },
+    /// A set-up file for the files of instruments and controllers, which `abbe calibrate` reads.
+    Setup {
+        /// The files.
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+    },
+    /// A path file for a machine, which `abbe simulate` and `abbe plan` drive.
+    Path {
+        /// A machine file, the name of a shipped machine, or a topology word such as XYFZ.
+        machine: String,
+    },
 }
 
 #[derive(Args)]

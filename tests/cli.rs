@@ -486,3 +486,44 @@ fn a_file_of_the_other_kind_is_told_apart() {
     let run = abbe(&["compensate", "machines/postech-mill.yaml"], "");
     assert!(run.status == 2 && run.err.contains("this is a machine file"), "{}", run.err);
 }
+
+#[test]
+fn new_files_are_taken_by_the_commands_that_read_them() {
+    let folder = std::env::temp_dir().join(format!("abbe-new-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    let at = |name: &str| folder.join(name).display().to_string();
+    fs::write(folder.join("data.csv"), "t_s,run,x_cmd,y_cmd,dev_um\n0,1,0,0,0.5\n1,1,1,0,0.2\n2,1,2,0,0.1\n")
+        .unwrap();
+    for arguments in [
+        &["new", "machine", "XYFZ", "--output", &at("mill.yaml")][..],
+        &["new", "calibration", &at("mill.yaml"), "--output", &at("known.yaml")],
+        &["new", "path", &at("mill.yaml"), "--output", &at("path.yaml")],
+        &["new", "recording", &at("data.csv"), "--machine", "XYFZ", "--output", &at("recording.yaml")],
+        &["new", "setup", &at("data.csv"), "--output", &at("setup.yaml")],
+        &["simulate", &at("known.yaml"), &at("path.yaml"), "--output", &at("simulated")],
+        &["diagnose", &at("simulated/recording.yaml")],
+        &["diagnose", &at("recording.yaml")],
+    ] {
+        let run = abbe(arguments, "");
+        assert_eq!(run.status, 0, "{arguments:?}: {}", run.err);
+    }
+    let setup = fs::read_to_string(folder.join("setup.yaml")).unwrap();
+    assert!(setup.contains("measurements:\n  - {motion: EXX, data: data.csv,"), "{setup}");
+    let again = abbe(&["new", "XYFZ", "--output", &at("mill.yaml")], "");
+    assert!(again.status == 2 && again.err.contains("is there already"), "{}", again.err);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_table_alone_is_answered_with_a_recording_file_for_its_columns() {
+    let table = file("alone", "data.csv", "t_s,x_cmd,laser_x_um\n0,0,0\n");
+    for command in ["diagnose", "evaluate", "limits"] {
+        let run = abbe(&[command, &table], "");
+        assert_eq!(run.status, 2, "{command}: {}", run.err);
+        assert!(
+            run.err.contains("is a table") && run.err.contains("measured.x: {column: laser_x_um, unit: um}"),
+            "{}",
+            run.err
+        );
+    }
+}

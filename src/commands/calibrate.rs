@@ -2,7 +2,7 @@
 //! with uncertainties, as text or JSON, and the calibration.
 
 mod corrections;
-mod files;
+pub(super) mod files;
 mod volumetric;
 
 use std::path::{Path, PathBuf};

@@ -1,17 +1,68 @@
-//! `abbe new`: a commented machine file to start from.
+//! `abbe new`: a commented file to start from. In: its kind, and what it is of: a topology word, a machine, a table, files of
+//! instruments. Out: the file, on standard output or under a name of its own.
+
+use std::path::PathBuf;
 
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::machine::template;
 use model_dsl::source::SourceFile;
+use workshop::begin;
 use workshop::failure::Failure;
+use workshop::load::{self, Loaded};
+use workshop::written;
 
-use crate::arguments::New;
-use crate::output;
+use super::calibrate::files::setup_to_fill_in;
+use crate::arguments::{New, NewFile};
+use crate::output::{Person, print};
 
 /// Runs the command.
 pub(crate) fn run(command: &New) -> Result<(), Failure> {
+    let file = command.file.as_ref();
+    if let Some(target) = &command.output {
+        written::check_folder(target, "--output")?;
+        let read = file.map(files_read).unwrap_or_default();
+        written::check_new(target, ("--output", "new.yaml"), &read, command.force)?;
+    }
+    let text = match file {
+        Some(file) => text(file)?,
+        None => machine(command.topology.as_deref().unwrap_or_default())?,
+    };
+    match &command.output {
+        Some(target) => written::whole(target, &text),
+        None => print(&text),
+    }
+}
+
+fn text(file: &NewFile) -> Result<String, Failure> {
+    match file {
+        NewFile::Machine { topology } => machine(topology),
+        NewFile::Calibration { machine } => {
+            Ok(begin::calibration(machine, &loaded(machine)?.compiled.equations))
+        }
+        NewFile::Path { machine } => Ok(begin::path(&loaded(machine)?.compiled.equations)),
+        NewFile::Recording { data, machine } => begin::recording_of(data, machine.as_deref()),
+        NewFile::Setup { files } => Ok(setup_to_fill_in(&files.iter().collect::<Vec<_>>())),
+    }
+}
+
+/// The files that are read, none of which is written over.
+fn files_read(file: &NewFile) -> Vec<PathBuf> {
+    match file {
+        NewFile::Machine { .. } => Vec::new(),
+        NewFile::Calibration { machine } | NewFile::Path { machine } => vec![machine.into()],
+        NewFile::Recording { data, machine } => {
+            machine.iter().map(PathBuf::from).chain([data.clone()]).collect()
+        }
+        NewFile::Setup { files } => files.clone(),
+    }
+}
+
+fn loaded(machine: &str) -> Result<Loaded, Failure> {
+    load::machine(machine, None, &Person::default())
+}
+
+fn machine(topology: &str) -> Result<String, Failure> {
     let mut diagnostics = Diagnostics::new();
-    let source = SourceFile::new("topology", command.topology.as_str());
-    let text = template(&command.topology, &mut diagnostics);
-    output::print(&text.ok_or_else(|| Failure::marked(&source, &diagnostics))?)
+    let source = SourceFile::new("topology", topology);
+    template(topology, &mut diagnostics).ok_or_else(|| Failure::marked(&source, &diagnostics))
 }

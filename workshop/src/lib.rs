@@ -4,6 +4,7 @@
 //! files that are written whole or not at all. Nothing is printed here: warnings go to a [`told::Listener`], and what stops the work
 //! is a [`failure::Failure`].
 
+pub mod begin;
 pub mod calibrated;
 pub mod diagnosed;
 pub mod explain;

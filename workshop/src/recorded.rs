@@ -11,6 +11,7 @@ use model_dsl::source::{SourceFile, Span, Spanned};
 use model_dsl::{Compiled, yaml};
 use recording::{self, Header, Recording};
 
+use crate::begin;
 use crate::calibrated::{self, Calibrated};
 use crate::failure::Failure;
 use crate::load;
@@ -45,10 +46,16 @@ struct Named {
 /// Reads a recording file, its data, and the machine and the calibration that it names. All paths in the file are
 /// counted from its own folder.
 pub fn read(path: &Path, listener: &dyn Listener) -> Result<Recorded, Failure> {
-    let source = load::read(path)?;
+    let source = load::read(path).map_err(|failure| begin::table_alone(path).unwrap_or(failure))?;
     let folder = path.parent();
     let mut diagnostics = Diagnostics::new();
-    let root = yaml::read(&source, &mut diagnostics).ok_or_else(|| wrong(&source, &diagnostics))?;
+    let root = yaml::read(&source, &mut diagnostics);
+    if root.as_ref().is_none_or(|root| root.entries().is_none())
+        && let Some(table) = begin::table_alone(path)
+    {
+        return Err(table);
+    }
+    let root = root.ok_or_else(|| wrong(&source, &diagnostics))?;
     let name = recording::machine_of(&root, &mut diagnostics).ok_or_else(|| wrong(&source, &diagnostics))?;
     let loaded = load::machine(&name.value, folder, listener)
         .map_err(|failure| unusable(&source, "E0622", "machine", &name, failure))?;

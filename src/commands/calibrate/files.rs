@@ -22,7 +22,7 @@ pub(super) fn setup_among(files: &[PathBuf]) -> Result<&Path, Failure> {
             "error: one set-up makes one calibration\nhelp: name all files under its `measurements`"
                 .to_owned(),
         )),
-        (_, data) => Err(Failure::wrong(to_fill_in(data))),
+        (_, data) => Err(Failure::wrong(format!("{WHY}\n\n{}", indented(&setup_to_fill_in(data))))),
     }
 }
 
@@ -36,9 +36,16 @@ fn is_of_an_instrument(path: &Path) -> Result<bool, Failure> {
     Ok(load::head_of_file(path)?.is_some_and(|head| file::is_sectioned(&head)))
 }
 
-/// What a set-up of these files must say.
-fn to_fill_in(data: &[&PathBuf]) -> String {
-    let head = "error: the file of an instrument or a controller does not say which motion of which machine it shows, from where and in which sense\nhelp: write a set-up file and give that; for example\n\n    setup: 1\n    machine: XYFZ\n    constants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}\n";
+/// Why the file of an instrument alone makes no calibration.
+const WHY: &str = "error: the file of an instrument or a controller does not say which motion of which machine it shows, from where and in which sense\nhelp: write a set-up file and give that (`abbe new setup` writes it); for example";
+
+fn indented(text: &str) -> String {
+    text.lines().map(|line| format!("    {line}\n")).collect()
+}
+
+/// A set-up of these files, to be filled in.
+pub(in crate::commands) fn setup_to_fill_in(data: &[&PathBuf]) -> String {
+    let mut text = "setup: 1\nmachine: XYFZ\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}\n".to_owned();
     let text_of = |path: &Path| load::read(path).map(|file| file.text().to_owned()).unwrap_or_default();
     let is_volumetric = |path: &&&PathBuf| volumetric_form(&text_of(path)).is_some();
     let (volumetric, others): (Vec<&&PathBuf>, Vec<&&PathBuf>) = data.iter().partition(is_volumetric);
@@ -46,12 +53,11 @@ fn to_fill_in(data: &[&PathBuf]) -> String {
     let (saved, measured): (Vec<&&PathBuf>, Vec<&&PathBuf>) =
         others.into_iter().partition(|path| form(path).is_some());
     let name = |path: &Path| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-    let mut text = head.to_owned();
     for path in volumetric {
-        text += &format!("    volumetric: {}\n", name(path));
+        text += &format!("volumetric: {}\n", name(path));
     }
     if !saved.is_empty() {
-        text += "    corrections:\n";
+        text += "corrections:\n";
     }
     for path in saved {
         let more = match form(path) {
@@ -59,14 +65,14 @@ fn to_fill_in(data: &[&PathBuf]) -> String {
             Some(SavedForm::Codes) => ", x: [10 mm, 210 mm], y: [10 mm, 210 mm]",
             _ => "",
         };
-        text += &format!("      - {{data: {}{more}}}\n", name(path));
+        text += &format!("  - {{data: {}{more}}}\n", name(path));
     }
     if !measured.is_empty() {
-        text += "    measurements:\n";
+        text += "measurements:\n";
     }
     for path in measured {
         text += &format!(
-            "      - {{motion: EXX, data: {}, targets: {{origin: 0 mm, sign: +1}}, deviations: {{sign: +1}}}}\n",
+            "  - {{motion: EXX, data: {}, targets: {{origin: 0 mm, sign: +1}}, deviations: {{sign: +1}}}}\n",
             name(path)
         );
     }

@@ -1,0 +1,10 @@
+//! Files to begin with. In: a machine, or the columns of a table. Out: a commented file that Abbe reads as it is, with what only its
+//! owner knows marked as such.
+
+mod calibration;
+mod path;
+mod recording;
+
+pub use calibration::calibration;
+pub use path::path;
+pub use recording::{columns, recording, recording_of, table_alone};

@@ -90,15 +90,11 @@ fn named(package: &Value) -> Vec<String> {
 
 /// From the smallest to the largest.
 pub(crate) fn builds(workspace: &Workspace) -> Result<Vec<Build>, String> {
-    let wanted: [(_, &[_]); 5] = [
+    let wanted: [(_, &[_]); 4] = [
         ("A controller: `abbe-runtime`", &["-p", "abbe-runtime", "--edges", "normal"]),
         ("The macro `machine!`: `abbe-macros`", &["-p", "abbe-macros", "--edges", "normal,build"]),
         ("A library for C: `abbe-c`", &["-p", "abbe-c", "--edges", "normal,build"]),
         ("The program: `abbe`", &["-p", "abbe", "--edges", "normal,build"]),
-        (
-            "The program with recordings in Parquet",
-            &["-p", "abbe", "--edges", "normal,build", "--features", "abbe-diagnosis/parquet"],
-        ),
     ];
     let build = |(title, arguments): (_, &[_])| {
         let crates = compiled(arguments)?.into_iter().map(|key| {

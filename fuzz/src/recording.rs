@@ -31,7 +31,7 @@ pub fn run(bytes: &[u8]) {
     let Some(header) = header.filter(|_| !diagnostics.has_errors()) else {
         return assert!(diagnostics.has_errors(), "neither a recording nor an error");
     };
-    match header.read_csv("data.csv", data) {
+    match header.read_bytes("data", data.to_vec()) {
         Ok(recording) => studied(&machine, &recording),
         Err(error) => assert!(error.to_string().starts_with("error: "), "{error}"),
     }

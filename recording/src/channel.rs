@@ -6,12 +6,13 @@ use model_dsl::algebra::Axis;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::fields::Fields;
-use model_dsl::quantity::{self, Dimension, Unit};
+use model_dsl::quantity::{Dimension, Unit};
 use model_dsl::source::{Span, Spanned};
 use model_dsl::suggest::nearest;
 use model_dsl::yaml::Node;
 
-use super::words::{FORM, keys, near_or_all, word};
+use super::place::{DATE, SECOND, is_date, read_place, read_step, scaled_unit};
+use super::words::{FORM, keys, near_or_all};
 
 /// A column of the data and what it means.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,18 +21,53 @@ pub struct Channel {
     pub name: Spanned<String>,
     /// What it means.
     pub kind: ChannelKind,
-    /// The column's name in the data.
-    pub column: Spanned<String>,
-    /// The unit of its numbers; none for runs and normals.
+    /// Where its numbers stand.
+    pub place: ChannelPlace,
+    /// The unit of its numbers; none for runs and normals. Dates are in s.
     pub unit: Option<Spanned<Unit>>,
+    /// How many of that unit a number in the column is, or a step of time: 0.1 for `0.1 um`, else 1.
+    pub scale: f64,
     /// That unit as it is written.
     pub written_unit: String,
+}
+
+/// Where the numbers of a channel stand.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ChannelPlace {
+    /// In a column with this name.
+    Column(Spanned<String>),
+    /// Times that are dates with a time of day, in one column or in two: the date and the time of day.
+    Dates(Vec<Spanned<String>>),
+    /// In a column for each run.
+    Runs {
+        /// The columns that are read from the first row to the last.
+        columns: Vec<Spanned<String>>,
+        /// Those that are read from the last row to the first, after the column of the same run; or none.
+        back: Vec<Spanned<String>>,
+    },
+    /// Nowhere: times that are equally far apart from row to row, by one of the unit.
+    Step,
 }
 
 impl Channel {
     /// The value in mm, rad, s, degC or the unit of a load of a number in the column.
     pub fn to_internal(&self, number: f64) -> f64 {
-        self.unit.map_or(number, |unit| unit.value.to_internal(number))
+        self.unit.map_or(number, |unit| unit.value.to_internal(number * self.scale))
+    }
+
+    /// The names of its columns, in the order in which they are read.
+    pub fn columns(&self) -> Vec<&Spanned<String>> {
+        match &self.place {
+            ChannelPlace::Column(column) => vec![column],
+            ChannelPlace::Dates(columns) => columns.iter().collect(),
+            ChannelPlace::Runs { columns, back } => columns.iter().chain(back).collect(),
+            ChannelPlace::Step => Vec::new(),
+        }
+    }
+
+    /// Whether it has a column for each run.
+    pub fn is_wide(&self) -> bool {
+        matches!(self.place, ChannelPlace::Runs { .. })
     }
 }
 
@@ -122,14 +158,28 @@ fn read_channel(
 ) -> Option<Channel> {
     let what = format!("`{}`", name.value);
     let wording = keys(&what);
-    let fields = Fields::open(node, name.span, wording, &["column", "unit"], diagnostics)?;
-    let column = fields.need("column", wording, diagnostics);
-    let column = column.and_then(|node| word(node, &format!("`column` of {what}"), diagnostics));
+    let all = ["column", "unit", "columns", "back", "step"];
+    let known = match name.value.as_str() {
+        "time" => &all,
+        _ => all.get(..4).unwrap_or(&all),
+    };
+    let fields = Fields::open(node, name.span, wording, known, diagnostics)?;
+    if fields.get("step").is_some() {
+        return read_step(name, kind?, &fields, diagnostics);
+    }
+    let dates =
+        kind == Some(ChannelKind::Time) && fields.get("unit").and_then(Node::text).is_some_and(is_date);
+    let place = read_place(name, &fields, dates, diagnostics);
     let kind = kind?;
+    if dates {
+        let unit = fields.get("unit").map(|node| Spanned::new(SECOND, node.span));
+        let written_unit = DATE.to_owned();
+        return Some(Channel { name: name.clone(), kind, place: place?, unit, scale: 1.0, written_unit });
+    }
     let rule = unit_rule(&kind, angular, equations);
-    let unit = read_unit(name, &fields, &rule, diagnostics)?;
+    let (unit, scale) = read_unit(name, &fields, &rule, diagnostics)?;
     let written_unit = fields.get("unit").and_then(Node::text).unwrap_or("").trim().to_owned();
-    Some(Channel { name: name.clone(), kind, column: column?, unit, written_unit })
+    Some(Channel { name: name.clone(), kind, place: place?, unit, scale, written_unit })
 }
 
 fn unit_rule(kind: &ChannelKind, angular: bool, equations: &Equations) -> UnitRule {
@@ -150,15 +200,15 @@ fn unit_rule(kind: &ChannelKind, angular: bool, equations: &Equations) -> UnitRu
     }
 }
 
-/// The unit, none where none belongs; nothing where there is a finding.
+/// The unit and how many of it a number is, no unit where none belongs; nothing where there is a finding.
 fn read_unit(
     name: &Spanned<String>,
     fields: &Fields<'_>,
     rule: &UnitRule,
     diagnostics: &mut Diagnostics,
-) -> Option<Option<Spanned<Unit>>> {
+) -> Option<(Option<Spanned<Unit>>, f64)> {
     let (expected, usual) = match rule {
-        UnitRule::None => return no_unit(name, fields, diagnostics).then_some(None),
+        UnitRule::None => return no_unit(name, fields, diagnostics).then_some((None, 1.0)),
         UnitRule::Kind(Dimension::ANGLE) => (Dimension::ANGLE.name(), "deg".to_owned()),
         UnitRule::Kind(kind) => (kind.name(), kind.usual_unit()),
         UnitRule::Load => {
@@ -171,7 +221,7 @@ fn read_unit(
         diagnostics.push(mistake.help(format!("add `unit: {usual}` if that is what the column holds")));
         return None;
     };
-    let unit = quantity::read_unit(node, &format!("the unit of `{}`", name.value), diagnostics)?;
+    let (unit, scale) = scaled_unit(node, name, diagnostics)?;
     let found = unit.value.dimension;
     let right = match rule {
         UnitRule::None => true,
@@ -186,7 +236,7 @@ fn read_unit(
             .push(mistake.label("a unit of the wrong kind").help(format!("use a unit such as `{usual}`")));
         return None;
     }
-    Some(Some(unit))
+    Some((Some(unit), scale))
 }
 
 fn kind_name(dimension: Dimension) -> String {
@@ -312,11 +362,15 @@ pub(super) fn warn_shared_columns(channels: &[Channel], diagnostics: &mut Diagno
         let other_kind = |earlier: &&Channel| {
             std::mem::discriminant(&earlier.kind) != std::mem::discriminant(&channel.kind)
         };
-        let mut earlier = channels.iter().take(number).filter(|earlier| earlier.column == channel.column);
-        if let Some(first) = earlier.find(other_kind) {
+        let earlier = channels.iter().take(number).filter(other_kind);
+        let own = channel.columns();
+        let shared = earlier.flat_map(|first| first.columns().into_iter().map(move |column| (first, column)));
+        let found = shared.filter_map(|(first, column)| {
+            own.iter().find(|own| own.value == column.value).map(|own| (first, column, own.span))
+        });
+        if let Some((first, column, span)) = found.into_iter().next() {
             let message = format!("`{}` and `{}` are the same column", first.name.value, channel.name.value);
-            let warning = Diagnostic::warning("W0601", channel.column.span, message);
-            let warning = warning.also(first.column.span, "first used here");
+            let warning = Diagnostic::warning("W0601", span, message).also(column.span, "first used here");
             diagnostics.push(warning.help("give each channel its own column, or leave one of them out"));
         }
     }

@@ -6,24 +6,32 @@
 mod cell;
 mod clock;
 mod columns;
+mod contained;
 mod error;
+mod foreign;
 mod layout;
 mod lines;
-#[cfg(feature = "parquet")]
+mod pages;
 mod parquet;
 mod separator;
 mod settle;
+mod stamp;
+mod wide;
+mod workbook;
+mod worksheet;
 
 pub use error::{DataError, Place};
+pub use foreign::foreign;
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, Cursor, Read, Seek};
 use std::path::Path;
 
 use flate2::bufread::MultiGzDecoder;
 
 use super::{Header, Recording};
 use columns::Columns;
+use contained::contained;
 use layout::Layout;
 use lines::Lines;
 
@@ -33,9 +41,14 @@ const MOST_NUMBERS: usize = 1 << 28;
 /// Bytes that are read at once.
 const BUFFER: usize = 1 << 18;
 
+/// What Parquet begins with.
+const PARQUET: &[u8] = b"PAR1";
+
+/// What a workbook begins with, and all other packed folders.
+const ZIP: &[u8] = b"PK\x03\x04";
+
 impl Header {
-    /// Reads the data from a file: CSV, CSV packed by gzip (told by its first bytes), or with the feature `parquet`
-    /// also Parquet (told by the name).
+    /// Reads the data from a file: CSV, CSV packed by gzip, Parquet or a workbook (`.xlsx`), told by its first bytes.
     ///
     /// # Errors
     ///
@@ -46,11 +59,32 @@ impl Header {
         if path.is_dir() {
             return Err(DataError::new(&name, "it is a folder, not a file of data"));
         }
-        let file = File::open(path).map_err(unreadable)?;
-        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("parquet")) {
-            return self.read_parquet(&name, file);
+        let mut file = File::open(path).map_err(unreadable)?;
+        // What is no file of its own, a pipe, can be read once: it is CSV.
+        if file.rewind().is_err() {
+            return self.read_csv(&name, file);
         }
-        self.read_csv(&name, file)
+        let mut start = Vec::new();
+        file.by_ref().take(4).read_to_end(&mut start).map_err(unreadable)?;
+        file.rewind().map_err(unreadable)?;
+        match start.as_slice() {
+            PARQUET => contained(&name, || self.read_parquet(&name, file)),
+            ZIP => contained(&name, || self.read_workbook(&name, BufReader::with_capacity(BUFFER, file))),
+            _ => self.read_csv(&name, file),
+        }
+    }
+
+    /// Reads the data from the bytes of a file, as [`Header::read_data`] does; `name` is its name for people.
+    ///
+    /// # Errors
+    ///
+    /// The first thing that is wrong in it.
+    pub fn read_bytes(&self, name: &str, bytes: Vec<u8>) -> Result<Recording, DataError> {
+        match bytes.get(..4) {
+            Some(PARQUET) => contained(name, || self.read_parquet(name, bytes::Bytes::from(bytes))),
+            Some(ZIP) => contained(name, || self.read_workbook(name, Cursor::new(bytes))),
+            _ => self.read_csv(name, bytes.as_slice()),
+        }
     }
 
     /// Reads the data from a stream of CSV, packed by gzip or not; `name` is its name for people.
@@ -63,30 +97,31 @@ impl Header {
         let start = input.fill_buf().map_err(|error| DataError::unreadable(name, None, &error))?;
         if start.starts_with(&[0x1f, 0x8b]) {
             let unpacked = BufReader::with_capacity(BUFFER, MultiGzDecoder::new(input));
-            return self.read_lines(Lines::new(name, unpacked), MOST_NUMBERS);
+            return self.read_lines(name, unpacked, MOST_NUMBERS);
         }
-        if start.starts_with(b"PAR1") {
-            return Err(
-                DataError::new(name, "it is a Parquet file").help("give it a name that ends in `.parquet`")
-            );
+        if start.starts_with(PARQUET) || start.starts_with(ZIP) {
+            let error = DataError::new(name, "it is a Parquet file or a workbook, and comes as a stream");
+            return Err(error.help("give the file itself"));
         }
-        self.read_lines(Lines::new(name, input), MOST_NUMBERS)
+        if let Some((what, help)) = foreign(start) {
+            return Err(DataError::new(name, format!("it is {what}, which is not read")).help(help));
+        }
+        self.read_lines(name, input, MOST_NUMBERS)
     }
 
     /// `most`: how many numbers may come.
-    fn read_lines(&self, mut lines: Lines<'_, impl BufRead>, most: usize) -> Result<Recording, DataError> {
+    fn read_lines(&self, name: &str, text: impl BufRead, most: usize) -> Result<Recording, DataError> {
+        if self.form.sheet.is_some() {
+            let error = DataError::new(name, "it is no workbook, and the recording file names a sheet");
+            return Err(error.help("leave `sheet` out of the recording file"));
+        }
+        let mut lines = Lines::new(name, text, self.form.decimal_comma);
         let layout = Layout::read(self, &mut lines)?;
-        let mut columns = Columns::new(self, &layout.columns, layout.names.len(), lines.name(), most);
+        let mut columns = Columns::new(self, &layout.columns, layout.width, name, most);
         while let Some(line) = lines.next_row(layout.separator)? {
             columns.take(&line)?;
         }
-        settle::settle(self, columns.finish()?, lines.name(), layout.notes)
-    }
-
-    #[cfg(not(feature = "parquet"))]
-    fn read_parquet(&self, name: &str, _file: File) -> Result<Recording, DataError> {
-        let error = DataError::new(name, "Parquet files are not read by this build");
-        Err(error.help("build with the feature `parquet`, or save the table as `.csv` or `.csv.gz`"))
+        settle::settle(self, columns.finish()?, name, layout.notes)
     }
 }
 
@@ -108,8 +143,8 @@ mod tests {
         let header = read_header(&root, &stage.equations, &mut diagnostics).unwrap();
         let data = "t,x\n0,1\n1,2\n2,3\n";
         // A row is its time, its run and one channel.
-        assert_eq!(header.read_lines(Lines::new("d.csv", data.as_bytes()), 9).unwrap().time.len(), 3);
-        let error = header.read_lines(Lines::new("d.csv", data.as_bytes()), 8).unwrap_err();
+        assert_eq!(header.read_lines("d.csv", data.as_bytes(), 9).unwrap().time.len(), 3);
+        let error = header.read_lines("d.csv", data.as_bytes(), 8).unwrap_err();
         assert_eq!(error.place, Some(Place::Character { line: 4, column: 1 }));
         assert!(error.message.contains("more than 8 numbers"));
     }

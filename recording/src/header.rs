@@ -1,7 +1,8 @@
 //! The recording file as a whole: its top-level keys.
 //!
 //! In: the tree of the file and the machine's equations. Out: a [`Header`], which knows what every column means and
-//! reads the data ([`Header::read_data`]); or findings E0601 to E0621, E0628.
+//! reads the data ([`Header::read_data`]); or findings E0601 to E0621, E0628 to
+//! E0630.
 
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
@@ -11,7 +12,9 @@ use model_dsl::source::Spanned;
 use model_dsl::yaml::Node;
 
 use super::Instrument;
-use super::channel::{Channel, read_channels, warn_shared_columns};
+use super::channel::{Channel, Channels, read_channels, warn_shared_columns};
+use super::form::{Form, read_data};
+use super::place::check_runs;
 use super::setup::{Kind, read_setup};
 use super::suited::check_suited;
 use super::words::{FORM, first_key, keys, near_or_all, word};
@@ -49,6 +52,8 @@ pub struct Header {
     pub normal: Option<[f64; 3]>,
     /// The file of the data, a path from the recording's own folder.
     pub data: Spanned<String>,
+    /// How the table is written, where the file itself does not tell.
+    pub form: Form,
     /// The columns and their meanings, in the file's order.
     pub channels: Vec<Channel>,
     /// The runs that are held out, in ascending order.
@@ -134,7 +139,8 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
     let calibration = fields.get("calibration").and_then(|node| word(node, "`calibration`", diagnostics));
     let constants =
         fields.get("constants").map(|node| read_constants(node, equations, diagnostics)).unwrap_or_default();
-    let data = fields.need("data", wording, diagnostics).and_then(|node| word(node, "`data`", diagnostics));
+    let data = fields.need("data", wording, diagnostics);
+    let data = data.and_then(|node| read_data(node, fields.key_span("data"), diagnostics));
     let instrument = fields.need("instrument", wording, diagnostics);
     let instrument = instrument.and_then(|node| read_instrument(node, diagnostics));
     let channels = fields.need("channels", wording, diagnostics);
@@ -151,12 +157,13 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
     };
     let channels = channels?;
     warn_shared_columns(&channels.known, diagnostics);
-    let holdout = fields
-        .entry("holdout")
-        .and_then(|(_, node)| read_holdout(node, &fields, &channels.names, diagnostics));
+    check_runs(&channels.known, diagnostics);
+    let holdout =
+        fields.entry("holdout").and_then(|(_, node)| read_holdout(node, &fields, &channels, diagnostics));
     let extra = fields.get("extra").map(|node| read_extra(node, diagnostics));
     let machine = word(root.get("machine")?, "`machine`", &mut Diagnostics::new())?;
     let setup = setup?;
+    let (data, form) = data?;
     Some(Header {
         title: title.map(|title| title.value),
         machine,
@@ -165,7 +172,8 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
         instrument: setup.instrument,
         free_datum: setup.free_datum,
         normal: setup.normal,
-        data: data?,
+        data,
+        form,
         channels: channels.known,
         holdout,
         extra: extra.unwrap_or_default(),
@@ -225,7 +233,7 @@ fn read_instrument(node: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned
 fn read_holdout(
     node: &Node,
     recording: &Fields<'_>,
-    channels: &[String],
+    channels: &Channels,
     diagnostics: &mut Diagnostics,
 ) -> Option<Vec<i64>> {
     let wording = keys("`holdout`");
@@ -233,7 +241,7 @@ fn read_holdout(
     let fields = Fields::open(node, name, wording, &["runs"], diagnostics)?;
     let runs = fields.need("runs", wording, diagnostics)?;
     let items = fields::list(runs, "`runs`", FORM, diagnostics)?;
-    if !channels.iter().any(|name| name == "run") {
+    if !channels.names.iter().any(|name| name == "run") && !channels.known.iter().any(Channel::is_wide) {
         let message = "runs are held out, and no channel tells which row belongs to which run";
         let mistake = Diagnostic::error("E0619", fields.key_span("runs"), message);
         let help = "add `run: {column: ...}` to `channels`, or leave `holdout` out: then whole blocks of time are held out";

@@ -29,6 +29,9 @@
 //! | E0618 | a set-up that contradicts itself |
 //! | E0619, E0620 | held-out runs without a channel `run`; a run that is no whole number, or no run at all |
 //! | E0621 | a radius that is not greater than zero |
+//! | E0628 | a constant that the machine lacks |
+//! | E0629 | places of channels that do not go together |
+//! | E0630 | a way to write tables that is not known |
 //! | W0601 | a column that stands for two things |
 //!
 //! Units have the codes of [`model_dsl::quantity`] besides. E0622 to E0625 are those of who finds the machine, the
@@ -37,8 +40,10 @@
 mod channel;
 mod data;
 mod direction;
+mod form;
 mod header;
 mod lie;
+mod place;
 mod position;
 mod runs;
 mod setup;
@@ -47,9 +52,10 @@ mod words;
 
 use model_dsl::calibration::Calibration;
 
-pub use channel::{Channel, ChannelKind};
-pub use data::{DataError, Place};
+pub use channel::{Channel, ChannelKind, ChannelPlace};
+pub use data::{DataError, Place, foreign};
 pub use direction::own_direction;
+pub use form::{Form, Names, Separator};
 pub use header::{Extra, Header, calibration_of, machine_of, read_header};
 pub use lie::{Lie, PartReading, Turned, clamped_anew, turned};
 

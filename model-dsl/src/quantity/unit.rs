@@ -25,7 +25,7 @@ impl Unit {
 }
 
 /// Name, factor, offset and kind of every unit, with its other spellings after it.
-const UNITS: [(&str, f64, f64, Dimension); 39] = [
+const UNITS: [(&str, f64, f64, Dimension); 44] = [
     ("mm", 1.0, 0.0, Dimension::LENGTH),
     ("um", 1e-3, 0.0, Dimension::LENGTH),
     ("\u{b5}m", 1e-3, 0.0, Dimension::LENGTH),
@@ -49,7 +49,12 @@ const UNITS: [(&str, f64, f64, Dimension); 39] = [
     ("arcsec", PI / 648_000.0, 0.0, Dimension::ANGLE),
     ("s", 1.0, 0.0, Dimension::TIME),
     ("ms", 1e-3, 0.0, Dimension::TIME),
+    ("us", 1e-6, 0.0, Dimension::TIME),
+    ("\u{b5}s", 1e-6, 0.0, Dimension::TIME),
+    ("\u{3bc}s", 1e-6, 0.0, Dimension::TIME),
+    ("ns", 1e-9, 0.0, Dimension::TIME),
     ("min", 60.0, 0.0, Dimension::TIME),
+    ("h", 3600.0, 0.0, Dimension::TIME),
     ("Hz", 1.0, 0.0, Dimension::FREQUENCY),
     ("kHz", 1e3, 0.0, Dimension::FREQUENCY),
     ("degC", 1.0, 0.0, Dimension::TEMPERATURE),
@@ -68,11 +73,11 @@ const UNITS: [(&str, f64, f64, Dimension); 39] = [
 ];
 
 /// The units' usual names, for help lines and manuals.
-pub const UNIT_NAMES: &str = "mm, um, nm, cm, m, in, mil, uin; rad, mrad, urad, deg, arcmin, arcsec; s, ms, min; Hz; \
+pub const UNIT_NAMES: &str = "mm, um, nm, cm, m, in, mil, uin; rad, mrad, urad, deg, arcmin, arcsec; s, ms, us, ns, min, h; Hz; \
                               degC, K, mK, degF; N; V, A, %, count; and ratios such as 1/s, um/m/K or mm/min";
 
 /// Words that people write for a unit, and the unit.
-const WORDS: [(&str, &str); 22] = [
+const WORDS: [(&str, &str); 26] = [
     ("c", "degC"),
     ("celsius", "degC"),
     ("f", "degF"),
@@ -89,6 +94,10 @@ const WORDS: [(&str, &str); 22] = [
     ("sec", "s"),
     ("seconds", "s"),
     ("minutes", "min"),
+    ("hour", "h"),
+    ("hours", "h"),
+    ("hr", "h"),
+    ("usec", "us"),
     ("degree", "deg"),
     ("degrees", "deg"),
     ("\u{2033}", "arcsec"),

@@ -1,21 +1,38 @@
 //! Rows of cells become columns of numbers.
 
-use super::super::{Channel, ChannelKind, Header};
+use super::super::{Channel, ChannelKind, ChannelPlace, Header};
 use super::cell::BadCell;
 use super::clock::{Clock, NotLater};
 use super::error::DataError;
+use super::stamp::Stamp;
+use super::wide;
 
 /// No reading, position, temperature or load is larger, in mm, rad, degC or the load's unit: what is would leave nothing
 /// of the sums of squares that everything after this is made of.
 const LARGEST: f64 = 1e18;
 
+/// How many cells a row has.
+#[derive(Clone, Copy)]
+pub(super) enum Width {
+    /// As many as the header.
+    Exactly(usize),
+    /// Those that are read, and others that are not.
+    AtLeast(usize),
+}
+
 /// One row of a table, cell by cell.
 pub(super) trait Cells {
-    /// What is wrong where it has not as many cells as the header.
-    fn ragged(&self, width: usize) -> Option<DataError>;
+    /// What is wrong where it has not as many cells as it should.
+    fn ragged(&self, width: Width) -> Option<DataError>;
 
     /// The number of a cell; NaN where nothing was measured.
     fn number(&self, index: usize) -> Result<f64, BadCell>;
+
+    /// The time stamp of a cell in the unit of its column.
+    fn stamp(&self, index: usize) -> Result<Stamp, BadCell>;
+
+    /// The date in a cell, or the date and the time of day in two.
+    fn date(&self, indices: &[usize]) -> Result<Stamp, BadCell>;
 
     /// The number of a run.
     fn run(&self, index: usize) -> Result<i64, BadCell>;
@@ -30,18 +47,23 @@ pub(super) trait Cells {
 /// The numbers of all rows so far.
 pub(super) struct Columns<'h> {
     name: &'h str,
-    width: usize,
+    width: Width,
     most: usize,
+    /// How many numbers a row is in the end.
+    numbers: usize,
     clock: Clock,
-    time: Option<(usize, &'h Channel)>,
+    time: Option<(&'h [usize], &'h Channel)>,
     run: Option<(usize, &'h Channel)>,
     others: Vec<Column<'h>>,
-    table: Table<'h>,
+    time_so_far: Vec<f64>,
+    run_so_far: Vec<i64>,
 }
 
+/// One column of a channel.
 struct Column<'h> {
     channel: &'h Channel,
     cell: usize,
+    values: Vec<f64>,
 }
 
 /// The columns of a table of data, in mm, rad, s and degC.
@@ -59,31 +81,41 @@ pub(super) struct Table<'h> {
 impl<'h> Columns<'h> {
     /// No rows yet; `most` is the number of numbers that may come.
     ///
-    /// `columns` is the number of each channel's cell, `width` how many cells a row has.
+    /// `columns` are the numbers of each channel's cells, `width` how many cells a row has.
     pub(super) fn new(
         header: &'h Header,
-        columns: &[usize],
-        width: usize,
+        columns: &'h [Vec<usize>],
+        width: Width,
         name: &'h str,
         most: usize,
     ) -> Self {
-        let placed = header.channels.iter().zip(columns).map(|(channel, cell)| (*cell, channel));
-        let find = |kind: ChannelKind| placed.clone().find(|(_, channel)| channel.kind == kind);
-        let (time, run) = (find(ChannelKind::Time), find(ChannelKind::Run));
+        let placed = header.channels.iter().zip(columns);
+        let find = |kind: ChannelKind| placed.clone().find(|(channel, _)| channel.kind == kind);
+        let time = find(ChannelKind::Time).map(|(channel, cells)| (cells.as_slice(), channel));
+        let run = find(ChannelKind::Run).and_then(|(channel, cells)| Some((*cells.first()?, channel)));
         let others =
-            placed.filter(|(_, channel)| !matches!(channel.kind, ChannelKind::Time | ChannelKind::Run));
-        let others: Vec<_> = others.map(|(cell, channel)| Column { channel, cell }).collect();
-        let factor = time.and_then(|(_, channel)| channel.unit).map_or(1.0, |unit| unit.value.factor);
-        let values = others.iter().map(|column| (column.channel, Vec::new())).collect();
+            placed.filter(|(channel, _)| !matches!(channel.kind, ChannelKind::Time | ChannelKind::Run));
+        let others = others.flat_map(|(channel, cells)| {
+            cells.iter().map(move |cell| Column { channel, cell: *cell, values: Vec::new() })
+        });
+        let others: Vec<Column<'_>> = others.collect();
+        // A row comes again in each run.
+        let ways =
+            header.channels.iter().filter(|channel| channel.is_wide()).map(|channel| channel.columns().len());
+        let numbers =
+            ways.max().map_or(others.len() + 2, |ways| ways.saturating_mul(header.channels.len() + 2));
+        let factor = time.map_or(1.0, |(_, channel)| channel.to_internal(1.0));
         Self {
             name,
             width,
             most,
+            numbers,
             clock: Clock::new(factor),
             time,
             run,
             others,
-            table: Table { time: Vec::new(), run: Vec::new(), values, restarted: None },
+            time_so_far: Vec::new(),
+            run_so_far: Vec::new(),
         }
     }
 
@@ -93,18 +125,18 @@ impl<'h> Columns<'h> {
             return Err(error);
         }
         self.take_time(row)?;
-        for (column, (_, values)) in self.others.iter().zip(&mut self.table.values) {
+        for column in &mut self.others {
             let number = row.number(column.cell);
-            let number = number.map_err(|bad| at_cell(row, column.cell, column.channel, bad))?;
+            let number = number.map_err(|bad| at_cell(row, &[column.cell], column.channel, bad))?;
             let value = column.channel.to_internal(number);
             if value.abs() > LARGEST {
                 let bad = BadCell {
                     message: format!("`{}` is too large a number", row.text(column.cell)),
                     help: "look at the unit of the channel".to_owned(),
                 };
-                return Err(at_cell(row, column.cell, column.channel, bad));
+                return Err(at_cell(row, &[column.cell], column.channel, bad));
             }
-            values.push(value);
+            column.values.push(value);
         }
         Ok(())
     }
@@ -112,60 +144,94 @@ impl<'h> Columns<'h> {
     fn take_time(&mut self, row: &impl Cells) -> Result<(), DataError> {
         let run = match self.run {
             None => 1,
-            Some((index, channel)) => row.run(index).map_err(|bad| at_cell(row, index, channel, bad))?,
+            Some((index, channel)) => row.run(index).map_err(|bad| at_cell(row, &[index], channel, bad))?,
         };
-        let Some((index, channel)) = self.time else { return Ok(()) };
-        let stamp = row.number(index).map_err(|bad| at_cell(row, index, channel, bad))?;
-        if stamp.is_nan() {
+        let Some((cells, channel)) = self.time else { return Ok(()) };
+        let first = cells.first().copied().unwrap_or_default();
+        let rows = self.time_so_far.len();
+        let stamp = match &channel.place {
+            ChannelPlace::Step => Ok(Stamp::whole(i64::try_from(rows).unwrap_or(i64::MAX))),
+            ChannelPlace::Dates(_) => row.date(cells),
+            ChannelPlace::Column(_) | ChannelPlace::Runs { .. } => row.stamp(first),
+        };
+        let stamp = stamp.map_err(|bad| at_cell(row, cells, channel, bad))?;
+        if stamp.is_missing() {
             let bad = BadCell {
                 message: "the row has no time".to_owned(),
                 help: "every row needs its time; leave out rows at which nothing was measured".to_owned(),
             };
-            return Err(at_cell(row, index, channel, bad));
+            return Err(at_cell(row, cells, channel, bad));
         }
         let taken = self.clock.take(stamp, run);
         let time =
-            taken.map_err(|bad| at_cell(row, index, channel, not_later(&bad, &row.text(index), run)))?;
-        let numbers = (self.table.time.len() + 1).saturating_mul(self.others.len() + 2);
-        if numbers > self.most {
+            taken.map_err(|bad| at_cell(row, cells, channel, not_later(&bad, &row.text(first), run)))?;
+        if (rows + 1).saturating_mul(self.numbers) > self.most {
             let message = format!("the file holds more than {} numbers", self.most);
-            return Err(row.error(index, message).help("split the recording, or take fewer samples"));
+            return Err(row.error(first, message).help("split the recording, or take fewer samples"));
         }
-        self.table.time.push(time);
-        self.table.run.push(run);
+        self.time_so_far.push(time);
+        self.run_so_far.push(run);
         Ok(())
     }
 
     /// All rows; there must be one, and something in every channel.
-    pub(super) fn finish(mut self) -> Result<Table<'h>, DataError> {
-        if self.table.time.is_empty() {
+    pub(super) fn finish(self) -> Result<Table<'h>, DataError> {
+        if self.time_so_far.is_empty() {
             return Err(DataError::new(self.name, "there is no row under the header"));
         }
-        for (channel, values) in &self.table.values {
-            if values.iter().all(|value| value.is_nan()) {
-                let message =
-                    format!("column `{}` (channel `{}`) is empty", channel.column.value, channel.name.value);
-                let help = "leave the channel out of the recording file";
-                return Err(DataError::new(self.name, message).help(help));
+        let mut seen: Vec<(&Channel, bool)> = Vec::new();
+        for column in &self.others {
+            let something = column.values.iter().any(|value| !value.is_nan());
+            match seen.last_mut().filter(|(channel, _)| std::ptr::eq(*channel, column.channel)) {
+                Some((_, known)) => *known |= something,
+                None => seen.push((column.channel, something)),
             }
         }
-        // Growing left up to as much room again.
-        self.table.time.shrink_to_fit();
-        self.table.run.shrink_to_fit();
-        self.table.values.iter_mut().for_each(|(_, values)| values.shrink_to_fit());
-        self.table.restarted = self.clock.restarted;
-        Ok(self.table)
+        if let Some((channel, _)) = seen.iter().find(|(_, something)| !something) {
+            let message = format!("{} is empty", named(channel));
+            let help = "leave the channel out of the recording file";
+            return Err(DataError::new(self.name, message).help(help));
+        }
+        let mut values: Vec<(&Channel, Vec<Vec<f64>>)> = Vec::new();
+        for mut column in self.others {
+            // Growing left up to as much room again.
+            column.values.shrink_to_fit();
+            match values.last_mut().filter(|(channel, _)| std::ptr::eq(*channel, column.channel)) {
+                Some((_, columns)) => columns.push(column.values),
+                None => values.push((column.channel, vec![column.values])),
+            }
+        }
+        let (mut time, mut run) = (self.time_so_far, self.run_so_far);
+        time.shrink_to_fit();
+        run.shrink_to_fit();
+        let step = self.clock.factor();
+        Ok(wide::laid_out(wide::Rows { time, run, values }, step, self.clock.restarted))
     }
 }
 
-fn at_cell(row: &impl Cells, index: usize, channel: &Channel, bad: BadCell) -> DataError {
-    let message =
-        format!("column `{}` (channel `{}`): {}", channel.column.value, channel.name.value, bad.message);
-    row.error(index, message).help(bad.help)
+/// The columns of a channel and its name, for messages.
+fn named(channel: &Channel) -> String {
+    let columns: Vec<String> = channel.columns().iter().map(|column| format!("`{}`", column.value)).collect();
+    format!("column {} (channel `{}`)", columns.join(", "), channel.name.value)
+}
+
+fn at_cell(row: &impl Cells, cells: &[usize], channel: &Channel, bad: BadCell) -> DataError {
+    let message = match &channel.place {
+        // Which of many it is, the place tells.
+        ChannelPlace::Runs { .. } => format!("channel `{}`: {}", channel.name.value, bad.message),
+        _ => format!("{}: {}", named(channel), bad.message),
+    };
+    row.error(cells.first().copied().unwrap_or_default(), message).help(bad.help)
 }
 
 fn not_later(bad: &NotLater, stamp: &str, run: i64) -> BadCell {
     let before = bad.before;
+    if bad.other_clock {
+        let message = format!(
+            "`{stamp}` comes after `{before}`, and one of them has a time zone and the other has none"
+        );
+        return BadCell { message, help: "write all times with their zone, or all without".to_owned() };
+    }
     let message = format!("`{stamp}` comes after `{before}`, and time must increase");
     let help = if bad.returned {
         format!("run {run} has rows further up: give each repeat its own number")

@@ -27,6 +27,13 @@ pub enum Place {
     },
     /// A row of a table that has no lines.
     Row(u64),
+    /// A cell of a sheet.
+    Cell {
+        /// The row.
+        row: u64,
+        /// The column: 1 is A.
+        column: u64,
+    },
 }
 
 impl DataError {
@@ -60,6 +67,7 @@ impl fmt::Display for DataError {
         match self.place {
             Some(Place::Character { line, column }) => write!(f, ":{line}:{column}")?,
             Some(Place::Row(row)) => write!(f, ", row {row}")?,
+            Some(Place::Cell { row, column }) => write!(f, ", cell {}{row}", letters(column))?,
             None => {}
         }
         write!(f, ": {}", self.message)?;
@@ -71,6 +79,18 @@ impl fmt::Display for DataError {
 }
 
 impl std::error::Error for DataError {}
+
+/// The letters of a column of a sheet: A, Z, AA.
+fn letters(column: u64) -> String {
+    let mut letters = Vec::new();
+    let mut left = column;
+    while let Some(before) = left.checked_sub(1) {
+        let digit = u8::try_from(before % 26).unwrap_or_default();
+        letters.push(char::from(b'A' + digit));
+        left = before / 26;
+    }
+    letters.iter().rev().collect()
+}
 
 /// The user's text for a message: printable and short.
 pub(super) fn shown(bytes: &[u8]) -> String {

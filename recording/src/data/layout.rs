@@ -2,13 +2,13 @@
 
 use std::io::BufRead;
 
-use model_dsl::quantity::parse_unit;
+use model_dsl::quantity::{Dimension, Unit, parse_unit};
 use model_dsl::suggest::nearest;
 
-use super::super::{Channel, Header};
-use super::columns::Cells;
+use super::super::{Channel, ChannelPlace, Header, Names};
+use super::columns::{Cells, Width};
 use super::error::{DataError, Place, shown};
-use super::lines::{Lines, Row};
+use super::lines::{Lines, Row, SPACES};
 use super::separator::{names, separator_of};
 
 /// Where everything stands in a row.
@@ -17,28 +17,20 @@ pub(super) struct Layout {
     pub(super) separator: u8,
     /// The names of the columns.
     pub(super) names: Vec<String>,
-    /// The number of each channel's column, in the order of the channels.
-    pub(super) columns: Vec<usize>,
+    /// How many cells a row has.
+    pub(super) width: Width,
+    /// The numbers of each channel's columns, in the order of the channels.
+    pub(super) columns: Vec<Vec<usize>>,
     /// What people should know.
     pub(super) notes: Vec<String>,
 }
 
 impl Layout {
-    /// Reads the header row, and the row of units where there is one.
+    /// Reads the header row, and the row of units where there is one. Without a header row the first row tells how many
+    /// columns there are, and comes again.
     pub(super) fn read(header: &Header, lines: &mut Lines<'_, impl BufRead>) -> Result<Self, DataError> {
         let name = lines.name();
-        let mut commented = None;
-        let line = loop {
-            let Some(line) = lines.next_line()? else {
-                return Err(
-                    DataError::new(name, "the file is empty").help("begin with a row of column names")
-                );
-            };
-            match line.strip_prefix(b"#") {
-                Some(comment) => commented = Some(comment.to_vec()),
-                None => break line.to_vec(),
-            }
-        };
+        let (line, commented) = first_line(header, lines)?;
         let at_header = |message: String| {
             DataError::new(name, message).at(Place::Character { line: lines.number(), column: 1 })
         };
@@ -47,22 +39,38 @@ impl Layout {
                 at_header("the file is not plain text".to_owned()).help("save the table as CSV in UTF-8")
             );
         }
-        let wanted: Vec<&str> = header.channels.iter().map(|channel| channel.column.value.as_str()).collect();
-        let separator = separator_of(&line, &wanted).map_err(|possible| {
+        let wanted: Vec<&str> =
+            header.channels.iter().flat_map(Channel::columns).map(|column| column.value.as_str()).collect();
+        let separator = separator_of(&line, &wanted, &header.form).map_err(|possible| {
             let message =
                 format!("{} stand between the names: what separates the columns?", possible.join(" and "));
             at_header(message).help("separate the columns with commas, and take the others out of the names")
         })?;
-        let names = names(&line, separator);
+        let names = match header.form.names {
+            Names::Nowhere => (1..=names(&line, separator).len()).map(|number| number.to_string()).collect(),
+            Names::FirstRow | Names::Line(_) => names(&line, separator),
+        };
         let columns = find_columns(header, &names).map_err(|(message, help)| {
             let mut error = at_header(message).help(help);
-            if is_numbers(&names) {
+            if header.form.names != Names::Nowhere && is_numbers(&names) {
                 error = no_header(error, commented.as_deref(), &wanted);
             }
             error
         })?;
-        let layout = Self { separator, notes: notes_of_extra(header, name, &names), names, columns };
-        layout.check_units(header, lines)?;
+        let width = match (separator, header.form.names) {
+            // What a program appends to some of its lines is set off by spaces and has no name.
+            (SPACES, Names::Nowhere) => {
+                Width::AtLeast(columns.iter().flatten().max().map_or(0, |last| last.saturating_add(1)))
+            }
+            _ => Width::Exactly(names.len()),
+        };
+        let notes = notes_of_extra(header, name, &names);
+        let layout = Self { separator, width, notes, names, columns };
+        if header.form.names == Names::Nowhere {
+            lines.put_back();
+        } else {
+            layout.check_units(header, lines)?;
+        }
         Ok(layout)
     }
 
@@ -87,24 +95,76 @@ impl Layout {
             let help = "write `#unit` and then one unit for each column, empty where it has none";
             return Err(row.error(0, message).help(help));
         }
-        let mut pairs = header.channels.iter().zip(&self.columns);
-        pairs.try_for_each(|(channel, column)| same_unit(channel, column + 1, &row))
+        let pairs = header.channels.iter().zip(&self.columns);
+        let mut pairs =
+            pairs.flat_map(|(channel, columns)| columns.iter().map(move |column| (channel, *column)));
+        pairs.try_for_each(|(channel, column)| same_unit(channel, self.names.get(column), column + 1, &row))
     }
 }
 
-fn same_unit(channel: &Channel, cell: usize, row: &Row<'_>) -> Result<(), DataError> {
+/// The line of the header row, or the first row where there is none; and the last comment above it.
+fn first_line(
+    header: &Header,
+    lines: &mut Lines<'_, impl BufRead>,
+) -> Result<(Vec<u8>, Option<Vec<u8>>), DataError> {
+    let name = lines.name();
+    let nothing = || DataError::new(name, "the file is empty").help("begin with a row of column names");
+    if let Names::Line(number) = header.form.names {
+        let found = lines.skip_to(number)? && lines.next_line()?.is_some();
+        if !found || lines.number() != number {
+            let error = DataError::new(
+                name,
+                format!("line {number} is to be the header row, and is not there or empty"),
+            );
+            return Err(error.help("count all lines, also those that are empty"));
+        }
+        lines.put_back();
+        return Ok((lines.next_line()?.unwrap_or_default().to_vec(), None));
+    }
+    let mut commented = None;
+    loop {
+        let Some(line) = lines.next_line()? else { return Err(nothing()) };
+        match line.strip_prefix(b"#") {
+            Some(comment) => commented = Some(comment.to_vec()),
+            None => return Ok((line.to_vec(), commented)),
+        }
+    }
+}
+
+fn same_unit(
+    channel: &Channel,
+    column: Option<&String>,
+    cell: usize,
+    row: &Row<'_>,
+) -> Result<(), DataError> {
     let text = String::from_utf8_lossy(row.cell(cell)).into_owned();
-    let Some(unit) = channel.unit.filter(|_| !text.is_empty()) else { return Ok(()) };
-    if parse_unit(&text).is_ok_and(|found| found == unit.value) {
+    if channel.unit.is_none() || text.is_empty() || parse_unit(&text).is_ok_and(|unit| agrees(channel, unit))
+    {
         return Ok(());
     }
-    let message = format!(
+    Err(row.error(cell, two_units(channel, column, &text)).help(ONE_UNIT))
+}
+
+/// Whether a unit in the table is that of the channel. Counts may be of any size, and a date has no unit.
+fn agrees(channel: &Channel, found: Unit) -> bool {
+    let scaled = channel.scale != 1.0;
+    channel.unit.is_none_or(|unit| match &channel.place {
+        ChannelPlace::Dates(_) => true,
+        _ if scaled => found.dimension == Dimension::COUNT,
+        _ => found == unit.value,
+    })
+}
+
+/// What to do about two units.
+const ONE_UNIT: &str = "let both say the same";
+
+fn two_units(channel: &Channel, column: Option<&String>, found: &str) -> String {
+    format!(
         "column `{}` is in `{}` here and in `{}` in the recording file",
-        channel.column.value,
-        shown(text.as_bytes()),
+        shown(column.map_or("", String::as_str).as_bytes()),
+        shown(found.as_bytes()),
         channel.written_unit
-    );
-    Err(row.error(cell, message).help("let both say the same"))
+    )
 }
 
 /// What people should know of columns that are kept for them.
@@ -117,27 +177,62 @@ pub(super) fn notes_of_extra(header: &Header, name: &str, names: &[String]) -> V
     notes.collect()
 }
 
-/// The column of each channel; or what is wrong and what to write.
-pub(super) fn find_columns(header: &Header, names: &[String]) -> Result<Vec<usize>, (String, String)> {
-    let place = |channel: &Channel| names.iter().position(|name| *name == channel.column.value);
-    let missing: Vec<&Channel> = header.channels.iter().filter(|channel| place(channel).is_none()).collect();
-    if let Some(first) = missing.first() {
+/// The columns of each channel; or what is wrong and what to write.
+pub(super) fn find_columns(header: &Header, names: &[String]) -> Result<Vec<Vec<usize>>, (String, String)> {
+    let wanted = header.channels.iter().flat_map(|channel| {
+        channel.columns().into_iter().map(move |column| (channel, column.value.as_str()))
+    });
+    let missing: Vec<_> = wanted.clone().filter(|(_, column)| places(names, column).is_empty()).collect();
+    if let Some((_, first)) = missing.first() {
         let listed: Vec<String> = missing
             .iter()
-            .map(|channel| format!("`{}` (channel `{}`)", channel.column.value, channel.name.value))
+            .map(|(channel, column)| format!("`{column}` (channel `{}`)", channel.name.value))
             .collect();
         let (verb, plural) = if listed.len() == 1 { ("is", "") } else { ("are", "s") };
-        let near = nearest(&first.column.value, names.iter().map(String::as_str));
+        let near = nearest(first, names.iter().map(String::as_str));
         let near = near.map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
         let message = format!("there {verb} no column{plural} {}", listed.join(", "));
         return Err((message, format!("{near}the columns are {}", listed_names(names))));
     }
-    let twice = |channel: &&Channel| names.iter().filter(|name| **name == channel.column.value).count() > 1;
-    if let Some(channel) = header.channels.iter().find(twice) {
-        let message = format!("column `{}` stands twice", channel.column.value);
-        return Err((message, "give each column its own name".to_owned()));
+    for (channel, column) in wanted {
+        let found = places(names, column);
+        if found.len() > 1 {
+            let message = format!("column `{column}` stands twice");
+            return Err((message, "give each column its own name".to_owned()));
+        }
+        let name = found.first().and_then(|place| names.get(*place));
+        if let Some((_, unit, found)) = name.and_then(|name| with_unit(name))
+            && !agrees(channel, found)
+        {
+            return Err((two_units(channel, name, unit), ONE_UNIT.to_owned()));
+        }
     }
-    Ok(header.channels.iter().filter_map(place).collect())
+    let columns = header.channels.iter().map(|channel| {
+        let columns = channel.columns();
+        columns.iter().filter_map(|column| places(names, &column.value).first().copied()).collect()
+    });
+    Ok(columns.collect())
+}
+
+/// The columns with a name; where there is none, those that have a unit behind it, `x [mm]` or `x (mm)`.
+fn places(names: &[String], wanted: &str) -> Vec<usize> {
+    let those = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
+        names.iter().enumerate().filter(|(_, name)| is(name)).map(|(number, _)| number).collect()
+    };
+    let exact = those(&|name| name == wanted);
+    if exact.is_empty() {
+        return those(&|name| with_unit(name).is_some_and(|(bare, ..)| bare == wanted));
+    }
+    exact
+}
+
+/// A name that ends in a unit in brackets: without it, the unit as it is written, the unit.
+fn with_unit(name: &str) -> Option<(&str, &str, Unit)> {
+    let (bare, unit) = match name.strip_suffix(']') {
+        Some(rest) => rest.rsplit_once('[')?,
+        None => name.strip_suffix(')')?.rsplit_once('(')?,
+    };
+    parse_unit(unit.trim()).ok().map(|found| (bare.trim(), unit.trim(), found))
 }
 
 fn listed_names(names: &[String]) -> String {
@@ -157,7 +252,10 @@ fn no_header(error: DataError, comment: Option<&[u8]>, wanted: &[&str]) -> DataE
     let help = if wanted.iter().any(|name| text.contains(name)) {
         "take away the `#` before the names of the columns".to_owned()
     } else {
-        format!("write the names of the columns above it, `{}`", wanted.join(","))
+        format!(
+            "write the names of the columns above it, `{}`, or `data: {{file: ..., header: none}}` and the numbers of the columns in the recording file",
+            wanted.join(",")
+        )
     };
     DataError { message, help: Some(help), ..error }
 }

@@ -7,8 +7,9 @@
 use std::io::{BufRead, Read};
 
 use super::cell::{self, BadCell};
-use super::columns::Cells;
+use super::columns::{Cells, Width};
 use super::error::{DataError, Place, shown};
+use super::stamp::Stamp;
 
 /// Longer lines are refused: no row of numbers has them.
 const LONGEST_LINE: usize = 1 << 20;
@@ -22,6 +23,7 @@ pub(super) struct Lines<'n, R> {
     cells: Vec<(usize, usize)>,
     /// A line that was looked at and is to come again.
     again: bool,
+    decimal_comma: bool,
 }
 
 /// One row: a line and where its cells stand in it.
@@ -30,11 +32,22 @@ pub(super) struct Row<'l> {
     line: &'l [u8],
     cells: &'l [(usize, usize)],
     number: u64,
+    decimal_comma: bool,
 }
 
 impl<'n, R: BufRead> Lines<'n, R> {
-    pub(super) fn new(name: &'n str, reader: R) -> Self {
-        Self { name, reader, buffer: Vec::new(), number: 0, cells: Vec::new(), again: false }
+    pub(super) fn new(name: &'n str, reader: R, decimal_comma: bool) -> Self {
+        Self { name, reader, buffer: Vec::new(), number: 0, cells: Vec::new(), again: false, decimal_comma }
+    }
+
+    /// Passes over lines up to one that is to come next; false where the text ends before it.
+    pub(super) fn skip_to(&mut self, number: u64) -> Result<bool, DataError> {
+        while self.number + 1 < number {
+            if !self.read_line()? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// The file's name.
@@ -84,7 +97,13 @@ impl<'n, R: BufRead> Lines<'n, R> {
             return Ok(None);
         }
         split(&self.buffer, separator, &mut self.cells);
-        Ok(Some(Row { name: self.name, line: &self.buffer, cells: &self.cells, number: self.number }))
+        Ok(Some(Row {
+            name: self.name,
+            line: &self.buffer,
+            cells: &self.cells,
+            number: self.number,
+            decimal_comma: self.decimal_comma,
+        }))
     }
 
     /// Reads one line into the buffer; false at the end of the text.
@@ -114,9 +133,12 @@ impl<'n, R: BufRead> Lines<'n, R> {
     }
 }
 
-/// Finds the cells of a line.
+/// Finds the cells of a line; a space as the separator stands for any number of spaces and tabs.
 pub(super) fn split(line: &[u8], separator: u8, cells: &mut Vec<(usize, usize)>) {
     cells.clear();
+    if separator == SPACES {
+        return split_at_spaces(line, cells);
+    }
     let mut start = 0;
     let mut quoted = false;
     for (at, &byte) in line.iter().enumerate() {
@@ -128,6 +150,26 @@ pub(super) fn split(line: &[u8], separator: u8, cells: &mut Vec<(usize, usize)>)
         }
     }
     cells.push((start, line.len()));
+}
+
+/// The separator that stands for any number of spaces and tabs.
+pub(super) const SPACES: u8 = b' ';
+
+fn split_at_spaces(line: &[u8], cells: &mut Vec<(usize, usize)>) {
+    let mut start = None;
+    let mut quoted = false;
+    for (at, byte) in line.iter().enumerate() {
+        quoted ^= *byte == b'"';
+        match start {
+            Some(begun) if byte.is_ascii_whitespace() && !quoted => {
+                cells.push((begun, at));
+                start = None;
+            }
+            None if !byte.is_ascii_whitespace() => start = Some(at),
+            _ => {}
+        }
+    }
+    cells.extend(start.map(|begun| (begun, line.len())));
 }
 
 impl<'l> Row<'l> {
@@ -157,18 +199,26 @@ impl<'l> Row<'l> {
 }
 
 impl Cells for Row<'_> {
-    fn ragged(&self, width: usize) -> Option<DataError> {
+    fn ragged(&self, width: Width) -> Option<DataError> {
         let found = self.width();
-        if found == width {
-            return None;
-        }
+        let width = match width {
+            Width::Exactly(width) | Width::AtLeast(width) if found == width => return None,
+            Width::AtLeast(width) if found > width => return None,
+            Width::AtLeast(width) => {
+                let message =
+                    format!("the row has {found} cells, and {width} are read: `{}`", shown(self.line));
+                let help = "each row must have all columns that the recording file names";
+                return Some(self.error(found, message).help(help));
+            }
+            Width::Exactly(width) => width,
+        };
         let message = format!("the row has {found} cells, the header {width}: `{}`", shown(self.line));
-        let commas = found > width && self.line.contains(&b',');
+        let commas = found > width && self.line.contains(&b',') && !self.decimal_comma;
         let error = self.error(found.min(width), message);
         Some(error.help(match commas {
             // With a comma in most numbers there are nearly two cells for each.
             true if found > width + width / 2 => {
-                "are there decimal commas? Write points in numbers, and commas between them"
+                "are there decimal commas? Write points in numbers, and commas between them; or separate the columns with semicolons and write `decimal: \",\"` in the recording file"
             }
             true => "write one cell for each column, empty where nothing was measured; a decimal comma makes two of one",
             false => "write one cell for each column, empty where nothing was measured",
@@ -176,7 +226,16 @@ impl Cells for Row<'_> {
     }
 
     fn number(&self, index: usize) -> Result<f64, BadCell> {
-        cell::number(self.cell(index))
+        cell::number(self.cell(index), self.decimal_comma)
+    }
+
+    fn stamp(&self, index: usize) -> Result<Stamp, BadCell> {
+        cell::stamp(self.cell(index), self.decimal_comma)
+    }
+
+    fn date(&self, indices: &[usize]) -> Result<Stamp, BadCell> {
+        let cells: Vec<&[u8]> = indices.iter().map(|index| self.cell(*index)).collect();
+        cell::date(&cells)
     }
 
     fn run(&self, index: usize) -> Result<i64, BadCell> {

@@ -1,83 +1,174 @@
-//! Tables in Apache Parquet: flat columns of numbers, one group of rows after the other.
+//! Tables in Apache Parquet: flat columns of numbers and dates, one group of rows after the other.
 
-use std::fs::File;
+use std::sync::Arc;
 
-use parquet::basic::{ConvertedType, LogicalType};
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
-use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
+use parquet::file::metadata::{ParquetMetaDataReader, RowGroupMetaData};
+use parquet::file::reader::ChunkReader;
 use parquet::schema::types::ColumnDescriptor;
 
-use super::super::{Header, Recording};
-use super::cell::BadCell;
-use super::columns::{Cells, Columns};
+use super::super::{ChannelKind, ChannelPlace, Header, Names, Recording};
+use super::cell::{self, BadCell};
+use super::columns::{Cells, Columns, Width};
 use super::error::{DataError, Place};
 use super::layout::{find_columns, notes_of_extra};
+use super::pages::pages_of;
+use super::stamp::Stamp;
 use super::{MOST_NUMBERS, settle};
 
 /// How many values are asked for at once.
 const BATCH: usize = 1 << 16;
 
 impl Header {
-    pub(super) fn read_parquet(&self, name: &str, file: File) -> Result<Recording, DataError> {
+    /// Reads the data from a file in Parquet.
+    pub(super) fn read_parquet<R: ChunkReader + 'static>(
+        &self,
+        name: &str,
+        file: R,
+    ) -> Result<Recording, DataError> {
         let broken = |error: ParquetError| DataError::new(name, format!("it cannot be read: {error}"));
-        let reader = SerializedFileReader::new(file).map_err(broken)?;
-        let schema = reader.metadata().file_metadata().schema_descr();
+        self.refuse_form(name)?;
+        let metadata = ParquetMetaDataReader::new().parse_and_finish(&file).map_err(broken)?;
+        let file = Arc::new(file);
+        let schema = metadata.file_metadata().schema_descr();
         let names: Vec<String> =
             schema.columns().iter().map(|column| column.path().parts().join(".")).collect();
         let columns =
             find_columns(self, &names).map_err(|(message, help)| DataError::new(name, message).help(help))?;
-        for &index in &columns {
-            if let Some(problem) = schema.columns().get(index).and_then(|column| not_plain(column)) {
-                let message =
-                    format!("column `{}` holds {problem}", names.get(index).map_or("", String::as_str));
-                return Err(DataError::new(name, message).help("save it as a column of plain numbers"));
+        let mut wanted = Vec::new();
+        for (channel, places) in self.channels.iter().zip(&columns) {
+            for &index in places {
+                let Some(column) = schema.columns().get(index) else { continue };
+                let dates = matches!(channel.place, ChannelPlace::Dates(_));
+                let form = if dates { date_of(column) } else { number_of(column) };
+                let form = form.map_err(|bad| {
+                    let column = names.get(index).map_or("", String::as_str);
+                    DataError::new(name, format!("column `{column}` holds {}", bad.message)).help(bad.help)
+                })?;
+                wanted.push(Wanted { index, form, time: channel.kind == ChannelKind::Time });
             }
         }
         let notes = notes_of_extra(self, name, &names);
-        let mut table = Columns::new(self, &columns, names.len(), name, MOST_NUMBERS);
+        let mut table = Columns::new(self, &columns, Width::Exactly(names.len()), name, MOST_NUMBERS);
         let mut before = 0;
-        for group in 0..reader.num_row_groups() {
-            let rows = reader.get_row_group(group).map_err(broken)?;
-            let numbers =
-                Group { name, before, columns: read_group(&*rows, &columns, names.len()).map_err(broken)? };
-            before += numbers.send_to(&mut table)?;
+        for group in metadata.row_groups() {
+            let group = Group {
+                name,
+                before,
+                columns: read_group(&file, group, &wanted, names.len()).map_err(broken)?,
+            };
+            before += group.send_to(&mut table)?;
         }
         settle::settle(self, table.finish()?, name, notes)
     }
-}
 
-/// Why a column is not one of plain numbers.
-fn not_plain(column: &ColumnDescriptor) -> Option<String> {
-    use parquet::basic::Type;
-    if column.max_rep_level() > 0 {
-        return Some("lists".to_owned());
+    /// Parquet says itself how it is written.
+    fn refuse_form(&self, name: &str) -> Result<(), DataError> {
+        let header = (self.form.names != Names::FirstRow).then_some("header");
+        let sheet = self.form.sheet.is_some().then_some("sheet");
+        let Some(key) = self.form.of_text().or(header).or(sheet) else { return Ok(()) };
+        let error = DataError::new(name, format!("it is a Parquet file, which has no `{key}`"));
+        Err(error.help(format!("leave `{key}` out of the recording file")))
     }
-    let plain_kind = matches!(column.logical_type_ref(), None | Some(LogicalType::Integer { .. }))
-        && !matches!(column.converted_type(), ConvertedType::DECIMAL);
-    let plain_type = matches!(
-        column.physical_type(),
-        Type::BOOLEAN | Type::INT32 | Type::INT64 | Type::FLOAT | Type::DOUBLE
-    );
-    let kind = || match (column.physical_type(), column.logical_type_ref()) {
-        (Type::BYTE_ARRAY, _) => "text".to_owned(),
-        (_, Some(kind)) => format!("{kind:?}"),
-        (physical, None) => physical.to_string(),
-    };
-    (!plain_kind || !plain_type).then(kind)
 }
 
-/// The rows of one group: a list of numbers for each column that is wanted, an empty one for the others.
+/// A column that is read.
+struct Wanted {
+    index: usize,
+    form: Form,
+    /// Whether it holds times.
+    time: bool,
+}
+
+/// What the values of a column are.
+#[derive(Clone, Copy)]
+enum Form {
+    /// Numbers.
+    Number,
+    /// Whole numbers without a sign.
+    Unsigned,
+    /// Ticks since 1970, so many of which are a second, in universal time or on a clock on a wall.
+    Date { in_second: i64, universal: bool },
+}
+
+/// How the numbers of a column are written, or why there are none.
+fn number_of(column: &ColumnDescriptor) -> Result<Form, BadCell> {
+    let bad = |message: String| BadCell { message, help: "save it as a column of plain numbers".to_owned() };
+    if date_of(column).is_ok() {
+        return Err(BadCell {
+            message: "dates".to_owned(),
+            help: "write `unit: date` for this channel in the recording file; only times may be dates"
+                .to_owned(),
+        });
+    }
+    if column.max_rep_level() > 0 {
+        return Err(bad("lists".to_owned()));
+    }
+    let unsigned = match column.logical_type_ref() {
+        None => matches!(
+            column.converted_type(),
+            ConvertedType::UINT_8 | ConvertedType::UINT_16 | ConvertedType::UINT_32 | ConvertedType::UINT_64
+        ),
+        Some(LogicalType::Integer(integer)) => !integer.is_signed,
+        Some(kind) => return Err(bad(kind_of(column, kind))),
+    };
+    if column.converted_type() == ConvertedType::DECIMAL {
+        return Err(bad("decimals".to_owned()));
+    }
+    match column.physical_type() {
+        Type::BOOLEAN | Type::INT32 | Type::INT64 if unsigned => Ok(Form::Unsigned),
+        Type::BOOLEAN | Type::INT32 | Type::INT64 | Type::FLOAT | Type::DOUBLE => Ok(Form::Number),
+        Type::BYTE_ARRAY => Err(bad("text".to_owned())),
+        other => Err(bad(other.to_string())),
+    }
+}
+
+fn kind_of(column: &ColumnDescriptor, kind: &LogicalType) -> String {
+    match (column.physical_type(), kind) {
+        (_, LogicalType::Decimal(_)) => "decimals".to_owned(),
+        (Type::BYTE_ARRAY, _) => "text".to_owned(),
+        _ => format!("{kind:?}"),
+    }
+}
+
+/// How the dates of a column are written, or why there are none.
+fn date_of(column: &ColumnDescriptor) -> Result<Form, BadCell> {
+    let ticks = |in_second: i64, universal: bool| Ok(Form::Date { in_second, universal });
+    match (column.logical_type_ref(), column.converted_type(), column.physical_type()) {
+        (Some(LogicalType::Timestamp(kind)), _, Type::INT64) => match kind.unit {
+            TimeUnit::MILLIS => ticks(1_000, kind.is_adjusted_to_u_t_c),
+            TimeUnit::MICROS => ticks(1_000_000, kind.is_adjusted_to_u_t_c),
+            TimeUnit::NANOS => ticks(1_000_000_000, kind.is_adjusted_to_u_t_c),
+        },
+        (None, ConvertedType::TIMESTAMP_MILLIS, Type::INT64) => ticks(1_000, true),
+        (None, ConvertedType::TIMESTAMP_MICROS, Type::INT64) => ticks(1_000_000, true),
+        (None, _, Type::INT96) => ticks(1_000_000_000, false),
+        _ => Err(BadCell {
+            message: "no dates".to_owned(),
+            help: "write the unit of the times, `unit: s`, in place of `unit: date` in the recording file; dates that are text are made dates by `pandas.to_datetime`".to_owned(),
+        }),
+    }
+}
+
+/// The rows of one group: a list of values for each column that is wanted, an empty one for the others.
 struct Group<'n> {
     name: &'n str,
     /// How many rows stand before it.
     before: u64,
-    columns: Vec<Vec<f64>>,
+    columns: Vec<Values>,
+}
+
+/// The values of a column: time stamps, or numbers, NaN where there is none.
+enum Values {
+    Stamps(Vec<Stamp>),
+    Numbers(Vec<f64>),
 }
 
 /// One row of a group.
-struct Numbers<'g> {
+struct Row<'g> {
     group: &'g Group<'g>,
     row: usize,
 }
@@ -85,21 +176,35 @@ struct Numbers<'g> {
 impl Group<'_> {
     /// Hands over all rows and tells how many they were.
     fn send_to(&self, table: &mut Columns<'_>) -> Result<u64, DataError> {
-        let rows = self.columns.iter().map(Vec::len).max().unwrap_or(0);
+        let rows = self.columns.iter().map(Values::len).max().unwrap_or(0);
         for row in 0..rows {
-            table.take(&Numbers { group: self, row })?;
+            table.take(&Row { group: self, row })?;
         }
         Ok(u64::try_from(rows).unwrap_or(u64::MAX))
     }
 }
 
-impl Cells for Numbers<'_> {
-    fn ragged(&self, _width: usize) -> Option<DataError> {
+impl Values {
+    fn len(&self) -> usize {
+        match self {
+            Self::Stamps(stamps) => stamps.len(),
+            Self::Numbers(numbers) => numbers.len(),
+        }
+    }
+}
+
+impl Cells for Row<'_> {
+    fn ragged(&self, _width: Width) -> Option<DataError> {
         None
     }
 
     fn number(&self, index: usize) -> Result<f64, BadCell> {
-        let value = self.group.columns.get(index).and_then(|column| column.get(self.row)).copied();
+        let value = match self.group.columns.get(index) {
+            Some(Values::Numbers(numbers)) => numbers.get(self.row).copied(),
+            // A column that is read as time and as something else too.
+            Some(Values::Stamps(stamps)) => stamps.get(self.row).map(|stamp| stamp.since(Stamp::whole(0))),
+            None => None,
+        };
         let value = value.unwrap_or(f64::NAN);
         if value.is_infinite() {
             return Err(BadCell {
@@ -110,11 +215,27 @@ impl Cells for Numbers<'_> {
         Ok(value)
     }
 
+    fn stamp(&self, index: usize) -> Result<Stamp, BadCell> {
+        match self.group.columns.get(index) {
+            Some(Values::Stamps(stamps)) => Ok(stamps.get(self.row).copied().unwrap_or(Stamp::MISSING)),
+            _ => self.number(index).map(Stamp::number),
+        }
+    }
+
+    fn date(&self, indices: &[usize]) -> Result<Stamp, BadCell> {
+        let mut stamps = indices.iter().map(|index| self.stamp(*index));
+        let first = stamps.next().unwrap_or(Ok(Stamp::MISSING))?;
+        stamps.try_fold(first, |date, later| Ok(date.plus(later?)))
+    }
+
     fn run(&self, index: usize) -> Result<i64, BadCell> {
-        super::cell::run(self.text(index).as_bytes())
+        cell::run(self.text(index).as_bytes())
     }
 
     fn text(&self, index: usize) -> String {
+        if let Some(Values::Stamps(stamps)) = self.group.columns.get(index) {
+            return stamps.get(self.row).map(Stamp::to_string).unwrap_or_default();
+        }
         match self.number(index) {
             Ok(value) if value.is_nan() => String::new(),
             Ok(value) => value.to_string(),
@@ -128,42 +249,84 @@ impl Cells for Numbers<'_> {
     }
 }
 
-fn read_group(
-    rows: &dyn RowGroupReader,
-    wanted: &[usize],
+fn read_group<R: ChunkReader + 'static>(
+    file: &Arc<R>,
+    group: &RowGroupMetaData,
+    wanted: &[Wanted],
     width: usize,
-) -> Result<Vec<Vec<f64>>, ParquetError> {
-    let mut columns = vec![Vec::new(); width];
-    for &index in wanted {
-        if let Some(column) = columns.get_mut(index).filter(|column| column.is_empty()) {
-            let present = rows.metadata().column(index).column_descr().max_def_level();
-            *column = read_column(rows.get_column_reader(index)?, present)?;
+) -> Result<Vec<Values>, ParquetError> {
+    let mut columns: Vec<Values> = (0..width).map(|_| Values::Numbers(Vec::new())).collect();
+    let rows = usize::try_from(group.num_rows()).map_err(|_| general("a group has less than no rows"))?;
+    for one in wanted {
+        let Some(slot) = columns.get_mut(one.index) else { continue };
+        let found = group.columns().get(one.index);
+        let chunk = found.ok_or_else(|| general("a group lacks a column"))?;
+        let pages = pages_of(file, chunk, rows)?;
+        let reader = get_column_reader(chunk.column_descr_ptr(), pages);
+        if slot.len() == 0 {
+            *slot = read_column(reader, one, chunk.column_descr().max_def_level())?;
         }
     }
     Ok(columns)
 }
 
+fn general(why: &str) -> ParquetError {
+    ParquetError::General(why.to_owned())
+}
+
 /// `present` is the level of a value that is there.
-fn read_column(reader: ColumnReader, present: i16) -> Result<Vec<f64>, ParquetError> {
-    match reader {
-        ColumnReader::BoolColumnReader(reader) => {
-            values(reader, present, |value| if *value { 1.0 } else { 0.0 })
+fn read_column(reader: ColumnReader, wanted: &Wanted, present: i16) -> Result<Values, ParquetError> {
+    let form = wanted.form;
+    match (reader, form) {
+        (ColumnReader::Int64ColumnReader(reader), Form::Date { in_second, universal }) => {
+            let stamp = |ticks: &i64| Stamp::ticks(*ticks, in_second, universal);
+            values(reader, present, Stamp::MISSING, stamp).map(Values::Stamps)
         }
-        ColumnReader::Int32ColumnReader(reader) => values(reader, present, |value| f64::from(*value)),
-        // Whole numbers beyond 2^53 lose their last digits, as they do in the text of a table.
-        ColumnReader::Int64ColumnReader(reader) => values(reader, present, |value| *value as f64),
-        ColumnReader::FloatColumnReader(reader) => values(reader, present, |value| f64::from(*value)),
-        ColumnReader::DoubleColumnReader(reader) => values(reader, present, |value| *value),
-        _ => Err(ParquetError::General("a column does not hold numbers".to_owned())),
+        (ColumnReader::Int96ColumnReader(reader), Form::Date { in_second, universal }) => {
+            values(reader, present, Stamp::MISSING, |ticks| {
+                Stamp::ticks(ticks.to_nanos(), in_second, universal)
+            })
+            .map(Values::Stamps)
+        }
+        // A whole number of ns since 1970 has more digits than a number in floating point.
+        (ColumnReader::Int64ColumnReader(reader), _) if wanted.time => {
+            values(reader, present, Stamp::MISSING, |ticks| Stamp::whole(*ticks)).map(Values::Stamps)
+        }
+        (reader, _) => read_numbers(reader, matches!(form, Form::Unsigned), present).map(Values::Numbers),
     }
 }
 
-/// All values of a column; NaN where there is none.
-fn values<T: DataType>(
+fn read_numbers(reader: ColumnReader, unsigned: bool, present: i16) -> Result<Vec<f64>, ParquetError> {
+    match reader {
+        ColumnReader::BoolColumnReader(reader) => {
+            values(reader, present, f64::NAN, |value| if *value { 1.0 } else { 0.0 })
+        }
+        ColumnReader::Int32ColumnReader(reader) if unsigned => {
+            values(reader, present, f64::NAN, |value| f64::from(value.cast_unsigned()))
+        }
+        ColumnReader::Int32ColumnReader(reader) => {
+            values(reader, present, f64::NAN, |value| f64::from(*value))
+        }
+        // Whole numbers beyond 2^53 lose their last digits, as they do in the text of a table.
+        ColumnReader::Int64ColumnReader(reader) if unsigned => {
+            values(reader, present, f64::NAN, |value| value.cast_unsigned() as f64)
+        }
+        ColumnReader::Int64ColumnReader(reader) => values(reader, present, f64::NAN, |value| *value as f64),
+        ColumnReader::FloatColumnReader(reader) => {
+            values(reader, present, f64::NAN, |value| f64::from(*value))
+        }
+        ColumnReader::DoubleColumnReader(reader) => values(reader, present, f64::NAN, |value| *value),
+        _ => Err(general("a column does not hold numbers")),
+    }
+}
+
+/// All values of a column; `missing` where there is none.
+fn values<T: DataType, V: Copy>(
     mut reader: ColumnReaderImpl<T>,
     present: i16,
-    number: impl Fn(&T::T) -> f64,
-) -> Result<Vec<f64>, ParquetError> {
+    missing: V,
+    value: impl Fn(&T::T) -> V,
+) -> Result<Vec<V>, ParquetError> {
     let mut all = Vec::new();
     let (mut found, mut levels) = (Vec::new(), Vec::new());
     loop {
@@ -173,16 +336,16 @@ fn values<T: DataType>(
         if records == 0 {
             return Ok(all);
         }
+        if all.len() > MOST_NUMBERS {
+            return Err(general("a group has too many rows"));
+        }
         // A column whose values must be there has no levels.
-        let mut found = found.iter().map(&number);
+        let mut found = found.iter().map(&value);
         if levels.is_empty() {
             all.extend(found);
         } else {
-            all.extend(
-                levels
-                    .iter()
-                    .map(|level| if *level == present { found.next().unwrap_or(f64::NAN) } else { f64::NAN }),
-            );
+            let of_level = |level: &i16| if *level == present { found.next() } else { None };
+            all.extend(levels.iter().map(of_level).map(|value| value.unwrap_or(missing)));
         }
     }
 }

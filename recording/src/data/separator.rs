@@ -1,20 +1,38 @@
-//! What stands between the cells: a comma, a semicolon or a tab, told by the header row where it can be told.
+//! What stands between the cells: what the recording file says; else a comma, a semicolon or a tab, told by the first row.
 
-use super::lines::{split, unquoted};
+use super::super::form::{Form, Separator};
+use super::lines::{SPACES, split, unquoted};
 
 /// The separators that are tried.
 const SEPARATORS: [(u8, &str); 3] = [(b',', "commas"), (b';', "semicolons"), (b'\t', "tabs")];
 
-/// The separator of a header row in which the wanted names stand.
+impl Separator {
+    /// The byte that stands for it.
+    fn byte(self) -> u8 {
+        match self {
+            Self::Comma => b',',
+            Self::Semicolon => b';',
+            Self::Tab => b'\t',
+            Self::Spaces => SPACES,
+        }
+    }
+}
+
+/// The separator of a first row in which the wanted names stand.
 ///
 /// # Errors
 ///
 /// The names of the separators among which it cannot be told.
-pub(super) fn separator_of(header: &[u8], wanted: &[&str]) -> Result<u8, Vec<&'static str>> {
-    let parts = SEPARATORS.iter().filter(|(separator, _)| names(header, *separator).len() > 1);
+pub(super) fn separator_of(header: &[u8], wanted: &[&str], form: &Form) -> Result<u8, Vec<&'static str>> {
+    if let Some(given) = form.separator {
+        return Ok(given.byte());
+    }
+    // What is the decimal sign separates nothing.
+    let possible = SEPARATORS.iter().filter(|(separator, _)| !(form.decimal_comma && *separator == b','));
+    let parts = possible.filter(|(separator, _)| names(header, *separator).len() > 1);
     let parts: Vec<_> = parts.collect();
     match parts.as_slice() {
-        [] => return Ok(b','),
+        [] => return Ok(if form.decimal_comma { b';' } else { b',' }),
         [(only, _)] => return Ok(*only),
         _ => {}
     }

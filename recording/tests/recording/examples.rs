@@ -90,7 +90,7 @@ fn every_number_is_that_of_the_table() {
     for path in examples() {
         let (header, recording) = read(&path);
         for channel in &header.channels {
-            let expected = as_the_library_reads(&path, &channel.column.value, &channel.written_unit);
+            let expected = as_the_library_reads(&path, &channel.columns()[0].value, &channel.written_unit);
             let named = |list: &[recording::Named], name: &str| {
                 list.iter().find(|one| one.name == name).unwrap().values.clone()
             };

@@ -13,8 +13,10 @@ mod common;
 mod data;
 mod examples;
 mod header;
-#[cfg(feature = "parquet")]
-mod parquet;
+mod hostile;
 mod refused;
 mod refused_data;
 mod setup;
+mod text_forms;
+mod wide;
+mod written;

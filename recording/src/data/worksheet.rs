@@ -1,0 +1,255 @@
+//! A sheet of a workbook in rows. In: its cells, in the order of the file. Out: rows, each cell with its place.
+
+use std::io::{Read, Seek};
+
+use calamine::{DataRef, XlsxCellReader};
+
+use super::super::form::{Form, Names};
+use super::cell::{self, BadCell};
+use super::columns::{Cells, Width};
+use super::error::{DataError, Place, shown};
+use super::stamp::Stamp;
+
+/// No sheet has more columns.
+const MOST_COLUMNS: usize = 1 << 14;
+
+/// The days from the first one of a workbook to 1970. Workbooks that count from 1904 say so elsewhere: times count from the
+/// first row, and the difference is in all of them.
+const DAYS_TO_1970: f64 = 25_569.0;
+
+/// The rows of a sheet.
+pub(super) struct Rows<'n, 'b, R: Read + Seek> {
+    name: &'n str,
+    cells: XlsxCellReader<'b, R>,
+    decimal_comma: bool,
+    /// The first cell of the next row: row, column and what it holds.
+    next: Option<(u32, u32, Value)>,
+    /// A row that was looked at and is to come again.
+    again: Option<Row<'n>>,
+    /// Whether all cells were read: behind them there is nothing to ask for.
+    ended: bool,
+}
+
+/// A row: its cells that hold something, by their columns, in ascending order.
+pub(super) struct Row<'n> {
+    name: &'n str,
+    /// Counted from 0.
+    row: u32,
+    cells: Vec<(u32, Value)>,
+    decimal_comma: bool,
+}
+
+/// What a cell holds.
+enum Value {
+    Number(f64),
+    Text(String),
+    Date(Stamp),
+    /// What a formula came to that has no value: `#DIV/0!`.
+    Error(String),
+}
+
+impl<'n, 'b, R: Read + Seek> Rows<'n, 'b, R> {
+    pub(super) fn new(name: &'n str, cells: XlsxCellReader<'b, R>, decimal_comma: bool) -> Self {
+        Self { name, cells, decimal_comma, next: None, again: None, ended: false }
+    }
+
+    /// The names of the columns, from the row in which they stand; or their numbers.
+    pub(super) fn names(&mut self, form: &Form) -> Result<Vec<String>, DataError> {
+        let name = self.name;
+        let row = loop {
+            let Some(row) = self.next_row()? else {
+                return Err(DataError::new(name, "the sheet has no row of column names").help(
+                    "begin with a row of column names, or name another `sheet` in the recording file",
+                ));
+            };
+            match form.names {
+                Names::Line(line) if u64::from(row.row) + 1 < line => {}
+                Names::Line(line) if u64::from(row.row) + 1 > line => {
+                    let error =
+                        DataError::new(name, format!("row {line} is to be the header row, and is empty"));
+                    return Err(error.help("count all rows, also those that are empty"));
+                }
+                _ => break row,
+            }
+        };
+        let width = row.cells.last().map_or(0, |(column, _)| column.saturating_add(1));
+        if form.names == Names::Nowhere {
+            self.again = Some(row);
+            return Ok((1..=width).map(|number| number.to_string()).collect());
+        }
+        let names = (0..width).map(|column| row.get(column).map(Value::text).unwrap_or_default());
+        Ok(names.collect())
+    }
+
+    /// The next row in which anything stands and that is no comment.
+    pub(super) fn next_row(&mut self) -> Result<Option<Row<'n>>, DataError> {
+        if let Some(row) = self.again.take() {
+            return Ok(Some(row));
+        }
+        while let Some(row) = self.read_row()? {
+            let first = row.cells.first().map(|(_, value)| value.text());
+            if !first.is_some_and(|text| text.starts_with('#'))
+                || matches!(row.cells.first(), Some((_, Value::Error(_))))
+            {
+                return Ok(Some(row));
+            }
+        }
+        Ok(None)
+    }
+
+    fn read_row(&mut self) -> Result<Option<Row<'n>>, DataError> {
+        let first = match self.next.take() {
+            Some(first) => Some(first),
+            None => self.read_cell()?,
+        };
+        let Some((row, column, value)) = first else { return Ok(None) };
+        let mut cells = vec![(column, value)];
+        while let Some((next, column, value)) = self.read_cell()? {
+            if next != row {
+                self.next = Some((next, column, value));
+                break;
+            }
+            cells.push((column, value));
+            if cells.len() > MOST_COLUMNS {
+                return Err(self.disordered(row));
+            }
+        }
+        let ascending = cells.is_sorted_by(|(one, _), (next, _)| one < next);
+        let later = self.next.as_ref().is_none_or(|(next, ..)| *next > row);
+        if !ascending || !later {
+            return Err(self.disordered(row));
+        }
+        Ok(Some(Row { name: self.name, row, cells, decimal_comma: self.decimal_comma }))
+    }
+
+    fn disordered(&self, row: u32) -> DataError {
+        let error = DataError::new(self.name, "it cannot be read: its cells do not stand in order");
+        error.at(Place::Row(u64::from(row) + 1))
+    }
+
+    /// The next cell that holds something: its row, its column and what it holds.
+    fn read_cell(&mut self) -> Result<Option<(u32, u32, Value)>, DataError> {
+        while !self.ended {
+            let cell = self
+                .cells
+                .next_cell()
+                .map_err(|error| DataError::new(self.name, format!("it cannot be read: {error}")))?;
+            let Some(cell) = cell else {
+                self.ended = true;
+                break;
+            };
+            let (row, column) = cell.get_position();
+            if let Some(value) = value_of(cell.get_value()) {
+                return Ok(Some((row, column, value)));
+            }
+        }
+        Ok(None)
+    }
+}
+
+fn value_of(cell: &DataRef<'_>) -> Option<Value> {
+    let text = |text: &str| (!text.trim().is_empty()).then(|| Value::Text(text.trim().to_owned()));
+    match cell {
+        DataRef::Int(value) => Some(Value::Number(*value as f64)),
+        DataRef::Float(value) => Some(Value::Number(*value)),
+        DataRef::Bool(value) => Some(Value::Number(f64::from(u8::from(*value)))),
+        DataRef::String(value) | DataRef::DateTimeIso(value) | DataRef::DurationIso(value) => text(value),
+        DataRef::SharedString(value) => text(value),
+        DataRef::DateTime(date) => {
+            // What lies within a day is a time of day, which is added to a date.
+            let days = date.as_f64();
+            Some(Value::Date(Stamp::days(if days.abs() < 1.0 { days } else { days - DAYS_TO_1970 })))
+        }
+        DataRef::Error(error) => Some(Value::Error(error.to_string())),
+        DataRef::Empty => None,
+    }
+}
+
+impl Value {
+    fn text(&self) -> String {
+        match self {
+            Self::Number(value) => value.to_string(),
+            Self::Text(text) | Self::Error(text) => text.clone(),
+            Self::Date(stamp) => stamp.to_string(),
+        }
+    }
+}
+
+impl Row<'_> {
+    fn get(&self, column: u32) -> Option<&Value> {
+        let found = self.cells.binary_search_by_key(&column, |(column, _)| *column).ok()?;
+        self.cells.get(found).map(|(_, value)| value)
+    }
+
+    fn at(&self, index: usize) -> Option<&Value> {
+        self.get(u32::try_from(index).ok()?)
+    }
+}
+
+fn no_value(error: &str) -> BadCell {
+    BadCell {
+        message: format!("the cell holds `{}`", shown(error.as_bytes())),
+        help: "leave the cell empty where nothing was measured".to_owned(),
+    }
+}
+
+impl Cells for Row<'_> {
+    /// Cells behind the last name are notes of people; those that are not there are empty.
+    fn ragged(&self, _width: Width) -> Option<DataError> {
+        None
+    }
+
+    fn number(&self, index: usize) -> Result<f64, BadCell> {
+        match self.at(index) {
+            None => Ok(f64::NAN),
+            Some(Value::Number(value)) => Ok(*value),
+            Some(Value::Text(text)) => cell::number(text.as_bytes(), self.decimal_comma),
+            Some(Value::Date(stamp)) => Err(cell::is_date(&format!("`{stamp}`"))),
+            Some(Value::Error(error)) => Err(no_value(error)),
+        }
+    }
+
+    fn stamp(&self, index: usize) -> Result<Stamp, BadCell> {
+        match self.at(index) {
+            Some(Value::Text(text)) => cell::stamp(text.as_bytes(), self.decimal_comma),
+            _ => self
+                .number(index)
+                .map(|value| if value.is_nan() { Stamp::MISSING } else { Stamp::number(value) }),
+        }
+    }
+
+    fn date(&self, indices: &[usize]) -> Result<Stamp, BadCell> {
+        let mut texts = Vec::new();
+        let mut sum: Option<Stamp> = None;
+        for index in indices {
+            match self.at(*index) {
+                None => {}
+                Some(Value::Date(stamp)) => sum = Some(sum.map_or(*stamp, |date| date.plus(*stamp))),
+                Some(Value::Text(text)) => texts.push(text.as_bytes()),
+                Some(Value::Number(number)) => return Err(cell::is_no_date(&format!("`{number}`"))),
+                Some(Value::Error(error)) => return Err(no_value(error)),
+            }
+        }
+        match sum {
+            Some(sum) if texts.is_empty() => Ok(sum),
+            Some(_) => Err(BadCell {
+                message: "one cell is a date and the other is text".to_owned(),
+                help: "give both the form of a date or a time in the sheet".to_owned(),
+            }),
+            None => cell::date(&texts),
+        }
+    }
+
+    fn run(&self, index: usize) -> Result<i64, BadCell> {
+        cell::run(self.text(index).as_bytes())
+    }
+
+    fn text(&self, index: usize) -> String {
+        self.at(index).map(Value::text).map(|text| shown(text.as_bytes())).unwrap_or_default()
+    }
+
+    fn error(&self, index: usize, message: String) -> DataError {
+        let column = u64::try_from(index).unwrap_or(u64::MAX).saturating_add(1);
+        DataError::new(self.name, message).at(Place::Cell { row: u64::from(self.row) + 1, column })
+    }
+}

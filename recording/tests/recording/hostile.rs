@@ -1,0 +1,103 @@
+//! Files of other programs that were made to do harm: they end in an answer or a mistake, soon, and without filling memory.
+
+use std::io::{Cursor, Write};
+use std::path::PathBuf;
+
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive, ZipWriter};
+
+use crate::common::header;
+
+const TEXT: &str = "recording: 1
+machine: FX
+instrument: position
+data: x
+channels: {time: {column: t, unit: s}, run: {column: n}, measured.x: {column: x, unit: mm}}
+";
+
+fn bytes(name: &str) -> Vec<u8> {
+    std::fs::read(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/recording/written").join(name))
+        .unwrap()
+}
+
+fn sheet() -> String {
+    TEXT.replace("data: x", "data: {file: x, sheet: run}")
+}
+
+/// The workbook of openpyxl with one of its files written anew.
+fn book(part: &str, new: impl Fn(String) -> Vec<u8>) -> Vec<u8> {
+    let mut old = ZipArchive::new(Cursor::new(bytes("openpyxl.xlsx"))).unwrap();
+    let mut book = ZipWriter::new(Cursor::new(Vec::new()));
+    let options = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
+    for number in 0..old.len() {
+        let mut file = old.by_index(number).unwrap();
+        let name = file.name().unwrap().to_string();
+        let mut text = Vec::new();
+        std::io::Read::read_to_end(&mut file, &mut text).unwrap();
+        if name == part {
+            text = new(String::from_utf8(text).unwrap());
+        }
+        book.start_file(name, options).unwrap();
+        book.write_all(&text).unwrap();
+    }
+    book.finish().unwrap().into_inner()
+}
+
+/// The sheet that is read.
+const SHEET: &str = "xl/worksheets/sheet2.xml";
+
+#[test]
+fn a_small_workbook_that_unpacks_to_a_large_one() {
+    let large = book("xl/styles.xml", |_| vec![b' '; 300 << 20]);
+    assert!(large.len() < 1 << 20);
+    let error = header(&sheet()).read_bytes("x.xlsx", large).unwrap_err().to_string();
+    assert!(error.contains("more than 256 MiB unpacked"), "{error}");
+}
+
+#[test]
+fn cells_that_stand_nowhere() {
+    for (from, to) in [
+        ("r=\"C3\"", "r=\"XFD1048576\""),
+        ("r=\"C3\"", "r=\"ZZZZZZZZZ1\""),
+        ("r=\"C3\"", "r=\"A4294967297\""),
+        ("r=\"C3\"", "r=\"A99999999999999999999\""),
+        ("r=\"C3\"", "r=\"C\""),
+        ("r=\"C3\"", "r=\"A1\""),
+        ("r=\"C3\"", "r=\"\""),
+        ("r=\"C3\"", "s=\"99999999\" t=\"s\""),
+        ("<row r=\"3\"", "<row r=\"0\""),
+        ("<row r=\"3\"", "<row r=\"4294967296\""),
+        ("<sheetData>", "<sheetData"),
+        ("</sheetData>", ""),
+    ] {
+        let hostile = book(SHEET, |text| {
+            assert!(text.contains(from), "{text}");
+            text.replace(from, to).into_bytes()
+        });
+        // What counts is that there is an end, and no panic.
+        if let Err(error) = header(&sheet()).read_bytes("x.xlsx", hostile) {
+            assert!(error.to_string().starts_with("error: x.xlsx"), "{error}");
+        }
+    }
+}
+
+/// One bit after the other is turned, and the file is cut off at each byte.
+#[test]
+fn files_with_a_flaw() {
+    for name in [
+        "polars-zstd.parquet",
+        "polars-lz4.parquet",
+        "fastparquet.parquet",
+        "pyarrow-pages-2.parquet",
+        "openpyxl.xlsx",
+    ] {
+        let whole = bytes(name);
+        let header = header(if name.ends_with("xlsx") { sheet() } else { TEXT.to_owned() }.as_str());
+        for at in 4..whole.len() {
+            let mut flawed = whole.clone();
+            flawed[at] ^= 1 << (at % 8);
+            let _ = header.read_bytes(name, flawed);
+            let _ = header.read_bytes(name, whole[..at].to_vec());
+        }
+    }
+}

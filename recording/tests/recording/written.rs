@@ -1,0 +1,180 @@
+//! Tables that other programs wrote, in `written/`, by `written/make.py`; what they hold is worked out here anew.
+
+use std::path::PathBuf;
+
+use recording::{DataError, Recording};
+
+use crate::common::header;
+
+/// The recording file for a table; `data` is its value of `data`, `channels` are those besides the run.
+fn text(data: &str, channels: &str) -> String {
+    format!(
+        "recording: 1\nmachine: FX\ninstrument: position\ndata: {data}\nchannels: {{run: {{column: n}}, {channels}}}\n"
+    )
+}
+
+fn path(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/recording/written").join(name)
+}
+
+fn read(name: &str, data: &str, channels: &str) -> Result<Recording, DataError> {
+    header(&text(data, channels)).read_data(&path(name))
+}
+
+/// A table and its channels: the time, and x in mm.
+fn holds(name: &str, data: &str, channels: &str) {
+    holds_within(1e-12, name, data, channels);
+}
+
+/// The same with times that are as exact as so many seconds.
+fn holds_within(exact: f64, name: &str, data: &str, channels: &str) {
+    let read = read(name, data, channels).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(read.time.len(), 40, "{name}");
+    for (row, time) in read.time.iter().enumerate() {
+        let expected = 0.05 * row as f64;
+        assert!((time - expected).abs() < exact, "{name}: row {row} at {time}, not at {expected}");
+        assert_eq!(read.run[row], if row < 20 { 1 } else { 2 }, "{name}");
+        let x = read.measured[0].as_deref().unwrap()[row];
+        if row == 7 {
+            assert!(x.is_nan(), "{name}: {x}");
+        } else {
+            assert!((x - 0.25 * row as f64).abs() < 1e-12, "{name}: row {row} has {x}");
+        }
+    }
+}
+
+const X: &str = "measured.x: {column: x, unit: mm}";
+
+fn with_x(time: &str) -> String {
+    format!("time: {time}, {X}")
+}
+
+#[test]
+fn parquet_in_every_packing() {
+    for packing in ["zstd", "snappy", "gzip", "lz4", "uncompressed"] {
+        let name = format!("polars-{packing}.parquet");
+        holds(&name, "x.parquet", &with_x("{column: t, unit: s}"));
+        holds(&name, "x.parquet", &with_x("{column: when, unit: date}"));
+    }
+}
+
+#[test]
+fn parquet_of_other_writers() {
+    for name in ["pyarrow-pages-2.parquet", "pyarrow-int96.parquet", "duckdb.parquet", "fastparquet.parquet"]
+    {
+        holds(name, "x.parquet", &with_x("{column: t, unit: s}"));
+        holds(name, "x.parquet", &with_x("{column: when, unit: date}"));
+    }
+    // Nineteen digits, of which none is lost: 0.05 s are to come out to the last place.
+    for name in ["pyarrow-pages-2.parquet", "duckdb.parquet"] {
+        holds(name, "x.parquet", &with_x("{column: ns, unit: ns}"));
+        holds(name, "x.parquet", &with_x("{column: ns, unit: 0.001 us}"));
+    }
+}
+
+#[test]
+fn parquet_that_is_told_wrongly() {
+    for (data, time, x, parts) in [
+        ("x", "{column: when, unit: s}", X, ["column `when` holds dates", "`unit: date`"]),
+        ("x", "{column: t, unit: date}", X, ["column `t` holds no dates", "`unit: s`"]),
+        (
+            "x",
+            "{column: t, unit: s}",
+            "measured.x: {column: when, unit: mm}",
+            ["`when` holds dates", "only times"],
+        ),
+        (
+            "x",
+            "{column: t, unit: s}",
+            "measured.x: {column: y, unit: mm}",
+            ["no column `y`", "when, t, n, x"],
+        ),
+        ("{file: x, sheet: a}", "{column: t, unit: s}", X, ["no `sheet`", "leave `sheet` out"]),
+        ("{file: x, decimal: \",\"}", "{column: t, unit: s}", X, ["no `decimal`", "leave `decimal` out"]),
+        ("{file: x, header: none}", "{column: t, unit: s}", X, ["no `header`", "leave `header` out"]),
+    ] {
+        let error = read("polars-zstd.parquet", data, &format!("time: {time}, {x}")).unwrap_err().to_string();
+        assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+    }
+}
+
+#[test]
+fn workbooks() {
+    let data = "{file: x, sheet: run}";
+    // Dates are numbers of days there, in floating point: one and a half microseconds between two of them.
+    holds_within(1.5e-6, "openpyxl.xlsx", data, &with_x("{column: when, unit: date}"));
+    holds("openpyxl.xlsx", data, &with_x("{column: t, unit: s}"));
+    // XlsxWriter rounds them to milliseconds.
+    holds_within(
+        1.5e-3,
+        "xlsxwriter.xlsx",
+        "{file: x, header: 5}",
+        &with_x("{column: [date, time], unit: date}"),
+    );
+}
+
+#[test]
+fn workbooks_that_are_told_wrongly() {
+    let time = "time: {column: t, unit: s}";
+    for (data, channels, parts) in [
+        ("x", format!("{time}, {X}"), ["openpyxl.xlsx, cell D2: column `x`", "`none` is not a number"]),
+        ("{file: x, sheet: rum}", format!("{time}, {X}"), ["no sheet `rum`", "notes, run"]),
+        (
+            "{file: x, sheet: run}",
+            format!("{time}, measured.x: {{column: x, unit: um}}"),
+            ["is in `mm` here and in `um`", "say the same"],
+        ),
+        ("{file: x, sheet: run}", with_x("{column: when, unit: s}"), ["cell A2", "is a date, not a number"]),
+        (
+            "{file: x, sheet: run}",
+            with_x("{column: t, unit: date}"),
+            ["cell B2", "`0` is a number, not a date"],
+        ),
+        ("{file: x, sheet: run, separator: tab}", format!("{time}, {X}"), ["no `separator`", "leave"]),
+        ("{file: x, sheet: run, header: 99}", format!("{time}, {X}"), ["no row of column names", "sheet"]),
+    ] {
+        let error = read("openpyxl.xlsx", data, &channels).unwrap_err().to_string();
+        assert!(parts.iter().all(|part| error.contains(part)), "{error}");
+    }
+}
+
+#[test]
+fn texts() {
+    let comma = "{file: x, decimal: \",\"}";
+    holds("comma.csv", comma, &with_x("{column: t, unit: s}"));
+    holds("comma.csv", comma, &with_x("{column: when, unit: date}"));
+    holds("tabs.txt", "x", &with_x("{column: t, unit: s}"));
+    holds("tabs.txt", "x", &with_x("{column: [date, time], unit: date}"));
+    holds("counts.csv", "x", "time: {column: when, unit: date}, measured.x: {column: x, unit: 0.5 um}");
+    let error = read("comma.csv", "x", &with_x("{column: t, unit: s}")).unwrap_err().to_string();
+    assert!(error.contains("comma.csv:2:28: column `t`") && error.contains("decimal: \",\""), "{error}");
+}
+
+/// numpy.savetxt writes no names; what is missing stands as 0 there.
+#[test]
+fn columns_by_number() {
+    let text =
+        "recording: 1\nmachine: FX\ninstrument: position\ndata: {file: x, separator: spaces, header: none}
+channels: {time: {column: 1, unit: 50 ms}, run: {column: 2}, measured.x: {column: 3, unit: mm}}\n";
+    let read = header(text).read_data(&path("savetxt.txt")).unwrap();
+    assert_eq!((read.time.len(), read.run[19], read.run[20]), (40, 1, 2));
+    assert!((read.time[39] - 1.95).abs() < 1e-12);
+    assert_eq!(read.measured[0].as_deref().unwrap()[38..], [9.5, 9.75]);
+}
+
+/// What is said shows no byte of the file, and a way to a table.
+#[test]
+fn other_formats_are_named() {
+    for (name, what, way) in [
+        ("h5py.h5", "an HDF5 file", "h5py.File"),
+        ("scipy.mat", "a MAT file", "scipy.io.loadmat"),
+        ("nptdms.tdms", "a TDMS file", "nptdms.TdmsFile.read"),
+        ("asammdf.mf4", "an MDF file", "asammdf.MDF"),
+    ] {
+        let error = read(name, "x", &with_x("{column: t, unit: s}")).unwrap_err();
+        let shown = error.to_string();
+        assert!(shown.contains(&format!("{name}: it is {what}, which is not read")), "{shown}");
+        assert!(error.help.unwrap().contains(way) && shown.contains("to_parquet"), "{shown}");
+        assert!(shown.chars().all(|letter| letter == '\n' || !letter.is_control()), "{shown:?}");
+    }
+}

@@ -9,6 +9,7 @@ mod columns;
 mod error;
 mod layout;
 mod lines;
+mod numbers;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod separator;

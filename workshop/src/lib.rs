@@ -12,6 +12,7 @@ pub mod improved;
 pub mod load;
 pub mod named;
 pub mod recorded;
+pub mod rows;
 pub mod shipped;
 pub mod told;
 pub mod topology;

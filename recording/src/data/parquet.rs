@@ -10,10 +10,10 @@ use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
 use super::super::{Header, Recording};
-use super::cell::BadCell;
-use super::columns::{Cells, Columns};
-use super::error::{DataError, Place};
+use super::columns::Columns;
+use super::error::DataError;
 use super::layout::{find_columns, notes_of_extra};
+use super::numbers::Group;
 use super::{MOST_NUMBERS, settle};
 
 /// How many values are asked for at once.
@@ -66,66 +66,6 @@ fn not_plain(column: &ColumnDescriptor) -> Option<String> {
         (physical, None) => physical.to_string(),
     };
     (!plain_kind || !plain_type).then(kind)
-}
-
-/// The rows of one group: a list of numbers for each column that is wanted, an empty one for the others.
-struct Group<'n> {
-    name: &'n str,
-    /// How many rows stand before it.
-    before: u64,
-    columns: Vec<Vec<f64>>,
-}
-
-/// One row of a group.
-struct Numbers<'g> {
-    group: &'g Group<'g>,
-    row: usize,
-}
-
-impl Group<'_> {
-    /// Hands over all rows and tells how many they were.
-    fn send_to(&self, table: &mut Columns<'_>) -> Result<u64, DataError> {
-        let rows = self.columns.iter().map(Vec::len).max().unwrap_or(0);
-        for row in 0..rows {
-            table.take(&Numbers { group: self, row })?;
-        }
-        Ok(u64::try_from(rows).unwrap_or(u64::MAX))
-    }
-}
-
-impl Cells for Numbers<'_> {
-    fn ragged(&self, _width: usize) -> Option<DataError> {
-        None
-    }
-
-    fn number(&self, index: usize) -> Result<f64, BadCell> {
-        let value = self.group.columns.get(index).and_then(|column| column.get(self.row)).copied();
-        let value = value.unwrap_or(f64::NAN);
-        if value.is_infinite() {
-            return Err(BadCell {
-                message: "infinity is not a number that was measured".to_owned(),
-                help: "leave the cell empty where nothing was measured".to_owned(),
-            });
-        }
-        Ok(value)
-    }
-
-    fn run(&self, index: usize) -> Result<i64, BadCell> {
-        super::cell::run(self.text(index).as_bytes())
-    }
-
-    fn text(&self, index: usize) -> String {
-        match self.number(index) {
-            Ok(value) if value.is_nan() => String::new(),
-            Ok(value) => value.to_string(),
-            Err(_) => "infinity".to_owned(),
-        }
-    }
-
-    fn error(&self, _index: usize, message: String) -> DataError {
-        let row = u64::try_from(self.row).unwrap_or(u64::MAX).saturating_add(1);
-        DataError::new(self.group.name, message).at(Place::Row(self.group.before.saturating_add(row)))
-    }
 }
 
 fn read_group(

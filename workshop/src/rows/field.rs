@@ -3,27 +3,24 @@
 use abbe_runtime::{Compensator, Direction, Kinematics, Sample};
 
 /// The predicted error over positions.
-pub(super) struct Field<'f, 'c, K: Kinematics + ?Sized> {
+pub struct Field<'f, 'c, K: Kinematics + ?Sized> {
     compensator: &'f mut Compensator<'c, K>,
     /// Where the axes stand that are not moved.
-    pub(super) middle: Vec<f64>,
+    pub middle: Vec<f64>,
     temperature: &'f [f64],
     direction: Vec<Direction>,
     velocity: Vec<f64>,
 }
 
 impl<'f, 'c, K: Kinematics + ?Sized> Field<'f, 'c, K> {
-    pub(super) fn new(
-        compensator: &'f mut Compensator<'c, K>,
-        middle: Vec<f64>,
-        temperature: &'f [f64],
-    ) -> Self {
+    /// The error around a place, mm and rad, at temperatures in degC.
+    pub fn new(compensator: &'f mut Compensator<'c, K>, middle: Vec<f64>, temperature: &'f [f64]) -> Self {
         let (direction, velocity) = (vec![Direction::Positive; middle.len()], vec![0.0; middle.len()]);
         Self { compensator, middle, temperature, direction, velocity }
     }
 
     /// The error with some axes moved to places, mm, part frame; nothing where it is not finite.
-    pub(super) fn at(&mut self, moved: &[(usize, f64)]) -> Option<[f64; 3]> {
+    pub fn at(&mut self, moved: &[(usize, f64)]) -> Option<[f64; 3]> {
         let mut position = self.middle.clone();
         for (axis, place) in moved {
             *position.get_mut(*axis)? = *place;

@@ -8,8 +8,8 @@ use simulation::Plant;
 use workshop::calibrated::{self, Calibrated};
 use workshop::failure::Failure;
 use workshop::load;
+use workshop::origin::word;
 
-use super::diagnose::origin::word;
 use super::limits::{answered, cannot, check_names, options, tell};
 use super::simulate::{read_path, wrong};
 use crate::arguments::Plan;

@@ -11,6 +11,7 @@ pub mod failure;
 pub mod improved;
 pub mod load;
 pub mod named;
+pub mod origin;
 pub mod recorded;
 pub mod rows;
 pub mod shipped;

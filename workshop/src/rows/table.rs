@@ -48,6 +48,15 @@ pub struct Wanted {
     pub left_out: bool,
 }
 
+impl Wanted {
+    /// The machine with the tool.
+    pub(super) fn machine(&self, calibrated: &Calibrated) -> Interpreter {
+        let tool = self.tool.and_then(|tool| calibrated.calibration.tools.get(tool));
+        let constants = tool.map_or(&calibrated.calibration.constants, |tool| &tool.constants);
+        Interpreter::new(&calibrated.equations, constants)
+    }
+}
+
 /// The answers, row by row.
 #[derive(Clone, Debug, Default)]
 pub struct Answers {
@@ -73,11 +82,7 @@ pub fn answer(calibrated: &Calibrated, table: &Table, wanted: &Wanted) -> Result
     let mut warnings = Vec::new();
     let terms = calibrated.terms(|left_out| warnings.push(left_out));
     let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
-    let constants = match wanted.tool.and_then(|tool| calibrated.calibration.tools.get(tool)) {
-        Some(tool) => &tool.constants,
-        None => &calibrated.calibration.constants,
-    };
-    let machine = Interpreter::new(&calibrated.equations, constants);
+    let machine = wanted.machine(calibrated);
     let answering = Answering { calibrated, machine, motions: &motions, compensated: wanted.compensated };
     let followed = answering.follow(table, &wanted.hysteresis)?;
     let pieces: Vec<Result<Answers, Failure>> = followed

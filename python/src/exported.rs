@@ -1,0 +1,1 @@
+//! `abbe.export`.

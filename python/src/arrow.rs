@@ -7,12 +7,12 @@
 use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
-use arrow_array::ffi_stream::{RecordBatchStreamReader, FFI_ArrowArrayStream};
+use arrow_array::ffi_stream::{FFI_ArrowArrayStream, RecordBatchStreamReader};
 use arrow_array::types::{
-    ArrowPrimitiveType, DurationMicrosecondType, DurationMillisecondType, DurationNanosecondType, DurationSecondType,
-    Float32Type, Float64Type, Int8Type, Int16Type, Int32Type, Int64Type, TimestampMicrosecondType,
-    TimestampMillisecondType, TimestampNanosecondType, TimestampSecondType, UInt8Type, UInt16Type, UInt32Type,
-    UInt64Type,
+    ArrowPrimitiveType, DurationMicrosecondType, DurationMillisecondType, DurationNanosecondType,
+    DurationSecondType, Float32Type, Float64Type, Int8Type, Int16Type, Int32Type, Int64Type,
+    TimestampMicrosecondType, TimestampMillisecondType, TimestampNanosecondType, TimestampSecondType,
+    UInt8Type, UInt16Type, UInt32Type, UInt64Type,
 };
 use arrow_array::{Array, ArrayRef, RecordBatch, RecordBatchReader};
 use arrow_schema::{DataType, TimeUnit};
@@ -109,6 +109,10 @@ impl Part {
     fn counts<T: ArrowPrimitiveType<Native = i64>>(&self, each: i128) -> Vec<Option<i128>> {
         let parts = self.parts.iter().filter_map(|part| part.as_primitive_opt::<T>());
         // Neither factor is beyond 2^64: the product is within 2^128.
-        parts.flat_map(|part| part.iter().map(|value| value.map(|value| i128::from(value).saturating_mul(each)))).collect()
+        parts
+            .flat_map(|part| {
+                part.iter().map(|value| value.map(|value| i128::from(value).saturating_mul(each)))
+            })
+            .collect()
     }
 }

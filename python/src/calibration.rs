@@ -232,11 +232,21 @@ impl Calibration {
         &self.text.path
     }
 
-    fn wanted(&self, py: Python<'_>, tool: Option<&str>, hysteresis: f64, left_out: bool) -> PyResult<Wanted> {
+    fn wanted(
+        &self,
+        py: Python<'_>,
+        tool: Option<&str>,
+        hysteresis: f64,
+        left_out: bool,
+    ) -> PyResult<Wanted> {
         let Calibrated { equations, calibration, .. } = &self.calibrated;
         let unknown = |name: &str| {
             let all = self.tools().join(", ");
-            let help = if all.is_empty() { "help: it has none".to_owned() } else { format!("help: there are {all}") };
+            let help = if all.is_empty() {
+                "help: it has none".to_owned()
+            } else {
+                format!("help: there are {all}")
+            };
             wrong(py, format!("the calibration has no tool `{name}`\n{help}"))
         };
         let tool = tool.map(|name| calibration.tool(name).ok_or_else(|| unknown(name))).transpose()?;
@@ -266,7 +276,12 @@ impl Calibration {
     }
 }
 
-fn answered(calibrated: &Calibrated, rows: &Rows, wanted: &Wanted, heard: &Heard) -> Result<Answers, Failure> {
+fn answered(
+    calibrated: &Calibrated,
+    rows: &Rows,
+    wanted: &Wanted,
+    heard: &Heard,
+) -> Result<Answers, Failure> {
     let mut answers = table::answer(calibrated, &rows.table, wanted)?;
     answers.warnings.drain(..).for_each(|text| heard.take(text));
     Ok(answers)

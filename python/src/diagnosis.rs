@@ -165,7 +165,9 @@ impl Diagnosis {
                     ParameterValue::Name(_) | ParameterValue::Places(..) => Vec::new(),
                     ParameterValue::Given(value, unit) => vec![(*value, (*value, *value), unit.as_str())],
                     ParameterValue::Fitted(one) => vec![(one.value, one.ci95, one.unit.as_str())],
-                    ParameterValue::List(list) => list.iter().map(|one| (one.value, one.ci95, one.unit.as_str())).collect(),
+                    ParameterValue::List(list) => {
+                        list.iter().map(|one| (one.value, one.ci95, one.unit.as_str())).collect()
+                    }
                 };
                 rows.extend(fitted.into_iter().map(|(value, (one, other), unit)| {
                     (number, finding, (*name).to_owned(), value, (one.min(other), one.max(other)), unit)
@@ -221,16 +223,22 @@ impl Diagnosis {
     /// The page of `abbe diagnose --format html`.
     #[getter]
     fn html(&self, py: Python<'_>) -> PyResult<String> {
-        let (Some(first), Some(text)) = (self.recorded.first(), self.inputs.first()) else { return Ok(String::new()) };
+        let (Some(first), Some(text)) = (self.recorded.first(), self.inputs.first()) else {
+            return Ok(String::new());
+        };
         let change = improved::change(first, &Files::of(first, &text.path), &self.found);
         let held_out = self.inputs.get(self.fitted).map(|held| held.path.as_path());
-        let command = origin::diagnose(self.inputs.iter().take(self.fitted).map(|one| one.path.as_path()), held_out);
+        let command =
+            origin::diagnose(self.inputs.iter().take(self.fitted).map(|one| one.path.as_path()), held_out);
         let files = self.inputs.iter().all(|one| one.path.is_file());
-        Ok(report::html(&self.found, &Origin {
-            command: if files { &command } else { "" },
-            program: concat!("abbe ", env!("CARGO_PKG_VERSION")),
-            change: &change.map_err(|failure| raised(py, &failure))?,
-        }))
+        Ok(report::html(
+            &self.found,
+            &Origin {
+                command: if files { &command } else { "" },
+                program: concat!("abbe ", env!("CARGO_PKG_VERSION")),
+                change: &change.map_err(|failure| raised(py, &failure))?,
+            },
+        ))
     }
 
     /// The names of the channels of a recording that the diagnosis looked at, with their units, mm or rad.
@@ -303,7 +311,10 @@ impl Diagnosis {
                 let Improved { text, machine } = improved::calibration(&target, first, &files, &self.found)
                     .map_err(|failure| raised(py, &failure))?;
                 if machine.is_some() {
-                    return Err(wrong(py, "the machine's chain has another order than its file says: both are new files\nhelp: give a path, beside which the machine file is written too"));
+                    return Err(wrong(
+                        py,
+                        "the machine's chain has another order than its file says: both are new files\nhelp: give a path, beside which the machine file is written too",
+                    ));
                 }
                 Calibration::of(py, Text { source: SourceFile::new("<calibration>", text), path: target })
             }
@@ -321,7 +332,12 @@ impl Diagnosis {
     fn __repr__(&self) -> String {
         let findings = self.found.findings.iter().map(|one| format!("{} of {}", one.term, one.motion));
         let findings = findings.collect::<Vec<String>>().join(", ");
-        format!("<abbe.Diagnosis of {}: {}{}{findings}>", self.found.machine, self.verdict(), if findings.is_empty() { "" } else { ": " })
+        format!(
+            "<abbe.Diagnosis of {}: {}{}{findings}>",
+            self.found.machine,
+            self.verdict(),
+            if findings.is_empty() { "" } else { ": " }
+        )
     }
 }
 

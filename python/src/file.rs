@@ -93,7 +93,12 @@ fn flow(value: &Bound<'_, PyAny>, depth: usize) -> PyResult<String> {
     }
     let items = value.try_iter().map_err(|_| {
         let kind = value.get_type().name().map_or_else(|_| String::new(), |name| name.to_string());
-        wrong(py, format!("a value of type {kind} has no place in a file\nhelp: write text, a number, a list or a dict"))
+        wrong(
+            py,
+            format!(
+                "a value of type {kind} has no place in a file\nhelp: write text, a number, a list or a dict"
+            ),
+        )
     })?;
     let items: PyResult<Vec<String>> = items.map(|item| flow(&item?, depth)).collect();
     Ok(format!("[{}]", items?.join(", ")))
@@ -130,7 +135,8 @@ fn scalar(value: &Bound<'_, PyAny>) -> PyResult<String> {
 /// Text as it is where YAML takes it for itself, and else in double quotes.
 fn quoted(text: &str) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "_-+./ ^".contains(letter);
-    let first = text.chars().next().is_some_and(|letter| letter.is_ascii_alphanumeric() || "+-./_".contains(letter));
+    let first =
+        text.chars().next().is_some_and(|letter| letter.is_ascii_alphanumeric() || "+-./_".contains(letter));
     if first && text.chars().all(plain) && !text.ends_with(' ') && !text.starts_with("- ") && text != "-" {
         return text.to_owned();
     }

@@ -9,8 +9,10 @@ mod calibration;
 mod columns;
 mod diagnosis;
 mod error;
+mod exported;
 mod file;
 mod machine;
+mod made;
 mod mapped;
 mod page;
 mod positions;
@@ -31,7 +33,11 @@ mod _abbe {
     use super::error::{AbbeWarning, Error};
     #[pymodule_export]
     #[pymodule_export]
+    use super::exported::{Exported, export};
+    #[pymodule_export]
     use super::machine::Machine;
+    #[pymodule_export]
+    use super::made::{calibrate, simulate, update};
     #[pymodule_export]
     use super::recording::Recording;
     #[pymodule_export]

@@ -217,9 +217,13 @@ impl Machine {
         names.sort_unstable();
         if let Some(stray) = names.into_iter().find(|name| !known.iter().any(|known| *known.name == **name)) {
             let all = self.constants().join(", ");
-            return Err(wrong(py, format!("{} has no constant `{stray}`\nhelp: its constants are {all}", self.name())));
+            return Err(wrong(
+                py,
+                format!("{} has no constant `{stray}`\nhelp: its constants are {all}", self.name()),
+            ));
         }
-        let value = |name: &str, default: Option<f64>| given.get(name).copied().or(default).unwrap_or_default();
+        let value =
+            |name: &str, default: Option<f64>| given.get(name).copied().or(default).unwrap_or_default();
         Ok(known.iter().map(|constant| value(&constant.name, constant.default)).collect())
     }
 }
@@ -255,7 +259,10 @@ impl Places {
                 }
             };
             if numbers.len() != 1 && rows != 1 && rows != numbers.len() {
-                return Err(wrong(py, format!("`{key}` has {} positions, others have {rows}", numbers.len())));
+                return Err(wrong(
+                    py,
+                    format!("`{key}` has {} positions, others have {rows}", numbers.len()),
+                ));
             }
             rows = if numbers.len() == 1 { rows } else { numbers.len() };
             if let Some(slot) = columns.get_mut(axis) {

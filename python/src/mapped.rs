@@ -70,9 +70,13 @@ impl Plane {
             .map_err(|refused| raised(py, &Failure::wrong(refused.to_string())))?;
         let points = match points {
             None => [POINTS; 2],
-            Some(points) => points.extract::<[usize; 2]>().or_else(|_| points.extract().map(|one| [one; 2]))?,
+            Some(points) => {
+                points.extract::<[usize; 2]>().or_else(|_| points.extract().map(|one| [one; 2]))?
+            }
         };
-        if points.contains(&0) || points.into_iter().try_fold(1, usize::checked_mul).is_none_or(|all| all > MOST) {
+        if points.contains(&0)
+            || points.into_iter().try_fold(1, usize::checked_mul).is_none_or(|all| all > MOST)
+        {
             return Err(wrong(py, format!("`points` are from 1 on, and all together not more than {MOST}")));
         }
         let range = |axis: usize| space.ranges.get(axis).copied().unwrap_or_default();
@@ -92,7 +96,8 @@ impl Plane {
         let inputs: Vec<f64> = temperatures(py, calibrated, given, 1)?.into_iter().flatten().collect();
         let [columns, rows] = &self.places;
         let [one, other] = self.axes;
-        let moved = rows.iter().flat_map(|row| columns.iter().map(move |column| [(one, *column), (other, *row)]));
+        let moved =
+            rows.iter().flat_map(|row| columns.iter().map(move |column| [(one, *column), (other, *row)]));
         let moved: Vec<[(usize, f64); 2]> = moved.collect();
         let errors = working(py, |heard| {
             field::errors(calibrated, wanted, (&self.middle, &inputs), &moved, &mut |text| heard.take(text))

@@ -41,7 +41,8 @@ impl Rows {
         let (positions, alone) = rows_of(py, "positions", &array, axes)?;
         let rows = positions.nrows();
         // The same factors as those of the columns that the command line reads.
-        let factor = |rotary: bool| parse_unit(if rotary { "deg" } else { "mm" }).map_or(1.0, |unit| unit.factor);
+        let factor =
+            |rotary: bool| parse_unit(if rotary { "deg" } else { "mm" }).map_or(1.0, |unit| unit.factor);
         let factors: Vec<f64> = calibrated.equations.axes.iter().map(|axis| factor(axis.rotary)).collect();
         let position = positions.columns().into_iter().zip(&factors);
         let position = position.map(|(column, factor)| column.iter().map(|place| place * factor).collect());
@@ -53,7 +54,12 @@ impl Rows {
             temperature: temperatures(py, calibrated, given.temperatures, rows)?,
         };
         if let (Some(why), None) = (timed(&calibrated.calibration), &table.time) {
-            return Err(wrong(py, format!("there is no `time`, which {why} needs\nhelp: time=... takes a number for each row, in s")));
+            return Err(wrong(
+                py,
+                format!(
+                    "there is no `time`, which {why} needs\nhelp: time=... takes a number for each row, in s"
+                ),
+            ));
         }
         Ok(Self { table, alone, factors })
     }
@@ -65,12 +71,15 @@ impl Rows {
         calibrated: &Calibrated,
         answers: &Answers,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let directions: Vec<usize> = calibrated.equations.rows.iter().map(|row| row.direction.index()).collect();
+        let directions: Vec<usize> =
+            calibrated.equations.rows.iter().map(|row| row.direction.index()).collect();
         let leans = calibrated.equations.orientation.len();
         let shape = (answers.outcomes.len(), directions.len().saturating_add(leans));
         let error = |(row, place): (usize, usize)| match directions.get(place) {
             Some(direction) => answers.outcomes.get(row).and_then(|outcome| outcome.error.get(*direction)),
-            None => answers.leans.get(row).and_then(|lean| lean.without.get(place.checked_sub(directions.len())?)),
+            None => {
+                answers.leans.get(row).and_then(|lean| lean.without.get(place.checked_sub(directions.len())?))
+            }
         };
         self.array(py, Array2::from_shape_fn(shape, |at| error(at).copied().unwrap_or(f64::NAN)))
     }
@@ -116,14 +125,20 @@ fn rows_of<'a>(
     let view = if alone { array.view().insert_axis(Axis(0)) } else { array.view() };
     let view = view.into_dimensionality().ok().filter(|view: &ArrayView2<'_, f64>| view.ncols() == width);
     let view = view.ok_or_else(|| {
-        let help = format!("help: it has a row for each position, and in it a number for each of {width} axes");
+        let help =
+            format!("help: it has a row for each position, and in it a number for each of {width} axes");
         wrong(py, format!("`{name}` has the shape {shape:?}, not (n, {width})\n{help}"))
     })?;
     Ok((view, alone))
 }
 
 /// A number for each row; one number stands for all of them.
-pub(crate) fn column(py: Python<'_>, name: &str, value: &Bound<'_, PyAny>, rows: usize) -> PyResult<Vec<f64>> {
+pub(crate) fn column(
+    py: Python<'_>,
+    name: &str,
+    value: &Bound<'_, PyAny>,
+    rows: usize,
+) -> PyResult<Vec<f64>> {
     let array: Numbers<'_> = value.extract()?;
     let array = array.as_array();
     match (array.ndim(), array.len()) {
@@ -171,7 +186,9 @@ pub(crate) fn temperatures(
     let read = |name: &&str| {
         let value = given.map(|given| given.get_item(*name)).transpose()?.flatten();
         let value = value.ok_or_else(|| {
-            let help = format!("help: temperatures={{\"{name}\": ...}} takes a number, or one for each row, in degC");
+            let help = format!(
+                "help: temperatures={{\"{name}\": ...}} takes a number, or one for each row, in degC"
+            );
             wrong(py, format!("there is no temperature of sensor {name}, which the calibration uses\n{help}"))
         })?;
         column(py, name, &value, rows)
@@ -190,7 +207,8 @@ fn travels(
     named(py, "travels", Some(given), &names)?;
     let read = |name: &&str| {
         let value = given.get_item(*name)?;
-        let value = value.ok_or_else(|| wrong(py, format!("there is no travel `{name}`; give all travels or none")))?;
+        let value = value
+            .ok_or_else(|| wrong(py, format!("there is no travel `{name}`; give all travels or none")))?;
         column(py, name, &value, rows)
     };
     names.iter().map(read).collect()
@@ -201,8 +219,15 @@ fn named(py: Python<'_>, what: &str, given: Option<&Bound<'_, PyDict>>, known: &
     for key in given.into_iter().flat_map(|given| given.keys()) {
         let key: String = key.extract()?;
         if !known.contains(&key.as_str()) {
-            let all = if known.is_empty() { "there are none".to_owned() } else { format!("there are {}", known.join(", ")) };
-            return Err(wrong(py, format!("`{what}` names `{key}`, which this calibration does not know\nhelp: {all}")));
+            let all = if known.is_empty() {
+                "there are none".to_owned()
+            } else {
+                format!("there are {}", known.join(", "))
+            };
+            return Err(wrong(
+                py,
+                format!("`{what}` names `{key}`, which this calibration does not know\nhelp: {all}"),
+            ));
         }
     }
     Ok(())

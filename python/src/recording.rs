@@ -66,7 +66,10 @@ impl Recording {
         let said = machine.is_some() || units.is_some() || channels.is_some() || setup.is_some();
         let said = said || instrument.is_some() || calibration.is_some() || constants.is_some();
         if is_file && (said || holdout.is_some() || title.is_some()) {
-            return Err(wrong(py, "a recording file says all that the other arguments say\nhelp: give the file alone, or a table with them"));
+            return Err(wrong(
+                py,
+                "a recording file says all that the other arguments say\nhelp: give the file alone, or a table with them",
+            ));
         }
         if is_file {
             return Self::of_file(py, file::path(source)?);
@@ -203,12 +206,16 @@ impl Recording {
         Ok(Self { recorded, text: Text { source, path } })
     }
 
+    /// What was read, with the text that it was read from.
+    pub(crate) fn of_recorded(recorded: Recorded, text: Text) -> Self {
+        Self { recorded, text }
+    }
+
     fn of_table(py: Python<'_>, text: Text, table: &Table) -> PyResult<Self> {
         let names = table.names();
         let heard = Heard::default();
-        let data = |header: &Header| {
-            header.read_columns(TABLE, &names, |index| table.column(index, header, TABLE))
-        };
+        let data =
+            |header: &Header| header.read_columns(TABLE, &names, |index| table.column(index, header, TABLE));
         let recorded = recorded::of(text.source.clone(), text.folder(), data, &heard);
         heard.say(py)?;
         Ok(Self { recorded: recorded.map_err(|failure| raised(py, &failure))?, text })
@@ -231,7 +238,9 @@ impl Recording {
             vec![("time".to_owned(), &recording.time), ("run".to_owned(), &recording.time)];
         let letters = self.recorded.equations.axes.iter().map(|axis| axis.letter.to_lowercase());
         for (letter, axis) in letters.zip(&recording.axes) {
-            for (what, values) in [("command", &axis.command), ("actual", &axis.actual), ("measured", &axis.measured)] {
+            for (what, values) in
+                [("command", &axis.command), ("actual", &axis.actual), ("measured", &axis.measured)]
+            {
                 all.extend(values.as_deref().map(|values| (format!("{what}.{letter}"), values)));
             }
         }
@@ -243,7 +252,11 @@ impl Recording {
             all.push((format!("normal.{letter}"), values));
         }
         for (what, channels) in [("temperature", &recording.temperatures), ("load", &recording.loads)] {
-            all.extend(channels.iter().map(|channel| (format!("{what}.{}", channel.name), channel.values.as_slice())));
+            all.extend(
+                channels
+                    .iter()
+                    .map(|channel| (format!("{what}.{}", channel.name), channel.values.as_slice())),
+            );
         }
         all
     }
@@ -266,7 +279,10 @@ fn calibration_named(calibration: &Bound<'_, PyAny>) -> PyResult<String> {
     if path.is_file() {
         return Ok(path.display().to_string());
     }
-    Err(wrong(calibration.py(), "the calibration is no file yet, which a recording could name\nhelp: write it first, with calibration.write(path)"))
+    Err(wrong(
+        calibration.py(),
+        "the calibration is no file yet, which a recording could name\nhelp: write it first, with calibration.write(path)",
+    ))
 }
 
 /// `channels` of the recording file: for each channel its column and unit.
@@ -302,7 +318,11 @@ fn channels_of<'py>(
     Ok(channels)
 }
 
-fn entry<'py>(py: Python<'py>, column: &str, unit: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyDict>> {
+fn entry<'py>(
+    py: Python<'py>,
+    column: &str,
+    unit: Option<Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
     let entry = PyDict::new(py);
     entry.set_item("column", column)?;
     if let Some(unit) = unit.filter(|unit| !unit.is_none()) {

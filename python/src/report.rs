@@ -104,7 +104,7 @@ pub(crate) fn evaluate(py: Python<'_>, recording: &Bound<'_, Recording>) -> Repo
 ///
 /// >>> import abbe
 /// >>> print(abbe.explain("backlash").splitlines()[0])
-/// backlash
+/// backlash: a term of an error motion
 #[pyfunction]
 #[pyo3(signature = (name = None))]
 pub(crate) fn explain(py: Python<'_>, name: Option<&str>) -> PyResult<String> {
@@ -114,6 +114,9 @@ pub(crate) fn explain(py: Python<'_>, name: Option<&str>) -> PyResult<String> {
             [] => "abbe.explain() alone lists all codes and terms".to_owned(),
             near => format!("did you mean {}?", near.join(" or ")),
         };
-        wrong(py, format!("`{}` is no diagnostic, no term and no error motion\nhelp: {help}", name.escape_debug()))
+        wrong(
+            py,
+            format!("`{}` is no diagnostic, no term and no error motion\nhelp: {help}", name.escape_debug()),
+        )
     })
 }

@@ -7,6 +7,7 @@
 pub mod calibrated;
 pub mod diagnosed;
 pub mod explain;
+pub mod exported;
 pub mod failure;
 pub mod improved;
 pub mod load;
@@ -14,7 +15,10 @@ pub mod named;
 pub mod origin;
 pub mod recorded;
 pub mod rows;
+pub mod set_up;
 pub mod shipped;
+pub mod simulated;
 pub mod told;
 pub mod topology;
+pub mod updated;
 pub mod written;

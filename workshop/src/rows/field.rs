@@ -1,8 +1,6 @@
 //! The error at a place. In: a compensator and a place. Out: the error there, of a machine that came forward and stands.
 
-use abbe_runtime::{
-    Compensator, Direction, ErrorMotion, Kinematics, Sample, TermState, Work, states_needed,
-};
+use abbe_runtime::{Compensator, Direction, ErrorMotion, Kinematics, Sample, TermState, Work, states_needed};
 use model_dsl::calibration::SensorReadings;
 
 use super::Leaning;
@@ -102,7 +100,8 @@ pub fn errors(
         compensator.restart();
         let error = compensator.error(&sample).unwrap_or([f64::NAN; 3]);
         let tip = equations.rows.iter().filter_map(|row| error.get(row.direction.index()).copied());
-        let lean = Leaning::new(equations, &machine, &motions).map(|mut leaning| leaning.take(&sample).without);
+        let lean =
+            Leaning::new(equations, &machine, &motions).map(|mut leaning| leaning.take(&sample).without);
         tip.chain(lean.into_iter().flatten()).collect()
     };
     Ok(places.iter().map(at).collect())

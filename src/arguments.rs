@@ -7,13 +7,13 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
+use workshop::updated::{Datum, datum};
 
 pub(crate) use choices::{
     CalibrateFormat, Color, EvaluationFormat, ExportFormat, ExportValue, Format, LimitsFormat, LinearUnit,
     Names, ReportFormat, UpdateFormat, UpdateMethod,
 };
-pub(crate) use values::Datum;
-use values::{datum, name, non_negative, place, range};
+use values::{name, non_negative, place, range};
 
 /// Compiles a machine tool's kinematic chain into its error equations and compensation code.
 #[derive(Parser)]

@@ -5,16 +5,15 @@
 //! after a motion forward, at the temperatures of the last row.
 
 mod drawing;
-mod field;
 mod space;
 
 use abbe_runtime::{Compensator, Kinematics};
 use model_dsl::calibration::Calibration;
 use model_dsl::equations::Equations;
 
-use field::Field;
 use space::Space;
 use workshop::failure::Failure;
+use workshop::rows::field::Field;
 
 /// What a map is drawn from.
 pub(crate) struct Map<'m> {

@@ -6,7 +6,7 @@ mod state;
 mod summary;
 
 use layout::Column;
-pub(crate) use layout::{Layout, Wanted, output_columns};
+pub(crate) use layout::{Layout, Wanted};
 pub(crate) use pending::Pending;
 pub(crate) use state::{State, quoted};
-pub(crate) use summary::{Lean, Summary};
+pub(crate) use summary::Summary;

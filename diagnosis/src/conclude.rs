@@ -28,18 +28,19 @@ use crate::returns;
 use crate::revise;
 use crate::study::{Scene, Study};
 use crate::terms::SettingKind;
+use crate::traces;
 use crate::unsteady;
 use crate::zeros;
-use crate::{Inputs, Progress};
+use crate::{Inputs, Keep, Progress};
 use decidable::crossed;
 use findings::report;
 use searched::{Opening, Searched};
 use summary::summary;
 use units::Units;
 
-/// Finds what the model leaves out; with the numbers behind plots of it where `drawn` is set.
-pub(crate) fn diagnose(inputs: &Inputs<'_>, drawn: bool, progress: &mut dyn FnMut(Progress)) -> Diagnosis {
-    match Searched::new(inputs, drawn, progress) {
+/// Finds what the model leaves out; with the numbers behind plots of it, or all numbers, where `keep` says so.
+pub(crate) fn diagnose(inputs: &Inputs<'_>, keep: Keep, progress: &mut dyn FnMut(Progress)) -> Diagnosis {
+    match Searched::new(inputs, keep, progress) {
         Ok((searched, opening)) => audited(searched, inputs, opening, Vec::new(), progress),
         Err(undecidable) => *undecidable,
     }
@@ -64,7 +65,7 @@ fn audited(
             let Some(suspect) = next.take() else { break };
             let Some(changed) = suspect.changed(inputs) else { break };
             let with = changed.inputs(inputs);
-            let Ok((trial, _)) = Searched::new(&with, false, progress) else { break };
+            let Ok((trial, _)) = Searched::new(&with, Keep::Nothing, progress) else { break };
             let rest = match audit::judged(&suspect, searched.trial(inputs), trial.trial(&with)) {
                 audit::Verdict::Holds(rest) if suspect.named || trial.is_explained() => rest,
                 audit::Verdict::Again(corrected) => {
@@ -123,6 +124,10 @@ fn concluded(
     let quiet = feature.as_ref().and_then(|feature| places::beside(&study, &found, feature));
     diagnosis.noise = units.noise(&study, quiet.as_ref().unwrap_or(&found.appraisal));
     let counts = |kind| units.counts(&study, kind);
+    diagnosis.traces = match &opening.drawn {
+        Some(before) if opening.keep == Keep::Traces => traces::traces(&study, before, &found),
+        _ => Vec::new(),
+    };
     diagnosis.pictures =
         opening.drawn.map(|before| before.draw(&study, &found, (&counts, units.unit.0), &numbers));
     diagnosis.unexplained = match feature {

@@ -6,6 +6,7 @@ use model_dsl::machine::ElementKind;
 use model_dsl::notation::Formula;
 
 use crate::pictures::Pictures;
+use crate::traces::Trace;
 
 /// What was found.
 #[derive(Clone, Debug, Default)]
@@ -50,6 +51,8 @@ pub struct Diagnosis {
     pub candidates: usize,
     /// What can be drawn of it, where that was asked for.
     pub pictures: Option<Pictures>,
+    /// Every sample beside what the model says of it, recording by recording and channel by channel, where that was asked for.
+    pub traces: Vec<Trace>,
 }
 
 /// One recording in a few figures.

@@ -52,6 +52,7 @@ mod targets;
 mod terms;
 #[cfg(test)]
 mod testing;
+pub mod traces;
 mod travel;
 mod unsteady;
 mod waves;
@@ -119,12 +120,26 @@ pub struct Progress {
 ///
 /// It never fails: what cannot be decided from the recordings is said in [`Diagnosis::undecided`].
 pub fn diagnose(inputs: &Inputs<'_>, progress: &mut dyn FnMut(Progress)) -> Diagnosis {
-    conclude::diagnose(inputs, false, progress)
+    conclude::diagnose(inputs, Keep::Nothing, progress)
 }
 
 /// The same, with [`Diagnosis::pictures`]: what a page draws. It takes more time and memory.
 pub fn diagnose_with_pictures(inputs: &Inputs<'_>, progress: &mut dyn FnMut(Progress)) -> Diagnosis {
-    conclude::diagnose(inputs, true, progress)
+    conclude::diagnose(inputs, Keep::Pictures, progress)
+}
+
+/// The same, with [`Diagnosis::traces`] besides: every sample beside what the model says of it.
+pub fn diagnose_with_traces(inputs: &Inputs<'_>, progress: &mut dyn FnMut(Progress)) -> Diagnosis {
+    conclude::diagnose(inputs, Keep::Traces, progress)
+}
+
+/// What is kept of a diagnosis besides what is said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Keep {
+    Nothing,
+    Pictures,
+    /// Pictures, and every sample.
+    Traces,
 }
 
 /// A count as a number.

@@ -9,7 +9,7 @@ use std::cell::OnceCell;
 
 use abbe_runtime::{Compensator, ErrorMotion, Term, TermState, Work, states_needed};
 use csv::ByteRecord;
-use layout::{Column, Layout, Wanted, output_columns};
+use layout::{Column, Layout, Wanted};
 use model_dsl::calibration::Calibration;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::Equations;
@@ -17,6 +17,7 @@ use model_dsl::program::Interpreter;
 use model_dsl::source::SourceFile;
 use model_dsl::yaml;
 use state::{State, quoted};
+use workshop::rows::output_columns;
 
 use super::calibration::right;
 use super::text::machine;

@@ -66,6 +66,11 @@ pub fn print(equations: &Equations, format: Format, names: Names) -> String {
     }
 }
 
+/// The equations alone in LaTeX, without the document around them: a block `align*` of amsmath for each direction.
+pub fn latex_equations(equations: &Equations, names: Names) -> String {
+    latex::equations(&sheet::Sheet::new(equations, names))
+}
+
 /// The page for a browser, with what was published about the machine beside what is derived.
 pub fn page(equations: &Equations, names: Names, published: &[Published]) -> String {
     html::page(&sheet::Sheet::new(equations, names), equations, names, published)

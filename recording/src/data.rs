@@ -11,6 +11,7 @@ mod error;
 mod foreign;
 mod layout;
 mod lines;
+mod numbers;
 mod pages;
 mod parquet;
 mod separator;

@@ -1,36 +1,5 @@
 //! Options with a form of their own. In: a word. Out: its numbers, or what to write.
 
-/// The directions X, Y, Z in which the zero of a part is free.
-#[derive(Clone, Copy)]
-pub(crate) struct Datum {
-    /// The directions in which the zero of a part is free.
-    pub(crate) displaced: [bool; 3],
-    /// Whether the part lies turned as well, as one does that was measured on another machine than it was made on.
-    pub(crate) turned: bool,
-}
-
-/// `free`, `turned`, `none` or directions.
-pub(super) fn datum(text: &str) -> Result<Datum, String> {
-    let all = |displaced, turned| Datum { displaced: [displaced; 3], turned };
-    match text {
-        "free" => return Ok(all(true, false)),
-        "turned" => return Ok(all(true, true)),
-        "none" => return Ok(all(false, false)),
-        _ => {}
-    }
-    let mut free = [false; 3];
-    for word in text.split(',') {
-        let place = ["x", "y", "z"].iter().position(|letter| word.trim().eq_ignore_ascii_case(letter));
-        match place.and_then(|place| free.get_mut(place)) {
-            Some(slot) => *slot = true,
-            None => {
-                return Err("write `free`, `turned`, `none`, or directions such as `z` or `x,z`".to_owned());
-            }
-        }
-    }
-    Ok(Datum { displaced: free, turned: false })
-}
-
 /// A number that is zero or more.
 pub(super) fn non_negative(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

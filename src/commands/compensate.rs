@@ -2,7 +2,6 @@
 //! standard output, row by row, in constant memory.
 
 mod answering;
-mod leaning;
 
 use std::cell::RefCell;
 use std::io::{self, IsTerminal};
@@ -12,23 +11,21 @@ use std::rc::Rc;
 use abbe_runtime::{Compensator, ErrorMotion, Exchanged, TermState, Work, states_needed};
 use csv::ByteRecord;
 use exchange::controller::Unit;
-use model_dsl::calibration::factor::FactorPart;
-use model_dsl::calibration::vocabulary::{self, Key, Kind};
-use model_dsl::calibration::{CalibratedMotion, CalibratedTerm, Factor, Part, Tool};
+use model_dsl::calibration::Tool;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::program::Interpreter;
 use workshop::calibrated::{self, Calibrated};
 use workshop::failure::Failure;
 use workshop::load;
+use workshop::rows::{Leaning, output_columns, timed};
 use workshop::written;
 
 use crate::arguments::Compensate;
 use crate::map::Map;
 use crate::output::{Person, warn};
-use crate::positions::{Layout, State, Summary, Wanted, output_columns, quoted};
+use crate::positions::{Layout, State, Summary, Wanted, quoted};
 use crate::progress::Progress;
 use answering::{Answering, Input, Machines};
-use leaning::Leaning;
 
 /// Bytes that are read at once, where there are as many.
 const CAPACITY: usize = 1 << 16;
@@ -238,37 +235,10 @@ fn read<'c>(
 fn wanted(calibrated: &Calibrated) -> Wanted<'_> {
     let sensors =
         calibrated.calibration.sensors.inputs().map(|(_, sensor)| sensor.name.value.as_str()).collect();
-    let mut motions = calibrated.calibration.motions.iter();
     Wanted {
         equations: &calibrated.equations,
         sensors,
-        time: motions.find_map(timed),
+        time: timed(&calibrated.calibration),
         tools: !calibrated.calibration.tools.is_empty(),
     }
-}
-
-/// What of an error motion depends on the time between rows, in words.
-fn timed(motion: &CalibratedMotion) -> Option<String> {
-    let terms = motion.terms.iter().enumerate();
-    let mut needing = terms.filter_map(|(place, term)| match needs_time(&term.value) {
-        true => Some(format!("the term `{}` of the calibration", term.value.name())),
-        false => (motion.ramp(place) > 0.0).then(|| "a `ramp` of the calibration".to_owned()),
-    });
-    needing.next()
-}
-
-/// Whether a term that is compensated reads a velocity, or follows something behind a time constant.
-fn needs_time(term: &CalibratedTerm) -> bool {
-    let entry = term.kind().entry();
-    let filtered =
-        term.factors().iter().flat_map(Factor::parts).any(|(key, part)| {
-            key == "time_constant" && matches!(part, FactorPart::Amount(time) if time > 0.0)
-        });
-    let is_time = |key: &str| entry.key(key).and_then(Key::kind) == Some(Kind::TIME);
-    let follows =
-        |(key, part): (&str, Part<'_>)| is_time(key) && matches!(part, Part::Number(time) if time > 0.0);
-    let needs = term.states().any(|(state, _)| state == vocabulary::State::Velocity)
-        || term.parts().into_iter().any(follows)
-        || filtered;
-    needs && term.compensable()
 }

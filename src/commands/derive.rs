@@ -1,11 +1,9 @@
 //! `abbe derive`: the error equations of a machine in one of five notations.
 
-use model_dsl::check;
-use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations;
-use model_dsl::notation::{self, Published};
+use model_dsl::notation;
 use workshop::failure::Failure;
-use workshop::load::{self, Loaded};
+use workshop::load;
 
 use crate::arguments::{Derive, Format, Names};
 use crate::output::{self, Person};
@@ -27,17 +25,7 @@ pub(crate) fn run(command: &Derive) -> Result<(), Failure> {
     };
     let equations = &loaded.compiled.equations;
     output::print(&match format {
-        notation::Format::Html => notation::page(equations, names, &published(&loaded)),
+        notation::Format::Html => loaded.page(names),
         format => notation::print(equations, format, names),
     })
-}
-
-/// How the machine stands to the equations that were published about it.
-fn published(loaded: &Loaded) -> Vec<Published> {
-    let Loaded { compiled, published, .. } = loaded;
-    let compared = published.iter().filter_map(|file| {
-        let report = check::check(&compiled.machine, &compiled.equations, file, &mut Diagnostics::new());
-        report.map(|report| Published::new(file, report))
-    });
-    compared.collect()
 }

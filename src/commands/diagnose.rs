@@ -1,17 +1,16 @@
 //! `abbe diagnose`: what the model leaves out. In: recordings. Out: the diagnosis as text, JSON or a page, and the
 //! calibration with what was found.
 
-pub(super) mod origin;
-
 use std::path::PathBuf;
 
 use diagnosis::diagnosis::Diagnosis;
 use diagnosis::report::{self, Origin};
 
-use workshop::diagnosed::diagnose;
+use workshop::diagnosed::{Keep, diagnose};
 use workshop::failure::Failure;
 use workshop::improved;
 use workshop::named::{self, Files};
+use workshop::origin;
 use workshop::recorded::{self, Recorded};
 
 use crate::arguments::{Diagnose, ReportFormat};
@@ -51,7 +50,10 @@ fn page(
     diagnosis: &Diagnosis,
 ) -> Result<String, Failure> {
     let origin = Origin {
-        command: &origin::command(arguments),
+        command: &origin::diagnose(
+            arguments.recordings.iter().map(PathBuf::as_path),
+            arguments.holdout.as_deref(),
+        ),
         program: concat!("abbe ", env!("CARGO_PKG_VERSION")),
         change: &improved::change(first, files, diagnosis)?,
     };
@@ -62,6 +64,9 @@ fn page(
 fn diagnosed(arguments: &Diagnose, recorded: &[Recorded]) -> Result<Diagnosis, Failure> {
     let (fitted, held_out) = recorded.split_at(arguments.recordings.len().min(recorded.len()));
     let progress = Progress::new(arguments.quiet, "reading the machine");
-    let pictured = matches!(arguments.format, ReportFormat::Html);
-    diagnose(fitted, held_out.first(), pictured, &mut |now| progress.part(now.step, now.done))
+    let keep = match arguments.format {
+        ReportFormat::Html => Keep::Pictures,
+        ReportFormat::Text | ReportFormat::Json => Keep::Nothing,
+    };
+    diagnose(fitted, held_out.first(), keep, &mut |now| progress.part(now.step, now.done))
 }

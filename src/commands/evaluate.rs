@@ -3,9 +3,9 @@
 
 use evaluation::{Inputs, report};
 use workshop::failure::Failure;
+use workshop::origin;
 use workshop::recorded;
 
-use super::diagnose::origin::word;
 use crate::arguments::{Evaluate, EvaluationFormat};
 use crate::output::{Person, print};
 use crate::progress::Progress;
@@ -23,10 +23,7 @@ pub(crate) fn run(arguments: &Evaluate) -> Result<(), Failure> {
     print(&match arguments.format {
         EvaluationFormat::Text => report::text(&evaluation),
         EvaluationFormat::Json => report::json(&evaluation),
-        EvaluationFormat::Html => {
-            let recording = word(&arguments.recording);
-            report::html(&evaluation, &format!("abbe evaluate {recording} --format html > evaluation.html"))
-        }
+        EvaluationFormat::Html => report::html(&evaluation, &origin::evaluate(&arguments.recording)),
     })?;
     if evaluation.gives_any() { Ok(()) } else { Err(Failure::no("")) }
 }

@@ -1,23 +1,19 @@
 //! `abbe export`: a calibration as the files of a controller. In: a calibration, and what the user says of the controller. Out:
 //! files, how they are loaded, and what they cannot carry; or what the controller would take from files that are there.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use clap::ValueEnum;
-use exchange::controller::{self, Format, Geometry, Options, Refused, Sense, Space, Unusable, Wanted};
+use exchange::controller::{self, Format, Geometry, Options, Sense, Space, Unusable, Wanted};
 use exchange::controller::{Kind, Unit};
 use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
 use workshop::calibrated;
+use workshop::exported::{self, TABLES, listed, refused};
 use workshop::failure::Failure;
 use workshop::load;
-use workshop::written;
 
 use crate::arguments::{Export, ExportFormat, ExportValue, LinearUnit};
 use crate::output::{Person, print};
-
-/// The cross tables that a Sinumerik has where nothing else is said.
-const TABLES: usize = 8;
 
 /// Runs the command.
 pub(crate) fn run(command: &Export) -> Result<(), Failure> {
@@ -39,26 +35,9 @@ pub(crate) fn run(command: &Export) -> Result<(), Failure> {
 }
 
 fn write(command: &Export, geometry: &Geometry<'_>, space: &Space) -> Result<(), Failure> {
-    let options = options(command);
-    let export = controller::export(geometry, space, format(command), &options).map_err(refused)?;
-    let targets: Vec<PathBuf> = export.files.iter().map(|file| command.output.join(&file.name)).collect();
-    check_targets(command, &targets)?;
-    let staged = targets.iter().zip(&export.files).map(|(target, file)| {
-        written::staged(target, |out| std::io::Write::write_all(out, file.text.as_bytes()))
-    });
-    let staged = staged.collect::<Result<Vec<_>, Failure>>()?;
-    for (staged, target) in staged.into_iter().zip(&targets) {
-        staged.keep().map_err(|error| written::cannot_write(target, &error))?;
-    }
-    let files = targets
-        .iter()
-        .zip(&export.files)
-        .map(|(target, file)| format!("{}: {}", target.display(), file.about));
-    let mut text = listed("written", files);
-    text += &listed("to load them", export.loading.iter().cloned());
-    text += &listed("left out", export.left_out.iter().cloned());
-    text += &controller::text(geometry, space, &export.lost);
-    print(&text)
+    let export = exported::export(geometry, space, format(command), &options(command))?;
+    let targets = exported::write(&export, &command.output, command.force)?;
+    print(&exported::text(&export, &targets, geometry, space))
 }
 
 fn check(command: &Export, geometry: &Geometry<'_>, space: &Space) -> Result<(), Failure> {
@@ -72,12 +51,6 @@ fn check(command: &Export, geometry: &Geometry<'_>, space: &Space) -> Result<(),
     let mut text = listed("what the controller leaves out", checked.findings.into_iter());
     text += &controller::text(geometry, space, &checked.lost);
     print(&text)
-}
-
-/// A heading and its lines; nothing where there are none.
-fn listed(heading: &str, lines: impl Iterator<Item = String>) -> String {
-    let lines: String = lines.map(|line| format!("  {line}\n")).collect();
-    if lines.is_empty() { lines } else { format!("{heading}:\n{lines}") }
 }
 
 /// `X=x.comp`, or a file without an axis.
@@ -94,49 +67,18 @@ fn axis_of(letter: &str, equations: &Equations) -> Option<usize> {
     equations.axes.iter().position(|axis| axis.letter == letter)
 }
 
-/// Refuses files that are there already, unless they are to be replaced, and a folder that is not there.
-fn check_targets(command: &Export, targets: &[PathBuf]) -> Result<(), Failure> {
-    for target in targets {
-        if target.exists() && !command.force {
-            return Err(Failure::wrong(format!(
-                "error: {} is there already\nhelp: --output takes another folder, --force replaces the file",
-                target.display()
-            )));
-        }
-    }
-    if command.output.is_dir() {
-        return Ok(());
-    }
-    let folder = command.output.display();
-    Err(Failure::wrong(format!(
-        "error: there is no such folder {folder}\nhelp: --output takes a folder that is there"
-    )))
-}
-
-/// Refuses options of other formats: whoever gives one means that it does something.
+/// Refuses options of other formats.
 fn check_options(command: &Export) -> Result<(), Failure> {
-    use ExportFormat::{Heidenhain, Linuxcnc, Pmac, Sinumerik};
     let options = [
-        ("--type", command.kind.is_some(), &[Linuxcnc][..]),
-        ("--unit", command.unit.is_some(), &[Linuxcnc]),
-        ("--value", command.value.is_some(), &[Sinumerik, Heidenhain]),
-        ("--tables", command.tables.is_some(), &[Sinumerik]),
-        ("--name", !command.name.is_empty(), &[Sinumerik, Heidenhain, Pmac]),
-        ("--counts", !command.counts.is_empty(), &[Pmac]),
+        ("type", command.kind.is_some()),
+        ("unit", command.unit.is_some()),
+        ("value", command.value.is_some()),
+        ("tables", command.tables.is_some()),
+        ("name", !command.name.is_empty()),
+        ("counts", !command.counts.is_empty()),
     ];
-    let stray = options.into_iter().find(|(_, given, formats)| *given && !formats.contains(&command.format));
-    let Some((option, _, formats)) = stray else { return Ok(()) };
-    let names: Vec<String> = formats.iter().map(|format| name(*format)).collect();
-    Err(Failure::wrong(format!(
-        "error: {option} says nothing to {}\nhelp: leave it out; it is an option of {}",
-        name(command.format),
-        names.join(", ")
-    )))
-}
-
-/// What a format is called on the command line.
-fn name(format: ExportFormat) -> String {
-    format.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+    let given: Vec<&str> = options.iter().filter(|(_, given)| *given).map(|(name, _)| *name).collect();
+    exported::check_options(format(command), &given, "--")
 }
 
 /// Refuses options for axes that the machine lacks; those of the workspace are looked at with it.
@@ -218,8 +160,4 @@ fn format(command: &Export) -> Format {
         ExportFormat::Klipper => Format::Klipper,
         ExportFormat::Reprap => Format::RepRap,
     }
-}
-
-fn refused(reason: Refused) -> Failure {
-    Failure::wrong(reason.to_string())
 }

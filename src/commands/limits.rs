@@ -14,9 +14,9 @@ use model_dsl::Compiled;
 use model_dsl::calibration::MachineNames;
 use model_dsl::suggest::nearest;
 use workshop::failure::Failure;
+use workshop::origin::word;
 use workshop::recorded::{self, Recorded};
 
-use super::diagnose::origin::word;
 use crate::arguments::{Asked, Limits, LimitsFormat};
 use crate::output::{Person, print};
 use crate::progress::Progress;

@@ -8,10 +8,10 @@ use simulation::Plant;
 use workshop::calibrated::{self, Calibrated};
 use workshop::failure::Failure;
 use workshop::load;
+use workshop::origin::word;
+use workshop::simulated::{read_path, wrong};
 
-use super::diagnose::origin::word;
 use super::limits::{answered, cannot, check_names, options, tell};
-use super::simulate::{read_path, wrong};
 use crate::arguments::Plan;
 use crate::output::Person;
 use crate::progress::Progress;
@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &Plan) -> Result<(), Failure> {
     let source = load::read(&arguments.path)?;
     let mut plant =
         Plant::new(&machine.machine, &names, &machine.calibration).map_err(|error| wrong(&error))?;
-    let scenario = read_path(&source, &machine, &names, &mut plant)?.scenario;
+    let scenario = read_path(&source, &machine, &names, &mut plant, &Person::default())?.scenario;
     let progress = Progress::new(asked.quiet, "driving the path");
     let name = arguments.path.display().to_string();
     let compiled = Compiled { machine: machine.machine, equations: machine.equations };

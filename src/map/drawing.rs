@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 use abbe_runtime::Kinematics;
 use model_dsl::equations::Equations;
 use pages::plot::{Axis, Cartesian, Draw, Look, Plot, Series, Tone, Unit, panels, style};
+use workshop::rows::field::Field;
 
-use super::field::Field;
 use super::space::{Slide, Space};
 
 /// Arrows along the longer side of a slice, and the fewest along the shorter one.

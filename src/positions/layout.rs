@@ -7,6 +7,7 @@ use csv::ByteRecord;
 use model_dsl::equations::Equations;
 use model_dsl::quantity::{Dimension, parse_unit};
 use model_dsl::suggest::nearest;
+use workshop::rows::output_columns;
 
 use super::state::quoted;
 
@@ -20,16 +21,6 @@ pub(crate) struct Wanted<'a> {
     pub(crate) time: Option<String>,
     /// Whether a column may name the tool of each row.
     pub(crate) tools: bool,
-}
-
-/// The columns that the output adds: the error in each sensitive direction, that of the tool's direction where it is derived, the
-/// compensated position of each axis.
-pub(crate) fn output_columns(equations: &Equations) -> Vec<String> {
-    let tip = equations.rows.iter().map(|row| row.direction.letter());
-    let direction = equations.orientation.iter().map(|row| row.direction.direction_letter());
-    let errors = tip.chain(direction).map(|letter| format!("error_{}", letter.to_ascii_lowercase()));
-    let positions = equations.axes.iter().map(|axis| format!("{}_comp", axis.variable));
-    errors.chain(positions).collect()
 }
 
 /// One column that is read.

@@ -1,10 +1,11 @@
-//! Rows as samples. In: a row of numbers and the rows before it. Out: the machine's state as
-//! the runtime reads it: positions, directions, velocities, temperatures, time.
+//! Rows of text as samples. In: a row of cells and the rows before it. Out: the machine's state as the runtime reads it; or which
+//! cell is wrong.
 
-use abbe_runtime::{Direction, DirectionTracker, Sample};
+use abbe_runtime::{Direction, Sample};
 use csv::ByteRecord;
-use model_dsl::calibration::{Calibration, SensorReadings};
+use model_dsl::calibration::Calibration;
 use model_dsl::suggest::nearest;
+use workshop::rows;
 
 use super::{Column, Layout};
 
@@ -14,72 +15,59 @@ const MOST_TOOLS_TOLD: usize = 10;
 /// The machine's state, from row to row.
 pub(crate) struct State<'s> {
     layout: Layout,
-    /// Whether a term needs to know how fast the axes move.
-    timed: bool,
     /// The calibration, which has the tools.
     calibration: &'s Calibration,
     /// The number of the tool in this row; none: the constants of the calibration itself.
     tool: Option<usize>,
-    sensors: SensorReadings<'s>,
-    input_columns: Vec<Option<Column>>,
-    /// For each column that is read its number in this row, in mm, rad, s or degC.
-    numbers: Vec<f64>,
-    /// For each sensor its input in this row; NaN where it has none.
-    inputs: Vec<f64>,
-    trackers: Vec<DirectionTracker>,
-    previous: Option<(f64, Vec<f64>)>,
+    state: rows::State<'s>,
+    /// The numbers of the row that is read, in mm, rad, s or degC.
     position: Vec<f64>,
     travel: Vec<f64>,
-    direction: Vec<Direction>,
-    velocity: Vec<f64>,
+    direction: Vec<Option<Direction>>,
     temperature: Vec<f64>,
-    time_step: f64,
 }
 
 impl<'s> State<'s> {
     /// The state before the first row; `hysteresis` is in mm or rad, one for each axis.
     pub(crate) fn new(layout: Layout, timed: bool, calibration: &'s Calibration, hysteresis: &[f64]) -> Self {
-        let sensors = &calibration.sensors;
-        let axes = layout.axes.len();
-        let mut input_columns = vec![None; sensors.len()];
-        for ((index, _), column) in sensors.inputs().zip(&layout.sensors) {
-            if let Some(slot) = input_columns.get_mut(index) {
-                *slot = Some(*column);
-            }
-        }
         Self {
-            timed,
             calibration,
             tool: None,
-            sensors: SensorReadings::of_terms(sensors),
-            input_columns,
-            numbers: vec![f64::NAN; layout.width],
-            inputs: vec![f64::NAN; sensors.len()],
-            trackers: hysteresis.iter().map(|threshold| DirectionTracker::new(*threshold)).collect(),
-            previous: None,
-            position: vec![0.0; axes],
+            state: rows::State::new(calibration, timed, hysteresis),
+            position: Vec::with_capacity(layout.axes.len()),
             travel: Vec::with_capacity(layout.travels.len()),
-            direction: vec![Direction::default(); axes],
-            velocity: vec![0.0; axes],
-            temperature: vec![f64::NAN; sensors.len()],
-            time_step: 0.0,
+            direction: Vec::with_capacity(layout.directions.len()),
+            temperature: Vec::with_capacity(layout.sensors.len()),
             layout,
         }
     }
 
-    /// Takes a row; the error names the column and the text that is wrong in it.
+    /// Takes a row; the error names the column and the text that is wrong in it, and the state stays as it was.
     pub(crate) fn take(&mut self, row: &ByteRecord) -> Result<(), String> {
         if row.len() != self.layout.width {
             let hint = if row.len() > self.layout.width { "; a decimal comma would do that" } else { "" };
             return Err(format!("{} cells under {} columns{hint}", row.len(), self.layout.width));
         }
         let tool = self.find_tool(row)?;
-        self.check(row)?;
+        let layout = &self.layout;
+        read_all(layout, row, &layout.axes, &mut self.position)?;
+        read_all(layout, row, &layout.sensors, &mut self.temperature)?;
+        let time = layout.time.map(|column| read(layout, row, column)).transpose()?;
+        // The layout has all travels or none.
+        read_all(layout, row, layout.travels.iter().flatten(), &mut self.travel)?;
+        self.direction.clear();
+        for index in &layout.directions {
+            let told = index.map(|index| direction(text(row, index), name(layout, index))).transpose()?;
+            self.direction.push(told);
+        }
+        self.state.take(&rows::Row {
+            position: &self.position,
+            travel: &self.travel,
+            direction: &self.direction,
+            time,
+            temperature: &self.temperature,
+        })?;
         self.tool = tool;
-        self.read_positions();
-        self.read_directions(row)?;
-        self.read_time();
-        self.read_temperatures();
         Ok(())
     }
 
@@ -108,108 +96,36 @@ impl<'s> State<'s> {
 
     /// The state as the runtime reads it.
     pub(crate) fn sample(&self) -> Sample<'_> {
-        Sample {
-            position: &self.position,
-            travel: &self.travel,
-            direction: &self.direction,
-            velocity: &self.velocity,
-            temperature: &self.temperature,
-            time_step: self.time_step,
-        }
+        self.state.sample()
     }
+}
 
-    /// Reads every number of the row before any is used, so that a bad row leaves the state as it was.
-    fn check(&mut self, row: &ByteRecord) -> Result<(), String> {
-        let layout = &self.layout;
-        let columns = layout.axes.iter().chain(&layout.sensors).chain(&layout.time);
-        for column in columns.chain(layout.travels.iter().flatten()) {
-            self.numbers[column.index] = self.read(row, *column)?;
-        }
-        for index in layout.directions.iter().flatten() {
-            direction(text(row, *index), self.name(*index))?;
-        }
-        if let (Some(column), Some((before, from))) = (layout.time, &self.previous) {
-            let step = self.number(column) - before;
-            if step < 0.0 {
-                return Err(format!("the time goes back by {} s", -step));
-            }
-            let mut axes = layout.axes.iter().zip(from);
-            let moves = axes.any(|(axis, from)| self.number(*axis) != *from);
-            if step == 0.0 && moves && self.timed {
-                return Err("the axes move while the time stands still".to_owned());
-            }
-        }
-        Ok(())
+/// Reads the numbers of some columns, in their order.
+fn read_all<'c>(
+    layout: &Layout,
+    row: &ByteRecord,
+    columns: impl IntoIterator<Item = &'c Column>,
+    numbers: &mut Vec<f64>,
+) -> Result<(), String> {
+    numbers.clear();
+    for column in columns {
+        numbers.push(read(layout, row, *column)?);
     }
+    Ok(())
+}
 
-    fn read_positions(&mut self) {
-        for (axis, column) in self.layout.axes.iter().enumerate() {
-            self.position[axis] = self.number(*column);
-        }
-        self.travel.clear();
-        if self.layout.travels.iter().any(Option::is_some) {
-            // The layout has all travels or none.
-            for column in self.layout.travels.iter().flatten() {
-                let travel = self.number(*column);
-                self.travel.push(travel);
-            }
-        }
-    }
+fn name(layout: &Layout, index: usize) -> &str {
+    layout.header.get(index).map_or("", String::as_str)
+}
 
-    fn read_directions(&mut self, row: &ByteRecord) -> Result<(), String> {
-        for (axis, column) in self.layout.directions.iter().enumerate() {
-            self.direction[axis] = match column {
-                Some(index) => direction(text(row, *index), self.name(*index))?,
-                None => self.trackers[axis].update(self.position[axis]),
-            };
-        }
-        Ok(())
-    }
-
-    fn read_time(&mut self) {
-        let Some(column) = self.layout.time else { return };
-        let now = self.number(column);
-        self.velocity.fill(0.0);
-        if let Some((before, from)) = &self.previous {
-            self.time_step = now - before;
-            if self.time_step > 0.0 {
-                let moved = self.position.iter().zip(from).map(|(to, from)| to - from);
-                self.velocity.iter_mut().zip(moved).for_each(|(slot, moved)| *slot = moved / self.time_step);
-            }
-        }
-        let mut from = self.previous.take().map(|(_, from)| from).unwrap_or_default();
-        from.clone_from(&self.position);
-        self.previous = Some((now, from));
-    }
-
-    fn read_temperatures(&mut self) {
-        for (slot, column) in self.inputs.iter_mut().zip(&self.input_columns) {
-            if let Some(column) = column {
-                *slot = self.numbers[column.index];
-            }
-        }
-        let all = self.sensors.update(|index| self.inputs.get(index).copied().unwrap_or(f64::NAN));
-        self.temperature.copy_from_slice(all);
-    }
-
-    /// The number of a column in the row that was checked last.
-    fn number(&self, column: Column) -> f64 {
-        self.numbers[column.index]
-    }
-
-    fn name(&self, index: usize) -> &str {
-        self.layout.header.get(index).map_or("", String::as_str)
-    }
-
-    fn read(&self, row: &ByteRecord, column: Column) -> Result<f64, String> {
-        let text = text(row, column.index);
-        match text.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok((value + column.offset) * column.factor),
-            _ => {
-                let hint = if text.contains(',') { "; write a decimal point" } else { "" };
-                let name = quoted(self.name(column.index));
-                Err(format!("column `{name}`: `{}` is not a number{hint}", quoted(text)))
-            }
+fn read(layout: &Layout, row: &ByteRecord, column: Column) -> Result<f64, String> {
+    let text = text(row, column.index);
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok((value + column.offset) * column.factor),
+        _ => {
+            let hint = if text.contains(',') { "; write a decimal point" } else { "" };
+            let name = quoted(name(layout, column.index));
+            Err(format!("column `{name}`: `{}` is not a number{hint}", quoted(text)))
         }
     }
 }

@@ -5,6 +5,7 @@ use std::fmt;
 
 use abbe_runtime::Outcome;
 use abbe_runtime::math::length;
+use workshop::rows::Lean;
 
 /// Lengths of errors over the rows so far: mm; and of those of the tool's direction, rad.
 #[derive(Default)]
@@ -13,15 +14,6 @@ pub(crate) struct Summary {
     without: Range,
     with: Range,
     leaning: Option<(Range, Range)>,
-}
-
-/// The error of the tool's direction at a position, in the frame of the part: rad.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lean {
-    /// Without compensation.
-    pub(crate) without: [f64; 3],
-    /// Where rotary axes have corrected their own angles.
-    pub(crate) with: [f64; 3],
 }
 
 #[derive(Default)]

@@ -16,6 +16,7 @@ use crate::load;
 use crate::told::{Listener, Words};
 
 /// A machine with the numbers of one specimen.
+#[derive(Clone)]
 pub struct Calibrated {
     /// The validated chain.
     pub machine: Machine,
@@ -29,12 +30,16 @@ pub struct Calibrated {
 
 /// Reads a calibration file and compiles the machine that it names.
 pub fn read(path: &Path, listener: &dyn Listener) -> Result<Calibrated, Failure> {
-    let source = load::read(path)?;
+    of(load::read(path)?, path.parent(), listener)
+}
+
+/// Reads the text of a calibration file, whose names are counted from a folder.
+pub fn of(source: SourceFile, folder: Option<&Path>, listener: &dyn Listener) -> Result<Calibrated, Failure> {
     let mut diagnostics = Diagnostics::new();
     let wrong = |diagnostics: &Diagnostics| Failure::marked(&source, diagnostics);
     let root = yaml::read(&source, &mut diagnostics).ok_or_else(|| wrong(&diagnostics))?;
     let name = calibration::machine_of(&root, &mut diagnostics).ok_or_else(|| wrong(&diagnostics))?;
-    let machine = load::machine(&name.value, path.parent(), listener).map_err(|failure| match failure {
+    let machine = load::machine(&name.value, folder, listener).map_err(|failure| match failure {
         Failure::Wrong(reason) => {
             let unusable =
                 Diagnostic::error("E0426", name.span, format!("machine `{}` cannot be used", name.value))

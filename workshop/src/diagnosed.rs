@@ -7,8 +7,19 @@ use diagnosis::{Chains, Inputs, Progress};
 use crate::failure::Failure;
 use crate::recorded::Recorded;
 
-/// Diagnoses recordings of one machine with one calibration, as [`crate::recorded::read_all`] has read them; `pictured` keeps what a
-/// page draws besides. `show` hears how far the work is.
+/// What a diagnosis keeps besides what it says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Keep {
+    /// Nothing.
+    Nothing,
+    /// What a page draws.
+    Pictures,
+    /// What a page draws, and every sample.
+    Traces,
+}
+
+/// Diagnoses recordings of one machine with one calibration, as [`crate::recorded::read_all`] has read them. `show` hears how far the
+/// work is.
 ///
 /// # Errors
 ///
@@ -16,7 +27,7 @@ use crate::recorded::Recorded;
 pub fn diagnose(
     fitted: &[Recorded],
     held_out: Option<&Recorded>,
-    pictured: bool,
+    keep: Keep,
     show: &mut dyn FnMut(Progress),
 ) -> Result<Diagnosis, Failure> {
     let Some(first) = fitted.first() else { return Ok(Diagnosis::default()) };
@@ -34,9 +45,10 @@ pub fn diagnose(
         }),
     };
     let mut show = |now: Progress| show(now);
-    let diagnosis = match pictured {
-        true => diagnosis::diagnose_with_pictures(&inputs, &mut show),
-        false => diagnosis::diagnose(&inputs, &mut show),
+    let diagnosis = match keep {
+        Keep::Nothing => diagnosis::diagnose(&inputs, &mut show),
+        Keep::Pictures => diagnosis::diagnose_with_pictures(&inputs, &mut show),
+        Keep::Traces => diagnosis::diagnose_with_traces(&inputs, &mut show),
     };
     if diagnosis.recordings.iter().all(|recording| recording.samples == 0) {
         return Err(Failure::no("error: the recordings hold no sample that could be used"));

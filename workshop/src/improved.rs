@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use diagnosis::diagnosis::{Diagnosis, Finding, WrongFile};
 use diagnosis::report;
 use model_dsl::calibration::{self, Calibration};
+use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
 use similar::TextDiff;
 
@@ -16,6 +17,28 @@ use crate::recorded::Recorded;
 use crate::told::{Listener, Words};
 use crate::written::{self, comment, folder};
 
+/// The improved calibration before it is written.
+pub struct Improved {
+    /// The text of the calibration file.
+    pub text: String,
+    /// The machine file that stands beside it, where the chain has another order than the file says.
+    pub machine: Option<(PathBuf, SourceFile)>,
+}
+
+/// The known calibration mended, with the findings added, as it would stand at `target`.
+pub fn calibration(
+    target: &Path,
+    recorded: &Recorded,
+    files: &Files,
+    diagnosis: &Diagnosis,
+) -> Result<Improved, Failure> {
+    let machine = machine_file(target, recorded, diagnosis);
+    let improved = improved(mended(target, recorded, files, diagnosis)?, &diagnosis.findings);
+    let names = equations(recorded, diagnosis).names();
+    let text = comments(recorded, files, diagnosis) + &calibration::write(&improved, &names);
+    Ok(Improved { text, machine })
+}
+
 /// Writes the known calibration mended, with the findings added; without either it is written as it is, with a warning.
 pub fn write(
     target: &Path,
@@ -24,8 +47,7 @@ pub fn write(
     diagnosis: &Diagnosis,
     listener: &dyn Listener,
 ) -> Result<(), Failure> {
-    let equations = diagnosis.mended.as_ref().map_or(&recorded.equations, |mended| &mended.equations);
-    let machine = machine_file(target, recorded, diagnosis);
+    let Improved { text, machine } = calibration(target, recorded, files, diagnosis)?;
     if let Some((path, _)) = &machine
         && path.exists()
     {
@@ -35,20 +57,23 @@ pub fn write(
             path.display()
         )));
     }
-    let improved = improved(mended(target, recorded, files, diagnosis)?, &diagnosis.findings);
-    let text = comments(recorded, files, diagnosis) + &calibration::write(&improved, &equations.names());
     let beside = machine
         .map(|(path, source)| {
             let staged = written::staged(&path, |file| file.write_all(source.text().as_bytes()))?;
             Ok::<_, Failure>((path, staged))
         })
         .transpose()?;
-    written::calibration(target, &text, equations)?;
+    written::calibration(target, &text, equations(recorded, diagnosis))?;
     if let Some((path, staged)) = beside {
         staged.keep().map_err(|error| written::cannot_write(&path, &error))?;
     }
     tell(target, diagnosis, listener);
     Ok(())
+}
+
+/// The equations of the machine with the faults of its file mended.
+fn equations<'e>(recorded: &'e Recorded, diagnosis: &'e Diagnosis) -> &'e Equations {
+    diagnosis.mended.as_ref().map_or(&recorded.equations, |mended| &mended.equations)
 }
 
 /// The machine file that is written beside the calibration, where the chain has another order than the file says.
@@ -66,7 +91,7 @@ pub fn change(recorded: &Recorded, files: &Files, diagnosis: &Diagnosis) -> Resu
     if diagnosis.findings.is_empty() && diagnosis.model.is_empty() {
         return Ok(String::new());
     }
-    let equations = diagnosis.mended.as_ref().map_or(&recorded.equations, |mended| &mended.equations);
+    let equations = equations(recorded, diagnosis);
     let before = calibration::write(&known(&files.recording, recorded, files)?, &recorded.equations.names());
     let mended = mended(&files.recording, recorded, files, diagnosis)?;
     let after = calibration::write(&improved(mended, &diagnosis.findings), &equations.names());

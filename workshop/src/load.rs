@@ -5,7 +5,10 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use model_dsl::check;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
+use model_dsl::equations::Names;
+use model_dsl::notation::{self, Published};
 use model_dsl::source::{SourceFile, Span};
 use model_dsl::suggest::nearest;
 use model_dsl::{Compiled, compile, compile_word};
@@ -24,6 +27,19 @@ pub struct Loaded {
     pub compiled: Compiled,
     /// The equations that were published about it, where the program has them.
     pub published: Option<SourceFile>,
+}
+
+impl Loaded {
+    /// The page of the machine for a browser, with how it stands to what was published about it.
+    #[must_use]
+    pub fn page(&self, names: Names) -> String {
+        let Self { compiled, published, .. } = self;
+        let compared = published.iter().filter_map(|file| {
+            let report = check::check(&compiled.machine, &compiled.equations, file, &mut Diagnostics::new());
+            report.map(|report| Published::new(file, report))
+        });
+        notation::page(&compiled.equations, names, &compared.collect::<Vec<_>>())
+    }
 }
 
 /// No byte beyond this one is read: a larger file is refused, and a device may have no end.

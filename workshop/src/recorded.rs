@@ -9,7 +9,7 @@ use model_dsl::equations::Equations;
 use model_dsl::machine::Machine;
 use model_dsl::source::{SourceFile, Span, Spanned};
 use model_dsl::{Compiled, yaml};
-use recording::{self, Header, Recording};
+use recording::{self, DataError, Header, Recording};
 
 use crate::begin;
 use crate::calibrated::{self, Calibrated};
@@ -19,6 +19,7 @@ use crate::told::{Listener, Words};
 use crate::topology::Topology;
 
 /// A recording and all that it names.
+#[derive(Clone)]
 pub struct Recorded {
     /// The recording file.
     pub source: SourceFile,
@@ -38,6 +39,7 @@ pub struct Recorded {
     named: Named,
 }
 
+#[derive(Clone)]
 struct Named {
     machine: Span,
     calibration: Option<Span>,
@@ -47,15 +49,36 @@ struct Named {
 /// counted from its own folder.
 pub fn read(path: &Path, listener: &dyn Listener) -> Result<Recorded, Failure> {
     let source = load::read(path).map_err(|failure| begin::table_alone(path).unwrap_or(failure))?;
-    let folder = path.parent();
-    let mut diagnostics = Diagnostics::new();
-    let root = yaml::read(&source, &mut diagnostics);
-    if root.as_ref().is_none_or(|root| root.entries().is_none())
+    if !is_mapping(&source)
         && let Some(table) = begin::table_alone(path)
     {
         return Err(table);
     }
-    let root = root.ok_or_else(|| wrong(&source, &diagnostics))?;
+    let folder = path.parent();
+    let data = |header: &Header| {
+        let path = in_folder(folder, &header.data.value);
+        listener.begin(&format!("reading {}", path.display()));
+        let read = header.read_data(&path);
+        listener.end();
+        read
+    };
+    of(source, folder, data, listener)
+}
+
+/// Whether a file may be a recording file at all: a mapping of keys.
+fn is_mapping(source: &SourceFile) -> bool {
+    yaml::read(source, &mut Diagnostics::new()).is_some_and(|root| root.entries().is_some())
+}
+
+/// Reads the text of a recording file, whose names are counted from a folder; its data are what `data` makes of what it says of them.
+pub fn of(
+    source: SourceFile,
+    folder: Option<&Path>,
+    data: impl FnOnce(&Header) -> Result<Recording, DataError>,
+    listener: &dyn Listener,
+) -> Result<Recorded, Failure> {
+    let mut diagnostics = Diagnostics::new();
+    let root = yaml::read(&source, &mut diagnostics).ok_or_else(|| wrong(&source, &diagnostics))?;
     let name = recording::machine_of(&root, &mut diagnostics).ok_or_else(|| wrong(&source, &diagnostics))?;
     let loaded = load::machine(&name.value, folder, listener)
         .map_err(|failure| unusable(&source, "E0622", "machine", &name, failure))?;
@@ -66,7 +89,7 @@ pub fn read(path: &Path, listener: &dyn Listener) -> Result<Recorded, Failure> {
     listener.hear(&Words::marked(&source, &diagnostics));
     let calibration_path = header.calibration.as_ref().map(|name| in_folder(folder, &name.value));
     let calibration = read_calibration(&source, &header, calibration_path.as_deref(), &equations, listener)?;
-    let recording = read_data(&header, folder, &source, listener)?;
+    let recording = read_data(data(&header), &source, listener)?;
     let named = Named { machine: name.span, calibration: header.calibration.map(|name| name.span) };
     Ok(Recorded { source, equations, machine, topology, calibration, recording, calibration_path, named })
 }
@@ -75,13 +98,19 @@ pub fn read(path: &Path, listener: &dyn Listener) -> Result<Recorded, Failure> {
 pub fn read_all(paths: &[PathBuf], listener: &dyn Listener) -> Result<Vec<Recorded>, Failure> {
     let mut all: Vec<Recorded> = Vec::new();
     for path in paths {
-        let mut recorded = read(path, listener)?;
-        if let Some(first) = all.first() {
-            first.take_other(&mut recorded)?;
-        }
-        all.push(recorded);
+        let recorded = read(path, listener)?;
+        add(&mut all, recorded)?;
     }
     Ok(all)
+}
+
+/// Adds a recording to others of one machine with one calibration; refuses one of another.
+pub fn add(all: &mut Vec<Recorded>, mut recorded: Recorded) -> Result<(), Failure> {
+    if let Some(first) = all.first() {
+        first.take_other(&mut recorded)?;
+    }
+    all.push(recorded);
+    Ok(())
 }
 
 fn read_calibration(
@@ -109,15 +138,10 @@ fn read_calibration(
 }
 
 fn read_data(
-    header: &Header,
-    folder: Option<&Path>,
+    read: Result<Recording, DataError>,
     source: &SourceFile,
     listener: &dyn Listener,
 ) -> Result<Recording, Failure> {
-    let path = in_folder(folder, &header.data.value);
-    listener.begin(&format!("reading {}", path.display()));
-    let read = header.read_data(&path);
-    listener.end();
     let mut recording = read.map_err(|error| Failure::no(error.to_string()))?;
     for note in &recording.notes {
         listener.hear(&format!("note: {note}").into());

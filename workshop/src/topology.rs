@@ -8,6 +8,7 @@ use model_dsl::{compile, compile_word, yaml};
 use crate::load::Loaded;
 
 /// The topology word of a machine, and the file that has it.
+#[derive(Clone)]
 pub struct Topology {
     /// The word.
     pub word: String,

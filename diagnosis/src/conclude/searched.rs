@@ -17,7 +17,7 @@ use crate::repeats::{self, Scatter};
 use crate::rest;
 use crate::study::Study;
 use crate::zeros;
-use crate::{Inputs, Progress};
+use crate::{Inputs, Keep, Progress};
 
 /// A study that was searched.
 pub(super) struct Searched<'s> {
@@ -34,6 +34,7 @@ pub(super) struct Searched<'s> {
 pub(super) struct Opening {
     pub(super) before: Residual,
     pub(super) drawn: Option<pictures::Before>,
+    pub(super) keep: Keep,
     pub(super) returns: Vec<Returning>,
     pub(super) nothing_returns: Vec<NothingReturns>,
     pub(super) undecided: Vec<String>,
@@ -43,7 +44,7 @@ impl<'s> Searched<'s> {
     /// Searches recordings; the whole diagnosis where nothing can be decided from them.
     pub(super) fn new(
         inputs: &Inputs<'s>,
-        drawn: bool,
+        keep: Keep,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<(Self, Opening), Box<Diagnosis>> {
         let mut study = study(inputs);
@@ -69,7 +70,7 @@ impl<'s> Searched<'s> {
             return Err(Box::new(undecidable(opened, &study, reason)));
         }
         let left = |study: &Study<'_>, bare: &Model| {
-            (units.residual(study, bare), drawn.then(|| pictures::Before::new(study, bare)))
+            (units.residual(study, bare), (keep != Keep::Nothing).then(|| pictures::Before::new(study, bare)))
         };
         let (mut before, mut drawn) = left(&study, &bare);
         let (found, scattered) = search(&mut study, progress);
@@ -78,7 +79,7 @@ impl<'s> Searched<'s> {
             found.appraisal.mark(&mut study);
         }
         let Diagnosis { returns, nothing_returns, undecided, .. } = opened;
-        let opening = Opening { before, drawn, returns, nothing_returns, undecided };
+        let opening = Opening { before, drawn, keep, returns, nothing_returns, undecided };
         Ok((Self { study, units, found, scattered, before }, opening))
     }
 

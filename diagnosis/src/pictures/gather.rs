@@ -10,7 +10,7 @@ use crate::zeros;
 
 /// The residuals of the known calibration, and the samples that were left out then: outliers are judged anew with the findings.
 pub(crate) struct Before {
-    pub(super) residuals: Vec<Vec<Vec<f64>>>,
+    pub(crate) residuals: Vec<Vec<Vec<f64>>>,
     pub(super) outliers: Vec<Vec<Vec<bool>>>,
 }
 

@@ -59,12 +59,7 @@ pub(super) fn page(sheet: &Sheet) -> String {
         text.push_str(&format!("Source: {}\n\n", escape(source)));
     }
     text.push_str(&format!("{}\n", escape(&sheet.chain.join(" "))));
-    if !sheet.brackets.is_empty() {
-        text.push_str(&aligned(&sheet.brackets.iter().map(equation).collect::<Vec<_>>()));
-    }
-    for row in sheet.rows.iter().chain(&sheet.orientation) {
-        text.push_str(&aligned(&[equation(&row.position), equation(&row.error)]));
-    }
+    text.push_str(&equations(sheet));
     text.push_str(&motions(sheet));
     text.push_str(&quantities(sheet));
     text.push_str("\\begin{itemize}\n");
@@ -73,6 +68,14 @@ pub(super) fn page(sheet: &Sheet) -> String {
     }
     text.push_str("\\end{itemize}\n\\end{document}\n");
     text
+}
+
+/// The equations alone: a block `align*` for each direction.
+pub(super) fn equations(sheet: &Sheet) -> String {
+    let brackets = (!sheet.brackets.is_empty()).then(|| sheet.brackets.iter().map(equation).collect());
+    let rows = sheet.rows.iter().chain(&sheet.orientation);
+    let rows = rows.map(|row| vec![equation(&row.position), equation(&row.error)]);
+    brackets.into_iter().chain(rows).map(|block: Vec<String>| aligned(&block)).collect()
 }
 
 /// Equations below each other.

@@ -11,10 +11,11 @@ use parquet::file::reader::ChunkReader;
 use parquet::schema::types::ColumnDescriptor;
 
 use super::super::{ChannelKind, ChannelPlace, Header, Names, Recording};
-use super::cell::{self, BadCell};
-use super::columns::{Cells, Columns, Width};
-use super::error::{DataError, Place};
+use super::cell::BadCell;
+use super::columns::{Columns, Width};
+use super::error::DataError;
 use super::layout::{find_columns, notes_of_extra};
+use super::numbers::{Group, Values};
 use super::pages::pages_of;
 use super::stamp::Stamp;
 use super::{MOST_NUMBERS, settle};
@@ -150,102 +151,6 @@ fn date_of(column: &ColumnDescriptor) -> Result<Form, BadCell> {
             message: "no dates".to_owned(),
             help: "write the unit of the times, `unit: s`, in place of `unit: date` in the recording file; dates that are text are made dates by `pandas.to_datetime`".to_owned(),
         }),
-    }
-}
-
-/// The rows of one group: a list of values for each column that is wanted, an empty one for the others.
-struct Group<'n> {
-    name: &'n str,
-    /// How many rows stand before it.
-    before: u64,
-    columns: Vec<Values>,
-}
-
-/// The values of a column: time stamps, or numbers, NaN where there is none.
-enum Values {
-    Stamps(Vec<Stamp>),
-    Numbers(Vec<f64>),
-}
-
-/// One row of a group.
-struct Row<'g> {
-    group: &'g Group<'g>,
-    row: usize,
-}
-
-impl Group<'_> {
-    /// Hands over all rows and tells how many they were.
-    fn send_to(&self, table: &mut Columns<'_>) -> Result<u64, DataError> {
-        let rows = self.columns.iter().map(Values::len).max().unwrap_or(0);
-        for row in 0..rows {
-            table.take(&Row { group: self, row })?;
-        }
-        Ok(u64::try_from(rows).unwrap_or(u64::MAX))
-    }
-}
-
-impl Values {
-    fn len(&self) -> usize {
-        match self {
-            Self::Stamps(stamps) => stamps.len(),
-            Self::Numbers(numbers) => numbers.len(),
-        }
-    }
-}
-
-impl Cells for Row<'_> {
-    fn ragged(&self, _width: Width) -> Option<DataError> {
-        None
-    }
-
-    fn number(&self, index: usize) -> Result<f64, BadCell> {
-        let value = match self.group.columns.get(index) {
-            Some(Values::Numbers(numbers)) => numbers.get(self.row).copied(),
-            // A column that is read as time and as something else too.
-            Some(Values::Stamps(stamps)) => stamps.get(self.row).map(|stamp| stamp.since(Stamp::whole(0))),
-            None => None,
-        };
-        let value = value.unwrap_or(f64::NAN);
-        if value.is_infinite() {
-            return Err(BadCell {
-                message: "infinity is not a number that was measured".to_owned(),
-                help: "leave the cell empty where nothing was measured".to_owned(),
-            });
-        }
-        Ok(value)
-    }
-
-    fn stamp(&self, index: usize) -> Result<Stamp, BadCell> {
-        match self.group.columns.get(index) {
-            Some(Values::Stamps(stamps)) => Ok(stamps.get(self.row).copied().unwrap_or(Stamp::MISSING)),
-            _ => self.number(index).map(Stamp::number),
-        }
-    }
-
-    fn date(&self, indices: &[usize]) -> Result<Stamp, BadCell> {
-        let mut stamps = indices.iter().map(|index| self.stamp(*index));
-        let first = stamps.next().unwrap_or(Ok(Stamp::MISSING))?;
-        stamps.try_fold(first, |date, later| Ok(date.plus(later?)))
-    }
-
-    fn run(&self, index: usize) -> Result<i64, BadCell> {
-        cell::run(self.text(index).as_bytes())
-    }
-
-    fn text(&self, index: usize) -> String {
-        if let Some(Values::Stamps(stamps)) = self.group.columns.get(index) {
-            return stamps.get(self.row).map(Stamp::to_string).unwrap_or_default();
-        }
-        match self.number(index) {
-            Ok(value) if value.is_nan() => String::new(),
-            Ok(value) => value.to_string(),
-            Err(_) => "infinity".to_owned(),
-        }
-    }
-
-    fn error(&self, _index: usize, message: String) -> DataError {
-        let row = u64::try_from(self.row).unwrap_or(u64::MAX).saturating_add(1);
-        DataError::new(self.group.name, message).at(Place::Row(self.group.before.saturating_add(row)))
     }
 }
 

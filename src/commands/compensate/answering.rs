@@ -10,12 +10,12 @@ use csv::ByteRecord;
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
 use workshop::failure::Failure;
+use workshop::rows::{Lean, Leaning};
 
 use super::CAPACITY;
-use super::leaning::Leaning;
 use crate::decimal::Decimal;
 use crate::map::Map;
-use crate::positions::{Layout, Lean, Pending, Summary, quoted};
+use crate::positions::{Layout, Pending, Summary, quoted};
 
 /// The longest row, in bytes; what is longer is no table, and would have to be kept as a whole.
 const LONGEST_ROW: u64 = 1 << 20;

@@ -5,10 +5,17 @@ use abbe_runtime::{ErrorMotion, Sample, TermState, Turning, states_needed};
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
 
-use crate::positions::Lean;
+/// The error of the tool's direction at a position, in the frame of the part: rad.
+#[derive(Clone, Copy, Debug)]
+pub struct Lean {
+    /// Without compensation.
+    pub without: [f64; 3],
+    /// Where rotary axes have corrected their own angles.
+    pub with: [f64; 3],
+}
 
 /// Follows the error motions of a machine that derives the direction of its tool.
-pub(super) struct Leaning<'c> {
+pub struct Leaning<'c> {
     /// With any tool: no constant of a machine turns one.
     machine: &'c Interpreter,
     motions: &'c [ErrorMotion<'c>],
@@ -22,7 +29,7 @@ pub(super) struct Leaning<'c> {
 
 impl<'c> Leaning<'c> {
     /// Before the first row; none for a machine that does not derive the direction of its tool.
-    pub(super) fn new(
+    pub fn new(
         equations: &Equations,
         machine: &'c Interpreter,
         motions: &'c [ErrorMotion<'c>],
@@ -37,8 +44,14 @@ impl<'c> Leaning<'c> {
         })
     }
 
+    /// The same where the terms remember something already, as a compensator has left it.
+    #[must_use]
+    pub fn remembering(self, states: &[TermState]) -> Self {
+        Self { states: states.to_vec(), ..self }
+    }
+
     /// Takes the memories over to the next row, and gives what the direction of the tool is wrong by at its position.
-    pub(super) fn take(&mut self, sample: &Sample<'_>) -> Lean {
+    pub fn take(&mut self, sample: &Sample<'_>) -> Lean {
         // The compensator refuses such a row, and remembers nothing of it.
         if !sample.is_finite() {
             return Lean { without: [f64::NAN; 3], with: [f64::NAN; 3] };

@@ -9,11 +9,11 @@ use exchange::instrument::setup::Correction;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
-use workshop::failure::Failure;
-use workshop::load;
-use workshop::recorded::unusable;
 
-use crate::output::{show, warn};
+use crate::failure::Failure;
+use crate::load;
+use crate::recorded::unusable;
+use crate::told::{Listener, Words};
 
 /// Takes all of them over; what is wrong in one stands at its place there, below the place of its name (E0914).
 pub(super) fn take(
@@ -22,20 +22,27 @@ pub(super) fn take(
     path: &Path,
     equations: &Equations,
     diagnostics: &mut Diagnostics,
+    listener: &dyn Listener,
 ) -> Result<(), Failure> {
     for one in setup.corrections.clone() {
-        take_one(setup, &one, source, path, equations, diagnostics)?;
+        take_one(setup, &one, source, path, equations, diagnostics, listener)?;
     }
-    take_squares(setup, equations, diagnostics);
+    take_squares(setup, equations, diagnostics, listener);
     Ok(())
 }
 
 /// Takes the leans of squares over; a machine that has no such slides is told (E0906).
-fn take_squares(setup: &mut Setup, equations: &Equations, diagnostics: &mut Diagnostics) {
+fn take_squares(
+    setup: &mut Setup,
+    equations: &Equations,
+    diagnostics: &mut Diagnostics,
+    listener: &dyn Listener,
+) {
     let Some(leans) = setup.diagonals else { return };
     match skew_terms(equations, &setup.known, leans.value) {
         Ok(terms) => {
-            warn(&format!("{} terms of error motions from the lengths of squares", terms.len()));
+            listener
+                .hear(&format!("{} terms of error motions from the lengths of squares", terms.len()).into());
             setup.take(&terms, leans.span, equations, diagnostics);
         }
         Err(refused) => {
@@ -52,6 +59,7 @@ fn take_one(
     path: &Path,
     equations: &Equations,
     diagnostics: &mut Diagnostics,
+    listener: &dyn Listener,
 ) -> Result<(), Failure> {
     let not = |failure: Failure| unusable(source, "E0914", "file", &one.data, failure);
     let file = load::read(&path.with_file_name(&one.data.value)).map_err(not)?;
@@ -61,8 +69,8 @@ fn take_one(
     if findings.has_errors() {
         return Err(not(Failure::marked(&file, &findings)));
     }
-    show(&file, &findings);
+    listener.hear(&Words::marked(&file, &findings));
     setup.take(&terms, one.data.span, equations, diagnostics);
-    warn(&format!("{} terms of error motions from {}", terms.len(), file.name()));
+    listener.hear(&format!("{} terms of error motions from {}", terms.len(), file.name()).into());
     Ok(())
 }

@@ -7,11 +7,11 @@ use exchange::instrument::Setup;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
-use workshop::failure::Failure;
-use workshop::load;
-use workshop::recorded::unusable;
 
-use crate::output::warn;
+use crate::failure::Failure;
+use crate::load;
+use crate::recorded::unusable;
+use crate::told::Listener;
 
 /// Takes the file over, where the set-up names one; what is wrong in it stands at its place there, below the place of its name
 /// (E0914).
@@ -21,6 +21,7 @@ pub(super) fn take(
     path: &Path,
     equations: &Equations,
     diagnostics: &mut Diagnostics,
+    listener: &dyn Listener,
 ) -> Result<(), Failure> {
     let Some(name) = setup.volumetric.clone() else { return Ok(()) };
     let not = |failure: Failure| unusable(source, "E0914", "file", &name, failure);
@@ -34,6 +35,6 @@ pub(super) fn take(
         return Err(not(Failure::marked(&file, &findings)));
     }
     setup.take(&terms, name.span, equations, diagnostics);
-    warn(&format!("{} terms of error motions from {}", terms.len(), file.name()));
+    listener.hear(&format!("{} terms of error motions from {}", terms.len(), file.name()).into());
     Ok(())
 }

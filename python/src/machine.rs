@@ -1,0 +1,279 @@
+//! `abbe.Machine`. In: a topology word, the name of a shipped machine or a file. Out: its equations in the notations of the compiler,
+//! and its lever arms as arrays.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use model_dsl::equations::{Equations, Names};
+use model_dsl::notation::{self, Format};
+use model_dsl::program::Interpreter;
+use numpy::ndarray::Array3;
+use numpy::{AllowTypeChange, IntoPyArray, PyArrayLike1};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use workshop::load::{self, Loaded};
+
+use crate::error::{raised, working, wrong};
+use crate::file;
+use crate::page::framed;
+
+/// A machine: a chain of links, and the equations that follow from it.
+///
+/// `Machine("XYFZ")` takes a topology word (the letters from the part to the tool, F the bed), `Machine("postech-mill")` a machine that
+/// comes with Abbe, `Machine("lathe.yaml")` a machine file.
+///
+/// >>> import abbe
+/// >>> stage = abbe.Machine("FX")
+/// >>> stage.axes, stage.motions
+/// (['X'], ['EXX', 'EYX', 'EZX', 'EAX', 'EBX', 'ECX'])
+#[pyclass(module = "abbe", frozen)]
+pub(crate) struct Machine {
+    loaded: Loaded,
+    /// The word, name or path that it was made from.
+    given: String,
+}
+
+#[pymethods]
+impl Machine {
+    #[new]
+    fn new(machine: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let name = file::path(machine)?.display().to_string();
+        let loaded = working(machine.py(), |heard| load::machine(&name, None, heard))?;
+        Ok(Self { loaded, given: name })
+    }
+
+    /// Its name.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.derived().machine
+    }
+
+    /// Its title, or None.
+    #[getter]
+    fn title(&self) -> Option<&str> {
+        self.derived().title.as_deref()
+    }
+
+    /// The letters of its axes, in the order in which arrays of positions hold them.
+    #[getter]
+    fn axes(&self) -> Vec<&str> {
+        self.derived().axes.iter().map(|axis| axis.letter.as_str()).collect()
+    }
+
+    /// The unit of each axis in arrays of positions: `mm`, or `deg` for a rotary axis.
+    #[getter]
+    fn units(&self) -> Vec<&'static str> {
+        self.derived().axes.iter().map(|axis| if axis.rotary { "deg" } else { "mm" }).collect()
+    }
+
+    /// The directions of the equations, `X`, `Y`, `Z`, in the order of the middle index of `levers`.
+    #[getter]
+    fn directions(&self) -> Vec<String> {
+        self.derived().rows.iter().map(|row| row.direction.letter().to_string()).collect()
+    }
+
+    /// The names of its constants: offsets, mm.
+    #[getter]
+    fn constants(&self) -> Vec<&str> {
+        self.derived().constants.iter().map(|constant| &*constant.name).collect()
+    }
+
+    /// The names of its error motions, in the order of the last index of `levers`.
+    #[getter]
+    fn motions(&self) -> Vec<&str> {
+        self.derived().motions.iter().map(|motion| motion.name.as_str()).collect()
+    }
+
+    /// What each error motion is, in words, by its name.
+    #[getter]
+    fn meanings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let meanings = PyDict::new(py);
+        for motion in &self.derived().motions {
+            meanings.set_item(&motion.name, &motion.meaning)?;
+        }
+        Ok(meanings)
+    }
+
+    /// The equations as text, as `abbe derive` prints them.
+    #[getter]
+    fn equations(&self) -> String {
+        self.print(Format::Text)
+    }
+
+    /// The equations as a LaTeX document.
+    #[getter]
+    fn latex(&self) -> String {
+        self.print(Format::Latex)
+    }
+
+    /// The page of the machine, as `abbe derive --format html` writes it.
+    #[getter]
+    fn html(&self) -> String {
+        self.loaded.page(Names::Symbols)
+    }
+
+    /// The equations in a notation of `abbe derive`: `text`, `latex`, `html`, `json`, `maxima` or `python`; with the names of ISO 230-1
+    /// (`iso`) or the machine file's symbols.
+    ///
+    /// >>> import abbe, json
+    /// >>> json.loads(abbe.Machine("FX").derive("json"))["schema"]
+    /// 'abbe-equations/1'
+    #[pyo3(signature = (format = "text", names = "symbols"))]
+    fn derive(&self, py: Python<'_>, format: &str, names: &str) -> PyResult<String> {
+        let names = match names {
+            "iso" => Names::Iso,
+            "symbols" => Names::Symbols,
+            other => return Err(wrong(py, format!("names are `iso` or `symbols`, not `{other}`"))),
+        };
+        let format = match format {
+            "html" => return Ok(self.loaded.page(names)),
+            "text" => Format::Text,
+            "latex" => Format::Latex,
+            "json" => Format::Json,
+            "maxima" => Format::Maxima,
+            "python" => Format::Python,
+            other => {
+                let help = "help: formats are text, latex, html, json, maxima, python";
+                return Err(wrong(py, format!("there is no format `{other}`\n{help}")));
+            }
+        };
+        Ok(notation::print(self.derived(), format, names))
+    }
+
+    /// The lever arms at positions: for each axis a number or an array, mm or deg, by its letter in lower case; an axis that is not named
+    /// stands at zero. `constants` gives the machine's offsets, mm; those that it does not name have their default, or are zero.
+    ///
+    /// The array has the shape (n, directions, motions), and (directions, motions) where all positions are numbers. A lever of a
+    /// displacement is a pure number, that of an angle is in mm.
+    ///
+    /// >>> import abbe
+    /// >>> stage = abbe.Machine("FX")
+    /// >>> stage.levers(x=[0, 100], constants={"Zt": 50}).shape
+    /// (2, 3, 6)
+    /// >>> float(stage.levers(constants={"Zt": 50})[0, stage.motions.index("EBX")])
+    /// 50.0
+    #[pyo3(signature = (*, constants = None, **positions))]
+    fn levers<'py>(
+        &self,
+        py: Python<'py>,
+        constants: Option<HashMap<String, f64>>,
+        positions: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let constants = self.constant_values(py, &constants.unwrap_or_default())?;
+        let places = Places::read(py, self.derived(), positions)?;
+        let equations = self.derived();
+        let levers = py.detach(|| {
+            let positions: Vec<&[f64]> = places.columns.iter().map(Vec::as_slice).collect();
+            let travels = equations.travels.iter().filter_map(|travel| positions.get(travel.axis).copied());
+            Interpreter::new(equations, &constants).lever_columns(&positions, &travels.collect::<Vec<_>>())
+        });
+        let rows: Vec<usize> = equations.rows.iter().map(|row| row.direction.index()).collect();
+        let shape = (places.rows, rows.len(), levers.len());
+        let array = Array3::from_shape_fn(shape, |(row, direction, motion)| {
+            let direction = rows.get(direction).copied().unwrap_or_default();
+            levers.get(motion).and_then(|lever| lever.get(direction)?.get(row).copied()).unwrap_or(f64::NAN)
+        });
+        let array = array.into_pyarray(py).into_any();
+        if places.alone { array.get_item(0) } else { Ok(array) }
+    }
+
+    fn _repr_html_(&self) -> String {
+        framed(&self.html())
+    }
+
+    fn _repr_latex_(&self) -> String {
+        notation::latex_equations(self.derived(), Names::Symbols)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<abbe.Machine {}: {} error motions>", self.name(), self.derived().motions.len())
+    }
+}
+
+impl Machine {
+    /// The machine of a recording or a calibration, which name it from a folder.
+    pub(crate) fn named(py: Python<'_>, name: &str, folder: Option<&Path>) -> PyResult<Self> {
+        let loaded = load::machine(name, folder, &()).map_err(|failure| raised(py, &failure))?;
+        let file = folder.map(|folder| folder.join(name)).filter(|file| file.is_file());
+        Ok(Self { loaded, given: file.map_or_else(|| name.to_owned(), |file| file.display().to_string()) })
+    }
+
+    /// The word, name or path that it was made from.
+    pub(crate) fn given(&self) -> &str {
+        &self.given
+    }
+
+    fn derived(&self) -> &Equations {
+        &self.loaded.compiled.equations
+    }
+
+    fn print(&self, format: Format) -> String {
+        notation::print(self.derived(), format, Names::Symbols)
+    }
+
+    fn constant_values(&self, py: Python<'_>, given: &HashMap<String, f64>) -> PyResult<Vec<f64>> {
+        let known = &self.derived().constants;
+        let mut names: Vec<&String> = given.keys().collect();
+        names.sort_unstable();
+        if let Some(stray) = names.into_iter().find(|name| !known.iter().any(|known| *known.name == **name)) {
+            let all = self.constants().join(", ");
+            return Err(wrong(
+                py,
+                format!("{} has no constant `{stray}`\nhelp: its constants are {all}", self.name()),
+            ));
+        }
+        let value =
+            |name: &str, default: Option<f64>| given.get(name).copied().or(default).unwrap_or_default();
+        Ok(known.iter().map(|constant| value(&constant.name, constant.default)).collect())
+    }
+}
+
+/// Positions by name, as long as one another: mm, rad.
+struct Places {
+    columns: Vec<Vec<f64>>,
+    rows: usize,
+    /// Whether all are numbers.
+    alone: bool,
+}
+
+impl Places {
+    fn read(py: Python<'_>, equations: &Equations, given: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        let mut columns = vec![None; equations.axes.len()];
+        let (mut rows, mut alone) = (1, true);
+        for (key, value) in given.into_iter().flatten() {
+            let key: String = key.extract()?;
+            let axis = equations.axes.iter().position(|axis| *axis.variable == *key);
+            let Some(axis) = axis else {
+                let all: Vec<&str> = equations.axes.iter().map(|axis| &*axis.variable).collect();
+                let help = format!("help: its axes are {}", all.join(", "));
+                return Err(wrong(py, format!("{} has no axis `{key}`\n{help}", equations.machine)));
+            };
+            let rotary = equations.axes.get(axis).is_some_and(|axis| axis.rotary);
+            let internal = |place: f64| if rotary { place.to_radians() } else { place };
+            let numbers: Vec<f64> = match value.extract::<f64>() {
+                Ok(number) => vec![number],
+                Err(_) => {
+                    let array: PyArrayLike1<'_, f64, AllowTypeChange> = value.extract()?;
+                    alone = false;
+                    array.as_array().iter().copied().collect()
+                }
+            };
+            if numbers.len() != 1 && rows != 1 && rows != numbers.len() {
+                return Err(wrong(
+                    py,
+                    format!("`{key}` has {} positions, others have {rows}", numbers.len()),
+                ));
+            }
+            rows = if numbers.len() == 1 { rows } else { numbers.len() };
+            if let Some(slot) = columns.get_mut(axis) {
+                *slot = Some(numbers.into_iter().map(internal).collect::<Vec<f64>>());
+            }
+        }
+        let full = |column: Option<Vec<f64>>| match column.as_deref() {
+            None => vec![0.0; rows],
+            Some([one]) => vec![*one; rows],
+            Some(all) => all.to_vec(),
+        };
+        Ok(Self { columns: columns.into_iter().map(full).collect(), rows, alone })
+    }
+}

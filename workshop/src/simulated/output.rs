@@ -1,0 +1,104 @@
+//! The two files of a simulated recording. In: what was simulated, and where it goes. Out: both files, whole or not at all.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use simulation::Simulated;
+use simulation::write::{self, Head};
+
+use crate::calibrated::Calibrated;
+use crate::failure::Failure;
+use crate::named::{machine_name, relative};
+use crate::written;
+
+/// Where the two files go.
+pub struct Output {
+    /// The recording file.
+    pub recording: PathBuf,
+    /// The name of the data file, beside the recording.
+    pub data: String,
+}
+
+impl Output {
+    /// The places of both in a folder; or of a recording file with its own name.
+    #[must_use]
+    pub fn of(path: &Path) -> Self {
+        let is_file = path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml");
+        match path.file_stem().filter(|_| is_file) {
+            Some(stem) => {
+                Self { recording: path.to_owned(), data: format!("{}.csv", stem.to_string_lossy()) }
+            }
+            None => Self { recording: path.join("recording.yaml"), data: "data.csv".to_owned() },
+        }
+    }
+
+    /// The data file.
+    #[must_use]
+    pub fn data_path(&self) -> PathBuf {
+        self.recording.with_file_name(&self.data)
+    }
+
+    /// Refuses to replace a file, unless `force` does.
+    ///
+    /// # Errors
+    ///
+    /// The file that is there already.
+    pub fn check(&self, force: bool) -> Result<(), Failure> {
+        let there = [self.recording.clone(), self.data_path()].into_iter().find(|path| path.exists());
+        match there.filter(|_| !force) {
+            Some(path) => Err(Failure::wrong(format!(
+                "error: {} is there already\nhelp: --output takes another place, --force replaces it",
+                path.display()
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes both files; they get their names only when both are complete.
+    ///
+    /// # Errors
+    ///
+    /// Why one of them could not be written.
+    pub fn write(&self, simulated: &Simulated, head: &Head) -> Result<(), Failure> {
+        let (data_path, recording) = (self.data_path(), write::recording(simulated, head));
+        let data = written::staged(&data_path, |file| write::table(simulated, &head.axes, file))?;
+        let head = written::staged(&self.recording, |file| file.write_all(recording.as_bytes()))?;
+        data.keep().map_err(|error| written::cannot_write(&data_path, &error))?;
+        head.keep().map_err(|error| written::cannot_write(&self.recording, &error))
+    }
+
+    /// The folder, made where it is missing.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be made.
+    pub fn folder(&self) -> Result<PathBuf, Failure> {
+        let folder = match self.recording.parent() {
+            Some(parent) if parent != Path::new("") => parent.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        std::fs::create_dir_all(&folder)
+            .map_err(|error| Failure::io(&format!("cannot make {}", folder.display()), &error))?;
+        Ok(folder)
+    }
+
+    /// What the recording file names, counted from the folder that it goes to: the machine of a calibration, by the name of its file, and
+    /// the calibration that is known.
+    ///
+    /// # Errors
+    ///
+    /// A path that no file could name.
+    pub fn head(
+        &self,
+        (calibrated, path): (&Calibrated, &Path),
+        known: Option<&Path>,
+        folder: &Path,
+    ) -> Result<Head, Failure> {
+        Ok(Head {
+            machine: machine_name(&calibrated.calibration.machine.value, path, folder)?,
+            calibration: known.map(|known| relative(folder, known)).transpose()?,
+            data: self.data.clone(),
+            axes: calibrated.equations.names().axes,
+        })
+    }
+}

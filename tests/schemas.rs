@@ -341,6 +341,7 @@ fn mappings() -> Vec<(&'static str, String, String)> {
     }
     add("recording", "setup: {unheardof: 1}", "/properties/setup");
     add("recording", "holdout: {unheardof: 1}", "/properties/holdout");
+    add("recording", "data: {unheardof: 1}", "/properties/data/anyOf/1");
     add("recording", "extra: {a: {unheardof: 1}}", "/properties/extra/additionalProperties");
     add("path", "unheardof: 1", "");
     for shape in ["line", "circle", "diamond", "grid", "spiral"] {

@@ -11,7 +11,7 @@ use model_dsl::source::{Span, Spanned};
 use model_dsl::suggest::nearest;
 use model_dsl::yaml::Node;
 
-use super::place::{DATE, SECOND, is_date, read_place, read_step, scaled_unit};
+use super::place::{DATE, SECOND, is_date, read_every, read_place, scaled_unit};
 use super::words::{FORM, keys, near_or_all};
 
 /// A column of the data and what it means.
@@ -25,7 +25,7 @@ pub struct Channel {
     pub place: ChannelPlace,
     /// The unit of its numbers; none for runs and normals. Dates are in s.
     pub unit: Option<Spanned<Unit>>,
-    /// How many of that unit a number in the column is, or a step of time: 0.1 for `0.1 um`, else 1.
+    /// How many of that unit a number in the column is, or the time from row to row: 0.1 for `0.1 um`, else 1.
     pub scale: f64,
     /// That unit as it is written.
     pub written_unit: String,
@@ -46,7 +46,7 @@ pub enum ChannelPlace {
         back: Vec<Spanned<String>>,
     },
     /// Nowhere: times that are equally far apart from row to row, by one of the unit.
-    Step,
+    Every,
 }
 
 impl Channel {
@@ -61,7 +61,7 @@ impl Channel {
             ChannelPlace::Column(column) => vec![column],
             ChannelPlace::Dates(columns) => columns.iter().collect(),
             ChannelPlace::Runs { columns, back } => columns.iter().chain(back).collect(),
-            ChannelPlace::Step => Vec::new(),
+            ChannelPlace::Every => Vec::new(),
         }
     }
 
@@ -158,14 +158,14 @@ fn read_channel(
 ) -> Option<Channel> {
     let what = format!("`{}`", name.value);
     let wording = keys(&what);
-    let all = ["column", "unit", "columns", "back", "step"];
-    let known = match name.value.as_str() {
-        "time" => &all,
-        _ => all.get(..4).unwrap_or(&all),
+    let known: &[&str] = match name.value.as_str() {
+        "time" => &["column", "unit", "every"],
+        "run" => &["column", "unit"],
+        _ => &["column", "unit", "columns", "back"],
     };
     let fields = Fields::open(node, name.span, wording, known, diagnostics)?;
-    if fields.get("step").is_some() {
-        return read_step(name, kind?, &fields, diagnostics);
+    if fields.get("every").is_some() {
+        return read_every(name, kind?, &fields, diagnostics);
     }
     let dates =
         kind == Some(ChannelKind::Time) && fields.get("unit").and_then(Node::text).is_some_and(is_date);

@@ -86,29 +86,29 @@ fn read_names(node: &Node, what: &str, diagnostics: &mut Diagnostics) -> Option<
     (names.len() == items.len()).then_some(names)
 }
 
-/// Reads times that no column tells: `step: 1 ms`.
-pub(super) fn read_step(
+/// Reads times that no column tells: `every: 1 ms`.
+pub(super) fn read_every(
     name: &Spanned<String>,
     kind: ChannelKind,
     fields: &Fields<'_>,
     diagnostics: &mut Diagnostics,
 ) -> Option<Channel> {
-    let (key, node) = fields.entry("step")?;
+    let (key, node) = fields.entry("every")?;
     let other = ["column", "columns", "unit"].into_iter().find_map(|key| fields.entry(key));
     if let Some((other, _)) = other {
-        let message = "time has a `step` from row to row, or a column, and not both";
-        let mistake = Diagnostic::error(APART, other.span, message).also(key.span, "the step");
-        diagnostics.push(mistake.help("leave one of them out; the step has its own unit, `step: 1 ms`"));
+        let message = "time has `every`, or a column, and not both";
+        let mistake = Diagnostic::error(APART, other.span, message).also(key.span, "from row to row");
+        diagnostics.push(mistake.help("leave one of them out; `every` has its own unit, `every: 1 ms`"));
         return None;
     }
-    let step = quantity::read(node, Dimension::TIME, "`step`", diagnostics)?;
-    if step.value <= 0.0 {
-        let mistake = Diagnostic::error(APART, step.span, "`step` must be greater than zero");
-        diagnostics.push(mistake.help("write the time from row to row, `step: 1 ms`"));
+    let every = quantity::read(node, Dimension::TIME, "`every`", diagnostics)?;
+    if every.value <= 0.0 {
+        let mistake = Diagnostic::error(APART, every.span, "`every` must be greater than zero");
+        diagnostics.push(mistake.help("write the time from row to row, `every: 1 ms`"));
         return None;
     }
     let unit = Some(Spanned::new(SECOND, node.span));
-    let (place, scale) = (ChannelPlace::Step, step.value);
+    let (place, scale) = (ChannelPlace::Every, every.value);
     Some(Channel { name: name.clone(), kind, place, unit, scale, written_unit: "s".to_owned() })
 }
 
@@ -162,10 +162,10 @@ pub(super) fn check_runs(channels: &[Channel], diagnostics: &mut Diagnostics) {
                 "the columns are runs, and so no channel tells them",
                 "leave the channel `run` out: the first of `columns` is run 1",
             ),
-            (ChannelKind::Time, ChannelPlace::Step) => continue,
+            (ChannelKind::Time, ChannelPlace::Every) => continue,
             (ChannelKind::Time, _) => (
                 "a row is read in every run, and one column of times cannot tell when",
-                "write `time: {step: 10 s}`, the time from one row to the next",
+                "write `time: {every: 10 s}`, the time from one row to the next",
             ),
             _ => continue,
         };

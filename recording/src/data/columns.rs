@@ -150,7 +150,7 @@ impl<'h> Columns<'h> {
         let first = cells.first().copied().unwrap_or_default();
         let rows = self.time_so_far.len();
         let stamp = match &channel.place {
-            ChannelPlace::Step => Ok(Stamp::whole(i64::try_from(rows).unwrap_or(i64::MAX))),
+            ChannelPlace::Every => Ok(Stamp::whole(i64::try_from(rows).unwrap_or(i64::MAX))),
             ChannelPlace::Dates(_) => row.date(cells),
             ChannelPlace::Column(_) | ChannelPlace::Runs { .. } => row.stamp(first),
         };

@@ -116,7 +116,7 @@ fn spaces_without_a_header() {
         &["data.csv:1:1: there is no column `3` (channel `measured.x`)", "the columns are 1, 2"],
     );
     // Without a column of times.
-    let stepped = text(spaces, "{step: 0.5 s}", "{column: 1, unit: mm}");
+    let stepped = text(spaces, "{every: 0.5 s}", "{column: 1, unit: mm}");
     assert_eq!(recording(&stepped, "1\n2\n3\n").unwrap().time, [0.0, 0.5, 1.0]);
     // `camonitor` writes the name, the date, the time of day, the value, and what is wrong with it.
     let monitored = text(spaces, "{column: [2, 3], unit: date}", "{column: 4, unit: mm}");
@@ -191,16 +191,16 @@ fn what_the_recording_file_says_wrongly() {
         ("{file: d, decimal: \",\", separator: comma}", SECONDS, X, "E0604", "separator"),
         ("{separator: tab}", SECONDS, X, "E0601", "data"),
         ("{file: d, sheets: a}", SECONDS, X, "E0603", "sheets"),
-        ("d", "{step: 0 s}", X, "E0629", "0 s"),
-        ("d", "{step: 1 mm}", X, "E0307", "mm"),
-        ("d", "{step: 1 s, column: t}", X, "E0629", "column"),
+        ("d", "{every: 0 s}", X, "E0629", "0 s"),
+        ("d", "{every: 1 mm}", X, "E0307", "mm"),
+        ("d", "{every: 1 s, column: t}", X, "E0629", "column"),
         ("d", "{column: [a, b], unit: s}", X, "E0604", "[a, b]"),
         ("d", "{column: [a, b, c], unit: date}", X, "E0604", "[a, b, c]"),
         ("d", SECONDS, "{column: x, unit: date}", "E0609", "date"),
         ("d", SECONDS, "{column: x, unit: 0 mm}", "E0629", "0 mm"),
         ("d", SECONDS, "{column: x, unit: -1 mm}", "E0629", "-1 mm"),
         ("d", SECONDS, "{column: x, unit: 0.1 urad}", "E0609", "0.1 urad"),
-        ("d", SECONDS, "{step: 1 s}", "E0603", "step"),
+        ("d", SECONDS, "{every: 1 s}", "E0603", "every"),
     ] {
         let (_, found) = read(&text(data, time, x));
         let found: Vec<_> = found.iter().map(|(one, marked)| (one.code, marked.as_str())).collect();

@@ -7,7 +7,7 @@ machine: FX
 instrument: linear
 data: d
 channels:
-  time: {step: 10 s}
+  time: {every: 10 s}
   command.x: {column: target, unit: mm}
   temperature.air: {column: T, unit: degC}
   deviation: {columns: [run 1, run 2, run 3], unit: um}
@@ -62,8 +62,8 @@ fn mistakes() {
 #[test]
 fn what_the_recording_file_says_wrongly() {
     for (from, to, code, marked) in [
-        ("{step: 10 s}", "{column: t, unit: s}", "E0629", "time"),
-        ("{step: 10 s}", "{columns: [a, b, c], unit: s}", "E0629", "time"),
+        ("{every: 10 s}", "{column: t, unit: s}", "E0629", "time"),
+        ("{every: 10 s}", "{columns: [a, b, c], unit: s}", "E0603", "columns"),
         ("channels:\n", "channels:\n  run: {column: n}\n", "E0629", "run"),
         ("run 3]", "run 3], back: [down 1]", "E0629", "back"),
         ("run 3]", "run 3], column: a", "E0629", "column"),

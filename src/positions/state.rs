@@ -40,7 +40,7 @@ impl<'s> State<'s> {
     /// The state before the first row; `hysteresis` is in mm or rad, one for each axis.
     pub(crate) fn new(layout: Layout, timed: bool, calibration: &'s Calibration, hysteresis: &[f64]) -> Self {
         let sensors = &calibration.sensors;
-        let axes = layout.axes.len();
+        let axes = layout.all_axes;
         let mut input_columns = vec![None; sensors.len()];
         for ((index, _), column) in sensors.inputs().zip(&layout.sensors) {
             if let Some(slot) = input_columns.get_mut(index) {
@@ -145,6 +145,10 @@ impl<'s> State<'s> {
     fn read_positions(&mut self) {
         for (axis, column) in self.layout.axes.iter().enumerate() {
             self.position[axis] = self.number(*column);
+        }
+        self.layout.motors.iter().for_each(|share| self.position[share.motor] = 0.0);
+        for share in &self.layout.motors {
+            self.position[share.motor] += share.weight * self.position[share.of];
         }
         self.travel.clear();
         if self.layout.travels.iter().any(Option::is_some) {

@@ -200,6 +200,12 @@ impl Motion {
         Placed { name: &self.name, link: self.body, kind: self.kind, rotates: self.rotates, sign: self.sign }
     }
 
+    /// Whether it is the error of a motor that shares a beam with another one: both together are the positioning error and a rotation
+    /// of the slide, at the same positions.
+    pub fn shares_beam(&self) -> bool {
+        self.by_motor.iter().any(|moved| moved.kind.angular())
+    }
+
     /// An arm of the motion as that of what is printed.
     pub fn printed_arm(&self, arm: &Polynomial, names: Names) -> Polynomial {
         if self.is_printed_against_iso(names) { -arm } else { arm.clone() }
@@ -310,6 +316,11 @@ impl Equations {
             |motor| move |(of, weight): &(usize, Rational)| Share { motor, of: *of, weight: to_f64(weight) };
         let axes = self.axes.iter().enumerate();
         axes.flat_map(|(motor, axis)| of(axis).iter().map(share(motor)).collect::<Vec<_>>()).collect()
+    }
+
+    /// Whether a program moves the axis of this number: it is no motor.
+    pub fn programs(&self, axis: usize) -> bool {
+        self.axes.get(axis).is_some_and(|axis| !axis.is_motor())
     }
 
     /// How many axes a program moves: those before the motors.

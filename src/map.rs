@@ -55,7 +55,8 @@ impl<'m> Map<'m> {
                     .to_owned(),
             ));
         }
-        let mut field = Field::new(compensator, self.space.middle(), &self.temperature);
+        let mut field =
+            Field::new(compensator, self.equations.following(), self.space.middle(), &self.temperature);
         Ok(drawing::draw(self.equations, &self.space, &slides, &mut field))
     }
 }

@@ -205,6 +205,8 @@ fn bench(code: &str) -> PathBuf {
     write("tilting.yaml", tilting);
     let parallel = "abbe: 1\nname: parallel\nchain:\n  tool:\n    - {slide: X, along: +X}\n    - {slide: U, along: +X}\n    - {tool: tip}\n";
     write("parallel.yaml", parallel);
+    let crossed = "abbe: 1\nname: crossed\ntopology: FXYZ\ntransmission: {A: X + Y, B: X - Y}\n";
+    write("crossed.yaml", crossed);
     write("parallel-known.yaml", "calibration: 1\nmachine: parallel.yaml\n");
     folder
 }

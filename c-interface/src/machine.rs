@@ -64,7 +64,7 @@ pub(crate) fn names<M: CompiledMachine>() -> MachineNames {
         constants: M::CONSTANTS.iter().map(|&(name, default)| (name.to_owned(), default)).collect(),
         axes: M::AXES
             .iter()
-            .map(|&(letter, rotary)| AxisName { letter: letter.to_owned(), rotary })
+            .map(|&(letter, rotary)| AxisName { letter: letter.to_owned(), rotary, follows: Vec::new() })
             .collect(),
         motions: M::MOTIONS.iter().map(|motion| motion_name::<M>(*motion)).collect(),
         unseen: M::UNSEEN.iter().map(|motion| motion_name::<M>(*motion)).collect(),

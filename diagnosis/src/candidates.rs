@@ -127,7 +127,9 @@ fn shapes(study: &Study<'_>, motion: usize, travels: &[Travel], grids: &Grids) -
         shapes.extend(along(study, motion, axis, &travels[axis], grids));
     }
     for (axis, travel) in travels.iter().enumerate() {
-        if travel.moves && known.axis != Some(axis) && !known.alignment {
+        // Where a motor stands is told by its axes, and what is wrong with it is its own.
+        let other = study.equations.programs(axis) && known.by_motor.is_empty();
+        if travel.moves && other && known.axis != Some(axis) && !known.alignment {
             let scale = travel.low.abs().max(travel.high.abs());
             shapes.extend((1..=HIGHEST_COUPLING).map(|degree| Shape::Coupling { axis, degree, scale }));
         }
@@ -158,12 +160,15 @@ fn shapes(study: &Study<'_>, motion: usize, travels: &[Travel], grids: &Grids) -
 /// Terms of the motion's own axis.
 fn along(study: &Study<'_>, motion: usize, axis: usize, travel: &Travel, grids: &Grids) -> Vec<Shape> {
     let mut shapes = Vec::new();
-    if study.own[axis] == Some(motion) {
+    if study.own[axis] == Some(motion) && study.equations.programs(axis) {
         shapes.push(Shape::Lag { axis, inertia: 0.0 });
     }
     let (center, scale) = ((travel.low + travel.high) / 2.0, travel.range() / 2.0);
     shapes.push(Shape::Backlash { axis, wind_up: 0.0 });
-    shapes.extend((1..=HIGHEST_POWER).map(|degree| Shape::Polynomial { axis, degree, center, scale }));
+    // What is smooth along a beam is told as that of its slide: its two motors would only be another name for it, and many terms of four
+    // motions would draw what one table of one motion does.
+    let powers = if study.equations.motions[motion].shares_beam() { 0 } else { HIGHEST_POWER };
+    shapes.extend((1..=powers).map(|degree| Shape::Polynomial { axis, degree, center, scale }));
     shapes.push(Shape::Acceleration { axis });
     shapes.extend(wind_ups(axis, travel));
     let decays = geometric(0.7 * grids.step, 0.25 * travel.between, 2.0);

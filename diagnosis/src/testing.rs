@@ -43,10 +43,15 @@ impl Bench {
 
     /// The machine of a topology word whose machine file says this of its drives.
     pub(crate) fn driven(word: &str, drive: &str) -> Self {
-        let text = format!("abbe: 1\nname: bench\ntopology: {word}\ndrive: {drive}\n");
-        let compiled = compile(&SourceFile::new(word, text), &mut Diagnostics::new()).unwrap();
+        Self::file(&format!("topology: {word}\ndrive: {drive}\n"))
+    }
+
+    /// The machine of a machine file with this rest.
+    pub(crate) fn file(rest: &str) -> Self {
+        let text = format!("abbe: 1\nname: bench\n{rest}");
+        let compiled = compile(&SourceFile::new("machine.yaml", text), &mut Diagnostics::new()).unwrap();
         let names = compiled.equations.names();
-        Self { compiled, names, name: word.to_owned() }
+        Self { compiled, names, name: "bench".to_owned() }
     }
 
     pub(crate) fn equations(&self) -> &Equations {

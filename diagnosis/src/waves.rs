@@ -84,7 +84,9 @@ pub(crate) fn places(
                     shape: Shape::Cyclic { axis, period, center: travels[axis].center() },
                 });
             }
-            if along.is_none_or(|axis| !steadily(study, axis)) && !in_steps(study, travels) {
+            // A wave in time of a motor of a beam is one of its slide.
+            let in_time = !known.shares_beam() && along.is_none_or(|axis| !steadily(study, axis));
+            if in_time && !in_steps(study, travels) {
                 samples.push(Effect { place, shape: Shape::Vibration { frequency: 7.3 / span } });
             }
         }

@@ -42,7 +42,9 @@ impl<'c> Course<'c> {
         let rows = recording.time.len();
         let command = |axis: usize| recording.axes.get(axis).and_then(|channels| channels.command.as_ref());
         let axes = 0..equations.axes.len();
-        let commanded: Vec<bool> = axes.clone().map(|axis| command(axis).is_some()).collect();
+        // A motor goes where its axes do, and is no axis that a line runs along.
+        let programmed = |axis: usize| equations.programs(axis) && command(axis).is_some();
+        let commanded: Vec<bool> = axes.clone().map(programmed).collect();
         if !commanded.contains(&true) {
             return Err("it has no channel `command.<axis>`: the targets are not known".to_owned());
         }

@@ -99,7 +99,8 @@ struct Library<'b> {
 impl Library<'_> {
     fn moving(&self) -> Vec<(usize, &Axis)> {
         let axes = self.base.path.axes.iter().enumerate();
-        axes.filter_map(|(number, axis)| Some((number, axis.as_ref()?)))
+        axes.filter(|(number, _)| !self.base.names.axes[*number].is_motor())
+            .filter_map(|(number, axis)| Some((number, axis.as_ref()?)))
             .filter(|(_, axis)| axis.travel() > 0.0)
             .collect()
     }
@@ -127,7 +128,7 @@ impl Library<'_> {
     fn elsewhere(&self, axis: usize) -> Vec<(usize, f64)> {
         let slides = (0..self.base.names.axes.len()).filter(|other| *other != axis);
         slides
-            .filter(|other| !self.base.names.axes[*other].rotary)
+            .filter(|other| !self.base.names.axes[*other].rotary && !self.base.names.axes[*other].is_motor())
             .map(|other| {
                 let range = self.base.path.axes[other].as_ref().map_or([0.0; 2], |axis| axis.range);
                 let moved = range[1] - range[0];

@@ -28,6 +28,7 @@
 //! | E0424 | a compliance that is not per load |
 //! | E0425 | a term that cannot be compensated, from [`Calibration::refuse_uncompensable`] |
 //! | E0428, E0429 | an item of `times` that is not exactly one factor; a unit that the factors do not make the motion's |
+//! | E0431 | a position loop of a motor |
 //! | W0401 | a derived sensor that no term uses |
 //! | W0403 | a table that repeats and whose ends have two values |
 //!

@@ -13,10 +13,12 @@ mod meaning;
 
 use std::f64::consts::TAU;
 
-use crate::algebra::{Axis, FirstOrder, Htm, Name, Polynomial, Symbol};
+use num_traits::One;
+
+use crate::algebra::{Axis, FirstOrder, Htm, Name, Polynomial, Rational, Symbol};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::equations::{AxisInfo, ConstantInfo, Equations, Motion, Row, Term, TravelInfo};
-use crate::machine::{Branch, Element, ElementKind, Link, LinkKind, Machine, body_sign};
+use crate::machine::{Branch, Element, ElementKind, Link, LinkKind, Machine, MotionKind, Motor, body_sign};
 
 pub use link_matrix::matrix as link_matrix;
 pub use meaning::{NamedMotion, named};
@@ -38,7 +40,7 @@ pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
         source: machine.source.clone(),
         links: machine.links.clone(),
         relative: machine.relative,
-        axes: axes(machine, tip),
+        axes: axes(machine, tip).into_iter().chain(motors(machine, &kept)).collect(),
         constants: constants(machine),
         motions: kept.iter().map(|number| motion(machine, *number, &travels)).collect(),
         unseen: unseen.map(|number| motion(machine, number, &travels)).collect(),
@@ -138,6 +140,7 @@ fn terms(machine: &Machine, entry: &FirstOrder, kept: &[usize]) -> Vec<Term> {
 fn motion(machine: &Machine, number: usize, travels: &[TravelInfo]) -> Motion {
     let motion = &machine.motions[number];
     let link = &machine.links[motion.link];
+    let motor = motion.motor.and_then(|motor| machine.motors.get(motor));
     Motion {
         name: motion.name.clone(),
         symbol: motion.symbol.clone(),
@@ -145,9 +148,13 @@ fn motion(machine: &Machine, number: usize, travels: &[TravelInfo]) -> Motion {
         direction: motion.kind.axis(),
         alignment: motion.kind.alignment(),
         symbol_against_iso: motion.sign < 0,
-        link: link.id.clone(),
-        axis: machine.axes().iter().position(|(axis, _)| *axis == motion.link),
+        link: motor.map_or_else(|| link.id.clone(), |motor| motor.name.value.clone()),
+        axis: match motion.motor {
+            Some(motor) => Some(machine.axes().len() + motor),
+            None => machine.axes().iter().position(|(axis, _)| *axis == motion.link),
+        },
         body: motion.link,
+        by_motor: motor.map(|motor| motor.moves.clone()).unwrap_or_default(),
         kind: motion.kind,
         sign: body_sign(motion, link, machine.relative),
         travel: motion
@@ -155,7 +162,10 @@ fn motion(machine: &Machine, number: usize, travels: &[TravelInfo]) -> Motion {
             .as_ref()
             .and_then(|travel| travels.iter().position(|known| known.name == travel.value)),
         rotates: motion.rotates,
-        meaning: meaning::of(motion, link),
+        meaning: match motor {
+            Some(motor) => format!("error of motor {}", motor.name.value),
+            None => meaning::of(motion, link),
+        },
     }
 }
 
@@ -202,18 +212,68 @@ fn axes(machine: &Machine, tip: &[FirstOrder; 3]) -> Vec<AxisInfo> {
             effect: corrects.then_some(effect),
             corrects_angle: rotary && link.corrects,
             elements: elements(machine, link),
+            follows: Vec::new(),
+            squares: Vec::new(),
         });
     }
     axes
+}
+
+/// The motors as axes that follow the others, behind these.
+fn motors(machine: &Machine, kept: &[usize]) -> Vec<AxisInfo> {
+    let places = machine.axes();
+    let axis_of = |link: usize| places.iter().position(|(axis, _)| *axis == link);
+    let motor = |(number, motor): (usize, &Motor)| {
+        let home = machine.links.get(motor.follows.first()?.0)?;
+        Some(AxisInfo {
+            letter: motor.name.value.clone(),
+            variable: motor.variable(),
+            rotary: false,
+            along: home.along.axis,
+            branch: home.branch,
+            effect: None,
+            corrects_angle: false,
+            elements: elements_of(machine, &motor.name.value).collect(),
+            follows: motor
+                .follows
+                .iter()
+                .filter_map(|(link, weight)| Some((axis_of(*link)?, weight.clone())))
+                .collect(),
+            squares: squares(machine, number, kept),
+        })
+    };
+    machine.motors.iter().enumerate().filter_map(motor).collect()
+}
+
+/// What a motor of a beam corrects by itself: its own error, and the rotation of the beam over its lever.
+fn squares(machine: &Machine, number: usize, kept: &[usize]) -> Vec<(usize, Rational)> {
+    let motor = &machine.motors[number];
+    let Some(beam) = motor.beam.as_ref().filter(|beam| beam.corrects) else { return Vec::new() };
+    let weight = |motion: &crate::machine::Motion| {
+        if motion.motor == Some(number) {
+            return Some(Rational::one());
+        }
+        let (link, _) = motor.follows.first()?;
+        let turns = motion.link == *link && motion.kind == MotionKind::Angular(beam.about);
+        let sign = Rational::from_integer(body_sign(motion, &machine.links[*link], machine.relative).into());
+        turns.then(|| &beam.arm * sign)
+    };
+    let motions = kept.iter().enumerate();
+    motions.filter_map(|(place, motion)| Some((place, weight(&machine.motions[*motion])?))).collect()
 }
 
 /// What repeats along the travel of an axis.
 fn elements(machine: &Machine, link: &Link) -> Vec<Element> {
     let rotary = matches!(link.kind, LinkKind::Rotary(_));
     let itself = rotary.then_some(Element { kind: ElementKind::Axis, period: TAU });
-    let letter = link.kind.letter().map(String::from);
-    let drives = machine.drives.iter().filter(|drive| Some(&drive.axis.value) == letter.as_ref());
-    itself.into_iter().chain(drives.flat_map(|drive| drive.elements.iter().copied())).collect()
+    let letter = link.kind.letter().map(String::from).unwrap_or_default();
+    itself.into_iter().chain(elements_of(machine, &letter).collect::<Vec<_>>()).collect()
+}
+
+/// What the machine file says of the drive of an axis or a motor.
+fn elements_of<'m>(machine: &'m Machine, name: &'m str) -> impl Iterator<Item = Element> + 'm {
+    let drives = machine.drives.iter().filter(move |drive| drive.axis.value == name);
+    drives.flat_map(|drive| drive.elements.iter().copied())
 }
 
 /// The nominal displacement of the tip for each mm of a slide, zero in insensitive directions.

@@ -12,12 +12,12 @@
 
 use std::fmt;
 
-use abbe_runtime::Turning;
+use abbe_runtime::{Share, Turning};
 
-use crate::algebra::{Axis, Name, Polynomial, to_f64};
+use crate::algebra::{Axis, Name, Polynomial, Rational, to_f64};
 use crate::calibration::{AxisName, MachineNames, MotionName};
 use crate::machine::reference::{Placed, counted};
-use crate::machine::{Branch, Element, Link, MotionKind};
+use crate::machine::{Branch, Element, Link, MotionKind, Moved};
 
 /// The error equations of one machine.
 #[derive(Clone, Debug)]
@@ -32,7 +32,7 @@ pub struct Equations {
     pub links: Vec<Link>,
     /// Whether error motions are those of the tool relative to the part, not of their own bodies.
     pub relative: bool,
-    /// Its programmed axes, in the order X Y Z U V W A B C.
+    /// Its programmed axes, in the order X Y Z U V W A B C, and behind them its motors, which follow these.
     pub axes: Vec<AxisInfo>,
     /// The free travels in levers of alignment errors, in order of their axes.
     pub travels: Vec<TravelInfo>,
@@ -77,6 +77,11 @@ pub struct AxisInfo {
     pub corrects_angle: bool,
     /// What repeats along its travel: a rotary axis itself, then what the machine file says of the drive.
     pub elements: Vec<Element>,
+    /// Of a motor, which is no link of the chain, where it stands: for each axis that it follows, by its number, how far the motor goes
+    /// for each mm of it. Empty for an axis that a program moves.
+    pub follows: Vec<(usize, Rational)>,
+    /// Of a motor the error motions that it corrects by itself, with what its own travel is for each mm or rad of them.
+    pub squares: Vec<(usize, Rational)>,
 }
 
 /// A free travel in the lever of an alignment error.
@@ -114,14 +119,16 @@ pub struct Motion {
     pub alignment: bool,
     /// Whether the machine file counts its symbol against the ISO sense. Under its name it never is.
     pub symbol_against_iso: bool,
-    /// The link that it belongs to.
+    /// The link that it belongs to, or the motor.
     pub link: String,
-    /// The number in [`Equations::axes`] of that link, where a program moves it.
+    /// The number in [`Equations::axes`] of that link, where a program moves it, or of that motor.
     pub axis: Option<usize>,
     /// The number of that link in [`Equations::links`].
     pub body: usize,
     /// What it does to its link.
     pub kind: MotionKind,
+    /// Of the error of a motor, what one mm of it does to bodies; empty for the error motion of a link.
+    pub by_motor: Vec<Moved>,
     /// +1 or -1: the sign with which its value displaces or turns its link in bed directions.
     pub sign: i64,
     /// The number in [`Equations::travels`] of the free travel that stands in its lever for the position.
@@ -157,6 +164,11 @@ impl AxisInfo {
     pub fn corrects(&self) -> bool {
         self.effect.is_some() || self.corrects_angle
     }
+
+    /// Whether it is a motor, which follows axes and which no program moves by itself.
+    pub fn is_motor(&self) -> bool {
+        !self.follows.is_empty()
+    }
 }
 
 /// By which names error motions are printed.
@@ -186,6 +198,12 @@ impl Motion {
     /// The motion as it places its link.
     fn placed(&self) -> Placed<'_> {
         Placed { name: &self.name, link: self.body, kind: self.kind, rotates: self.rotates, sign: self.sign }
+    }
+
+    /// Whether it is the error of a motor that shares a beam with another one: both together are the positioning error and a rotation
+    /// of the slide, at the same positions.
+    pub fn shares_beam(&self) -> bool {
+        self.by_motor.iter().any(|moved| moved.kind.angular())
     }
 
     /// An arm of the motion as that of what is printed.
@@ -228,6 +246,9 @@ impl Equations {
     pub fn own_axis(&self, motion: &Motion) -> Option<usize> {
         let number = motion.axis?;
         let axis = self.axes.get(number)?;
+        if axis.is_motor() {
+            return Some(number);
+        }
         let own = !motion.alignment && motion.angular == axis.rotary && motion.direction == axis.along;
         own.then_some(number)
     }
@@ -252,7 +273,8 @@ impl Equations {
 
     /// For each axis, whether no error of the tip moves it in a search for a command; empty where all move.
     pub fn resting(&self) -> Vec<bool> {
-        let rest: Vec<bool> = self.axes.iter().map(|axis| axis.effect.is_none()).collect();
+        let rest: Vec<bool> =
+            self.axes.iter().map(|axis| axis.effect.is_none() && !axis.is_motor()).collect();
         if rest.contains(&true) { rest } else { Vec::new() }
     }
 
@@ -279,6 +301,33 @@ impl Equations {
         Some([x?, y?, z?])
     }
 
+    /// Where motors stand: for each axis that one follows, its share.
+    pub fn following(&self) -> Vec<Share> {
+        self.shares(|axis| &axis.follows)
+    }
+
+    /// The error motions that motors correct by themselves.
+    pub fn squaring(&self) -> Vec<Share> {
+        self.shares(|axis| &axis.squares)
+    }
+
+    fn shares(&self, of: impl Fn(&AxisInfo) -> &[(usize, Rational)]) -> Vec<Share> {
+        let share =
+            |motor| move |(of, weight): &(usize, Rational)| Share { motor, of: *of, weight: to_f64(weight) };
+        let axes = self.axes.iter().enumerate();
+        axes.flat_map(|(motor, axis)| of(axis).iter().map(share(motor)).collect::<Vec<_>>()).collect()
+    }
+
+    /// Whether a program moves the axis of this number: it is no motor.
+    pub fn programs(&self, axis: usize) -> bool {
+        self.axes.get(axis).is_some_and(|axis| !axis.is_motor())
+    }
+
+    /// How many axes a program moves: those before the motors.
+    pub fn programmed(&self) -> usize {
+        self.axes.iter().filter(|axis| !axis.is_motor()).count()
+    }
+
     /// The names that a calibration of the machine may use.
     pub fn names(&self) -> MachineNames {
         let axis_letter = |axis: usize| self.axes.get(axis).map(|axis| axis.letter.clone());
@@ -297,7 +346,11 @@ impl Equations {
             axes: self
                 .axes
                 .iter()
-                .map(|axis| AxisName { letter: axis.letter.clone(), rotary: axis.rotary })
+                .map(|axis| AxisName {
+                    letter: axis.letter.clone(),
+                    rotary: axis.rotary,
+                    follows: axis.follows.iter().map(|(of, weight)| (*of, to_f64(weight))).collect(),
+                })
                 .collect(),
             motions: self.motions.iter().map(named).collect(),
             unseen: self.unseen.iter().map(named).collect(),

@@ -13,6 +13,7 @@ mod fields;
 mod header;
 mod link;
 mod motion;
+mod motor;
 mod names;
 mod read_link;
 mod read_motion;
@@ -26,6 +27,7 @@ pub use drive::{Drive, Element, ElementKind};
 pub use link::{Along, Branch, Link, LinkKind, Reference};
 pub(crate) use motion::body_sign;
 pub use motion::{Motion, MotionKind, MotionName, parse_name, without_reference};
+pub use motor::{Beam, Motor, Moved};
 pub(crate) use read_link::own_direction;
 pub(crate) use read_motion::kind_of;
 pub use reference::Counted;
@@ -59,8 +61,10 @@ pub struct Machine {
     pub constants: Vec<Constant>,
     /// The links of both branches, each branch from the bed outwards, the part's branch first.
     pub links: Vec<Link>,
-    /// The error motions: by axis, then by direction, alignment errors last.
+    /// The error motions: by axis, then by direction, alignment errors last; behind them those of motors.
     pub motions: Vec<Motion>,
+    /// The motors that move several axes, or that share one.
+    pub motors: Vec<Motor>,
     /// What the file says of the drives of axes.
     pub drives: Vec<Drive>,
 }
@@ -101,7 +105,7 @@ impl Machine {
 pub fn from_word(word: &str, span: Span, diagnostics: &mut Diagnostics) -> Option<Machine> {
     let chain = topology::expand(word, span, diagnostics)?;
     let header = header::Header::bare(word);
-    let mut machine = build(header, chain, constants::Declared::None, Vec::new(), diagnostics)?;
+    let mut machine = build(header, chain, constants::Declared::None, Default::default(), diagnostics)?;
     if machine.axes().len() == 1 {
         machine.constants.iter_mut().for_each(|constant| constant.default = Some(0.0));
     }
@@ -127,14 +131,15 @@ fn read_node(root: &Node, diagnostics: &mut Diagnostics) -> Option<Machine> {
     let fields = fields::open(root, "a machine file", &KEYS, diagnostics)?;
     let header = header::read(fields, diagnostics);
     let declared = constants::declared(fields.get("constants"), diagnostics);
-    let drives = drive::read(fields.get("drive"), diagnostics);
     let chain = chain::read(root, fields, header.reference, diagnostics);
-    let machine = build(header, chain?, declared, drives, diagnostics)?;
+    let motors = chain.as_ref().map(|chain| motor::read(fields, chain, diagnostics)).unwrap_or_default();
+    let drives = drive::read(fields.get("drive"), &motors, diagnostics);
+    let machine = build(header, chain?, declared, (drives, motors), diagnostics)?;
     (!diagnostics.has_errors()).then_some(machine)
 }
 
 /// The keys of a machine file.
-const KEYS: [&str; 13] = [
+const KEYS: [&str; 14] = [
     "abbe",
     "name",
     "title",
@@ -147,6 +152,7 @@ const KEYS: [&str; 13] = [
     "constants",
     "topology",
     "chain",
+    "transmission",
     "drive",
 ];
 
@@ -154,18 +160,19 @@ fn build(
     header: header::Header,
     chain: draft::Chain<'_>,
     declared: constants::Declared,
-    drives: Vec<Drive>,
+    (drives, motors): (Vec<Drive>, Vec<Motor>),
     diagnostics: &mut Diagnostics,
 ) -> Option<Machine> {
     let motions = read_motion::collect(&chain, diagnostics);
     let motions = budget::kept(header.budget, &chain, motions, diagnostics);
     read_motion::check_references(&motions, &chain, header.relative, diagnostics);
+    let motions = [motions, motor::motions(&motors, &chain)].concat();
     let constants = constants::settle(declared, &chain, diagnostics);
-    drive::settle(&drives, &chain, diagnostics);
+    drive::settle(&drives, &chain, &motors, diagnostics);
     let links_are_distinct = !diagnostics.iter().any(|known| matches!(known.code, "E0123" | "E0124"));
     if links_are_distinct {
         let printed = names::Printed { sensitive: &header.sensitive, orientation: header.orientation };
-        names::check_names(&motions, &constants, &chain, printed, diagnostics);
+        names::check_names(&motions, &constants, &chain, &motors, printed, diagnostics);
     }
     if diagnostics.has_errors() {
         return None;
@@ -182,6 +189,7 @@ fn build(
         constants,
         links: chain.links.into_iter().map(|drafted| drafted.link).collect(),
         motions,
+        motors,
         drives,
     })
 }

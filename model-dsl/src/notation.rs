@@ -34,6 +34,7 @@ use crate::equations::{Equations, Names};
 pub use example::{Example, example};
 pub use formula::{Formula, formula};
 pub use published::Published;
+pub(crate) use sheet::followed;
 
 /// In which form equations are printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

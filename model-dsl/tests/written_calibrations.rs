@@ -21,7 +21,7 @@ use proptest::sample::Index;
 
 /// A mill with a rotary table and a spindle.
 fn names() -> MachineNames {
-    let axis = |letter: &str, rotary| AxisName { letter: letter.to_owned(), rotary };
+    let axis = |letter: &str, rotary| AxisName { letter: letter.to_owned(), rotary, follows: Vec::new() };
     let motion = |name: &str, angular, axis: Option<&str>| MotionName {
         name: name.to_owned(),
         angular,

@@ -35,7 +35,7 @@ type Numbers<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
 impl Rows {
     /// Reads the arrays.
     pub(crate) fn read(py: Python<'_>, calibrated: &Calibrated, given: &Given<'_, '_>) -> PyResult<Self> {
-        let axes = calibrated.equations.axes.len();
+        let axes = calibrated.equations.programmed();
         let array: Numbers<'_> = given.positions.extract()?;
         let array = array.as_array();
         let (positions, alone) = rows_of(py, "positions", &array, axes)?;

@@ -265,10 +265,26 @@ fn kind_of(name: &Spanned<String>, equations: &Equations) -> Result<ChannelKind,
         "temperature" if !rest.trim().is_empty() => Ok(ChannelKind::Temperature(rest.to_owned())),
         "load" if !rest.trim().is_empty() => Ok(ChannelKind::Load(rest.to_owned())),
         "normal" => direction(rest).map(ChannelKind::Normal).map_or_else(unknown, Ok),
-        "command" => axis_of(name, rest, equations).map(ChannelKind::Command),
+        "command" => commanded(name, rest, equations).map(ChannelKind::Command),
         "actual" => axis_of(name, rest, equations).map(ChannelKind::Actual),
         "measured" => measured(name, rest, equations),
         _ => unknown(),
+    }
+}
+
+/// The axis of a command; a motor has none of its own.
+fn commanded(name: &Spanned<String>, rest: &str, equations: &Equations) -> Result<usize, Box<Diagnostic>> {
+    let axis = axis_of(name, rest, equations)?;
+    match equations.axes.get(axis) {
+        Some(motor) if motor.is_motor() => {
+            let message = format!("motor {} is not commanded by itself", motor.letter);
+            Err(Box::new(
+                Diagnostic::error("E0607", name.span, message)
+                    .label("it stands where its axes put it")
+                    .help("leave the column out; what the motor's own encoder reads is `actual`"),
+            ))
+        }
+        _ => Ok(axis),
     }
 }
 
@@ -346,9 +362,10 @@ fn unknown_channel(name: &Spanned<String>, equations: &Equations) -> Diagnostic 
 fn possible_names(equations: &Equations) -> Vec<String> {
     let plain = ["time", "run", "deviation"].map(str::to_owned).into_iter();
     let axes = equations.axes.iter();
-    let of_axes = axes
-        .clone()
-        .flat_map(|axis| [format!("command.{}", axis.variable), format!("actual.{}", axis.variable)]);
+    let of_axes = axes.clone().flat_map(|axis| {
+        let command = (!axis.is_motor()).then(|| format!("command.{}", axis.variable));
+        command.into_iter().chain([format!("actual.{}", axis.variable)])
+    });
     let lower = |direction: Axis| direction.letter().to_ascii_lowercase();
     let measured = equations.rows.iter().map(|row| format!("measured.{}", lower(row.direction)));
     let angles = axes.filter(|axis| axis.rotary).map(|axis| format!("measured.{}", axis.variable));

@@ -62,6 +62,9 @@ pub struct Header {
     pub extra: Vec<Extra>,
     /// The letters of the machine's axes, in its order.
     pub axes: Vec<String>,
+    /// Of each of them, where it is a motor, the axes that it follows, by their numbers, each with how far the motor goes for each mm of
+    /// it; empty for an axis that a program moves.
+    pub follows: Vec<Vec<(usize, f64)>>,
 }
 
 /// A column that is kept for people.
@@ -178,6 +181,7 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
         holdout,
         extra: extra.unwrap_or_default(),
         axes: equations.axes.iter().map(|axis| axis.letter.clone()).collect(),
+        follows: equations.names().axes.into_iter().map(|axis| axis.follows).collect(),
     })
 }
 

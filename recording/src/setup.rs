@@ -344,7 +344,8 @@ impl<'c> Context<'c> {
 
     fn axes(&self, rotary_too: bool) -> impl Iterator<Item = usize> {
         let axes = self.equations.axes.iter().enumerate();
-        axes.filter(move |(_, axis)| rotary_too || !axis.rotary).map(|(number, _)| number)
+        axes.filter(move |(_, axis)| (rotary_too || !axis.rotary) && !axis.is_motor())
+            .map(|(number, _)| number)
     }
 
     fn letter(&self, axis: usize) -> &str {

@@ -6,6 +6,7 @@
 
 mod batch;
 mod inverse;
+mod motors;
 mod prediction;
 mod report;
 mod setup;
@@ -16,7 +17,7 @@ use self::prediction::Prediction;
 use self::setup::Needs;
 use self::turns::Turned;
 use crate::math::{add_scaled, all_finite, sqrt};
-use crate::{ErrorMotion, ErrorMotions, Kinematics, Sample, Sines, TermState, Turning};
+use crate::{ErrorMotion, ErrorMotions, Kinematics, Sample, Share, Sines, TermState, Turning};
 
 pub use self::batch::{Batch, BatchSizes, BatchWork};
 pub use self::report::{Convergence, GREATEST_AMPLIFICATION, Limits, Outcome, Refusal, SetupError, Work};
@@ -83,6 +84,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
                 values,
                 travel,
                 sines: Sines::default(),
+                by_motors: [0.0; motors::MOST],
                 needs,
             },
             directions,
@@ -99,6 +101,13 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     /// The error motions that rotary axes correct themselves.
     pub(crate) fn turning(&self) -> &[Turning] {
         self.prediction.kinematics.turning()
+    }
+
+    /// The axes that are motors and only follow others.
+    pub(crate) fn only_follows(&self, axis: usize) -> bool {
+        let kinematics = self.prediction.kinematics;
+        let has = |shares: &[Share]| shares.iter().any(|share| share.motor == axis);
+        has(kinematics.following()) && !has(kinematics.squaring())
     }
 
     /// The least number of temperatures that a sample must hold.
@@ -178,7 +187,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
                 limits.check_rotation(turned.correction(sample.position))?;
                 prediction.left_to_slides(sample, turned, out)?
             }
-            None if ramp => prediction.corrected(sample, sample.position)?,
+            None if ramp || prediction.motors_correct() => prediction.corrected(sample, sample.position)?,
             None => error,
         };
         if reach.may_amplify() {
@@ -187,6 +196,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
         let Pulled { pull, mut here, iterations } =
             convergence.iterate(prediction, sample, start, (columns, &reach), turned.as_ref(), out)?;
         limits.check(|| sqrt(reach.distance_squared(here)))?;
+        prediction.check_motors(limits)?;
         if ramp {
             here = prediction.error_behind_ramp(sample, turned.as_ref(), out)?;
             if !all_finite(&here) {
@@ -254,6 +264,7 @@ impl Convergence {
             if let Some(turned) = turned {
                 turned.write(out);
             }
+            prediction.let_motors_follow(sample.position, out);
             if square <= bound {
                 return Ok(Pulled { pull, here, iterations });
             }

@@ -5,7 +5,7 @@
 
 use core::cell::Cell;
 
-use crate::{Kinematics, Lanes, Sines, Turning};
+use crate::{Kinematics, Lanes, Share, Sines, Turning};
 
 /// Passes the methods of [`Kinematics`] that give numbers on to another machine.
 macro_rules! numbers_of {
@@ -55,6 +55,14 @@ macro_rules! topology_of {
         fn turning(&self) -> &[Turning] {
             let $machine = self;
             $of.turning()
+        }
+        fn following(&self) -> &[Share] {
+            let $machine = self;
+            $of.following()
+        }
+        fn squaring(&self) -> &[Share] {
+            let $machine = self;
+            $of.squaring()
         }
         fn directions_vary(&self) -> bool {
             let $machine = self;

@@ -19,6 +19,17 @@ pub struct Turning {
     pub motion: usize,
 }
 
+/// What a motor has of an axis, or of an error motion.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Share {
+    /// Index of the motor among the axes.
+    pub motor: usize,
+    /// Index of the axis that it follows, or of the error motion that it corrects.
+    pub of: usize,
+    /// How far the motor goes for each mm of the axis; or what its own travel is, mm, for each mm or rad of the error motion.
+    pub weight: f64,
+}
+
 /// The compiled equations of one machine: what the topology says, with the machine's constants already in it.
 ///
 /// Positions and travels are in mm for slides and in rad for rotary axes. Error motions are in mm for displacements and
@@ -66,9 +77,26 @@ pub trait Kinematics {
         &[]
     }
 
+    /// The motors, which are axes that follow others: where a motor stands is the sum of its shares of axes. Behind a crossed
+    /// transmission motor A stands at x + y; the two motors of a beam stand both at y. Motors come behind all axes that they follow.
+    ///
+    /// A motor moves the tip nowhere by itself: its [direction](Self::directions) is zero. Terms read where it stands and which way it
+    /// went, and its command is that of its axes.
+    #[inline(always)]
+    fn following(&self) -> &[Share] {
+        &[]
+    }
+
+    /// The error motions that motors correct by themselves, beside what they follow: each its own error, and the rotation of the beam
+    /// that several carry. No slide corrects these then.
+    #[inline(always)]
+    fn squaring(&self) -> &[Share] {
+        &[]
+    }
+
     /// For each axis, the displacement of the tool tip relative to the part per mm of programmed motion.
     ///
-    /// An axis that does not correct is zero: rotary axes and redundant slides; so are the components in directions
+    /// An axis that does not correct is zero: rotary axes, redundant slides and motors; so are the components in directions
     /// that are not sensitive. A slide whose positive motion moves the tool towards negative X of the part
     /// has -1 there. Writes `directions[axis]`; a slice of the wrong length is filled with NaN.
     fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]);

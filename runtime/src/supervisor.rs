@@ -154,7 +154,8 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Supervisor<'a, K, M> 
                 return Err(SetupError::Length { slice, expected, found });
             }
         }
-        let correction = Correction::new(memory.axes, compensator.turning());
+        let correction =
+            Correction::new(memory.axes, compensator.turning(), |axis| compensator.only_follows(axis));
         Ok(Self {
             compensator,
             transition: Transition::default(),

@@ -22,10 +22,11 @@ pub use state::State;
 use std::fmt;
 use std::sync::Arc;
 
+use model_dsl::algebra::to_f64;
 use model_dsl::calibration::{
     AxisName, Calibration, Factor, MachineNames, MotionName, SensorKind, SensorReadings, Sensors,
 };
-use model_dsl::machine::{Branch, Link, LinkKind, Machine, MotionKind};
+use model_dsl::machine::{Branch, Link, LinkKind, Machine, MotionKind, Motor};
 use nalgebra::{Rotation3, Vector3};
 
 use crate::commands::Commands;
@@ -120,8 +121,11 @@ pub fn names_of(machine: &Machine) -> MachineNames {
         MotionName {
             name: motion.name.clone(),
             angular: motion.kind.angular(),
-            axis: link.and_then(|link| letter(link.kind)),
-            own: link.is_some_and(|link| is_own(link, motion.kind)),
+            axis: match motion.motor.and_then(|motor| machine.motors.get(motor)) {
+                Some(motor) => Some(motor.name.value.clone()),
+                None => link.and_then(|link| letter(link.kind)),
+            },
+            own: motion.motor.is_some() || link.is_some_and(|link| is_own(link, motion.kind)),
             counted: machine.counted(number),
         }
     });
@@ -133,11 +137,20 @@ pub fn names_of(machine: &Machine) -> MachineNames {
             .map(|(_, link)| AxisName {
                 letter: letter(link.kind).unwrap_or_default(),
                 rotary: matches!(link.kind, LinkKind::Rotary(_)),
+                follows: Vec::new(),
             })
+            .chain(machine.motors.iter().map(|motor| motor_name(motor, &axes)))
             .collect(),
         motions: motions.collect(),
         unseen: Vec::new(),
     }
+}
+
+/// A motor as an axis that follows others.
+fn motor_name(motor: &Motor, axes: &[(usize, &Link)]) -> AxisName {
+    let axis = |link: usize| axes.iter().position(|(axis, _)| *axis == link);
+    let follows = motor.follows.iter().filter_map(|(link, weight)| Some((axis(*link)?, to_f64(weight))));
+    AxisName { letter: motor.name.value.clone(), rotary: false, follows: follows.collect() }
 }
 
 impl Plant {
@@ -183,6 +196,9 @@ impl Plant {
     fn take_terms(&mut self, machine: &Machine, calibration: &Calibration) -> Result<(), PlantError> {
         let mut slowness = vec![0.0; self.names.axes.len()];
         let mut inertia = slowness.clone();
+        // The loop of a motor moves its axes no further than its error does.
+        let is_motor: Vec<bool> = self.names.axes.iter().map(AxisName::is_motor).collect();
+        let programmed = |axis: usize| is_motor.get(axis) == Some(&false);
         for listed in &calibration.motions {
             let motion = listed.motion;
             let Some(name) = self.names.motions.get(motion) else {
@@ -198,6 +214,7 @@ impl Plant {
                     .collect();
                 if let Piece::Lag { axis, loop_of } = piece
                     && own == Some(axis)
+                    && programmed(axis)
                     && let (Some(slowness), Some(inertia)) = (slowness.get_mut(axis), inertia.get_mut(axis))
                 {
                     let (slow, inert) = loop_of.slowness_and_inertia();
@@ -420,14 +437,32 @@ impl Plant {
             parts.flat_map(|(time, command)| servo.follow(time, command)).collect()
         };
         let axes = commands.positions.iter().zip(&self.servos);
-        let histories = axes.map(|(command, servo)| {
-            let position = match servo {
+        let positions: Vec<Vec<f64>> = axes
+            .map(|(command, servo)| match servo {
                 Some(servo) => followed(servo, command),
                 None => command.clone(),
-            };
+            })
+            .collect();
+        let commanded = self.with_motors(commands.positions.clone());
+        let columns = commanded.iter().zip(self.with_motors(positions));
+        let history = |(command, position): (&Vec<f64>, Vec<f64>)| {
             History::of(&commands.time, legs, command, position, self.deadband)
-        });
-        histories.collect()
+        };
+        columns.map(history).collect()
+    }
+
+    /// The positions of all axes in all rows, motors where their axes put them.
+    pub(crate) fn with_motors(&self, mut columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        for (number, name) in self.names.axes.iter().enumerate().filter(|(_, name)| name.is_motor()) {
+            let at = |axis: usize, row: usize| columns.get(axis).and_then(|column| column.get(row)).copied();
+            let stands = |row| name.followed(|axis| at(axis, row).unwrap_or(f64::NAN)).unwrap_or(f64::NAN);
+            let rows = columns.first().map_or(0, Vec::len);
+            let column = (0..rows).map(stands).collect();
+            if let Some(slot) = columns.get_mut(number) {
+                *slot = column;
+            }
+        }
+        columns
     }
 
     /// The column of each sensor that is an input and used, by its number.
@@ -471,6 +506,9 @@ impl fmt::Debug for Plant {
 /// The axis whose own motion, actual minus commanded, an error motion is: EXX of X, ECC of C.
 fn own_axis(machine: &Machine, names: &MachineNames, motion: &str) -> Option<usize> {
     let motion = machine.motions.iter().find(|known| known.name == motion)?;
+    if let Some(motor) = motion.motor.and_then(|motor| machine.motors.get(motor)) {
+        return names.axis(&motor.name.value);
+    }
     let link = machine.links.get(motion.link)?;
     let letter = link.kind.letter().filter(|_| is_own(link, motion.kind))?;
     names.axis(letter.encode_utf8(&mut [0; 4]))

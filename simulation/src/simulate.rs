@@ -313,7 +313,8 @@ fn join(
     };
     let time = pick(&commands.time);
     let run: Vec<i64> = recorded.iter().filter_map(|row| commands.run.get(*row)).copied().collect();
-    let positions: Vec<Vec<f64>> = commands.positions.iter().map(pick).collect();
+    let programmed = commands.positions.iter().map(pick).collect();
+    let positions = plant.with_motors(programmed);
     let reader = Reader { plant, measurement, time: &time, run: &run, positions: &positions };
     let actual = drives.into_iter().enumerate().map(|(axis, column)| reader.drive(axis, column));
     let actual = actual.collect();

@@ -13,7 +13,7 @@ use crate::instrument::{Channel, Instrument};
 use crate::simulate::{Simulated, channel_name};
 
 /// What the head of a recording names besides its columns.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Head {
     /// The machine: a shipped machine's name, a path from the recording's folder, or a topology word.
     pub machine: String,
@@ -98,7 +98,9 @@ fn columns<'s>(simulated: &'s Simulated, axes: &[AxisName]) -> Vec<Written<'s>> 
     let letter =
         |axis: usize| axes.get(axis).map_or_else(String::new, |axis| axis.letter.to_ascii_lowercase());
     let turns = |axis: usize| axes.get(axis).is_some_and(|axis| axis.rotary);
-    for (axis, values) in simulated.commands.iter().enumerate() {
+    // A motor stands where its axes put it: a recording does not say it twice.
+    let is_motor = |axis: usize| axes.get(axis).is_some_and(AxisName::is_motor);
+    for (axis, values) in simulated.commands.iter().enumerate().filter(|(axis, _)| !is_motor(*axis)) {
         let letter = letter(axis);
         columns.add(format!("command.{letter}"), &format!("{letter}_cmd"), position(turns(axis)), values);
     }

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 
+use abbe_runtime::Share;
 use csv::ByteRecord;
 use model_dsl::equations::Equations;
 use model_dsl::quantity::{Dimension, parse_unit};
@@ -39,8 +40,10 @@ pub(crate) struct Column {
 pub(crate) struct Layout {
     /// The number of cells of a row.
     pub(crate) width: usize,
-    /// The position of each axis.
+    /// The position of each axis that a program moves.
     pub(crate) axes: Vec<Column>,
+    /// The motors, which stand where these put them.
+    pub(crate) motors: Vec<Share>,
     /// The direction of each axis, where the file gives it.
     pub(crate) directions: Vec<Option<usize>>,
     /// Each free travel, where the file gives it.
@@ -128,7 +131,8 @@ impl Reader<'_> {
     fn layout(&mut self) -> Layout {
         let wanted = self.wanted;
         let equations = wanted.equations;
-        let axes = equations.axes.iter().map(|axis| {
+        let programmed = equations.axes.iter().filter(|axis| !axis.is_motor());
+        let axes = programmed.map(|axis| {
             let what = format!("the position of axis {}", axis.letter);
             self.required(&axis.variable, if axis.rotary { "deg" } else { "mm" }, &what)
         });
@@ -150,6 +154,7 @@ impl Reader<'_> {
         Layout {
             width: self.header.len(),
             axes,
+            motors: equations.following(),
             directions,
             travels,
             sensors,

@@ -31,7 +31,7 @@ impl Pending {
     /// No rows, and room for those of a machine.
     pub(crate) fn new<K: Kinematics>(layout: &Layout, compensator: &Compensator<'_, K>) -> Self {
         let sizes = compensator.batch_sizes();
-        let axes = layout.axes.len();
+        let axes = compensator.axes();
         Self {
             axes: layout.axes.clone(),
             records: vec![(ByteRecord::new(), 0); ROWS],
@@ -107,8 +107,10 @@ impl Pending {
 
     /// The command of a row for each axis, in the unit of its column.
     pub(crate) fn commands(&self, row: usize) -> impl Iterator<Item = f64> {
-        let axes = self.commands.iter().zip(&self.axes);
-        axes.map(move |(commands, column)| commands[row] / column.factor - column.offset)
+        // Motors have no column, and are told in mm.
+        let scales = self.axes.iter().map(|column| (column.factor, column.offset));
+        let axes = self.commands.iter().zip(scales.chain(std::iter::repeat((1.0, 0.0))));
+        axes.map(move |(commands, (factor, offset))| commands[row] / factor - offset)
     }
 
     /// Shows a row to a map.

@@ -33,7 +33,7 @@ impl<'s> State<'s> {
         Self {
             calibration,
             tool: None,
-            state: rows::State::new(calibration, timed, hysteresis),
+            state: rows::State::new(calibration, layout.motors.clone(), timed, hysteresis),
             position: Vec::with_capacity(layout.axes.len()),
             travel: Vec::with_capacity(layout.travels.len()),
             direction: Vec::with_capacity(layout.directions.len()),

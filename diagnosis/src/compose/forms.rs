@@ -119,7 +119,9 @@ pub(super) fn moments(study: &Study<'_>) -> Vec<f64> {
 pub(super) fn places(study: &Study<'_>) -> Vec<Place> {
     let of_motion =
         |motion: usize| sides(study, motion).into_iter().map(move |side| Place::Motion { motion, side });
-    (0..study.equations.motions.len()).flat_map(of_motion).collect()
+    // As for the names: what both motors of a beam do is told as that of its slide.
+    let own = |motion: &usize| !study.equations.motions[*motion].shares_beam();
+    (0..study.equations.motions.len()).filter(own).flat_map(of_motion).collect()
 }
 
 /// The names of the vocabulary that have one column. Beside a form that has taken the place of others, one of them may be right that was
@@ -341,7 +343,8 @@ impl Atoms {
     fn new(study: &Study<'_>, travels: &[Travel]) -> Self {
         let span = span(study);
         let filters = geometric((4.0 * shortest_step(study)).max(span / 30.0), span, FILTERS);
-        let moving = || (0..travels.len()).filter(|axis| travels[*axis].moves);
+        let programs = |axis: &usize| study.equations.programs(*axis);
+        let moving = || (0..travels.len()).filter(|axis| travels[*axis].moves).filter(programs);
         let positions = moving().map(|axis| {
             let within = Within { from: travels[axis].low, to: travels[axis].high };
             Factor::Position { axis, power: 1, within }

@@ -20,6 +20,7 @@ mod evidence;
 mod forms;
 mod invariances;
 mod large;
+mod motors;
 mod pictures;
 #[path = "../../src/testing.rs"]
 mod testing;

@@ -36,6 +36,20 @@ pub struct Checked {
     pub lost: Lost,
 }
 
+/// Refuses a machine whose motors turn their beam back: the tables of all formats correct an axis, which has one command.
+fn refuse_beam(geometry: &Geometry<'_>) -> Result<(), Refused> {
+    let mut motors = geometry.equations.axes.iter().filter(|axis| !axis.squares.is_empty());
+    let Some(motor) = motors.next() else { return Ok(()) };
+    Err(Refused::new(
+        format!(
+            "{} corrects the rotation of its beam, and so has a command of its own; tables correct axes",
+            motor.letter
+        ),
+        "write `corrects: false` beside its `drives` in the machine file: the slides then correct at the tool what both drives do; \
+         `abbe compensate` and the C interface give each drive its command",
+    ))
+}
+
 /// Writes the files of a format, reads them again, and measures what they lose.
 ///
 /// # Errors
@@ -46,6 +60,7 @@ pub fn export(
     format: Format,
     options: &Options,
 ) -> Result<Export, Refused> {
+    refuse_beam(geometry)?;
     let job = Job { geometry, space, options };
     let Written { files, loading, left_out } = match format {
         Format::LinuxCnc => linuxcnc::written(&job),

@@ -32,6 +32,24 @@ impl Pose {
         moved
     }
 
+    /// The pose with motors where their axes put them.
+    fn with_motors(&self, machine: &Interpreter) -> Self {
+        let mut placed = self.clone();
+        let following = machine.following();
+        for share in following {
+            if let Some(position) = placed.position.get_mut(share.motor) {
+                *position = 0.0;
+            }
+        }
+        for share in following {
+            let axis = self.position.get(share.of).copied().unwrap_or(f64::NAN);
+            if let Some(position) = placed.position.get_mut(share.motor) {
+                *position += share.weight * axis;
+            }
+        }
+        placed
+    }
+
     /// The pose with one axis having come from the other side or this one.
     #[must_use]
     pub fn coming(&self, axis: usize, from: Direction) -> Self {
@@ -103,7 +121,7 @@ impl<'c> Geometry<'c> {
     pub fn motion(&self, motion: usize, pose: &Pose) -> f64 {
         let motion = ErrorMotion { terms: self.terms(motion) };
         let states = vec![TermState::default(); states_needed(std::slice::from_ref(&motion))];
-        motion.value(&sample(pose), &states)
+        motion.value(&sample(&pose.with_motors(&self.machine)), &states)
     }
 
     /// The error at a pose: tip relative to the part, actual minus commanded, mm, part frame.
@@ -161,7 +179,7 @@ fn asked<T>(
     let (mut values, mut travel) = (vec![0.0; motions.len()], vec![0.0; machine.travels().len()]);
     let work = Work { directions: &mut directions, motions: &mut values, travel: &mut travel };
     let mut compensator = Compensator::new(machine, &motions, &mut states, work)?;
-    Ok(ask(&mut compensator, &sample(pose))?)
+    Ok(ask(&mut compensator, &sample(&pose.with_motors(machine)))?)
 }
 
 /// What every motion of a machine does to the tool relative to the part: what it turns it by, in which no offset counts; or
@@ -185,6 +203,7 @@ pub(super) fn correction(
     pose: &Pose,
 ) -> Result<Vec<f64>, Refused> {
     let mut command = pose.position.clone();
+    let pose = &pose.with_motors(machine);
     asked(machine, terms, pose, |compensator, sample| compensator.compensate(sample, &mut command))?;
     Ok(command.iter().zip(&pose.position).map(|(command, target)| command - target).collect())
 }

@@ -44,7 +44,11 @@ impl Space {
         }
         let axes = equations.axes.iter().enumerate();
         let ranges: Vec<[f64; 2]> = axes
-            .map(|(axis, info)| range(calibration, axis, &info.letter, info.rotary, &wanted.ranges))
+            .map(|(axis, info)| match info.is_motor() {
+                // Its axes say how far it goes.
+                true => Ok([0.0, 0.0]),
+                false => range(calibration, axis, &info.letter, info.rotary, &wanted.ranges),
+            })
             .collect::<Result<_, _>>()?;
         let reference = equations.axes.iter().zip(&ranges);
         let reference = reference.map(|(info, range)| pose_of(&info.letter, *range, &wanted.reference));

@@ -20,12 +20,28 @@ pub struct MachineNames {
 }
 
 /// An axis by its letter.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub struct AxisName {
     /// Upper-case letter or link id: `X`, `C`.
     pub letter: String,
     /// Whether positions on it are angles (rad) rather than lengths (mm).
     pub rotary: bool,
+    /// Of a motor the axes that it follows, by their numbers, each with how far the motor goes for each mm of it; empty for an axis
+    /// that a program moves.
+    pub follows: Vec<(usize, f64)>,
+}
+
+impl AxisName {
+    /// Whether it is a motor, which follows axes and which no program moves by itself.
+    pub fn is_motor(&self) -> bool {
+        !self.follows.is_empty()
+    }
+
+    /// Where the motor stands when the axes stand at positions by their numbers; none for an axis that a program moves.
+    pub fn followed(&self, position: impl Fn(usize) -> f64) -> Option<f64> {
+        let sum = || self.follows.iter().fold(0.0, |sum, (of, weight)| sum + weight * position(*of));
+        self.is_motor().then(sum)
+    }
 }
 
 /// An error motion by its ISO 230-1 name.

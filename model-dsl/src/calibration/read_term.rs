@@ -61,6 +61,7 @@ fn read_named(name: &Spanned<String>, node: &Node, context: &mut Context<'_>) ->
     };
     let mut term = Parameters { fields, what: &what, factors: &factors, context };
     refuse_loop_with_factors(kind, &mut term)?;
+    refuse_loop_of_motor(kind, name, term.context)?;
     let ramp = entry.key(RAMP).map_or(Some(0.0), |key| term.number(key, None));
     let inside_loop = entry.key(INSIDE_LOOP).map_or(Some(false), |_| term.inside_loop());
     let read = match entry.form {
@@ -70,6 +71,29 @@ fn read_named(name: &Spanned<String>, node: &Node, context: &mut Context<'_>) ->
     };
     let term = read?.times(factors);
     Some(Item { term: Spanned::new(term, name.span), ramp: ramp?, inside_loop: inside_loop? })
+}
+
+/// A position loop moves its axis. That of a motor moves several, whose loops are then not their own.
+fn refuse_loop_of_motor(kind: TermKind, name: &Spanned<String>, context: &mut Context<'_>) -> Option<()> {
+    let axis = context.names.own_axis(context.motion).and_then(|axis| context.names.axes.get(axis));
+    let Some(motor) = axis.filter(|axis| axis.is_motor() && matches!(kind, TermKind::Lag | TermKind::Delay))
+    else {
+        return Some(());
+    };
+    let message = format!("`{}` of {} is that of no axis", name.value, context.motion.name);
+    let names = &context.names.axes;
+    let axes: Vec<&str> = motor
+        .follows
+        .iter()
+        .filter_map(|(axis, _)| names.get(*axis))
+        .map(|axis| axis.letter.as_str())
+        .collect();
+    context.diagnostics.push(
+        Diagnostic::error("E0431", name.span, message)
+            .label("how far a motor stays behind its command moves several axes, each of which has one loop here")
+            .help(format!("give it to the axes that the motor moves: {}", axes.join(", "))),
+    );
+    None
 }
 
 /// A loop of second order answers its command as a whole: only the steady state of a lag has factors.

@@ -11,7 +11,7 @@ use crate::yaml;
 
 /// A mill with a rotary table and a spindle, a constant without and one with a value of its own.
 pub(super) fn names() -> MachineNames {
-    let axis = |letter: &str, rotary| AxisName { letter: letter.to_owned(), rotary };
+    let axis = |letter: &str, rotary| AxisName { letter: letter.to_owned(), rotary, follows: Vec::new() };
     let motion = |name: &str, angular, axis: Option<&str>| MotionName {
         name: name.to_owned(),
         angular,

@@ -68,7 +68,9 @@ impl WrittenMotion {
         let listed = calibration.motions.iter().find(|listed| listed.motion == number);
         let terms = listed.map_or(&[][..], |listed| &listed.terms);
         let ramp = |place| listed.map_or(0.0, |listed| listed.ramp(place));
-        let corrects = |axis: usize| equations.axes.get(axis).is_some_and(|axis| axis.effect.is_some());
+        let corrects = |axis: usize| {
+            equations.axes.get(axis).is_some_and(|axis| axis.effect.is_some() || axis.is_motor())
+        };
         let read: Vec<Vec<Term<'_>>> =
             terms.iter().map(|term| term.value.runtime()).collect::<Result<_, _>>()?;
         let read = read.concat();

@@ -1,6 +1,7 @@
 //! The functions of a machine: position, error, lever arms, directions, that of its tool where the machine file asks for it,
 //! and the interface that the runtime's compensator calls.
 
+use abbe_runtime::Share;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -244,6 +245,7 @@ fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
     let known = fixed_directions(&directions).or_else(|| resting(equations));
     let squares = equations.squares().map(squares);
     let turning = turning(equations);
+    let motors = motors(equations);
     let held = held(equations, programs);
     let axes = Literal::usize_unsuffixed(equations.axes.len());
     let motions = Literal::usize_unsuffixed(equations.motions.len());
@@ -285,6 +287,7 @@ fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
                 }
             }
             #turning
+            #motors
             fn directions_vary(&self) -> bool { #vary }
             #squares
             #known
@@ -326,6 +329,30 @@ fn turning(equations: &Equations) -> Option<TokenStream> {
             fn turning(&self) -> &[::abbe_runtime::Turning] { &[#(#turning),*] }
         }
     })
+}
+
+/// Where motors stand, and what they correct by themselves, where there are any.
+fn motors(equations: &Equations) -> TokenStream {
+    let shares = |shares: Vec<Share>| {
+        let shares = shares.into_iter().map(|share| {
+            let ([motor, of], weight) =
+                ([share.motor, share.of].map(Literal::usize_unsuffixed), number(share.weight));
+            quote! { ::abbe_runtime::Share { motor: #motor, of: #of, weight: #weight } }
+        });
+        quote! { &[#(#shares),*] }
+    };
+    let method = |name: &str, of: Vec<Share>| {
+        let (name, any, shares) = (quote::format_ident!("{name}"), !of.is_empty(), shares(of));
+        any.then(|| {
+            quote! {
+                #[inline(always)]
+                fn #name(&self) -> &[::abbe_runtime::Share] { #shares }
+            }
+        })
+    };
+    let (following, squaring) =
+        (method("following", equations.following()), method("squaring", equations.squaring()));
+    quote! { #following #squaring }
 }
 
 /// Which axes no error of the tip moves, where there are such.

@@ -7,6 +7,7 @@ use super::body::number;
 use super::docs;
 use super::idents::field;
 use crate::equations::Equations;
+use crate::notation::followed;
 
 /// All records, and the machine itself.
 pub(super) fn all(equations: &Equations) -> TokenStream {
@@ -116,7 +117,14 @@ fn axes(equations: &Equations) -> TokenStream {
             let unit = if axis.rotary { "rad" } else { "mm" };
             (
                 axis.variable.to_string(),
-                format!("The programmed position of axis {} \\[{unit}\\].", axis.letter),
+                match axis.is_motor() {
+                    true => format!(
+                        "The travel of motor {} \\[{unit}\\]: {}.",
+                        axis.letter,
+                        followed(equations, axis)
+                    ),
+                    false => format!("The programmed position of axis {} \\[{unit}\\].", axis.letter),
+                },
             )
         })
         .collect();

@@ -10,12 +10,16 @@ use crate::machine::{Link, LinkKind, Machine, Motion, MotionKind, Reference, bod
 /// The matrix of a link, by its number in [`Machine::links`]; the errors are numbered as in [`Machine::motions`].
 pub fn matrix(machine: &Machine, number: usize) -> Htm {
     let Some(link) = machine.links.get(number) else { return Htm::identity() };
-    let own: Vec<(usize, &Motion)> =
-        machine.motions.iter().enumerate().filter(|(_, motion)| motion.link == number).collect();
+    let own: Vec<(usize, &Motion)> = machine
+        .motions
+        .iter()
+        .enumerate()
+        .filter(|(_, motion)| motion.link == number && motion.motor.is_none())
+        .collect();
     let origin = Htm::translation(link.origin.clone().map(FirstOrder::nominal));
     let (aligned, displaced): (Vec<_>, Vec<_>) =
         own.into_iter().partition(|(_, motion)| motion.kind.alignment());
-    let displaced = small(machine, link, displaced.into_iter());
+    let displaced = by_motors(machine, number).then(&small(machine, link, displaced.into_iter()));
     let aligned = alignment(machine, link, aligned);
     match (link.kind, link.reference) {
         (LinkKind::Rotary(_), _) => {
@@ -49,6 +53,22 @@ fn small<'m>(machine: &Machine, link: &Link, motions: impl Iterator<Item = (usiz
         let slots = if motion.kind.angular() { &mut rotations } else { &mut translations };
         let slot = &mut slots[motion.kind.axis().index()];
         *slot = &*slot + &error;
+    }
+    Htm::small(rotations, translations)
+}
+
+/// The small displacement of a link by the errors of motors.
+fn by_motors(machine: &Machine, link: usize) -> Htm {
+    let mut rotations = <[FirstOrder; 3]>::default();
+    let mut translations = <[FirstOrder; 3]>::default();
+    for (number, motion) in machine.motions.iter().enumerate() {
+        let motor = motion.motor.and_then(|motor| machine.motors.get(motor));
+        for moved in motor.iter().flat_map(|motor| &motor.moves).filter(|moved| moved.link == link) {
+            let error = FirstOrder::error(number, Polynomial::number(moved.weight.clone()));
+            let slots = if moved.kind.angular() { &mut rotations } else { &mut translations };
+            let slot = &mut slots[moved.kind.axis().index()];
+            *slot = &*slot + &error;
+        }
     }
     Htm::small(rotations, translations)
 }

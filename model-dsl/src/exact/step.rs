@@ -3,9 +3,9 @@
 //! In: a link with the numbers of its constants. Out: its steps in order, and each taken by the stands of many rows. The
 //! order, and the point about which a rotation acts, are those of [`crate::derivation::link_matrix`].
 
-use crate::algebra::{Axis, Symbol};
+use crate::algebra::{Axis, Symbol, to_f64};
 use crate::equations::{Equations, Motion};
-use crate::machine::{Link, LinkKind, MotionKind, Reference};
+use crate::machine::{Link, LinkKind, MotionKind, Moved, Reference};
 
 use super::Columns;
 use super::walk::{Quaternion, Stand};
@@ -27,7 +27,7 @@ pub(super) enum Step {
     Line { angle: Part, along: Axis, travel: Travel, sign: f64 },
 }
 
-/// An error motion along or about a direction, with the sign that its value has there.
+/// An error motion along or about a direction, with the sign that its value has there, or the weight of the error of a motor.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
     motion: usize,
@@ -46,15 +46,21 @@ pub(super) struct Travel {
 
 /// The steps from the frame before a link to its own.
 pub(super) fn of_link(equations: &Equations, number: usize, link: &Link, constants: &[f64]) -> Vec<Step> {
-    let own = equations.motions.iter().enumerate().filter(|(_, motion)| motion.body == number);
+    let own = equations.motions.iter().enumerate();
+    let own = own.filter(|(_, motion)| motion.body == number && motion.by_motor.is_empty());
     let own: Vec<(Part, &Motion)> = own.map(|(number, motion)| (Part::of(number, motion), motion)).collect();
+    let motors = by_motors(equations, number);
     let parts = |kind: &dyn Fn(&Motion) -> bool| -> Vec<Part> {
         own.iter().filter(|(_, motion)| kind(motion)).map(|(part, _)| *part).collect()
     };
     let slide = matches!(link.kind, LinkKind::Slide(_));
     let aligned = |motion: &Motion| matches!(motion.kind, MotionKind::Alignment(_));
-    let shifts = parts(&|motion| matches!(motion.kind, MotionKind::Linear(_)));
-    let turns = parts(&|motion| matches!(motion.kind, MotionKind::Angular(_)));
+    let with_motors = |mut own: Vec<Part>, angular: bool| {
+        own.extend(motors.iter().filter(|(kind, _)| kind.angular() == angular).map(|(_, part)| *part));
+        own
+    };
+    let shifts = with_motors(parts(&|motion| matches!(motion.kind, MotionKind::Linear(_))), false);
+    let turns = with_motors(parts(&|motion| matches!(motion.kind, MotionKind::Angular(_))), true);
     let error = || shifts.iter().map(|part| Step::Shift(*part)).chain([Step::Turn(turns.clone())]);
     let offsets = parts(&|motion| matches!(motion.kind, MotionKind::Offset(_)));
     let tilts = parts(&|motion| !slide && aligned(motion));
@@ -85,6 +91,17 @@ pub(super) fn of_link(equations: &Equations, number: usize, link: &Link, constan
     }
     steps.retain(|step| !matches!(step, Step::Turn(parts) if parts.is_empty()));
     steps
+}
+
+/// What the errors of motors do to a link.
+fn by_motors(equations: &Equations, link: usize) -> Vec<(MotionKind, Part)> {
+    let moved = |(number, motion): (usize, &Motion)| -> Vec<(MotionKind, Part)> {
+        let own = motion.by_motor.iter().filter(|moved| moved.link == link);
+        let part =
+            |moved: &Moved| Part { motion: number, axis: moved.kind.axis(), sign: to_f64(&moved.weight) };
+        own.map(|moved| (moved.kind, part(moved))).collect()
+    };
+    equations.motions.iter().enumerate().flat_map(moved).collect()
 }
 
 /// The place of a link's frame at zero; NaN where a constant has no value.

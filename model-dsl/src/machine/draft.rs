@@ -1,7 +1,7 @@
 //! The chain while it is being read: links that are known, and their `errors` that are not yet.
 
 use super::link::Link;
-use crate::source::Span;
+use crate::source::{Span, Spanned};
 use crate::yaml::Node;
 
 /// The links of a machine in order.
@@ -15,4 +15,6 @@ pub(super) struct DraftedLink<'n> {
     pub(super) link: Link,
     pub(super) origin_spans: [Span; 3],
     pub(super) errors: Option<&'n Node>,
+    /// The motors of a beam.
+    pub(super) drives: Option<(&'n Spanned<String>, &'n Node)>,
 }

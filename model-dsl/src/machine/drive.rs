@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 
 use super::draft::Chain;
 use super::fields::{self, keys};
+use super::motor::Motor;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::quantity::{self, Dimension};
 use crate::source::Spanned;
@@ -14,7 +15,7 @@ use crate::yaml::Node;
 /// The elements of the drive of one axis.
 #[derive(Clone, Debug)]
 pub struct Drive {
-    /// The letter of the axis, and where the file names it.
+    /// The letter of the axis or the name of the motor, and where the file names it.
     pub axis: Spanned<String>,
     /// Its elements: the screw or the worm, the motor, the scale or the encoder.
     pub elements: Vec<Element>,
@@ -67,7 +68,7 @@ impl ElementKind {
 }
 
 /// Reads the `drive` of a machine file; every mistake in it is reported.
-pub(super) fn read(node: Option<&Node>, diagnostics: &mut Diagnostics) -> Vec<Drive> {
+pub(super) fn read(node: Option<&Node>, motors: &[Motor], diagnostics: &mut Diagnostics) -> Vec<Drive> {
     let Some(node) = node else { return Vec::new() };
     let Some(entries) = node.entries() else {
         let message = format!("`drive` is a mapping of axes, found {}", node.kind_name());
@@ -75,13 +76,14 @@ pub(super) fn read(node: Option<&Node>, diagnostics: &mut Diagnostics) -> Vec<Dr
             .push(Diagnostic::error("E0103", node.span, message).help("write `drive: {X: {pitch: 10 mm}}`"));
         return Vec::new();
     };
-    entries.iter().filter_map(|(key, value)| of_axis(key, value, diagnostics)).collect()
+    entries.iter().filter_map(|(key, value)| of_axis(key, value, motors, diagnostics)).collect()
 }
 
-/// Reports the axes that no link of the chain is.
-pub(super) fn settle(drives: &[Drive], chain: &Chain<'_>, diagnostics: &mut Diagnostics) {
+/// Reports the axes that no link of the chain is, and no motor.
+pub(super) fn settle(drives: &[Drive], chain: &Chain<'_>, motors: &[Motor], diagnostics: &mut Diagnostics) {
     let letters = chain.links.iter().filter_map(|drafted| drafted.link.kind.letter());
-    let letters: Vec<String> = letters.map(String::from).collect();
+    let motors = motors.iter().map(|motor| motor.name.value.clone());
+    let letters: Vec<String> = letters.map(String::from).chain(motors).collect();
     for Drive { axis, .. } in drives.iter().filter(|drive| !letters.contains(&drive.axis.value)) {
         diagnostics.push(
             Diagnostic::error("E0144", axis.span, format!("the chain has no axis {}", axis.value))
@@ -91,9 +93,15 @@ pub(super) fn settle(drives: &[Drive], chain: &Chain<'_>, diagnostics: &mut Diag
     }
 }
 
-fn of_axis(key: &Spanned<String>, value: &Node, diagnostics: &mut Diagnostics) -> Option<Drive> {
+fn of_axis(
+    key: &Spanned<String>,
+    value: &Node,
+    motors: &[Motor],
+    diagnostics: &mut Diagnostics,
+) -> Option<Drive> {
     let letter = key.value.as_str();
     let elements = match letter {
+        motor if motors.iter().any(|known| known.name.value == motor) => of_slide(motor, value, diagnostics)?,
         "X" | "Y" | "Z" | "U" | "V" | "W" => of_slide(letter, value, diagnostics)?,
         "A" | "B" | "C" => of_rotary_axis(letter, value, diagnostics)?,
         // No chain has such an axis, which is told where the chain is known.

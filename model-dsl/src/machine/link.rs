@@ -90,7 +90,8 @@ pub struct Link {
     pub origin: [Polynomial; 3],
     /// About which point its rotations act.
     pub reference: Reference,
-    /// Whether a rotary axis corrects the error of its own angle itself; else it is left to the slides, as far as they reach.
+    /// Whether a rotary axis corrects the error of its own angle itself, and the motors of a beam the rotation of that; else it is left
+    /// to the slides, as far as they reach.
     pub corrects: bool,
     /// Where it stands in the machine file.
     pub span: Span,

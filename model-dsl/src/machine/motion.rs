@@ -73,6 +73,9 @@ pub struct Motion {
     pub span: Option<Span>,
     /// The axis from which the file counts it, in a name such as `EA(0Y)C`.
     pub counted_from: Option<String>,
+    /// The number in [`super::Machine::motors`] of the motor whose own error it is. It then moves what that motor moves, of which the
+    /// link and the kind above are the first.
+    pub motor: Option<usize>,
 }
 
 /// A name split into its parts.
@@ -137,6 +140,7 @@ impl Motion {
             rotates: false,
             span,
             counted_from: None,
+            motor: None,
         }
     }
 }

@@ -5,6 +5,7 @@ use std::fmt;
 use super::constants::Constant;
 use super::draft::Chain;
 use super::motion::Motion;
+use super::motor::Motor;
 use crate::algebra::Axis;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::Span;
@@ -16,12 +17,16 @@ pub(super) fn check_names(
     motions: &[Motion],
     constants: &[Constant],
     chain: &Chain<'_>,
+    motors: &[Motor],
     printed: Printed<'_>,
     diagnostics: &mut Diagnostics,
 ) {
     let mut names = Names { taken: Vec::new(), printed };
     for drafted in chain.links.iter().filter(|drafted| drafted.link.is_axis()) {
         names.take(&drafted.link.variable(), What::Position, drafted.link.span, diagnostics);
+    }
+    for motor in motors {
+        names.take(&motor.variable(), What::Position, motor.name.span, diagnostics);
     }
     for constant in constants {
         names.take(&constant.name, What::Constant, constant.span, diagnostics);

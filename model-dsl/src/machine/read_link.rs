@@ -25,11 +25,15 @@ pub(super) fn read_link<'n>(
 ) -> Option<DraftedLink<'n>> {
     let (word, name_node) = kind_of(node, diagnostics)?;
     let place = if matches!(word, "tool" | "part") { "offset" } else { "origin" };
-    let known = [word, "id", "along", place, "errors", "reference", "corrects"];
-    // Only a rotary axis can be told that it does not correct.
-    let known =
-        if word == "rotary" { &known[..] } else { known.split_last().map_or(&[][..], |(_, rest)| rest) };
-    let fields = fields::open(node, "a link", known, diagnostics)?;
+    let mut known = vec![word, "id", "along", place, "errors", "reference"];
+    // Only a rotary axis, and the motors of a beam, can be told that they do not correct.
+    match word {
+        "rotary" => known.push("corrects"),
+        "slide" if node.get("drives").is_some() => known.extend(["drives", "corrects"]),
+        "slide" => known.push("drives"),
+        _ => {}
+    }
+    let fields = fields::open(node, "a link", &known, diagnostics)?;
     let name = text(name_node, "the name of a link", diagnostics)?;
     let kind = kind(word, name, name_node.span, diagnostics);
     let id = match fields.get("id") {
@@ -63,7 +67,7 @@ pub(super) fn read_link<'n>(
         corrects,
         span: name_node.span,
     };
-    Some(DraftedLink { link, origin_spans, errors })
+    Some(DraftedLink { link, origin_spans, errors, drives: fields.entry("drives") })
 }
 
 fn kind_of<'n>(node: &'n Node, diagnostics: &mut Diagnostics) -> Option<(&'static str, &'n Node)> {

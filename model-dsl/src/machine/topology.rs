@@ -116,7 +116,7 @@ fn drafted(
     span: Span,
 ) -> DraftedLink<'static> {
     let link = Link { id, kind, branch, along, origin, reference: Reference::Carriage, corrects: true, span };
-    DraftedLink { link, origin_spans: [span; 3], errors: None }
+    DraftedLink { link, origin_spans: [span; 3], errors: None, drives: None }
 }
 
 /// A commented machine file to start from; every mistake in the word is reported.

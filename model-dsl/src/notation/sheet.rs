@@ -4,10 +4,11 @@
 use std::collections::BTreeSet;
 
 use super::brackets::Brackets;
+use super::infix;
 use super::letter::Letter;
 use super::tree::{self, Expression};
-use crate::algebra::{Axis, Monomial, Symbol};
-use crate::equations::{Equations, Motion, Names, Row, Term};
+use crate::algebra::{Axis, Monomial, Polynomial, Rational, Symbol};
+use crate::equations::{AxisInfo, Equations, Motion, Names, Row, Term};
 use crate::machine::{Branch, Counted, Link, LinkKind, Reference};
 
 /// An equation: a letter and what it equals.
@@ -207,8 +208,17 @@ fn quantities(equations: &Equations) -> Vec<QuantityEntry> {
     };
     let positions = equations.axes.iter().map(|axis| {
         let unit = if axis.rotary { "rad" } else { "mm" };
-        let meaning = format!("position of axis {} ({unit})", axis.letter);
-        entry(&axis.variable, meaning, "programmed".to_owned())
+        match axis.is_motor() {
+            true => entry(
+                &axis.variable,
+                format!("travel of motor {}: {} ({unit})", axis.letter, followed(equations, axis)),
+                "that of its axes".to_owned(),
+            ),
+            false => {
+                let meaning = format!("position of axis {} ({unit})", axis.letter);
+                entry(&axis.variable, meaning, "programmed".to_owned())
+            }
+        }
     });
     let travels = equations.travels.iter().map(|travel| {
         let letter = equations.axes.get(travel.axis).map_or("", |axis| &axis.letter);
@@ -222,6 +232,15 @@ fn quantities(equations: &Equations) -> Vec<QuantityEntry> {
         entry(&constant.name, format!("{meaning} (mm)"), value)
     });
     positions.chain(travels).chain(constants).collect()
+}
+
+/// The sum of axes that a motor follows, `x + y`.
+pub(crate) fn followed(equations: &Equations, motor: &AxisInfo) -> String {
+    let part = |(axis, weight): &(usize, Rational)| {
+        let axis = equations.axes.get(*axis).map(|axis| axis.variable.clone()).unwrap_or_default();
+        &Polynomial::symbol(Symbol::Position(axis)) * &Polynomial::number(weight.clone())
+    };
+    infix(&motor.follows.iter().map(part).collect::<Polynomial>())
 }
 
 /// Both branches in words, from the bed outwards.

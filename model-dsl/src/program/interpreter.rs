@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use abbe_runtime::math::sin_cos;
-use abbe_runtime::{Kinematics, Lanes, Real, Turning};
+use abbe_runtime::{Kinematics, Lanes, Real, Share, Turning};
 
 use super::{Column, Input, OrientationPrograms, Programs, Tape};
 use crate::equations::Equations;
@@ -23,6 +23,8 @@ pub struct Interpreter {
     rotary: Vec<bool>,
     resting: Vec<bool>,
     turning: Vec<Turning>,
+    following: Vec<Share>,
+    squaring: Vec<Share>,
     squares: Option<[f64; 3]>,
     motions: usize,
 }
@@ -56,6 +58,8 @@ impl Interpreter {
             rotary: equations.axes.iter().map(|axis| axis.rotary).collect(),
             resting: equations.resting(),
             turning: equations.turning(),
+            following: equations.following(),
+            squaring: equations.squaring(),
             squares: equations.squares(),
             motions: equations.motions.len(),
         }
@@ -236,6 +240,14 @@ impl Kinematics for Interpreter {
 
     fn turning(&self) -> &[Turning] {
         &self.turning
+    }
+
+    fn following(&self) -> &[Share] {
+        &self.following
+    }
+
+    fn squaring(&self) -> &[Share] {
+        &self.squaring
     }
 
     fn squares(&self) -> Option<[f64; 3]> {

@@ -41,6 +41,7 @@ pub(super) fn settle(
     for (channel, values) in table.values {
         put(&mut recording, &mut normals, channel, values);
     }
+    place_motors(&mut recording.axes, &header.follows, rows);
     recording.normal = match header.normal {
         Some(direction) => Some(direction.map(|component| vec![component; rows])),
         None => unit_normals(normals, rows, name, &mut recording.notes)?,
@@ -68,6 +69,24 @@ fn put(recording: &mut Recording, normals: &mut [Option<Vec<f64>>; 3], channel: 
             recording.temperatures.push(Named { name: name.clone(), unit, values });
         }
         ChannelKind::Load(name) => recording.loads.push(Named { name: name.clone(), unit, values }),
+    }
+}
+
+/// Motors stand where their axes put them, where anything is known of these.
+fn place_motors(axes: &mut [AxisChannels], follows: &[Vec<(usize, f64)>], rows: usize) {
+    for (number, follows) in follows.iter().enumerate().filter(|(_, follows)| !follows.is_empty()) {
+        let known = |axis: &usize| axes.get(*axis).is_some_and(|axis| axis.position().is_some());
+        if !follows.iter().any(|(axis, _)| known(axis)) {
+            continue;
+        }
+        let mut stands = vec![0.0; rows];
+        for (axis, weight) in follows {
+            let position = axes.get(*axis).map(|axis| axis.position_or_zero(rows)).unwrap_or_default();
+            stands.iter_mut().zip(position.iter()).for_each(|(sum, position)| *sum += weight * position);
+        }
+        if let Some(motor) = axes.get_mut(number) {
+            motor.command = Some(stands);
+        }
     }
 }
 

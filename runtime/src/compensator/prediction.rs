@@ -4,8 +4,9 @@
 //! positions in the same state. It exists beside the search for the command, which asks it again and again.
 
 use super::inverse::Columns;
+use super::motors::{self, Corrected};
 use super::turns::{Turned, Turns};
-use super::{Convergence, Needs, Refusal, copy, same_length};
+use super::{Convergence, Limits, Needs, Refusal, copy, same_length};
 use crate::math::all_finite;
 use crate::sample::number;
 use crate::{ErrorMotions, Kinematics, MotionReader, Sample, Sines, TermState};
@@ -23,6 +24,8 @@ pub(super) struct Prediction<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Size
     pub(super) travel: &'a mut [f64],
     /// What the equations need of rotary axes in this cycle.
     pub(super) sines: Sines,
+    /// What motors correct by themselves in this cycle.
+    pub(super) by_motors: Corrected,
     pub(super) needs: Needs,
 }
 
@@ -54,6 +57,10 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
         }
         if !sample.is_finite() {
             return Err(Refusal::NotFinite);
+        }
+        // Asked of the machine first: where it is known when the code is compiled that there is no motor, nothing is left of it.
+        if !self.kinematics.following().is_empty() {
+            motors::check_positions(self.kinematics.following(), sample.position)?;
         }
         if sample.time_step < 0.0 {
             return Err(Refusal::NegativeTimeStep { time_step: sample.time_step });
@@ -97,9 +104,10 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
         turned: Option<&Turned>,
         out: &mut [f64],
     ) -> Result<[f64; 3], Refusal> {
-        let Some(turned) = turned else { return self.error(sample, out) };
+        let Some(turned) = turned else { return self.error_behind_motors(sample, out) };
         let from = MotionReader::new(sample, out, self.states);
         let mut values = self.motions.read(from, self.values).ok_or(Refusal::NotFinite)?;
+        motors::subtract(self.kinematics.squaring(), values.as_mut(), &self.by_motors);
         let (turns, motions) = (&self.needs.turns, self.motions.motions());
         for (motion, value) in values.as_mut().iter_mut().enumerate() {
             *value -= turns.corrected(motion, motions, self.states, sample, out);
@@ -107,6 +115,37 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
         let error = standing(self.kinematics, &self.sines, (sample, turned), out, self.travel, Some(values));
         turned.write(out);
         error
+    }
+
+    /// The error at a position, without what motors have corrected in this cycle.
+    fn error_behind_motors(&mut self, sample: &Sample<'_>, position: &[f64]) -> Result<[f64; 3], Refusal> {
+        let from = MotionReader::new(sample, position, self.states);
+        let mut values = self.motions.read(from, self.values).ok_or(Refusal::NotFinite)?;
+        motors::subtract(self.kinematics.squaring(), values.as_mut(), &self.by_motors);
+        sum(self.kinematics, &self.sines, sample, position, self.travel, Some(values))
+    }
+
+    /// Whether motors correct error motions by themselves.
+    #[inline]
+    pub(super) fn motors_correct(&self) -> bool {
+        !self.kinematics.squaring().is_empty()
+    }
+
+    /// Writes the commands of the motors behind those of the axes that they follow.
+    #[inline]
+    pub(super) fn let_motors_follow(&self, target: &[f64], out: &mut [f64]) {
+        if !self.kinematics.following().is_empty() {
+            motors::follow(self.kinematics, target, &self.by_motors, out);
+        }
+    }
+
+    /// Refuses what motors correct by themselves where it is over the limit.
+    #[inline]
+    pub(super) fn check_motors(&self, limits: &Limits) -> Result<(), Refusal> {
+        if !self.motors_correct() {
+            return Ok(());
+        }
+        limits.check(|| motors::greatest(self.kinematics.squaring(), &self.by_motors))
     }
 
     /// Searches for the commands of the rotary axes that correct their own angles, and writes them to `out`, with the position of the
@@ -139,6 +178,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
     ) -> Result<[f64; 3], Refusal> {
         let from = MotionReader::of_corrected(sample, out, self.states);
         let values = without(&self.needs.turns, self.motions.read(from, self.values));
+        let values = left_by_motors(self.kinematics, values, &mut self.by_motors);
         standing(self.kinematics, &self.sines, (sample, turned), out, self.travel, values)
     }
 
@@ -152,6 +192,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
     ) -> Result<[f64; 3], Refusal> {
         let from = MotionReader::of_corrected(sample, out, self.states);
         let values = without(&self.needs.turns, self.motions.read_moved(from, self.values));
+        let values = left_by_motors(self.kinematics, values, &mut self.by_motors);
         standing(self.kinematics, &self.sines, (sample, turned), out, self.travel, values)
     }
 
@@ -161,6 +202,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
     pub(super) fn corrected(&mut self, sample: &Sample<'_>, position: &[f64]) -> Result<[f64; 3], Refusal> {
         let from = MotionReader::of_corrected(sample, position, self.states);
         let values = self.motions.read(from, self.values);
+        let values = left_by_motors(self.kinematics, values, &mut self.by_motors);
         sum(self.kinematics, &self.sines, sample, position, self.travel, values)
     }
 
@@ -174,6 +216,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
     ) -> Result<[f64; 3], Refusal> {
         let from = MotionReader::of_corrected(sample, position, self.states);
         let values = self.motions.read_moved(from, self.values);
+        let values = left_by_motors(self.kinematics, values, &mut self.by_motors);
         sum(self.kinematics, &self.sines, sample, position, self.travel, values)
     }
 
@@ -199,6 +242,20 @@ fn without<V: AsMut<[f64]>>(turns: &Turns, mut values: Option<V>) -> Option<V> {
         if let Some(value) = numbers.get_mut(motion) {
             *value = 0.0;
         }
+    }
+    values
+}
+
+/// The values of the error motions without those that motors correct, which are kept apart.
+#[inline(always)]
+fn left_by_motors<K: Kinematics + ?Sized, V: AsMut<[f64]>>(
+    kinematics: &K,
+    mut values: Option<V>,
+    kept: &mut Corrected,
+) -> Option<V> {
+    let squaring = kinematics.squaring();
+    if !squaring.is_empty() {
+        motors::take(squaring, values.as_mut()?.as_mut(), kept);
     }
     values
 }

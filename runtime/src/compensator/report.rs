@@ -120,6 +120,15 @@ pub enum Refusal {
         /// The time step, in s.
         time_step: f64,
     },
+    /// A motor does not stand where its axes put it, see [`Kinematics::following`](crate::Kinematics::following).
+    Motor {
+        /// Index of the motor among the axes.
+        axis: usize,
+        /// Where its axes put it, in mm.
+        expected: f64,
+        /// Where the sample has it, in mm.
+        found: f64,
+    },
     /// The search did not settle: the error changes about as fast as the position, or faster.
     NotConverging {
         /// Steps taken.
@@ -164,6 +173,12 @@ impl fmt::Display for Refusal {
             }
             Self::NotFinite => write!(f, "a number of the sample or its error is not finite"),
             Self::NegativeTimeStep { time_step } => write!(f, "time step {time_step} s is negative"),
+            Self::Motor { axis, expected, found } => {
+                write!(
+                    f,
+                    "axis {axis} is a motor that stands at {expected} mm where its axes are, not at {found} mm"
+                )
+            }
             Self::NotConverging { iterations, distance } => write!(
                 f,
                 "the compensated position is not found: step {iterations} still moves by {distance:.6} mm"
@@ -214,6 +229,13 @@ pub enum SetupError {
         /// Index of the entry.
         turning: usize,
     },
+    /// A share of [`Kinematics::following`](crate::Kinematics::following) or, counted on behind these, of
+    /// [`Kinematics::squaring`](crate::Kinematics::squaring) names what the machine lacks, is not finite, or is one too many; or a motor
+    /// follows another one.
+    Share {
+        /// Index of the share.
+        share: usize,
+    },
     /// A term names an axis that the machine lacks.
     TermAxis {
         /// Index of the error motion.
@@ -253,6 +275,7 @@ impl fmt::Display for SetupError {
             Self::Turning { turning } => {
                 write!(f, "entry {turning} of the angles that rotary axes correct is wrong")
             }
+            Self::Share { share } => write!(f, "share {share} of the motors is wrong"),
             Self::TermAxis { motion, term, axis } => {
                 write!(f, "term {term} of error motion {motion} names axis {axis}, which the machine lacks")
             }

@@ -3,6 +3,7 @@
 //! In: the equations, the error motions and the storage of a caller. Out: the sensors needed and whether velocities are, or
 //! the first mistake. It exists so that the cycle itself has nothing left that can fail for a wrong set-up.
 
+use super::motors;
 use super::turns::Turns;
 use super::{SetupError, Work};
 use crate::{ErrorMotion, Kinematics, Term, TermState};
@@ -57,6 +58,7 @@ pub(super) fn check<K: Kinematics + ?Sized>(
     if let Some((travel, &axis)) = travels.iter().enumerate().find(|(_, axis)| **axis >= axes) {
         return Err(SetupError::TravelAxis { travel, axis });
     }
+    motors::check_shares(kinematics)?;
     let needs = check_terms(motions, axes)?;
     Ok(Needs { turns: Turns::new(kinematics, motions)?, ..needs })
 }

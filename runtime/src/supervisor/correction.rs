@@ -22,6 +22,8 @@ pub struct AxisMemory {
     offset: f64,
     /// Whether it is a rotary axis that corrects its own angle.
     turns: bool,
+    /// Whether it is a motor that only follows other axes, whose corrections have its limits already.
+    follows: bool,
 }
 
 impl AxisMemory {
@@ -46,8 +48,13 @@ pub(super) struct Correction<'a> {
 
 impl<'a> Correction<'a> {
     /// The correction that the memory holds, on its way to whatever is wanted first.
-    pub(super) fn new(axes: &'a mut [AxisMemory], turning: &[Turning]) -> Self {
+    pub(super) fn new(
+        axes: &'a mut [AxisMemory],
+        turning: &[Turning],
+        follows: impl Fn(usize) -> bool,
+    ) -> Self {
         for (number, axis) in axes.iter_mut().enumerate() {
+            axis.follows = follows(number);
             axis.turns = turning.iter().any(|turning| turning.axis == number);
             if !axis.made.is_finite() {
                 axis.made = 0.0;
@@ -71,13 +78,16 @@ impl<'a> Correction<'a> {
         self.size(|axis| axis.made).slides
     }
 
-    /// The size over all axes of a number for each.
+    /// The size of a number over all axes but those that only follow others.
     fn size(&self, of: impl Fn(&AxisMemory) -> f64) -> Size {
         let root = |turns: bool| {
-            sqrt(self.axes.iter().filter(|axis| axis.turns == turns).fold(0.0, |sum, axis| {
-                let part = of(axis);
-                sum + part * part
-            }))
+            sqrt(self.axes.iter().filter(|axis| axis.turns == turns && !axis.follows).fold(
+                0.0,
+                |sum, axis| {
+                    let part = of(axis);
+                    sum + part * part
+                },
+            ))
         };
         Size { slides: root(false), turns: root(true) }
     }

@@ -11,6 +11,7 @@ mod cycle;
 mod exchanged;
 mod hostile;
 mod inverse;
+mod motors;
 mod ramp;
 mod sines;
 mod skew;

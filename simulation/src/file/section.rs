@@ -35,9 +35,10 @@ impl Context<'_> {
 
     /// The axis that a letter names (E0705).
     pub(super) fn axis(&mut self, letter: &str, span: Span) -> Option<usize> {
-        let found = self.names.axis(letter);
+        let programmed = || self.names.axes.iter().filter(|axis| !axis.is_motor());
+        let found = self.names.axis(letter).filter(|_| programmed().any(|axis| axis.letter == letter));
         if found.is_none() {
-            let known: Vec<&str> = self.names.axes.iter().map(|axis| axis.letter.as_str()).collect();
+            let known: Vec<&str> = programmed().map(|axis| axis.letter.as_str()).collect();
             let message = format!("{} has no axis `{letter}`", self.names.machine);
             let mistake = Diagnostic::error("E0705", span, message);
             let upper = letter.to_ascii_uppercase();

@@ -4,9 +4,9 @@
 //! that of the part, as they really stand: finite rotations, nothing linearised. The signs and places of the error
 //! motions are read from the machine's conventions here a second time, so that no first-order code is needed or believed.
 
-use model_dsl::algebra::{Axis, Symbol};
+use model_dsl::algebra::{Axis, Symbol, to_f64};
 use model_dsl::calibration::MachineNames;
-use model_dsl::machine::{Branch, Link, LinkKind, Machine, Motion, MotionKind, Reference};
+use model_dsl::machine::{Branch, Link, LinkKind, Machine, Motion, MotionKind, Moved, Reference};
 use nalgebra::{Rotation3, Vector3};
 
 use super::PlantError;
@@ -56,7 +56,7 @@ pub(super) struct Body {
 struct BodyError {
     /// Its number among the names of the machine.
     motion: usize,
-    /// +1 or -1: from the calibration's value to bed directions.
+    /// From the calibration's value to bed directions: +1 or -1, or the weight of the error of a motor.
     sign: f64,
     place: Place,
     direction: usize,
@@ -195,12 +195,15 @@ fn body(
         }
         None => None,
     };
-    let own = machine.motions.iter().filter(|motion| motion.link == number);
-    let errors = own.filter_map(|motion| {
-        // A motion that the names lack has no numbers: it is zero.
-        let known = names.motions.iter().position(|name| name.name == motion.name)?;
-        Some(body_error(motion, known, link, machine.relative))
+    // A motion that the names lack has no numbers: it is zero.
+    let known = |motion: &Motion| names.motions.iter().position(|name| name.name == motion.name);
+    let own = machine.motions.iter().filter(|motion| motion.link == number && motion.motor.is_none());
+    let errors = own.filter_map(|motion| Some(body_error(motion, known(motion)?, link, machine.relative)));
+    let of_motors = machine.motions.iter().filter_map(|motion| {
+        let motor = machine.motors.get(motion.motor?)?;
+        Some((known(motion)?, motor.moves.iter().filter(|moved| moved.link == number)))
     });
+    let of_motors = of_motors.flat_map(|(motion, moves)| moves.map(move |moved| motor_error(motion, moved)));
     let mut direction = Vector3::zeros();
     if axis.is_some() {
         add(&mut direction, link.along.axis.index(), if link.along.sign < 0 { -1.0 } else { 1.0 });
@@ -211,7 +214,7 @@ fn body(
         axis,
         turns: matches!(link.kind, LinkKind::Rotary(_)),
         bed: link.reference == Reference::Bed && matches!(link.kind, LinkKind::Slide(_)),
-        errors: errors.collect(),
+        errors: errors.chain(of_motors).collect(),
     })
 }
 
@@ -234,6 +237,12 @@ fn origin(link: &Link, names: &MachineNames, constants: &[f64]) -> Result<Vector
         Some(name) => Err(PlantError::OtherMachine(format!("constant {name}"))),
         None => Ok(Vector3::from(coordinates)),
     }
+}
+
+/// What the error of a motor does to a body.
+fn motor_error(motion: usize, moved: &Moved) -> BodyError {
+    let place = if moved.kind.angular() { Place::Turn } else { Place::Shift };
+    BodyError { motion, sign: to_f64(&moved.weight), place, direction: moved.kind.axis().index() }
 }
 
 fn body_error(motion: &Motion, known: usize, link: &Link, relative: bool) -> BodyError {

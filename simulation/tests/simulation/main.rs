@@ -12,5 +12,6 @@ mod effects;
 mod faults;
 mod files;
 mod instruments;
+mod motors;
 mod path_files;
 mod runtime;

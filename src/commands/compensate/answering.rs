@@ -125,6 +125,8 @@ impl<'c> Answering<'c> {
         let tip = self.equations.rows.iter().map(|_| "mm".to_owned());
         let errors = tip.chain(self.equations.orientation.iter().map(|_| "rad".to_owned()));
         let axes = layout.axes.iter().map(|column| units.get(column.index).cloned().unwrap_or_default());
+        let motors = self.equations.axes.iter().filter(|axis| axis.is_motor()).map(|_| "mm".to_owned());
+        let axes = axes.chain(motors);
         let mark = std::iter::once("#unit".to_owned());
         self.writer.write_record(mark.chain(units.iter().cloned()).chain(errors).chain(axes)).map_err(closed)
     }

@@ -11,7 +11,8 @@ use super::page::WIDTH;
 
 /// The page of an error motion; none for a name that is not one. Letter case does not matter.
 pub(super) fn page(name: &str) -> Option<String> {
-    let motion = named(&name.to_ascii_uppercase())?;
+    let name = name.to_ascii_uppercase();
+    let Some(motion) = named(&name) else { return of_motor(&name) };
     let mut text = format!("{}: {}\n\n", motion.name, motion.meaning);
     let mut paragraph = |words: &str| {
         // A page is text: writing to it cannot fail.
@@ -25,6 +26,19 @@ pub(super) fn page(name: &str) -> Option<String> {
         paragraph(&counted(&motion));
     }
     Some(text)
+}
+
+/// The page of the error of a motor, as motors are mostly called: a letter, and a number where several share an axis.
+fn of_motor(name: &str) -> Option<String> {
+    let motor = name.strip_prefix('E')?;
+    let number = motor.strip_prefix(|first: char| first.is_ascii_uppercase())?;
+    number.bytes().all(|digit| digit.is_ascii_digit()).then(|| {
+        let words = format!(
+            "An error motion, a length, mm of the motor's own travel: what motor {motor} does beside what it was told, where the machine file has such \
+             a motor in `transmission` or among the `drives` of a slide. It moves every slide that the motor moves."
+        );
+        format!("{name}: error of motor {motor}\n\n{}\n", fill(&words, WIDTH))
+    })
 }
 
 fn what(motion: &NamedMotion) -> String {

@@ -1,9 +1,12 @@
 //! The error at a place. In: a compensator and a place. Out: the error there, of a machine that came forward and stands.
 
-use abbe_runtime::{Compensator, Direction, ErrorMotion, Kinematics, Sample, TermState, Work, states_needed};
+use abbe_runtime::{
+    Compensator, Direction, ErrorMotion, Kinematics, Sample, Share, TermState, Work, states_needed,
+};
 use model_dsl::calibration::SensorReadings;
 
 use super::Leaning;
+use super::state::place_motors;
 use super::table::Wanted;
 use crate::calibrated::Calibrated;
 use crate::failure::Failure;
@@ -11,6 +14,7 @@ use crate::failure::Failure;
 /// The predicted error over positions.
 pub struct Field<'f, 'c, K: Kinematics + ?Sized> {
     compensator: &'f mut Compensator<'c, K>,
+    motors: Vec<Share>,
     /// Where the axes stand that are not moved.
     pub middle: Vec<f64>,
     temperature: &'f [f64],
@@ -20,9 +24,14 @@ pub struct Field<'f, 'c, K: Kinematics + ?Sized> {
 
 impl<'f, 'c, K: Kinematics + ?Sized> Field<'f, 'c, K> {
     /// The error around a place, mm and rad, at temperatures in degC.
-    pub fn new(compensator: &'f mut Compensator<'c, K>, middle: Vec<f64>, temperature: &'f [f64]) -> Self {
+    pub fn new(
+        compensator: &'f mut Compensator<'c, K>,
+        motors: Vec<Share>,
+        middle: Vec<f64>,
+        temperature: &'f [f64],
+    ) -> Self {
         let (direction, velocity) = (vec![Direction::Positive; middle.len()], vec![0.0; middle.len()]);
-        Self { compensator, middle, temperature, direction, velocity }
+        Self { compensator, motors, middle, temperature, direction, velocity }
     }
 
     /// The error with some axes moved to places, mm, part frame; nothing where it is not finite.
@@ -31,6 +40,7 @@ impl<'f, 'c, K: Kinematics + ?Sized> Field<'f, 'c, K> {
         for (axis, place) in moved {
             *position.get_mut(*axis)? = *place;
         }
+        place_motors(&self.motors, &mut position);
         let sample = Sample {
             position: &position,
             travel: &[],
@@ -82,12 +92,14 @@ pub fn errors(
     let temperature = readings.update(|number| inputs.get(number).copied().unwrap_or(f64::NAN)).to_vec();
     let (direction, velocity) = (vec![Direction::Positive; middle.len()], vec![0.0; middle.len()]);
     let mut position = middle.to_vec();
+    let motors = equations.following();
     let at = |moved: &[(usize, f64); 2]| {
         for (axis, place) in moved {
             if let Some(slot) = position.get_mut(*axis) {
                 *slot = *place;
             }
         }
+        place_motors(&motors, &mut position);
         let sample = Sample {
             position: &position,
             travel: &[],

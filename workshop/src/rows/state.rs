@@ -1,13 +1,15 @@
 //! The state of a machine from row to row. In: the numbers of a row. Out: positions, directions, velocities, temperatures and the time
 //! step as the runtime reads them.
 
-use abbe_runtime::{Direction, DirectionTracker, Sample};
+use std::iter;
+
+use abbe_runtime::{Direction, DirectionTracker, Sample, Share};
 use model_dsl::calibration::{Calibration, SensorReadings};
 
 /// The numbers of a row: mm, rad, s, degC.
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'r> {
-    /// The position of each axis.
+    /// The position of each axis that a program moves; motors stand where these put them.
     pub position: &'r [f64],
     /// Each free travel; empty where the positions stand for them.
     pub travel: &'r [f64],
@@ -30,6 +32,7 @@ pub struct State<'s> {
     /// For each sensor its input in this row; NaN where it has none.
     inputs: Vec<f64>,
     trackers: Vec<DirectionTracker>,
+    motors: Vec<Share>,
     previous: Option<(f64, Vec<f64>)>,
     position: Vec<f64>,
     travel: Vec<f64>,
@@ -41,8 +44,8 @@ pub struct State<'s> {
 
 impl<'s> State<'s> {
     /// The state before the first row. `timed`: whether a term needs the time ([`timed`](super::timed)). An axis has turned when it has
-    /// moved back by its `hysteresis`, mm or rad, one for each axis.
-    pub fn new(calibration: &'s Calibration, timed: bool, hysteresis: &[f64]) -> Self {
+    /// moved back by its `hysteresis`, mm or rad, one for each axis, motors among them.
+    pub fn new(calibration: &'s Calibration, motors: Vec<Share>, timed: bool, hysteresis: &[f64]) -> Self {
         let sensors = &calibration.sensors;
         let axes = hysteresis.len();
         Self {
@@ -51,6 +54,7 @@ impl<'s> State<'s> {
             numbers: sensors.inputs().map(|(number, _)| number).collect(),
             inputs: vec![f64::NAN; sensors.len()],
             trackers: hysteresis.iter().map(|threshold| DirectionTracker::new(*threshold)).collect(),
+            motors,
             previous: None,
             position: vec![0.0; axes],
             travel: Vec::new(),
@@ -69,10 +73,11 @@ impl<'s> State<'s> {
     pub fn take(&mut self, row: &Row<'_>) -> Result<(), String> {
         self.check_time(row)?;
         self.position.iter_mut().zip(row.position).for_each(|(slot, place)| *slot = *place);
+        place_motors(&self.motors, &mut self.position);
         self.travel.clear();
         self.travel.extend_from_slice(row.travel);
         let axes = self.direction.iter_mut().zip(&mut self.trackers).zip(&self.position);
-        for (((slot, tracker), place), told) in axes.zip(row.direction) {
+        for (((slot, tracker), place), told) in axes.zip(row.direction.iter().chain(iter::repeat(&None))) {
             *slot = told.unwrap_or_else(|| tracker.update(*place));
         }
         self.take_time(row.time);
@@ -128,5 +133,20 @@ impl<'s> State<'s> {
         }
         let all = self.sensors.update(|index| self.inputs.get(index).copied().unwrap_or(f64::NAN));
         self.temperature.copy_from_slice(all);
+    }
+}
+
+/// Puts motors where the axes that they follow stand.
+pub(super) fn place_motors(motors: &[Share], position: &mut [f64]) {
+    for share in motors {
+        if let Some(slot) = position.get_mut(share.motor) {
+            *slot = 0.0;
+        }
+    }
+    for share in motors {
+        let of = position.get(share.of).copied().unwrap_or_default();
+        if let Some(slot) = position.get_mut(share.motor) {
+            *slot += share.weight * of;
+        }
     }
 }

@@ -141,7 +141,8 @@ impl Answering<'_> {
     /// Takes the state along, from the first row to the last.
     fn follow(&self, table: &Table, hysteresis: &[f64]) -> Result<Followed, Failure> {
         let calibration = &self.calibrated.calibration;
-        let mut state = State::new(calibration, timed(calibration).is_some(), hysteresis);
+        let mut state =
+            State::new(calibration, self.equations().following(), timed(calibration).is_some(), hysteresis);
         let mut states = vec![TermState::default(); states_needed(self.motions)];
         let mut followed = Followed::default();
         let mut row = Buffers::default();

@@ -33,7 +33,10 @@ struct Row<'e> {
 impl<'e> Card<'e> {
     /// Lays out a link.
     pub(super) fn new(equations: &'e Equations, names: Names, link: &'e Link) -> Self {
-        let own = || equations.motions.iter().filter(|motion| motion.link == link.id);
+        let is_here = |body: usize| equations.links.get(body).is_some_and(|known| known.id == link.id);
+        // A motor is no body: its error stands with each link that it moves.
+        let moves = |motion: &Motion| motion.by_motor.iter().any(|moved| is_here(moved.link));
+        let own = || equations.motions.iter().filter(|motion| motion.link == link.id || moves(motion));
         let mut lines = lines("moves", own().filter(|motion| !motion.alignment && !motion.angular), names);
         lines.extend(self::lines("turns", own().filter(|motion| !motion.alignment && motion.angular), names));
         lines.extend(self::lines("aligned", own().filter(|motion| motion.alignment), names));

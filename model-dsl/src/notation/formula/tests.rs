@@ -4,7 +4,7 @@ use super::*;
 use crate::calibration::AxisName;
 
 fn names() -> MachineNames {
-    let axis = |letter: &str, rotary| AxisName { letter: letter.to_owned(), rotary };
+    let axis = |letter: &str, rotary| AxisName { letter: letter.to_owned(), rotary, follows: Vec::new() };
     let motion = |name: &str, angular| MotionName {
         name: name.to_owned(),
         angular,

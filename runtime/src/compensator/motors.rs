@@ -1,0 +1,123 @@
+//! The commands of motors that move several axes, or that share one.
+//!
+//! In: the commands of the axes, and the error motions that motors correct by themselves. Out: the command of each motor. It exists
+//! because the error of a motor is read where the motor stands, and since two motors of one beam can turn it, as no slide can.
+
+use super::report::{Refusal, SetupError};
+use crate::sample::number;
+use crate::{Kinematics, Share};
+
+/// The greatest number of shares of error motions that motors correct: two of them, with their own error and the rotation of their
+/// beam, for each of the slides X Y Z U V W.
+pub(super) const MOST: usize = 24;
+
+/// How far the position of a motor may be from where its axes put it, mm: a thousandth of what any drive resolves, and far above
+/// what sums of positions round by.
+const ROUNDING: f64 = 1e-6;
+
+/// What the error motions that motors correct are in this cycle, mm or rad, in the order of [`Kinematics::squaring`].
+pub(super) type Corrected = [f64; MOST];
+
+/// Checks the shares of a machine: motors stand behind all axes that they follow, and what they correct is an error motion.
+///
+/// # Errors
+/// Tells the first entry that is wrong, counted through both lists.
+pub(super) fn check_shares<K: Kinematics + ?Sized>(kinematics: &K) -> Result<(), SetupError> {
+    let (axes, motions) = (kinematics.axes(), kinematics.motions());
+    let (following, squaring) = (kinematics.following(), kinematics.squaring());
+    let is_motor = |axis: usize| following.iter().any(|share| share.motor == axis);
+    let follows = |share: &Share| share.motor < axes && share.of < axes && !is_motor(share.of);
+    let corrects = |share: &Share| is_motor(share.motor) && share.of < motions;
+    let wrong = |share: usize| SetupError::Share { share };
+    if let Some(share) = following.iter().position(|share| !follows(share) || !share.weight.is_finite()) {
+        return Err(wrong(share));
+    }
+    let before = following.len();
+    for (place, share) in squaring.iter().enumerate() {
+        if !corrects(share) || !share.weight.is_finite() || place >= MOST {
+            return Err(wrong(before.saturating_add(place)));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses positions of motors that are not where their axes put them.
+#[cold]
+#[inline(never)]
+pub(super) fn check_positions(following: &[Share], position: &[f64]) -> Result<(), Refusal> {
+    for motor in following.iter().map(|share| share.motor) {
+        let own = following.iter().filter(|share| share.motor == motor);
+        let expected = own.fold(0.0, |sum, share| sum + share.weight * number(position, share.of));
+        let found = number(position, motor);
+        // Not `>`: also at NaN, which no comparison lets through.
+        let fits = (found - expected).abs() <= ROUNDING;
+        if !fits {
+            return Err(Refusal::Motor { axis: motor, expected, found });
+        }
+    }
+    Ok(())
+}
+
+/// Keeps what motors correct, and leaves nothing of it in the values.
+#[cold]
+#[inline(never)]
+pub(super) fn take(squaring: &[Share], values: &mut [f64], corrected: &mut Corrected) {
+    for (share, kept) in squaring.iter().zip(corrected) {
+        *kept = number(values, share.of);
+    }
+    for share in squaring {
+        if let Some(value) = values.get_mut(share.of) {
+            *value = 0.0;
+        }
+    }
+}
+
+/// Takes from the values what motors correct in this cycle.
+#[cold]
+#[inline(never)]
+pub(super) fn subtract(squaring: &[Share], values: &mut [f64], corrected: &Corrected) {
+    for (place, (share, kept)) in squaring.iter().zip(corrected).enumerate() {
+        // The rotation of a beam stands there for each of its motors.
+        let again = squaring.iter().take(place).any(|before| before.of == share.of);
+        if let Some(value) = values.get_mut(share.of).filter(|_| !again) {
+            *value -= kept;
+        }
+    }
+}
+
+/// Writes the commands of the motors: as far as their axes have moved from the target, less what they correct themselves.
+#[cold]
+#[inline(never)]
+pub(super) fn follow<K: Kinematics + ?Sized>(
+    kinematics: &K,
+    target: &[f64],
+    corrected: &Corrected,
+    out: &mut [f64],
+) {
+    for share in kinematics.following() {
+        if let Some(command) = out.get_mut(share.motor) {
+            *command = number(target, share.motor);
+        }
+    }
+    for share in kinematics.following() {
+        let moved = number(out, share.of) - number(target, share.of);
+        if let Some(command) = out.get_mut(share.motor) {
+            *command += share.weight * moved;
+        }
+    }
+    for (share, value) in kinematics.squaring().iter().zip(corrected) {
+        if let Some(command) = out.get_mut(share.motor) {
+            *command -= share.weight * value;
+        }
+    }
+}
+
+/// The greatest correction that a motor makes by itself, mm.
+pub(super) fn greatest(squaring: &[Share], corrected: &Corrected) -> f64 {
+    squaring.iter().fold(0.0, |greatest: f64, share| {
+        let own = squaring.iter().zip(corrected).filter(|(other, _)| other.motor == share.motor);
+        let sum = own.fold(0.0, |sum, (own, value)| sum + own.weight * value).abs();
+        // A NaN stays, so that the limit refuses it.
+        if sum <= greatest { greatest } else { sum }
+    })
+}

@@ -1,0 +1,130 @@
+//! Motors in the runtime: what a machine may say of them, and how corrections of theirs go through a servo cycle.
+//!
+//! In: a machine of two slides whose motors are crossed, or whose first slide has two. Out: commands by hand, bit for bit the same row by row
+//! and in a batch, and mistakes in the set-up.
+
+use abbe_runtime::{
+    Batch, BatchWork, Compensator, Direction, ErrorMotion, Input, Kinematics, Lanes, Refusal, Sample,
+    SetupError, Share, Term, TermState, Work,
+};
+
+/// Slides X and Y, and behind them the motors; error motions EXX, EYY and those of both motors.
+struct Machine {
+    following: Vec<Share>,
+    squaring: Vec<Share>,
+}
+
+const fn share(motor: usize, of: usize, weight: f64) -> Share {
+    Share { motor, of, weight }
+}
+
+/// A = X + Y, B = X - Y.
+fn crossed() -> Machine {
+    let following = vec![share(2, 0, 1.0), share(2, 1, 1.0), share(3, 0, 1.0), share(3, 1, -1.0)];
+    Machine { following, squaring: Vec::new() }
+}
+
+impl Kinematics for Machine {
+    fn axes(&self) -> usize {
+        4
+    }
+
+    fn travels(&self) -> &[usize] {
+        &[]
+    }
+
+    fn motions(&self) -> usize {
+        4
+    }
+
+    fn error(&self, _: &[f64], _: &[f64], motions: &[f64]) -> [f64; 3] {
+        [motions[0] + 0.5 * (motions[2] + motions[3]), motions[1] + 0.5 * (motions[2] - motions[3]), 0.0]
+    }
+
+    fn following(&self) -> &[Share] {
+        &self.following
+    }
+
+    fn squaring(&self) -> &[Share] {
+        &self.squaring
+    }
+
+    fn directions(&self, _: &[f64], directions: &mut [[f64; 3]]) {
+        directions.copy_from_slice(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0; 3], [0.0; 3]]);
+    }
+}
+
+/// A goes 100 um/m too far.
+const LEAD: [Term<'static>; 1] = [Term::Polynomial { input: Input::Axis(2), coefficients: &[0.0, 1e-4] }];
+
+#[test]
+fn a_batch_sends_motors_where_single_rows_do() {
+    let machine = crossed();
+    let motions = [&[][..], &[], &LEAD, &[]].map(|terms| ErrorMotion { terms });
+    let mut states = [TermState::default()];
+    let (mut directions, mut values) = ([[0.0; 3]; 4], [0.0; 4]);
+    let work = Work { directions: &mut directions, motions: &mut values, travel: &mut [] };
+    let mut compensator = Compensator::new(&machine, &motions, &mut states, work).unwrap();
+    let rows = 11;
+    let x: Vec<f64> = (0..rows).map(|row| 10.0 * f64::from(row)).collect();
+    let y: Vec<f64> = (0..rows).map(|row| 70.0 - 3.0 * f64::from(row)).collect();
+    let a: Vec<f64> = x.iter().zip(&y).map(|(x, y)| x + y).collect();
+    let b: Vec<f64> = x.iter().zip(&y).map(|(x, y)| x - y).collect();
+    let single: Vec<[f64; 4]> = (0..x.len())
+        .map(|row| {
+            let sample = Sample {
+                position: &[x[row], y[row], a[row], b[row]],
+                travel: &[],
+                direction: &[Direction::Positive; 4],
+                velocity: &[],
+                temperature: &[],
+                time_step: 0.0,
+            };
+            let mut command = [0.0; 4];
+            compensator.compensate(&sample, &mut command).unwrap();
+            command
+        })
+        .collect();
+    // c + 1e-4 c = 70 is where A is sent in the first row.
+    assert!((single[0][2] - 70.0 / 1.0001).abs() < 1e-9, "{}", single[0][2]);
+    let ways = vec![Direction::Positive; x.len()];
+    let sizes = compensator.batch_sizes();
+    let (mut lanes, mut numbers) = (vec![Lanes::default(); sizes.lanes], vec![0.0; sizes.numbers]);
+    let mut of_directions = vec![Direction::Positive; sizes.directions];
+    let batch = Batch {
+        position: &[&x, &y, &a, &b],
+        travel: &[],
+        direction: &[&ways, &ways, &ways, &ways],
+        velocity: &[],
+        temperature: &[],
+        time_step: &vec![0.0; x.len()],
+    };
+    let work = BatchWork { lanes: &mut lanes, numbers: &mut numbers, directions: &mut of_directions };
+    let mut out = vec![vec![0.0; x.len()]; 4];
+    let mut columns: Vec<&mut [f64]> = out.iter_mut().map(Vec::as_mut_slice).collect();
+    let mut answers = vec![Err(Refusal::NotFinite); x.len()];
+    compensator.compensate_batch(&batch, work, &mut columns, &mut answers).unwrap();
+    for (row, command) in single.iter().enumerate() {
+        assert_eq!([0, 1, 2, 3].map(|axis| out[axis][row].to_bits()), command.map(f64::to_bits), "{row}");
+    }
+}
+
+#[test]
+fn shares_that_name_what_the_machine_lacks_are_refused() {
+    let beside = |following, squaring| Machine { following, squaring };
+    for (machine, wrong) in [
+        (beside(vec![share(2, 0, 1.0), share(4, 0, 1.0)], vec![]), 1),
+        (beside(vec![share(2, 4, 1.0)], vec![]), 0),
+        // A motor follows axes, and no other motor.
+        (beside(vec![share(2, 0, 1.0), share(3, 2, 1.0)], vec![]), 1),
+        (beside(vec![share(2, 0, f64::NAN)], vec![]), 0),
+        (beside(vec![share(2, 0, 1.0)], vec![share(2, 4, 1.0)]), 1),
+        (beside(vec![share(2, 0, 1.0)], vec![share(3, 0, 1.0)]), 1),
+    ] {
+        let motions = [ErrorMotion { terms: &[] }; 4];
+        let (mut directions, mut values) = ([[0.0; 3]; 4], [0.0; 4]);
+        let work = Work { directions: &mut directions, motions: &mut values, travel: &mut [] };
+        let refused = Compensator::new(&machine, &motions, &mut [], work).map(|_| ()).unwrap_err();
+        assert_eq!(refused, SetupError::Share { share: wrong });
+    }
+}

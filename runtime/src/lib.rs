@@ -127,8 +127,8 @@ mod table;
 mod term;
 
 pub use compensator::{
-    Batch, BatchSizes, BatchWork, Compensator, Convergence, GREATEST_AMPLIFICATION, Limits, Outcome, Refusal,
-    SetupError, Work, states_needed,
+    Batch, BatchSizes, BatchWork, Compensator, Convergence, DirectionOutcome, GREATEST_AMPLIFICATION, Limits,
+    Outcome, Refusal, SetupError, Work, states_needed,
 };
 pub use direction::{Direction, DirectionTracker};
 pub use exchanged::Exchanged;

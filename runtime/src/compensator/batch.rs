@@ -39,7 +39,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
     ///
     /// `out` holds a slice for each axis, into which the commands go; a row that is refused keeps its position there. Rows
     /// are taken side by side, [`Lanes::WIDTH`] of them, where the machine has
-    /// [`error_lanes`](Kinematics::error_lanes), no correction is ramped and no rotary axis corrects its own angle; what remembers
+    /// [`error_lanes`](Kinematics::error_lanes), no correction is ramped and no rotary axis corrects anything; what remembers
     /// goes row by row.
     ///
     /// # Errors
@@ -56,7 +56,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         let mut block = Block::new(work, &self.batch_sizes())?;
         let mut first = 0_usize;
         for answers in answers.chunks_mut(Lanes::WIDTH) {
-            if self.prediction.needs.ramp || !self.prediction.needs.turns.is_empty() {
+            if self.goes_row_by_row() {
                 self.rows(batch, first, &mut block, out, answers);
             } else {
                 self.block(batch, first, &mut block, out, answers);
@@ -64,6 +64,12 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
             first = first.saturating_add(Lanes::WIDTH);
         }
         Ok(())
+    }
+
+    /// Whether no rows are answered side by side.
+    fn goes_row_by_row(&self) -> bool {
+        let Prediction { kinematics, needs, .. } = &self.prediction;
+        needs.ramp || !needs.turns.is_empty() || !kinematics.aiming().is_empty()
     }
 
     /// Checks every length of a batch of so many rows.

@@ -5,8 +5,8 @@
 //! the next, and the difference has to go away slowly.
 
 use super::Transition;
+use crate::Limits;
 use crate::math::sqrt;
-use crate::{Limits, Turning};
 
 /// Less of an offset, or of a step, counts as none: sums of time steps round.
 const NOTHING: f64 = 1e-9;
@@ -20,7 +20,7 @@ pub struct AxisMemory {
     wanted: f64,
     /// Made less wanted at the last switch.
     offset: f64,
-    /// Whether it is a rotary axis that corrects its own angle.
+    /// Whether it is a rotary axis that corrects its own angle, or the direction of the tool.
     turns: bool,
 }
 
@@ -46,9 +46,9 @@ pub(super) struct Correction<'a> {
 
 impl<'a> Correction<'a> {
     /// The correction that the memory holds, on its way to whatever is wanted first.
-    pub(super) fn new(axes: &'a mut [AxisMemory], turning: &[Turning]) -> Self {
+    pub(super) fn new(axes: &'a mut [AxisMemory], turns: impl Fn(usize) -> bool) -> Self {
         for (number, axis) in axes.iter_mut().enumerate() {
-            axis.turns = turning.iter().any(|turning| turning.axis == number);
+            axis.turns = turns(number);
             if !axis.made.is_finite() {
                 axis.made = 0.0;
             }

@@ -20,7 +20,7 @@ pub(crate) struct Summary {
 pub(crate) struct Lean {
     /// Without compensation.
     pub(crate) without: [f64; 3],
-    /// Where rotary axes have corrected their own angles.
+    /// Where rotary axes have corrected their own angles, and the direction where they do.
     pub(crate) with: [f64; 3],
 }
 

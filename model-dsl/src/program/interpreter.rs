@@ -65,6 +65,12 @@ impl Interpreter {
         }
     }
 
+    /// The same machine, whose rotary axes leave the direction of the tool as it is.
+    #[must_use]
+    pub fn leaving_direction(self) -> Self {
+        Self { aiming: Vec::new(), ..self }
+    }
+
     /// The nominal tool tip relative to the part: mm, part frame, 0 where not sensitive.
     pub fn nominal(&self, position: &[f64]) -> [f64; 3] {
         triple(&self.run(&self.nominal, position, &[], &[]))

@@ -9,7 +9,7 @@ use super::prediction::Prediction;
 use super::report::{self, DirectionOutcome};
 use super::seen::{Part, Posed};
 use super::tilts::{AXES, Tilts};
-use super::{Compensator, Convergence, Outcome, Refusal, copy};
+use super::{Compensator, Convergence, Limits, Outcome, Refusal, copy};
 use crate::math::{add_scaled, all_finite, dot, sqrt};
 use crate::{ErrorMotions, Kinematics, Sample};
 
@@ -84,7 +84,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
             iterations = iterations.saturating_add(1);
             let pose = self.pose(sample, &target, &step, out)?;
             let columns = self.prediction.columns(&*self.directions);
-            let from = (sample, &target, &self.convergence);
+            let from = (sample, &target, &self.convergence, &self.limits);
             let next = pose.next(&mut self.prediction, from, columns, &step, out)?;
             gone = step.until(&next, &pose.reach, out);
             gone.check(iterations)?;
@@ -138,7 +138,7 @@ impl Pose {
     fn next<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized>(
         &self,
         prediction: &mut Prediction<'_, K, M>,
-        (sample, target, convergence): (&Sample<'_>, &Target, &Convergence),
+        (sample, target, convergence, limits): (&Sample<'_>, &Target, &Convergence, &Limits),
         columns: Columns<'_>,
         step: &Step,
         out: &mut [f64],
@@ -152,7 +152,10 @@ impl Pose {
         // step after step does not add up to more than the axes may turn.
         let made = target.tilts.turned(step.angles);
         let whole = add_scaled(add_scaled(seen.lean, 1.0, self.direction), -1.0, made);
-        let angles = convergence.kept(step.angles, target.tilts.angles(whole).map(|angle| -angle));
+        // What the own angles take is no room for others.
+        let most = limits.rotation.map_or(f64::INFINITY, |limit| (limit - seen.own.length()).max(0.0));
+        let found = target.tilts.angles(whole, most).map(|angle| -angle);
+        let angles = convergence.kept(step.angles, found);
         let posed = Posed::turned(prediction.kinematics.aiming(), angles, sample);
         Ok(Step {
             angles,

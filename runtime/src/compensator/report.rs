@@ -12,7 +12,8 @@ use crate::math::sqrt;
 pub struct Limits {
     /// Greatest length of a correction over all slides, in mm; none: no limit. A NaN refuses every correction.
     pub compensation: Option<f64>,
-    /// Greatest correction of rotary axes, over all of them, in rad; none: no limit. A NaN refuses every correction.
+    /// Greatest correction of rotary axes, over all of them, in rad; none: no limit. A NaN refuses every correction. What an axis that lies
+    /// nearly along the tool would turn for its direction is cut to it, and not refused.
     pub rotation: Option<f64>,
 }
 

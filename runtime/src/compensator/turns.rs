@@ -157,6 +157,11 @@ impl Turned {
         }
     }
 
+    /// How far the axes turn, over all of them, where commands are corrections: rad.
+    pub(super) fn length(&self) -> f64 {
+        sqrt(self.iter().fold(0.0, |sum, (_, command)| sum + command * command))
+    }
+
     /// The axes that have a command, and these commands.
     pub(super) fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
         self.commands.iter().flatten().copied()

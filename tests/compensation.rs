@@ -4,8 +4,8 @@
 //! keeps from where it was wanted, off and on. On, it must be of second order in the errors.
 
 use abbe_runtime::{
-    Compensator, Direction, ErrorMotion, Input, Kinematics, Outcome, Refusal, Sample, Table, Term, TermState,
-    Values, Work, states_needed,
+    Compensator, Direction, DirectionOutcome, ErrorMotion, Input, Kinematics, Outcome, Refusal, Sample,
+    Table, Term, TermState, Values, Work, states_needed,
 };
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
@@ -73,12 +73,12 @@ impl Numbers {
 }
 
 /// One machine with its errors, and a place to ask for.
-struct Trial<'t> {
-    machine: &'t Machine,
-    equations: &'t Equations,
+pub(crate) struct Trial<'t> {
+    pub(crate) machine: &'t Machine,
+    pub(crate) equations: &'t Equations,
     motions: &'t [ErrorMotion<'t>],
     directions: &'t [Direction],
-    target: State,
+    pub(crate) target: State,
 }
 
 impl Trial<'_> {
@@ -93,12 +93,12 @@ impl Trial<'_> {
         }
     }
 
-    fn wanted(&self) -> Vec<f64> {
+    pub(crate) fn wanted(&self) -> Vec<f64> {
         self.equations.axes.iter().map(|axis| self.target.positions[&*axis.variable]).collect()
     }
 
     /// The state of the real machine at a command: error motions as they are there, alignments over the real travel.
-    fn real(&self, command: &[f64]) -> State {
+    pub(crate) fn real(&self, command: &[f64]) -> State {
         let mut state = self.target.clone();
         for (axis, position) in self.equations.axes.iter().zip(command) {
             state.positions.insert(axis.variable.to_string(), *position);
@@ -120,7 +120,7 @@ impl Trial<'_> {
     }
 
     /// Where the tool really is at a command, less where it was wanted, in the sensitive directions.
-    fn miss(&self, command: &[f64]) -> [f64; 3] {
+    pub(crate) fn miss(&self, command: &[f64]) -> [f64; 3] {
         let (real, wanted) =
             (exact::tip(self.machine, &self.real(command)), exact::tip(self.machine, &self.target));
         std::array::from_fn(|axis| if self.machine.sensitive[axis] { real[axis] - wanted[axis] } else { 0.0 })
@@ -128,22 +128,25 @@ impl Trial<'_> {
 
     /// What the first order may leave: half the bound of the second derivative of the exact tip along the errors (see
     /// `Sizes`), and what the search leaves, which ends at steps of 1e-10 mm.
-    fn second_order(&self, command: &[f64]) -> f64 {
+    pub(crate) fn second_order(&self, command: &[f64]) -> f64 {
         let sizes = Sizes::of(self.machine, &self.real(command));
         sizes.second() / 2.0 + sizes.rounding() + 1e-9
     }
 }
 
 fn cycle<K: Kinematics>(machine: &K, trial: &Trial<'_>, enabled: bool) -> (Outcome, Vec<f64>) {
-    let (outcome, command) = asked(machine, trial, enabled);
+    let Answer { outcome, command, .. } = asked(machine, trial, enabled);
     (outcome.unwrap(), command)
 }
 
-fn asked<K: Kinematics>(
-    machine: &K,
-    trial: &Trial<'_>,
-    enabled: bool,
-) -> (Result<Outcome, Refusal>, Vec<f64>) {
+/// What a compensator answers.
+pub(crate) struct Answer {
+    pub(crate) outcome: Result<Outcome, Refusal>,
+    pub(crate) direction: Option<DirectionOutcome>,
+    pub(crate) command: Vec<f64>,
+}
+
+pub(crate) fn asked<K: Kinematics>(machine: &K, trial: &Trial<'_>, enabled: bool) -> Answer {
     let mut states = vec![TermState::default(); states_needed(trial.motions)];
     let mut directions = vec![[0.0; 3]; machine.axes()];
     let mut values = vec![0.0; machine.motions()];
@@ -154,14 +157,14 @@ fn asked<K: Kinematics>(
     let wanted = trial.wanted();
     let mut command = vec![f64::NAN; wanted.len()];
     let outcome = compensator.compensate(&trial.sample(&wanted), &mut command);
-    (outcome, command)
+    Answer { outcome, direction: compensator.direction(), command }
 }
 
-fn length(vector: [f64; 3]) -> f64 {
+pub(crate) fn length(vector: [f64; 3]) -> f64 {
     vector.iter().map(|part| part * part).sum::<f64>().sqrt()
 }
 
-fn less(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub(crate) fn less(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| a[axis] - b[axis])
 }
 
@@ -257,11 +260,21 @@ fn on_any<R>(
     seed: u64,
     judge: impl FnOnce(&Trial<'_>, &Interpreter) -> R,
 ) -> R {
-    let equations = compiled(&yaml::text(machine, true));
+    on_file(machine, &yaml::text(machine, true), terms, state(machine, seed), judge)
+}
+
+/// The same on a machine of which the file says more, at a place.
+pub(crate) fn on_file<R>(
+    machine: &Machine,
+    file: &str,
+    terms: impl Fn(&Equations) -> Vec<Vec<Term<'static>>>,
+    target: State,
+    judge: impl FnOnce(&Trial<'_>, &Interpreter) -> R,
+) -> R {
+    let equations = compiled(file);
     let terms = terms(&equations);
     let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
     let directions = vec![Direction::Positive; equations.axes.len()];
-    let target = state(machine, seed);
     let constants: Vec<f64> =
         equations.constants.iter().map(|constant| target.constants[&*constant.name]).collect();
     let trial = Trial { machine, equations: &equations, motions: &motions, directions: &directions, target };
@@ -269,7 +282,7 @@ fn on_any<R>(
 }
 
 /// Constants: displacements up to 0.05 mm, angles up to 40 urad.
-fn constants(equations: &Equations, seed: u64) -> Vec<Vec<Term<'static>>> {
+pub(crate) fn constants(equations: &Equations, seed: u64) -> Vec<Vec<Term<'static>>> {
     let size = |angular: bool| if angular { 40e-6 } else { 0.05 };
     let motions = equations.motions.iter();
     motions
@@ -294,7 +307,7 @@ proptest! {
     #[test]
     fn random_machines(machine in machines(), seed in any::<u64>()) {
         on_any(&machine, |equations| constants(equations, seed), seed, |trial, interpreter| {
-            let (outcome, command) = asked(interpreter, trial, true);
+            let Answer { outcome, command, .. } = asked(interpreter, trial, true);
             // In front of a singular pose nothing is corrected, as the position says.
             let remaining = match outcome {
                 Ok(outcome) => outcome.remaining,
@@ -312,7 +325,7 @@ proptest! {
     #[test]
     fn own_angles_of_random_machines(machine in machines(), seed in any::<u64>()) {
         on_any(&machine, |equations| own_angles(equations, seed), seed, |trial, interpreter| {
-            let (outcome, command) = asked(interpreter, trial, true);
+            let Answer { outcome, command, .. } = asked(interpreter, trial, true);
             prop_assert_eq!(outcome.map(|outcome| outcome.remaining), Ok([0.0; 3]));
             let lengths = Sizes::of(trial.machine, &trial.real(&command)).lengths;
             let (tip, turn) = (length(trial.miss(&command)), trial.turned(&command));

@@ -10,6 +10,7 @@
 )]
 
 mod agreement;
+mod aiming;
 mod beside;
 mod bounded;
 mod browser;

@@ -74,6 +74,10 @@ enum AbbeRefused
   ABBE_REFUSED_LENGTH = 5,
   // In this pose axes move the tip in nearly the same direction: they would have to move more than a hundred times as far as it.
   ABBE_REFUSED_NEAR_SINGULAR = 6,
+  /**
+   * A motor does not stand where its axes put it.
+   */
+  ABBE_REFUSED_MOTOR = 7,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -161,6 +165,16 @@ AbbeStatus abbe_set_tool(const struct Abbe *handle,
 AbbeStatus abbe_set_constants(const struct Abbe *handle,
                               const double *constants,
                               size_t count);
+
+// Writes what the last cycle found of the direction of the tool, from its tip towards the spindle: its error without compensation, and
+// what stays of it at the end of the correction; I, J, K in the part's frame, rad, NaN where there was no cycle yet or its sample was
+// refused. Out of range on a machine whose rotary axes do not correct that direction; nothing is written then. Either may be null.
+//
+// # Safety
+// `handle` is null or from `abbe_open` and not closed; `error` and `remaining` are null or room for three numbers each.
+AbbeStatus abbe_direction(const struct Abbe *handle,
+                          double *error,
+                          double *remaining);
 
 // Forgets what terms, sensors and axes remember, as if the machine had just started: after homing, say. The correction made
 // stays, and goes from there to what is wanted next.

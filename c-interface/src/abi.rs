@@ -206,6 +206,30 @@ pub unsafe extern "C" fn abbe_set_constants(
     abbe.enter(|controller| controller.set_constants(constants))
 }
 
+/// Writes what the last cycle found of the direction of the tool, from its tip towards the spindle: its error without compensation, and
+/// what stays of it at the end of the correction; I, J, K in the part's frame, rad, NaN where there was no cycle yet or its sample was
+/// refused. Out of range on a machine whose rotary axes do not correct that direction; nothing is written then. Either may be null.
+///
+/// # Safety
+/// `handle` is null or from `abbe_open` and not closed; `error` and `remaining` are null or room for three numbers each.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn abbe_direction(handle: *const Abbe, error: *mut f64, remaining: *mut f64) -> Status {
+    // SAFETY: null or from `abbe_open` and not closed.
+    let Some(abbe) = (unsafe { handle.as_ref() }) else { return Status::NullPointer };
+    abbe.enter(|controller| {
+        let Some(direction) = controller.direction() else { return Status::OutOfRange };
+        if !error.is_null() {
+            // SAFETY: not null, and room for three numbers.
+            unsafe { write_numbers(&direction.error, error) };
+        }
+        if !remaining.is_null() {
+            // SAFETY: as above.
+            unsafe { write_numbers(&direction.remaining, remaining) };
+        }
+        Status::Done
+    })
+}
+
 /// Forgets what terms, sensors and axes remember, as if the machine had just started: after homing, say. The correction made
 /// stays, and goes from there to what is wanted next.
 ///

@@ -9,7 +9,7 @@ mod tracks;
 
 use std::fmt;
 
-use abbe_runtime::SetupError;
+use abbe_runtime::{DirectionOutcome, SetupError};
 use model_dsl::calibration::{Calibration, NotCompensable};
 
 use self::running::Running;
@@ -112,6 +112,13 @@ impl Controller {
     #[must_use]
     pub fn correction(&self) -> &[f64] {
         self.running.correction()
+    }
+
+    /// What the last cycle found of the direction of the tool, NaN where there was none or its sample was refused; none on a machine whose
+    /// rotary axes do not correct that direction.
+    #[must_use]
+    pub fn direction(&mut self) -> Option<DirectionOutcome> {
+        self.running.direction()
     }
 
     /// One servo cycle, which finds the correction. `enabled` switches the compensation.

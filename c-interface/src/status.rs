@@ -108,6 +108,8 @@ pub enum Refused {
     Length = 5,
     /// In this pose axes move the tip in nearly the same direction: they would have to move more than a hundred times as far as it.
     NearSingular = 6,
+    /// A motor does not stand where its axes put it.
+    Motor = 7,
 }
 
 impl From<Refusal> for Refused {
@@ -119,6 +121,7 @@ impl From<Refusal> for Refused {
             Refusal::OverLimit { .. } | Refusal::OverRotationLimit { .. } => Self::OverLimit,
             Refusal::Length { .. } => Self::Length,
             Refusal::NearSingular { .. } => Self::NearSingular,
+            Refusal::Motor { .. } => Self::Motor,
         }
     }
 }

@@ -60,6 +60,7 @@ typedef struct {
     hal_s32_t *status;     /* out: AbbeStatus */
     hal_s32_t *refused;    /* out: AbbeRefused */
     hal_float_t *error[3]; /* out: what the model says without compensation, X Y Z of the part, mm */
+    hal_float_t *lean[3];  /* out: the same of the direction of the tool, I J K, rad; where rotary axes correct it */
     hal_s32_t *tool;       /* in: the number of the tool; 0: none */
     hal_bit_t *no_tool;    /* out: the calibration has no tool of that number, and its constants themselves count */
     hal_s32_t *time;       /* out: how long the last cycle took, ns */
@@ -70,6 +71,7 @@ static int component = -1;
 static Abbe *abbe;
 static Pins *pins;
 static size_t axes, sensors;
+static bool aims; /* rotary axes correct the direction of the tool */
 static double mm[MOST_AXES]; /* mm or rad in one unit of the joint */
 static bool was_homed;
 static int last_tool;
@@ -124,6 +126,9 @@ static void tell(AbbeStatus status, const AbbeCycle *cycle) {
     *pins->refused = cycle->refused;
     *pins->settling = cycle->settling;
     for (int i = 0; i < 3; i++) *pins->error[i] = cycle->error[i];
+    double lean[3];
+    if (!aims || abbe_direction(abbe, lean, NULL) != ABBE_STATUS_DONE) return;
+    for (int i = 0; i < 3; i++) *pins->lean[i] = lean[i];
 }
 
 /* One cycle of the model. After a fault of a call the last corrections stay. */
@@ -203,9 +208,11 @@ static int sensor_pins(SensorPins *sensor, const char *sensor_name) {
 }
 
 static int machine_pins(void) {
-    static const char directions[] = "xyz";
+    static const char directions[] = "xyz", leans[] = "ijk";
+    aims = abbe_direction(abbe, NULL, NULL) == ABBE_STATUS_DONE;
     for (int i = 0; i < 3; i++) {
         if (hal_pin_float_newf(HAL_OUT, &pins->error[i], component, "abbe.error.%c", directions[i])) return -1;
+        if (aims && hal_pin_float_newf(HAL_OUT, &pins->lean[i], component, "abbe.error.%c", leans[i])) return -1;
     }
     return hal_pin_bit_newf(HAL_IN, &pins->enable, component, "abbe.enable") ||
            hal_pin_bit_newf(HAL_OUT, &pins->enabled, component, "abbe.enabled") ||

@@ -77,7 +77,8 @@ def main():
     with open("drawn.h", "w") as plant, open("specimen.yaml", "w") as calibration:
         plant.write(f"/* For plant.c: {sys.argv} */\n")
         calibration.write(f"calibration: 1\nmachine: {machine}\nsource: draw.py {seed}\n")
-        calibration.write("limits: {compensation: 1 mm, rotation: 200 arcsec, rate: 20 mm/s, fade: 0.5 s}\nerrors:\n")
+        # Where the tool stands nearly along C, C has to turn far for little, and the slides follow it.
+        calibration.write("limits: {compensation: 2 mm, rotation: 0.2 deg, fade: 0.5 s}\nerrors:\n")
         for axis in axes:
             play = 0 if is_rotary(axis) else PLAY * random.uniform(0.3, 1)
             errors = play, {direction: motion(axis, direction) for direction in DIRECTIONS}, aligned(axis)

@@ -4,7 +4,7 @@ eval loadrt $::KINS(KINEMATICS)
 loadrt abbe calibration=$::ABBE(CALIBRATION)
 loadrt $::EMCMOT(EMCMOT) servo_period_nsec=$::EMCMOT(SERVO_PERIOD) num_joints=$::KINS(JOINTS)
 loadrt plant
-loadrt sampler depth=8000 cfg=sfffffssb
+loadrt sampler depth=8000 cfg=sffffssbf
 
 # Feedback before the motion controller, commands after it.
 foreach function {abbe.read motion-command-handler motion-controller abbe.update plant.update sampler.0} {
@@ -31,8 +31,9 @@ net x-error plant.x.error => sampler.0.pin.1
 net y-error plant.y.error => sampler.0.pin.2
 net z-error plant.z.error => sampler.0.pin.3
 net turned plant.turned => sampler.0.pin.4
-net turned-own plant.turned-own => sampler.0.pin.5
-net status abbe.status => sampler.0.pin.6
-net time abbe.time => sampler.0.pin.7
-net machine-on motion.motion-enabled => sampler.0.pin.8
+net status abbe.status => sampler.0.pin.5
+net time abbe.time => sampler.0.pin.6
+net machine-on motion.motion-enabled => sampler.0.pin.7
+# The joint behind the slides tilts: where it is at zero the tool stands along C.
+net [string tolower [string index $::ABBE(AXES) 3]]-position => sampler.0.pin.8
 setp sampler.0.enable 1

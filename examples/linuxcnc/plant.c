@@ -46,9 +46,6 @@ typedef struct {
 
 enum { LINKS = sizeof links / sizeof *links };
 
-/* Which errors a machine has. */
-typedef enum { NONE, OWN_ANGLES, ALL } Errors;
-
 typedef struct {
     double row[3][3];
 } Rotation;
@@ -71,7 +68,6 @@ typedef struct {
     hal_float_t *nominal[3];      /* out: where the tip would be with all positions as wanted and no errors, mm */
     hal_float_t *error[3];        /* out: the tip from there, mm */
     hal_float_t *turned;          /* out: the angle from the direction of the tool to the one without errors, arcsec */
-    hal_float_t *turned_own;      /* out: that angle if rotary axes erred by nothing but their own angles, arcsec */
     hal_float_t *temperature;     /* in: degC */
 } Pins;
 
@@ -125,23 +121,19 @@ static bool turns(const Link *link) {
     return link->along >= A;
 }
 
-static bool errs(const Link *link, int motion, Errors errors) {
-    return errors == ALL || (errors == OWN_ANGLES && turns(link) && motion == link->along);
-}
-
 static double at(const Motion *motion, double q) {
     double wave = motion->period == 0 ? 0 : motion->amplitude * sin(2 * M_PI * q / motion->period + motion->phase);
     return motion->curve[0] + motion->curve[1] * q + motion->curve[2] * q * q + wave;
 }
 
 /* The body of an axis at a position q, in the frame of the body that carries it. */
-static Body moved(const Link *link, double q, double temperature, Errors errors) {
+static Body moved(const Link *link, double q, double temperature, bool errs) {
     double motion[MOTIONS], aligned[MOTIONS], own[MOTIONS] = {0};
     for (int i = X; i < MOTIONS; i++) {
-        motion[i] = errs(link, i, errors) ? at(&link->motion[i], q) : 0;
-        aligned[i] = errs(link, i, errors) ? link->aligned[i] : 0;
+        motion[i] = errs ? at(&link->motion[i], q) : 0;
+        aligned[i] = errs ? link->aligned[i] : 0;
     }
-    double growth = errors == ALL ? link->expansion * (temperature - 20) * q : 0;
+    double growth = errs ? link->expansion * (temperature - 20) * q : 0;
     own[link->along] = link->way * (q + motion[link->along] + aligned[link->along] + growth);
     motion[link->along] = aligned[link->along] = 0;
     Rotation line = turned(aligned[A], aligned[B], aligned[C]);
@@ -156,11 +148,11 @@ static Body moved(const Link *link, double q, double temperature, Errors errors)
 }
 
 /* The last body of a branch, in the frame of the bed. */
-static Body end(bool carries_part, const double *position, double temperature, Errors errors) {
+static Body end(bool carries_part, const double *position, double temperature, bool errs) {
     Body body = {turned(0, 0, 0), {0, 0, 0}};
     for (int i = 0; i < LINKS; i++) {
         if (links[i].carries_part != carries_part) continue;
-        Body next = moved(&links[i], position[i], temperature, errors);
+        Body next = moved(&links[i], position[i], temperature, errs);
         Body carried = {product(&body.rotation, &next.rotation), {0, 0, 0}};
         outside(&body, next.place, carried.place);
         body = carried;
@@ -168,8 +160,8 @@ static Body end(bool carries_part, const double *position, double temperature, E
     return body;
 }
 
-static Tool seen(const double *position, double temperature, Errors errors) {
-    Body of_part = end(true, position, temperature, errors), of_tool = end(false, position, temperature, errors);
+static Tool seen(const double *position, double temperature, bool errs) {
+    Body of_part = end(true, position, temperature, errs), of_tool = end(false, position, temperature, errs);
     const double up[3] = {0, 0, 1};
     double zero[3], tip[3], way[3], direction[3];
     outside(&of_part, part, zero);
@@ -205,15 +197,13 @@ static void update(void *unused, long period) {
         *pins->fb[i] = *pins->cmd[i];
         take_along(i, *pins->cmd[i] * unit);
     }
-    Tool nominal = seen(wanted, temperature, NONE), actual = seen(axis, temperature, ALL);
-    Tool own = seen(axis, temperature, OWN_ANGLES);
+    Tool nominal = seen(wanted, temperature, false), actual = seen(axis, temperature, true);
     for (int i = X; i <= Z; i++) {
         *pins->tip[i] = actual.tip[i];
         *pins->nominal[i] = nominal.tip[i];
         *pins->error[i] = actual.tip[i] - nominal.tip[i];
     }
     *pins->turned = between(&actual, &nominal);
-    *pins->turned_own = between(&own, &nominal);
 }
 
 static int axis_pins(int i) {
@@ -243,7 +233,6 @@ static int export_pins(void) {
         if (direction_pins(i)) return -1;
     }
     if (hal_pin_float_newf(HAL_OUT, &pins->turned, component, "plant.turned") ||
-        hal_pin_float_newf(HAL_OUT, &pins->turned_own, component, "plant.turned-own") ||
         hal_pin_float_newf(HAL_IN, &pins->temperature, component, "plant.temperature")) {
         return -1;
     }

@@ -4,6 +4,7 @@
 //! functions that need only `abbe_runtime`, allocate nothing and cannot panic; and the same
 //! tokens as a formatted file. The macro, build scripts and `abbe expand` all come through here.
 
+mod aiming;
 mod body;
 mod bundles;
 mod c_interface;

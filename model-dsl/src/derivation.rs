@@ -18,7 +18,9 @@ use num_traits::One;
 use crate::algebra::{Axis, FirstOrder, Htm, Name, Polynomial, Rational, Symbol};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::equations::{AxisInfo, ConstantInfo, Equations, Motion, Row, Term, TravelInfo};
-use crate::machine::{Branch, Element, ElementKind, Link, LinkKind, Machine, MotionKind, Motor, body_sign};
+use crate::machine::{
+    Branch, Element, ElementKind, Link, LinkKind, Machine, MotionKind, Motor, Orientation, body_sign,
+};
 
 pub use link_matrix::matrix as link_matrix;
 pub use meaning::{NamedMotion, named};
@@ -27,7 +29,7 @@ pub use meaning::{NamedMotion, named};
 pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
     let (tip, turn) = relative(machine);
     let tip = &tip;
-    let direction = machine.orientation.then(|| relative_direction(machine));
+    let direction = machine.orientation.is_derived().then(|| relative_direction(machine));
     let kept = seen_motions(machine, tip, direction.as_ref());
     warn_unseen(machine, &kept, diagnostics);
     let rows = rows(machine, tip, &kept);
@@ -40,7 +42,7 @@ pub fn derive(machine: &Machine, diagnostics: &mut Diagnostics) -> Equations {
         source: machine.source.clone(),
         links: machine.links.clone(),
         relative: machine.relative,
-        axes: axes(machine, tip).into_iter().chain(motors(machine, &kept)).collect(),
+        axes: axes(machine, tip, direction.as_ref()).into_iter().chain(motors(machine, &kept)).collect(),
         constants: constants(machine),
         motions: kept.iter().map(|number| motion(machine, *number, &travels)).collect(),
         unseen: unseen.map(|number| motion(machine, number, &travels)).collect(),
@@ -192,7 +194,7 @@ fn travels(machine: &Machine, kept: &[usize]) -> Vec<TravelInfo> {
     travels
 }
 
-fn axes(machine: &Machine, tip: &[FirstOrder; 3]) -> Vec<AxisInfo> {
+fn axes(machine: &Machine, tip: &[FirstOrder; 3], direction: Option<&[FirstOrder; 3]>) -> Vec<AxisInfo> {
     let mut correcting: Vec<(Axis, Branch)> = Vec::new();
     let mut axes = Vec::new();
     for (_, link) in machine.axes() {
@@ -211,6 +213,7 @@ fn axes(machine: &Machine, tip: &[FirstOrder; 3]) -> Vec<AxisInfo> {
             branch: link.branch,
             effect: corrects.then_some(effect),
             corrects_angle: rotary && link.corrects,
+            aim: direction.and_then(|direction| aim(machine, link, direction)),
             elements: elements(machine, link),
             follows: Vec::new(),
             squares: Vec::new(),
@@ -234,6 +237,7 @@ fn motors(machine: &Machine, kept: &[usize]) -> Vec<AxisInfo> {
             effect: None,
             corrects_angle: false,
             elements: elements_of(machine, &motor.name.value).collect(),
+            aim: None,
             follows: motor
                 .follows
                 .iter()
@@ -260,6 +264,25 @@ fn squares(machine: &Machine, number: usize, kept: &[usize]) -> Vec<(usize, Rati
     };
     let motions = kept.iter().enumerate();
     motions.filter_map(|(place, motion)| Some((place, weight(&machine.motions[*motion])?))).collect()
+}
+
+/// What an axis that corrects the direction of the tool turns it by for each rad; none where it turns it nowhere.
+fn aim(machine: &Machine, link: &Link, direction: &[FirstOrder; 3]) -> Option<[Polynomial; 3]> {
+    let rotary = matches!(link.kind, LinkKind::Rotary(_));
+    if machine.orientation != Orientation::Corrected || !rotary || !link.corrects {
+        return None;
+    }
+    let name = link.variable();
+    let aim = direction.each_ref().map(|entry| by_angle(entry.nominal_part(), &name));
+    aim.iter().any(|entry| !entry.is_zero()).then_some(aim)
+}
+
+/// The derivative by an angle, which stands in sines and cosines.
+fn by_angle(value: &Polynomial, angle: &Name) -> Polynomial {
+    let (sine, cosine) = (Symbol::Sin(angle.clone()), Symbol::Cos(angle.clone()));
+    let of_sine = &value.derivative(&sine) * &Polynomial::symbol(cosine.clone());
+    let of_cosine = &value.derivative(&cosine) * &Polynomial::symbol(sine);
+    &of_sine - &of_cosine
 }
 
 /// What repeats along the travel of an axis.

@@ -75,6 +75,10 @@ pub struct AxisInfo {
     pub effect: Option<[Polynomial; 3]>,
     /// Whether it corrects the error of its own angle itself: a rotary axis, unless the machine file leaves it to the slides.
     pub corrects_angle: bool,
+    /// What it turns the direction of the tool by for each rad, in the part's frame, pure numbers; `None` where it does not correct that
+    /// direction: a slide, a rotary axis that corrects nothing or turns the tool nowhere, and all axes but where the machine file says
+    /// `orientation: true`.
+    pub aim: Option<[Polynomial; 3]>,
     /// What repeats along its travel: a rotary axis itself, then what the machine file says of the drive.
     pub elements: Vec<Element>,
     /// Of a motor, which is no link of the chain, where it stands: for each axis that it follows, by its number, how far the motor goes
@@ -269,6 +273,12 @@ impl Equations {
             motions.map(move |(motion, _)| Turning { axis: number, motion }).collect::<Vec<_>>()
         };
         self.axes.iter().enumerate().filter(|(_, axis)| axis.corrects_angle).flat_map(own).collect()
+    }
+
+    /// The rotary axes that correct the direction of the tool, in their order; none where it is only told, or not derived.
+    pub fn aiming(&self) -> Vec<usize> {
+        let aiming = self.axes.iter().enumerate().filter(|(_, axis)| axis.aim.is_some());
+        aiming.map(|(number, _)| number).collect()
     }
 
     /// For each axis, whether no error of the tip moves it in a search for a command; empty where all move.

@@ -15,6 +15,7 @@ mod link;
 mod motion;
 mod motor;
 mod names;
+mod orientation;
 mod read_link;
 mod read_motion;
 pub(crate) mod reference;
@@ -28,6 +29,7 @@ pub use link::{Along, Branch, Link, LinkKind, Reference};
 pub(crate) use motion::body_sign;
 pub use motion::{Motion, MotionKind, MotionName, parse_name, without_reference};
 pub use motor::{Beam, Motor, Moved};
+pub use orientation::Orientation;
 pub(crate) use read_link::own_direction;
 pub(crate) use read_motion::kind_of;
 pub use reference::Counted;
@@ -55,8 +57,8 @@ pub struct Machine {
     pub sensitive_spans: Vec<(Axis, Span)>,
     /// Whether error motions are those of the tool relative to the part (`motions: relative`).
     pub relative: bool,
-    /// Whether the direction of the tool is derived beside its tip (`orientation: true`).
-    pub orientation: bool,
+    /// What becomes of the direction of the tool.
+    pub orientation: Orientation,
     /// The named offsets, in order of first mention or as declared.
     pub constants: Vec<Constant>,
     /// The links of both branches, each branch from the bed outwards, the part's branch first.
@@ -171,7 +173,8 @@ fn build(
     drive::settle(&drives, &chain, &motors, diagnostics);
     let links_are_distinct = !diagnostics.iter().any(|known| matches!(known.code, "E0123" | "E0124"));
     if links_are_distinct {
-        let printed = names::Printed { sensitive: &header.sensitive, orientation: header.orientation };
+        let printed =
+            names::Printed { sensitive: &header.sensitive, orientation: header.orientation.is_derived() };
         names::check_names(&motions, &constants, &chain, &motors, printed, diagnostics);
     }
     if diagnostics.has_errors() {

@@ -4,12 +4,15 @@
 //! command whose own error cancels. It exists because the error belongs to where the axes are, not to where they were
 //! asked to be: subtracting the error at the target leaves the difference of the two.
 
+mod aim;
 mod batch;
 mod inverse;
 mod motors;
 mod prediction;
 mod report;
+mod seen;
 mod setup;
+mod tilts;
 mod turns;
 
 use self::inverse::{Columns, Reach};
@@ -17,10 +20,12 @@ use self::prediction::Prediction;
 use self::setup::Needs;
 use self::turns::Turned;
 use crate::math::{add_scaled, all_finite, sqrt};
-use crate::{ErrorMotion, ErrorMotions, Kinematics, Sample, Share, Sines, TermState, Turning};
+use crate::{ErrorMotion, ErrorMotions, Kinematics, Sample, Share, Sines, TermState};
 
 pub use self::batch::{Batch, BatchSizes, BatchWork};
-pub use self::report::{Convergence, GREATEST_AMPLIFICATION, Limits, Outcome, Refusal, SetupError, Work};
+pub use self::report::{
+    Convergence, DirectionOutcome, GREATEST_AMPLIFICATION, Limits, Outcome, Refusal, SetupError, Work,
+};
 pub use self::setup::states_needed;
 
 /// Predicts the error of a machine and compensates it, one sample a servo cycle.
@@ -42,6 +47,8 @@ pub struct Compensator<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized = [E
     directions: &'a mut [[f64; 3]],
     /// What the axes reach, once that is known and where it is the same everywhere.
     reach: Option<Reach>,
+    /// What the last cycle found of the direction of the tool, where rotary axes correct it.
+    direction: Option<DirectionOutcome>,
 }
 
 impl<'a, K: Kinematics + ?Sized> Compensator<'a, K> {
@@ -89,6 +96,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
             },
             directions,
             reach: None,
+            direction: None,
         })
     }
 
@@ -98,9 +106,17 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
         self.prediction.kinematics.axes()
     }
 
-    /// The error motions that rotary axes correct themselves.
-    pub(crate) fn turning(&self) -> &[Turning] {
-        self.prediction.kinematics.turning()
+    /// Whether a correction turns an axis: its own angle is wrong, or the direction of the tool.
+    pub(crate) fn turns(&self, axis: usize) -> bool {
+        let Prediction { kinematics, .. } = self.prediction;
+        kinematics.turning().iter().any(|turning| turning.axis == axis) || kinematics.aiming().contains(&axis)
+    }
+
+    /// What the last call of [`compensate`](Self::compensate) found of the direction of the tool. None before the first, after a
+    /// refusal, and on a machine whose rotary axes do not [correct](Kinematics::aiming) it.
+    #[must_use]
+    pub const fn direction(&self) -> Option<DirectionOutcome> {
+        self.direction
     }
 
     /// The axes that are motors and only follow others.
@@ -137,6 +153,9 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     /// The command solves `J (c - target) + E(c) = 0` as far as the slides reach, J being the directions of the axes, by
     /// `c <- target - J^+ E(c)` from `c = target` on; a rotary axis has the command at which its [own
     /// angle](Kinematics::turning) is the one wanted, which is no part of that E, and whose lever arms are those of the angle wanted.
+    /// Where rotary axes [correct the direction of the tool](Kinematics::aiming), they turn by
+    /// the shortest angles that undo its error in the pose in which they then stand, no axis by more than [`GREATEST_AMPLIFICATION`]
+    /// times that error, and E is that of the tip in this pose, less where the tip was wanted.
     /// Direction, velocity, temperature and memories are those of the sample
     /// throughout. What no axis reaches is left in [`Outcome::remaining`], and so is what the ramp of a backlash leaves for
     /// later cycles: E is then [`Term::corrected`](crate::Term::corrected).
@@ -155,6 +174,10 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     /// [`compensate`](Self::compensate), where all is as long as it must be; a refusal leaves anything in `out`.
     #[inline]
     fn cycle(&mut self, sample: &Sample<'_>, out: &mut [f64]) -> Result<Outcome, Refusal> {
+        // Asked of the machine: where it is known when the code is compiled that none does, nothing is left of all this.
+        if !self.prediction.kinematics.aiming().is_empty() {
+            return self.cycle_aimed(sample, out);
+        }
         let error = self.prediction.begin(sample)?;
         if self.enabled {
             self.search(sample, error, out)

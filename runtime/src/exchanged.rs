@@ -26,6 +26,22 @@ macro_rules! numbers_of {
             let $machine = self;
             $of.error_lanes(position, travel, motions)
         }
+        fn nominal(&self, position: &[f64]) -> [f64; 3] {
+            let $machine = self;
+            $of.nominal(position)
+        }
+        fn direction(&self, position: &[f64]) -> [f64; 3] {
+            let $machine = self;
+            $of.direction(position)
+        }
+        fn direction_error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
+            let $machine = self;
+            $of.direction_error(position, travel, motions)
+        }
+        fn aims(&self, position: &[f64], aims: &mut [[f64; 3]; 3]) {
+            let $machine = self;
+            $of.aims(position, aims);
+        }
         fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {
             let $machine = self;
             $of.directions(position, directions);
@@ -63,6 +79,10 @@ macro_rules! topology_of {
         fn squaring(&self) -> &[Share] {
             let $machine = self;
             $of.squaring()
+        }
+        fn aiming(&self) -> &[usize] {
+            let $machine = self;
+            $of.aiming()
         }
         fn directions_vary(&self) -> bool {
             let $machine = self;

@@ -50,9 +50,9 @@ pub trait Kinematics {
     /// A direction that is not sensitive is 0.0. A slice of the wrong length gives NaN in all three.
     fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3];
 
-    /// Writes the sines and cosines of rotary axes at a position, as far as the equations read them. A rotary axis corrects no more
-    /// than its [own angle](Self::turning), and then stands at the angle of the position wanted: a compensator asks once for what
-    /// it passes to [`error_with`](Self::error_with) at each step.
+    /// Writes the sines and cosines of rotary axes at a position, as far as the equations read them. A rotary axis that corrects no more
+    /// than its [own angle](Self::turning) then stands at the angle of the position wanted: a compensator asks once for what
+    /// it passes to [`error_with`](Self::error_with) at each step, and anew where axes turn to [aim](Self::aiming) the tool.
     fn turn(&self, _position: &[f64], _sines: &mut Sines) {}
 
     /// [`Kinematics::error`], bit for bit, at a position at which [`turn`](Self::turn) writes these.
@@ -92,6 +92,35 @@ pub trait Kinematics {
     #[inline(always)]
     fn squaring(&self) -> &[Share] {
         &[]
+    }
+
+    /// The rotary axes that correct the direction of the tool, in their order: they turn until its error is undone, and the slides take
+    /// back what that does to the tip. None: the direction is left as it is, and nothing below of tip and direction is asked for.
+    fn aiming(&self) -> &[usize] {
+        &[]
+    }
+
+    /// The tool tip relative to the part without errors: mm, part frame; a direction that is not sensitive is 0.0. A slice of the wrong
+    /// length gives NaN, and so does a machine that corrects no direction of the tool.
+    fn nominal(&self, _position: &[f64]) -> [f64; 3] {
+        [f64::NAN; 3]
+    }
+
+    /// The direction of the tool without errors, from its tip towards the spindle: a vector of length 1 in the part's frame. NaN as in
+    /// [`nominal`](Self::nominal).
+    fn direction(&self, _position: &[f64]) -> [f64; 3] {
+        [f64::NAN; 3]
+    }
+
+    /// First-order error of that direction, actual minus nominal, in rad. NaN as in [`nominal`](Self::nominal).
+    fn direction_error(&self, _position: &[f64], _travel: &[f64], _motions: &[f64]) -> [f64; 3] {
+        [f64::NAN; 3]
+    }
+
+    /// For each of the [aiming](Self::aiming) axes, what it turns that direction by for each rad; zero beyond them. NaN as in
+    /// [`nominal`](Self::nominal).
+    fn aims(&self, _position: &[f64], aims: &mut [[f64; 3]; 3]) {
+        *aims = [[f64::NAN; 3]; 3];
     }
 
     /// For each axis, the displacement of the tool tip relative to the part per mm of programmed motion.

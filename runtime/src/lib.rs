@@ -30,7 +30,8 @@
 //! unchanged and a [`Refusal`] says why.
 //!
 //! A rotary axis corrects the error of its own angle itself ([`Kinematics::turning`]): its command is the one at which it stands at
-//! the angle wanted, in front of the search for the slides, which correct the rest.
+//! the angle wanted, in front of the search for the slides, which correct the rest. Where rotary axes correct the direction of the tool as
+//! well ([`Kinematics::aiming`]), one search finds the commands of all axes, in the pose in which the rotary axes then stand.
 //!
 //! # Batches
 //!
@@ -127,8 +128,8 @@ mod table;
 mod term;
 
 pub use compensator::{
-    Batch, BatchSizes, BatchWork, Compensator, Convergence, GREATEST_AMPLIFICATION, Limits, Outcome, Refusal,
-    SetupError, Work, states_needed,
+    Batch, BatchSizes, BatchWork, Compensator, Convergence, DirectionOutcome, GREATEST_AMPLIFICATION, Limits,
+    Outcome, Refusal, SetupError, Work, states_needed,
 };
 pub use direction::{Direction, DirectionTracker};
 pub use exchanged::Exchanged;

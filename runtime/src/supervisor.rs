@@ -19,7 +19,7 @@ pub struct Transition {
     /// Greatest change of the correction per second, as a length over all slides in mm/s, whatever causes it: a reversal,
     /// a step of a table, a switch; none: no limit. With 0 or NaN the correction stays as it is.
     pub rate: Option<f64>,
-    /// The same for rotary axes that correct their own angle, over all of them, in rad/s.
+    /// The same for rotary axes that correct their own angle or the direction of the tool, over all of them, in rad/s.
     pub rotation_rate: Option<f64>,
     /// How long the last reading of a sensor that fell silent is held, in s. With NaN it is not held.
     pub hold: f64,
@@ -154,8 +154,8 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Supervisor<'a, K, M> 
                 return Err(SetupError::Length { slice, expected, found });
             }
         }
-        let correction =
-            Correction::new(memory.axes, compensator.turning(), |axis| compensator.only_follows(axis));
+        let (turns, follows) = (|axis| compensator.turns(axis), |axis| compensator.only_follows(axis));
+        let correction = Correction::new(memory.axes, turns, follows);
         Ok(Self {
             compensator,
             transition: Transition::default(),

@@ -1,5 +1,7 @@
 //! Rows that wait for their answers. In: samples, row by row. Out: a batch of the runtime, and its answers, row by row.
 
+use std::ops::Range;
+
 use abbe_runtime::{Batch, BatchWork, Compensator, Direction, Kinematics, Lanes, Outcome, Refusal, Sample};
 use csv::ByteRecord;
 
@@ -69,29 +71,30 @@ impl Pending {
         self.time_step.push(sample.time_step);
     }
 
-    /// Answers all rows.
+    /// Answers these rows, which follow those that were answered before.
     pub(crate) fn compensate<K: Kinematics>(
         &mut self,
+        rows: Range<usize>,
         compensator: &mut Compensator<'_, K>,
     ) -> Result<(), Refusal> {
-        let rows = self.len();
-        self.answers.resize(rows, Err(Refusal::NotFinite));
-        self.commands.iter_mut().for_each(|column| column.resize(rows, 0.0));
+        self.answers.resize(rows.end, Err(Refusal::NotFinite));
+        self.commands.iter_mut().for_each(|column| column.resize(rows.end, 0.0));
         let batch = Batch {
-            position: &slices(&self.position),
-            travel: &slices(&self.travel),
-            direction: &slices(&self.direction),
-            velocity: &slices(&self.velocity),
-            temperature: &slices(&self.temperature),
-            time_step: &self.time_step,
+            position: &slices(&self.position, &rows),
+            travel: &slices(&self.travel, &rows),
+            direction: &slices(&self.direction, &rows),
+            velocity: &slices(&self.velocity, &rows),
+            temperature: &slices(&self.temperature, &rows),
+            time_step: &self.time_step[rows.clone()],
         };
         let work = BatchWork {
             lanes: &mut self.lanes,
             numbers: &mut self.numbers,
             directions: &mut self.directions,
         };
-        let mut commands: Vec<&mut [f64]> = self.commands.iter_mut().map(Vec::as_mut_slice).collect();
-        compensator.compensate_batch(&batch, work, &mut commands, &mut self.answers)
+        let mut commands: Vec<&mut [f64]> =
+            self.commands.iter_mut().map(|column| &mut column[rows.clone()]).collect();
+        compensator.compensate_batch(&batch, work, &mut commands, &mut self.answers[rows])
     }
 
     /// A row as it was read, and its number.
@@ -142,6 +145,6 @@ fn push<T: Copy>(columns: &mut Vec<Vec<T>>, row: &[T]) {
     columns.iter_mut().zip(row).for_each(|(column, value)| column.push(*value));
 }
 
-fn slices<T>(columns: &[Vec<T>]) -> Vec<&[T]> {
-    columns.iter().map(Vec::as_slice).collect()
+fn slices<'c, T>(columns: &'c [Vec<T>], rows: &Range<usize>) -> Vec<&'c [T]> {
+    columns.iter().map(|column| &column[rows.clone()]).collect()
 }

@@ -16,7 +16,9 @@ use model_dsl::algebra::{Axis, Polynomial, Symbol};
 use model_dsl::derivation;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::Equations;
-use model_dsl::machine::{Along, Branch, Constant, Link, LinkKind, Machine, Motion, MotionKind, Reference};
+use model_dsl::machine::{
+    Along, Branch, Constant, Link, LinkKind, Machine, Motion, MotionKind, Orientation, Reference,
+};
 use model_dsl::source::{SourceFile, Span};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -113,7 +115,7 @@ fn made(series: &str, count: &str) -> Result<Machine, Box<dyn Error>> {
         }
     };
     let mut machine = Machine {
-        orientation: false,
+        orientation: Orientation::Left,
         name: format!("{series}-{count}"),
         title: None,
         source: None,

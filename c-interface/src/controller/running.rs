@@ -4,8 +4,8 @@
 //! calibration, error motions the terms, and the supervisor both: each stage here owns the one before it.
 
 use abbe_runtime::{
-    AxisMemory, Compensator, ErrorMotion, Memory, Sample, State, Supervisor, Term, TermState, Work,
-    states_needed,
+    AxisMemory, Compensator, DirectionOutcome, ErrorMotion, Memory, Sample, State, Supervisor, Term,
+    TermState, Work, states_needed,
 };
 use model_dsl::calibration::{Calibration, SensorReadings};
 use self_cell::{MutBorrow, self_cell};
@@ -116,6 +116,15 @@ impl Running {
     /// The correction of each axis that the last cycle made.
     pub(super) fn correction(&self) -> &[f64] {
         &self.correction
+    }
+
+    /// What the last cycle found of the direction of the tool; NaN where it found nothing, none where rotary axes do not correct it.
+    pub(super) fn direction(&mut self) -> Option<DirectionOutcome> {
+        const NOTHING: DirectionOutcome = DirectionOutcome { error: [f64::NAN; 3], remaining: [f64::NAN; 3] };
+        self.supervised.with_dependent_mut(|parts, running| {
+            let corrects = !parts.machine.aiming().is_empty();
+            corrects.then(|| running.supervisor.compensator.direction().unwrap_or(NOTHING))
+        })
     }
 
     /// Forgets what terms and sensors remember.

@@ -8,6 +8,7 @@
     reason = "a panic is the report of a test, also from what tests share; and they do what C does, one call after another"
 )]
 
+mod aiming;
 mod directions;
 mod files;
 mod handle;

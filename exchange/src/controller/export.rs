@@ -87,7 +87,16 @@ pub fn export(
         ));
     }
     worth_it(&read.lost)?;
+    let left_out = left_out.into_iter().chain(direction_lost(geometry)).collect();
     Ok(Export { files, loading, left_out, lost: read.lost })
+}
+
+/// What is told where Abbe's own compensation has rotary axes correct the direction of the tool.
+fn direction_lost(geometry: &Geometry<'_>) -> Option<String> {
+    (!geometry.equations.aiming().is_empty()).then(|| {
+        "the direction of the tool: rotary axes correct in these files no more than their own angles, and the errors told are those of the tip"
+            .to_owned()
+    })
 }
 
 /// Why files cannot be checked.

@@ -79,7 +79,8 @@ impl<'c> Geometry<'c> {
         let mut beyond = Vec::new();
         let motions = 0..equations.motions.len();
         let terms = motions.map(|motion| lasting(calibration, motion, &mut beyond)).collect();
-        let machine = Interpreter::new(equations, &calibration.constants);
+        // Tables hold what is wrong at the tip: which way a rotary axis has to turn for the direction depends on all others.
+        let machine = Interpreter::new(equations, &calibration.constants).leaving_direction();
         Self { equations, calibration, machine, terms, beyond }
     }
 

@@ -8,7 +8,7 @@ use quote::quote;
 use super::body::{Body, Numbers, Reads, body, number};
 use super::held::Held;
 use super::structs::of_any;
-use super::{docs, measured};
+use super::{aiming, docs, measured};
 use crate::equations::Equations;
 use crate::program::{OrientationPrograms, Programs};
 
@@ -36,7 +36,7 @@ pub(super) fn all(equations: &Equations, programs: &Programs) -> TokenStream {
     }
 }
 
-fn unused(name: &str, used: bool) -> TokenStream {
+pub(super) fn unused(name: &str, used: bool) -> TokenStream {
     let ident = quote::format_ident!("{}{name}", if used { "" } else { "_" });
     quote! { #ident }
 }
@@ -217,6 +217,7 @@ fn orientation(equations: &Equations, programs: &OrientationPrograms) -> TokenSt
     let (axes, prelude) = (unused("axes", nominal.reads.axes), nominal.prelude());
     let Body { bindings, results, .. } = nominal;
     let (parameters, motions) = (parameters(equations, &error), unused("motions", error.reads.motions));
+    let aims = aiming::aims(equations, programs);
     let (prelude_of_error, bindings_of_error, errors) = (error.prelude(), &error.bindings, &error.results);
     quote! {
         #about_nominal
@@ -231,6 +232,7 @@ fn orientation(equations: &Equations, programs: &OrientationPrograms) -> TokenSt
             #prelude_of_error #bindings_of_error
             [#(#errors),*]
         }
+        #aims
     }
 }
 
@@ -244,7 +246,7 @@ fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
     let vary = directions.reads.axes;
     let known = fixed_directions(&directions).or_else(|| resting(equations));
     let squares = equations.squares().map(squares);
-    let turning = turning(equations);
+    let (turning, aiming) = (turning(equations), aiming::kinematics(equations));
     let motors = motors(equations);
     let held = held(equations, programs);
     let axes = Literal::usize_unsuffixed(equations.axes.len());
@@ -288,6 +290,7 @@ fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
             }
             #turning
             #motors
+            #aiming
             fn directions_vary(&self) -> bool { #vary }
             #squares
             #known
@@ -363,9 +366,10 @@ fn resting(equations: &Equations) -> Option<TokenStream> {
 
 /// The error from slices.
 fn error_from(equations: &Equations, held: Option<&Held>) -> TokenStream {
-    let (position, of_axes) = record("position", "Axes", equations.axes.len());
-    let (travel, of_travels) = record("travel", "Travels", equations.travels.len());
-    let (values, of_motions) = record("motions", "Motions", equations.motions.len());
+    let nan = quote! { T::from(f64::NAN) };
+    let (position, of_axes) = record(&nan, "position", "Axes", equations.axes.len());
+    let (travel, of_travels) = record(&nan, "travel", "Travels", equations.travels.len());
+    let (values, of_motions) = record(&nan, "motions", "Motions", equations.motions.len());
     let of_travels = (!equations.travels.is_empty()).then(|| quote! { &#of_travels, });
     let slices = quote! { position: &[T], travel: &[T], motions: &[T] };
     let (sines, error) = match held {
@@ -388,10 +392,15 @@ fn error_from(equations: &Equations, held: Option<&Held>) -> TokenStream {
     }
 }
 
-/// The check of a slice that becomes a record of so many fields, and the record.
-fn record(slice: &str, record: &str, fields: usize) -> (TokenStream, TokenStream) {
+/// The check of a slice that becomes a record of so many fields, in numbers of which this is the one that is none, and the record.
+pub(super) fn record(
+    nan: &TokenStream,
+    slice: &str,
+    record: &str,
+    fields: usize,
+) -> (TokenStream, TokenStream) {
     let (slice, record) = (quote::format_ident!("{slice}"), quote::format_ident!("{record}"));
-    let otherwise = quote! { else { return [T::from(f64::NAN); 3] }; };
+    let otherwise = quote! { else { return [#nan; 3] }; };
     if fields == 0 {
         (quote! { let [] = *#slice #otherwise }, quote! { #record {} })
     } else {

@@ -1,8 +1,9 @@
 //! The head of a machine file: version, names, sensitive directions and conventions.
 
 use super::budget::{self, Budget};
-use super::fields::{Fields, choice, items, keys, text, truth};
+use super::fields::{Fields, choice, items, keys, text};
 use super::link::Reference;
+use super::orientation::Orientation;
 use crate::algebra::Axis;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::{Span, Spanned};
@@ -17,7 +18,7 @@ pub(super) struct Header {
     pub(super) sensitive_spans: Vec<(Axis, Span)>,
     pub(super) reference: Reference,
     pub(super) relative: bool,
-    pub(super) orientation: bool,
+    pub(super) orientation: Orientation,
     pub(super) budget: Spanned<Budget>,
 }
 
@@ -32,7 +33,7 @@ impl Header {
             sensitive_spans: Vec::new(),
             reference: Reference::Carriage,
             relative: false,
-            orientation: false,
+            orientation: Orientation::Left,
             budget: Spanned::new(Budget::Full, Span::default()),
         }
     }
@@ -60,7 +61,7 @@ pub(super) fn read(fields: Fields<'_>, diagnostics: &mut Diagnostics) -> Header 
         header.relative = word == Some("relative");
     }
     if let Some(node) = fields.get("orientation") {
-        header.orientation = truth(node, diagnostics) == Some(true);
+        header.orientation = orientation(node, diagnostics);
     }
     if let Some(node) = fields.get("budget") {
         header.budget = budget::read(node, diagnostics);
@@ -73,6 +74,16 @@ pub(super) fn reference(node: &Node, diagnostics: &mut Diagnostics) -> Reference
     match choice(node, "a reference point", &["carriage", "bed"], diagnostics) {
         Some("bed") => Reference::Bed,
         _ => Reference::Carriage,
+    }
+}
+
+/// Reads what becomes of the direction of the tool.
+fn orientation(node: &Node, diagnostics: &mut Diagnostics) -> Orientation {
+    let words = ["true", "uncorrected", "false"];
+    match choice(node, "what becomes of the direction of the tool", &words, diagnostics) {
+        Some("true") => Orientation::Corrected,
+        Some("uncorrected") => Orientation::Told,
+        _ => Orientation::Left,
     }
 }
 

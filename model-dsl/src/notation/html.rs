@@ -7,7 +7,7 @@ use pages::text::escape;
 
 use super::mathml::{arm, equation, letter, part};
 use super::published::{self, Published};
-use super::reach::{self, Cancelled};
+use super::reach;
 use super::sheet::{MotionEntry, Sheet, SheetRow};
 use super::{chain, example};
 use crate::algebra::Axis;
@@ -111,27 +111,41 @@ fn orientation(sheet: &Sheet) -> String {
 fn motions(sheet: &Sheet, equations: &Equations) -> String {
     let arms: String = sheet.rows.iter().map(|row| format!("<th>Arm in {}</th>", row.direction)).collect();
     let entries = sheet.motions.iter().zip(reach::cancelled(equations)).enumerate();
+    let aimed = reach::aimed(equations);
     let rows: String = entries
         .map(|(number, (entry, cancelled))| {
             let tilted: Vec<char> = reach::tilted(equations, number).collect();
-            motion(entry, &reach::reached(equations, number), &tilted, &cancelled)
+            let reached = reach::reached(equations, number);
+            let aimed = aimed.as_ref().and_then(|aimed| aimed.get(number).copied());
+            let words = reach::words(&reached, &cancelled, &tilted, aimed);
+            motion(entry, &reached, &tilted, &words)
         })
         .collect();
-    let of_tool = if sheet.orientation.is_empty() {
-        ""
-    } else {
-        " I, J and K are the direction of the tool, which the slides leave as it is."
-    };
+    let of_tool = direction_of_tool(equations);
     format!(
         "<div class=\"wide\"><table class=\"motions\">\n<thead><tr><th>Symbol</th><th>ISO 230-1</th><th>Meaning</th>\
          <th>Unit</th><th>Reaches</th><th>Compensable</th>{arms}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n\
-         <p>Compensable is what slides cancel by moving the tip; the rest is told and left, and rotary axes do not \
-         correct. This is the geometry: which terms of a motion a controller can know in time is told by the calibration \
+         <p>Compensable is what slides cancel by moving the tip; the rest is told and left. This is the geometry: which terms of a motion a controller can know in time is told by the calibration \
          (E0425).{of_tool}</p>\n"
     )
 }
 
-fn motion(motion: &MotionEntry, reached: &[Axis], tilted: &[char], cancelled: &[Cancelled; 3]) -> String {
+/// What becomes of the direction of the tool, where it is derived.
+fn direction_of_tool(equations: &Equations) -> String {
+    if equations.orientation.is_empty() {
+        return String::new();
+    }
+    let axes = equations.aiming().into_iter().filter_map(|axis| equations.axes.get(axis));
+    let axes: Vec<&str> = axes.map(|axis| axis.letter.as_str()).collect();
+    let corrected = match axes.as_slice() {
+        [] => "which all axes leave as it is".to_owned(),
+        [axis] => format!("which {axis} corrects as far as it turns the tool"),
+        axes => format!("which {} correct", axes.join(" and ")),
+    };
+    format!(" I, J and K are the direction of the tool, {corrected}.")
+}
+
+fn motion(motion: &MotionEntry, reached: &[Axis], tilted: &[char], compensable: &str) -> String {
     let against = if motion.against_iso { " (counted against the ISO sense)" } else { "" };
     let cell = |found: &Option<super::tree::Expression>| match found {
         Some(found) => format!("<td>{}</td>", arm(found)),
@@ -147,7 +161,7 @@ fn motion(motion: &MotionEntry, reached: &[Axis], tilted: &[char], cancelled: &[
         escape(&motion.meaning),
         motion.unit,
         directions.join(", "),
-        reach::words(reached, cancelled),
+        compensable,
     )
 }
 

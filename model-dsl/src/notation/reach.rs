@@ -2,7 +2,8 @@
 //! directions that it reaches, and for each direction whether some command moves the tip along it.
 //!
 //! Compensation adds what the slides can add: the columns of the Jacobian, one for each slide that corrects. A rotary axis
-//! cancels the error of its own angle. What neither reaches is reported and left.
+//! cancels the error of its own angle, and where the machine file asks for it what it can of the tool's direction. What neither reaches is
+//! reported and left.
 
 use abbe_runtime::Kinematics as _;
 
@@ -32,24 +33,15 @@ struct State {
     basis: Vec<[f64; 3]>,
     /// The lever arm of each error motion.
     levers: Vec<[f64; 3]>,
+    /// What the rotary axes turn the direction of the tool to, as a basis.
+    aims: Vec<[f64; 3]>,
+    /// What each error motion does to that direction.
+    tilts: Vec<[f64; 3]>,
 }
 
 /// For each error motion what the slides can do about it in X, Y, Z of the part's frame.
 pub(super) fn cancelled(equations: &Equations) -> Vec<[Cancelled; 3]> {
-    let lengths = |first: f64| std::iter::successors(Some(first), |last| Some(last * 1.3 + 7.0));
-    let constants: Vec<f64> = lengths(31.0).take(equations.constants.len()).collect();
-    let travels: Vec<f64> = lengths(53.0).take(equations.travels.len()).collect();
-    let machine = Interpreter::new(equations, &constants);
-    let states: Vec<State> = ANGLES
-        .iter()
-        .map(|angle| {
-            let turns = std::iter::successors(Some(*angle), |angle| Some(angle + 0.7));
-            let axes = equations.axes.iter().zip(turns.zip(lengths(71.0)));
-            let positions: Vec<f64> =
-                axes.map(|(axis, (turn, length))| if axis.rotary { turn } else { length }).collect();
-            State { basis: basis(&machine, &positions), levers: machine.levers(&positions, &travels) }
-        })
-        .collect();
+    let states = states(equations);
     let own: Vec<usize> = equations.turning().iter().map(|own| own.motion).collect();
     let verdict = |motion: usize| match (own.contains(&motion), reached(equations, motion).is_empty()) {
         (true, _) => [Cancelled::Yes; 3],
@@ -58,6 +50,73 @@ pub(super) fn cancelled(equations: &Equations) -> Vec<[Cancelled; 3]> {
         (false, false) => verdicts(&states, motion),
     };
     (0..equations.motions.len()).map(verdict).collect()
+}
+
+/// For each error motion what the rotary axes can do about it in the direction of the tool; nothing where they leave that as it is.
+pub(super) fn aimed(equations: &Equations) -> Option<Vec<Cancelled>> {
+    if equations.aiming().is_empty() {
+        return None;
+    }
+    let states = states(equations);
+    let own: Vec<usize> = equations.turning().iter().map(|own| own.motion).collect();
+    let verdict = |motion: usize| {
+        let pairs: Vec<([f64; 3], [f64; 3])> = states
+            .iter()
+            .filter_map(|state| state.tilts.get(motion).map(|tilt| (*tilt, outside(*tilt, &state.aims))))
+            .collect();
+        let vanishes = |part: &dyn Fn(&[f64; 3], &[f64; 3]) -> [f64; 3]| {
+            let small = |(tilt, rest): &([f64; 3], [f64; 3])| {
+                let part = part(tilt, rest);
+                dot(&part, &part).sqrt() <= ROUNDING
+            };
+            pairs.iter().all(small)
+        };
+        if own.contains(&motion) || vanishes(&|_, rest| *rest) {
+            Cancelled::Yes
+        } else if vanishes(&|tilt, rest| std::array::from_fn(|row| tilt[row] - rest[row])) {
+            Cancelled::No
+        } else {
+            Cancelled::InPart
+        }
+    };
+    Some((0..equations.motions.len()).map(verdict).collect())
+}
+
+/// The machine at some places, none of them special.
+fn states(equations: &Equations) -> Vec<State> {
+    let lengths = |first: f64| std::iter::successors(Some(first), |last| Some(last * 1.3 + 7.0));
+    let constants: Vec<f64> = lengths(31.0).take(equations.constants.len()).collect();
+    let travels: Vec<f64> = lengths(53.0).take(equations.travels.len()).collect();
+    let machine = Interpreter::new(equations, &constants);
+    ANGLES
+        .iter()
+        .map(|angle| {
+            let turns = std::iter::successors(Some(*angle), |angle| Some(angle + 0.7));
+            let axes = equations.axes.iter().zip(turns.zip(lengths(71.0)));
+            let positions: Vec<f64> =
+                axes.map(|(axis, (turn, length))| if axis.rotary { turn } else { length }).collect();
+            state(&machine, &positions, &travels)
+        })
+        .collect()
+}
+
+/// The machine at one place.
+fn state(machine: &Interpreter, positions: &[f64], travels: &[f64]) -> State {
+    let mut columns = vec![[0.0; 3]; machine.axes()];
+    machine.directions(positions, &mut columns);
+    let mut aims = [[0.0; 3]; 3];
+    machine.aims(positions, &mut aims);
+    let tilt = |motion: usize| {
+        let mut motions = vec![0.0; machine.motions()];
+        motions[motion] = 1.0;
+        machine.direction_error(positions, travels, &motions).unwrap_or_default()
+    };
+    State {
+        basis: basis(columns),
+        levers: machine.levers(positions, travels),
+        aims: basis(aims),
+        tilts: (0..machine.motions()).map(tilt).collect(),
+    }
 }
 
 /// The verdict on one error motion: what the slides leave of its lever arm, state by state.
@@ -82,10 +141,8 @@ fn verdicts(states: &[State], motion: usize) -> [Cancelled; 3] {
     })
 }
 
-/// Directions of length 1, square to each other, that together reach what the slides reach.
-fn basis(machine: &Interpreter, positions: &[f64]) -> Vec<[f64; 3]> {
-    let mut columns = vec![[0.0; 3]; machine.axes()];
-    machine.directions(positions, &mut columns);
+/// Directions of length 1, square to each other, that together reach what these reach.
+fn basis(columns: impl IntoIterator<Item = [f64; 3]>) -> Vec<[f64; 3]> {
     columns.into_iter().fold(Vec::new(), |mut basis, column| {
         let rest = outside(column, &basis);
         let length = dot(&rest, &rest).sqrt();
@@ -123,7 +180,28 @@ pub(super) fn tilted(equations: &Equations, motion: usize) -> impl Iterator<Item
 
 /// Whether what reaches these directions can be compensated, in words: `yes`, `no`, `X; not Y`. The angle of a rotary axis may reach
 /// none of them, and is cancelled.
-pub(super) fn words(reached: &[Axis], cancelled: &[Cancelled; 3]) -> String {
+///
+/// Behind it stands what rotary axes leave of these parts of the tool's direction, where they correct it.
+pub(super) fn words(
+    reached: &[Axis],
+    cancelled: &[Cancelled; 3],
+    tilted: &[char],
+    aimed: Option<Cancelled>,
+) -> String {
+    let tip = words_of_tip(reached, cancelled);
+    let letters = tilted.iter().map(char::to_string).collect::<Vec<_>>().join(", ");
+    match (aimed.filter(|_| !tilted.is_empty()), reached.is_empty()) {
+        (None, _) | (Some(Cancelled::Yes), false) => tip,
+        (Some(Cancelled::Yes), true) => "yes".to_owned(),
+        (Some(Cancelled::InPart), true) => format!("{letters} in part"),
+        (Some(Cancelled::No), true) => "no".to_owned(),
+        (Some(Cancelled::InPart), false) => format!("{tip}; {letters} in part"),
+        (Some(Cancelled::No), false) => format!("{tip}; not {letters}"),
+    }
+}
+
+/// The words for the tip.
+fn words_of_tip(reached: &[Axis], cancelled: &[Cancelled; 3]) -> String {
     let those = |wanted: Cancelled| {
         let found = reached.iter().filter(|axis| cancelled[axis.index()] == wanted);
         found.map(Axis::to_string).collect::<Vec<_>>().join(", ")

@@ -309,7 +309,19 @@ fn own_angles(equations: &Equations, names: Names) -> Vec<String> {
         .then(|| format!("A rotary axis corrects the error of its own angle itself: {}.", own.join(", ")));
     let left =
         (!left.is_empty()).then(|| format!("The own angle of {} is left to the slides.", left.join(" and ")));
-    corrected.into_iter().chain(left).collect()
+    corrected.into_iter().chain(left).chain(aimed(equations)).collect()
+}
+
+/// Which rotary axes correct the direction of the tool.
+fn aimed(equations: &Equations) -> Option<String> {
+    let axes = equations.aiming().into_iter().filter_map(|axis| equations.axes.get(axis));
+    let axes: Vec<&str> = axes.map(|axis| axis.letter.as_str()).collect();
+    (!axes.is_empty()).then(|| {
+        format!(
+            "The direction of the tool is corrected by {}; slides take back what that does to the tip.",
+            axes.join(" and ")
+        )
+    })
 }
 
 fn conventions(equations: &Equations, names: Names, written: &Brackets) -> Vec<String> {

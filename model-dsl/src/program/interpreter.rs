@@ -25,20 +25,23 @@ pub struct Interpreter {
     turning: Vec<Turning>,
     following: Vec<Share>,
     squaring: Vec<Share>,
+    aiming: Vec<usize>,
     squares: Option<[f64; 3]>,
     motions: usize,
 }
 
-/// The direction of the tool, and its error.
+/// The direction of the tool, its error, and what axes turn it by.
 #[derive(Clone, Debug)]
 struct Orientation {
     nominal: Tape,
     error: Tape,
+    aims: Tape,
 }
 
 impl Orientation {
     fn new(programs: &OrientationPrograms) -> Self {
-        Self { nominal: Tape::new(&programs.nominal), error: Tape::new(&programs.error) }
+        let OrientationPrograms { nominal, error, aims } = programs;
+        Self { nominal: Tape::new(nominal), error: Tape::new(error), aims: Tape::new(aims) }
     }
 }
 
@@ -60,9 +63,16 @@ impl Interpreter {
             turning: equations.turning(),
             following: equations.following(),
             squaring: equations.squaring(),
+            aiming: equations.aiming(),
             squares: equations.squares(),
             motions: equations.motions.len(),
         }
+    }
+
+    /// The same machine, whose rotary axes leave the direction of the tool as it is.
+    #[must_use]
+    pub fn leaving_direction(self) -> Self {
+        Self { aiming: Vec::new(), ..self }
     }
 
     /// The nominal tool tip relative to the part: mm, part frame, 0 where not sensitive.
@@ -252,6 +262,30 @@ impl Kinematics for Interpreter {
 
     fn squares(&self) -> Option<[f64; 3]> {
         self.squares
+    }
+
+    fn aiming(&self) -> &[usize] {
+        &self.aiming
+    }
+
+    fn nominal(&self, position: &[f64]) -> [f64; 3] {
+        Self::nominal(self, position)
+    }
+
+    fn direction(&self, position: &[f64]) -> [f64; 3] {
+        Self::direction(self, position).unwrap_or([f64::NAN; 3])
+    }
+
+    fn direction_error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
+        Self::direction_error(self, position, travel, motions).unwrap_or([f64::NAN; 3])
+    }
+
+    fn aims(&self, position: &[f64], aims: &mut [[f64; 3]; 3]) {
+        let found = self.orientation.as_ref().map(|own| self.run(&own.aims, position, &[], &[]));
+        *aims = [[0.0; 3]; 3];
+        for (slot, values) in aims.iter_mut().zip(found.unwrap_or_default().chunks(3)) {
+            *slot = triple(values);
+        }
     }
 }
 

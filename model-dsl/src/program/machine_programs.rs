@@ -29,6 +29,8 @@ pub struct OrientationPrograms {
     pub nominal: Program,
     /// Its error: I, J, K in rad.
     pub error: Program,
+    /// For each axis that corrects it what that turns it by for each rad: I, J, K, pure numbers.
+    pub aims: Program,
 }
 
 impl Programs {
@@ -56,6 +58,7 @@ impl Programs {
             orientation: (!equations.orientation.is_empty()).then(|| OrientationPrograms {
                 nominal: program(&mut equations.orientation.iter().map(|row| row.nominal.clone())),
                 error: error(equations, &resolve, Equations::tilt),
+                aims: program(&mut equations.axes.iter().filter_map(|axis| axis.aim.clone()).flatten()),
             }),
         }
     }

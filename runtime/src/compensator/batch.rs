@@ -39,7 +39,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
     ///
     /// `out` holds a slice for each axis, into which the commands go; a row that is refused keeps its position there. Rows
     /// are taken side by side, [`Lanes::WIDTH`] of them, where the machine has
-    /// [`error_lanes`](Kinematics::error_lanes), no correction is ramped, no rotary axis corrects its own angle and no motor follows axes; what remembers
+    /// [`error_lanes`](Kinematics::error_lanes), no correction is ramped, no rotary axis corrects anything and no motor follows axes; what remembers
     /// goes row by row.
     ///
     /// # Errors
@@ -54,10 +54,9 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
     ) -> Result<(), Refusal> {
         self.check_batch(batch, out, answers.len())?;
         let mut block = Block::new(work, &self.batch_sizes())?;
-        let motors = !self.prediction.kinematics.following().is_empty();
         let mut first = 0_usize;
         for answers in answers.chunks_mut(Lanes::WIDTH) {
-            if self.prediction.needs.ramp || !self.prediction.needs.turns.is_empty() || motors {
+            if self.goes_row_by_row() {
                 self.rows(batch, first, &mut block, out, answers);
             } else {
                 self.block(batch, first, &mut block, out, answers);
@@ -65,6 +64,13 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
             first = first.saturating_add(Lanes::WIDTH);
         }
         Ok(())
+    }
+
+    /// Whether no rows are answered side by side.
+    fn goes_row_by_row(&self) -> bool {
+        let Prediction { kinematics, needs, .. } = &self.prediction;
+        let turns = !needs.turns.is_empty() || !kinematics.aiming().is_empty();
+        needs.ramp || turns || !kinematics.following().is_empty()
     }
 
     /// Checks every length of a batch of so many rows.

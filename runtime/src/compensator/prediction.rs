@@ -288,15 +288,25 @@ fn sum<K: Kinematics + ?Sized>(
     values: Option<impl AsRef<[f64]>>,
 ) -> Result<[f64; 3], Refusal> {
     let values = values.ok_or(Refusal::NotFinite)?;
-    let travel = if sample.travel.is_empty() {
-        for (travel, &axis) in travel.iter_mut().zip(kinematics.travels()) {
-            *travel = number(position, axis);
-        }
-        // It always is as long: said once more, and the compiler of Rust need not ask in the equations.
-        same_length("work.travel", kinematics.travels().len(), travel.len())?;
-        &*travel
-    } else {
-        sample.travel
-    };
+    let travel = travels(kinematics, sample, position, travel)?;
     Ok(kinematics.error_with(sines, position, travel, values.as_ref()))
+}
+
+/// The free travels: those of the sample, or where it has none the positions of their axes.
+#[inline(always)]
+pub(super) fn travels<'t, K: Kinematics + ?Sized>(
+    kinematics: &K,
+    sample: &'t Sample<'_>,
+    position: &[f64],
+    travel: &'t mut [f64],
+) -> Result<&'t [f64], Refusal> {
+    if !sample.travel.is_empty() {
+        return Ok(sample.travel);
+    }
+    for (travel, &axis) in travel.iter_mut().zip(kinematics.travels()) {
+        *travel = number(position, axis);
+    }
+    // It always is as long: said once more, and the compiler of Rust need not ask in the equations.
+    same_length("work.travel", kinematics.travels().len(), travel.len())?;
+    Ok(travel)
 }

@@ -12,7 +12,8 @@ use crate::math::sqrt;
 pub struct Limits {
     /// Greatest length of a correction over all slides, in mm; none: no limit. A NaN refuses every correction.
     pub compensation: Option<f64>,
-    /// Greatest correction of rotary axes, over all of them, in rad; none: no limit. A NaN refuses every correction.
+    /// Greatest correction of rotary axes, over all of them, in rad; none: no limit. A NaN refuses every correction. What an axis that lies
+    /// nearly along the tool would turn for its direction is cut to it, and not refused.
     pub rotation: Option<f64>,
 }
 
@@ -41,6 +42,10 @@ impl Limits {
 /// In front of a pose in which two slides move the tip in the same direction, they have to move ever farther against one another to
 /// move it in another one. A hundredth of a radian from there it is a hundred times as far: what is wrong with the error by 1 um moves
 /// an axis by 0.1 mm, and what the slides themselves are wrong by over that way is no longer small beside the error.
+///
+/// Rotary axes that correct the direction of the tool turn at most this many times as far as the direction is to turn. A rotary axis that
+/// lies along the tool turns it nowhere, and many machines cut most of the time in that pose or near it: there nothing is refused, and
+/// what the axes do not correct is told in [`DirectionOutcome::remaining`].
 pub const GREATEST_AMPLIFICATION: f64 = 100.0;
 
 /// Refuses a correction for which the axes would move too far beside the tip, from the squares of both ways.
@@ -99,6 +104,16 @@ pub struct Outcome {
     pub remaining: [f64; 3],
     /// Steps that the search took; 0 when switched off.
     pub iterations: u32,
+}
+
+/// What was found of the direction of the tool for one sample, on a machine that [corrects](crate::Kinematics::aiming) it.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct DirectionOutcome {
+    /// Error of the direction at the position of the sample, without compensation: I, J, K in rad, part frame.
+    pub error: [f64; 3],
+    /// Error that stays at the position written: no axis turns the direction that way, or it would have to turn too far (see
+    /// [`GREATEST_AMPLIFICATION`]), or a ramp leaves it for later cycles. All of it when switched off.
+    pub remaining: [f64; 3],
 }
 
 /// Why a sample was not compensated. The position written is then that of the sample.
@@ -236,6 +251,12 @@ pub enum SetupError {
         /// Index of the share.
         share: usize,
     },
+    /// An entry of [`Kinematics::aiming`](crate::Kinematics::aiming) names an axis that the machine lacks, or is with those of own
+    /// angles one more than three rotary axes.
+    Aiming {
+        /// Index of the entry.
+        aiming: usize,
+    },
     /// A term names an axis that the machine lacks.
     TermAxis {
         /// Index of the error motion.
@@ -276,6 +297,9 @@ impl fmt::Display for SetupError {
                 write!(f, "entry {turning} of the angles that rotary axes correct is wrong")
             }
             Self::Share { share } => write!(f, "share {share} of the motors is wrong"),
+            Self::Aiming { aiming } => {
+                write!(f, "entry {aiming} of the axes that correct the direction of the tool is wrong")
+            }
             Self::TermAxis { motion, term, axis } => {
                 write!(f, "term {term} of error motion {motion} names axis {axis}, which the machine lacks")
             }

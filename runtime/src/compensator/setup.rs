@@ -3,9 +3,9 @@
 //! In: the equations, the error motions and the storage of a caller. Out: the sensors needed and whether velocities are, or
 //! the first mistake. It exists so that the cycle itself has nothing left that can fail for a wrong set-up.
 
-use super::motors;
 use super::turns::Turns;
 use super::{SetupError, Work};
+use super::{motors, tilts};
 use crate::{ErrorMotion, Kinematics, Term, TermState};
 
 /// What the terms need of every sample.
@@ -60,7 +60,23 @@ pub(super) fn check<K: Kinematics + ?Sized>(
     }
     motors::check_shares(kinematics)?;
     let needs = check_terms(motions, axes)?;
+    check_aiming(kinematics)?;
     Ok(Needs { turns: Turns::new(kinematics, motions)?, ..needs })
+}
+
+/// Checks that each axis that corrects the direction of the tool is one of the machine, and that they are with those that correct their own
+/// angles no more than there are rotary axes.
+fn check_aiming<K: Kinematics + ?Sized>(kinematics: &K) -> Result<(), SetupError> {
+    let mut turned = kinematics.turning().chunk_by(|one, next| one.axis == next.axis).count();
+    for (number, &axis) in kinematics.aiming().iter().enumerate() {
+        let before = kinematics.aiming().iter().take(number);
+        let known = kinematics.turning().iter().any(|turning| turning.axis == axis);
+        turned = turned.saturating_add(usize::from(!known));
+        if axis >= kinematics.axes() || before.clone().any(|other| *other >= axis) || turned > tilts::AXES {
+            return Err(SetupError::Aiming { aiming: number });
+        }
+    }
+    Ok(())
 }
 
 /// Checks the terms of all error motions and gathers what they need.

@@ -5,12 +5,10 @@
 //! the tip nowhere and leaves its direction right; the slides then correct what is left.
 
 use super::report::{Convergence, Refusal, SetupError};
+use super::tilts::AXES;
 use crate::math::sqrt;
 use crate::sample::{OneSample, number};
 use crate::{ErrorMotion, Kinematics, Sample, TermState, Turning};
-
-/// ISO 841 names three rotary axes: A, B and C.
-const AXES: usize = 3;
 
 /// The greatest number of error motions of own angles: for each rotary axis its positioning error and its zero.
 pub(super) const MOST: usize = 6;
@@ -151,7 +149,7 @@ impl Own {
 
 impl Turned {
     /// Adds to the command of an axis, which is the target before.
-    fn add(&mut self, axis: usize, target: f64, correction: f64) {
+    pub(super) fn add(&mut self, axis: usize, target: f64, correction: f64) {
         let known = self.commands.iter_mut().find(|known| known.is_none_or(|(known, _)| known == axis));
         if let Some(command) = known {
             let (_, before) = command.unwrap_or((axis, target));
@@ -159,8 +157,18 @@ impl Turned {
         }
     }
 
+    /// How far the axes turn, over all of them, where commands are corrections: rad.
+    pub(super) fn length(&self) -> f64 {
+        sqrt(self.iter().fold(0.0, |sum, (_, command)| sum + command * command))
+    }
+
+    /// The axes that have a command, and these commands.
+    pub(super) fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.commands.iter().flatten().copied()
+    }
+
     /// The square of the way from these positions to the commands, over all axes that have one.
-    fn distance_squared(&self, position: &[f64]) -> f64 {
+    pub(super) fn distance_squared(&self, position: &[f64]) -> f64 {
         self.commands.iter().flatten().fold(0.0, |sum, &(axis, command)| {
             let part = command - number(position, axis);
             sum + part * part

@@ -5,8 +5,8 @@
 //! the next, and the difference has to go away slowly.
 
 use super::Transition;
+use crate::Limits;
 use crate::math::sqrt;
-use crate::{Limits, Turning};
 
 /// Less of an offset, or of a step, counts as none: sums of time steps round.
 const NOTHING: f64 = 1e-9;
@@ -20,7 +20,7 @@ pub struct AxisMemory {
     wanted: f64,
     /// Made less wanted at the last switch.
     offset: f64,
-    /// Whether it is a rotary axis that corrects its own angle.
+    /// Whether it is a rotary axis that corrects its own angle, or the direction of the tool.
     turns: bool,
     /// Whether it is a motor that only follows other axes, whose corrections have its limits already.
     follows: bool,
@@ -50,12 +50,12 @@ impl<'a> Correction<'a> {
     /// The correction that the memory holds, on its way to whatever is wanted first.
     pub(super) fn new(
         axes: &'a mut [AxisMemory],
-        turning: &[Turning],
+        turns: impl Fn(usize) -> bool,
         follows: impl Fn(usize) -> bool,
     ) -> Self {
         for (number, axis) in axes.iter_mut().enumerate() {
             axis.follows = follows(number);
-            axis.turns = turning.iter().any(|turning| turning.axis == number);
+            axis.turns = turns(number);
             if !axis.made.is_finite() {
                 axis.made = 0.0;
             }

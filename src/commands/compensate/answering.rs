@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::io::{self, Read};
 use std::rc::Rc;
 
-use abbe_runtime::{Compensator, Exchanged, Sample};
+use abbe_runtime::{Compensator, Exchanged, Refusal, Sample};
 use csv::ByteRecord;
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
@@ -173,8 +173,7 @@ impl<'c> Answering<'c> {
     }
 
     fn answer_rows(&mut self) -> Result<(), Failure> {
-        self.pending
-            .compensate(&mut self.compensator)
+        self.compensate()
             .map_err(|refusal| Failure::wrong(format!("error: the rows cannot be compensated: {refusal}")))?;
         for row in 0..self.pending.len() {
             let (record, number) = self.pending.record(row);
@@ -189,6 +188,20 @@ impl<'c> Answering<'c> {
                     bad(record, number, &refusal.to_string(), self.skip_bad, &mut self.skipped)?;
                 }
             }
+        }
+        Ok(())
+    }
+
+    /// Has all rows compensated; one by one where rotary axes correct the direction of the tool, since each row then has an error of it
+    /// that stays.
+    fn compensate(&mut self) -> Result<(), Refusal> {
+        let rows = self.pending.len();
+        if self.equations.aiming().is_empty() {
+            return self.pending.compensate(0..rows, &mut self.compensator);
+        }
+        for (row, lean) in self.leans.iter_mut().enumerate() {
+            self.pending.compensate(row..row + 1, &mut self.compensator)?;
+            lean.with = self.compensator.direction().map_or([f64::NAN; 3], |direction| direction.remaining);
         }
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! The error of the tool's direction, row by row. In: samples, in their order. Out: that error at the position of each, without
-//! compensation and with it. It exists beside the compensator, which moves the tip and knows no direction of the tool.
+//! compensation, and with it where rotary axes correct no more than their own angles. It exists beside the compensator, which then moves
+//! the tip and knows no direction of the tool; what it leaves of a direction that it corrects, it tells itself.
 
 use abbe_runtime::{ErrorMotion, Sample, TermState, Turning, states_needed};
 use model_dsl::equations::Equations;
@@ -10,7 +11,7 @@ use model_dsl::program::Interpreter;
 pub struct Lean {
     /// Without compensation.
     pub without: [f64; 3],
-    /// Where rotary axes have corrected their own angles.
+    /// Where rotary axes have corrected their own angles, and the direction where they do.
     pub with: [f64; 3],
 }
 

@@ -1,0 +1,239 @@
+//! The search for the commands that put the tip of the tool where it was wanted, and turn the tool the way that was wanted.
+//!
+//! In: a machine whose rotary axes correct the direction of the tool, its error motions, and the state in one cycle. Out: the commands of
+//! all axes, and what stays of both errors. It exists apart from the search for the slides alone, which all other machines go through: here
+//! a rotary axis stands elsewhere than it was asked to, and takes the tip along.
+
+use super::inverse::{Columns, Reach};
+use super::prediction::Prediction;
+use super::report::{self, DirectionOutcome};
+use super::seen::{Part, Posed};
+use super::tilts::{AXES, Tilts};
+use super::{Compensator, Convergence, Limits, Outcome, Refusal, copy};
+use crate::math::{add_scaled, all_finite, dot, sqrt};
+use crate::{ErrorMotions, Kinematics, Sample};
+
+/// Tip and direction of the tool without errors at the position of the sample, and what turns the direction there.
+struct Target {
+    tip: [f64; 3],
+    direction: [f64; 3],
+    tilts: Tilts,
+}
+
+/// A pose of the rotary axes.
+struct Pose {
+    /// What it moves the tip by without errors, the slides at their targets: mm.
+    tip: [f64; 3],
+    /// What it turns the direction by without errors, rad.
+    direction: [f64; 3],
+    /// What the slides reach in it.
+    reach: Reach,
+}
+
+/// What the rotary axes are to do, and what is left to the slides.
+#[derive(Clone, Copy)]
+struct Step {
+    /// What the aiming axes turn by, rad.
+    angles: [f64; AXES],
+    /// Where they stand then, and at which commands.
+    posed: Posed,
+    /// Error of the tip in the pose before, with all slides at their targets: mm.
+    tip: [f64; 3],
+    /// `A^+` of it, of which each slide has its share.
+    pull: [f64; 3],
+    /// Error of the direction that stays, rad.
+    lean: [f64; 3],
+}
+
+/// The squares of how far a step went: over the rotary axes, and over the slides.
+#[derive(Clone, Copy)]
+struct Gone {
+    turned: f64,
+    moved: f64,
+}
+
+impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
+    /// [`compensate`](Self::compensate) on a machine whose rotary axes correct the direction of the tool.
+    // Apart: the calls of all other machines stay as small as they were.
+    #[inline(never)]
+    pub(super) fn cycle_aimed(&mut self, sample: &Sample<'_>, out: &mut [f64]) -> Result<Outcome, Refusal> {
+        self.direction = None;
+        let error = self.prediction.begin(sample)?;
+        let lean = self.prediction.lean(sample)?;
+        if !self.enabled {
+            copy(sample.position, out);
+            self.direction = Some(DirectionOutcome { error: lean, remaining: lean });
+            return Ok(Outcome { error, remaining: error, iterations: 0 });
+        }
+        let (step, remaining, iterations) = self.search_aimed(sample, out)?;
+        self.direction = Some(DirectionOutcome { error: lean, remaining: step.lean });
+        Ok(Outcome { error, remaining, iterations })
+    }
+
+    /// The search, and the limits; gives also the error of the tip that stays, and the number of steps.
+    fn search_aimed(
+        &mut self,
+        sample: &Sample<'_>,
+        out: &mut [f64],
+    ) -> Result<(Step, [f64; 3], u32), Refusal> {
+        let target = Target::at(self.prediction.kinematics, sample.position);
+        let mut step = Step::first(self.prediction.kinematics.aiming(), sample);
+        let mut gone = Gone { turned: f64::INFINITY, moved: f64::INFINITY };
+        let mut iterations = 0_u32;
+        while iterations < self.convergence.iterations {
+            iterations = iterations.saturating_add(1);
+            let pose = self.pose(sample, &target, &step, out)?;
+            let columns = self.prediction.columns(&*self.directions);
+            let from = (sample, &target, &self.convergence, &self.limits);
+            let next = pose.next(&mut self.prediction, from, columns, &step, out)?;
+            gone = step.until(&next, &pose.reach, out);
+            gone.check(iterations)?;
+            columns.correct(sample.position, next.pull, out);
+            next.posed.commands.write(out);
+            step = next;
+            if gone.is_settled(&self.convergence) {
+                self.limits.check_rotation(step.posed.commands.correction(sample.position))?;
+                self.limits.check(|| sqrt(pose.reach.distance_squared(step.tip)))?;
+                let step = step.behind_ramp(&mut self.prediction, sample, out)?;
+                let remaining = add_scaled(step.tip, -1.0, pose.reach.tip(columns, step.pull));
+                return Ok((step, remaining, iterations));
+            }
+        }
+        Err(gone.not_settled(&self.convergence))
+    }
+
+    /// The pose of the rotary axes after a step; leaves in `out` the commands of that step.
+    fn pose(
+        &mut self,
+        sample: &Sample<'_>,
+        target: &Target,
+        step: &Step,
+        out: &mut [f64],
+    ) -> Result<Pose, Refusal> {
+        copy(sample.position, out);
+        step.posed.stands.write(out);
+        let kinematics = self.prediction.kinematics;
+        kinematics.turn(out, &mut self.prediction.sines);
+        let reach = self.reach_at(out)?;
+        let tip = add_scaled(kinematics.nominal(out), -1.0, target.tip);
+        let direction = add_scaled(kinematics.direction(out), -1.0, target.direction);
+        self.prediction.columns(&*self.directions).correct(sample.position, step.pull, out);
+        step.posed.commands.write(out);
+        Ok(Pose { tip, direction, reach })
+    }
+}
+
+impl Target {
+    fn at<K: Kinematics + ?Sized>(kinematics: &K, position: &[f64]) -> Self {
+        Self {
+            tip: kinematics.nominal(position),
+            direction: kinematics.direction(position),
+            tilts: Tilts::at(kinematics, position),
+        }
+    }
+}
+
+impl Pose {
+    /// The step that undoes the errors at the commands of the one before, which `out` holds.
+    fn next<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized>(
+        &self,
+        prediction: &mut Prediction<'_, K, M>,
+        (sample, target, convergence, limits): (&Sample<'_>, &Target, &Convergence, &Limits),
+        columns: Columns<'_>,
+        step: &Step,
+        out: &mut [f64],
+    ) -> Result<Step, Refusal> {
+        let seen = prediction.seen(sample, &step.posed, Part::Corrected, out)?;
+        let tip = add_scaled(seen.tip, 1.0, self.tip);
+        if self.reach.may_amplify() {
+            report::check_amplification(self.reach.moved_and_corrected(columns, tip))?;
+        }
+        // Without what the axes were turned by on purpose: the angles are found from the targets on, so that in front of a singular pose
+        // step after step does not add up to more than the axes may turn.
+        let made = target.tilts.turned(step.angles);
+        let whole = add_scaled(add_scaled(seen.lean, 1.0, self.direction), -1.0, made);
+        // What the own angles take is no room for others.
+        let most = limits.rotation.map_or(f64::INFINITY, |limit| (limit - seen.own.length()).max(0.0));
+        let found = target.tilts.angles(whole, most).map(|angle| -angle);
+        let angles = convergence.kept(step.angles, found);
+        let posed = Posed::turned(prediction.kinematics.aiming(), angles, sample);
+        Ok(Step {
+            angles,
+            posed: posed.with_own(&seen.own, sample),
+            tip,
+            pull: self.reach.apply(tip),
+            lean: add_scaled(whole, 1.0, target.tilts.turned(angles)),
+        })
+    }
+}
+
+impl Step {
+    /// All axes at their targets.
+    fn first(aiming: &[usize], sample: &Sample<'_>) -> Self {
+        let (angles, zero) = ([0.0; AXES], [0.0; 3]);
+        Self { angles, posed: Posed::turned(aiming, angles, sample), tip: zero, pull: zero, lean: zero }
+    }
+
+    /// How far it is to the next one, `out` holding the commands of this one.
+    fn until(&self, next: &Self, reach: &Reach, out: &[f64]) -> Gone {
+        // Not from the commands of the slides, which far from the origin are too coarse to tell when it ends.
+        let moved = reach.distance_squared(add_scaled(next.tip, -1.0, self.tip));
+        Gone { turned: next.posed.commands.distance_squared(out), moved }
+    }
+
+    /// The same with the errors that stay where a part of them is corrected in later cycles.
+    fn behind_ramp<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized>(
+        self,
+        prediction: &mut Prediction<'_, K, M>,
+        sample: &Sample<'_>,
+        out: &mut [f64],
+    ) -> Result<Self, Refusal> {
+        if !prediction.needs.ramp {
+            return Ok(self);
+        }
+        let made = prediction.seen(sample, &self.posed, Part::Corrected, out)?;
+        let left = prediction.seen(sample, &self.posed, Part::Left, out)?;
+        let beyond = |error, left, made| add_scaled(error, 1.0, add_scaled(left, -1.0, made));
+        let step = Self {
+            tip: beyond(self.tip, left.tip, made.tip),
+            lean: beyond(self.lean, left.lean, made.lean),
+            ..self
+        };
+        if all_finite(&step.tip) && all_finite(&step.lean) { Ok(step) } else { Err(Refusal::NotFinite) }
+    }
+}
+
+impl Convergence {
+    /// The angles found, or those of the step before where they are the same but for less than counts: what rounding changes of an angle
+    /// moves the tip, far from the axis, by more than the slides are to settle to.
+    fn kept(&self, before: [f64; AXES], found: [f64; AXES]) -> [f64; AXES] {
+        let change = add_scaled(found, -1.0, before);
+        if dot(change, change) <= self.tolerance_squared() { before } else { found }
+    }
+}
+
+impl Gone {
+    /// Refuses a search that has gone out of all bounds.
+    fn check(self, iterations: u32) -> Result<(), Refusal> {
+        if !self.turned.is_finite() {
+            return Err(Refusal::NotFinite);
+        }
+        let finite = self.moved < f64::INFINITY;
+        if finite { Ok(()) } else { Err(Refusal::NotConverging { iterations, distance: f64::INFINITY }) }
+    }
+
+    fn is_settled(self, convergence: &Convergence) -> bool {
+        let bound = convergence.tolerance_squared();
+        self.turned <= bound && self.moved <= bound
+    }
+
+    /// Why a search is given up.
+    fn not_settled(self, convergence: &Convergence) -> Refusal {
+        let iterations = convergence.iterations;
+        if self.turned <= convergence.tolerance_squared() {
+            Refusal::NotConverging { iterations, distance: sqrt(self.moved) }
+        } else {
+            Refusal::AngleNotConverging { iterations, angle: sqrt(self.turned) }
+        }
+    }
+}

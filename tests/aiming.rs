@@ -1,0 +1,239 @@
+//! Rotary axes that correct the direction of the tool: tip and direction of the exact machine as judges.
+//!
+//! In: machines with `orientation: true`, random small error motions, and places to ask for, poses near the singular one among them. Out:
+//! how far the tool really is from where it was wanted, and from the way that it was to point. Both must be of second order in the
+//! errors, but for what the compensator says that it leaves.
+
+use abbe_runtime::{GREATEST_AMPLIFICATION, Kinematics, Refusal, Term};
+use model_dsl::equations::Equations;
+use model_dsl::program::Interpreter;
+use proptest::prelude::*;
+
+use crate::agreement::asking;
+use crate::compensation::{Answer, Trial, asked, constants, length, less, on_file};
+use crate::oracle::{Machine, Sizes, State, draw, exact};
+use crate::random::{machines, of_word, state};
+use crate::shipped::SHIPPED;
+use crate::yaml;
+
+/// Rotary axes this near to zero are near the pose in which one of them lies along the tool, rad: on both sides of where an axis would
+/// have to turn a hundred times as far as the direction.
+const NEAR: f64 = 0.03;
+
+/// Slides that move the tip less than this, for a mm of theirs, have a long way to go for it.
+const FAR: f64 = 0.1;
+
+/// Constants, and waves of the axes themselves, so that what is wrong at the command is not what is wrong at the target.
+fn waves(equations: &Equations, seed: u64) -> Vec<Vec<Term<'static>>> {
+    let mut terms = constants(equations, seed);
+    for (motion, terms) in equations.motions.iter().zip(&mut terms) {
+        let Some(axis) = motion.axis.filter(|_| !motion.alignment) else { continue };
+        let (amplitude, period) = if motion.angular { (20e-6, 200.0) } else { (0.02, 150.0) };
+        let period = if equations.axes[axis].rotary { 1.0 } else { period };
+        let phase = 3.0 * draw(seed, &format!("{} phase", motion.name));
+        terms.push(Term::Cyclic { axis, period, amplitude, phase });
+    }
+    terms
+}
+
+/// How far the tool really points from where it was to point, rad.
+fn lean(trial: &Trial<'_>, command: &[f64]) -> [f64; 3] {
+    let [real, wanted] =
+        [&trial.real(command), &trial.target].map(|state| exact::direction(trial.machine, state));
+    less(real, wanted)
+}
+
+/// What the first order may leave of a direction: half the bound of its second derivative along the errors, which are angles about a
+/// vector of length 1, and what the search leaves, which ends at steps of 1e-10 rad.
+fn second_order(trial: &Trial<'_>, command: &[f64]) -> f64 {
+    let angles = Sizes::of(trial.machine, &trial.real(command)).angles;
+    angles.powi(2) / 2.0 + 1e-9
+}
+
+/// The lesser of how far two axes turn the direction, in the direction that both together turn it least; by small differences.
+fn least_turn(trial: &Trial<'_>) -> f64 {
+    const STEP: f64 = 1e-5;
+    let mut columns = trial.equations.axes.iter().filter(|axis| axis.rotary).map(|axis| {
+        let [before, behind] = [-STEP, STEP].map(|step| {
+            let mut state = trial.target.clone();
+            *state.positions.get_mut(&*axis.variable).unwrap() += step;
+            exact::direction(trial.machine, &state)
+        });
+        nalgebra::Vector3::from(less(behind, before)) / (2.0 * STEP)
+    });
+    let (Some(first), Some(second), None) = (columns.next(), columns.next(), columns.next()) else {
+        return 0.0;
+    };
+    let singular = nalgebra::Matrix3x2::from_columns(&[first, second]).singular_values();
+    singular.min()
+}
+
+/// How far the slides move the tip in the direction in which together they move it least, of those that they reach, mm for each mm.
+fn least_move(trial: &Trial<'_>, interpreter: &Interpreter) -> f64 {
+    let mut columns = vec![[0.0; 3]; trial.equations.axes.len()];
+    interpreter.directions(&trial.wanted(), &mut columns);
+    let columns: Vec<_> = columns.into_iter().map(nalgebra::Vector3::from).collect();
+    let singular = nalgebra::Matrix3xX::from_columns(&columns).singular_values();
+    singular.iter().copied().filter(|value| *value > 1e-9).fold(f64::INFINITY, f64::min)
+}
+
+/// Tip and direction at one place. Gives how large the error of the direction was and how large it is, where it was corrected.
+fn judged(trial: &Trial<'_>, interpreter: &Interpreter) -> Result<Option<[f64; 2]>, TestCaseError> {
+    let Answer { outcome, direction, command } = asked(interpreter, trial, true);
+    let remaining = match outcome {
+        Ok(outcome) => outcome.remaining,
+        // Where slides move the tip in nearly the same direction nothing is corrected, as the position says; nor where they have to go so
+        // far for little that the errors over that way are others.
+        Err(
+            Refusal::NearSingular { .. } | Refusal::NotConverging { .. } | Refusal::AngleNotConverging { .. },
+        ) if least_move(trial, interpreter) < FAR => {
+            prop_assert_eq!(command, trial.wanted());
+            prop_assert_eq!(direction, None);
+            return Ok(None);
+        }
+        Err(refusal) => return Err(TestCaseError::fail(refusal.to_string())),
+    };
+    let left = length(less(trial.miss(&command), remaining));
+    prop_assert!(left <= trial.second_order(&command), "tip: left {left:e} at {command:?}");
+
+    let aims = !trial.equations.aiming().is_empty();
+    prop_assert_eq!(direction.is_some(), aims);
+    let Some(direction) = direction else { return Ok(None) };
+    let bound = second_order(trial, &command);
+    let without = lean(trial, &trial.wanted());
+    let told = length(less(without, direction.error));
+    prop_assert!(
+        told <= second_order(trial, &trial.wanted()),
+        "predicted {:?}, not {without:?}",
+        direction.error
+    );
+    let with = lean(trial, &command);
+    let left = length(less(with, direction.remaining));
+    prop_assert!(left <= bound, "direction: {with:?} left, {:?} told at {command:?}", direction.remaining);
+    let least = least_turn(trial);
+    // A little above, since the direction may turn less in the pose in which the axes then stand.
+    if least > 1.1 / GREATEST_AMPLIFICATION {
+        prop_assert!(length(with) <= bound, "{with:?} left of {without:?}, where axes turn {least}");
+    }
+    turned_no_further(trial, &command, direction.error)?;
+    Ok(Some([length(without), length(with)]))
+}
+
+/// No axis turns further for the direction than it may, besides what its own angle is wrong by.
+fn turned_no_further(trial: &Trial<'_>, command: &[f64], error: [f64; 3]) -> Result<(), TestCaseError> {
+    let axes = trial.equations.axes.iter().enumerate().filter(|(_, axis)| axis.rotary);
+    let turned =
+        axes.map(|(number, _)| (command[number] - trial.wanted()[number]).powi(2)).sum::<f64>().sqrt();
+    let errors = trial.real(command).errors;
+    let own = |motion: &model_dsl::equations::Motion| errors[&motion.name].abs();
+    let own: f64 =
+        trial.equations.turning().iter().map(|turning| own(&trial.equations.motions[turning.motion])).sum();
+    // What the own angles turn the direction by is no part of the error that other axes correct; and 1 % for what is of second order.
+    let most = own + GREATEST_AMPLIFICATION * (length(error) + own) * 1.01;
+    prop_assert!(turned <= most, "turned by {turned}, at most {most}");
+    Ok(())
+}
+
+/// Three slides and two rotary axes in any order, and the bed anywhere.
+fn five_axes() -> impl Strategy<Value = String> {
+    let letters = prop_oneof![Just("XYZAB"), Just("XYZAC"), Just("XYZBC")];
+    let shuffled = letters.prop_flat_map(|letters| Just(letters.chars().collect::<Vec<_>>()).prop_shuffle());
+    (shuffled, 0..=5_usize).prop_map(|(mut letters, bed)| {
+        letters.insert(bed, 'F');
+        letters.into_iter().collect()
+    })
+}
+
+/// The same place with its rotary axes near zero.
+fn near_zero(machine: &Machine, seed: u64) -> State {
+    let mut state = state(machine, seed);
+    for link in machine.links() {
+        if let Some(variable) = link.variable().filter(|variable| "abc".contains(variable.as_str())) {
+            state.positions.insert(variable.clone(), NEAR * draw(seed, &format!("{variable} near")));
+        }
+    }
+    state
+}
+
+fn file(word: &str) -> String {
+    asking(&format!("abbe: 1\nname: word\ntopology: {word}\n"))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_machines(machine in machines(), seed in any::<u64>()) {
+        let text = asking(&yaml::text(&machine, true));
+        on_file(&machine, &text, |equations| waves(equations, seed), state(&machine, seed), judged)?;
+    }
+
+    #[test]
+    fn random_five_axis_machines(word in five_axes(), seed in any::<u64>()) {
+        let machine = of_word(&word);
+        on_file(&machine, &file(&word), |equations| waves(equations, seed), state(&machine, seed), judged)?;
+    }
+
+    /// Where an axis lies nearly along the tool, and where it is to turn far for little.
+    #[test]
+    fn near_the_singular_pose(word in five_axes(), seed in any::<u64>()) {
+        let machine = of_word(&word);
+        on_file(&machine, &file(&word), |equations| waves(equations, seed), near_zero(&machine, seed), judged)?;
+    }
+}
+
+/// On the shipped machines of five axes nothing but the second order stays, at tip and direction.
+#[test]
+fn shipped_machines() {
+    let five = SHIPPED.iter().filter(|shipped| shipped.name.ends_with("-5axis"));
+    let mut machines = 0;
+    for shipped in five {
+        let (machine, text) = ((shipped.described)(), asking(&shipped.text()));
+        let mut sums = [0.0; 2];
+        for seed in 0..40 {
+            let places =
+                on_file(&machine, &text, |equations| waves(equations, seed), state(&machine, seed), judged);
+            let [without, with] = places.unwrap().expect("these machines are nowhere singular");
+            sums = [sums[0] + without, sums[1] + with];
+        }
+        // Errors of 1e-4 of which some 1e-8 is left: a thousandth is asked for, so that the test says corrected.
+        assert!(sums[1] < sums[0] / 1000.0, "{}: {sums:?}", shipped.name);
+        machines += 1;
+    }
+    assert_eq!(machines, 2);
+}
+
+/// `uncorrected` tells the direction and moves no rotary axis for it; `corrects: false` leaves an axis where it was told.
+#[test]
+fn what_is_to_be_left_is_left() {
+    let trunnion = SHIPPED.iter().find(|shipped| shipped.name == "trunnion-5axis").unwrap();
+    let machine = (trunnion.described)();
+    let command = |text: &str| {
+        let only = |equations: &Equations| {
+            let of = |motion: &model_dsl::equations::Motion| {
+                let tilts = motion.angular && equations.own_axis(motion).is_none() && !motion.alignment;
+                if tilts { vec![Term::Constant { value: 30e-6 }] } else { Vec::new() }
+            };
+            equations.motions.iter().map(of).collect()
+        };
+        on_file(&machine, text, only, state(&machine, 3), |trial, interpreter| {
+            let Answer { command, direction, .. } = asked(interpreter, trial, true);
+            let turned = trial.equations.axes.iter().zip(command.iter().zip(trial.wanted()));
+            let turned = turned
+                .filter(|(axis, _)| axis.rotary)
+                .map(|(axis, (command, wanted))| (axis.letter.clone(), *command != wanted));
+            (turned.collect::<Vec<_>>(), direction.is_some())
+        })
+    };
+    let axes = |moved: [bool; 2]| ["A", "C"].map(str::to_owned).into_iter().zip(moved).collect::<Vec<_>>();
+    let text = trunnion.text();
+    assert_eq!(command(&asking(&text)), (axes([true, true]), true));
+    assert_eq!(command(&text), (axes([false, false]), false));
+    assert_eq!(command(&format!("{text}orientation: uncorrected\n")), (axes([false, false]), false));
+    for (letter, moved) in [("A", [false, true]), ("C", [true, false])] {
+        let line = format!("along: -{letter}\n");
+        assert!(text.contains(&line), "{text}");
+        let left = asking(&text.replace(&line, &format!("{line}      corrects: false\n")));
+        assert_eq!(command(&left), (axes(moved), true));
+    }
+}

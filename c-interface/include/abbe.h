@@ -74,9 +74,7 @@ enum AbbeRefused
   ABBE_REFUSED_LENGTH = 5,
   // In this pose axes move the tip in nearly the same direction: they would have to move more than a hundred times as far as it.
   ABBE_REFUSED_NEAR_SINGULAR = 6,
-  /**
-   * A motor does not stand where its axes put it.
-   */
+  // A motor does not stand where its axes put it.
   ABBE_REFUSED_MOTOR = 7,
 };
 #ifndef __cplusplus

@@ -85,6 +85,12 @@ pub(crate) struct Diagnosis {
     fitted: usize,
 }
 
+/// A number with its interval and unit.
+type Number<'d> = (f64, (f64, f64), &'d str);
+
+/// A row of the table of parameters.
+type ParameterRow<'d> = (usize, &'d Finding, String, f64, (f64, f64), &'d str);
+
 /// One channel of one recording.
 struct Arrays {
     recording: usize,
@@ -160,10 +166,10 @@ impl Diagnosis {
     /// `value`, `low`, `high` (the 95 % interval) and `unit`. A parameter that is a list has a row for each of its numbers.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let mut rows: Vec<(usize, &Finding, String, f64, (f64, f64), &str)> = Vec::new();
+        let mut rows: Vec<ParameterRow<'_>> = Vec::new();
         for (number, finding) in self.found.findings.iter().enumerate() {
             for Parameter { name, value } in &finding.parameters {
-                let fitted: Vec<(f64, (f64, f64), &str)> = match value {
+                let fitted: Vec<Number<'_>> = match value {
                     ParameterValue::Name(_) | ParameterValue::Places(..) => Vec::new(),
                     ParameterValue::Given(value, unit) => vec![(*value, (*value, *value), unit.as_str())],
                     ParameterValue::Fitted(one) => vec![(one.value, one.ci95, one.unit.as_str())],

@@ -73,6 +73,8 @@ pub(crate) fn diagnose(
 /// Tables (`findings`, `parameters`, `returns`) are dicts of columns of one length, which `pandas.DataFrame` and `polars.DataFrame` take as
 /// they are. Arrays of samples are as long as the recording, mm or rad, NaN where nothing was measured or a row is left out. `str()` is
 /// the text of `abbe diagnose`; a notebook shows its page.
+///
+/// In the examples of its methods `found` is what the example of `abbe.diagnose` has found.
 #[pyclass(module = "abbe", frozen)]
 pub(crate) struct Diagnosis {
     found: Found,
@@ -82,6 +84,12 @@ pub(crate) struct Diagnosis {
     /// How many of the recordings were fitted; the one after them was held out.
     fitted: usize,
 }
+
+/// A number with its interval and unit.
+type Number<'d> = (f64, (f64, f64), &'d str);
+
+/// A row of the table of parameters.
+type ParameterRow<'d> = (usize, &'d Finding, String, f64, (f64, f64), &'d str);
 
 /// One channel of one recording.
 struct Arrays {
@@ -158,10 +166,10 @@ impl Diagnosis {
     /// `value`, `low`, `high` (the 95 % interval) and `unit`. A parameter that is a list has a row for each of its numbers.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let mut rows: Vec<(usize, &Finding, String, f64, (f64, f64), &str)> = Vec::new();
+        let mut rows: Vec<ParameterRow<'_>> = Vec::new();
         for (number, finding) in self.found.findings.iter().enumerate() {
             for Parameter { name, value } in &finding.parameters {
-                let fitted: Vec<(f64, (f64, f64), &str)> = match value {
+                let fitted: Vec<Number<'_>> = match value {
                     ParameterValue::Name(_) | ParameterValue::Places(..) => Vec::new(),
                     ParameterValue::Given(value, unit) => vec![(*value, (*value, *value), unit.as_str())],
                     ParameterValue::Fitted(one) => vec![(one.value, one.ci95, one.unit.as_str())],
@@ -242,6 +250,9 @@ impl Diagnosis {
     }
 
     /// The names of the channels of a recording that the diagnosis looked at, with their units, mm or rad.
+    ///
+    /// >>> found.units()
+    /// {'measured.x': 'mm'}
     #[pyo3(signature = (recording = 0))]
     fn units<'py>(&self, py: Python<'py>, recording: usize) -> PyResult<Bound<'py, PyDict>> {
         self.each(py, recording, |arrays| Ok(arrays.unit.into_pyobject(py)?.into_any()))
@@ -249,6 +260,10 @@ impl Diagnosis {
 
     /// Measured minus predicted: a dict with an array for each channel of a recording, `before` (the calibration alone, the free settings of
     /// the instrument fitted) or `after` (with the findings). The recording that is held out as a whole is the last.
+    ///
+    /// >>> before, after = (found.residual(when)["measured.x"] for when in ("before", "after"))
+    /// >>> before.shape, bool(after.std() < 0.1 * before.std())
+    /// ((4000,), True)
     #[pyo3(signature = (when = "after", recording = 0))]
     fn residual<'py>(&self, py: Python<'py>, when: &str, recording: usize) -> PyResult<Bound<'py, PyDict>> {
         let after = is_after(py, when)?;
@@ -256,6 +271,9 @@ impl Diagnosis {
     }
 
     /// What the model predicts in place of what was measured: a dict with an array for each channel of a recording, `before` or `after`.
+    ///
+    /// >>> bool(abs(found.model()["measured.x"] + found.residual()["measured.x"] - found.measured()["measured.x"]).max() < 1e-12)
+    /// True
     #[pyo3(signature = (when = "after", recording = 0))]
     fn model<'py>(&self, py: Python<'py>, when: &str, recording: usize) -> PyResult<Bound<'py, PyDict>> {
         let after = is_after(py, when)?;
@@ -263,18 +281,27 @@ impl Diagnosis {
     }
 
     /// What was measured: a dict with an array for each channel of a recording.
+    ///
+    /// >>> found.measured()["measured.x"].dtype
+    /// dtype('float64')
     #[pyo3(signature = (recording = 0))]
     fn measured<'py>(&self, py: Python<'py>, recording: usize) -> PyResult<Bound<'py, PyDict>> {
         self.each(py, recording, |arrays| Ok(arrays.measured.bind(py).clone().into_any()))
     }
 
     /// The samples that were left out as outliers: a dict with an array of bool for each channel of a recording.
+    ///
+    /// >>> found.outliers()["measured.x"].dtype
+    /// dtype('bool')
     #[pyo3(signature = (recording = 0))]
     fn outliers<'py>(&self, py: Python<'py>, recording: usize) -> PyResult<Bound<'py, PyDict>> {
         self.each(py, recording, |arrays| Ok(arrays.outlier.bind(py).clone().into_any()))
     }
 
     /// The rows of a recording: a dict of the arrays `time` (s since its first row), `run` and `held_out` (nothing was fitted to them).
+    ///
+    /// >>> sorted(found.states())
+    /// ['held_out', 'run', 'time']
     #[pyo3(signature = (recording = 0))]
     fn states<'py>(&self, py: Python<'py>, recording: usize) -> PyResult<Bound<'py, PyDict>> {
         let states = PyDict::new(py);
@@ -288,6 +315,10 @@ impl Diagnosis {
 
     /// The known calibration with what was found: faults of the files mended, findings added. With `path` it is written there, as `abbe
     /// diagnose --write-calibration` does; a file that is there is replaced as a whole.
+    ///
+    /// >>> better = found.calibration()
+    /// >>> (better.error([[0.0], [50.0], [20.0]])[:, 0] * 1000).round()
+    /// array([-5., -5.,  5.])
     #[pyo3(signature = (path = None))]
     fn calibration(&self, py: Python<'_>, path: Option<&Bound<'_, PyAny>>) -> PyResult<Calibration> {
         let (Some(first), Some(text)) = (self.recorded.first(), self.inputs.first()) else {

@@ -61,7 +61,7 @@ impl Exported {
 ///
 /// >>> import abbe
 /// >>> stage = abbe.Calibration({"calibration": 1, "machine": "FX",
-/// ...     "errors": {"EXX": {"table": {"axis": "X", "start": "0 mm", "step": "50 mm", "unit": "um", "values": [0, 3, 5]}}}})
+/// ...     "errors": {"EXX": [{"table": {"axis": "X", "start": "0 mm", "step": "50 mm", "unit": "um", "values": [0, 3, 5]}}]}})
 /// >>> list(abbe.export("linuxcnc", stage).files)
 /// ['x.comp']
 #[pyfunction]

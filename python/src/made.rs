@@ -3,12 +3,12 @@
 
 use std::path::PathBuf;
 
+use ::update::{Method, Options};
 use exchange::instrument::report as instruments;
 use model_dsl::source::SourceFile;
 use pyo3::prelude::*;
 use simulation::Simulated;
 use simulation::write::{self, Head};
-use ::update::{Method, Options};
 use workshop::failure::Failure;
 use workshop::recorded::{self, Recorded};
 use workshop::set_up::SetUp;
@@ -32,9 +32,8 @@ use crate::report::Report;
 ///
 /// >>> import abbe
 /// >>> stage = abbe.Calibration({"calibration": 1, "machine": "FX", "errors": {"EXX": [{"backlash": {"lost_motion": "10 um"}}]}})
-/// >>> path = {"path": 1, "start": {"X": "0 mm"}, "rate": "100 Hz", "feed": "1000 mm/min",
-/// ...         "moves": [{"to": {"X": "20 mm"}}, {"to": {"X": "0 mm"}}],
-/// ...         "measure": {"instrument": "position", "noise": "0.2 um", "seed": 1}}
+/// >>> path = {"path": 1, "line": {"axis": "X", "from": "0 mm", "to": "20 mm"}, "feed": "1000 mm/min", "rate": "100 Hz",
+/// ...         "instrument": "position", "noise": "0.2 um", "seed": 1}
 /// >>> recording = abbe.simulate(stage, path)
 /// >>> recording.channels
 /// ['time', 'run', 'command.x', 'measured.x', 'measured.y', 'measured.z']

@@ -17,11 +17,12 @@ MILL = "calibrations/postech-mill.yaml"
 STAGE = {"calibration": 1, "machine": "FX", "errors": {"EXX": [{"backlash": {"lost_motion": "10 um"}}]}}
 PATH = {
     "path": 1,
-    "start": {"X": "0 mm"},
-    "rate": "100 Hz",
+    "line": {"axis": "X", "from": "0 mm", "to": "20 mm"},
     "feed": "1000 mm/min",
-    "moves": [{"to": {"X": "20 mm"}}, {"to": {"X": "0 mm"}}],
-    "measure": {"instrument": "position", "noise": "0.2 um", "seed": 1},
+    "rate": "100 Hz",
+    "instrument": "position",
+    "noise": "0.2 um",
+    "seed": 1,
 }
 
 
@@ -64,9 +65,11 @@ def test_export(format: str, root: pathlib.Path, tmp_path: pathlib.Path) -> None
     words, named = more.get(format, ([], {}))
     (tmp_path / "told").mkdir()
     (tmp_path / "made").mkdir()
-    stage = {"calibration": 1, "machine": "FX", "errors": {"EXX": {"table": {"axis": "X", "start": "0 mm", "step": "50 mm", "unit": "um", "values": [0, 3, 5]}}}}
-    calibration = tmp_path / "stage.yaml"
-    abbe.Calibration(stage).write(calibration)
+    table = {"axis": "X", "start": "0 mm", "step": "50 mm", "unit": "um", "values": [0, 3, 5]}
+    # A volumetric file is one of three slides.
+    calibration = pathlib.Path(MILL) if format == "isg" else tmp_path / "stage.yaml"
+    if not calibration.is_file():
+        abbe.Calibration({"calibration": 1, "machine": "FX", "errors": {"EXX": [{"table": table}]}}).write(calibration)
     text = command("export", format, calibration, "--output", tmp_path / "told", *words)
     made = abbe.export(format, abbe.Calibration(calibration), tmp_path / "made", **named)
     assert str(made) == text.replace(str(tmp_path / "told"), str(tmp_path / "made"))

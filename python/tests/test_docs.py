@@ -6,7 +6,9 @@ import doctest
 import inspect
 import warnings
 
+import numpy as np
 import pytest
+from conftest import UNITS
 
 import abbe
 import abbe.plot
@@ -22,12 +24,18 @@ def documented() -> dict[str, object]:
     return things
 
 
+@pytest.fixture(scope="module")
+def found(stage_table: dict[str, np.ndarray]) -> abbe.Diagnosis:
+    """What the example of `abbe.diagnose` finds: the examples of its methods go on from there."""
+    return abbe.diagnose(abbe.Recording(stage_table, machine="FX", units=UNITS), progress=False)
+
+
 @pytest.mark.parametrize("name", documented())
-def test_docstring(name: str) -> None:
+def test_docstring(name: str, found: abbe.Diagnosis) -> None:
     thing = documented()[name]
     text = thing.__doc__
     assert text, f"{name} has no docstring"
-    examples = doctest.DocTestParser().get_doctest(text, {}, name, None, 0)
+    examples = doctest.DocTestParser().get_doctest(text, {"found": found}, name, None, 0)
     # Properties and what is given to the caller are shown by the examples of what gives them.
     if callable(thing) and not inspect.isclass(thing):
         assert examples.examples, f"{name} has no example"

@@ -17,6 +17,7 @@ pub struct Field<'f, 'c, K: Kinematics + ?Sized> {
     motors: Vec<Share>,
     /// Where the axes stand that are not moved.
     pub middle: Vec<f64>,
+    position: Vec<f64>,
     temperature: &'f [f64],
     direction: Vec<Direction>,
     velocity: Vec<f64>,
@@ -31,28 +32,36 @@ impl<'f, 'c, K: Kinematics + ?Sized> Field<'f, 'c, K> {
         temperature: &'f [f64],
     ) -> Self {
         let (direction, velocity) = (vec![Direction::Positive; middle.len()], vec![0.0; middle.len()]);
-        Self { compensator, motors, middle, temperature, direction, velocity }
+        Self { compensator, motors, position: middle.clone(), middle, temperature, direction, velocity }
     }
 
     /// The error with some axes moved to places, mm, part frame; nothing where it is not finite.
     pub fn at(&mut self, moved: &[(usize, f64)]) -> Option<[f64; 3]> {
-        let mut position = self.middle.clone();
+        self.position.clone_from(&self.middle);
         for (axis, place) in moved {
-            *position.get_mut(*axis)? = *place;
+            *self.position.get_mut(*axis)? = *place;
         }
-        place_motors(&self.motors, &mut position);
-        let sample = Sample {
-            position: &position,
-            travel: &[],
-            direction: &self.direction,
-            velocity: &self.velocity,
-            temperature: self.temperature,
-            time_step: 0.0,
-        };
+        place_motors(&self.motors, &mut self.position);
         // No place remembers the one before it.
         self.compensator.restart();
-        self.compensator.error(&sample).ok()
+        let Self { compensator, position, temperature, direction, velocity, .. } = self;
+        compensator.error(&standing(position, temperature, direction, velocity)).ok()
     }
+
+    /// The state of the machine at the place that was asked last.
+    fn sample(&self) -> Sample<'_> {
+        standing(&self.position, self.temperature, &self.direction, &self.velocity)
+    }
+}
+
+/// A machine that stands.
+fn standing<'s>(
+    position: &'s [f64],
+    temperature: &'s [f64],
+    direction: &'s [Direction],
+    velocity: &'s [f64],
+) -> Sample<'s> {
+    Sample { position, travel: &[], direction, velocity, temperature, time_step: 0.0 }
 }
 
 /// The errors at places that do not follow each other: at each that of a machine that came forward and stands, in the order of
@@ -90,30 +99,12 @@ pub fn errors(
         }
     }
     let temperature = readings.update(|number| inputs.get(number).copied().unwrap_or(f64::NAN)).to_vec();
-    let (direction, velocity) = (vec![Direction::Positive; middle.len()], vec![0.0; middle.len()]);
-    let mut position = middle.to_vec();
-    let motors = equations.following();
+    let mut field = Field::new(&mut compensator, equations.following(), middle.to_vec(), &temperature);
     let at = |moved: &[(usize, f64); 2]| {
-        for (axis, place) in moved {
-            if let Some(slot) = position.get_mut(*axis) {
-                *slot = *place;
-            }
-        }
-        place_motors(&motors, &mut position);
-        let sample = Sample {
-            position: &position,
-            travel: &[],
-            direction: &direction,
-            velocity: &velocity,
-            temperature: &temperature,
-            time_step: 0.0,
-        };
-        // No place remembers the one before it.
-        compensator.restart();
-        let error = compensator.error(&sample).unwrap_or([f64::NAN; 3]);
+        let error = field.at(moved).unwrap_or([f64::NAN; 3]);
         let tip = equations.rows.iter().filter_map(|row| error.get(row.direction.index()).copied());
-        let lean =
-            Leaning::new(equations, &machine, &motions).map(|mut leaning| leaning.take(&sample).without);
+        let leaning = Leaning::new(equations, &machine, &motions);
+        let lean = leaning.map(|mut leaning| leaning.take(&field.sample()).without);
         tip.chain(lean.into_iter().flatten()).collect()
     };
     Ok(places.iter().map(at).collect())

@@ -290,3 +290,93 @@ fn slices<T>(columns: &[Vec<T>], first: usize, rows: usize) -> Vec<&[T]> {
     let rows = first..first.saturating_add(rows);
     columns.iter().map(|column| column.get(rows.clone()).unwrap_or_default()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use model_dsl::source::SourceFile;
+
+    use super::*;
+    use crate::calibrated;
+
+    /// A machine with all that is remembered: a play that winds up, a filter and a curve; and, with rotary axes, the tool's direction.
+    fn machine() -> Calibrated {
+        let text = "calibration: 1
+machine: trunnion-5axis
+constants: {Ya: 1 mm, Za: 2 mm, Xc: 3 mm, Yc: 4 mm, Zc: 50 mm, Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}
+errors:
+  EXX: [{backlash: {lost_motion: 10 um, wind_up: 0.5 mm}}]
+  EZZ: [{growth: {sensor: spindle, coefficient: 2 um/K, reference: 20 degC, time_constant: 600 s}}]
+  EBX: [{polynomial: {axis: X, per: mm, unit: arcsec, coefficients: [0, 0.1, 1e-3]}}]
+";
+        calibrated::of(SourceFile::new("c.yaml", text), Some(Path::new(".")), &()).ok().unwrap()
+    }
+
+    /// Positions that go to and fro, more than two pieces of them.
+    fn table(axes: usize, rows: usize) -> Table {
+        let place = |axis: usize, row: usize| 20.0 * (0.013 * row as f64 * (1.0 + axis as f64)).sin();
+        let of = |axis| (0..rows).map(|row| place(axis, row)).collect();
+        Table {
+            position: (0..axes).map(of).collect(),
+            time: Some((0..rows).map(|row| 0.1 * row as f64).collect()),
+            temperature: vec![(0..rows).map(|row| 20.0 + (0.001 * row as f64).sin()).collect()],
+            ..Table::default()
+        }
+    }
+
+    #[test]
+    fn pieces_give_what_one_row_after_the_other_gives() {
+        let calibrated = machine();
+        let axes = calibrated.equations.axes.len();
+        let (rows, hysteresis) = (2 * PIECE + 7, vec![0.001; axes]);
+        let table = table(axes, rows);
+        let wanted = Wanted { hysteresis: hysteresis.clone(), compensated: true, ..Wanted::default() };
+        let answers = answer(&calibrated, &table, &wanted).ok().unwrap();
+        assert_eq!((answers.outcomes.len(), answers.commands.len()), (rows, axes));
+
+        let terms = calibrated.terms(|_| panic!("nothing is left out"));
+        let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
+        let machine = wanted.machine(&calibrated);
+        let mut states = vec![TermState::default(); states_needed(&motions)];
+        let (mut directions, mut values) = (vec![[0.0; 3]; axes], vec![0.0; motions.len()]);
+        let work = Work { directions: &mut directions, motions: &mut values, travel: &mut [] };
+        let mut compensator = Compensator::new(&machine, &motions, &mut states, work).unwrap();
+        let mut leaning = Leaning::new(&calibrated.equations, &machine, &motions);
+        let mut state =
+            State::new(&calibrated.calibration, calibrated.equations.following(), true, &hysteresis);
+        let (mut out, mut row) = (vec![0.0; axes], Buffers::default());
+        for number in 0..rows {
+            row.fill(&table, number);
+            state.take(&row.row(Some(table.time.as_ref().unwrap()[number]))).unwrap();
+            let outcome = compensator.compensate(&state.sample(), &mut out).unwrap();
+            assert_eq!(outcome, answers.outcomes[number], "row {number}");
+            let commands: Vec<f64> = answers.commands.iter().map(|column| column[number]).collect();
+            assert_eq!(out, commands, "row {number}");
+            if let Some(leaning) = &mut leaning {
+                assert_eq!(
+                    leaning.take(&state.sample()).without,
+                    answers.leans[number].without,
+                    "row {number}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_first_row_that_cannot_be_is_told() {
+        let calibrated = machine();
+        let axes = calibrated.equations.axes.len();
+        let wanted = Wanted { hysteresis: vec![0.001; axes], compensated: true, ..Wanted::default() };
+        let told = |table: &Table| match answer(&calibrated, table, &wanted) {
+            Err(failure) => failure.words().unwrap().text(false),
+            Ok(_) => panic!("it was answered"),
+        };
+        let mut back = table(axes, 10);
+        back.time = Some((0..10).map(|row| if row == 4 { 0.0 } else { f64::from(row) }).collect());
+        assert_eq!(told(&back), "error: row 4, counted from 0: the time goes back by 3 s");
+        let mut lost = table(axes, 10);
+        lost.position[1][6] = f64::NAN;
+        assert!(told(&lost).starts_with("error: row 6, counted from 0: "), "{}", told(&lost));
+    }
+}

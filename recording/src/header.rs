@@ -1,7 +1,7 @@
 //! The recording file as a whole: its top-level keys.
 //!
 //! In: the tree of the file and the machine's equations. Out: a [`Header`], which knows what every column means and
-//! reads the data ([`Header::read_data`]); or findings E0601 to E0621, E0628.
+//! reads the data ([`Header::read_data`]); or findings E0601 to E0621, E0628, E0629.
 
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
@@ -12,13 +12,15 @@ use model_dsl::yaml::Node;
 
 use super::Instrument;
 use super::channel::{Channel, read_channels, warn_shared_columns};
+use super::date::check_date;
 use super::setup::{Kind, read_setup};
 use super::suited::check_suited;
 use super::words::{FORM, first_key, keys, near_or_all, word};
 
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 12] = [
     "recording",
     "title",
+    "date",
     "machine",
     "calibration",
     "constants",
@@ -131,6 +133,9 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
         check_version(version, diagnostics);
     }
     let title = fields.get("title").and_then(|node| word(node, "`title`", diagnostics));
+    if let Some(node) = fields.get("date") {
+        check_date(node, diagnostics);
+    }
     let calibration = fields.get("calibration").and_then(|node| word(node, "`calibration`", diagnostics));
     let constants =
         fields.get("constants").map(|node| read_constants(node, equations, diagnostics)).unwrap_or_default();

@@ -29,6 +29,7 @@
 //! | E0618 | a set-up that contradicts itself |
 //! | E0619, E0620 | held-out runs without a channel `run`; a run that is no whole number, or no run at all |
 //! | E0621 | a radius that is not greater than zero |
+//! | E0629 | a date that is none |
 //! | W0601 | a column that stands for two things |
 //!
 //! Units have the codes of [`model_dsl::quantity`] besides. E0622 to E0625 are those of who finds the machine, the
@@ -36,6 +37,7 @@
 
 mod channel;
 mod data;
+mod date;
 mod direction;
 mod header;
 mod lie;
@@ -49,6 +51,7 @@ use model_dsl::calibration::Calibration;
 
 pub use channel::{Channel, ChannelKind};
 pub use data::{DataError, Place};
+pub use date::{Moment, date_of};
 pub use direction::own_direction;
 pub use header::{Extra, Header, calibration_of, machine_of, read_header};
 pub use lie::{Lie, PartReading, Turned, clamped_anew, turned};

@@ -1,0 +1,89 @@
+//! Results from elsewhere. In: folders of results, or files of them. Out: those that are results of this fleet's recordings as they are,
+//! filed with its own.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use workshop::failure::Failure;
+use workshop::told::Listener;
+use workshop::written;
+
+use crate::file::Fleet;
+use crate::jobs::{Job, job, places};
+use crate::results::{Filed, Table, There, files, replace};
+use crate::table;
+
+/// What was added.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Added {
+    /// Recordings whose result is here now.
+    pub taken: usize,
+    /// Results that were here already.
+    pub known: usize,
+    /// Results of no recording of this fleet as it is now.
+    pub refused: usize,
+}
+
+/// Takes the results in folders over, each a `results` folder of the same fleet elsewhere. Only what was made from the recordings as they
+/// are here is taken; the listener hears of the others.
+pub fn add(fleet: &Fleet, folders: &[PathBuf], listener: &dyn Listener) -> Result<Added, Failure> {
+    let jobs: Vec<Job> = places(fleet, &()).into_iter().map(|place| job(fleet, place)).collect();
+    let mut added = Added::default();
+    for folder in folders {
+        let there = files(folder, Table::Recordings)?;
+        if there.is_empty() {
+            return Err(Failure::wrong(format!(
+                "error: {} holds no results\nhelp: name the folder that holds the folder `recordings`",
+                folder.display()
+            )));
+        }
+        for path in there {
+            take(fleet, &jobs, folder, &path, &mut added, listener)?;
+        }
+    }
+    Ok(added)
+}
+
+fn take(
+    fleet: &Fleet,
+    jobs: &[Job],
+    folder: &Path,
+    path: &Path,
+    added: &mut Added,
+    listener: &dyn Listener,
+) -> Result<(), Failure> {
+    let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let Some(job) = jobs.iter().find(|job| job.name() == name) else {
+        added.refused += 1;
+        let text =
+            format!("warning: {} is no result of a recording of this fleet as it is now", path.display());
+        listener.hear(&text.into());
+        return Ok(());
+    };
+    let Some(machine) = fleet.machines.get(job.place.machine) else { return Ok(()) };
+    let filed = Filed { machine: &machine.name, time: job.time, id: &job.place.id, key: &job.key };
+    if There::of(&fleet.results, Table::Recordings)?.holds(&fleet.results, &filed, Table::Recordings) {
+        added.known += 1;
+        return Ok(());
+    }
+    // The table of recordings last, since it says that the others are there.
+    for table in [Table::Parameters, Table::Verdicts, Table::Recordings] {
+        let (from, to) = (filed.path(folder, table), filed.path(&fleet.results, table));
+        copy(&from, &to)?;
+        replace(&fleet.results, &filed, table, &There::of(&fleet.results, table)?)?;
+    }
+    added.taken += 1;
+    Ok(())
+}
+
+fn copy(from: &Path, to: &Path) -> Result<(), Failure> {
+    if let Err(why) = table::read(from) {
+        return Err(Failure::no(format!("error: {} cannot be read: {why}", from.display())));
+    }
+    let cannot = |error: io::Error| Failure::io(&format!("cannot read {}", from.display()), &error);
+    let bytes = fs::read(from).map_err(cannot)?;
+    fs::create_dir_all(written::folder(to)).map_err(|error| written::cannot_write(to, &error))?;
+    let kept = written::staged(to, |file| file.write_all(&bytes))?.keep();
+    kept.map_err(|error| written::cannot_write(to, &error))
+}

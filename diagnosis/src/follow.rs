@@ -28,6 +28,7 @@ use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::{self, Shape};
 use crate::travel::{self, Travel};
+use crate::waves;
 
 mod wave;
 
@@ -112,6 +113,9 @@ fn begun(study: &Study<'_>, travels: &[Travel], followed: &Followed) -> Option<F
     if shape.axis().is_some_and(|axis| travels.get(axis).is_none_or(|travel| !travel.moves)) {
         return None;
     }
+    if !comes_round(study, travels, &shape) {
+        return None;
+    }
     let side = match axis.filter(|_| followed.inside_loop) {
         Some(axis) => Side::Loop { axis },
         None if followed.at_drive => Side::Drive,
@@ -124,6 +128,17 @@ fn begun(study: &Study<'_>, travels: &[Travel], followed: &Followed) -> Option<F
         true => Fitted { effect, coefficients },
         false => unfitted(effect),
     })
+}
+
+/// Whether a wave comes round once at least: a part of one is any curve.
+fn comes_round(study: &Study<'_>, travels: &[Travel], shape: &Shape) -> bool {
+    match *shape.core() {
+        Shape::Cyclic { axis, period, .. } => {
+            travels.get(axis).is_some_and(|travel| travel.range() >= period)
+        }
+        Shape::Vibration { frequency } => waves::observed(study) * frequency >= 1.0,
+        _ => true,
+    }
 }
 
 /// The term with its sensors under their numbers in the study.

@@ -2,16 +2,15 @@
 //! filed with its own.
 
 use std::fs;
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use workshop::failure::Failure;
 use workshop::told::Listener;
-use workshop::written;
 
 use crate::file::Fleet;
 use crate::jobs::{Job, job, places};
-use crate::results::{Filed, Table, There, files, replace};
+use crate::results::{Filed, Table, There, files, replace, write_file};
 use crate::table;
 
 /// What was added.
@@ -29,6 +28,8 @@ pub struct Added {
 /// are here is taken; the listener hears of the others.
 pub fn add(fleet: &Fleet, folders: &[PathBuf], listener: &dyn Listener) -> Result<Added, Failure> {
     let jobs: Vec<Job> = places(fleet, &()).into_iter().map(|place| job(fleet, place)).collect();
+    let known = Table::OF_DIAGNOSIS.map(|table| There::of(&fleet.results, table).map(|there| (table, there)));
+    let known = known.into_iter().collect::<Result<Vec<_>, _>>()?;
     let mut added = Added::default();
     for folder in folders {
         let there = files(folder, Table::Recordings)?;
@@ -39,7 +40,7 @@ pub fn add(fleet: &Fleet, folders: &[PathBuf], listener: &dyn Listener) -> Resul
             )));
         }
         for path in there {
-            take(fleet, &jobs, folder, &path, &mut added, listener)?;
+            take(fleet, (&jobs, &known), (folder, &path), &mut added, listener)?;
         }
     }
     Ok(added)
@@ -47,9 +48,8 @@ pub fn add(fleet: &Fleet, folders: &[PathBuf], listener: &dyn Listener) -> Resul
 
 fn take(
     fleet: &Fleet,
-    jobs: &[Job],
-    folder: &Path,
-    path: &Path,
+    (jobs, known): (&[Job], &[(Table, There)]),
+    (folder, path): (&Path, &Path),
     added: &mut Added,
     listener: &dyn Listener,
 ) -> Result<(), Failure> {
@@ -63,16 +63,15 @@ fn take(
     };
     let Some(machine) = fleet.machines.get(job.place.machine) else { return Ok(()) };
     let filed = Filed { machine: &machine.name, time: job.time, id: &job.place.id, key: &job.key };
-    if There::of(&fleet.results, Table::Recordings)?.holds(&fleet.results, &filed, Table::Recordings) {
+    if filed.path(&fleet.results, Table::Recordings).is_file() {
         added.known += 1;
         return Ok(());
     }
     // The table of recordings last, since it says that the others are there.
-    for table in [Table::Parameters, Table::Verdicts, Table::Recordings] {
-        let (from, to) = (filed.path(folder, table), filed.path(&fleet.results, table));
-        copy(&from, &to)?;
-        replace(&fleet.results, &filed, table, &There::of(&fleet.results, table)?)?;
+    for table in Table::OF_DIAGNOSIS {
+        copy(&filed.path(folder, table), &filed.path(&fleet.results, table))?;
     }
+    known.iter().try_for_each(|(table, there)| replace(&fleet.results, &filed, *table, there))?;
     added.taken += 1;
     Ok(())
 }
@@ -83,7 +82,5 @@ fn copy(from: &Path, to: &Path) -> Result<(), Failure> {
     }
     let cannot = |error: io::Error| Failure::io(&format!("cannot read {}", from.display()), &error);
     let bytes = fs::read(from).map_err(cannot)?;
-    fs::create_dir_all(written::folder(to)).map_err(|error| written::cannot_write(to, &error))?;
-    let kept = written::staged(to, |file| file.write_all(&bytes))?.keep();
-    kept.map_err(|error| written::cannot_write(to, &error))
+    write_file(to, &bytes)
 }

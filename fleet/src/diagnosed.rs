@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use diagnosis::diagnosis::{Diagnosis, Estimate, Finding, ParameterValue};
-use diagnosis::report;
+use diagnosis::report::{self, Origin};
 use model_dsl::calibration::{self, Calibration};
 use model_dsl::equations::Equations;
 use recording::Moment;
@@ -15,7 +15,7 @@ use workshop::recorded;
 
 use crate::file::Fleet;
 use crate::jobs::Job;
-use crate::results::{Filed, Table, There, moment, replace, write};
+use crate::results::{Filed, Table, There, moment, replace, write, write_file};
 use crate::table::Cell;
 
 /// The word of a verdict for a recording that cannot be read.
@@ -29,24 +29,36 @@ struct Rows {
 }
 
 /// Diagnoses a recording and files the result in place of an older one.
-pub(crate) fn run(fleet: &Fleet, job: &Job, there: &[(Table, There)]) -> Result<(), Failure> {
+pub(crate) fn run(fleet: &Fleet, job: &Job, paged: bool, there: &[(Table, There)]) -> Result<(), Failure> {
     let Some(machine) = fleet.machines.get(job.place.machine) else { return Ok(()) };
-    let rows = match diagnosis_of(&job.place.path) {
-        Ok((equations, diagnosis)) => found(job, machine.kind.as_deref(), &equations, &diagnosis),
+    let filed = Filed { machine: &machine.name, time: job.time, id: &job.place.id, key: &job.key };
+    let rows = match diagnosis_of(&job.place.path, paged) {
+        Ok((equations, diagnosis)) => {
+            if paged {
+                write_file(&filed.page(&fleet.results), page(job, &diagnosis).as_bytes())?;
+            }
+            found(job, machine.kind.as_deref(), &equations, &diagnosis)
+        }
         Err(why) => unread(fleet, job, machine.kind.as_deref(), &why),
     };
-    let filed = Filed { machine: &machine.name, time: job.time, id: &job.place.id, key: &job.key };
     write(&fleet.results, &filed, Table::Parameters, &rows.parameters)?;
     write(&fleet.results, &filed, Table::Verdicts, &[rows.verdict])?;
     write(&fleet.results, &filed, Table::Recordings, &[rows.recording])?;
     there.iter().try_for_each(|(table, there)| replace(&fleet.results, &filed, *table, there))
 }
 
-fn diagnosis_of(path: &Path) -> Result<(Equations, Diagnosis), Failure> {
+fn diagnosis_of(path: &Path, pictured: bool) -> Result<(Equations, Diagnosis), Failure> {
     let recorded = [recorded::read(path, &())?];
-    let diagnosis = diagnose(&recorded, None, false, &mut |_| {})?;
+    let diagnosis = diagnose(&recorded, None, pictured, &mut |_| {})?;
     let [recorded] = recorded;
     Ok((recorded.equations, diagnosis))
+}
+
+/// The page of a diagnosis.
+fn page(job: &Job, diagnosis: &Diagnosis) -> String {
+    let command = format!("abbe diagnose {} --format html", job.place.label);
+    let program = concat!("abbe ", env!("CARGO_PKG_VERSION"));
+    report::html(diagnosis, &Origin { command: &command, program, change: "" })
 }
 
 /// The cells with which every row of a job begins.

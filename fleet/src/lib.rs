@@ -7,22 +7,23 @@
 //! not harm each other, and another engine may hand out the same jobs.
 
 pub mod add;
-//mod between;
-//mod change;
+mod between;
+mod change;
 mod diagnosed;
 mod effects;
 pub mod file;
 mod followed;
-//mod history;
+pub mod history;
 mod jobs;
 mod key;
-//mod look;
-//pub mod report;
+mod look;
+pub mod report;
 mod results;
 pub mod run;
-//mod series;
-//mod student;
+mod series;
+mod student;
 mod table;
 mod time;
 
-//pub use history::{History, history};
+pub use change::Change;
+pub use history::{History, history};

@@ -31,8 +31,11 @@ pub(crate) enum Table {
 }
 
 impl Table {
-    /// All of them; that which says that a job is done comes last of its job.
+    /// All of them.
     pub(crate) const ALL: [Self; 4] = [Self::Parameters, Self::Verdicts, Self::Recordings, Self::Followed];
+
+    /// Those of the first stage of a job, in the order in which they are written: that which says that it is done comes last.
+    pub(crate) const OF_DIAGNOSIS: [Self; 3] = [Self::Parameters, Self::Verdicts, Self::Recordings];
 
     /// Its folder.
     pub(crate) fn name(self) -> &'static str {
@@ -125,11 +128,29 @@ pub(crate) struct Filed<'f> {
 impl Filed<'_> {
     /// The file of its rows in a table.
     pub(crate) fn path(&self, results: &Path, table: Table) -> PathBuf {
-        let (machine, month) = (encoded(self.machine), self.time.month());
-        let folder =
-            results.join(table.name()).join(format!("machine={machine}")).join(format!("month={month}"));
-        folder.join(format!("{}-{}.parquet", self.id, self.key))
+        self.file(results, table.name(), "parquet")
     }
+
+    /// The page of its diagnosis.
+    pub(crate) fn page(&self, results: &Path) -> PathBuf {
+        self.file(results, PAGES, "html")
+    }
+
+    fn file(&self, results: &Path, folder: &str, end: &str) -> PathBuf {
+        let (machine, month) = (encoded(self.machine), self.time.month());
+        let folder = results.join(folder).join(format!("machine={machine}")).join(format!("month={month}"));
+        folder.join(format!("{}-{}.{end}", self.id, self.key))
+    }
+}
+
+/// The folder of the pages.
+const PAGES: &str = "pages";
+
+/// Writes a file of a job whole, its folder too where there is none.
+pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let cannot = |error: io::Error| written::cannot_write(path, &error);
+    fs::create_dir_all(written::folder(path)).map_err(cannot)?;
+    written::staged(path, |file| file.write_all(bytes))?.keep().map_err(cannot)
 }
 
 /// A moment as a cell.
@@ -144,12 +165,9 @@ pub(crate) fn write(
     table: Table,
     rows: &[Vec<Cell>],
 ) -> Result<(), Failure> {
-    let path = filed.path(results, table);
     let bytes =
         table::written(table.columns(), rows).map_err(|error| Failure::wrong(format!("error: {error}")))?;
-    let cannot = |error: io::Error| written::cannot_write(&path, &error);
-    fs::create_dir_all(written::folder(&path)).map_err(cannot)?;
-    written::staged(&path, |file| file.write_all(&bytes))?.keep().map_err(cannot)
+    write_file(&filed.path(results, table), &bytes)
 }
 
 /// Which results of a table are there: for each recording the files of its results, by key.

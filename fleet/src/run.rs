@@ -218,22 +218,22 @@ impl Follow<'_> {
     }
 }
 
-/// Does all jobs that are not done, on all processors. A run that is stopped, or killed, goes on with the next one.
+/// Does all jobs that are not done, on all processors; those of a part where one is given. `pages` writes the page of each diagnosis
+/// too. A run that is stopped, or killed, goes on with the next one.
 pub fn all(
     fleet: &Fleet,
-    shard: Option<Shard>,
+    (shard, pages): (Option<Shard>, bool),
     listener: &dyn Listener,
     progress: &(dyn Fn(Step<'_>) + Sync),
 ) -> Result<Done, Failure> {
     tidy(&fleet.results)?;
     let mut plan = Plan::new(fleet, listener)?;
-    let there: Vec<(Table, There)> =
-        [Table::Parameters, Table::Verdicts, Table::Recordings].map(|table| (table, plan.of(table))).into();
+    let there: Vec<(Table, There)> = Table::OF_DIAGNOSIS.map(|table| (table, plan.of(table))).into();
     let pending = plan.undiagnosed(shard);
     each(
         &pending,
         |done| progress(Step { step: "diagnosing", done }),
-        |job| diagnosed::run(fleet, job, &there),
+        |job| diagnosed::run(fleet, job, pages, &there),
     )?;
     let diagnosed = pending.len();
     plan.look()?;
@@ -284,7 +284,7 @@ pub fn pending(
 }
 
 /// Does one job by its name, as [`pending`] tells it.
-pub fn one(fleet: &Fleet, name: &str) -> Result<(), Failure> {
+pub fn one(fleet: &Fleet, name: &str, pages: bool) -> Result<(), Failure> {
     let (follows, rest) = match name.strip_prefix(FOLLOW) {
         Some(rest) => (true, rest),
         None => (false, name),
@@ -304,9 +304,9 @@ pub fn one(fleet: &Fleet, name: &str) -> Result<(), Failure> {
         if job.key != key {
             return Err(changed());
         }
-        let tables = [Table::Parameters, Table::Verdicts, Table::Recordings];
-        let there = tables.map(|table| There::of(&fleet.results, table).map(|there| (table, there)));
-        return diagnosed::run(fleet, &job, &there.into_iter().collect::<Result<Vec<_>, _>>()?);
+        let there =
+            Table::OF_DIAGNOSIS.map(|table| There::of(&fleet.results, table).map(|there| (table, there)));
+        return diagnosed::run(fleet, &job, pages, &there.into_iter().collect::<Result<Vec<_>, _>>()?);
     }
     places.retain(|other| other.machine == place.machine);
     let mut plan = Plan {

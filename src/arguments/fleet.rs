@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use fleet::run::Shard;
+use recording::Moment;
 
 use super::LimitsFormat;
 
@@ -38,6 +39,9 @@ pub(crate) struct FleetRun {
     /// Do one job that --list printed, by its name; may be given several times.
     #[arg(long, value_name = "JOB", conflicts_with_all = ["shard", "list"])]
     pub(crate) job: Vec<String>,
+    /// Write the page of each diagnosis as well, to which the pages of the fleet refer; it takes longer.
+    #[arg(long, conflicts_with = "list")]
+    pub(crate) pages: bool,
     /// Show no progress.
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -62,11 +66,16 @@ pub(crate) struct FleetShow {
     #[arg(long, value_enum, default_value_t = LimitsFormat::Text)]
     pub(crate) format: LimitsFormat,
     /// Write the page of the fleet and a page for each machine into this folder.
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", conflicts_with = "format")]
     pub(crate) output: Option<PathBuf>,
-    /// Make alarms of what was known when this moment came and nothing later, as in 2026-06-30.
-    #[arg(long, value_name = "DATE")]
-    pub(crate) until: Option<String>,
+    /// Tell what was known on this day, as in 2026-06-30; by default today.
+    #[arg(long, value_name = "DATE", value_parser = moment)]
+    pub(crate) until: Option<Moment>,
+}
+
+fn moment(text: &str) -> Result<Moment, String> {
+    Moment::read(text)
+        .ok_or_else(|| "a day is written as 2026-06-30, or 2026-06-30T12:00 with the time".to_owned())
 }
 
 fn shard(text: &str) -> Result<Shard, String> {

@@ -1,5 +1,7 @@
 //! `abbe fleet`: many machines over years. In: a fleet file. Out: results of its recordings, and what changed in its machines.
 
+mod show;
+
 use std::path::Path;
 
 use fleet::add::add;
@@ -16,7 +18,7 @@ pub(crate) fn run(arguments: &Fleet) -> Result<(), Failure> {
     match &arguments.command {
         FleetCommand::Run(command) => run_jobs(command),
         FleetCommand::Add(command) => take_over(command),
-        FleetCommand::Show(_) => Ok(()),
+        FleetCommand::Show(command) => show::run(command),
     }
 }
 
@@ -28,7 +30,7 @@ fn read(path: &Path) -> Result<Known, Failure> {
 fn run_jobs(arguments: &FleetRun) -> Result<(), Failure> {
     let fleet = read(&arguments.fleet)?;
     if !arguments.job.is_empty() {
-        return arguments.job.iter().try_for_each(|name| one(&fleet, name));
+        return arguments.job.iter().try_for_each(|name| one(&fleet, name, arguments.pages));
     }
     if arguments.list {
         let listed = pending(&fleet, arguments.shard, &Person::default())?;
@@ -41,7 +43,7 @@ fn run_jobs(arguments: &FleetRun) -> Result<(), Failure> {
             progress.part(&format!("{} {done} of {of}", step.step), done as f64 / of.max(1) as f64);
         }
     };
-    let done = all(&fleet, arguments.shard, &Person::default(), &show)?;
+    let done = all(&fleet, (arguments.shard, arguments.pages), &Person::default(), &show)?;
     drop(progress);
     if !arguments.quiet {
         warn(&told(done));

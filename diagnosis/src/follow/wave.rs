@@ -30,7 +30,8 @@ pub(super) fn amplitude(
         return None;
     }
     let reached = length / noise;
-    let ends = (offset(reached, 1.0 - TAIL), offset(reached, TAIL));
+    // A length shorter than the noise is luck, and says no more than one of the size of the noise.
+    let ends = (offset(reached, 1.0 - TAIL), offset(reached.max(1.0), TAIL));
     // The length without what noise adds to it on average, which is half the variance over the length.
     let value = (reached * reached - 1.0).max(0.0).sqrt().clamp(ends.0, ends.1);
     let scaled = |of: f64| of * noise * factor;

@@ -49,6 +49,7 @@ fn emitted() -> BTreeSet<String> {
         "diagnosis/src",
         "update/src",
         "exchange/src",
+        "fleet/src",
         "src",
     ] {
         for path in rust_files(&root().join(folder)) {
@@ -234,6 +235,7 @@ pub(crate) fn complete(kind: &str, part: &str) -> String {
             "constants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}",
             "measurements: [{motion: EXX, data: x.csv}]",
         ],
+        "fleet" => &["fleet: 1", "machines: {mill-07: {recordings: \"*.yaml\"}}"],
         _ => &[],
     };
     let keys: BTreeSet<&str> =
@@ -317,6 +319,7 @@ fn said(code: &str, folder: &Path, example: &Example, text: &str) -> String {
         ("recording", "for an update") => abbe(&["update", &warm, path], ""),
         ("recording", _) => abbe(&["diagnose", path], ""),
         ("set-up", _) => abbe(&["calibrate", path], ""),
+        ("fleet", _) => abbe(&["fleet", "run", "--list", path], ""),
         ("measurement", _) => {
             fs::write(folder.join("x.rtl"), text).unwrap();
             abbe(&["calibrate", &at("laser.yaml")], "")

@@ -44,13 +44,23 @@ fn worst(machine: &Machine) -> Option<&Followed> {
         .map(|(followed, _)| followed)
 }
 
-/// A change in a few words.
+/// A change in a few words; that it is no more than chance gives, where there is no alarm about it.
 fn brief(followed: &Followed) -> String {
     let series = &followed.series;
-    let Some(change) = &followed.change else { return "too few recordings to tell a change".to_owned() };
-    if series.is_noise() {
-        return format!("noise {} {:.2} times", change.kind, change.size.exp());
+    let name = if series.is_noise() {
+        "noise".to_owned()
+    } else {
+        format!("{} of {}", series.parameter, series.effect)
+    };
+    let Some(change) = &followed.change else {
+        return format!("{name}: too few recordings to tell a change");
+    };
+    let size = match series.is_noise() {
+        true => format!("{:.2} times", change.size.exp()),
+        false => format!("{} +- {}", number(change.size, &series.unit), number(change.half, &series.unit)),
+    };
+    match followed.alarm {
+        true => format!("{name}: {} of {size}", change.kind),
+        false => format!("{name}: no change that is told ({} of {size})", change.kind),
     }
-    let size = format!("{} +- {}", number(change.size, &series.unit), number(change.half, &series.unit));
-    format!("{} of {}: {} of {size}", series.parameter, series.effect, change.kind)
 }

@@ -1,6 +1,7 @@
 //! The arguments of the command line. In: words. Out: one command with its options.
 
 mod choices;
+mod fleet;
 mod values;
 
 use std::path::PathBuf;
@@ -13,6 +14,7 @@ pub(crate) use choices::{
     CalibrateFormat, Color, EvaluationFormat, ExportFormat, ExportValue, Format, LimitsFormat, LinearUnit,
     Names, ReportFormat, UpdateFormat, UpdateMethod,
 };
+pub(crate) use fleet::{Fleet, FleetAdd, FleetCommand, FleetRun, FleetShow};
 use values::{name, non_negative, place, range};
 
 /// Compiles a machine tool's kinematic chain into its error equations and compensation code.
@@ -51,6 +53,8 @@ pub(crate) enum Command {
     Update(Update),
     /// Give the standard figures of positioning and of circles from a recording (ISO 230-2, ISO 230-4).
     Evaluate(Evaluate),
+    /// Diagnose the recordings of many machines over years, once each, and tell what changed.
+    Fleet(Fleet),
     /// Write the files that a controller loads, and tell what they cannot carry.
     Export(Export),
     /// Write a commented file to start from: of a machine, a calibration, a recording, a set-up or a path.

@@ -10,6 +10,7 @@ pub(crate) mod evaluate;
 pub(crate) mod expand;
 pub(crate) mod explain;
 pub(crate) mod export;
+pub(crate) mod fleet;
 pub(crate) mod limits;
 pub(crate) mod man;
 pub(crate) mod new;

@@ -43,6 +43,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Calibrate(command) => commands::calibrate::run(command),
         Command::Update(command) => commands::update::run(command),
         Command::Evaluate(command) => commands::evaluate::run(command),
+        Command::Fleet(command) => commands::fleet::run(command),
         Command::Export(command) => commands::export::run(command),
         Command::New(command) => commands::new::run(command),
         Command::Explain(command) => commands::explain::run(command),

@@ -1,4 +1,4 @@
-//! The pages as a browser lays them out. In: pages of `derive`, `diagnose` and `evaluate`, opened in a Chromium without a
+//! The pages as a browser lays them out. In: pages of `derive`, `diagnose`, `evaluate` and `fleet`, opened in a Chromium without a
 //! window. Out: that formulas are laid out and plots drawn, that no page is wider than a telephone, and that nothing is
 //! fetched and nothing complains. Where no Chromium is installed the test is skipped with a line.
 
@@ -139,7 +139,25 @@ fn pages(folder: &Path) -> Vec<(String, String, bool, bool)> {
     all.push(page("evaluate a circle", &["evaluate", circle, "--format", "html"], false, true));
     let stations = stations(folder);
     all.push(page("evaluate stations", &["evaluate", &stations, "--format", "html"], false, true));
+    all.push(page("fleet", &["fleet", "show", &fleet(folder), "--format", "html"], false, true));
     all
+}
+
+/// A fleet of the shipped recordings with their results.
+fn fleet(folder: &Path) -> String {
+    let recordings = root().join("recordings");
+    let file = folder.join("fleet.yaml");
+    let globs =
+        ["guided-mount-*/recording.yaml", "postech-ballbar/recording.yaml", "postech-ballbar/path.yaml"];
+    let globs = globs.map(|glob| format!("\"{}\"", recordings.join(glob).display())).join(", ");
+    let text = format!(
+        "fleet: 1\nmachines:\n  a machine with a long name & <marks>: {{kind: any, recordings: [{globs}]}}\n"
+    );
+    fs::write(&file, text).unwrap();
+    let file = file.to_str().unwrap().to_owned();
+    let run = abbe(&["fleet", "run", &file, "--quiet"], "");
+    assert_eq!(run.status, 0, "{}", run.err);
+    file
 }
 
 /// A recording of stations of a mill.

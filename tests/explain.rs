@@ -50,6 +50,7 @@ fn emitted() -> BTreeSet<String> {
         "update/src",
         "exchange/src",
         "workshop/src",
+        "fleet/src",
         "src",
     ] {
         for path in rust_files(&root().join(folder)) {
@@ -237,6 +238,7 @@ pub(crate) fn complete(kind: &str, part: &str) -> String {
             "constants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}",
             "measurements: [{motion: EXX, data: x.csv}]",
         ],
+        "fleet" => &["fleet: 1", "machines: {mill-07: {recordings: \"*.yaml\"}}"],
         _ => &[],
     };
     let keys: BTreeSet<&str> =
@@ -320,6 +322,7 @@ fn said(code: &str, folder: &Path, example: &Example, text: &str) -> String {
         ("recording", "for an update") => abbe(&["update", &warm, path], ""),
         ("recording", _) => abbe(&["diagnose", path], ""),
         ("set-up", _) => abbe(&["calibrate", path], ""),
+        ("fleet", _) => abbe(&["fleet", "run", "--list", path], ""),
         ("measurement", _) => {
             fs::write(folder.join("x.rtl"), text).unwrap();
             abbe(&["calibrate", &at("laser.yaml")], "")

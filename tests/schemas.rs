@@ -1,4 +1,4 @@
-//! The JSON Schemas of the five YAML forms, in `schemas/`: an editor checks with them what a reader will accept.
+//! The JSON Schemas of the six YAML forms, in `schemas/`: an editor checks with them what a reader will accept.
 //!
 //! In: every file of these forms that there is. Out: where a schema says other than the reader. The validator is a crate
 //! that knows nothing of the readers, and the readers know nothing of the schemas.
@@ -21,23 +21,24 @@ use crate::machine_files::{cases, findings};
 use crate::shipped::root;
 
 /// The forms by the key that a file of each begins with, and the schemas' names.
-const FORMS: [(&str, &str); 5] = [
+const FORMS: [(&str, &str); 6] = [
     ("abbe", "machine"),
     ("calibration", "calibration"),
     ("recording", "recording"),
     ("path", "path"),
     ("setup", "set-up"),
+    ("fleet", "fleet"),
 ];
 
 /// Codes of mistakes in the form of a file, which a schema sees too. All others depend on more than the form: on the
 /// machine, on another value, on the file as a whole.
-const OF_FORM: [&str; 60] = [
+const OF_FORM: [&str; 61] = [
     "E0101", "E0102", "E0103", "E0104", "E0105", "E0106", "E0107", "E0108", "E0109", "E0110", "E0111",
     "E0112", "E0114", "E0117", "E0119", "E0120", "E0121", "E0122", "E0127", "E0128", "E0130", "E0131",
     "E0132", "E0145", "E0301", "E0302", "E0303", "E0304", "E0306", "E0307", "E0308", "E0309", "E0401",
     "E0402", "E0403", "E0404", "E0409", "E0410", "E0411", "E0412", "E0414", "E0416", "E0422", "E0601",
     "E0602", "E0603", "E0604", "E0605", "E0606", "E0609", "E0610", "E0611", "E0612", "E0615", "E0616",
-    "E0617", "E0620", "E0630", "E0701", "E0702",
+    "E0617", "E0620", "E0630", "E0631", "E0701", "E0702",
 ];
 
 /// More of them: of path files.
@@ -46,12 +47,15 @@ const OF_FORM_OF_PATHS: [&str; 6] = ["E0703", "E0704", "E0705", "E0706", "E0707"
 /// And of set-up files.
 const OF_FORM_OF_SET_UPS: [&str; 7] = ["E0901", "E0902", "E0903", "E0904", "E0907", "E0908", "E0910"];
 
+/// And of fleet files.
+const OF_FORM_OF_FLEETS: [&str; 6] = ["E1001", "E1002", "E1003", "E1004", "E1005", "E1006"];
+
 fn of_form(code: &str) -> bool {
     all_of_form().any(|known| known == code)
 }
 
 fn all_of_form() -> impl Iterator<Item = &'static str> {
-    OF_FORM.into_iter().chain(OF_FORM_OF_PATHS).chain(OF_FORM_OF_SET_UPS)
+    OF_FORM.into_iter().chain(OF_FORM_OF_PATHS).chain(OF_FORM_OF_SET_UPS).chain(OF_FORM_OF_FLEETS)
 }
 
 fn schema(name: &str) -> Value {
@@ -339,6 +343,8 @@ fn mappings() -> Vec<(&'static str, String, String)> {
         let part = format!("machine: XYFZC\nchannels: {{{channel}: {{unheardof: 1}}}}");
         add("recording", &part, &format!("/properties/channels/patternProperties/{pattern}"));
     }
+    add("fleet", "unheardof: 1", "");
+    add("fleet", "machines: {a: {unheardof: 1}}", "/properties/machines/additionalProperties");
     add("recording", "setup: {unheardof: 1}", "/properties/setup");
     add("recording", "holdout: {unheardof: 1}", "/properties/holdout");
     add("recording", "data: {unheardof: 1}", "/properties/data/anyOf/1");

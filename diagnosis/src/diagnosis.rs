@@ -349,6 +349,8 @@ pub struct Location {
     pub detail: String,
     /// The interval to which it is confined.
     pub interval: Option<Interval>,
+    /// Whether the drive's own feedback shows it, as the model has it that was fitted.
+    pub at_drive: bool,
     /// Whether it acts inside the position loop of the axis, which answers it: friction of the drive, a load on it.
     pub inside_loop: bool,
 }

@@ -131,7 +131,7 @@ impl Linearised {
 
     fn fit(self) -> Fit {
         let scale = self.swept.remaining() / self.samples.max(1.0);
-        let widths = self.widths(scale);
+        let widths = widths(&self.design, &self.swept, scale);
         let covariance = |number: usize| {
             let mut columns: Vec<usize> = self.design.columns(number).collect();
             columns.extend(self.slopes[number].map(|slope| self.design.first[slope]));
@@ -161,36 +161,34 @@ fn timed(shape: Shape, coefficients: Vec<f64>) -> (Shape, Vec<f64>) {
 /// over many.
 const FURTHEST_TIME: f64 = 3.0;
 
-impl Linearised {
-    /// For each column how many times wider its interval is than the likelihood has it: by how far estimates scatter from block to
-    /// block, which asks the data themselves how much of them is independent. The sandwich estimator, with the blocks for meat.
-    fn widths(&self, scale: f64) -> Vec<f64> {
-        let width = self.design.width;
-        let blocks: Vec<&Products> = self.design.blocks.iter().filter(|block| !block.held_out).collect();
-        let count = crate::number(blocks.len());
-        if count < FEWEST_BLOCKS {
-            return vec![1.0; width];
-        }
-        let coefficients: Vec<f64> = (0..width).map(|column| self.swept.coefficient(column)).collect();
-        let bread = DMatrix::from_fn(width, width, |row, column| self.swept.covariance(row, column));
-        let mut variances = vec![0.0; width];
-        for block in blocks {
-            let score = DVector::from_fn(width, |row, _| {
-                let explained: f64 =
-                    (0..width).map(|column| block.matrix[(row, column)] * coefficients[column]).sum();
-                block.matrix[(row, width)] - explained
-            });
-            let moved = &bread * score;
-            variances.iter_mut().zip(moved.iter()).for_each(|(variance, moved)| *variance += moved * moved);
-        }
-        let student = 1.0 + STUDENT / count;
-        let ratio = |column: usize| {
-            let own = scale * bread[(column, column)];
-            let scattered = variances[column] * count / (count - 1.0);
-            if own > 0.0 { ((scattered / own).sqrt() * student).max(1.0) } else { 1.0 }
-        };
-        (0..width).map(ratio).collect()
+/// For each column how many times wider its interval is than the likelihood has it: by how far estimates scatter from block to
+/// block, which asks the data themselves how much of them is independent. The sandwich estimator, with the blocks for meat.
+pub(crate) fn widths(design: &Design, swept: &Swept, scale: f64) -> Vec<f64> {
+    let width = design.width;
+    let blocks: Vec<&Products> = design.blocks.iter().filter(|block| !block.held_out).collect();
+    let count = crate::number(blocks.len());
+    if count < FEWEST_BLOCKS {
+        return vec![1.0; width];
     }
+    let coefficients: Vec<f64> = (0..width).map(|column| swept.coefficient(column)).collect();
+    let bread = DMatrix::from_fn(width, width, |row, column| swept.covariance(row, column));
+    let mut variances = vec![0.0; width];
+    for block in blocks {
+        let score = DVector::from_fn(width, |row, _| {
+            let explained: f64 =
+                (0..width).map(|column| block.matrix[(row, column)] * coefficients[column]).sum();
+            block.matrix[(row, width)] - explained
+        });
+        let moved = &bread * score;
+        variances.iter_mut().zip(moved.iter()).for_each(|(variance, moved)| *variance += moved * moved);
+    }
+    let student = 1.0 + STUDENT / count;
+    let ratio = |column: usize| {
+        let own = scale * bread[(column, column)];
+        let scattered = variances[column] * count / (count - 1.0);
+        if own > 0.0 { ((scattered / own).sqrt() * student).max(1.0) } else { 1.0 }
+    };
+    (0..width).map(ratio).collect()
 }
 
 /// The fewest blocks from which a scatter is told.

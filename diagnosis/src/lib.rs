@@ -22,6 +22,7 @@ mod dynamics;
 mod elements;
 mod engine;
 mod fit;
+mod follow;
 mod form;
 mod judge;
 mod kinship;
@@ -71,6 +72,7 @@ use diagnosis::Diagnosis;
 pub(crate) use ::recording;
 use recording::Recording;
 
+pub use follow::{Followed, Size, follow};
 pub use terms::meaning;
 
 /// What a diagnosis starts from.

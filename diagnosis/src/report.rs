@@ -31,6 +31,7 @@ mod style;
 mod text;
 mod verdict;
 
+pub use figure::size;
 pub use html::{Origin, html};
 pub use json::json;
 pub use lines::{WIDTH, paragraph, plain};

@@ -27,6 +27,7 @@ pub(crate) fn location(study: &Study<'_>, fitted: &Fitted, others: &[Effect]) ->
         state: state_word(&effect.shape),
         detail: detail(study, effect),
         interval: interval(study, fitted),
+        at_drive: effect.side().is_some_and(Side::at_drive),
         inside_loop: effect.side().is_some_and(|side| side.answered_by().is_some()),
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! In: the tree of the file and the machine's equations. Out: a [`Header`], which knows what every column means and
 //! reads the data ([`Header::read_data`]); or findings E0601 to E0621, E0628 to
-//! E0630.
+//! E0631.
 
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
@@ -13,15 +13,17 @@ use model_dsl::yaml::Node;
 
 use super::Instrument;
 use super::channel::{Channel, Channels, read_channels, warn_shared_columns};
+use super::date::check_date;
 use super::form::{Form, read_data};
 use super::place::check_runs;
 use super::setup::{Kind, read_setup};
 use super::suited::check_suited;
 use super::words::{FORM, first_key, keys, near_or_all, word};
 
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 12] = [
     "recording",
     "title",
+    "date",
     "machine",
     "calibration",
     "constants",
@@ -139,6 +141,9 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
         check_version(version, diagnostics);
     }
     let title = fields.get("title").and_then(|node| word(node, "`title`", diagnostics));
+    if let Some(node) = fields.get("date") {
+        check_date(node, diagnostics);
+    }
     let calibration = fields.get("calibration").and_then(|node| word(node, "`calibration`", diagnostics));
     let constants =
         fields.get("constants").map(|node| read_constants(node, equations, diagnostics)).unwrap_or_default();

@@ -32,6 +32,7 @@
 //! | E0628 | a constant that the machine lacks |
 //! | E0629 | places of channels that do not go together |
 //! | E0630 | a way to write tables that is not known |
+//! | E0631 | a date that is none |
 //! | W0601 | a column that stands for two things |
 //!
 //! Units have the codes of [`model_dsl::quantity`] besides. E0622 to E0625 are those of who finds the machine, the
@@ -39,6 +40,7 @@
 
 mod channel;
 mod data;
+mod date;
 mod direction;
 mod form;
 mod header;
@@ -54,6 +56,7 @@ use model_dsl::calibration::Calibration;
 
 pub use channel::{Channel, ChannelKind, ChannelPlace};
 pub use data::{DataError, Place, foreign};
+pub use date::{Moment, date_of};
 pub use direction::own_direction;
 pub use form::{Form, Names, Separator};
 pub use header::{Extra, Header, calibration_of, machine_of, read_header};

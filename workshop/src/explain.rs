@@ -14,7 +14,7 @@ use model_dsl::suggest::nearest;
 use entry::Entry;
 
 /// The diagnostics, one file for each family of codes.
-const CODES: [&str; 10] = [
+const CODES: [&str; 11] = [
     include_str!("explain/codes/E00.txt"),
     include_str!("explain/codes/E01.txt"),
     include_str!("explain/codes/W02.txt"),
@@ -25,6 +25,7 @@ const CODES: [&str; 10] = [
     include_str!("explain/codes/E07.txt"),
     include_str!("explain/codes/E08.txt"),
     include_str!("explain/codes/E09.txt"),
+    include_str!("explain/codes/E10.txt"),
 ];
 
 /// The terms of calibration files, then the settings of instruments.

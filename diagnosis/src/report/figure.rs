@@ -83,8 +83,8 @@ impl Scale {
     }
 }
 
-/// A size, such as an rms, with its unit.
-pub(super) fn size(value: f64, unit: &str) -> String {
+/// A size, such as an rms, in the unit in which people read it, to two significant digits.
+pub fn size(value: f64, unit: &str) -> String {
     let scale = Scale::of(unit, Kind::Error, value.abs());
     scale.with_unit(&significant(value * scale.factor, 2))
 }

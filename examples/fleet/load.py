@@ -1,0 +1,91 @@
+"""How many recordings a second, how much memory, and what a kill loses: python load.py FOLDER [RECORDINGS [ROWS [KILLS]]]
+
+In: a folder for a fleet that is made. Simulates one recording of so many rows and copies it with other noise, runs the fleet, kills it with
+SIGKILL at random moments, goes on, and counts what is there: every recording once.
+"""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ABBE = os.environ.get("ABBE", "abbe")
+
+
+def make(folder, count, rows):
+    """Lines of X there and back with a lost motion of 4 um and a noise of 1 um: 40 recordings each of so many machines as it takes."""
+    random.seed(1)
+    machines = (count + 39) // 40
+    fleet = ["fleet: 1", "machines:"]
+    for machine in range(machines):
+        name = f"m{machine:04}"
+        (folder / name).mkdir(parents=True, exist_ok=True)
+        fleet.append(f'  {name}: {{kind: stage, recordings: "{name}/*.yaml"}}')
+        for number in range(min(40, count - 40 * machine)):
+            lines = ["t,xc,xm"]
+            for row in range(rows):
+                part = 2 * row / rows
+                x = 200 * (part if part < 1 else 2 - part)
+                off = 0.002 if part < 1 else -0.002
+                lines.append(f"{0.01 * row:.2f},{x:.4f},{x - off + random.gauss(0, 0.001):.5f}")
+            (folder / name / f"{number:02}.csv").write_text("\n".join(lines) + "\n")
+            date = f"{2020 + number // 12:04}-{number % 12 + 1:02}-01"
+            (folder / name / f"{number:02}.yaml").write_text(
+                f"recording: 1\nmachine: FX\ndate: {date}\ninstrument: position\ndata: {number:02}.csv\nchannels:\n"
+                "  time: {column: t, unit: s}\n  command.x: {column: xc, unit: mm}\n  measured.x: {column: xm, unit: mm}\n"
+            )
+    (folder / "fleet.yaml").write_text("\n".join(fleet) + "\n")
+
+
+def memory(process):
+    try:
+        for line in Path(f"/proc/{process}/status").read_text().splitlines():
+            if line.startswith("VmHWM"):
+                return int(line.split()[1]) / 1024
+    except OSError:
+        pass
+    return 0.0
+
+
+def run(fleet, seconds=None):
+    """Runs until the end, or kills after some seconds; the time, and the most memory, MiB."""
+    begun, peak = time.time(), 0.0
+    process = subprocess.Popen([ABBE, "fleet", "run", str(fleet), "--quiet"])
+    while process.poll() is None:
+        peak = max(peak, memory(process.pid))
+        if seconds is not None and time.time() - begun > seconds:
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+            return time.time() - begun, peak, True
+        time.sleep(0.05)
+    if process.returncode != 0:
+        sys.exit(f"the run ended with {process.returncode}")
+    return time.time() - begun, peak, False
+
+
+def main(folder, count="10000", rows="4000", kills="20"):
+    folder, count = Path(folder), int(count)
+    make(folder, count, int(rows))
+    fleet = folder / "fleet.yaml"
+    random.seed(2)
+    whole, peak, killed = 0.0, 0.0, 0
+    share = float(os.environ.get("SECONDS_BEFORE_KILL", "10"))
+    for _ in range(int(kills)):
+        seconds, most, was_killed = run(fleet, random.uniform(0.1, share))
+        whole, peak, killed = whole + seconds, max(peak, most), killed + was_killed
+    seconds, most, _ = run(fleet)
+    whole, peak = whole + seconds, max(peak, most)
+    for table in ["recordings", "verdicts", "parameters", "followed"]:
+        files = list((folder / "results" / table).rglob("*.parquet"))
+        names = {file.name.split("-")[0] for file in files}
+        assert len(files) == len(names) == count, f"{table}: {len(files)} files of {len(names)} recordings, not {count}"
+    again, _, _ = run(fleet)
+    print(f"{count} recordings of {rows} rows: {whole:.0f} s, {count / whole:.1f} a second, {peak:.0f} MiB at most;")
+    print(f"killed {killed} times: nothing lost, nothing twice; nothing to do takes {again:.1f} s")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:5])

@@ -1,0 +1,88 @@
+//! What a history makes of a simulated shop. In: a shop with its results. Out: when each planted change was raised, every other alarm, and
+//! how many intervals hold the truth.
+
+use fleet::file::Fleet;
+use fleet::history;
+
+use crate::shop::{PLANTED, Shop};
+
+/// What was made of it.
+#[derive(Debug, Default)]
+pub(crate) struct Judged {
+    /// For each planted change: the week in which it was raised first, counted from 1, and the sentence of the last week.
+    pub(crate) raised: Vec<(String, Option<usize>, String)>,
+    /// Alarms about anything else in any week, each once.
+    pub(crate) other: Vec<String>,
+    /// Series in which nothing was planted.
+    pub(crate) quiet: usize,
+    /// Intervals that hold the truth, and all.
+    pub(crate) held: (usize, usize),
+}
+
+/// Looks at a shop week by week.
+pub(crate) fn judged(shop: Shop, fleet: &Fleet) -> Judged {
+    let mut judged = Judged {
+        raised: PLANTED
+            .iter()
+            .map(|(machine, effect, _)| (format!("{}: {effect}", shop.name(*machine)), None, String::new()))
+            .collect(),
+        ..Judged::default()
+    };
+    for week in 0..shop.weeks {
+        let history = history(fleet, shop.time(week), &()).ok().expect("a history");
+        for alarm in &history.alarms {
+            let planted = |(machine, effect, parameter): &(usize, &str, &str)| {
+                shop.name(*machine) == alarm.machine
+                    && alarm.effect.starts_with(effect)
+                    && alarm.parameter == *parameter
+            };
+            match PLANTED.iter().position(planted).and_then(|number| judged.raised.get_mut(number)) {
+                Some((_, first, sentence)) => {
+                    first.get_or_insert(week + 1);
+                    sentence.clone_from(&alarm.reason);
+                }
+                None => judged.other.push(format!("week {}: {}: {}", week + 1, alarm.machine, alarm.reason)),
+            }
+        }
+        if week + 1 == shop.weeks {
+            count(shop, &history, &mut judged);
+        }
+    }
+    judged
+}
+
+fn count(shop: Shop, history: &fleet::History, judged: &mut Judged) {
+    for (number, machine) in history.machines.iter().enumerate() {
+        for followed in &machine.series {
+            let series = &followed.series;
+            let planted = |(machine, effect, parameter): &(usize, &str, &str)| {
+                *machine == number && series.effect.starts_with(effect) && series.parameter == *parameter
+            };
+            judged.quiet += usize::from(!PLANTED.iter().any(planted));
+            for point in series.points.iter().filter(|_| !series.term.is_empty()) {
+                let week =
+                    (0..shop.weeks).find(|week| shop.time(*week).day() == point.time.day()).expect("a week");
+                let truth = shop.truth(number, week).of(&series.effect, &series.parameter);
+                judged.held.0 += usize::from((point.low..=point.high).contains(&truth));
+                judged.held.1 += 1;
+            }
+        }
+    }
+}
+
+impl Judged {
+    /// The table, in Markdown.
+    pub(crate) fn table(&self) -> String {
+        let mut text =
+            "| planted | raised in week | what is said in the last week |\n| --- | --- | --- |\n".to_owned();
+        for (what, week, sentence) in &self.raised {
+            let week = week.map_or_else(|| "never".to_owned(), |week| week.to_string());
+            text += &format!("| {what} | {week} | {sentence} |\n");
+        }
+        text += &format!("\n{} quiet series, {} other alarms", self.quiet, self.other.len());
+        text += &self.other.iter().map(|alarm| format!("\n- {alarm}")).collect::<String>();
+        let (held, all) = self.held;
+        let share = f64::from(u32::try_from(held).unwrap()) / f64::from(u32::try_from(all.max(1)).unwrap());
+        text + &format!("\n\n{held} of {all} intervals hold the truth: {share:.3}\n")
+    }
+}

@@ -1,0 +1,86 @@
+//! Results from elsewhere. In: folders of results, or files of them. Out: those that are results of this fleet's recordings as they are,
+//! filed with its own.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use workshop::failure::Failure;
+use workshop::told::Listener;
+
+use crate::file::Fleet;
+use crate::jobs::{Job, job, places};
+use crate::results::{Filed, Table, There, files, replace, write_file};
+use crate::table;
+
+/// What was added.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Added {
+    /// Recordings whose result is here now.
+    pub taken: usize,
+    /// Results that were here already.
+    pub known: usize,
+    /// Results of no recording of this fleet as it is now.
+    pub refused: usize,
+}
+
+/// Takes the results in folders over, each a `results` folder of the same fleet elsewhere. Only what was made from the recordings as they
+/// are here is taken; the listener hears of the others.
+pub fn add(fleet: &Fleet, folders: &[PathBuf], listener: &dyn Listener) -> Result<Added, Failure> {
+    let jobs: Vec<Job> = places(fleet, &()).into_iter().map(|place| job(fleet, place)).collect();
+    let known = Table::OF_DIAGNOSIS.map(|table| There::of(&fleet.results, table).map(|there| (table, there)));
+    let known = known.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let mut added = Added::default();
+    for folder in folders {
+        let there = files(folder, Table::Recordings)?;
+        if there.is_empty() {
+            return Err(Failure::wrong(format!(
+                "error: {} holds no results\nhelp: name the folder that holds the folder `recordings`",
+                folder.display()
+            )));
+        }
+        for path in there {
+            take(fleet, (&jobs, &known), (folder, &path), &mut added, listener)?;
+        }
+    }
+    Ok(added)
+}
+
+fn take(
+    fleet: &Fleet,
+    (jobs, known): (&[Job], &[(Table, There)]),
+    (folder, path): (&Path, &Path),
+    added: &mut Added,
+    listener: &dyn Listener,
+) -> Result<(), Failure> {
+    let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let Some(job) = jobs.iter().find(|job| job.name() == name) else {
+        added.refused += 1;
+        let text =
+            format!("warning: {} is no result of a recording of this fleet as it is now", path.display());
+        listener.hear(&text.into());
+        return Ok(());
+    };
+    let Some(machine) = fleet.machines.get(job.place.machine) else { return Ok(()) };
+    let filed = Filed { machine: &machine.name, time: job.time, id: &job.place.id, key: &job.key };
+    if filed.path(&fleet.results, Table::Recordings).is_file() {
+        added.known += 1;
+        return Ok(());
+    }
+    // The table of recordings last, since it says that the others are there.
+    for table in Table::OF_DIAGNOSIS {
+        copy(&filed.path(folder, table), &filed.path(&fleet.results, table))?;
+    }
+    known.iter().try_for_each(|(table, there)| replace(&fleet.results, &filed, *table, there))?;
+    added.taken += 1;
+    Ok(())
+}
+
+fn copy(from: &Path, to: &Path) -> Result<(), Failure> {
+    if let Err(why) = table::read(from) {
+        return Err(Failure::no(format!("error: {} cannot be read: {why}", from.display())));
+    }
+    let cannot = |error: io::Error| Failure::io(&format!("cannot read {}", from.display()), &error);
+    let bytes = fs::read(from).map_err(cannot)?;
+    write_file(to, &bytes)
+}

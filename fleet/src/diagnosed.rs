@@ -1,0 +1,169 @@
+//! The first stage of a job. In: a recording. Out: the rows of its result: what was recorded, what the diagnosis says, what it found.
+//!
+//! A recording that cannot be read has a result too: its row says why.
+
+use std::path::Path;
+
+use diagnosis::diagnosis::{Diagnosis, Estimate, Finding, ParameterValue};
+use diagnosis::report::{self, Origin};
+use model_dsl::calibration::{self, Calibration};
+use model_dsl::equations::Equations;
+use recording::Moment;
+use workshop::diagnosed::diagnose;
+use workshop::failure::Failure;
+use workshop::recorded;
+
+use crate::file::Fleet;
+use crate::jobs::Job;
+use crate::results::{Filed, Table, There, moment, replace, write, write_file};
+use crate::table::Cell;
+
+/// The word of a verdict for a recording that cannot be read.
+pub(crate) const ERROR: &str = "error";
+
+/// What is written about one recording.
+struct Rows {
+    recording: Vec<Cell>,
+    verdict: Vec<Cell>,
+    parameters: Vec<Vec<Cell>>,
+}
+
+/// Diagnoses a recording and files the result in place of an older one.
+pub(crate) fn run(fleet: &Fleet, job: &Job, paged: bool, there: &[(Table, There)]) -> Result<(), Failure> {
+    let Some(machine) = fleet.machines.get(job.place.machine) else { return Ok(()) };
+    let filed = Filed { machine: &machine.name, time: job.time, id: &job.place.id, key: &job.key };
+    let rows = match diagnosis_of(&job.place.path, paged) {
+        Ok((equations, diagnosis)) => {
+            if paged {
+                write_file(&filed.page(&fleet.results), page(job, &diagnosis).as_bytes())?;
+            }
+            found(job, machine.kind.as_deref(), &equations, &diagnosis)
+        }
+        Err(why) => unread(fleet, job, machine.kind.as_deref(), &why),
+    };
+    write(&fleet.results, &filed, Table::Parameters, &rows.parameters)?;
+    write(&fleet.results, &filed, Table::Verdicts, &[rows.verdict])?;
+    write(&fleet.results, &filed, Table::Recordings, &[rows.recording])?;
+    there.iter().try_for_each(|(table, there)| replace(&fleet.results, &filed, *table, there))
+}
+
+fn diagnosis_of(path: &Path, pictured: bool) -> Result<(Equations, Diagnosis), Failure> {
+    let recorded = [recorded::read(path, &())?];
+    let diagnosis = diagnose(&recorded, None, pictured, &mut |_| {})?;
+    let [recorded] = recorded;
+    Ok((recorded.equations, diagnosis))
+}
+
+/// The page of a diagnosis.
+fn page(job: &Job, diagnosis: &Diagnosis) -> String {
+    let command = format!("abbe diagnose {} --format html", job.place.label);
+    let program = concat!("abbe ", env!("CARGO_PKG_VERSION"));
+    report::html(diagnosis, &Origin { command: &command, program, change: "" })
+}
+
+/// The cells with which every row of a job begins.
+fn head(job: &Job) -> Vec<Cell> {
+    vec![Cell::from(&*job.key), Cell::from(&*job.place.label)]
+}
+
+fn found(job: &Job, kind: Option<&str>, equations: &Equations, diagnosis: &Diagnosis) -> Rows {
+    let summary = diagnosis.recordings.first().cloned().unwrap_or_default();
+    let counts = [summary.rows, summary.samples, summary.missing, summary.outliers, summary.runs];
+    let mut recording = head(job);
+    recording.extend([Cell::from(kind.map(str::to_owned)), moment(job.time), Cell::from(summary.title)]);
+    recording.push(Cell::from(summary.instrument));
+    recording.extend(counts.map(Cell::from));
+    recording.extend([Cell::from(env!("CARGO_PKG_VERSION")), Cell::None]);
+    let (before, after) = (diagnosis.before, diagnosis.after);
+    let mut verdict = head(job);
+    verdict.extend([moment(job.time), Cell::from(diagnosis.verdict.word())]);
+    verdict.extend([Cell::from(&*report::verdict(diagnosis)), Cell::from(diagnosis.findings.len())]);
+    verdict.push(Cell::from(diagnosis.model.len()));
+    let sizes = [
+        diagnosis.noise.value,
+        before.rms,
+        after.rms,
+        before.holdout_rms.unwrap_or(f64::NAN),
+        after.holdout_rms.unwrap_or(f64::NAN),
+    ];
+    verdict.extend(sizes.map(Cell::from));
+    verdict.push(Cell::from(before.unit));
+    let findings = diagnosis.findings.iter().enumerate();
+    let parameters =
+        findings.flat_map(|(number, finding)| of_finding(job, equations, number, finding)).collect();
+    Rows { recording, verdict, parameters }
+}
+
+fn of_finding(job: &Job, equations: &Equations, number: usize, finding: &Finding) -> Vec<Vec<Cell>> {
+    let (calibration, family) = (calibration_of(equations, finding), family(finding));
+    let fitted = finding.parameters.iter().flat_map(|parameter| match &parameter.value {
+        ParameterValue::Fitted(estimate) => vec![(parameter.name.to_owned(), estimate.clone())],
+        ParameterValue::List(list) => {
+            let named = |(place, estimate): (usize, &Estimate)| {
+                (format!("{}[{place}]", parameter.name), estimate.clone())
+            };
+            list.iter().enumerate().map(named).collect()
+        }
+        _ => Vec::new(),
+    });
+    let row = |(name, estimate): (String, Estimate)| {
+        let mut row = head(job);
+        row.extend([
+            moment(job.time),
+            Cell::from(number),
+            Cell::from(&*finding.motion),
+            Cell::from(finding.term),
+        ]);
+        row.extend([Cell::Text(name), Cell::from(estimate.value)]);
+        row.extend([estimate.ci95.0, estimate.ci95.1].map(Cell::from));
+        row.extend([Cell::Text(estimate.unit), Cell::from(finding.share), Cell::from(finding.location.side)]);
+        row.extend([finding.location.at_drive, finding.location.inside_loop].map(Cell::from));
+        row.extend([Cell::from(&*family), Cell::from(&*calibration)]);
+        row
+    };
+    fitted.map(row).collect()
+}
+
+/// What two findings must share to be the same effect, periods apart: motion, term, and the names of what it reads.
+fn family(finding: &Finding) -> String {
+    let names = finding.parameters.iter().filter_map(|parameter| match &parameter.value {
+        ParameterValue::Name(name) => Some(format!(" {}={name}", parameter.name)),
+        _ => None,
+    });
+    let side = if finding.location.at_drive { " at drive" } else { "" };
+    format!("{} {}{}{side}", finding.motion, finding.term, names.collect::<String>())
+}
+
+/// The finding as a calibration that holds nothing else: what follows it reads it back.
+fn calibration_of(equations: &Equations, finding: &Finding) -> String {
+    let constants = equations.constants.iter().map(|constant| constant.default.unwrap_or_default()).collect();
+    let mut alone = Calibration::new(equations.machine.clone(), constants);
+    let term = finding.calibrated_in(&mut alone);
+    let motion = finding.motion_number;
+    let alone = match finding.location.inside_loop {
+        true => alone.with_inside_loop(motion, term),
+        false => alone.with(&[(motion, term)]),
+    };
+    calibration::write(&alone, &equations.names())
+}
+
+/// The result of a recording that cannot be read.
+fn unread(fleet: &Fleet, job: &Job, kind: Option<&str>, why: &Failure) -> Rows {
+    let words = why.words().map(|words| words.text(false)).unwrap_or_default();
+    // The same words wherever the folder of the fleet is.
+    let folder = format!("{}/", fleet.folder.display());
+    let words = if folder == "/" { words } else { words.replace(&folder, "") };
+    let mut recording = head(job);
+    recording.extend([Cell::from(kind.map(str::to_owned)), moment(job.time)]);
+    recording.resize(11, Cell::None);
+    recording.extend([Cell::from(env!("CARGO_PKG_VERSION")), Cell::from(&*words)]);
+    let first = words.lines().next().unwrap_or_default();
+    let mut verdict = head(job);
+    verdict.extend([moment(job.time), Cell::from(ERROR), Cell::from(first)]);
+    Rows { recording, verdict, parameters: Vec::new() }
+}
+
+/// The time of a row.
+pub(crate) fn time_of(milliseconds: Option<i64>) -> Option<Moment> {
+    Moment::new(milliseconds?.div_euclid(1000))
+}

@@ -1,0 +1,169 @@
+//! The effects of a machine. In: what was found in each of its recordings. Out: each effect once, in the form in which it was found most
+//! surely: what is followed in all of them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::key::Sum;
+use crate::results::Known;
+use crate::table::Row;
+
+/// An effect of a machine.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Effect {
+    /// What it is called: motion and term, with what tells it from others of the same name.
+    pub(crate) name: String,
+    pub(crate) motion: String,
+    pub(crate) term: String,
+    pub(crate) at_drive: bool,
+    /// The calibration that holds it alone.
+    pub(crate) calibration: String,
+    /// The recordings in which it was found.
+    pub(crate) found_in: BTreeSet<String>,
+    family: String,
+    /// The period of a wave, or its frequency, with its interval.
+    period: Option<Period>,
+    /// How many standard errors its greatest number is from nothing where it was found most surely.
+    certainty: f64,
+}
+
+/// The period of a wave along an axis, or the frequency of one in time.
+#[derive(Clone, Debug, PartialEq)]
+struct Period {
+    value: f64,
+    half: f64,
+    unit: String,
+}
+
+/// What was found in one recording under one name.
+struct Found {
+    id: String,
+    effect: Effect,
+}
+
+/// The most effects that are followed in a machine, those found most often first: a machine with three axes has 21 error motions, and no
+/// recording tells three terms of each of them apart.
+const MOST: usize = 64;
+
+/// Two waves are one where their periods lie within so many times both intervals: of a thousand pairs of one wave in two recordings, one
+/// lies outside 1.96 * 1.7 = 3.3 standard errors.
+const TOGETHER: f64 = 1.7;
+
+/// The effects of a machine, those found most often first, then the surest: what is not told from others is then the rarest.
+pub(crate) fn effects(parameters: &[Known]) -> Vec<Effect> {
+    let mut found: Vec<Found> = findings(parameters).into_values().filter_map(|rows| found(&rows)).collect();
+    // The surest first; the rest is only so that the order is always the same.
+    found.sort_by(|a, b| {
+        let surest = b.effect.certainty.total_cmp(&a.effect.certainty);
+        surest.then_with(|| a.id.cmp(&b.id)).then_with(|| a.effect.name.cmp(&b.effect.name))
+    });
+    let mut effects: Vec<Effect> = Vec::new();
+    for Found { id, effect } in found {
+        match effects.iter_mut().find(|known| known.is(&effect)) {
+            Some(known) => known.found_in.insert(id),
+            None => {
+                effects.push(effect);
+                effects.last_mut().is_some_and(|effect| effect.found_in.insert(id))
+            }
+        };
+    }
+    effects.sort_by_key(|effect| std::cmp::Reverse(effect.found_in.len()));
+    effects.truncate(MOST);
+    named_apart(&mut effects);
+    effects
+}
+
+/// The sum of what is followed in a recording, given by its key and its id.
+pub(crate) fn key((recording, id): (&str, &str), effects: &[Effect]) -> String {
+    let sum = Sum::versioned().text("followed").text(recording);
+    let sum = effects.iter().fold(sum, |sum, effect| {
+        let claimed = if effect.found_in.contains(id) { "claimed" } else { "" };
+        let side = if effect.at_drive { "at drive" } else { "" };
+        sum.text(&effect.name).text(&effect.calibration).text(side).text(claimed)
+    });
+    sum.digits()
+}
+
+/// The rows of each finding of each recording.
+fn findings(parameters: &[Known]) -> BTreeMap<(&str, i64), Vec<&Known>> {
+    let mut findings: BTreeMap<(&str, i64), Vec<&Known>> = BTreeMap::new();
+    for known in parameters {
+        let number = known.row.count("finding").unwrap_or_default();
+        findings.entry((&known.id, number)).or_default().push(known);
+    }
+    findings
+}
+
+fn found(rows: &[&Known]) -> Option<Found> {
+    let first = rows.first()?;
+    let row = &first.row;
+    let term = row.text("term");
+    let (motion, family) = (row.text("motion").to_owned(), row.text("family").to_owned());
+    // What a wave is told apart by.
+    let told_by = match term {
+        "cyclic" => "period",
+        "vibration" => "frequency",
+        // When something happened in one recording says nothing of others.
+        "step" => return None,
+        _ => "",
+    };
+    let period =
+        rows.iter().map(|known| &known.row).find(|row| row.text("parameter") == told_by).and_then(period);
+    let certainty = rows.iter().filter_map(|known| certainty(&known.row, told_by)).fold(0.0, f64::max);
+    Some(Found {
+        id: first.id.clone(),
+        effect: Effect {
+            name: family.clone(),
+            motion,
+            term: term.to_owned(),
+            at_drive: row.flag("at_drive"),
+            calibration: row.text("calibration").to_owned(),
+            found_in: BTreeSet::new(),
+            family,
+            period,
+            certainty,
+        },
+    })
+}
+
+fn period(row: &Row) -> Option<Period> {
+    let half = (row.number("high")? - row.number("low")?) / 2.0;
+    Some(Period { value: row.number("value")?, half, unit: row.text("unit").to_owned() })
+}
+
+/// How many standard errors a size is from nothing.
+fn certainty(row: &Row, told_by: &str) -> Option<f64> {
+    let name = row.text("parameter");
+    if [told_by, "phase", "wind_up", "decay", "time_constant"].contains(&name) {
+        return None;
+    }
+    let half = (row.number("high")? - row.number("low")?) / 2.0;
+    Some(row.number("value")?.abs() / half).filter(|certainty| certainty.is_finite())
+}
+
+impl Effect {
+    /// Whether another one is the same: of the same family, with a period that may be the same.
+    fn is(&self, other: &Self) -> bool {
+        self.family == other.family
+            && match (&self.period, &other.period) {
+                (Some(one), Some(two)) => (one.value - two.value).abs() <= TOGETHER * (one.half + two.half),
+                (None, None) => true,
+                _ => false,
+            }
+    }
+}
+
+/// Gives waves of one family their periods as names.
+fn named_apart(effects: &mut [Effect]) {
+    for effect in effects {
+        if let Some(Period { value, half, unit }) = &effect.period {
+            // As many digits as the interval leaves.
+            let digits = (-(half.max(value.abs() * 1e-6)).log10()).ceil().clamp(0.0, 6.0);
+            effect.name = format!("{} {} {unit}", effect.family, rounded(*value, digits));
+        }
+    }
+}
+
+fn rounded(value: f64, digits: f64) -> f64 {
+    let scale = 10_f64.powf(digits);
+    (value * scale).round() / scale
+}

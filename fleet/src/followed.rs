@@ -1,0 +1,90 @@
+//! The second stage of a job. In: a recording, and the effects of its machine. Out: the rows of how large each of them is in it.
+//!
+//! The names of error motions and the numbers of a term are those of the recording's own machine file, so that a recording of another
+//! machine under the same name has no such motion, and no row.
+
+use diagnosis::{Followed, Inputs, Size, follow};
+use model_dsl::calibration;
+use model_dsl::diagnostic::Diagnostics;
+use model_dsl::equations::Equations;
+use model_dsl::source::SourceFile;
+use model_dsl::yaml;
+use workshop::failure::Failure;
+use workshop::recorded::{self, Recorded};
+
+use crate::effects::Effect;
+use crate::file::Fleet;
+use crate::jobs::Job;
+use crate::results::{Filed, Table, There, moment, replace, write};
+use crate::table::Cell;
+
+/// Follows the effects of a machine in a recording and files the rows under a key. A recording that is `unfit`, whose diagnosis could not
+/// tell anything or says that its files are wrong, has none.
+pub(crate) fn run(
+    fleet: &Fleet,
+    job: &Job,
+    (effects, key): (&[Effect], &str),
+    unfit: bool,
+    there: &There,
+) -> Result<(), Failure> {
+    let Some(machine) = fleet.machines.get(job.place.machine) else { return Ok(()) };
+    let sizes = match unfit || effects.is_empty() {
+        true => Vec::new(),
+        // What cannot be read any more since it was diagnosed is told when it is diagnosed anew.
+        false => {
+            recorded::read(&job.place.path, &()).map(|recorded| sizes(&recorded, effects)).unwrap_or_default()
+        }
+    };
+    let rows: Vec<Vec<Cell>> =
+        effects.iter().zip(sizes).flat_map(|(effect, sizes)| rows(job, effect, sizes)).collect();
+    let filed = Filed { machine: &machine.name, time: job.time, id: &job.place.id, key };
+    write(&fleet.results, &filed, Table::Followed, &rows)?;
+    replace(&fleet.results, &filed, Table::Followed, there)
+}
+
+fn sizes(recorded: &Recorded, effects: &[Effect]) -> Vec<Vec<Size>> {
+    let inputs = Inputs {
+        equations: &recorded.equations,
+        calibration: recorded.calibration.as_ref().map(|known| &known.calibration),
+        recordings: vec![&recorded.recording],
+        holdout: None,
+        calibration_file: None,
+        chains: None,
+    };
+    let read: Vec<Option<Followed>> =
+        effects.iter().map(|effect| followed(&recorded.equations, effect)).collect();
+    let known: Vec<Followed> = read.iter().flatten().cloned().collect();
+    let mut sizes = follow(&inputs, &known).into_iter();
+    read.iter().map(|read| read.as_ref().and_then(|_| sizes.next()).unwrap_or_default()).collect()
+}
+
+/// The effect in the numbers of a machine; nothing where that has no such motion.
+fn followed(equations: &Equations, effect: &Effect) -> Option<Followed> {
+    let source = SourceFile::new("the result", &effect.calibration);
+    let mut diagnostics = Diagnostics::new();
+    let root = yaml::read(&source, &mut diagnostics)?;
+    let alone = calibration::read(&root, &equations.names(), &mut diagnostics)?;
+    let listed = alone.motions.first()?;
+    let term = listed.terms.first()?.value.clone();
+    let name = |sensor: usize| Some((sensor, alone.sensors.iter().nth(sensor)?.name.value.clone()));
+    Some(Followed {
+        motion: listed.motion,
+        at_drive: effect.at_drive,
+        inside_loop: listed.is_inside_loop(0),
+        sensors: term.sensors().filter_map(name).collect(),
+        term,
+    })
+}
+
+fn rows(job: &Job, effect: &Effect, sizes: Vec<Size>) -> Vec<Vec<Cell>> {
+    let claimed = effect.found_in.contains(&job.place.id);
+    let row = |Size { name, estimate }: Size| {
+        let mut row = vec![Cell::from(&*job.key), Cell::from(&*job.place.label), moment(job.time)];
+        row.extend([&effect.name, &effect.motion, &effect.term].map(|text| Cell::from(text.as_str())));
+        row.extend([Cell::Text(name), Cell::from(estimate.value)]);
+        row.extend([estimate.ci95.0, estimate.ci95.1].map(Cell::from));
+        row.extend([Cell::Text(estimate.unit), Cell::from(claimed)]);
+        row
+    };
+    sizes.into_iter().map(row).collect()
+}

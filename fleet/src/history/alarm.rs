@@ -1,0 +1,182 @@
+//! Alarms. In: what every series does, and where each machine stands among its kind. Out: what is no chance, in words, with the recordings
+//! that it rests on and what to look at.
+//!
+//! A fleet of many machines asks hundreds of questions each time it is looked at, and chance answers one of a hundred of them. So the
+//! bound is one for all questions together (Holm): the plainest is held against the bound over their number, the next against the bound
+//! over one less, until one fails. It holds however the series hang together.
+
+use serde::Serialize;
+
+use super::{Change, Machine, Range, Series};
+use crate::look::look;
+use crate::report::number;
+
+/// How probable it may be that any alarm of a look at the whole fleet is chance: looked at each week, once in two years.
+pub const BOUND: f64 = 0.01;
+
+/// A noise is told from a fifth on: levels of one sensor differ by as much from place to place.
+const NOISE: f64 = 0.2;
+
+/// Something that changed.
+#[derive(Clone, Debug, Serialize)]
+pub struct Alarm {
+    /// The machine.
+    pub machine: String,
+    /// `trend`, `step`, `appears`, `noise` or `unlike`.
+    pub kind: &'static str,
+    /// What it is about: `EXX backlash axis=X`.
+    pub effect: String,
+    /// Which number of it.
+    pub parameter: String,
+    /// What happened, a sentence.
+    pub reason: String,
+    /// What to look at first, a clause.
+    pub look_at: String,
+    /// How large the change is: from the first recording to the last of a trend, over a step; how far the machine is from the middle of
+    /// its kind.
+    pub size: f64,
+    /// The unit of the size; of a noise it is the factor.
+    pub unit: String,
+    /// How probable it is by chance, before the number of questions is allowed for.
+    pub probability: f64,
+    /// The recordings that it rests on, the first and the last of each stretch: of a step those beside it.
+    pub recordings: Vec<String>,
+}
+
+/// The alarms, the plainest first, and how many questions were asked. Series of which there is one are marked.
+pub(super) fn alarms(machines: &mut [Machine], ranges: &[Range]) -> (Vec<Alarm>, usize) {
+    let mut found: Vec<(f64, Option<Alarm>, Option<(usize, usize)>)> = Vec::new();
+    for (number, machine) in machines.iter().enumerate() {
+        for (place, followed) in machine.series.iter().enumerate() {
+            if let Some(change) = &followed.change {
+                found.push((
+                    change.probability,
+                    of_change(&machine.name, &followed.series, change),
+                    Some((number, place)),
+                ));
+            }
+        }
+    }
+    for range in ranges {
+        found.extend(range.machines.iter().map(|own| (own.probability, Some(unlike(range, own)), None)));
+    }
+    let questions = found.len();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let count = |number: usize| f64::from(u32::try_from(number).unwrap_or(u32::MAX));
+    let mut alarms = Vec::new();
+    for (asked, (probability, alarm, place)) in found.into_iter().enumerate() {
+        if probability > BOUND / count(questions - asked) {
+            break;
+        }
+        let Some(alarm) = alarm else { continue };
+        if let Some((machine, series)) = place
+            && let Some(followed) =
+                machines.get_mut(machine).and_then(|machine| machine.series.get_mut(series))
+        {
+            followed.alarm = true;
+        }
+        alarms.push(alarm);
+    }
+    (alarms, questions)
+}
+
+/// The alarm of a change; nothing where it is smaller than what one recording tells, which no test would show.
+fn of_change(machine: &str, series: &Series, change: &Change) -> Option<Alarm> {
+    let mut halves: Vec<f64> = series.points.iter().map(|point| (point.high - point.low) / 2.0).collect();
+    halves.sort_by(f64::total_cmp);
+    let least = if series.is_noise() {
+        NOISE.ln_1p()
+    } else {
+        halves.get(halves.len() / 2).copied().unwrap_or_default()
+    };
+    if change.size.abs() <= least {
+        return None;
+    }
+    let (first, last) = (series.points.first()?, series.points.last()?);
+    let (recordings, when) = match change.kind {
+        "trend" => (
+            vec![first.recording.clone(), last.recording.clone()],
+            format!("from {} to {}", first.time.day(), last.time.day()),
+        ),
+        _ => {
+            let (before, after) =
+                (series.points.get(change.from.checked_sub(1)?)?, series.points.get(change.from)?);
+            let stretch = [first, before, after, last].map(|point| point.recording.clone()).to_vec();
+            (stretch, format!("between {} and {}", before.time.day(), after.time.day()))
+        }
+    };
+    let name = if series.is_noise() {
+        "the noise".to_owned()
+    } else {
+        format!("{} of {}", series.parameter, series.effect)
+    };
+    let unit = &series.unit;
+    let mut alarm = Alarm {
+        machine: machine.to_owned(),
+        kind: change.kind,
+        effect: series.effect.clone(),
+        parameter: series.parameter.clone(),
+        reason: String::new(),
+        look_at: look(&series.term).to_owned(),
+        size: change.size,
+        unit: unit.clone(),
+        probability: change.probability,
+        recordings,
+    };
+    if series.is_noise() {
+        let factor = change.size.exp();
+        let goes = if factor > 1.0 { "rises" } else { "falls" };
+        let (from, to) = (number(change.before.0.exp(), unit), number(change.after.0.exp(), unit));
+        let count = series.points.len();
+        alarm.reason = format!("{name} {goes} from {from} to {to} {when}, in {count} recordings.");
+        (alarm.kind, alarm.size, alarm.unit) = ("noise", factor, String::new());
+        return Some(alarm);
+    }
+    // Two intervals that both hold nothing, and one that does no more.
+    let (before, after) = (change.before, change.after);
+    let appears = before.0.abs() <= before.1 && after.0.abs() > after.1;
+    let interval = |(value, half): (f64, f64)| format!("{} +- {}", number(value, unit), number(half, unit));
+    let sizes = format!("from {} to {}", interval(before), interval(after));
+    let claimed = series.points.iter().filter(|point| point.claimed).count();
+    let rests = format!("{} recordings tell it, {claimed} of them by themselves", series.points.len());
+    alarm.reason = match change.kind {
+        "trend" => {
+            let goes = if change.size * after.0 < 0.0 { "falls" } else { "grows" };
+            let week = number(change.per_week.abs(), unit);
+            format!("{name} {goes} by {week} a week, {sizes}, {when}; {rests}.")
+        }
+        _ if appears => format!("{name} appears {when}: {sizes}; {rests}."),
+        _ => format!("{name} steps {when}, {sizes}; {rests}."),
+    };
+    if appears {
+        alarm.kind = "appears";
+    }
+    Some(alarm)
+}
+
+fn unlike(range: &Range, own: &super::Own) -> Alarm {
+    let unit = &range.unit;
+    let (low, high) = (number(range.expected.0, unit), number(range.expected.1, unit));
+    let middle = (range.expected.0 + range.expected.1) / 2.0;
+    let term = range.effect.split(' ').nth(1).unwrap_or_default();
+    Alarm {
+        machine: own.machine.clone(),
+        kind: "unlike",
+        effect: range.effect.clone(),
+        parameter: range.parameter.clone(),
+        reason: format!(
+            "{} of {} is {} +- {}; of {} machines of the kind {} one more is expected from {low} to {high}.",
+            range.parameter,
+            range.effect,
+            number(own.value, unit),
+            number(own.half, unit),
+            range.machines.len(),
+            range.kind
+        ),
+        look_at: look(term).to_owned(),
+        size: own.value - middle,
+        unit: unit.clone(),
+        probability: own.probability,
+        recordings: Vec::new(),
+    }
+}

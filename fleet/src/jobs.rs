@@ -1,0 +1,129 @@
+//! Jobs: what there is to do. In: a fleet. Out: its recordings, each with its time and with the key of what it would be made from.
+
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+use glob::{MatchOptions, Pattern as Glob, glob_with};
+use model_dsl::diagnostic::Diagnostics;
+use model_dsl::source::SourceFile;
+use model_dsl::yaml;
+use recording::{Moment, date_of};
+use workshop::load;
+use workshop::named::Files;
+use workshop::told::Listener;
+
+use crate::file::{Fleet, Machine};
+use crate::key::{Sum, of_texts};
+
+/// A recording of the fleet.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Place {
+    /// The number of its machine.
+    pub(crate) machine: usize,
+    /// Its path from the fleet's folder, with `/` between folders.
+    pub(crate) label: String,
+    /// Its path.
+    pub(crate) path: PathBuf,
+    /// What stays of it when it is measured anew: a sum of machine and path.
+    pub(crate) id: String,
+}
+
+/// A recording with what it holds now.
+#[derive(Clone, Debug)]
+pub(crate) struct Job {
+    pub(crate) place: Place,
+    /// When it was made.
+    pub(crate) time: Moment,
+    /// The sum of all that its result is made from.
+    pub(crate) key: String,
+}
+
+impl Job {
+    /// The name of the job and of its result.
+    pub(crate) fn name(&self) -> String {
+        format!("{}-{}", self.place.id, self.key)
+    }
+}
+
+/// The recordings that are there, in the order of machines and paths; the listener hears of paths that match none.
+pub(crate) fn places(fleet: &Fleet, listener: &dyn Listener) -> Vec<Place> {
+    let mut places = Vec::new();
+    for (number, machine) in fleet.machines.iter().enumerate() {
+        for pattern in &machine.recordings {
+            let found = matching(fleet, pattern);
+            if found.is_empty() {
+                let text = format!("warning: no file matches `{pattern}` of the machine `{}`", machine.name);
+                listener.hear(&text.into());
+            }
+            places.extend(found.into_iter().map(|path| place(fleet, (number, machine), path)));
+        }
+    }
+    places.sort();
+    places.dedup();
+    places
+}
+
+fn matching(fleet: &Fleet, pattern: &str) -> Vec<PathBuf> {
+    let own = Path::new(pattern).is_absolute();
+    let folder = fleet.folder.to_string_lossy();
+    let whole = match folder.as_ref() {
+        _ if own => pattern.to_owned(),
+        "" => pattern.to_owned(),
+        folder => format!("{}/{pattern}", Glob::escape(folder)),
+    };
+    // A star never stands for a slash, nor for the point of a hidden file.
+    let options = MatchOptions {
+        case_sensitive: true,
+        require_literal_separator: true,
+        require_literal_leading_dot: true,
+    };
+    let found = glob_with(&whole, options).into_iter().flatten().filter_map(Result::ok);
+    found.filter(|path| path.is_file() && !path.starts_with(&fleet.results)).collect()
+}
+
+fn place(fleet: &Fleet, (number, machine): (usize, &Machine), path: PathBuf) -> Place {
+    let inside = path.strip_prefix(&fleet.folder).unwrap_or(&path);
+    let label = inside.to_string_lossy().replace('\\', "/");
+    let id = of_texts(&[&machine.name, &label]);
+    Place { machine: number, label, path, id }
+}
+
+/// What a recording holds now.
+pub(crate) fn job(fleet: &Fleet, place: Place) -> Job {
+    let source = load::read(&place.path).ok();
+    let time = time(fleet, &place, source.as_ref());
+    let key = key(&place.path, source.as_ref(), time);
+    Job { place, time, key }
+}
+
+/// When it was made: as its file says, else as its name does, else when the file was written.
+fn time(fleet: &Fleet, place: &Place, source: Option<&SourceFile>) -> Moment {
+    let root = source.and_then(|source| yaml::read(source, &mut Diagnostics::new()));
+    let pattern = fleet.machines.get(place.machine).and_then(|machine| machine.time.as_ref());
+    let named = || pattern.and_then(|pattern| pattern.find(&place.label));
+    let dated = root.as_ref().and_then(date_of).or_else(named).or_else(|| written(&place.path));
+    dated.unwrap_or_else(Moment::first)
+}
+
+fn written(path: &Path) -> Option<Moment> {
+    let since = std::fs::metadata(path).ok()?.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
+    Moment::new(i64::try_from(since.as_secs()).ok()?)
+}
+
+/// The sum of the recording, of all files that it names, and of its time, by which it is filed.
+fn key(path: &Path, source: Option<&SourceFile>, time: Moment) -> String {
+    let sum = Sum::versioned().text(&time.to_string()).file(path);
+    let Some(source) = source else { return sum.digits() };
+    let files = Files::named_in(source, path);
+    let known = files.calibration.as_deref().and_then(machine_of_calibration);
+    // What is no file is a name that the version of Abbe knows, and stands in the file that names it.
+    let named = files.all(known.as_deref()).into_iter().skip(1);
+    named.fold(sum, |sum, file| sum.file(&file)).digits()
+}
+
+/// The machine as a calibration names it.
+fn machine_of_calibration(path: &Path) -> Option<String> {
+    let source = load::read(path).ok()?;
+    let root = yaml::read(&source, &mut Diagnostics::new())?;
+    root.get("machine")?.text().map(str::to_owned)
+}

@@ -1,0 +1,29 @@
+//! A fleet: recordings of many machines over years. In: a fleet file that says where the recordings of each machine are. Out: one result
+//! for each recording, as tables that others read; what was found once, followed in every recording of its machine; and alarms about
+//! what changed.
+//!
+//! One job is one recording. Its result is named by what it was made from (recording, data, machine, calibration, version of Abbe), is
+//! written whole or not at all, and is the same bytes whoever makes it. So a run that was killed goes on where it was, two runs at once do
+//! not harm each other, and another engine may hand out the same jobs.
+
+pub mod add;
+mod between;
+mod change;
+mod diagnosed;
+mod effects;
+pub mod file;
+mod followed;
+pub mod history;
+mod jobs;
+mod key;
+mod look;
+pub mod report;
+mod results;
+pub mod run;
+mod series;
+mod student;
+mod table;
+mod time;
+
+pub use change::Change;
+pub use history::{History, history};

@@ -1,0 +1,66 @@
+//! The report: a fleet's history in words. In: a history. Out: text for a terminal, JSON for programs, pages for a browser. Nothing is
+//! decided here.
+
+mod chart;
+mod html;
+mod text;
+
+pub use html::{Pages, page, pages};
+pub use text::text;
+
+use crate::history::{Followed, History, Machine};
+use crate::series::days;
+
+/// A history as JSON.
+#[must_use]
+pub fn json(history: &History) -> String {
+    serde_json::to_string_pretty(history).map(|text| text + "\n").unwrap_or_default()
+}
+
+/// A number in the unit in which people read it.
+pub(crate) fn number(value: f64, unit: &str) -> String {
+    diagnosis::report::size(value, unit)
+}
+
+/// How long ago a machine was measured: `3 days`; nothing of one that never was.
+fn age(history: &History, machine: &Machine) -> Option<String> {
+    let past = (days(history.until) - days(machine.last()?.time)).max(0.0).floor();
+    Some(match past {
+        0.0 => "today".to_owned(),
+        1.0 => "1 day".to_owned(),
+        past if past < 60.0 => format!("{past} days"),
+        past => format!("{} weeks", (past / 7.0).floor()),
+    })
+}
+
+/// The number of a machine that changed most plainly.
+fn worst(machine: &Machine) -> Option<&Followed> {
+    let known = machine.series.iter().filter_map(|followed| Some((followed, followed.change.as_ref()?)));
+    let plainer = |one: &(&Followed, &crate::Change), other: &(&Followed, &crate::Change)| {
+        (!one.0.alarm, one.1.probability).partial_cmp(&(!other.0.alarm, other.1.probability))
+    };
+    known
+        .min_by(|one, other| plainer(one, other).unwrap_or(std::cmp::Ordering::Equal))
+        .map(|(followed, _)| followed)
+}
+
+/// A change in a few words; that it is no more than chance gives, where there is no alarm about it.
+fn brief(followed: &Followed) -> String {
+    let series = &followed.series;
+    let name = if series.is_noise() {
+        "noise".to_owned()
+    } else {
+        format!("{} of {}", series.parameter, series.effect)
+    };
+    let Some(change) = &followed.change else {
+        return format!("{name}: too few recordings to tell a change");
+    };
+    let size = match series.is_noise() {
+        true => format!("{:.2} times", change.size.exp()),
+        false => format!("{} +- {}", number(change.size, &series.unit), number(change.half, &series.unit)),
+    };
+    match followed.alarm {
+        true => format!("{name}: {} of {size}", change.kind),
+        false => format!("{name}: no change that is told ({} of {size})", change.kind),
+    }
+}

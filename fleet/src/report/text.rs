@@ -1,0 +1,56 @@
+//! The report as text. In: a history. Out: alarms, then a line a machine.
+
+use super::{age, brief, worst};
+use crate::history::{BOUND, History};
+
+/// The report for a terminal that is so many columns wide.
+#[must_use]
+pub fn text(history: &History, columns: usize) -> String {
+    let mut text = String::new();
+    let paragraph = |text: &str, indent: &str| {
+        let options = textwrap::Options::new(columns.max(40)).initial_indent("").subsequent_indent(indent);
+        textwrap::fill(text, options) + "\n"
+    };
+    let count = history.alarms.len();
+    let alarms = match count {
+        0 => "no alarm".to_owned(),
+        1 => "1 alarm".to_owned(),
+        more => format!("{more} alarms"),
+    };
+    text += &paragraph(
+        &format!(
+            "{} machines until {}: {alarms}. {} series and comparisons were asked; any alarm is chance with at most {} % for all \
+             together.",
+            history.machines.len(),
+            history.until.day(),
+            history.questions,
+            BOUND * 100.0
+        ),
+        "",
+    );
+    for alarm in &history.alarms {
+        text += "\n";
+        text += &paragraph(&format!("{}: {}", alarm.machine, alarm.reason), "  ");
+        text += &paragraph(&format!("  look at: {}", alarm.look_at), "    ");
+        if !alarm.recordings.is_empty() {
+            text += &paragraph(&format!("  rests on: {}", alarm.recordings.join(", ")), "    ");
+        }
+    }
+    text += "\n";
+    for machine in &history.machines {
+        let Some(last) = machine.last() else {
+            text += &paragraph(&format!("{}: no result yet", machine.name), "  ");
+            continue;
+        };
+        let age = age(history, machine).unwrap_or_default();
+        let worst = worst(machine).map_or_else(|| "nothing is followed".to_owned(), brief);
+        let line = format!(
+            "{}: {} ({age}), {} recordings; {worst}",
+            machine.name,
+            last.verdict,
+            machine.recordings.len()
+        );
+        text += &paragraph(&line, "  ");
+    }
+    text
+}

@@ -1,0 +1,69 @@
+//! `abbe fleet`: many machines over years. In: a fleet file. Out: results of its recordings, and what changed in its machines.
+
+mod show;
+
+use std::path::Path;
+
+use fleet::add::add;
+use fleet::file::{self, Fleet as Known};
+use fleet::run::{Done, Step, all, one, pending};
+use workshop::failure::Failure;
+
+use crate::arguments::{Fleet, FleetAdd, FleetCommand, FleetRun};
+use crate::output::{Person, print, warn};
+use crate::progress::Progress;
+
+/// Runs the command.
+pub(crate) fn run(arguments: &Fleet) -> Result<(), Failure> {
+    match &arguments.command {
+        FleetCommand::Run(command) => run_jobs(command),
+        FleetCommand::Add(command) => take_over(command),
+        FleetCommand::Show(command) => show::run(command),
+    }
+}
+
+fn read(path: &Path) -> Result<Known, Failure> {
+    file::read(path, &Person::default())
+}
+
+/// Does jobs, or lists them. Status 1 where a job is not what it was when it was listed.
+fn run_jobs(arguments: &FleetRun) -> Result<(), Failure> {
+    let fleet = read(&arguments.fleet)?;
+    if !arguments.job.is_empty() {
+        return arguments.job.iter().try_for_each(|name| one(&fleet, name, arguments.pages));
+    }
+    if arguments.list {
+        let listed = pending(&fleet, arguments.shard, &Person::default())?;
+        return listed.iter().try_for_each(|job| print(&job.line()));
+    }
+    let progress = Progress::new(arguments.quiet, "looking what there is");
+    let show = |step: Step<'_>| {
+        let (done, of) = step.done;
+        if progress.is_watched() {
+            progress.part(&format!("{} {done} of {of}", step.step), done as f64 / of.max(1) as f64);
+        }
+    };
+    let done = all(&fleet, (arguments.shard, arguments.pages), &Person::default(), &show)?;
+    drop(progress);
+    if !arguments.quiet {
+        warn(&told(done));
+    }
+    Ok(())
+}
+
+fn told(done: Done) -> String {
+    let Done { recordings, diagnosed, followed, waiting } = done;
+    let waiting = match waiting {
+        0 => String::new(),
+        1 => "; one machine waits for the other parts: run again when they are done".to_owned(),
+        more => format!("; {more} machines wait for the other parts: run again when they are done"),
+    };
+    format!("{recordings} recordings: {diagnosed} diagnosed, {followed} followed anew{waiting}")
+}
+
+fn take_over(arguments: &FleetAdd) -> Result<(), Failure> {
+    let fleet = read(&arguments.fleet)?;
+    let added = add(&fleet, &arguments.results, &Person::default())?;
+    warn(&format!("{} results taken, {} known already, {} refused", added.taken, added.known, added.refused));
+    Ok(())
+}

@@ -9,7 +9,7 @@ use diagnosis::report::{self, Origin};
 use model_dsl::calibration::{self, Calibration};
 use model_dsl::equations::Equations;
 use recording::Moment;
-use workshop::diagnosed::diagnose;
+use workshop::diagnosed::{Keep, diagnose};
 use workshop::failure::Failure;
 use workshop::recorded;
 
@@ -49,7 +49,8 @@ pub(crate) fn run(fleet: &Fleet, job: &Job, paged: bool, there: &[(Table, There)
 
 fn diagnosis_of(path: &Path, pictured: bool) -> Result<(Equations, Diagnosis), Failure> {
     let recorded = [recorded::read(path, &())?];
-    let diagnosis = diagnose(&recorded, None, pictured, &mut |_| {})?;
+    let keep = if pictured { Keep::Pictures } else { Keep::Nothing };
+    let diagnosis = diagnose(&recorded, None, keep, &mut |_| {})?;
     let [recorded] = recorded;
     Ok((recorded.equations, diagnosis))
 }

@@ -32,7 +32,11 @@ fn the_error_of_the_direction_stands_behind_that_of_the_tip() {
     close(&column(&run.out, "error_i"), &[40e-6, 40e-6 * 30.0_f64.to_radians().cos()]);
     close(&column(&run.out, "error_j"), &[0.0, 0.0]);
     close(&column(&run.out, "error_k"), &[0.0, -20e-6]);
-    // No command turns it back.
+    // B turns it back; where it is to leave it, it stays.
+    close(&column(&run.out, "b_comp"), &[-40e-6_f64.to_degrees(), 30.0 - 40e-6_f64.to_degrees()]);
+    let left = HEAD.replace("orientation: true", "orientation: uncorrected");
+    let run = compensated("leaning-told", &left, "errors: {EBX: 40 urad}\n", "x,z,b\n0,0,0\n0,0,30\n", &[]);
+    close(&column(&run.out, "error_i"), &[40e-6, 40e-6 * 30.0_f64.to_radians().cos()]);
     assert_eq!(column(&run.out, "b_comp"), [0.0, 30.0]);
     let plain = HEAD.replace("orientation: true\n", "");
     let run =
@@ -61,11 +65,16 @@ fn a_column_of_that_name_is_one_of_the_output() {
     assert!(run.err.contains("`error_i` is one of the output's"), "{}", run.err);
 }
 
-/// 30 urad of X and 40 urad of B about Y are 70 urad together; B takes its own away. 30 urad are 6.2 arc seconds, 70 urad 14.4.
+/// 30 urad of X and 40 urad of B about Y are 70 urad together; B takes its own away where it leaves the direction, and else all. 30 urad are
+/// 6.2 arc seconds, 70 urad 14.4.
 #[test]
 fn a_rotary_axis_corrects_its_own_part_of_the_direction() {
     let errors = "errors: {EBX: 30 urad, EBB: 40 urad}\n";
-    let run = compensated("leaning-own", HEAD, errors, "x,z,b\n0,0,0\n50,0,60\n", &["--summary"]);
+    let rows = "x,z,b\n0,0,0\n50,0,60\n";
+    let run = compensated("leaning-all", HEAD, errors, rows, &["--summary"]);
+    assert!(run.err.contains("  with compensation      0.0 to   0.0 arcsec\n"), "{}", run.err);
+    let own = HEAD.replace("orientation: true", "orientation: uncorrected");
+    let run = compensated("leaning-own", &own, errors, rows, &["--summary"]);
     assert_eq!(run.status, 0, "{}", run.err);
     let told = "Angle of the tool's direction from its target, by the model:\n  without compensation  14.4 to  14.4 arcsec\n  with compensation      6.2 to   6.2 arcsec\n";
     assert!(run.err.contains(told), "{}", run.err);

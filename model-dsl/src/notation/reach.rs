@@ -59,27 +59,23 @@ pub(super) fn aimed(equations: &Equations) -> Option<Vec<Cancelled>> {
     }
     let states = states(equations);
     let own: Vec<usize> = equations.turning().iter().map(|own| own.motion).collect();
-    let verdict = |motion: usize| {
-        let pairs: Vec<([f64; 3], [f64; 3])> = states
-            .iter()
-            .filter_map(|state| state.tilts.get(motion).map(|tilt| (*tilt, outside(*tilt, &state.aims))))
-            .collect();
-        let vanishes = |part: &dyn Fn(&[f64; 3], &[f64; 3]) -> [f64; 3]| {
-            let small = |(tilt, rest): &([f64; 3], [f64; 3])| {
-                let part = part(tilt, rest);
-                dot(&part, &part).sqrt() <= ROUNDING
-            };
-            pairs.iter().all(small)
-        };
-        if own.contains(&motion) || vanishes(&|_, rest| *rest) {
-            Cancelled::Yes
-        } else if vanishes(&|tilt, rest| std::array::from_fn(|row| tilt[row] - rest[row])) {
-            Cancelled::No
-        } else {
-            Cancelled::InPart
-        }
-    };
+    let verdict =
+        |motion: usize| if own.contains(&motion) { Cancelled::Yes } else { turned(&states, motion) };
     Some((0..equations.motions.len()).map(verdict).collect())
+}
+
+/// The verdict on what one error motion does to the direction of the tool.
+fn turned(states: &[State], motion: usize) -> Cancelled {
+    let tilts = states.iter().filter_map(|state| state.tilts.get(motion).map(|tilt| (*tilt, &state.aims)));
+    let pairs: Vec<([f64; 3], [f64; 3])> = tilts.map(|(tilt, aims)| (tilt, outside(tilt, aims))).collect();
+    let is_none = |vector: [f64; 3]| dot(&vector, &vector).sqrt() <= ROUNDING;
+    if pairs.iter().all(|(_, rest)| is_none(*rest)) {
+        Cancelled::Yes
+    } else if pairs.iter().all(|(tilt, rest)| is_none(std::array::from_fn(|row| tilt[row] - rest[row]))) {
+        Cancelled::No
+    } else {
+        Cancelled::InPart
+    }
 }
 
 /// The machine at some places, none of them special.

@@ -43,17 +43,21 @@ pub(crate) fn run(arguments: &Calibrate) -> Result<(), Failure> {
 }
 
 /// A set-up with all that it names.
-struct Read {
-    source: SourceFile,
-    equations: Equations,
-    setup: Setup,
-    data: Vec<Measured>,
+pub(super) struct Read {
+    pub(super) source: SourceFile,
+    pub(super) equations: Equations,
+    pub(super) setup: Setup,
+    pub(super) data: Vec<Measured>,
     data_paths: Vec<PathBuf>,
 }
 
 impl Read {
     fn new(path: &Path) -> Result<Self, Failure> {
-        let source = load::read(path)?;
+        Self::of(load::read(path)?, path)
+    }
+
+    /// Reads what a set-up names, whose paths count from the folder of `path`.
+    pub(super) fn of(source: SourceFile, path: &Path) -> Result<Self, Failure> {
         let mut diagnostics = Diagnostics::new();
         let wrong = |diagnostics: &Diagnostics| Failure::marked(&source, diagnostics);
         let root = yaml::read(&source, &mut diagnostics).ok_or_else(|| wrong(&diagnostics))?;

@@ -1,5 +1,7 @@
 //! `abbe derive`: the error equations of a machine in one of five notations.
 
+use std::path::PathBuf;
+
 use model_dsl::check;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations;
@@ -8,10 +10,11 @@ use workshop::failure::Failure;
 use workshop::load::{self, Loaded};
 
 use crate::arguments::{Derive, Format, Names};
-use crate::output::{self, Person};
+use crate::output::Person;
 
 /// Runs the command.
 pub(crate) fn run(command: &Derive) -> Result<(), Failure> {
+    command.target.check(&[PathBuf::from(&command.machine)])?;
     let loaded = load::machine(&command.machine, None, &Person::default())?;
     let format = match command.format {
         Format::Text => notation::Format::Text,
@@ -26,7 +29,7 @@ pub(crate) fn run(command: &Derive) -> Result<(), Failure> {
         Names::Symbols => equations::Names::Symbols,
     };
     let equations = &loaded.compiled.equations;
-    output::print(&match format {
+    command.target.put(&match format {
         notation::Format::Html => notation::page(equations, names, &published(&loaded)),
         format => notation::print(equations, format, names),
     })

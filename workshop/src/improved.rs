@@ -1,6 +1,8 @@
 //! The improved calibration. In: what was known of a machine, and a diagnosis. Out: a calibration file with the faults of the files
 //! mended and the findings added, which reads back as it was meant; and a machine file beside it where the chain has another order.
 
+mod kept;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -36,7 +38,8 @@ pub fn write(
         )));
     }
     let improved = improved(mended(target, recorded, files, diagnosis)?, &diagnosis.findings);
-    let text = comments(recorded, files, diagnosis) + &calibration::write(&improved, &equations.names());
+    let text = commented(target, recorded, files, &calibration::write(&improved, &equations.names()))?;
+    let text = comments(recorded, files, diagnosis) + &text;
     let beside = machine
         .map(|(path, source)| {
             let staged = written::staged(&path, |file| file.write_all(source.text().as_bytes()))?;
@@ -49,6 +52,20 @@ pub fn write(
     }
     tell(target, diagnosis, listener);
     Ok(())
+}
+
+/// The new calibration with the comments of the known one: where its numbers come from.
+fn commented(target: &Path, recorded: &Recorded, files: &Files, text: &str) -> Result<String, Failure> {
+    let (Some(old), Some(path)) = (&recorded.calibration, &files.calibration) else {
+        return Ok(text.to_owned());
+    };
+    let before = calibration::write(&known(target, recorded, files)?, &recorded.equations.names());
+    let kept = kept::kept(old.source.text(), &before, text);
+    let of_head = match kept.head.is_empty() {
+        true => String::new(),
+        false => comment(&format!("{} says of itself:", path.display())) + &kept.head,
+    };
+    Ok(of_head + &kept.text)
 }
 
 /// The machine file that is written beside the calibration, where the chain has another order than the file says.

@@ -31,6 +31,7 @@ mod tests {
 
     use super::command;
     use crate::arguments::{Diagnose, ReportFormat};
+    use crate::target::Target;
 
     #[test]
     fn a_shell_takes_every_path_as_one_word() {
@@ -40,6 +41,8 @@ mod tests {
             write_calibration: None,
             holdout: Some(PathBuf::from("$(x).yaml")),
             quiet: true,
+            fail_on: Vec::new(),
+            target: Target::default(),
         };
         assert_eq!(
             command(&arguments),

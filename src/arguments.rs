@@ -12,10 +12,12 @@ use workshop::updated::{Datum, datum};
 
 pub(crate) use choices::{
     CalibrateFormat, Color, EvaluationFormat, ExportFormat, ExportValue, Format, LimitsFormat, LinearUnit,
-    Names, ReportFormat, UpdateFormat, UpdateMethod,
+    Names, ReportFormat, UpdateFormat, UpdateMethod, VerdictName,
 };
 pub(crate) use fleet::{Fleet, FleetAdd, FleetCommand, FleetRun, FleetShow};
 use values::{name, non_negative, place, range};
+
+use crate::target::Target;
 
 /// Compiles a machine tool's kinematic chain into its error equations and compensation code.
 #[derive(Parser)]
@@ -59,7 +61,7 @@ pub(crate) enum Command {
     Export(Export),
     /// Write a commented file to start from: of a machine, a calibration, a recording, a set-up or a path.
     New(New),
-    /// Explain a diagnostic code, a term or the name of an error motion; alone: list them.
+    /// Explain a diagnostic code, a term, an error motion, a topology word or a word of the glossary; alone: list them.
     Explain(Explain),
     /// Print the completions of a shell for this command line.
     Completions(Completions),
@@ -77,6 +79,9 @@ pub(crate) struct Derive {
     /// Which names to print: those of ISO 230-1, or the machine file's symbols.
     #[arg(long, value_enum, default_value_t = Names::Symbols)]
     pub(crate) names: Names,
+    /// Where the result goes.
+    #[command(flatten)]
+    pub(crate) target: Target,
 }
 
 #[derive(Args)]
@@ -85,6 +90,9 @@ pub(crate) struct Check {
     pub(crate) machine: String,
     /// A file of equations.
     pub(crate) equations: PathBuf,
+    /// Where the result goes.
+    #[command(flatten)]
+    pub(crate) target: Target,
 }
 
 #[derive(Args)]
@@ -98,6 +106,9 @@ pub(crate) struct Expand {
     /// crates abbe-runtime and abbe-c offers them the functions of `abbe.h`.
     #[arg(long)]
     pub(crate) c_abi: bool,
+    /// Where the result goes.
+    #[command(flatten)]
+    pub(crate) target: Target,
 }
 
 #[derive(Args)]
@@ -117,6 +128,12 @@ pub(crate) struct Diagnose {
     /// Show no progress.
     #[arg(long)]
     pub(crate) quiet: bool,
+    /// End with status 1 where the verdict is one of these, with commas between them.
+    #[arg(long, value_name = "VERDICTS", value_enum, value_delimiter = ',')]
+    pub(crate) fail_on: Vec<VerdictName>,
+    /// Where the result goes.
+    #[command(flatten)]
+    pub(crate) target: Target,
 }
 
 #[derive(Args)]
@@ -164,6 +181,9 @@ pub(crate) struct Asked {
     /// Show no progress.
     #[arg(long)]
     pub(crate) quiet: bool,
+    /// Where the result goes.
+    #[command(flatten)]
+    pub(crate) target: Target,
 }
 
 #[derive(Args)]
@@ -279,7 +299,7 @@ pub(crate) struct Update {
 
 #[derive(Args)]
 pub(crate) struct Evaluate {
-    /// A recording: stations approached from both sides, or circles.
+    /// A recording: stations approached from both sides, or circles. Or a set-up file of one measurement, or a laser's file.
     pub(crate) recording: PathBuf,
     /// How to write the figures.
     #[arg(long, value_enum, default_value_t = EvaluationFormat::Text)]
@@ -287,6 +307,9 @@ pub(crate) struct Evaluate {
     /// Show no progress.
     #[arg(long)]
     pub(crate) quiet: bool,
+    /// Where the result goes.
+    #[command(flatten)]
+    pub(crate) target: Target,
 }
 
 #[derive(Args)]
@@ -390,9 +413,13 @@ pub(crate) enum NewFile {
 
 #[derive(Args)]
 pub(crate) struct Explain {
-    /// A code such as E0307, a term such as backlash, or an error motion such as EX0C.
-    #[arg(value_name = "CODE|TERM|MOTION")]
+    /// A code such as E0307, a term such as backlash, an error motion such as EX0C, a topology word such as XYFZ, or a word of the
+    /// guide's glossary such as squareness.
+    #[arg(value_name = "CODE|TERM|MOTION|WORD")]
     pub(crate) name: Option<String>,
+    /// Where the result goes.
+    #[command(flatten)]
+    pub(crate) target: Target,
 }
 
 #[derive(Args)]

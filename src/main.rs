@@ -11,6 +11,7 @@ mod map;
 mod output;
 mod positions;
 mod progress;
+mod target;
 
 use std::process::ExitCode;
 

@@ -30,6 +30,11 @@ fn is_colored(stream: &impl RawStream) -> bool {
     AutoStream::choice(stream) != ColorChoice::Never
 }
 
+/// Whether everything is coloured, also in files.
+pub(crate) fn is_always_colored() -> bool {
+    matches!(ColorChoice::global(), ColorChoice::Always | ColorChoice::AlwaysAnsi)
+}
+
 /// What standard output is shown on: a terminal with its width, or a file or pipe.
 pub(crate) fn terminal() -> Terminal {
     let out = io::stdout();

@@ -527,3 +527,60 @@ fn a_table_alone_is_answered_with_a_recording_file_for_its_columns() {
         );
     }
 }
+
+/// Commands that print a result, each with files that it reads.
+const PRINTERS: [&[&str]; 6] = [
+    &["derive", "xyfz-mill", "--format", "json"],
+    &["check", "excello-921", "published/excello-921.eqs"],
+    &["expand", "FX"],
+    &["explain", "backlash"],
+    &["evaluate", "recordings/postech-ballbar/recording.yaml"],
+    &["new", "XYFZ"],
+];
+
+#[test]
+fn a_result_goes_to_a_file_as_it_is_printed() {
+    let place = file("results", "there.txt", "mine\n");
+    let new = place.replace("there.txt", "new.txt");
+    for arguments in PRINTERS {
+        let printed = abbe(arguments, "");
+        let _ = fs::remove_file(&new);
+        let written = abbe(&[arguments, &["--output", &new]].concat(), "");
+        assert_eq!(
+            (written.status, written.out.as_str()),
+            (printed.status, ""),
+            "{arguments:?}: {}",
+            written.err
+        );
+        assert_eq!(fs::read_to_string(&new).unwrap(), printed.out, "{arguments:?}");
+        let refused = abbe(&[arguments, &["--output", &place]].concat(), "");
+        assert_eq!((refused.status, refused.out.as_str()), (2, ""), "{arguments:?}");
+        assert!(
+            refused.err.contains("there.txt is there already") && refused.err.contains("--force"),
+            "{}",
+            refused.err
+        );
+        assert_eq!(fs::read_to_string(&place).unwrap(), "mine\n", "{arguments:?}");
+        abbe(&[arguments, &["--output", &place, "--force"]].concat(), "");
+        assert_eq!(fs::read_to_string(&place).unwrap(), printed.out, "{arguments:?}");
+        fs::write(&place, "mine\n").unwrap();
+    }
+    assert_eq!(abbe(&["derive", "FX", "--force"], "").status, 2, "--force is for --output");
+    let nowhere = abbe(&["derive", "FX", "--output", "no/such/folder.txt"], "");
+    assert!(nowhere.status == 2 && nowhere.err.contains("there is no such folder"), "{}", nowhere.err);
+}
+
+#[test]
+fn a_result_goes_over_no_file_that_was_read() {
+    let machine = file("results-over", "mill.yaml", &abbe(&["new", "XYFZ"], "").out);
+    let before = fs::read_to_string(&machine).unwrap();
+    for command in ["derive", "expand"] {
+        let run = abbe(&[command, &machine, "--output", &machine, "--force"], "");
+        assert!(
+            run.status == 2 && run.err.contains("is one of the other files of this command"),
+            "{}",
+            run.err
+        );
+    }
+    assert_eq!(fs::read_to_string(&machine).unwrap(), before);
+}

@@ -238,6 +238,33 @@ fn every_format_says_the_same_each_time() {
     assert_eq!(done(abbe(&["diagnose", &recording], "")).out, plain, "text is the default");
 }
 
+#[test]
+fn a_verdict_that_scripts_wait_for_is_a_status() {
+    let folder = stage::recorded("fail-on");
+    let recording = joined(&folder, "recording.yaml");
+    let (report, improved) = (joined(&folder, "report.json"), joined(&folder, "improved.yaml"));
+    let run = |more: &[&str]| abbe(&[&["diagnose", &recording, "--format", "json"], more].concat(), "");
+    let plain = run(&[]);
+    assert_eq!(json(&plain)["verdict"], "left-out-physics");
+    // The report stands all the same, and what is to be written is written.
+    let fails = run(&["--fail-on", "unexplained,left-out-physics", "--write-calibration", &improved]);
+    assert_eq!((fails.status, fails.err.as_str()), (1, ""));
+    assert_eq!(fails.out, plain.out);
+    assert!(Path::new(&improved).exists());
+    let passes = run(&["--fail-on", "unexplained,not-repeatable", "--output", &report]);
+    assert_eq!((passes.status, passes.out.as_str()), (0, ""), "{}", passes.err);
+    assert_eq!(text(Path::new(&report)), plain.out);
+    assert_eq!(run(&["--fail-on", "wrong"]).status, 2);
+    let over = run(&["--output", &recording, "--force"]);
+    assert!(
+        over.status == 2 && over.err.contains("is one of the other files of this command"),
+        "{}",
+        over.err
+    );
+    let both = run(&["--write-calibration", &improved, "--output", &improved, "--force"]);
+    assert_eq!(both.status, 2, "{}", both.err);
+}
+
 /// The words of a page or a text, without marks and the ends of sentences; signs of print as a terminal shows them.
 fn words(text: &str) -> Vec<String> {
     let plain = text.split('<').map(|piece| piece.split_once('>').map_or(piece, |(_, text)| text));

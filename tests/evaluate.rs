@@ -132,3 +132,91 @@ fn a_real_cycle_agrees_with_its_owner_s_report() {
     near(figure(line, "R_up").max(figure(line, "R_down")), 28.31, 0.7);
     assert_eq!(line["left_out"], serde_json::json!([-20.5, 20.5]));
 }
+
+#[test]
+fn rows_without_times_are_readings_in_their_order() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("evaluate").join("order");
+    fs::create_dir_all(&folder).unwrap();
+    // Up 0, 100, 200, over the end, and back: 1 um of play, and 2 um of scale over 200 mm.
+    let rows: String = (1..=3).map(|run| format!("{run},-5,\n{run},0,0\n{run},100,1\n{run},200,2\n{run},205,\n{run},200,3\n{run},100,2\n{run},0,1\n")).collect();
+    fs::write(folder.join("data.csv"), format!("run,x,dev\n{rows}")).unwrap();
+    let head = "recording: 1\nmachine: FX\ninstrument: linear\ndata: data.csv\nsetup: {axis: X}\nchannels:\n  run: {column: run}\n  command.x: {column: x, unit: mm}\n  deviation: {column: dev, unit: um}\n";
+    let recording = folder.join("recording.yaml");
+    fs::write(&recording, head).unwrap();
+    let run = abbe(&["evaluate", recording.to_str().unwrap(), "--format", "json"], "");
+    assert_eq!(run.status, 0, "{}", run.err);
+    let all: Value = serde_json::from_str(&run.out).unwrap();
+    let line = &all["positioning"][0];
+    for (symbol, value) in [("B", 1.0), ("B_mean", -1.0), ("E", 3.0), ("M", 2.0), ("R", 1.0), ("A", 3.0)] {
+        near(figure(line, symbol), value, 1e-9);
+    }
+    assert!(line["notes"].to_string().contains("its rows were taken in their order"), "{line}");
+    // Nothing else may do without times.
+    let diagnosed = abbe(&["diagnose", recording.to_str().unwrap()], "");
+    assert!(diagnosed.status == 2 && diagnosed.err.contains("E0601"), "{}", diagnosed.err);
+}
+
+/// A laser's file of three targets and two runs there and back: 1 um and then 2 um of reversal.
+const LASER: &str = "HEADER::\nFile type  : rtl\nOwner      : Linear\n\nTARGET DATA::\nTarget-count: 3\nTargets :\n0 100 200\nFlags: 0 0 2 0\n\nUSER-TEXT::\nMachine: Mill 7\nDate:2026-05-01\n\nRUNS::\nRun-count: 2\n\nDEVIATIONS::\n1 1 0\n1 2 2\n1 3 4\n2 3 5\n2 2 3\n2 1 1\n3 1 0\n3 2 2\n3 3 4\n4 3 6\n4 2 4\n4 1 2\n\nEOF::\n";
+
+#[test]
+fn a_laser_s_file_and_its_set_up_give_the_same_figures() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("evaluate").join("laser");
+    fs::create_dir_all(&folder).unwrap();
+    let at = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    fs::write(at("x's.rtl"), LASER).unwrap();
+    let head = "setup: 1\nmachine: XYFZ\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\nmeasurements:\n";
+    // X carries the part: the laser reads the tool relative to it, whatever the machine file counts.
+    fs::write(at("setup.yaml"), format!("{head}  - {{motion: EXX, data: \"x's.rtl\"}}\n")).unwrap();
+    for file in ["x's.rtl", "setup.yaml"] {
+        let run = abbe(&["evaluate", &at(file), "--format", "json"], "");
+        assert_eq!((run.status, run.err.as_str()), (0, ""), "{file}");
+        let all: Value = serde_json::from_str(&run.out).unwrap();
+        let line = &all["positioning"][0];
+        // Down 0.5 um above and below its mean: s = 0.7071 um, R down 2.83 um; R = 2 s + 1.5 um = 2.914 um, less than that.
+        for (symbol, value) in [("B", 1.5), ("B_mean", -1.5), ("E_up", 4.0), ("E", 5.5), ("R_up", 0.0)] {
+            near(figure(line, symbol), value, 1e-9);
+        }
+        near(figure(line, "R"), 1.5 + 2.0 * 0.5_f64.sqrt(), 1e-9);
+        let text = abbe(&["evaluate", &at(file)], "").out;
+        assert!(text.contains("machine: Mill 7;") && text.contains("date: 2026-05-01"), "{text}");
+        assert!(
+            text.contains("runs: 2 upwards, 2 downwards") && text.contains("temperatures: ____"),
+            "{text}"
+        );
+    }
+    assert!(abbe(&["evaluate", &at("x's.rtl")], "").out.contains("does not name its axis"));
+    fs::write(
+        at("two.yaml"),
+        format!("{head}  - {{motion: EXX, data: \"x's.rtl\"}}\n  - {{motion: EYY, data: \"x's.rtl\"}}\n"),
+    )
+    .unwrap();
+    let two = abbe(&["evaluate", &at("two.yaml")], "");
+    assert!(two.status == 2 && two.err.contains("has 2 measurements"), "{}", two.err);
+    fs::write(at("pitch.yaml"), format!("{head}  - {{motion: EYX, data: \"x's.rtl\"}}\n")).unwrap();
+    let other = abbe(&["evaluate", &at("pitch.yaml")], "");
+    assert!(other.status == 2 && other.err.contains("error[E0905]"), "{}", other.err);
+}
+
+#[test]
+fn figures_of_a_nanometre_stage_are_shown_in_nanometres() {
+    let path = format!("{STATIONS}instrument: {{linear: {{axis: X}}}}\n");
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("evaluate").join("nano");
+    fs::create_dir_all(&folder).unwrap();
+    let at = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    fs::write(at("path.yaml"), path).unwrap();
+    fs::write(at("known.yaml"), CALIBRATION.replace("0, 0.05", "0, 0.0001").replace("6 um", "0.012 um"))
+        .unwrap();
+    let run = abbe(&["simulate", &at("known.yaml"), &at("path.yaml"), "--output", &at("out"), "--force"], "");
+    assert_eq!(run.status, 0, "{}", run.err);
+    let text = abbe(&["evaluate", &at("out/recording.yaml")], "").out;
+    // 12 nm of play; 0.1 nm/mm over 400 mm.
+    let line =
+        |symbol: &str| text.lines().find(|line| line.trim_start().starts_with(symbol)).unwrap().to_owned();
+    assert!(line("B ").contains("12.00 nm") && line("M ").contains("40.00 nm"), "{text}");
+    assert!(
+        text.contains("other axes at: Y 140 mm, Z -50 mm")
+            && text.contains("targets: 11 from 50 mm to 450 mm"),
+        "{text}"
+    );
+}

@@ -175,12 +175,53 @@ fn unknown_names_are_refused_with_those_nearby() {
     for (name, help) in [
         ("baklash", "did you mean `backlash`?"),
         ("E0199", "did you mean `E0109`, `E0119` or `E0129`?"),
-        ("banana", "`abbe explain` alone lists all codes and terms"),
+        (
+            "banana",
+            "`abbe explain` alone lists all codes and terms; it also knows error motions, topology words and the words of the \
+             guide's glossary",
+        ),
+        ("squarness", "did you mean `Squareness`?"),
     ] {
         let run = abbe(&["explain", name], "");
-        let told = format!("error: `{name}` is no diagnostic, no term and no error motion\nhelp: {help}\n");
+        let told = format!("error: `{name}` is nothing that `abbe explain` knows\nhelp: {help}\n");
         assert_eq!((run.status, run.out.as_str(), run.err), (2, "", told));
     }
+}
+
+#[test]
+fn every_word_of_the_glossary_is_explained_as_the_guide_has_it() {
+    let glossary = fs::read_to_string(root().join("docs/guide/glossary.md")).unwrap();
+    let plain = |text: &str| text.replace('*', "").split_whitespace().collect::<Vec<_>>().join(" ");
+    let entries: Vec<&str> = glossary.split("\n\n").filter(|entry| entry.starts_with("**")).collect();
+    assert!(entries.len() > 40);
+    for entry in entries {
+        let (words, text) = entry.strip_prefix("**").unwrap().split_once("**: ").unwrap();
+        for word in words.split(", ") {
+            for spelled in [word.to_owned(), word.to_lowercase().replace(' ', "-")] {
+                assert!(plain(&page(&spelled)).contains(&plain(text)), "{spelled}");
+            }
+        }
+    }
+}
+
+#[test]
+fn topology_words_are_told_by_what_carries_what() {
+    for (word, told) in [
+        (
+            "XYFZ",
+            "X carries the part, X stands on Y, Y stands on the bed. Z carries the tool, Z stands on the bed.",
+        ),
+        ("xyfz", "part - X - Y - bed - Z - tool"),
+        (
+            "FXYZ",
+            "No axis carries the part: it is fixed to the bed. Z carries the tool, Z stands on Y, Y stands on X, X stands on the bed.",
+        ),
+        ("FX", "Its 6 error motions: EXX, EYX, EZX, EAX, EBX, ECX."),
+    ] {
+        let page = page(word).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(page.contains(told), "{word}: {page}");
+    }
+    assert_eq!(abbe(&["explain", "XXFZ"], "").status, 2);
 }
 
 /// A folder of the test's own with the files that the examples speak of.
@@ -196,6 +237,7 @@ fn bench(code: &str) -> PathBuf {
     write("data.csv", "t,n,xc,yc,xm,dev,T\n0,1,0,0,0,1,20\n1,1,1,0,1,2,20\n2,3,2,0,2,1,20\n3,3,1,1,1,0,20\n");
     let table = |head: &str, unit: &str, rows: &str| format!("{head}\n{unit}{rows}");
     write("x.csv", &table("target,deviation,angle", "#unit,mm,um,urad\n", "0,1,0\n100,2,3\n200,4,1\n"));
+    write("two.csv", &table("target,deviation", "#unit,mm,um\n", "0,1\n100,2\n"));
     write("bare.csv", &table("target,deviation", "", "0,1\n100,2\n200,4\n"));
     let sorted = "1,0,1\n1,100,2\n2,0,1\n2,100,2\n";
     write("sorted.csv", &table("run,target,deviation", "#unit,,mm,um\n", sorted));

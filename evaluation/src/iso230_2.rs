@@ -117,53 +117,79 @@ pub fn of_axis(targets: &[TargetFigures], unit: Unit) -> Vec<Figure> {
         axis.figure(
             "B",
             "reversal value",
-            "ISO 230-2:2006, 2.13",
+            "ISO 230-2:2014 (edition of 2006: 2.13)",
             axis.reversals().map(|all| greatest(all.map(f64::abs))),
         ),
         axis.figure(
             "B_mean",
             "mean reversal value",
-            "ISO 230-2:2006, 2.14",
+            "ISO 230-2:2014 (edition of 2006: 2.14)",
             axis.reversals().map(|all| all.sum::<f64>() / number(axis.both.len())),
         ),
-        axis.one_way("R_up", "repeatability, upwards", "ISO 230-2:2006, 2.18", Way::Up, |axis, way| {
-            axis.repeatabilities(way).map(|all| greatest(all.into_iter()))
-        }),
-        axis.one_way("R_down", "repeatability, downwards", "ISO 230-2:2006, 2.18", Way::Down, |axis, way| {
-            axis.repeatabilities(way).map(|all| greatest(all.into_iter()))
-        }),
-        axis.figure("R", "bidirectional repeatability", "ISO 230-2:2006, 2.19", axis.repeatability()),
+        axis.one_way(
+            "R_up",
+            "repeatability, upwards",
+            "ISO 230-2:2014 (edition of 2006: 2.18)",
+            Way::Up,
+            |axis, way| axis.repeatabilities(way).map(|all| greatest(all.into_iter())),
+        ),
+        axis.one_way(
+            "R_down",
+            "repeatability, downwards",
+            "ISO 230-2:2014 (edition of 2006: 2.18)",
+            Way::Down,
+            |axis, way| axis.repeatabilities(way).map(|all| greatest(all.into_iter())),
+        ),
+        axis.figure(
+            "R",
+            "bidirectional repeatability",
+            "ISO 230-2:2014 (edition of 2006: 2.19)",
+            axis.repeatability(),
+        ),
         axis.one_way(
             "E_up",
             "systematic deviation, upwards",
-            "ISO 230-2:2006, 2.20",
+            "ISO 230-2:2014 (edition of 2006: 2.20)",
             Way::Up,
             |axis, way| axis.range(&[way], mean, mean),
         ),
         axis.one_way(
             "E_down",
             "systematic deviation, downwards",
-            "ISO 230-2:2006, 2.20",
+            "ISO 230-2:2014 (edition of 2006: 2.20)",
             Way::Down,
             |axis, way| axis.range(&[way], mean, mean),
         ),
         axis.figure(
             "E",
             "bidirectional systematic deviation",
-            "ISO 230-2:2006, 2.21",
+            "ISO 230-2:2014 (edition of 2006: 2.21)",
             axis.both_ways(mean, mean),
         ),
-        axis.figure("M", "mean bidirectional deviation", "ISO 230-2:2006, 2.22", axis.means()),
-        axis.one_way("A_up", "accuracy, upwards", "ISO 230-2:2006, 2.23", Way::Up, |axis, way| {
-            axis.accuracy(&[way])
-        }),
-        axis.one_way("A_down", "accuracy, downwards", "ISO 230-2:2006, 2.23", Way::Down, |axis, way| {
-            axis.accuracy(&[way])
-        }),
+        axis.figure(
+            "M",
+            "mean bidirectional deviation",
+            "ISO 230-2:2014 (edition of 2006: 2.22)",
+            axis.means(),
+        ),
+        axis.one_way(
+            "A_up",
+            "accuracy, upwards",
+            "ISO 230-2:2014 (edition of 2006: 2.23)",
+            Way::Up,
+            |axis, way| axis.accuracy(&[way]),
+        ),
+        axis.one_way(
+            "A_down",
+            "accuracy, downwards",
+            "ISO 230-2:2014 (edition of 2006: 2.23)",
+            Way::Down,
+            |axis, way| axis.accuracy(&[way]),
+        ),
         axis.figure(
             "A",
             "bidirectional accuracy",
-            "ISO 230-2:2006, 2.24",
+            "ISO 230-2:2014 (edition of 2006: 2.24)",
             axis.needs_both().and_then(|()| axis.accuracy(&[Way::Up, Way::Down])),
         ),
     ]

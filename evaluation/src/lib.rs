@@ -32,7 +32,7 @@ use recording::{Instrument, Recording};
 pub use circular::{Circle, Pair, Point, Sense, Trace, TraceFigures};
 pub use diagonals::Diagonals;
 pub use figure::{Figure, Given, Rests, Sensor, Unit};
-pub use positioning::{Kind, Positioning, Zero};
+pub use positioning::{Cycle, Kind, Positioning, Zero};
 
 use course::Course;
 
@@ -58,6 +58,10 @@ pub struct Evaluation {
     pub machine: String,
     /// The instrument, as recording files call it.
     pub instrument: &'static str,
+    /// The date of the test, where the recording's times are dates.
+    pub date: Option<String>,
+    /// The temperatures while it was recorded: each sensor with its least and its greatest value, degC.
+    pub temperatures: Vec<(String, [f64; 2])>,
     /// Positioning along each straight line with stations, in order of the recording.
     pub positioning: Vec<Positioning>,
     /// What the diagonals give together, where there are any.
@@ -91,6 +95,21 @@ impl Evaluation {
         lines.chain(diagonals).chain(self.circles.iter().flat_map(|circle| &circle.figures))
     }
 
+    /// Takes off what needs times, where the recording has none and its rows were taken in their order: circles, whose feed and whose
+    /// runs are not known.
+    #[must_use]
+    pub fn in_order(mut self) -> Self {
+        if !self.circles.is_empty() {
+            self.circles.clear();
+            let because = "it has no channel `time`, and rows in their order are readings at rest";
+            self.not_given.push(NotGiven::new("circular deviations", because));
+        }
+        let note =
+            "The recording has no times: its rows were taken in their order, each as a reading at rest.";
+        self.positioning.iter_mut().for_each(|line| line.notes.push(note.to_owned()));
+        self
+    }
+
     /// Whether any figure could be given.
     pub fn gives_any(&self) -> bool {
         self.figures().any(|figure| figure.value.number().is_some())
@@ -105,6 +124,7 @@ pub fn evaluate(inputs: &Inputs<'_>) -> Evaluation {
         title: inputs.recording.title.clone(),
         machine: inputs.equations.machine.clone(),
         instrument: instrument(&inputs.recording.instrument),
+        temperatures: temperatures(inputs.recording),
         ..Evaluation::default()
     };
     let course = match Course::of(inputs) {
@@ -128,6 +148,27 @@ pub fn evaluate(inputs: &Inputs<'_>) -> Evaluation {
         ));
     }
     evaluation
+}
+
+/// Evaluates the readings of a positioning test that are there already, by targets.
+pub fn of_cycle(cycle: Cycle) -> Evaluation {
+    let (file, machine, date) = (cycle.file.clone(), cycle.machine.clone(), cycle.date.clone());
+    let mut evaluation = Evaluation { file, machine, date, instrument: "laser", ..Evaluation::default() };
+    match positioning::of_cycle(cycle) {
+        Ok(line) => evaluation.positioning.push(line),
+        Err((what, because)) => evaluation.not_given.push(NotGiven::new(what, because)),
+    }
+    evaluation
+}
+
+/// The range of each temperature that was read.
+fn temperatures(recording: &Recording) -> Vec<(String, [f64; 2])> {
+    let range = |sensor: &recording::Named| {
+        let there = || sensor.values.iter().copied().filter(|value| value.is_finite());
+        let (low, high) = (there().fold(f64::INFINITY, f64::min), there().fold(f64::NEG_INFINITY, f64::max));
+        (low <= high).then(|| (sensor.name.clone(), [low, high]))
+    };
+    recording.temperatures.iter().filter_map(range).collect()
 }
 
 /// The name of an instrument in recording files.

@@ -93,6 +93,45 @@ impl Zero {
     }
 }
 
+/// Readings of a positioning test by targets, as the file of a laser has them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cycle {
+    /// The file, for people.
+    pub file: String,
+    /// The machine, for people.
+    pub machine: String,
+    /// The date, as the file has it.
+    pub date: Option<String>,
+    /// The letter of the axis.
+    pub axis: String,
+    /// Whether it is a rotary axis.
+    pub rotary: bool,
+    /// The targets, ascending, with their deviations: mm, or rad of a rotary axis.
+    pub targets: Vec<Target>,
+}
+
+/// Evaluates readings by targets; or what cannot be given, and why.
+pub(crate) fn of_cycle(cycle: Cycle) -> Result<Positioning, (String, String)> {
+    let Cycle { axis, rotary, targets: readings, .. } = cycle;
+    let (kind, unit) = if rotary { (Kind::Rotary, Unit::Angle) } else { (Kind::Slide, Unit::Length) };
+    let targets: Vec<TargetFigures> = readings.iter().map(TargetFigures::of).collect();
+    check(&targets).map_err(|because| (format!("positioning of {axis}"), because))?;
+    Ok(Positioning {
+        axes: vec![axis],
+        kind,
+        direction: vec![1.0],
+        at: Vec::new(),
+        sensor: Sensor::Instrument,
+        zero: Zero::Instrument,
+        unit,
+        figures: of_axis(&targets, unit),
+        notes: fewer(&targets, unit),
+        left_out: left_out(&targets),
+        readings,
+        targets,
+    })
+}
+
 /// Evaluates all lines.
 pub(crate) fn evaluate(course: &Course<'_>, travelled: Travelled) -> (Vec<Positioning>, Vec<NotGiven>) {
     let (mut lines, mut without) = (Vec::new(), Vec::new());
@@ -152,16 +191,7 @@ fn positioning(course: &Course<'_>, line: &Line) -> Result<Positioning, String> 
         take_mean_off(&mut readings);
     }
     let targets: Vec<TargetFigures> = readings.iter().map(TargetFigures::of).collect();
-    if targets.iter().filter(|target| target.up.is_some()).count() < 2
-        && targets.iter().filter(|target| target.down.is_some()).count() < 2
-    {
-        return Err("no two stations on one line were approached from the same side".to_owned());
-    }
-    let both = |target: &&TargetFigures| target.reversal().is_some();
-    let left_out = match targets.iter().filter(both).count() {
-        0 => Vec::new(),
-        _ => targets.iter().filter(|target| !both(target)).map(|target| target.position).collect(),
-    };
+    check(&targets)?;
     let others = (0..course.positions.len())
         .filter(|axis| course.commanded.get(*axis) == Some(&true) && !line.axes.contains(axis));
     let at = others.map(|axis| {
@@ -178,10 +208,29 @@ fn positioning(course: &Course<'_>, line: &Line) -> Result<Positioning, String> 
         unit,
         figures: of_axis(&targets, unit),
         notes: notes(line, &targets, unit),
+        left_out: left_out(&targets),
         readings,
         targets,
-        left_out,
     })
+}
+
+/// Refuses targets of which no two were approached from the same side.
+fn check(targets: &[TargetFigures]) -> Result<(), String> {
+    if targets.iter().filter(|target| target.up.is_some()).count() < 2
+        && targets.iter().filter(|target| target.down.is_some()).count() < 2
+    {
+        return Err("no two stations on one line were approached from the same side".to_owned());
+    }
+    Ok(())
+}
+
+/// The targets that were approached from one side only, where others were from both.
+fn left_out(targets: &[TargetFigures]) -> Vec<f64> {
+    let both = |target: &&TargetFigures| target.reversal().is_some();
+    match targets.iter().filter(both).count() {
+        0 => Vec::new(),
+        _ => targets.iter().filter(|target| !both(target)).map(|target| target.position).collect(),
+    }
 }
 
 fn kind(course: &Course<'_>, line: &Line) -> Result<Kind, String> {
@@ -232,7 +281,8 @@ fn take_mean_off(targets: &mut [Target]) {
     }
 }
 
-fn notes(line: &Line, targets: &[TargetFigures], unit: Unit) -> Vec<String> {
+/// What the standard asks for and the readings lack.
+fn fewer(targets: &[TargetFigures], unit: Unit) -> Vec<String> {
     let mut notes = Vec::new();
     let both: Vec<&TargetFigures> = targets.iter().filter(|target| target.reversal().is_some()).collect();
     let counted: Vec<&TargetFigures> = if both.is_empty() { targets.iter().collect() } else { both };
@@ -244,6 +294,11 @@ fn notes(line: &Line, targets: &[TargetFigures], unit: Unit) -> Vec<String> {
     if unit == Unit::Length && counted.len() < TARGETS {
         notes.push(format!("ISO 230-2 asks for at least {TARGETS} targets; here are {}.", counted.len()));
     }
+    notes
+}
+
+fn notes(line: &Line, targets: &[TargetFigures], unit: Unit) -> Vec<String> {
+    let mut notes = fewer(targets, unit);
     if line.approaches.iter().any(|approach| approach.single) {
         notes.push(
             "Stations were read once each: the recording does not show that the axes stood while they were read.".to_owned(),

@@ -38,9 +38,11 @@
 //! | W0902 | a file that ends before its end |
 //! | W0903 | runs of zeros that are left out |
 //! | W0904 | a squareness with the zero of a rotation in it |
+//! | W0905 | an edge of two targets, whose slope alone counts |
 //!
 //! E0913 and E0914 are those of who finds the machine and the files.
 
+mod bound;
 mod calibrate;
 mod curve;
 pub mod file;
@@ -53,9 +55,11 @@ pub mod report;
 mod sense;
 pub mod setup;
 mod squareness;
+mod stations;
 mod uncertainty;
 mod view;
 
+pub use bound::Bound;
 pub(crate) use calibrate::even;
 pub use calibrate::{Findings, MeasuredMotion, Outcome, calibrate};
 pub use curve::{Curve, Mean};
@@ -65,6 +69,7 @@ pub use measured::{Flagged, Measured, Reading, Run, Sense};
 pub use reduce::{Reduced, Reversal, Tabulated};
 pub use setup::Setup;
 pub use squareness::Squareness;
+pub use stations::{Stations, stations};
 pub use uncertainty::Uncertainty;
 
 #[cfg(test)]

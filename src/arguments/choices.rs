@@ -1,6 +1,7 @@
 //! Options that are one word of several. In: a word. Out: which of them.
 
 use clap::ValueEnum;
+use diagnosis::diagnosis::Verdict;
 
 /// When words for people are coloured.
 #[derive(Clone, Copy, ValueEnum)]
@@ -37,6 +38,34 @@ pub(crate) enum ReportFormat {
     Json,
     /// One self-contained page.
     Html,
+}
+
+/// The verdicts of a diagnosis.
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum VerdictName {
+    /// The recordings cannot tell.
+    Undecided,
+    /// Nothing systematic above the noise.
+    Adequate,
+    /// Findings, or faults of the files, explain what is systematic.
+    LeftOutPhysics,
+    /// Something systematic is left that no term fits.
+    Unexplained,
+    /// Runs disagree by more than any model of the state could give.
+    NotRepeatable,
+}
+
+impl VerdictName {
+    /// The verdict of that name.
+    pub(crate) fn verdict(self) -> Verdict {
+        match self {
+            Self::Undecided => Verdict::Undecided,
+            Self::Adequate => Verdict::Adequate,
+            Self::LeftOutPhysics => Verdict::LeftOutPhysics,
+            Self::Unexplained => Verdict::Unexplained,
+            Self::NotRepeatable => Verdict::NotRepeatable,
+        }
+    }
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -1,15 +1,18 @@
 //! `abbe derive`: the error equations of a machine in one of five notations.
 
+use std::path::PathBuf;
+
 use model_dsl::equations;
 use model_dsl::notation;
 use workshop::failure::Failure;
 use workshop::load;
 
 use crate::arguments::{Derive, Format, Names};
-use crate::output::{self, Person};
+use crate::output::Person;
 
 /// Runs the command.
 pub(crate) fn run(command: &Derive) -> Result<(), Failure> {
+    command.target.check(&[PathBuf::from(&command.machine)])?;
     let loaded = load::machine(&command.machine, None, &Person::default())?;
     let format = match command.format {
         Format::Text => notation::Format::Text,
@@ -24,7 +27,7 @@ pub(crate) fn run(command: &Derive) -> Result<(), Failure> {
         Names::Symbols => equations::Names::Symbols,
     };
     let equations = &loaded.compiled.equations;
-    output::print(&match format {
+    command.target.put(&match format {
         notation::Format::Html => loaded.page(names),
         format => notation::print(equations, format, names),
     })

@@ -14,10 +14,10 @@ use workshop::origin;
 use workshop::recorded::{self, Recorded};
 
 use crate::arguments::{Diagnose, ReportFormat};
-use crate::output::{Person, print, terminal};
+use crate::output::Person;
 use crate::progress::Progress;
 
-/// Runs the command. Status 0 whatever is found.
+/// Runs the command. Status 0 whatever is found, but for the verdicts of `--fail-on`.
 pub(crate) fn run(arguments: &Diagnose) -> Result<(), Failure> {
     let paths: Vec<PathBuf> = arguments.recordings.iter().chain(&arguments.holdout).cloned().collect();
     let recorded = recorded::read_all(&paths, &Person::new(arguments.quiet))?;
@@ -27,6 +27,7 @@ pub(crate) fn run(arguments: &Diagnose) -> Result<(), Failure> {
     if let Some(target) = &arguments.write_calibration {
         named::check_target(target, &inputs)?;
     }
+    arguments.target.check(&files_beside(arguments, &inputs))?;
     let diagnosis = diagnosed(arguments, &recorded)?;
     // The report is shown also where the calibration cannot be written, the calibration is written also where the reader
     // of the report is gone.
@@ -34,12 +35,23 @@ pub(crate) fn run(arguments: &Diagnose) -> Result<(), Failure> {
     let written = target.map_or(Ok(()), |target| {
         improved::write(target, first, first_files, &diagnosis, &Person::new(arguments.quiet))
     });
-    print(&match arguments.format {
-        ReportFormat::Text => report::text_on(&diagnosis, terminal()),
+    arguments.target.put(&match arguments.format {
+        ReportFormat::Text => report::text_on(&diagnosis, arguments.target.terminal()),
         ReportFormat::Json => report::json(&diagnosis),
         ReportFormat::Html => page(arguments, first, first_files, &diagnosis)?,
     })?;
-    written
+    written?;
+    let fails = arguments.fail_on.iter().any(|name| name.verdict() == diagnosis.verdict);
+    if fails { Err(Failure::no("")) } else { Ok(()) }
+}
+
+/// The files that the command reads, and the calibration that it writes: the result goes over none of them.
+fn files_beside(arguments: &Diagnose, inputs: &[(Files, &Recorded)]) -> Vec<PathBuf> {
+    let read = inputs.iter().flat_map(|(files, recorded)| {
+        let known = recorded.calibration.as_ref().map(|known| known.calibration.machine.value.as_str());
+        files.all(known)
+    });
+    read.chain(arguments.write_calibration.clone()).collect()
 }
 
 /// The page, with the command that makes it and what the findings change in the calibration.

@@ -1,29 +1,42 @@
-//! `abbe evaluate`: the field's standard figures. In: a recording. Out: its figures, or why it cannot give them, as text, JSON
-//! or a page.
+//! `abbe evaluate`: the field's standard figures. In: a recording, a set-up of one measurement, or a laser's file. Out: its figures,
+//! or why it cannot give them, as text, JSON or a page.
 
-use evaluation::{Inputs, report};
+mod laser;
+
+use evaluation::{Evaluation, Inputs, report};
 use workshop::failure::Failure;
+use workshop::named::Files;
 use workshop::origin;
 use workshop::recorded;
 
 use crate::arguments::{Evaluate, EvaluationFormat};
-use crate::output::{Person, print};
+use crate::output::Person;
 use crate::progress::Progress;
 
 /// Runs the command. Status 1 where the recording gives no figure at all; the report says why.
 pub(crate) fn run(arguments: &Evaluate) -> Result<(), Failure> {
-    let recorded = recorded::read(&arguments.recording, &Person::new(arguments.quiet))?;
+    if let Some(evaluation) = laser::evaluated(&arguments.recording)? {
+        arguments.target.check(std::slice::from_ref(&arguments.recording))?;
+        return tell(arguments, &evaluation);
+    }
+    let recorded = recorded::read_in_order(&arguments.recording, &Person::new(arguments.quiet))?;
+    arguments.target.check(&Files::of(&recorded, &arguments.recording).all(None))?;
     let progress = Progress::new(arguments.quiet, "evaluating");
     let evaluation = evaluation::evaluate(&Inputs {
         equations: &recorded.equations,
         calibration: recorded.calibration.as_ref().map(|known| &known.calibration),
         recording: &recorded.recording,
     });
+    let evaluation = if recorded.in_order { evaluation.in_order() } else { evaluation };
     drop(progress);
-    print(&match arguments.format {
-        EvaluationFormat::Text => report::text(&evaluation),
-        EvaluationFormat::Json => report::json(&evaluation),
-        EvaluationFormat::Html => report::html(&evaluation, &origin::evaluate(&arguments.recording)),
+    tell(arguments, &evaluation)
+}
+
+fn tell(arguments: &Evaluate, evaluation: &Evaluation) -> Result<(), Failure> {
+    arguments.target.put(&match arguments.format {
+        EvaluationFormat::Text => report::text(evaluation),
+        EvaluationFormat::Json => report::json(evaluation),
+        EvaluationFormat::Html => report::html(evaluation, &origin::evaluate(&arguments.recording)),
     })?;
     if evaluation.gives_any() { Ok(()) } else { Err(Failure::no("")) }
 }

@@ -1,6 +1,6 @@
 //! `abbe expand`: the Rust code that a machine file compiles to, and a calibration with it, for controllers in Rust or in C.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use model_dsl::calibration::{Calibration, CompiledIn};
 use model_dsl::codegen;
@@ -14,6 +14,8 @@ use crate::output::{self, Person};
 
 /// Runs the command.
 pub(crate) fn run(command: &Expand) -> Result<(), Failure> {
+    let machine = PathBuf::from(&command.machine);
+    command.target.check(&[machine].into_iter().chain(command.calibration.clone()).collect::<Vec<_>>())?;
     let loaded = load::machine(&command.machine, None, &Person::default())?;
     let equations = &loaded.compiled.equations;
     let tokens = match &command.calibration {
@@ -26,7 +28,7 @@ pub(crate) fn run(command: &Expand) -> Result<(), Failure> {
     let code = codegen::file(&tokens, &name.unwrap_or(loaded.origin)).map_err(|error| {
         Failure::wrong(format!("error: the generated code does not parse ({error}); this is a fault of Abbe"))
     })?;
-    output::print(&code)
+    command.target.put(&code)
 }
 
 /// Reads a calibration of the machine; nothing in it may be beyond a controller.

@@ -14,24 +14,26 @@ use model_dsl::Compiled;
 use model_dsl::calibration::MachineNames;
 use model_dsl::suggest::nearest;
 use workshop::failure::Failure;
+use workshop::named::Files;
 use workshop::origin::word;
 use workshop::recorded::{self, Recorded};
 
 use crate::arguments::{Asked, Limits, LimitsFormat};
-use crate::output::{Person, print};
+use crate::output::Person;
 use crate::progress::Progress;
 
 /// Runs the command. Status 1 where no effect can be injected into the recording.
 pub(crate) fn run(arguments: &Limits) -> Result<(), Failure> {
     let asked = &arguments.asked;
     let recorded = recorded::read(&arguments.recording, &Person::new(asked.quiet))?;
+    asked.target.check(&Files::of(&recorded, &arguments.recording).all(None))?;
     check_names(&asked.only, &recorded.equations.names())?;
     let progress = Progress::new(asked.quiet, "diagnosing the recording as it is");
     let name = arguments.recording.display().to_string();
     let known = Known::new(base(&name, recorded)?).map_err(|reason| cannot(&name, &reason))?;
     let found = answered(&[known], asked, arguments.passes, &progress);
     drop(progress);
-    tell(found, &name, asked.format, &command(arguments))
+    tell(found, &name, asked, &command(arguments))
 }
 
 /// The recording, ready for effects to be injected.
@@ -54,16 +56,11 @@ pub(super) fn answered(known: &[Known], asked: &Asked, passes: bool, progress: &
 }
 
 /// Prints what was found. Status 1 where nothing could be asked.
-pub(super) fn tell(
-    found: Option<Found>,
-    name: &str,
-    format: LimitsFormat,
-    command: &str,
-) -> Result<(), Failure> {
+pub(super) fn tell(found: Option<Found>, name: &str, asked: &Asked, command: &str) -> Result<(), Failure> {
     let found = found.filter(|found| !found.all.is_empty() || !found.already.is_empty());
     let reason = "it shows no effect that was asked for: its axes do not move as that needs";
     let found = found.ok_or_else(|| cannot(name, reason))?;
-    print(&match format {
+    asked.target.put(&match asked.format {
         LimitsFormat::Text => report::text(&found),
         LimitsFormat::Json => report::json(&found),
         LimitsFormat::Html => report::html(&found, command),

@@ -9,28 +9,22 @@ use model_dsl::source::SourceFile;
 use workshop::begin;
 use workshop::failure::Failure;
 use workshop::load::{self, Loaded};
-use workshop::written;
 
 use super::calibrate::files::setup_to_fill_in;
 use crate::arguments::{New, NewFile};
-use crate::output::{Person, print};
+use crate::output::Person;
+use crate::target::Target;
 
 /// Runs the command.
 pub(crate) fn run(command: &New) -> Result<(), Failure> {
     let file = command.file.as_ref();
-    if let Some(target) = &command.output {
-        written::check_folder(target, "--output")?;
-        let read = file.map(files_read).unwrap_or_default();
-        written::check_new(target, ("--output", "new.yaml"), &read, command.force)?;
-    }
+    let target = Target { output: command.output.clone(), force: command.force };
+    target.check(&file.map(files_read).unwrap_or_default())?;
     let text = match file {
         Some(file) => text(file)?,
         None => machine(command.topology.as_deref().unwrap_or_default())?,
     };
-    match &command.output {
-        Some(target) => written::whole(target, &text),
-        None => print(&text),
-    }
+    target.put(&text)
 }
 
 fn text(file: &NewFile) -> Result<String, Failure> {

@@ -1,6 +1,8 @@
 //! `abbe plan`: what a path would show that was not driven yet. In: a path file with its instrument and noise, and a machine. Out: from
 //! which size on each effect would be found, and what to drive besides, as text, JSON or a page.
 
+use std::path::PathBuf;
+
 use limits::plan::driven;
 use model_dsl::Compiled;
 use model_dsl::calibration::Calibration;
@@ -18,6 +20,9 @@ use crate::progress::Progress;
 
 /// Runs the command. Status 1 where the path shows no effect.
 pub(crate) fn run(arguments: &Plan) -> Result<(), Failure> {
+    let read = [&arguments.path].into_iter().chain(&arguments.calibration).cloned();
+    let read: Vec<PathBuf> = read.chain(arguments.machine.iter().map(PathBuf::from)).collect();
+    arguments.asked.target.check(&read)?;
     let machine = machine(arguments)?;
     let names = machine.equations.names();
     let asked = &arguments.asked;
@@ -33,7 +38,7 @@ pub(crate) fn run(arguments: &Plan) -> Result<(), Failure> {
         .map_err(|reason| cannot(&name, &reason))?;
     let found = answered(&known, asked, true, &progress);
     drop(progress);
-    tell(found, &name, asked.format, &command(arguments))
+    tell(found, &name, asked, &command(arguments))
 }
 
 /// The machine as it is known: with its calibration, or without any error.

@@ -1,12 +1,14 @@
-//! What a code of a diagnostic, a term of the vocabulary, a factor and the name of an error motion mean. In: a name. Out: a page for a person, or the names that
-//! are near to it.
+//! What a code of a diagnostic, a term of the vocabulary, a factor, the name of an error motion, a topology word and a word of the
+//! glossary mean. In: a name. Out: a page for a person, or the names that are near to it.
 //!
 //! The texts stand in files beside this one, in the form that `entry` reads: one source for the command and for the tables
 //! of the reference, which are compared with it.
 
 mod entry;
+mod glossary;
 mod motion;
 mod page;
+mod topology;
 
 use model_dsl::calibration::factor::vocabulary::{FACTOR_NAMES, FactorEntry, FactorKind};
 use model_dsl::suggest::nearest;
@@ -55,8 +57,8 @@ pub fn overview() -> String {
     page::overview(&codes(), &terms(), &factors())
 }
 
-/// The page of a code, a term, a factor or an error motion; a name that is both a term and a factor gives both. Letter case and `_`
-/// for `-` do not matter.
+/// The page of a code, a term, a factor, an error motion, a topology word or a word of the glossary; a name that is several of a term,
+/// a factor and a word gives all of them. Letter case and `_` for `-` do not matter.
 ///
 /// # Errors
 ///
@@ -70,14 +72,18 @@ pub fn page(name: &str) -> Result<String, Vec<&'static str>> {
     let term = terms().iter().find(|entry| is(entry)).map(page::term);
     let factors = factors();
     let factor = factors.iter().find(|(_, entry)| is(entry)).map(|(known, entry)| page::factor(known, entry));
-    let pages: Vec<String> = term.into_iter().chain(factor).collect();
-    if pages.is_empty() { motion::page(&name).ok_or_else(|| near(&name)) } else { Ok(pages.join("\n")) }
+    let pages: Vec<String> = term.into_iter().chain(factor).chain(glossary::page(&name)).collect();
+    if !pages.is_empty() {
+        return Ok(pages.join("\n"));
+    }
+    motion::page(&name).or_else(|| topology::page(&name)).ok_or_else(|| near(&name))
 }
 
 /// The names nearest to one that is none, the nearest first.
 fn near(name: &str) -> Vec<&'static str> {
     let mut names: Vec<&'static str> = terms().iter().chain(&codes()).map(|entry| entry.name).collect();
     names.extend(FACTOR_NAMES);
+    names.extend(glossary::words());
     names.sort_unstable();
     names.dedup();
     let mut found = Vec::new();

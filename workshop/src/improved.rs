@@ -1,6 +1,8 @@
 //! The improved calibration. In: what was known of a machine, and a diagnosis. Out: a calibration file with the faults of the files
 //! mended and the findings added, which reads back as it was meant; and a machine file beside it where the chain has another order.
 
+mod kept;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -35,7 +37,8 @@ pub fn calibration(
     let machine = machine_file(target, recorded, diagnosis);
     let improved = improved(mended(target, recorded, files, diagnosis)?, &diagnosis.findings);
     let names = equations(recorded, diagnosis).names();
-    let text = comments(recorded, files, diagnosis) + &calibration::write(&improved, &names);
+    let text = commented(target, recorded, files, &calibration::write(&improved, &names))?;
+    let text = comments(recorded, files, diagnosis) + &text;
     Ok(Improved { text, machine })
 }
 
@@ -74,6 +77,20 @@ pub fn write(
 /// The equations of the machine with the faults of its file mended.
 fn equations<'e>(recorded: &'e Recorded, diagnosis: &'e Diagnosis) -> &'e Equations {
     diagnosis.mended.as_ref().map_or(&recorded.equations, |mended| &mended.equations)
+}
+
+/// The new calibration with the comments of the known one: where its numbers come from.
+fn commented(target: &Path, recorded: &Recorded, files: &Files, text: &str) -> Result<String, Failure> {
+    let (Some(old), Some(path)) = (&recorded.calibration, &files.calibration) else {
+        return Ok(text.to_owned());
+    };
+    let before = calibration::write(&known(target, recorded, files)?, &recorded.equations.names());
+    let kept = kept::kept(old.source.text(), &before, text);
+    let of_head = match kept.head.is_empty() {
+        true => String::new(),
+        false => comment(&format!("{} says of itself:", path.display())) + &kept.head,
+    };
+    Ok(of_head + &kept.text)
 }
 
 /// The machine file that is written beside the calibration, where the chain has another order than the file says.

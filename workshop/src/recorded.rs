@@ -8,6 +8,7 @@ use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::machine::Machine;
 use model_dsl::source::{SourceFile, Span, Spanned};
+use model_dsl::yaml::{Node, NodeKind, Scalar};
 use model_dsl::{Compiled, yaml};
 use recording::{self, DataError, Header, Recording};
 
@@ -33,6 +34,8 @@ pub struct Recorded {
     pub calibration: Option<Calibrated>,
     /// The data.
     pub recording: Recording,
+    /// Whether the recording has no times, and its rows were taken in their order.
+    pub in_order: bool,
     /// The calibration's file, where there is one.
     calibration_path: Option<PathBuf>,
     /// Where the file names its machine and its calibration.
@@ -48,6 +51,15 @@ struct Named {
 /// Reads a recording file, its data, and the machine and the calibration that it names. All paths in the file are
 /// counted from its own folder.
 pub fn read(path: &Path, listener: &dyn Listener) -> Result<Recorded, Failure> {
+    read_as(path, false, listener)
+}
+
+/// The same where the channel `time` may be missing: the rows are then taken in their order, [`STAND`] apart.
+pub fn read_in_order(path: &Path, listener: &dyn Listener) -> Result<Recorded, Failure> {
+    read_as(path, true, listener)
+}
+
+fn read_as(path: &Path, may_lack_time: bool, listener: &dyn Listener) -> Result<Recorded, Failure> {
     let source = load::read(path).map_err(|failure| begin::table_alone(path).unwrap_or(failure))?;
     if !is_mapping(&source)
         && let Some(table) = begin::table_alone(path)
@@ -62,7 +74,7 @@ pub fn read(path: &Path, listener: &dyn Listener) -> Result<Recorded, Failure> {
         listener.end();
         read
     };
-    of(source, folder, data, listener)
+    of_as(source, folder, data, may_lack_time, listener)
 }
 
 /// Whether a file may be a recording file at all: a mapping of keys.
@@ -77,8 +89,21 @@ pub fn of(
     data: impl FnOnce(&Header) -> Result<Recording, DataError>,
     listener: &dyn Listener,
 ) -> Result<Recorded, Failure> {
+    of_as(source, folder, data, false, listener)
+}
+
+fn of_as(
+    source: SourceFile,
+    folder: Option<&Path>,
+    data: impl FnOnce(&Header) -> Result<Recording, DataError>,
+    may_lack_time: bool,
+    listener: &dyn Listener,
+) -> Result<Recorded, Failure> {
     let mut diagnostics = Diagnostics::new();
     let root = yaml::read(&source, &mut diagnostics).ok_or_else(|| wrong(&source, &diagnostics))?;
+    let ordered = may_lack_time.then(|| with_order(&root)).flatten();
+    let in_order = ordered.is_some();
+    let root = ordered.unwrap_or(root);
     let name = recording::machine_of(&root, &mut diagnostics).ok_or_else(|| wrong(&source, &diagnostics))?;
     let loaded = load::machine(&name.value, folder, listener)
         .map_err(|failure| unusable(&source, "E0622", "machine", &name, failure))?;
@@ -91,7 +116,45 @@ pub fn of(
     let calibration = read_calibration(&source, &header, calibration_path.as_deref(), &equations, listener)?;
     let recording = read_data(data(&header), &source, listener)?;
     let named = Named { machine: name.span, calibration: header.calibration.map(|name| name.span) };
-    Ok(Recorded { source, equations, machine, topology, calibration, recording, calibration_path, named })
+    Ok(Recorded {
+        source,
+        equations,
+        machine,
+        topology,
+        calibration,
+        recording,
+        in_order,
+        calibration_path,
+        named,
+    })
+}
+
+/// The time from row to row where the order is all that is known: longer than any machine needs to settle, so that each row counts
+/// as a stand.
+const STAND: &str = "10 s";
+
+/// A recording file with a time for each row; nothing where it has times, or no channels.
+fn with_order(root: &Node) -> Option<Node> {
+    let place = root.get("channels")?.span;
+    let add = |(key, node): &(Spanned<String>, Node)| {
+        let mut node = node.clone();
+        if let (true, NodeKind::Mapping(channels)) = (key.value == "channels", &mut node.kind) {
+            let step = Node {
+                span: place,
+                kind: NodeKind::Scalar(Scalar { text: STAND.to_owned(), quoted: false }),
+            };
+            let step = NodeKind::Mapping(vec![(Spanned::new("every".to_owned(), place), step)]);
+            let time = (Spanned::new("time".to_owned(), place), Node { span: place, kind: step });
+            channels.insert(0, time);
+        }
+        (key.clone(), node)
+    };
+    let channels = root.get("channels")?.entries()?;
+    if channels.iter().any(|(name, _)| name.value == "time") {
+        return None;
+    }
+    let entries = root.entries()?.iter().map(add).collect();
+    Some(Node { span: root.span, kind: NodeKind::Mapping(entries) })
 }
 
 /// Reads several recordings of one machine with one calibration.

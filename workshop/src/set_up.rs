@@ -26,10 +26,13 @@ use crate::written::{comment, folder};
 pub struct SetUp {
     /// The equations of its machine.
     pub equations: Equations,
-    source: SourceFile,
+    /// Its file.
+    pub source: SourceFile,
+    /// What it says.
+    pub setup: Setup,
+    /// The data of its measurements, in their order.
+    pub data: Vec<Measured>,
     path: PathBuf,
-    setup: Setup,
-    data: Vec<Measured>,
     data_paths: Vec<PathBuf>,
 }
 

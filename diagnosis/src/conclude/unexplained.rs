@@ -184,10 +184,10 @@ fn near(study: &Study<'_>, suspect: &Suspect) -> String {
         _ => None,
     });
     let told: Vec<String> = told.collect();
+    let told = if told.is_empty() { String::new() } else { format!(" ({})", told.join(", ")) };
     format!(
-        "; {} of {motion} ({}) comes nearest: alone it would take {:.0} % of it, which so short a recording does not prove",
+        "; {} of {motion}{told} comes nearest: alone it would take {:.0} % of it, which so short a recording does not prove",
         effect.shape.name(),
-        told.join(", "),
         100.0 * suspect.share
     )
 }

@@ -4,8 +4,10 @@
 use pages::plot::RULES;
 use pages::text::escape;
 
+use super::head;
 use super::plots::{self, Picture};
-use super::words::{self, short, unit};
+use super::shown::Shown;
+use super::words::{self, unit};
 use crate::Evaluation;
 use crate::circular::{Circle, Trace};
 use crate::figure::Figure;
@@ -36,7 +38,7 @@ pub fn html(evaluation: &Evaluation, command: &str) -> String {
         escape(&evaluation.machine),
         evaluation.instrument
     );
-    body.extend(evaluation.positioning.iter().map(positioning));
+    body.extend(evaluation.positioning.iter().map(|line| positioning(line, evaluation)));
     body += &diagonals(evaluation);
     body.extend(evaluation.circles.iter().map(circle));
     if !evaluation.not_given.is_empty() {
@@ -61,14 +63,22 @@ fn paragraph(text: &str) -> String {
     format!("<p>{}</p>\n", escape(text))
 }
 
-fn positioning(line: &Positioning) -> String {
-    let mut body = paragraph(&words::basis(line));
+fn positioning(line: &Positioning, evaluation: &Evaluation) -> String {
+    let mut body = head(line, evaluation) + &paragraph(&words::basis(line));
     body += &figures(&line.figures);
     body += &pictures(plots::positioning(line));
     body += &targets(line);
     let further = words::left_out(line).into_iter().chain(line.notes.iter().cloned());
     body.extend(further.map(|note| paragraph(&note)));
     section(&words::line(line), &body)
+}
+
+/// What the test itself was, as a table to fill in.
+fn head(line: &Positioning, evaluation: &Evaluation) -> String {
+    let row =
+        |(label, said): (&str, String)| format!("<tr><th>{label}</th><td>{}</td></tr>\n", escape(&said));
+    let rows: String = head::of(line, evaluation).into_iter().map(row).collect();
+    format!("<div class=\"wide\"><table>\n<tbody>\n{rows}</tbody></table></div>\n")
 }
 
 fn diagonals(evaluation: &Evaluation) -> String {
@@ -100,13 +110,13 @@ fn pictures(all: Vec<Picture>) -> String {
 
 /// The figures that there are as a table, then why the others cannot be given.
 fn figures(all: &[Figure]) -> String {
+    let shown = Shown::figures(all);
     let rows = all.iter().filter_map(|figure| {
-        let (fine, scale) = figure.unit.fine();
-        let value = short(figure.value.number()? * scale);
+        let value = shown.number(figure.value.number()?);
         Some(format!(
             "<tr><td class=\"symbol\">{}</td><td class=\"number\">{value} {}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
             subscripted(figure.symbol),
-            unit(fine),
+            unit(shown.unit),
             escape(figure.name),
             words::rests(figure.rests),
             escape(figure.source)
@@ -154,7 +164,7 @@ fn rows(caption: &str, titles: &[&str], lines: Vec<Vec<String>>, count: usize) -
 }
 
 fn targets(line: &Positioning) -> String {
-    let ((fine, scale), (coarse, places)) = (line.unit.fine(), line.unit.coarse());
+    let (shown, (coarse, places)) = (Shown::targets(line), line.unit.coarse());
     let row = |target: &TargetFigures| {
         let side = |of: fn(Side) -> Option<f64>| [target.up, target.down].map(|side| side.and_then(of));
         let [mean, s] = [side(|side| Some(side.mean)), side(|side| side.s)];
@@ -164,7 +174,7 @@ fn targets(line: &Positioning) -> String {
             .into_iter()
             .chain(repeatability)
             .chain([target.repeatability()])
-            .map(|number| number.map_or_else(|| "\u{2013}".to_owned(), |number| short(number * scale)));
+            .map(|number| number.map_or_else(|| "\u{2013}".to_owned(), |number| shown.number(number)));
         let counts = [target.up, target.down].map(|side| side.map_or(0, |side| side.readings).to_string());
         let position = format!("{:.4}", target.position * places);
         std::iter::once(position).chain(counts).chain(numbers).collect()
@@ -183,11 +193,12 @@ fn targets(line: &Positioning) -> String {
         "\u{2193}",
         "R",
     ];
-    let caption = format!("At each target, in {}; targets in {coarse}", unit(fine));
+    let caption = format!("At each target, in {}; targets in {coarse}", unit(shown.unit));
     rows(&caption, &titles, line.targets.iter().take(ROWS).map(row).collect(), line.targets.len())
 }
 
 fn traces(circle: &Circle) -> String {
+    let shown = Shown::figures(&circle.figures);
     let row = |trace: &Trace| {
         let mut cells =
             vec![trace.run.to_string(), trace.sense.name().to_owned(), trace.points.len().to_string()];
@@ -196,10 +207,10 @@ fn traces(circle: &Circle) -> String {
             Ok(own) => {
                 let numbers =
                     [own.circular, own.circular_least_squares, own.radial[0], own.radial[1], own.radius];
-                cells.extend(numbers.map(|number| short(number * 1e3)));
+                cells.extend(numbers.map(|number| shown.number(number)));
                 let center = [0, 1].map(|part| own.center.and_then(|center| center.get(part).copied()));
                 cells.extend(
-                    center.map(|part| part.map_or_else(|| "\u{2013}".to_owned(), |part| short(part * 1e3))),
+                    center.map(|part| part.map_or_else(|| "\u{2013}".to_owned(), |part| shown.number(part))),
                 );
             }
         }
@@ -207,6 +218,9 @@ fn traces(circle: &Circle) -> String {
     };
     let [first, second] = words::directions(circle).map(|direction| format!("centre {direction}"));
     let titles = ["run", "sense", "readings", "G", "G LS", "F max", "F min", "radius", &first, &second];
-    let caption = "Each time around, in \u{b5}m; radius and centre: least-squares circle minus nominal";
-    rows(caption, &titles, circle.traces.iter().take(ROWS).map(row).collect(), circle.traces.len())
+    let caption = format!(
+        "Each time around, in {}; radius and centre: least-squares circle minus nominal",
+        unit(shown.unit)
+    );
+    rows(&caption, &titles, circle.traces.iter().take(ROWS).map(row).collect(), circle.traces.len())
 }

@@ -6,6 +6,7 @@ use pages::plot::{
     Axis, Cartesian, Draw, Look, MOST_MARKS, Plot, Polar, Series, Tone, Trace as PolarTrace, thin,
 };
 
+use super::shown::Shown;
 use super::words;
 use crate::circular::{Circle, Sense, Trace};
 use crate::diagonals;
@@ -225,10 +226,10 @@ fn deviation(what: &str, unit: Unit) -> Axis {
 /// Some figures in a line, those that there are.
 fn sizes(figures: &[Figure], symbols: &[&str]) -> String {
     let named = symbols.iter().filter_map(|symbol| figures.iter().find(|figure| figure.symbol == *symbol));
+    let shown = Shown::figures(figures);
     let told = named.filter_map(|figure| {
-        let (unit, scale) = figure.unit.fine();
-        let value = words::short(figure.value.number()? * scale);
-        Some(format!("{} {value} {}", figure.symbol.replace('_', " "), super::words::unit(unit)))
+        let value = shown.number(figure.value.number()?);
+        Some(format!("{} {value} {}", figure.symbol.replace('_', " "), super::words::unit(shown.unit)))
     });
     told.collect::<Vec<_>>().join(", ")
 }

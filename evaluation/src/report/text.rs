@@ -2,7 +2,9 @@
 
 use diagnosis::report::{WIDTH, paragraph};
 
-use super::words::{self, short};
+use super::head;
+use super::shown::Shown;
+use super::words;
 use crate::Evaluation;
 use crate::circular::{Circle, Trace};
 use crate::figure::Figure;
@@ -17,7 +19,7 @@ pub fn text(evaluation: &Evaluation) -> String {
     let title = evaluation.title.as_deref().map_or(String::new(), |title| format!(": {title}"));
     let mut text = wrapped(&format!("{}{title}", evaluation.file), "", "   ");
     text += &wrapped(&format!("{}, instrument {}", evaluation.machine, evaluation.instrument), "", "   ");
-    text += &evaluation.positioning.iter().map(positioning).collect::<String>();
+    text += &evaluation.positioning.iter().map(|line| positioning(line, evaluation)).collect::<String>();
     if let Some(diagonals) = &evaluation.diagonals {
         text += "\n";
         text += &wrapped(&words::diagonals(diagonals), "", "   ");
@@ -33,8 +35,11 @@ pub fn text(evaluation: &Evaluation) -> String {
     text
 }
 
-fn positioning(line: &Positioning) -> String {
+fn positioning(line: &Positioning, evaluation: &Evaluation) -> String {
     let mut text = format!("\n{}", wrapped(&words::line(line), "", "   "));
+    for (label, said) in head::of(line, evaluation) {
+        text += &wrapped(&format!("{label}: {said}"), "   ", "      ");
+    }
     text += &wrapped(&words::basis(line), "", "   ");
     text += &targets(line);
     text += &figures(&line.figures);
@@ -45,7 +50,7 @@ fn positioning(line: &Positioning) -> String {
 
 /// A table of the targets.
 fn targets(line: &Positioning) -> String {
-    let ((fine, scale), (coarse, places)) = (line.unit.fine(), line.unit.coarse());
+    let (shown, (coarse, places)) = (Shown::targets(line), line.unit.coarse());
     let titles = ["n up", "down", "mean up", "down", "both", "B", "s up", "down", "R up", "down", "R"];
     let widths = [6, 6, 9, 8, 8, 8, 7, 7, 8, 8, 8];
     let head: String = titles.iter().zip(widths).map(|(title, width)| right(title, width)).collect();
@@ -64,13 +69,13 @@ fn targets(line: &Positioning) -> String {
             down.and_then(|side| side.repeatability()),
             target.repeatability(),
         ];
-        let numbers = numbers.map(|number| number.map_or("-".to_owned(), |number| short(number * scale)));
+        let numbers = numbers.map(|number| number.map_or("-".to_owned(), |number| shown.number(number)));
         let cells = counts.iter().chain(&numbers).zip(widths).map(|(cell, width)| right(cell, width));
         format!("{:>12.4}{}\n", target.position * places, cells.collect::<String>())
     };
     text.extend(line.targets.iter().take(ROWS).map(row));
     text += &more(line.targets.len(), "targets");
-    text + &format!("{:>12}{:>12}\n", "", format!("all in {fine}"))
+    text + &format!("{:>12}{:>12}\n", "", format!("all in {}", shown.unit))
 }
 
 fn more(count: usize, what: &str) -> String {
@@ -83,10 +88,10 @@ fn more(count: usize, what: &str) -> String {
 /// The figures that there are, then the others by reason.
 fn figures(all: &[Figure]) -> String {
     let mut text = String::new();
+    let shown = Shown::figures(all);
     for figure in all {
         if let Some(value) = figure.value.number() {
-            let (unit, scale) = figure.unit.fine();
-            let value = short(value * scale);
+            let (value, unit) = (shown.number(value), shown.unit);
             let rests = words::rests(figure.rests);
             let line = format!("{:<13}{value:>9} {unit:<7}{} ({rests})", figure.symbol, figure.name);
             text += &wrapped(&line, "   ", &" ".repeat(33));
@@ -103,6 +108,7 @@ fn circle(circle: &Circle) -> String {
     let widths = [6, 7, 10, 9, 9, 9, 9, 9, 10, 10];
     let head: String = titles.iter().zip(widths).map(|(title, width)| right(title, width)).collect();
     text += &format!("{head}\n");
+    let shown = Shown::figures(&circle.figures);
     let row = |trace: &Trace| {
         let first = [trace.run.to_string(), trace.sense.name().to_owned(), trace.points.len().to_string()];
         let start: String = first.iter().zip(widths).map(|(cell, width)| right(cell, width)).collect();
@@ -114,7 +120,7 @@ fn circle(circle: &Circle) -> String {
                 let numbers = numbers.into_iter().map(Some);
                 let center = [0, 1].map(|part| own.center.and_then(|center| center.get(part).copied()));
                 let cells = numbers.chain(center).zip(widths.into_iter().skip(3)).map(|(number, width)| {
-                    let cell = number.map_or("-".to_owned(), |number| short(number * 1e3));
+                    let cell = number.map_or("-".to_owned(), |number| shown.number(number));
                     right(&cell, width)
                 });
                 format!("{start}{}\n", cells.collect::<String>())
@@ -123,7 +129,7 @@ fn circle(circle: &Circle) -> String {
     };
     text.extend(circle.traces.iter().take(ROWS).map(row));
     text += &more(circle.traces.len(), "traces");
-    text += "      all in um; radius and centre: least-squares circle minus nominal\n";
+    text += &format!("      all in {}; radius and centre: least-squares circle minus nominal\n", shown.unit);
     text + &figures(&circle.figures)
 }
 

@@ -110,12 +110,6 @@ fn listed(places: &[String]) -> String {
     }
 }
 
-/// Two decimals, without a sign for what rounds to nothing.
-pub(super) fn short(value: f64) -> String {
-    let text = format!("{value:.2}");
-    if text == "-0.00" { "0.00".to_owned() } else { text }
-}
-
 /// A unit as people write it.
 pub(super) fn unit(name: &str) -> String {
     if name == "um" { "\u{b5}m".to_owned() } else { name.to_owned() }

@@ -7,14 +7,15 @@ use model_dsl::calibration::{self, CalibratedTerm, Calibration, CurveNodes, Curv
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 
+use super::bound::{self, Bound};
 use super::curve::Curve;
 use super::lever;
 use super::measured::Measured;
 use super::placed::Placed;
-use super::reduce::{Reduced, Reversal, Tabulated};
+use super::reduce::{Reduced, Reversal, Tabulated, is_of_two, slope_of_two};
 use super::setup::{Measurement, Setup};
 use super::squareness::{self, Side, Squareness};
-use super::uncertainty::together;
+use super::uncertainty::{count, mean, together};
 use super::view::View;
 
 /// What the measurements give.
@@ -28,6 +29,8 @@ pub struct Outcome {
     pub squarenesses: Vec<Squareness>,
     /// All of it, and what the set-up knew before, as a calibration.
     pub calibration: Calibration,
+    /// The limit of corrections that the data give, where the set-up sets none.
+    pub bound: Option<Bound>,
 }
 
 /// One error motion with what it rests on.
@@ -37,8 +40,10 @@ pub struct MeasuredMotion {
     pub motion: usize,
     /// The axis that moved: an index into [`Equations::axes`].
     pub axis: usize,
-    /// The files, that with the edge turned over second.
+    /// The files: that with the edge turned over behind the one before, and each set-up behind the one before.
     pub files: Vec<String>,
+    /// How the set-up of each is called beside others: nothing for the first, `, turned over`, `, set-up 2`.
+    pub set_ups: Vec<String>,
     /// What each of them says of itself: machine, serial number, date and so on.
     pub about: Vec<Vec<(String, String)>>,
     /// What each of them shows.
@@ -54,6 +59,8 @@ pub struct MeasuredMotion {
     pub against: bool,
     /// The table in the calibration.
     pub table: Tabulated,
+    /// Whether two targets gave its slope alone: then it has no table in the calibration.
+    pub slope_alone: bool,
 }
 
 /// Findings at places of the set-up, and of each data file in the order of the measurements.
@@ -80,6 +87,10 @@ pub fn calibrate(
     }
     let placed: Vec<Placed> = placed.into_iter().collect::<Option<_>>()?;
     let reduced = reduced(&setup.measurements, placed, &view, &mut findings.setup)?;
+    let pairs = setup.measurements.iter().zip(&reduced);
+    for (one, _) in pairs.filter(|(one, reduced)| is_of_two(&reduced.curve, one)) {
+        findings.setup.push(slope_of_two(one));
+    }
     let all: Vec<Source<'_>> = setup
         .measurements
         .iter()
@@ -87,16 +98,22 @@ pub fn calibrate(
         .zip(files)
         .map(|((measurement, reduced), file)| Source { measurement, reduced, file })
         .collect();
-    let upright = all.iter().filter(|source| !source.measurement.turned);
+    let upright: Vec<&Source<'_>> = all.iter().filter(|source| !source.measurement.turned).collect();
+    let first = |place: usize, source: &Source<'_>| {
+        let before = upright.get(..place).unwrap_or(&[]);
+        before.iter().all(|other| other.measurement.motion != source.measurement.motion)
+    };
+    let firsts = upright.iter().enumerate().filter(|(place, source)| first(*place, source));
     let motions: Vec<Option<MeasuredMotion>> =
-        upright.map(|source| source.motion(&all, &view, &mut findings.setup)).collect();
+        firsts.map(|(_, source)| source.motion(&all, &view, &mut findings.setup)).collect();
     let motions: Vec<MeasuredMotion> = motions.into_iter().collect::<Option<_>>()?;
     let squarenesses = squarenesses(setup, &all, &view, &mut findings.setup);
     if findings.setup.has_errors() {
         return None;
     }
-    let calibration = filled(equations, &setup.known, &motions, &squarenesses);
-    Some(Outcome { machine: equations.machine.clone(), motions, squarenesses, calibration })
+    let mut calibration = filled(equations, &setup.known, &motions, &squarenesses);
+    let bound = bound::write(&mut calibration, equations);
+    Some(Outcome { machine: equations.machine.clone(), motions, squarenesses, calibration, bound })
 }
 
 /// Reduces all measurements: rotations as they are, displacements without the rotations that act on them where that is asked for.
@@ -134,49 +151,85 @@ struct Source<'s> {
 }
 
 impl Source<'_> {
-    /// The motion that this file shows, together with the one that has the edge turned over.
+    /// The motion that this file shows, together with those of the same edge laid on anew: the mean of all set-ups.
     fn motion(
         &self,
         all: &[Source<'_>],
         view: &View<'_>,
         diagnostics: &mut Diagnostics,
     ) -> Option<MeasuredMotion> {
-        let over = |other: &&Source<'_>| {
-            other.measurement.turned && other.measurement.motion == self.measurement.motion
+        let again = |other: &&Source<'_>| {
+            !other.measurement.turned && other.measurement.motion == self.measurement.motion
         };
-        let over = all.iter().find(over);
+        let again: Vec<&Source<'_>> = all.iter().filter(again).collect();
         let shown = view.shown(self.measurement.motion.value)?;
-        let (curve, edge, reversal) = match over {
-            Some(over) => {
-                self.check_alike(over, diagnostics)?;
-                let (one, other) = (&self.reduced.curve, &over.reduced.curve);
-                let reversal = self.reduced.reversal.zip(over.reduced.reversal);
-                let curve = one.half_sum(other, 1.0);
-                let reversal = reversal.and_then(|(one, other)| one.half_sum(&other, &curve));
-                let edge =
-                    one.half_sum(other, -1.0).centre().into_iter().map(|value| value * shown).collect();
-                (curve, Some(edge), reversal)
+        let mut set_ups = Vec::new();
+        for source in &again {
+            if !std::ptr::eq(*source, self) {
+                self.check_alike(source, diagnostics)?;
             }
-            None => (self.reduced.curve.clone(), None, self.reduced.reversal),
+            set_ups.push(source.set_up(all, shown, diagnostics)?);
+        }
+        let curves: Vec<Curve> = set_ups.iter().map(|one| one.curve.clone()).collect();
+        let curve = Curve::mean(&curves)?;
+        let reversals: Option<Vec<Reversal>> = set_ups.iter().map(|one| one.reversal).collect();
+        let reversal = match reversals.as_deref() {
+            Some([one]) => Some(*one),
+            Some(several) => Reversal::mean(several, &curve),
+            None => None,
         };
-        let parts: Vec<&Source<'_>> = std::iter::once(self).chain(over).collect();
+        let edges: Option<Vec<Vec<f64>>> = set_ups.iter().map(|one| one.edge.clone()).collect();
+        let parts: Vec<&Source<'_>> = set_ups.iter().flat_map(|one| one.parts.iter().copied()).collect();
         let table = Tabulated::of(&curve, self.measurement, reversal.map(|reversal| reversal.mean));
         table.check(self.measurement, diagnostics)?;
         Some(MeasuredMotion {
             motion: self.measurement.motion.value,
             axis: self.measurement.axis,
             files: parts.iter().map(|part| part.file.source.name().to_owned()).collect(),
+            set_ups: parts.iter().map(|part| part.called()).collect(),
             about: parts.iter().map(|part| part.file.about.clone()).collect(),
             parts: parts.iter().map(|part| part.reduced.clone()).collect(),
+            slope_alone: is_of_two(&curve, self.measurement),
             table,
             curve,
             reversal,
-            edge,
+            edge: edges.map(|edges| mean_of(&edges)),
             against: shown < 0.0,
         })
     }
 
-    /// A reversal takes the same targets and directions twice (E0918).
+    /// What one set-up of the edge shows, together with the file that has it turned over.
+    fn set_up<'a>(
+        &'a self,
+        all: &'a [Source<'a>],
+        shown: f64,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<SetUp<'a>> {
+        let over =
+            |other: &&Source<'_>| other.measurement.turned && other.measurement.is_of(self.measurement);
+        let Some(over) = all.iter().find(over) else {
+            let (curve, reversal) = (self.reduced.curve.clone(), self.reduced.reversal);
+            return Some(SetUp { curve, reversal, edge: None, parts: vec![self] });
+        };
+        self.check_alike(over, diagnostics)?;
+        let (one, other) = (&self.reduced.curve, &over.reduced.curve);
+        let curve = one.half_sum(other, 1.0);
+        let reversal = self.reduced.reversal.zip(over.reduced.reversal);
+        let reversal = reversal.and_then(|(one, other)| Reversal::mean(&[one, other], &curve));
+        let edge = one.half_sum(other, -1.0).centre().into_iter().map(|value| value * shown).collect();
+        Some(SetUp { curve, reversal, edge: Some(edge), parts: vec![self, over] })
+    }
+
+    /// How its set-up is called beside others: nothing for the first one.
+    fn called(&self) -> String {
+        let anew = match self.measurement.placement {
+            1 => String::new(),
+            number => format!(", set-up {number}"),
+        };
+        if self.measurement.turned { format!("{anew}, turned over") } else { anew }
+    }
+
+    /// A reversal, and set-ups of which the mean is taken, have the same targets and directions (E0918).
     fn check_alike(&self, over: &Source<'_>, diagnostics: &mut Diagnostics) -> Option<()> {
         const NEAR: f64 = 1e-6;
         let (one, other) = (&self.reduced.curve, &over.reduced.curve);
@@ -188,10 +241,9 @@ impl Source<'_> {
         if places && sides && self.measurement.axis == over.measurement.axis {
             return Some(());
         }
-        let message = "the two set-ups of the reversal have not the same targets in the same directions";
+        let message = "the two set-ups have not the same targets in the same directions";
         let mistake = Diagnostic::error("E0918", over.measurement.motion.span, message);
-        let mistake =
-            mistake.also(self.measurement.motion.span, "the set-up before the edge was turned over");
+        let mistake = mistake.also(self.measurement.motion.span, "the other set-up");
         diagnostics
             .push(mistake.help("measure the same targets in both, and tell `origin` and `sign` of both"));
         None
@@ -199,14 +251,33 @@ impl Source<'_> {
 }
 
 impl Reversal {
-    /// Half the sum of two, for the curve that is half the sum of theirs.
-    fn half_sum(&self, other: &Self, curve: &Curve) -> Option<Self> {
+    /// The mean of several, for the curve that is the mean of theirs.
+    fn mean(all: &[Self], curve: &Curve) -> Option<Self> {
         let differences = curve.differences()?;
         let greater = |one: &(&f64, &f64), other: &(&f64, &f64)| one.0.abs().total_cmp(&other.0.abs());
         let (greatest, at) = differences.iter().zip(&curve.positions).max_by(greater)?;
-        let uncertainty = together(&[(0.5, self.uncertainty), (0.5, other.uncertainty)]);
-        Some(Self { mean: f64::midpoint(self.mean, other.mean), uncertainty, greatest: *greatest, at: *at })
+        let share = 1.0 / count(all.len());
+        let uncertainties: Vec<_> = all.iter().map(|one| (share, one.uncertainty)).collect();
+        let values: Vec<f64> = all.iter().map(|one| one.mean).collect();
+        let uncertainty = together(&uncertainties);
+        Some(Self { mean: mean(&values), uncertainty, greatest: *greatest, at: *at })
     }
+}
+
+/// What one set-up of an edge shows.
+struct SetUp<'s> {
+    curve: Curve,
+    reversal: Option<Reversal>,
+    edge: Option<Vec<f64>>,
+    parts: Vec<&'s Source<'s>>,
+}
+
+/// The mean of lists, place by place.
+fn mean_of(lists: &[Vec<f64>]) -> Vec<f64> {
+    let places = lists.first().map_or(0, Vec::len);
+    let at =
+        |place: usize| mean(&lists.iter().filter_map(|list| list.get(place).copied()).collect::<Vec<_>>());
+    (0..places).map(at).collect()
 }
 
 /// The squarenesses of all squares that measurements name.
@@ -231,7 +302,7 @@ fn squarenesses(
             .collect();
         let known = setup.references.iter().find(|reference| reference.name.value == square);
         warn_of_rotations(all, &sides, view, diagnostics);
-        let one = squareness::of((&square, known), &sides, view, diagnostics);
+        let one = squareness::of_set_ups((&square, known), &sides, view, diagnostics);
         found.extend(one.filter(|one| is_new(one, &sides, setup, &found, view, diagnostics)));
     }
     found
@@ -287,7 +358,7 @@ fn filled(
     squarenesses: &[Squareness],
 ) -> Calibration {
     let mut terms: Vec<(usize, CalibratedTerm)> = Vec::new();
-    for one in motions {
+    for one in motions.iter().filter(|one| !one.slope_alone) {
         let rotary = equations.axes.get(one.axis).is_some_and(|axis| axis.rotary);
         let curve = one.table.curve();
         let curve = if rotary { closed(curve) } else { curve };

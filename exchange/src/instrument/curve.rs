@@ -152,6 +152,23 @@ impl Curve {
         Self { positions: self.positions.clone(), forward: side(&self.forward), reverse: side(&self.reverse) }
     }
 
+    /// The mean of curves over the same positions.
+    pub(super) fn mean(curves: &[Self]) -> Option<Self> {
+        let first = curves.first()?;
+        let side = |side: fn(&Self) -> &Option<Vec<Mean>>| {
+            let at = |place: usize| {
+                let means = curves.iter().filter_map(|curve| side(curve).as_ref()?.get(place).copied());
+                Mean::mean(&means.collect::<Vec<_>>())
+            };
+            side(first).as_ref().map(|own| (0..own.len()).map(at).collect())
+        };
+        Some(Self {
+            positions: first.positions.clone(),
+            forward: side(|curve| &curve.forward),
+            reverse: side(|curve| &curve.reverse),
+        })
+    }
+
     /// Half the sum of two curves over the same positions, the second with a sign.
     pub(super) fn half_sum(&self, other: &Self, sign: f64) -> Self {
         let side = |one: &Option<Vec<Mean>>, other: &Option<Vec<Mean>>| {
@@ -167,6 +184,17 @@ impl Curve {
 }
 
 impl Mean {
+    /// The mean of independent means, with all their readings.
+    fn mean(means: &[Self]) -> Self {
+        let share = 1.0 / count(means.len());
+        let parts: Vec<_> = means.iter().map(|mean| (share, mean.uncertainty)).collect();
+        Self {
+            value: mean(&means.iter().map(|mean| mean.value).collect::<Vec<_>>()),
+            readings: means.iter().map(|mean| mean.readings).sum(),
+            uncertainty: together(&parts),
+        }
+    }
+
     fn half_sum(&self, other: &Self, sign: f64) -> Self {
         Self {
             value: (self.value + sign * other.value) / 2.0,

@@ -46,7 +46,9 @@ impl Reduced {
     pub(super) fn new(placed: &Placed, one: &Measurement, diagnostics: &mut Diagnostics) -> Option<Self> {
         let averaged = Averaged::new(placed);
         let found = averaged.curve.positions.len();
-        let needed = if one.remove == Remove::Line { 3 } else { 2 };
+        // Of two targets on an edge of a square the slope is all that can be had.
+        let slope_alone = one.remove == Remove::Line && one.reference.is_some() && found == 2;
+        let needed = if one.remove == Remove::Line && !slope_alone { 3 } else { 2 };
         if found < needed {
             diagnostics.push(too_few(found, needed, &averaged, one.data.span));
             return None;
@@ -66,6 +68,18 @@ impl Reduced {
             levers: None,
         })
     }
+}
+
+/// Whether a curve is the rest of a line through two targets, which is nothing.
+pub(super) fn is_of_two(curve: &Curve, one: &Measurement) -> bool {
+    curve.positions.len() == 2 && one.remove == Remove::Line
+}
+
+/// Tells that the slope is all that is known (W0905).
+pub(super) fn slope_of_two(one: &Measurement) -> Diagnostic {
+    let message = "two targets give the slope of this edge, and no straightness: the motion gets no table";
+    let help = "measure three targets or more, which show the straightness and how well the slope is known";
+    Diagnostic::warning("W0905", one.data.span, message).help(help)
 }
 
 fn too_few(found: usize, needed: usize, averaged: &Averaged, span: Span) -> Diagnostic {

@@ -9,6 +9,7 @@ use std::fmt::Write as _;
 
 use model_dsl::equations::Equations;
 
+use super::bound::Bound;
 use super::calibrate::{MeasuredMotion, Outcome};
 use super::curve::Mean;
 use super::lever::Levers;
@@ -106,6 +107,10 @@ pub fn text(outcome: &Outcome, equations: &Equations) -> String {
             put(&mut text, &line);
         }
     }
+    if let Some(bound) = &outcome.bound {
+        put(&mut text, "");
+        put(&mut text, &limited(bound));
+    }
     text
 }
 
@@ -131,7 +136,17 @@ pub fn comments(outcome: &Outcome, equations: &Equations) -> Vec<String> {
         let lines: Vec<String> = squared(one, &names).iter().map(|line| line.trim().to_owned()).collect();
         lines.join("; ") + "."
     });
-    outcome.motions.iter().map(of_motion).chain(squarenesses).collect()
+    let limit = outcome.bound.as_ref().map(limited);
+    outcome.motions.iter().map(of_motion).chain(squarenesses).chain(limit).collect()
+}
+
+/// The limit of corrections, and why it is that.
+fn limited(bound: &Bound) -> String {
+    format!(
+        "limits: {{compensation: {} mm}} is twice the largest correction within the measured range, {}, rounded up.",
+        bound.limit,
+        MICRONS.with_unit(bound.largest)
+    )
 }
 
 fn put(text: &mut String, line: &str) {
@@ -147,9 +162,8 @@ fn widest(motion: &MeasuredMotion) -> Option<f64> {
 
 fn about(text: &mut String, motion: &MeasuredMotion, names: &Names<'_>) {
     put(text, &format!("{}: {}", names.motion(motion.motion), names.meaning(motion.motion)));
-    for (number, (file, said)) in motion.files.iter().zip(&motion.about).enumerate() {
-        let turned = if number == 0 { "" } else { ", turned over" };
-        put(text, &format!("  {}{turned}{}", plain(file), of_itself(said)));
+    for ((file, set_up), said) in motion.files.iter().zip(&motion.set_ups).zip(&motion.about) {
+        put(text, &format!("  {}{set_up}{}", plain(file), of_itself(said)));
     }
     let axis = names.of_axis(motion.axis);
     let ends = motion.curve.positions.first().zip(motion.curve.positions.last());
@@ -202,7 +216,12 @@ fn runs(motion: &MeasuredMotion) -> String {
         [0, reverse] => format!("{} back", counted(reverse)),
         [forward, reverse] => format!("{} forward, {reverse} back", counted(forward)),
     };
-    motion.parts.iter().map(of).collect::<Vec<_>>().join("; turned over ")
+    let parts = motion.parts.iter().zip(&motion.set_ups);
+    let all = parts.map(|(part, set_up)| match set_up.strip_prefix(", ") {
+        Some(set_up) => format!("{set_up} {}", of(part)),
+        None => of(part),
+    });
+    all.collect::<Vec<_>>().join("; ")
 }
 
 fn counted(runs: usize) -> String {
@@ -243,6 +262,9 @@ fn table(text: &mut String, motion: &MeasuredMotion, names: &Names<'_>) {
 /// What holds for a motion as a whole.
 fn figures(text: &mut String, motion: &MeasuredMotion, names: &Names<'_>) {
     let (axis, shown) = (names.of_axis(motion.axis), names.of_motion(motion.motion));
+    if motion.slope_alone {
+        put(text, "  two targets: the slope alone is known, and the calibration has no table of it");
+    }
     if let Some(reversal) = &motion.reversal {
         put(
             text,
@@ -254,10 +276,9 @@ fn figures(text: &mut String, motion: &MeasuredMotion, names: &Names<'_>) {
             ),
         );
     }
-    for (number, part) in motion.parts.iter().enumerate() {
+    for (part, set_up) in motion.parts.iter().zip(&motion.set_ups) {
         if let Some(line) = &part.line {
-            let which = if number == 0 { "" } else { ", turned over" };
-            put(text, &format!("  line removed{which}: slope {}", slope(line, motion, names)));
+            put(text, &format!("  line removed{set_up}: slope {}", slope(line, motion, names)));
         }
     }
     for levers in motion.parts.iter().filter_map(|part| part.levers.as_ref()) {
@@ -339,8 +360,18 @@ fn squared(one: &Squareness, names: &Names<'_>) -> Vec<String> {
         (Some(square), false) => format!("the square's own {} is counted in", MICRORADIANS.with_unit(square)),
         (None, _) => "the square counts as perfect: its own error is in it whole".to_owned(),
     };
-    vec![
+    let mut lines = vec![
         format!("{}: {}", names.motion(one.motion), MICRORADIANS.plus_minus(one.angle, one.uncertainty)),
         format!("  from the lines of {first} and {second} against `{}`; {square}", one.reference),
-    ]
+    ];
+    if !one.set_ups.is_empty() {
+        let all: Vec<String> = one.set_ups.iter().map(|angle| MICRORADIANS.number(*angle)).collect();
+        lines.push(format!(
+            "  the mean of {} set-ups, and their scatter: {} {}",
+            all.len(),
+            all.join(", "),
+            MICRORADIANS.unit
+        ));
+    }
+    lines
 }

@@ -227,7 +227,7 @@ impl Setup {
     fn check(&self, equations: &Equations, diagnostics: &mut Diagnostics) {
         for (number, one) in self.measurements.iter().enumerate() {
             let before = self.measurements.get(..number).unwrap_or(&[]);
-            let same = |other: &&Measurement| other.motion == one.motion && other.turned == one.turned;
+            let same = |other: &&Measurement| other.is_of(one) && other.turned == one.turned;
             let name = equations.motions.get(one.motion.value).map_or("", |motion| &motion.name);
             if let Some(first) = before.iter().find(same) {
                 diagnostics.push(measured_twice(name, one.motion.span, first.motion.span));
@@ -246,7 +246,7 @@ impl Setup {
 
     /// A reversal needs the measurement before the edge was turned over too.
     fn check_turned(&self, one: &Measurement, name: &str, diagnostics: &mut Diagnostics) {
-        let upright = |other: &Measurement| other.motion == one.motion && !other.turned;
+        let upright = |other: &Measurement| other.is_of(one) && !other.turned;
         if one.turned && !self.measurements.iter().any(upright) {
             let message = format!("{name} is measured with the edge turned over only");
             let help =
@@ -258,6 +258,7 @@ impl Setup {
 
 fn measured_twice(name: &str, again: Span, first: Span) -> Diagnostic {
     let mistake = Diagnostic::error("E0911", again, format!("{name} is measured twice"));
-    let help = "one file holds all runs of a motion; `turned: true` marks the second set-up of a reversal";
+    let help = "one file holds all runs of a motion; `turned: true` marks the second set-up of a reversal, `placement: 2` an edge that was \
+                laid on anew";
     mistake.also(first, "first measured here").help(help)
 }

@@ -10,7 +10,7 @@ use model_dsl::source::Span;
 
 use super::line::Line;
 use super::setup::{Measurement, Reference};
-use super::uncertainty::{Uncertainty, together};
+use super::uncertainty::{Uncertainty, mean, of_mean, together};
 use super::view::{View, cross, dot, unit};
 
 /// An alignment error that two measurements give.
@@ -30,6 +30,8 @@ pub struct Squareness {
     pub turned: bool,
     /// The straightnesses: indices of motions.
     pub from: [usize; 2],
+    /// The angle of each set-up, rad, where the square was laid on several times.
+    pub set_ups: Vec<f64>,
 }
 
 /// One straightness with its line, as the instrument read it.
@@ -47,8 +49,42 @@ struct Pair {
     uncertainty: Option<Uncertainty>,
 }
 
-/// The squareness that a square gives, from all measurements against it. E0912 where they do not give one.
-pub(super) fn of(
+/// The squareness that a square gives, from all its set-ups: the mean of theirs, and the scatter of it where there are several.
+pub(super) fn of_set_ups(
+    (name, known): (&str, Option<&Reference>),
+    sides: &[Side<'_>],
+    view: &View<'_>,
+    diagnostics: &mut Diagnostics,
+) -> Option<Squareness> {
+    let mut placements: Vec<u8> = sides.iter().map(|side| side.measurement.placement).collect();
+    placements.sort_unstable();
+    placements.dedup();
+    let mut all = Vec::new();
+    for placement in placements {
+        let own: Vec<Side<'_>> =
+            sides.iter().copied().filter(|side| side.measurement.placement == placement).collect();
+        all.push(of((name, known), &own, view, diagnostics)?);
+    }
+    let angles: Vec<f64> = all.iter().map(|one| one.angle).collect();
+    let squares: Option<Vec<f64>> = all.iter().map(|one| one.square).collect();
+    let first = all.into_iter().next()?;
+    if angles.len() < 2 {
+        return Some(first);
+    }
+    // What the set-ups differ by holds the scatter of each; the error of the square is the same in all of them.
+    let own = known.and_then(|known| known.uncertainty).filter(|_| !first.turned).unwrap_or(0.0);
+    let uncertainty = together(&[(1.0, of_mean(&angles)), (1.0, Some(Uncertainty::given(own)))]);
+    Some(Squareness {
+        angle: mean(&angles),
+        uncertainty,
+        square: squares.map(|squares| mean(&squares)),
+        set_ups: angles,
+        ..first
+    })
+}
+
+/// The squareness that one set-up of a square gives. E0912 where they do not give one.
+fn of(
     (name, known): (&str, Option<&Reference>),
     sides: &[Side<'_>],
     view: &View<'_>,
@@ -83,6 +119,7 @@ pub(super) fn of(
         square: turns.square,
         turned: over.is_some(),
         from,
+        set_ups: Vec::new(),
     })
 }
 

@@ -14,13 +14,22 @@ pub(super) enum Item {
     List(Vec<String>),
 }
 
-/// A number in the fewest digits that give the same bits back; zero has no sign.
+/// A number in the fewest digits that give the same bits back; zero has no sign. One with an exponent has a point and a sign of the
+/// exponent too, as in `-4.0e-8`: readers of YAML 1.1 take `-4e-8` for text.
 pub(super) fn number(value: f64) -> String {
     let plain = value == 0.0 || (1e-4..1e15).contains(&value.abs());
     match plain {
         true => format!("{}", value + 0.0),
-        false => format!("{value:e}"),
+        false => exponential(value),
     }
+}
+
+fn exponential(value: f64) -> String {
+    let text = format!("{value:e}");
+    let Some((digits, exponent)) = text.split_once('e') else { return text };
+    let point = if digits.contains('.') { "" } else { ".0" };
+    let sign = if exponent.starts_with('-') { "" } else { "+" };
+    format!("{digits}{point}e{sign}{exponent}")
 }
 
 /// A number with its unit.

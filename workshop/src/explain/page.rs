@@ -28,7 +28,8 @@ pub(super) fn overview(
     for code in codes {
         line(&mut text, code.name, 7, code.title);
     }
-    text.push_str("\n`abbe explain NAME` tells more of each, and of an error motion by its name, such as EX0C or EA(0Y)C.\n");
+    text.push_str("\n`abbe explain NAME` tells more of each, of an error motion by its name, such as EX0C or EA(0Y)C, of a\n\
+         topology word such as XYFZ, and of each word of the guide's glossary, such as squareness.\n");
     text
 }
 

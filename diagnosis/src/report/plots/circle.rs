@@ -7,8 +7,9 @@ use crate::pictures::{Circle, Pass, Picture};
 
 const CAPTION: &str = "Deviations from the nominal circle as measured, as the known calibration has them (before) and with the findings (after), \
      magnified as the plot states; the instrument's zero and the centre \
-     of the circle are taken out. Of many passes the first and the last of each sense are drawn at most. Steps at the axes are play or friction, an ellipse along the axes scales or gains, \
-     one at 45 degrees a squareness.";
+     of the circle are taken out. Of many passes the first and the last of each sense are drawn at most. Steps at the axes are play or friction, an ellipse along the axes \
+     different scales. An ellipse at 45 degrees is a squareness where it lies alike in both senses, and different gains of the position loops where it \
+     turns by 90 degrees with the sense.";
 
 const RESIDUAL: &str =
     "What the known calibration leaves, and what the findings leave where there are any, magnified more.";

@@ -138,6 +138,7 @@ fn squareness(one: &Squareness, names: &Names<'_>) -> Value {
         "angle": one.angle,
         "uncertainty": one.uncertainty.map(uncertainty),
         "reference": one.reference,
+        "set_ups": one.set_ups,
         "square": one.square,
         "turned": one.turned,
         "from": one.from.map(|motion| names.motion(motion)),

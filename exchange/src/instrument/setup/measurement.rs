@@ -14,7 +14,7 @@ use super::counting::{self, Deviations, Order, Targets};
 use super::place::{self, Place};
 use super::words::{choice, keys, word};
 
-const KEYS: [&str; 13] = [
+const KEYS: [&str; 14] = [
     "motion",
     "data",
     "axis",
@@ -25,6 +25,7 @@ const KEYS: [&str; 13] = [
     "remove",
     "reference",
     "turned",
+    "placement",
     "reversal",
     "smooth",
     "resample",
@@ -60,12 +61,21 @@ pub struct Measurement {
     pub reference: Option<Spanned<String>>,
     /// Whether that edge was turned over for it.
     pub turned: bool,
+    /// Which of repeated set-ups of the same edge or square it is of, 1 for the first.
+    pub placement: u8,
     /// What stands for the difference of the directions.
     pub reversal: Form,
     /// The number of targets in a moving mean, odd, 3 or more; none where nothing is smoothed.
     pub smooth: Option<usize>,
     /// The step of the table, mm or rad; none where its nodes are the targets.
     pub resample: Option<Spanned<f64>>,
+}
+
+impl Measurement {
+    /// Whether both show one motion in one set-up of its edge.
+    pub(crate) fn is_of(&self, other: &Self) -> bool {
+        self.motion == other.motion && self.placement == other.placement
+    }
 }
 
 /// What is taken off a curve.
@@ -134,6 +144,7 @@ pub(super) fn read(node: &Node, equations: &Equations, diagnostics: &mut Diagnos
         remove,
         reference: reference.map(|name| name.map(str::to_owned)),
         turned,
+        placement: read_placement(&fields, diagnostics)?,
         reversal: reversal.unwrap_or(Form::Tables),
         smooth: read_smooth(&fields, diagnostics),
         resample: read_resample(&fields, along, diagnostics),
@@ -202,7 +213,7 @@ fn is_straightness(motion: &Motion, number: usize, names: &MachineNames) -> bool
 }
 
 fn edge_of(fields: &Fields<'_>) -> Option<&'static str> {
-    ["reference", "turned"].into_iter().find(|key| fields.get(key).is_some())
+    ["reference", "turned", "placement"].into_iter().find(|key| fields.get(key).is_some())
 }
 
 fn no_edge(key: &'static str, motion: &str, fields: &Fields<'_>) -> Diagnostic {
@@ -266,6 +277,19 @@ fn read_flag(fields: &Fields<'_>, key: &str, diagnostics: &mut Diagnostics) -> O
         None => Some(false),
         Some(node) => choice(node, &format!("`{key}`"), &[("true", true), ("false", false)], diagnostics),
     }
+}
+
+/// The number of a set-up (E0907).
+fn read_placement(fields: &Fields<'_>, diagnostics: &mut Diagnostics) -> Option<u8> {
+    let Some(node) = fields.get("placement") else { return Some(1) };
+    let number = quantity::read_number(node, "`placement`", diagnostics)?;
+    let found = (1..=99).find(|placement: &u8| f64::from(*placement) == number.value);
+    if found.is_none() {
+        let message = "`placement` counts the set-ups of one edge or square: 1, 2, 3, up to 99";
+        let help = "write `placement: 2` at what was measured after it was laid on anew";
+        diagnostics.push(Diagnostic::error("E0907", number.span, message).help(help));
+    }
+    found
 }
 
 fn read_smooth(fields: &Fields<'_>, diagnostics: &mut Diagnostics) -> Option<usize> {

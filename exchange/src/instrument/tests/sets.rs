@@ -189,6 +189,76 @@ fn turning_the_square_over_takes_its_error_out() {
     assert_eq!(found, [("E0912", "square".to_owned())]);
 }
 
+/// Laid on three times, askew by 0, 7 and -3 urad, with 40, 43 and 46 urad of squareness read: the mean is 43, its standard
+/// uncertainty 3/sqrt 3, and that of the square 1 urad beside it.
+#[test]
+fn a_square_that_is_laid_on_again_gives_the_mean_and_its_scatter() {
+    let set_up = |placement: u8| {
+        let one = |motion: &str| {
+            format!("  - {{motion: {motion}, data: d, reference: square, placement: {placement}}}\n")
+        };
+        one("EYX") + &one("EXY")
+    };
+    let set = SQUARE.to_owned() + &set_up(1) + &set_up(2) + &set_up(3);
+    let files = [(0.0, 40.0), (7.0, 43.0), (-3.0, 46.0)]
+        .map(|(askew, read)| [straight(30.0 - askew), straight(read - 30.0 + askew)])
+        .concat();
+    let (one, found, _) = outcome("FXYZ", &set, &files);
+    let one = one.unwrap_or_else(|| panic!("{found:?}"));
+    let angle = &one.squarenesses[0];
+    assert!((angle.angle - (-43e-6 + 4e-6)).abs() < 1e-12, "{angle:?}");
+    assert_near(&angle.set_ups, &[-36e-6, -39e-6, -42e-6], 1e-12);
+    let known = angle.uncertainty.unwrap();
+    assert!((known.standard - (3.0_f64 + 1.0).sqrt() * 1e-6).abs() < 1e-12, "{known:?}");
+    // One table of each motion, of all readings.
+    let motions: Vec<usize> = one.motions.iter().map(|motion| motion.parts.len()).collect();
+    assert_eq!(motions, [3, 3]);
+    assert_eq!(one.motions[0].curve.forward.as_ref().unwrap()[0].readings, 6);
+    let text = super::super::report::text(&one, &super::machine("FXYZ"));
+    assert!(text.contains("the mean of 3 set-ups, and their scatter: -36.00, -39.00, -42.00 urad"), "{text}");
+    // The same set-up twice, and a number that is none.
+    let twice = super::setup_of(&(SQUARE.to_owned() + &set_up(2) + &set_up(2)), &super::machine("FXYZ")).1;
+    assert_eq!(twice.iter().map(|found| found.0).collect::<Vec<_>>(), ["E0911", "E0911"]);
+    let none = super::setup_of(&set.replace("placement: 3", "placement: 0"), &super::machine("FXYZ")).1;
+    assert_eq!(none, [("E0907", "0".to_owned()), ("E0907", "0".to_owned())]);
+}
+
+/// A line goes through any two targets: the slopes give the squareness, and no motion gets a table.
+#[test]
+fn two_targets_on_a_square_give_its_squareness_alone() {
+    let two =
+        |slope: f64| table(&[0.0, 200.0], &[(true, vec![0.0, slope / 5.0]), (false, vec![0.0, slope / 5.0])]);
+    let edges =
+        "  - {motion: EYX, data: a, reference: square}\n  - {motion: EXY, data: b, reference: square}";
+    let (one, found, _) = outcome("FXYZ", &format!("{SQUARE}{edges}"), &[two(30.0), two(10.0)]);
+    assert_eq!(found, [("W0905", "a".to_owned()), ("W0905", "b".to_owned())]);
+    let one = one.unwrap();
+    assert!((one.squarenesses[0].angle + 36e-6).abs() < 1e-12, "{:?}", one.squarenesses);
+    let written: Vec<usize> = one.calibration.motions.iter().map(|motion| motion.motion).collect();
+    assert_eq!(written, [one.squarenesses[0].motion]);
+    // Without a square the slope counts nowhere.
+    let (alone, found, _) = outcome("FXYZ", "  - {motion: EYX, data: a}", &[two(30.0)]);
+    assert!(alone.is_none());
+    assert_eq!(found, [("E0917", "a".to_owned())]);
+}
+
+/// 21 um forward is the largest of a single axis: twice that is 42 um. What the set-up says of itself stays.
+#[test]
+fn a_limit_comes_from_the_largest_correction() {
+    let file = table(&[0.0, 100.0, 200.0], &[(true, vec![0.0, -21.0, 8.0])]);
+    let measured = "  - {motion: EXX, data: d}";
+    let one = outcome("FX", measured, std::slice::from_ref(&file)).0.unwrap();
+    let bound = one.bound.unwrap();
+    // The largest place that is looked at lies within a thousandth of the range of the node.
+    assert!((bound.largest - 0.021).abs() < 0.021 * 2e-3, "{bound:?}");
+    assert_eq!((bound.limit, one.calibration.limits.compensation.unwrap().value), (0.042, 0.042));
+    let text = super::super::report::text(&one, &super::machine("FX"));
+    assert!(text.contains("limits: {compensation: 0.042 mm} is twice the largest correction"), "{text}");
+    let known = "setup: 1\nmachine: m\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\nlimits: {compensation: 1 mm}\nmeasurements:\n";
+    let kept = outcome("FX", &format!("{known}{measured}"), &[file]).0.unwrap();
+    assert_eq!((kept.bound, kept.calibration.limits.compensation.unwrap().value), (None, 1.0));
+}
+
 /// Off the carriage's frame by 30 mm in Z and 10 mm in Y, all axes carrying the tool: EBX moves the reading of EXX by 30 mm times
 /// its angle, ECX by -10 mm times its own, which was not measured.
 #[test]

@@ -50,6 +50,7 @@ fn emitted() -> BTreeSet<String> {
         "update/src",
         "exchange/src",
         "fleet/src",
+        "workshop/src",
         "src",
     ] {
         for path in rust_files(&root().join(folder)) {

@@ -21,7 +21,10 @@ const TABLE: &str = "model-dsl/src/calibration/vocabulary.rs";
 const TYPE: [&str; 2] = ["model-dsl/src/calibration/term.rs", "model-dsl/src/calibration/term/parts.rs"];
 
 /// Where words that are terms elsewhere mean something else.
-const OTHER_SENSES: [(&str, &str); 11] = [
+const OTHER_SENSES: [(&str, &str); 13] = [
+    // What a number of a fleet does over time.
+    ("fleet/src/change.rs", "step"),
+    ("fleet/src/report/chart.rs", "step"),
     // What a calibration of an instrument writes of its table.
     ("exchange/src/instrument/report/json.rs", "table"),
     // A form of results in set-up files, beside `tables`.

@@ -7,7 +7,7 @@
 //! What is not linear in an effect (a period, a time constant, a way over which a play is taken up) stays as it was found. All effects
 //! are fitted together, with the settings of the instruments, to all rows: nothing is chosen, so that nothing need be held out.
 
-use model_dsl::calibration::CalibratedTerm;
+use model_dsl::calibration::{CalibratedTerm, TermKind};
 use nalgebra::DMatrix;
 
 use crate::Inputs;
@@ -95,14 +95,27 @@ pub fn follow(inputs: &Inputs<'_>, followed: &[Followed]) -> Vec<Vec<Size>> {
     begun.iter().map(size).collect()
 }
 
+/// The parameter by which two effects of one term are told apart: the period of a wave along an axis, the frequency of one in time.
+pub fn told_by(term: &str) -> Option<&'static str> {
+    match TermKind::of_name(term)? {
+        TermKind::Cyclic => Some("period"),
+        TermKind::Vibration => Some("frequency"),
+        _ => None,
+    }
+}
+
+/// Whether a term happened once: when it did says nothing of another recording, so that it is not followed.
+pub fn is_event(term: &str) -> bool {
+    TermKind::of_name(term) == Some(TermKind::Step)
+}
+
 fn unfitted(effect: Effect) -> Fitted {
     Fitted { coefficients: vec![0.0; effect.shape.columns()], effect }
 }
 
 /// The effect as these recordings have it; nothing where they lack a state that it reads, or an axis that moves.
 fn begun(study: &Study<'_>, travels: &[Travel], followed: &Followed) -> Option<Fitted> {
-    // When something happened once says nothing of another recording.
-    if matches!(followed.term.core(), CalibratedTerm::Step { .. }) {
+    if is_event(followed.term.core().name()) {
         return None;
     }
     let term = renumbered(study, followed)?;

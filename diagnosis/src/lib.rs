@@ -72,8 +72,8 @@ use diagnosis::Diagnosis;
 pub(crate) use ::recording;
 use recording::Recording;
 
-pub use follow::{Followed, Size, follow};
-pub use terms::meaning;
+pub use follow::{Followed, Size, follow, is_event, told_by};
+pub use terms::{look_at, meaning};
 
 /// What a diagnosis starts from.
 #[derive(Clone, Debug)]

@@ -17,6 +17,7 @@ mod instrument;
 mod known;
 mod lag;
 mod load;
+mod look;
 mod meaning;
 mod plausible;
 mod polynomial;
@@ -27,6 +28,7 @@ mod vibration;
 
 pub(crate) use instrument::{Setting, SettingKind};
 pub(crate) use known::known;
+pub use look::look_at;
 pub use meaning::meaning;
 pub(crate) use plausible::{Range, oddity, plausible};
 pub(crate) use polynomial::in_position as polynomial_in_position;

@@ -3,6 +3,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use diagnosis::{is_event, told_by};
+
 use crate::key::Sum;
 use crate::results::Known;
 use crate::table::Row;
@@ -98,14 +100,10 @@ fn found(rows: &[&Known]) -> Option<Found> {
     let row = &first.row;
     let term = row.text("term");
     let (motion, family) = (row.text("motion").to_owned(), row.text("family").to_owned());
-    // What a wave is told apart by.
-    let told_by = match term {
-        "cyclic" => "period",
-        "vibration" => "frequency",
-        // When something happened in one recording says nothing of others.
-        "step" => return None,
-        _ => "",
-    };
+    if is_event(term) {
+        return None;
+    }
+    let told_by = told_by(term).unwrap_or_default();
     let period =
         rows.iter().map(|known| &known.row).find(|row| row.text("parameter") == told_by).and_then(period);
     let certainty = rows.iter().filter_map(|known| certainty(&known.row, told_by)).fold(0.0, f64::max);

@@ -211,4 +211,25 @@ mod tests {
             assert_eq!(fleet(text).unwrap_err(), [(code, at.to_owned())], "{text}");
         }
     }
+
+    #[test]
+    fn files_that_are_cut_or_broken_end_in_findings_within_them() {
+        let whole = "fleet: 1\nresults: out\nmachines:\n  a: {kind: k, recordings: [\"a/*.yaml\", '[x]/**/b'], time: YYYY-MM-DD}\n";
+        let letters = ["", "\0", "\u{e9}", "[", "*", "**", ":", "{", "\"", "\n", "\t", "YYYY"];
+        for (place, _) in whole.char_indices() {
+            for letter in letters {
+                let (before, after) = whole.split_at(place);
+                let after = after.get(1..).unwrap_or_default();
+                for text in [format!("{before}{letter}"), format!("{before}{letter}{after}")] {
+                    let source = SourceFile::new("fleet.yaml", &text);
+                    let mut diagnostics = Diagnostics::new();
+                    let root = yaml::read(&source, &mut diagnostics);
+                    let fleet = root.and_then(|root| read_all(&root, Path::new(""), &mut diagnostics));
+                    assert!(fleet.is_some() || diagnostics.has_errors(), "{text}");
+                    let within = |one: &Diagnostic| text.get(one.span.start..one.span.end).is_some();
+                    assert!(diagnostics.iter().all(within), "{text}");
+                }
+            }
+        }
+    }
 }

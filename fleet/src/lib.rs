@@ -16,7 +16,6 @@ mod followed;
 pub mod history;
 mod jobs;
 mod key;
-mod look;
 pub mod report;
 mod results;
 pub mod run;

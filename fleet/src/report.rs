@@ -22,14 +22,14 @@ pub(crate) fn number(value: f64, unit: &str) -> String {
     diagnosis::report::size(value, unit)
 }
 
-/// How long ago a machine was measured: `3 days`; nothing of one that never was.
+/// How long ago a machine was measured: `3 days ago`; nothing of one that never was.
 fn age(history: &History, machine: &Machine) -> Option<String> {
     let past = (days(history.until) - days(machine.last()?.time)).max(0.0).floor();
     Some(match past {
         0.0 => "today".to_owned(),
-        1.0 => "1 day".to_owned(),
-        past if past < 60.0 => format!("{past} days"),
-        past => format!("{} weeks", (past / 7.0).floor()),
+        1.0 => "1 day ago".to_owned(),
+        past if past < 60.0 => format!("{past} days ago"),
+        past => format!("{} weeks ago", (past / 7.0).floor()),
     })
 }
 

@@ -4,8 +4,10 @@
 //! machine whose effects have changed since is followed anew, which takes a small part of the time.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::num::NonZero;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -243,20 +245,32 @@ pub fn all(
     Ok(Done { recordings: plan.jobs.len(), diagnosed, followed: pending.len(), waiting })
 }
 
-/// Runs jobs on all processors; a failure to write ends the run once the jobs under way are done.
+/// Runs jobs on all processors, one at a time on each: what a job shares out itself goes to the common pool, whose threads do not begin
+/// other jobs meanwhile, so that memory stays that of so many recordings. A failure to write ends the run once the jobs under way are done.
 fn each<T: Sync>(
     jobs: &[T],
     told: impl Fn((usize, usize)) + Sync,
     run: impl Fn(&T) -> Result<(), Failure> + Sync,
 ) -> Result<(), Failure> {
-    let done = AtomicUsize::new(0);
-    let one = |job: &T| {
-        run(job)?;
-        let count = done.fetch_add(1, Ordering::Relaxed).saturating_add(1);
-        told((count, jobs.len()));
-        Ok(())
+    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let failed = Mutex::new(None);
+    let has_failed = || failed.lock().unwrap_or_else(PoisonError::into_inner).is_some();
+    let work = || {
+        while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !has_failed()) {
+            if let Err(failure) = run(job) {
+                failed.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(failure);
+                break;
+            }
+            told((done.fetch_add(1, Ordering::Relaxed).saturating_add(1), jobs.len()));
+        }
     };
-    jobs.par_iter().try_for_each(one)
+    let processors = thread::available_parallelism().map_or(1, NonZero::get);
+    thread::scope(|scope| {
+        for _ in 0..processors.min(jobs.len()) {
+            scope.spawn(work);
+        }
+    });
+    failed.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
 }
 
 /// What is still to be done.

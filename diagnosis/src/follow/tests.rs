@@ -1,3 +1,5 @@
+//! What is followed, held against recordings of the exact machine whose truth is known.
+
 use super::{Followed, Size, follow};
 use crate::recording::Recording;
 use crate::testing::{Bench, line, noisy, path, position};

@@ -69,20 +69,3 @@ fn count(shop: Shop, history: &fleet::History, judged: &mut Judged) {
         }
     }
 }
-
-impl Judged {
-    /// The table, in Markdown.
-    pub(crate) fn table(&self) -> String {
-        let mut text =
-            "| planted | raised in week | what is said in the last week |\n| --- | --- | --- |\n".to_owned();
-        for (what, week, sentence) in &self.raised {
-            let week = week.map_or_else(|| "never".to_owned(), |week| week.to_string());
-            text += &format!("| {what} | {week} | {sentence} |\n");
-        }
-        text += &format!("\n{} quiet series, {} other alarms", self.quiet, self.other.len());
-        text += &self.other.iter().map(|alarm| format!("\n- {alarm}")).collect::<String>();
-        let (held, all) = self.held;
-        let share = f64::from(u32::try_from(held).unwrap()) / f64::from(u32::try_from(all.max(1)).unwrap());
-        text + &format!("\n\n{held} of {all} intervals hold the truth: {share:.3}\n")
-    }
-}

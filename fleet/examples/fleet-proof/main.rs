@@ -41,5 +41,20 @@ fn main() {
         "{} recordings, {} diagnosed and {} followed in {seconds:.0} s\n",
         done.recordings, done.diagnosed, done.followed
     );
-    print!("{}", judged::judged(shop, &fleet).table());
+    print!("{}", table(&judged::judged(shop, &fleet)));
+}
+
+/// The table, in Markdown.
+fn table(judged: &judged::Judged) -> String {
+    let mut text =
+        "| planted | raised in week | what is said in the last week |\n| --- | --- | --- |\n".to_owned();
+    for (what, week, sentence) in &judged.raised {
+        let week = week.map_or_else(|| "never".to_owned(), |week| week.to_string());
+        text += &format!("| {what} | {week} | {sentence} |\n");
+    }
+    text += &format!("\n{} quiet series, {} other alarms", judged.quiet, judged.other.len());
+    text += &judged.other.iter().map(|alarm| format!("\n- {alarm}")).collect::<String>();
+    let (held, all) = judged.held;
+    let share = f64::from(u32::try_from(held).unwrap()) / f64::from(u32::try_from(all.max(1)).unwrap());
+    text + &format!("\n\n{held} of {all} intervals hold the truth: {share:.3}\n")
 }

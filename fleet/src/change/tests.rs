@@ -1,3 +1,5 @@
+//! Changes of series whose truth is known, and how often chance makes one.
+
 use super::{change, mean};
 use crate::series::{Point, Series};
 use recording::Moment;

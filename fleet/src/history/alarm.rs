@@ -5,10 +5,10 @@
 //! bound is one for all questions together (Holm): the plainest is held against the bound over their number, the next against the bound
 //! over one less, until one fails. It holds however the series hang together.
 
+use diagnosis::look_at;
 use serde::Serialize;
 
 use super::{Change, Machine, Range, Series};
-use crate::look::look;
 use crate::report::number;
 
 /// How probable it may be that any alarm of a look at the whole fleet is chance: looked at each week, once in two years.
@@ -41,6 +41,11 @@ pub struct Alarm {
     pub probability: f64,
     /// The recordings that it rests on, the first and the last of each stretch: of a step those beside it.
     pub recordings: Vec<String>,
+}
+
+/// What to look at for a term; for the noise, which is none, at the instrument.
+fn look(term: &str) -> String {
+    look_at(term).unwrap_or("the instrument, how it is mounted, and what stands near the machine").to_owned()
 }
 
 /// The alarms, the plainest first, and how many questions were asked. Series of which there is one are marked.
@@ -117,7 +122,7 @@ fn of_change(machine: &str, series: &Series, change: &Change) -> Option<Alarm> {
         effect: series.effect.clone(),
         parameter: series.parameter.clone(),
         reason: String::new(),
-        look_at: look(&series.term).to_owned(),
+        look_at: look(&series.term),
         size: change.size,
         unit: unit.clone(),
         probability: change.probability,
@@ -173,7 +178,7 @@ fn unlike(range: &Range, own: &super::Own) -> Alarm {
             range.machines.len(),
             range.kind
         ),
-        look_at: look(term).to_owned(),
+        look_at: look(term),
         size: own.value - middle,
         unit: unit.clone(),
         probability: own.probability,

@@ -155,14 +155,14 @@ fn ranges(history: &History) -> String {
 
 fn of_machine(history: &History, machine: &Machine, links: &Links<'_>) -> String {
     let kind = machine.kind.as_ref().map(|kind| format!(", {kind}")).unwrap_or_default();
-    let age = age(history, machine).map(|age| format!(", last test {age} ago")).unwrap_or_default();
+    let age = age(history, machine).map(|age| format!(", last test {age}")).unwrap_or_default();
     let mut body = format!(
         "<section id=\"{}\">\n<h1>{}</h1>\n<p class=\"source\">{} recordings{}{}</p>\n",
         encoded(&machine.name),
         escape(&machine.name),
         machine.recordings.len(),
         escape(&kind),
-        age.replace("today ago", "today")
+        age
     );
     for alarm in history.alarms.iter().filter(|alarm| alarm.machine == machine.name) {
         body += &of_alarm(alarm, links);

@@ -166,6 +166,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
         self.check_lengths(sample, out)?;
         let outcome = self.cycle(sample, out);
         if outcome.is_err() {
+            self.direction = None;
             copy(sample.position, out);
         }
         outcome
@@ -174,11 +175,11 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     /// [`compensate`](Self::compensate), where all is as long as it must be; a refusal leaves anything in `out`.
     #[inline]
     fn cycle(&mut self, sample: &Sample<'_>, out: &mut [f64]) -> Result<Outcome, Refusal> {
+        let error = self.prediction.begin(sample)?;
         // Asked of the machine: where it is known when the code is compiled that none does, nothing is left of all this.
         if !self.prediction.kinematics.aiming().is_empty() {
-            return self.cycle_aimed(sample, out);
+            return self.cycle_aimed(sample, error, out);
         }
-        let error = self.prediction.begin(sample)?;
         if self.enabled {
             self.search(sample, error, out)
         } else {

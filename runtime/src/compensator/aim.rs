@@ -53,12 +53,15 @@ struct Gone {
 }
 
 impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
-    /// [`compensate`](Self::compensate) on a machine whose rotary axes correct the direction of the tool.
+    /// The rest of a cycle that has begun with this error of the tip, on a machine whose rotary axes correct the direction of the tool.
     // Apart: the calls of all other machines stay as small as they were.
     #[inline(never)]
-    pub(super) fn cycle_aimed(&mut self, sample: &Sample<'_>, out: &mut [f64]) -> Result<Outcome, Refusal> {
-        self.direction = None;
-        let error = self.prediction.begin(sample)?;
+    pub(super) fn cycle_aimed(
+        &mut self,
+        sample: &Sample<'_>,
+        error: [f64; 3],
+        out: &mut [f64],
+    ) -> Result<Outcome, Refusal> {
         let lean = self.prediction.lean(sample)?;
         if !self.enabled {
             copy(sample.position, out);
@@ -102,6 +105,17 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         Err(gone.not_settled(&self.convergence))
     }
 
+    /// What the slides reach where the rotary axes are turned to.
+    // Not by what other machines call: what has one caller is compiled into it.
+    fn reach_turned(&mut self, position: &[f64]) -> Result<Reach, Refusal> {
+        let Prediction { kinematics, sines, .. } = &self.prediction;
+        kinematics.directions_with(sines, position, self.directions);
+        if !all_finite(self.directions.as_flattened()) {
+            return Err(Refusal::NotFinite);
+        }
+        Ok(kinematics.squares().map_or_else(|| Reach::new(self.directions), Reach::straight))
+    }
+
     /// The pose of the rotary axes after a step; leaves in `out` the commands of that step.
     fn pose(
         &mut self,
@@ -114,7 +128,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         step.posed.stands.write(out);
         let kinematics = self.prediction.kinematics;
         kinematics.turn(out, &mut self.prediction.sines);
-        let reach = self.reach_at(out)?;
+        let reach = self.reach_turned(out)?;
         let tip = add_scaled(kinematics.nominal(out), -1.0, target.tip);
         let direction = add_scaled(kinematics.direction(out), -1.0, target.direction);
         self.prediction.columns(&*self.directions).correct(sample.position, step.pull, out);

@@ -21,13 +21,17 @@ const TABLE: &str = "model-dsl/src/calibration/vocabulary.rs";
 const TYPE: [&str; 2] = ["model-dsl/src/calibration/term.rs", "model-dsl/src/calibration/term/parts.rs"];
 
 /// Where words that are terms elsewhere mean something else.
-const OTHER_SENSES: [(&str, &str); 11] = [
+const OTHER_SENSES: [(&str, &str); 14] = [
     // What a calibration of an instrument writes of its table.
     ("exchange/src/instrument/report/json.rs", "table"),
     // A form of results in set-up files, beside `tables`.
     ("exchange/src/instrument/setup/measurement.rs", "backlash"),
     // The limit of a path.
     ("simulation/src/file.rs", "acceleration"),
+    // The time from row to row of a recording.
+    ("recording/src/channel.rs", "step"),
+    ("recording/src/place.rs", "step"),
+    ("workshop/src/recorded.rs", "step"),
     // States, on which something depends.
     ("diagnosis/src/words.rs", "acceleration"),
     ("diagnosis/src/returns/state.rs", "acceleration"),

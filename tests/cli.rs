@@ -104,6 +104,27 @@ fn what_is_no_machine_is_told_with_the_nearest_name() {
 }
 
 #[test]
+fn a_typo_of_a_file_is_told_with_the_file_that_lies_beside() {
+    let mill = file("typo", "workshop-mill.yaml", "abbe: 1\nname: workshop-mill\ntopology: XYFZ\n");
+    let run = abbe(&["derive", &mill.replace("workshop", "workshp")], "");
+    assert_eq!(run.status, 2);
+    assert!(run.err.contains(&format!("did you mean `{mill}`?")), "{}", run.err);
+}
+
+#[test]
+fn a_second_tool_is_told_where_tools_are_exchanged() {
+    let text = "abbe: 1\nname: m\nchain:\n  workpiece: []\n  tool:\n    - slide: X\n      along: +X\n    - tool: one\n    - tool: two\n";
+    let run = abbe(&["derive", &file("second-tool", "m.yaml", text)], "");
+    assert_eq!(run.status, 2);
+    assert!(
+        run.err.contains("error[E0126]: the chain has a second tool")
+            && run.err.contains("under `tools:` in the calibration"),
+        "{}",
+        run.err
+    );
+}
+
+#[test]
 fn published_equations_agree_and_a_flipped_sign_is_named() {
     for machine in ["excello-921", "nist-turning-center"] {
         let run = abbe(&["check", machine, &format!("published/{machine}.eqs")], "");

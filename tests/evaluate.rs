@@ -157,7 +157,7 @@ fn rows_without_times_are_readings_in_their_order() {
 }
 
 /// A laser's file of three targets and two runs there and back: 1 um and then 2 um of reversal.
-const LASER: &str = "HEADER::\nFile type  : rtl\nOwner      : Linear\n\nTARGET DATA::\nTarget-count: 3\nTargets :\n0 100 200\nFlags: 0 0 2 0\n\nUSER-TEXT::\nMachine: Mill 7\nDate:2026-05-01\n\nRUNS::\nRun-count: 2\n\nDEVIATIONS::\n1 1 0\n1 2 2\n1 3 4\n2 3 5\n2 2 3\n2 1 1\n3 1 0\n3 2 2\n3 3 4\n4 3 6\n4 2 4\n4 1 2\n\nEOF::\n";
+const LASER: &str = "HEADER::\nFile type  : rtl\nOwner      : Linear\n\nTARGET DATA::\nTarget-count: 3\nTargets :\n0 100 200\nFlags: 0 0 2 0\n\nUSER-TEXT::\nMachine: Mill 7\nDate:2026-05-01\n\nRUNS::\nRun-count: 4\n\nDEVIATIONS::\n1 1 0\n1 2 2\n1 3 4\n2 3 5\n2 2 3\n2 1 1\n3 1 0\n3 2 2\n3 3 4\n4 3 6\n4 2 4\n4 1 2\n\nEOF::\n";
 
 #[test]
 fn a_laser_s_file_and_its_set_up_give_the_same_figures() {

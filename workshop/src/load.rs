@@ -110,8 +110,22 @@ pub fn machine(name: &str, folder: Option<&Path>, listener: &dyn Listener) -> Re
             "error: {} is a folder\nhelp: write the path of a machine file in it",
             path.display()
         ))),
-        None => Err(Failure::wrong(unknown(name))),
+        None => Err(Failure::wrong(unknown(name, &path))),
     }
+}
+
+/// The file in the same folder whose name is nearest to one that is not there; of YAML files alone, as machines are.
+fn file_beside(path: &Path) -> Option<String> {
+    let wanted = path.file_name()?.to_str()?;
+    let folder = path.parent().filter(|folder| *folder != Path::new(""));
+    let there = std::fs::read_dir(folder.unwrap_or_else(|| Path::new("."))).ok()?;
+    let names = there.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut names: Vec<String> =
+        names.filter(|name| name.ends_with(".yaml") || name.ends_with(".yml")).collect();
+    // A folder lists its files in no order.
+    names.sort_unstable();
+    let near = nearest(wanted, names.iter().map(String::as_str))?;
+    Some(path.with_file_name(near).display().to_string())
 }
 
 fn from_source(source: &SourceFile, listener: &dyn Listener) -> Result<Loaded, Failure> {
@@ -136,9 +150,10 @@ fn from_word(word: &str) -> Result<Loaded, Failure> {
     Ok(Loaded { origin: format!("the topology {word}"), source: None, compiled, published: None })
 }
 
-fn unknown(name: &str) -> String {
+fn unknown(name: &str, path: &Path) -> String {
     let names = shipped::MACHINES.map(|(known, _)| known);
-    let help = match nearest(name, names) {
+    let beside = file_beside(path);
+    let help = match beside.as_deref().or_else(|| nearest(name, names)) {
         Some(known) => format!("did you mean `{known}`?"),
         None => format!(
             "write the path of a machine file, a topology word such as XYFZ, or one of: {}",

@@ -5,9 +5,13 @@ use std::fmt::Write;
 use abbe_runtime::math::length;
 
 use super::beyond::Beyond;
+use super::effects::LEAST;
 use super::geometry::Geometry;
 use super::lost::{Lost, Size};
 use super::space::Space;
+
+/// Files that take off no more than this share of the error do nothing: it is what is left of rounding.
+const NOTHING: f64 = 1e-9;
 
 /// Errors at the tool over the workspace, and what no table holds.
 pub fn text(geometry: &Geometry<'_>, space: &Space, lost: &Lost) -> String {
@@ -21,6 +25,9 @@ pub fn text(geometry: &Geometry<'_>, space: &Space, lost: &Lost) -> String {
     ] {
         let _ = writeln!(text, "{what:<52}{}", size_text(size));
     }
+    if let Some(verdict) = verdict(lost) {
+        let _ = writeln!(text, "{verdict}");
+    }
     if length(lost.shift) >= 1e-4 {
         let shift = lost.shift.map(|part| format!("{:.1}", part * 1000.0)).join(", ");
         let _ = writeln!(text, "  besides, a constant shift of {shift} um in X, Y, Z is left");
@@ -32,6 +39,20 @@ pub fn text(geometry: &Geometry<'_>, space: &Space, lost: &Lost) -> String {
         }
     }
     text
+}
+
+/// What a reader must not miss: files that are worse than none, or do nothing.
+fn verdict(lost: &Lost) -> Option<String> {
+    let (with, without) = (lost.with_files.rms, lost.without.rms);
+    if with > without + LEAST {
+        return Some(
+            "  WORSE than none: do not load these files. Are the type, the unit, the sign and the axis right?".to_owned(),
+        );
+    }
+    ((with - without).abs() <= without * NOTHING).then(|| {
+        "  these files change nothing at the tool: no table of this format holds what the calibration has"
+            .to_owned()
+    })
 }
 
 fn workspace(geometry: &Geometry<'_>, space: &Space) -> String {
@@ -71,5 +92,27 @@ fn beyond_text(geometry: &Geometry<'_>, space: &Space, beyond: &Beyond) -> Strin
             format!("{motion} {}: up to {:.2} um {}", beyond.term, size * most * 1000.0, beyond.per)
         }
         None => format!("{motion} {}: it changes {}", beyond.term, beyond.per),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_that_harm_or_do_nothing_are_told() {
+        let size = |rms: f64| Size { rms, largest: rms };
+        let lost = |with: f64| Lost {
+            poses: 1,
+            without: size(0.02),
+            with_files: size(with),
+            with_abbe: size(0.0),
+            lost: size(with),
+            shift: [0.0; 3],
+        };
+        // The wrong type of a screw table: its positions are taken for corrections.
+        assert!(verdict(&lost(254.0)).unwrap().contains("WORSE than none"));
+        assert!(verdict(&lost(0.02)).unwrap().contains("change nothing at the tool"));
+        assert_eq!(verdict(&lost(0.001)), None);
     }
 }

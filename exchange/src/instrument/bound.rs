@@ -21,8 +21,8 @@ pub struct Bound {
     pub limit: f64,
 }
 
-/// Writes the limit of corrections into a calibration that has none. Nothing where it has one, where nothing is to be corrected, or where
-/// the inverse refuses.
+/// Writes the limit of corrections into a calibration that has none. Nothing where it has one, where nothing is to be corrected, where the
+/// inverse refuses, or where the correction depends on an axis over which nothing was measured: how large it becomes is then not known.
 pub(super) fn write(calibration: &mut Calibration, equations: &Equations) -> Option<Bound> {
     if calibration.limits.compensation.is_some() {
         return None;
@@ -33,11 +33,21 @@ pub(super) fn write(calibration: &mut Calibration, equations: &Equations) -> Opt
 }
 
 fn bound(calibration: &Calibration, equations: &Equations) -> Option<Bound> {
-    let space = Space::new(equations, calibration, &wanted(calibration, equations)).ok()?;
+    let unmeasured = unmeasured(calibration, equations);
+    let wanted =
+        unmeasured.iter().filter_map(|axis| Some((equations.axes.get(*axis)?.letter.clone(), PLACE)));
+    let wanted = Wanted { ranges: wanted.collect(), ..Wanted::default() };
+    let space = Space::new(equations, calibration, &wanted).ok()?;
     let geometry = Geometry::new(equations, calibration);
     let mut largest = 0.0_f64;
     for pose in space.poses(&geometry) {
         let correction = geometry.correction(&pose).ok()?;
+        for axis in &unmeasured {
+            let elsewhere = geometry.correction(&pose.moved(*axis, FAR)).ok()?;
+            if elsewhere.iter().zip(&correction).any(|(there, here)| (there - here).abs() > SAME) {
+                return None;
+            }
+        }
         let slides = equations.axes.iter().zip(correction).filter(|(axis, _)| !axis.rotary);
         let size = slides.map(|(_, part)| part * part).sum::<f64>().sqrt();
         largest = largest.max(size);
@@ -45,16 +55,22 @@ fn bound(calibration: &Calibration, equations: &Equations) -> Option<Bound> {
     (largest > 0.0 && largest.is_finite()).then(|| Bound { largest, limit: rounded_up(ROOM * largest) })
 }
 
-/// The axes over which nothing was measured stand at zero: there is no range of them that was measured.
-fn wanted(calibration: &Calibration, equations: &Equations) -> Wanted {
-    /// A range must have an extent, mm or rad: a millionth of it is a place.
-    const PLACE: [f64; 2] = [0.0, 1e-6];
+/// Where an axis stands over which nothing was measured, mm or rad: a range must have an extent.
+const PLACE: [f64; 2] = [0.0, 1e-6];
+
+/// Another place of such an axis, mm or rad.
+const FAR: f64 = 1.0;
+
+/// Corrections that differ by less are the same, mm or rad: a nanometre over a travel of a metre, for a place that is a millimetre away.
+const SAME: f64 = 1e-9;
+
+/// The axes over which nothing was measured.
+fn unmeasured(calibration: &Calibration, equations: &Equations) -> Vec<usize> {
     let measured = |axis: usize| {
         let mut terms = calibration.motions.iter().flat_map(|motion| &motion.terms);
         terms.any(|term| !term.value.nodes(axis).is_empty())
     };
-    let others = equations.axes.iter().enumerate().filter(|(axis, _)| !measured(*axis));
-    Wanted { ranges: others.map(|(_, axis)| (axis.letter.clone(), PLACE)).collect(), ..Wanted::default() }
+    (0..equations.axes.len()).filter(|axis| !measured(*axis)).collect()
 }
 
 /// Rounded up to two digits, so that a person can read it.

@@ -132,16 +132,23 @@ fn ends(links: &[DraftedLink<'_>], diagnostics: &mut Diagnostics) {
         let last = links.iter().rposition(|drafted| drafted.link.branch == branch);
         for (at, drafted) in links.iter().enumerate().filter(|(_, drafted)| drafted.link.kind == kind) {
             if Some(at) != last {
-                diagnostics.push(misplaced(&drafted.link, branch));
+                let again = last.and_then(|last| links.get(last)).is_some_and(|last| last.link.kind == kind);
+                diagnostics.push(misplaced(&drafted.link, branch, again));
             }
         }
     }
 }
 
-/// A tool or part that stands on the other branch, or not at the end of its own.
-fn misplaced(link: &Link, branch: Branch) -> Diagnostic {
+/// A tool or part that stands on the other branch, or not at the end of its own; `again` where one stands at that end besides.
+fn misplaced(link: &Link, branch: Branch, again: bool) -> Diagnostic {
     let word = link.kind.word();
     let own = if branch == Branch::Tool { "tool" } else { "workpiece" };
+    if again && link.kind == LinkKind::Tool {
+        let mistake =
+            Diagnostic::error("E0126", link.span, "the chain has a second tool").label("not the last link");
+        return mistake
+            .help("a chain has one tool; those that are exchanged stand under `tools:` in the calibration");
+    }
     let message = if link.branch == branch {
         format!("the {word} is not at the end of its branch")
     } else {

@@ -29,7 +29,9 @@ pub(super) fn evaluated(path: &Path) -> Result<Option<Evaluation>, Failure> {
     }
     let Ok(source) = load::read(path) else { return Ok(None) };
     let root = yaml::read(&source, &mut Diagnostics::new());
-    match root.is_some_and(|root| root.get("setup").is_some()) {
+    // A recording has a `setup` too, which is no version.
+    let is_setup = |root: &yaml::Node| root.get("setup").is_some_and(|version| version.text().is_some());
+    match root.is_some_and(|root| is_setup(&root)) {
         true => of_setup(SetUp::read(source, path, &Person::default())?, path).map(Some),
         false => Ok(None),
     }

@@ -221,8 +221,10 @@ impl Sized {
         let (products, samples) = design.fitted();
         let mut swept = Swept::new(&products);
         let take = |column: usize| swept.independence(column) > APART && swept.take(column);
-        let told = (0..design.width).map(take).collect();
-        let scale = swept.remaining() / samples.max(1.0);
+        let told: Vec<bool> = (0..design.width).map(take).collect();
+        let columns = told.iter().filter(|told| **told).count();
+        // Of a short recording each column takes a sample's worth of the noise with it.
+        let scale = swept.remaining() / (samples - crate::number(columns)).max(1.0);
         let widths = fit::widths(&design, &swept, scale);
         Self { model, design, swept, scale, widths, told }
     }

@@ -48,7 +48,7 @@ pub struct Own {
 /// The ranges of all kinds. A number is compared among the machines in which its effect was found; of the others it is not known, and
 /// not zero.
 pub(crate) fn ranges<'s>(all: impl Iterator<Item = (&'s str, &'s str, &'s Series)>) -> Vec<Range> {
-    let mut groups: BTreeMap<(&str, &str), Vec<(Name, Vec<(&str, &Series)>)>> = BTreeMap::new();
+    let mut groups: BTreeMap<(&str, &str), Vec<Group<'_>>> = BTreeMap::new();
     for (kind, machine, series) in all.filter(|(_, _, series)| !series.is_noise()) {
         let name = Name::of(&series.effect);
         let known = groups.entry((kind, &series.parameter)).or_default();
@@ -65,6 +65,9 @@ pub(crate) fn ranges<'s>(all: impl Iterator<Item = (&'s str, &'s str, &'s Series
     });
     found.collect()
 }
+
+/// An effect with the machines that have it, by their names.
+type Group<'s> = (Name, Vec<(&'s str, &'s Series)>);
 
 /// The name of an effect, the period of a wave apart.
 struct Name {

@@ -215,7 +215,7 @@ fn weighted(points: &[(f64, f64, f64)], column: &[f64], scatter: f64) -> Option<
         return Some((of_value / all, 0.0, [1.0 / all, 0.0, 0.0]));
     }
     let determinant = all * of_xx - of_x * of_x;
-    if !(determinant > all * of_xx * f64::EPSILON) {
+    if determinant.is_nan() || determinant <= all * of_xx * f64::EPSILON {
         return None;
     }
     let slope = (all * of_both - of_x * of_value) / determinant;

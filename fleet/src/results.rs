@@ -270,7 +270,7 @@ pub(crate) fn read(
     for path in files(results, table)? {
         let part = |name: &str| {
             let parts = path.components().map(|part| part.as_os_str().to_string_lossy().into_owned());
-            parts.filter_map(|part| part.strip_prefix(name).map(decoded)).last()
+            parts.rev().find_map(|part| part.strip_prefix(name).map(decoded))
         };
         let Some(of) = part("machine=").filter(|of| machine.is_none_or(|machine| of == machine)) else {
             continue;

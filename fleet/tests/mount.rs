@@ -1,8 +1,6 @@
 //! Six nights of a real telescope mount. In: recordings beside the repository. Out: nothing, or where what is followed is not what is known
 //! of it: its worm turns once in 2 deg and draws a wave of 2.0 to 2.6 arcsec in each night, and nothing changed.
 
-#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test")]
-
 use std::fs;
 use std::path::Path;
 

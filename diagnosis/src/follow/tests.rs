@@ -16,7 +16,7 @@ fn backlash(axis: usize) -> CalibratedTerm {
 
 /// A line along X and back, read with a noise of 1 um.
 fn recorded(bench: &Bench, truth: &Calibration, seed: u64) -> Recording {
-    let path = path(line(0, 0.0, 200.0), 1200.0, 25.0);
+    let path = path(line(0, 0.0, 200.0), 20.0, 25.0);
     bench.record(truth, &noisy(path, position("x"), 1e-3, seed))
 }
 

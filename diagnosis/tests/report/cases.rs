@@ -72,6 +72,7 @@ pub(crate) fn backlash(side: &'static str) -> Finding {
             state: "direction",
             detail: "jumps at every reversal of y, both repeats".to_owned(),
             interval: None,
+            at_drive: false,
             inside_loop: false,
         },
         evidence: Evidence { with: 0.0006, without: 0.0051, unit: "mm", drive: None },

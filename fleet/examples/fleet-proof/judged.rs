@@ -29,7 +29,7 @@ pub(crate) fn judged(shop: Shop, fleet: &Fleet) -> Judged {
         ..Judged::default()
     };
     for week in 0..shop.weeks {
-        let history = history(fleet, shop.time(week), &()).ok().expect("a history");
+        let history = history(fleet, shop.time(week), &()).expect("a history");
         for alarm in &history.alarms {
             let planted = |(machine, effect, parameter): &(usize, &str, &str)| {
                 shop.name(*machine) == alarm.machine

@@ -33,9 +33,9 @@ fn main() {
     };
     fs::create_dir_all(&folder).unwrap();
     shop.write(&folder);
-    let fleet = file::read(&folder.join("fleet.yaml"), &()).ok().expect("a fleet");
+    let fleet = file::read(&folder.join("fleet.yaml"), &()).expect("a fleet");
     let begun = Instant::now();
-    let done = run::all(&fleet, (None, false), &(), &|_| {}).ok().expect("results");
+    let done = run::all(&fleet, (None, false), &(), &|_| {}).expect("results");
     let seconds = begun.elapsed().as_secs_f64();
     println!(
         "{} recordings, {} diagnosed and {} followed in {seconds:.0} s\n",

@@ -48,9 +48,12 @@ fn look(term: &str) -> String {
     look_at(term).unwrap_or("the instrument, how it is mounted, and what stands near the machine").to_owned()
 }
 
+/// A question that was asked: how probable its answer is by chance, the alarm that it would be, and the numbers of machine and series.
+type Asked = (f64, Option<Alarm>, Option<(usize, usize)>);
+
 /// The alarms, the plainest first, and how many questions were asked. Series of which there is one are marked.
 pub(super) fn alarms(machines: &mut [Machine], ranges: &[Range]) -> (Vec<Alarm>, usize) {
-    let mut found: Vec<(f64, Option<Alarm>, Option<(usize, usize)>)> = Vec::new();
+    let mut found: Vec<Asked> = Vec::new();
     for (number, machine) in machines.iter().enumerate() {
         for (place, followed) in machine.series.iter().enumerate() {
             if let Some(change) = &followed.change {

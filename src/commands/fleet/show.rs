@@ -9,10 +9,10 @@ use fleet::report::{json, page, pages, text};
 use recording::Moment;
 use workshop::failure::Failure;
 use workshop::named::relative;
+use workshop::origin::word;
 use workshop::written;
 
 use crate::arguments::{FleetShow, LimitsFormat};
-use crate::commands::diagnose::origin::word;
 use crate::output::{Person, print, terminal};
 
 /// Runs the command. Status 1 where there is no result at all.

@@ -158,7 +158,7 @@ impl Curve {
         let side = |side: fn(&Self) -> &Option<Vec<Mean>>| {
             let at = |place: usize| {
                 let means = curves.iter().filter_map(|curve| side(curve).as_ref()?.get(place).copied());
-                Mean::together(&means.collect::<Vec<_>>())
+                Mean::of_all(&means.collect::<Vec<_>>())
             };
             side(first).as_ref().map(|own| (0..own.len()).map(at).collect())
         };
@@ -185,7 +185,7 @@ impl Curve {
 
 impl Mean {
     /// The mean of independent means, with all their readings.
-    fn together(means: &[Self]) -> Self {
+    fn of_all(means: &[Self]) -> Self {
         let share = 1.0 / count(means.len());
         let parts: Vec<_> = means.iter().map(|mean| (share, mean.uncertainty)).collect();
         Self {

@@ -54,7 +54,7 @@ pub fn read(path: &Path, listener: &dyn Listener) -> Result<Recorded, Failure> {
     read_as(path, false, listener)
 }
 
-/// The same where the channel `time` may be missing: the rows are then taken in their order, [`STAND`] apart.
+/// The same where the channel `time` may be missing: the rows are then taken in their order, so far apart that each counts as a stand.
 pub fn read_in_order(path: &Path, listener: &dyn Listener) -> Result<Recorded, Failure> {
     read_as(path, true, listener)
 }

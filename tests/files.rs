@@ -118,10 +118,14 @@ fn stage(folder: &Path) {
         ("positions.csv", POSITIONS),
         ("set-up.yaml", SET_UP),
         ("readings.csv", READINGS),
+        ("fleet.yaml", FLEET),
     ] {
         fs::write(folder.join(name), text).unwrap();
     }
 }
+
+/// The stage as a fleet of one machine.
+const FLEET: &str = "fleet: 1\nmachines: {stage: {recordings: recording.yaml}}\n";
 
 /// What the stage could show, in few diagnoses.
 const LIMITS: &[&str] = &["limits", "@/noisy.yaml", "--only", "X,backlash", "--trials", "4"];

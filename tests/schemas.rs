@@ -293,8 +293,9 @@ fn mappings() -> Vec<(&'static str, String, String)> {
         |form, part: &str, pointer: &str| all.push((form, complete(form, part), pointer.to_owned()));
     add("machine", "unheardof: 1", "");
     add("machine", "chain: {unheardof: 1}", "/properties/chain");
+    let slide = "slide: X, drives: {X1: {y: 0 mm}, X2: {y: 9 mm}}";
     for (number, link) in
-        ["slide: X", "rotary: C", "spindle: S", "fixed: T", "tool: tip", "part: W"].iter().enumerate()
+        [slide, "rotary: C", "spindle: S", "fixed: T", "tool: tip", "part: W"].iter().enumerate()
     {
         let part = format!("chain: {{tool: [{{{link}, unheardof: 1}}]}}");
         add("machine", &part, &format!("/definitions/link/oneOf/{number}"));

@@ -378,22 +378,22 @@ errors:
     - lag: {gain: 16.28 1/s}
     - lag: {gain: 2 rad/mm/s, axis: C}
   EBX:
-    - polynomial: {axis: X, per: mm, unit: rad, coefficients: [-1e-6, 2.5e-7]}
-    - polynomial: {sensor: start, unit: rad, coefficients: [0, -1e-6]}
+    - polynomial: {axis: X, per: mm, unit: rad, coefficients: [-1.0e-6, 2.5e-7]}
+    - polynomial: {sensor: start, unit: rad, coefficients: [0, -1.0e-6]}
     - acceleration: {gain: 400 mm/rad/s^2}
   EC0Y: 0.000272 rad
   ECC:
     - table: {axis: C, at: [0, 1, 3], per: rad, unit: rad, forward: [0, 0.1, 0], reverse: [0, 0.2, 0]}
-    - coupling: {axis: X, per: mm, unit: rad, coefficients: [1e-9]}
+    - coupling: {axis: X, per: mm, unit: rad, coefficients: [1.0e-9]}
   EZS:
     - growth: {sensor: T27, coefficient: 0.001 mm/K, reference: 20 degC, time_constant: 600 s}
-    - compliance: {load: spindle torque, coefficient: 2e-5 mm/N}
+    - compliance: {load: spindle torque, coefficient: 2.0e-5 mm/N}
     - vibration: {frequency: 50 Hz, amplitude: 0.001 mm, phase: 0 rad}
     - constant: {value: 0 mm}
     - step: {time: 1200 s, size: 0.008 mm}
     - product: {value: 5.8e-8 1/mm, times: [{position: X}, {position: Y, within: [0 mm, 300 mm]}]}
     - product: {value: 1.1e-5 1/K, times: [{warmth: Y, time_constant: 480 s, rise: 0.02 s*K/mm}, {position: Y}]}
-    - backlash: {lost_motion: 2e-5 mm/N, axis: X, times: [{load: feed}]}
+    - backlash: {lost_motion: 2.0e-5 mm/N, axis: X, times: [{load: feed}]}
     - backlash: {lost_motion: 0.0076 mm, axis: X, times: [{fading: X, over: 18 mm/s}]}
     - cyclic: {period: 10 mm, amplitude: 6.4e-6 mm/mm, phase: 0.6 rad, axis: X, times: [{position: X}]}
     - table: {axis: X, start: 0 mm, step: 10 mm, unit: mm/K, values: [0, 1, 2], times: [{temperature: body, reference: 20 degC}]}
@@ -418,7 +418,7 @@ fn long_tables_are_broken_into_lines_that_can_be_read() {
 /// What has no lever at the tool tip is warned of, kept and written back.
 #[test]
 fn what_has_no_effect_is_not_lost() {
-    let text = "calibration: 1\nmachine: mill\nconstants: {Xt: 0 mm}\nerrors:\n  EXX: 0.003 mm\n  ECS:\n    - growth: {sensor: spindle, coefficient: 1e-6 rad/K, reference: 20 degC}\n    - constant: {value: 1e-5 rad}\n";
+    let text = "calibration: 1\nmachine: mill\nconstants: {Xt: 0 mm}\nerrors:\n  EXX: 0.003 mm\n  ECS:\n    - growth: {sensor: spindle, coefficient: 1.0e-6 rad/K, reference: 20 degC}\n    - constant: {value: 1.0e-5 rad}\n";
     let mut diagnostics = Diagnostics::new();
     let source = SourceFile::new("written.yaml", text);
     let root = yaml::read(&source, &mut diagnostics).unwrap();

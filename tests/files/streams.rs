@@ -8,7 +8,7 @@ use std::process::Stdio;
 use super::{LIMITS, PLAN, folder, on_stage, placed, program, run, stage, status, text};
 
 /// Every command that prints, in its forms; `@` is the folder of the stage.
-const PRINTERS: [&[&str]; 26] = [
+const PRINTERS: [&[&str]; 27] = [
     &["derive", "trunnion-5axis"],
     &["derive", "trunnion-5axis", "--format", "html"],
     &["derive", "@/machine.yaml", "--format", "json"],
@@ -30,6 +30,7 @@ const PRINTERS: [&[&str]; 26] = [
     &["export", "linuxcnc", "@/calibration.yaml", "--output", "@/", "--force", "--range", "X=0:100"],
     LIMITS,
     PLAN,
+    &["fleet", "run", "@/fleet.yaml", "--list"],
     &["new", "XYFZ"],
     &["explain"],
     &["explain", "backlash"],

@@ -83,7 +83,10 @@ pub fn page(name: &str) -> Result<String, Vec<&'static str>> {
 fn near(name: &str) -> Vec<&'static str> {
     let mut names: Vec<&'static str> = terms().iter().chain(&codes()).map(|entry| entry.name).collect();
     names.extend(FACTOR_NAMES);
-    names.extend(glossary::words());
+    // A word of the glossary that is a term too has one name: letters' case does not matter.
+    let is_term = |word: &&str| names.iter().any(|name| name.eq_ignore_ascii_case(word));
+    let words: Vec<&'static str> = glossary::words().filter(|word| !is_term(word)).collect();
+    names.extend(words);
     names.sort_unstable();
     names.dedup();
     let mut found = Vec::new();

@@ -13,6 +13,11 @@ use super::{Compensator, Convergence, Limits, Outcome, Refusal, copy};
 use crate::math::{add_scaled, all_finite, dot, sqrt};
 use crate::{ErrorMotions, Kinematics, Sample};
 
+/// So many times as many steps as the slides alone may take. Their search leaves less than a thousandth of the way with each step. In front
+/// of the pose in which an axis turns the direction nowhere, axes turn up to a hundred times as far as the errors, and slides follow: a
+/// step leaves more of the way. With 20 steps one of some hundred random machines was refused with 2e-5 mm to go, with 60 none of 6000.
+const SLOWER: u32 = 3;
+
 /// Tip and direction of the tool without errors at the position of the sample, and what turns the direction there.
 struct Target {
     tip: [f64; 3],
@@ -82,8 +87,9 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         let target = Target::at(self.prediction.kinematics, sample.position);
         let mut step = Step::first(self.prediction.kinematics.aiming(), sample);
         let mut gone = Gone { turned: f64::INFINITY, moved: f64::INFINITY };
+        let most = self.convergence.iterations.saturating_mul(SLOWER);
         let mut iterations = 0_u32;
-        while iterations < self.convergence.iterations {
+        while iterations < most {
             iterations = iterations.saturating_add(1);
             let pose = self.pose(sample, &target, &step, out)?;
             let columns = self.prediction.columns(&*self.directions);
@@ -102,7 +108,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
                 return Ok((step, remaining, iterations));
             }
         }
-        Err(gone.not_settled(&self.convergence))
+        Err(gone.not_settled(iterations, &self.convergence))
     }
 
     /// What the slides reach where the rotary axes are turned to.
@@ -242,8 +248,7 @@ impl Gone {
     }
 
     /// Why a search is given up.
-    fn not_settled(self, convergence: &Convergence) -> Refusal {
-        let iterations = convergence.iterations;
+    fn not_settled(self, iterations: u32, convergence: &Convergence) -> Refusal {
         if self.turned <= convergence.tolerance_squared() {
             Refusal::NotConverging { iterations, distance: sqrt(self.moved) }
         } else {

@@ -60,7 +60,8 @@ pub(super) fn check_amplification([moved, corrected]: [f64; 2]) -> Result<(), Re
 /// When the search for the compensated position ends.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Convergence {
-    /// Greatest number of steps; a search that needs more is refused.
+    /// Greatest number of steps; a search that needs more is refused. Where rotary axes correct the direction of the tool as well, three
+    /// times as many.
     pub iterations: u32,
     /// Length over all slides below which a step ends the search, in mm; for the angles of rotary axes, in rad.
     pub tolerance: f64,

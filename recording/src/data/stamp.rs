@@ -60,8 +60,11 @@ impl Stamp {
         Self { whole, part: within.fract(), kind: Kind::Local }
     }
 
-    /// The digits of a text, none of them lost.
+    /// The digits of a text, none of them lost. So many as a number in floating point holds are that number.
     pub(super) fn digits(text: &str, value: f64) -> Self {
+        if text.bytes().filter(u8::is_ascii_digit).count() <= f64::DIGITS as usize {
+            return Self::number(value);
+        }
         let exact = || {
             let (whole, part) = text.split_once('.').unwrap_or((text, ""));
             // What has an exponent has no more digits than a number in floating point.

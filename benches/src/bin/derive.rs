@@ -126,6 +126,7 @@ fn made(series: &str, count: &str) -> Result<Machine, Box<dyn Error>> {
         constants: Vec::new(),
         links: Vec::new(),
         motions: Vec::new(),
+        motors: Vec::new(),
         drives: Vec::new(),
     };
     for joint in 0..count {
@@ -161,6 +162,7 @@ fn join(machine: &mut Machine, id: String, kind: LinkKind, along: Axis, origin: 
             symbol_span: None,
             link: machine.links.len(),
             kind: motion,
+            motor: None,
             sign: 1,
             travel: None,
             rotates: false,

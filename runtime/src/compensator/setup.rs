@@ -67,7 +67,10 @@ pub(super) fn check<K: Kinematics + ?Sized>(
 /// Checks that each axis that corrects the direction of the tool is one of the machine, and that they are with those that correct their own
 /// angles no more than there are rotary axes.
 fn check_aiming<K: Kinematics + ?Sized>(kinematics: &K) -> Result<(), SetupError> {
-    let mut turned = kinematics.turning().chunk_by(|one, next| one.axis == next.axis).count();
+    let own = kinematics.turning();
+    // Those of one axis stand together. `chunk_by` would say it in a word, and keeps a way to panic.
+    let before = [None].into_iter().chain(own.iter().map(|turning| Some(turning.axis)));
+    let mut turned = own.iter().zip(before).filter(|(turning, before)| Some(turning.axis) != *before).count();
     for (number, &axis) in kinematics.aiming().iter().enumerate() {
         let before = kinematics.aiming().iter().take(number);
         let known = kinematics.turning().iter().any(|turning| turning.axis == axis);

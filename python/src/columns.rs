@@ -79,7 +79,10 @@ impl Table {
         let Some(times) = column.values.times() else {
             return column.values.numbers().map_err(|what| wrong(&what, "make it a column of numbers"));
         };
-        let mut reading = header.channels.iter().filter(|channel| channel.column.value == column.name);
+        let mut reading = header
+            .channels
+            .iter()
+            .filter(|channel| channel.columns().iter().any(|own| own.value == column.name));
         match reading.next() {
             Some(channel) if channel.kind == ChannelKind::Time => {
                 let unit = channel.unit.map_or(1.0, |unit| unit.value.factor);

@@ -43,12 +43,14 @@ pub(crate) fn terminal() -> Terminal {
     Terminal { columns, color: is_colored(&out) }
 }
 
-/// Writes text to standard output.
+/// Writes text to standard output. A reader that is gone is no failure: what else the command does, and what it says by its status, does
+/// not depend on who reads on.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    out.write_all(text.as_bytes())
-        .and_then(|()| out.flush())
-        .map_err(|error| Failure::io("cannot write to standard output", &error))
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        done => done.map_err(|error| Failure::io("cannot write to standard output", &error)),
+    }
 }
 
 /// Shows diagnostics on standard error, coloured where a person reads it.

@@ -16,6 +16,7 @@ mod tilts;
 mod turns;
 
 use self::inverse::{Columns, Reach};
+use self::motors::Corrected;
 use self::prediction::Prediction;
 use self::setup::Needs;
 use self::turns::Turned;
@@ -91,7 +92,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
                 values,
                 travel,
                 sines: Sines::default(),
-                by_motors: [0.0; motors::MOST],
+                by_motors: Corrected::NONE,
                 needs,
             },
             directions,
@@ -119,11 +120,9 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
         self.direction
     }
 
-    /// The axes that are motors and only follow others.
-    pub(crate) fn only_follows(&self, axis: usize) -> bool {
-        let kinematics = self.prediction.kinematics;
-        let has = |shares: &[Share]| shares.iter().any(|share| share.motor == axis);
-        has(kinematics.following()) && !has(kinematics.squaring())
+    /// The axes that are motors, by the axes that they follow.
+    pub(crate) fn following(&self) -> &'a [Share] {
+        self.prediction.kinematics.following()
     }
 
     /// The least number of temperatures that a sample must hold.
@@ -163,6 +162,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     /// # Errors
     /// Every [`Refusal`] leaves the position of the sample in `out`, and nothing of a correction.
     pub fn compensate(&mut self, sample: &Sample<'_>, out: &mut [f64]) -> Result<Outcome, Refusal> {
+        self.direction = None;
         self.check_lengths(sample, out)?;
         let outcome = self.cycle(sample, out);
         if outcome.is_err() {
@@ -219,8 +219,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
         }
         let Pulled { pull, mut here, iterations } =
             convergence.iterate(prediction, sample, start, (columns, &reach), turned.as_ref(), out)?;
-        limits.check(|| sqrt(reach.distance_squared(here)))?;
-        prediction.check_motors(limits)?;
+        limits.check(|| sqrt(reach.distance_squared(here) + prediction.by_motors_squared()))?;
         if ramp {
             here = prediction.error_behind_ramp(sample, turned.as_ref(), out)?;
             if !all_finite(&here) {
@@ -283,7 +282,7 @@ impl Convergence {
             let iterations = before.saturating_add(1);
             let pull = reach.apply(here);
             // Not from the commands, which far from the origin are too coarse to tell when it ends.
-            square = reach.distance_squared(add_scaled(here, -1.0, corrected));
+            square = reach.distance_squared(add_scaled(here, -1.0, corrected)) + prediction.motors_moved();
             columns.correct(sample.position, pull, out);
             if let Some(turned) = turned {
                 turned.write(out);

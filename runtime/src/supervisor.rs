@@ -154,8 +154,8 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Supervisor<'a, K, M> 
                 return Err(SetupError::Length { slice, expected, found });
             }
         }
-        let (turns, follows) = (|axis| compensator.turns(axis), |axis| compensator.only_follows(axis));
-        let correction = Correction::new(memory.axes, turns, follows);
+        let correction =
+            Correction::new(memory.axes, compensator.following(), |axis| compensator.turns(axis));
         Ok(Self {
             compensator,
             transition: Transition::default(),
@@ -189,9 +189,11 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Supervisor<'a, K, M> 
     /// fades out. Where the time step is negative or not finite no time goes on, and the correction stays as it is.
     /// Nothing is written, and no time goes on, where `out` or the position has not one entry for each axis.
     pub fn cycle(&mut self, sample: &Sample<'_>, out: &mut [f64]) -> Cycle {
-        if let Err(refusal) = self.compensator.check_lengths(sample, out) {
+        if self.compensator.check_lengths(sample, out).is_err() {
+            // It refuses before it writes anything, and forgets what it found in the cycle before.
+            let outcome = self.compensator.compensate(sample, out);
             let correction = self.correction.length();
-            return Cycle { outcome: Err(refusal), state: State::Refused, settling: false, correction };
+            return Cycle { outcome, state: State::Refused, settling: false, correction };
         }
         let time_step = if sample.time_step.is_finite() { sample.time_step.max(0.0) } else { 0.0 };
         let heard = self.sensors.hear(sample.temperature, time_step);

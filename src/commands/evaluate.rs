@@ -15,8 +15,8 @@ use crate::progress::Progress;
 
 /// Runs the command. Status 1 where the recording gives no figure at all; the report says why.
 pub(crate) fn run(arguments: &Evaluate) -> Result<(), Failure> {
-    if let Some(evaluation) = laser::evaluated(&arguments.recording)? {
-        arguments.target.check(std::slice::from_ref(&arguments.recording))?;
+    if let Some((evaluation, files)) = laser::evaluated(&arguments.recording)? {
+        arguments.target.check(&files)?;
         return tell(arguments, &evaluation);
     }
     let recorded = recorded::read_in_order(&arguments.recording, &Person::new(arguments.quiet))?;

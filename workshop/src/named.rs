@@ -34,11 +34,14 @@ impl Files {
         let root = yaml::read(source, &mut Diagnostics::new());
         let named = |key: &str| root.as_ref().and_then(|root| root.get(key)).and_then(|node| node.text());
         let file = |name: &str| beside(path, name);
+        let data = root.as_ref().and_then(|root| root.get("data"));
+        // A mapping says besides how the table is written.
+        let data = data.and_then(|node| node.text().or_else(|| node.get("file")?.text()));
         Self {
             recording: path.to_owned(),
             machine: named("machine").unwrap_or_default().to_owned(),
             calibration: named("calibration").map(file),
-            data: named("data").map(file),
+            data: data.map(file),
         }
     }
 

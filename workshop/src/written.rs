@@ -68,7 +68,9 @@ pub fn check_new(
         return wrong("is a folder", &name);
     }
     // A folder that is still to be made holds no file of that name.
-    let place = |file: &Path| Some(folder(file).canonicalize().ok()?.join(file.file_name()?));
+    let new = |file: &Path| Some(folder(file).canonicalize().ok()?.join(file.file_name()?));
+    // What a link leads to is what would be written over.
+    let place = |file: &Path| file.canonicalize().ok().or_else(|| new(file));
     if others
         .iter()
         .any(|other| other == target || place(other).is_some_and(|other| place(target) == Some(other)))

@@ -3,20 +3,42 @@
 //! The readers of Parquet and of workbooks check much and not all: an assertion on what a file says of itself, or a sum that
 //! is too large, ends the program. Here it ends the reading. Nothing that such a call has begun is used afterwards.
 
+use std::cell::Cell;
 use std::panic::{self, AssertUnwindSafe};
+use std::sync::Once;
 
 use super::super::Recording;
 use super::error::DataError;
+
+thread_local! {
+    /// Whether this thread reads with what may panic.
+    static READS: Cell<bool> = const { Cell::new(false) };
+}
+
+/// The hook is taken over once for the program: many threads read at a time.
+static HOOK: Once = Once::new();
+
+/// Panics of this thread are not shown while it reads; all others are, as before.
+fn keep_quiet() {
+    HOOK.call_once(|| {
+        let shown = panic::take_hook();
+        panic::set_hook(Box::new(move |panic| {
+            if !READS.get() {
+                shown(panic);
+            }
+        }));
+    });
+}
 
 /// Reads a file, whatever is wrong with it. What the reader would print on a panic is not shown.
 pub(super) fn contained(
     name: &str,
     read: impl FnOnce() -> Result<Recording, DataError>,
 ) -> Result<Recording, DataError> {
-    let hook = panic::take_hook();
-    panic::set_hook(Box::new(|_| ()));
+    keep_quiet();
+    READS.set(true);
     let read = panic::catch_unwind(AssertUnwindSafe(read));
-    panic::set_hook(hook);
+    READS.set(false);
     read.unwrap_or_else(|_| {
         let error = DataError::new(name, "it cannot be read: what it says of itself does not hold");
         Err(error.help("write the file anew, or save the table as CSV"))

@@ -8,7 +8,7 @@ use model_dsl::suggest::nearest;
 use super::super::{Channel, ChannelPlace, Header, Names};
 use super::columns::{Cells, Width};
 use super::error::{DataError, Place, shown};
-use super::lines::{Lines, Row, SPACES};
+use super::lines::{Lines, SPACES};
 use super::separator::{names, separator_of};
 
 /// Where everything stands in a row.
@@ -95,10 +95,9 @@ impl Layout {
             let help = "write `#unit` and then one unit for each column, empty where it has none";
             return Err(row.error(0, message).help(help));
         }
-        let pairs = header.channels.iter().zip(&self.columns);
-        let mut pairs =
-            pairs.flat_map(|(channel, columns)| columns.iter().map(move |column| (channel, *column)));
-        pairs.try_for_each(|(channel, column)| same_unit(channel, self.names.get(column), column + 1, &row))
+        let text = |cell: usize| String::from_utf8_lossy(row.cell(cell)).into_owned();
+        same_units(header, (&self.names, &self.columns), text)
+            .map_err(|(cell, message)| row.error(cell, message).help(ONE_UNIT))
     }
 }
 
@@ -131,18 +130,26 @@ fn first_line(
     }
 }
 
-fn same_unit(
-    channel: &Channel,
-    column: Option<&String>,
-    cell: usize,
-    row: &Row<'_>,
-) -> Result<(), DataError> {
-    let text = String::from_utf8_lossy(row.cell(cell)).into_owned();
-    if channel.unit.is_none() || text.is_empty() || parse_unit(&text).is_ok_and(|unit| agrees(channel, unit))
-    {
-        return Ok(());
+/// Compares a row of units, which begins with `#unit` in a cell of its own, with the units of the recording. `text` is what a cell holds.
+///
+/// # Errors
+///
+/// The first cell that says otherwise, and what is wrong with it.
+pub(super) fn same_units(
+    header: &Header,
+    (names, columns): (&[String], &[Vec<usize>]),
+    text: impl Fn(usize) -> String,
+) -> Result<(), (usize, String)> {
+    let pairs = header.channels.iter().zip(columns);
+    for (channel, column) in pairs.flat_map(|(channel, of)| of.iter().map(move |column| (channel, *column))) {
+        let cell = column.saturating_add(1);
+        let text = text(cell);
+        let same = parse_unit(&text).is_ok_and(|unit| agrees(channel, unit));
+        if channel.unit.is_some() && !text.is_empty() && !same {
+            return Err((cell, two_units(channel, names.get(column), &text)));
+        }
     }
-    Err(row.error(cell, two_units(channel, column, &text)).help(ONE_UNIT))
+    Ok(())
 }
 
 /// Whether a unit in the table is that of the channel. Counts may be of any size, and a date has no unit.
@@ -156,7 +163,7 @@ fn agrees(channel: &Channel, found: Unit) -> bool {
 }
 
 /// What to do about two units.
-const ONE_UNIT: &str = "let both say the same";
+pub(super) const ONE_UNIT: &str = "let both say the same";
 
 fn two_units(channel: &Channel, column: Option<&String>, found: &str) -> String {
     format!(
@@ -169,7 +176,7 @@ fn two_units(channel: &Channel, column: Option<&String>, found: &str) -> String 
 
 /// What people should know of columns that are kept for them.
 pub(super) fn notes_of_extra(header: &Header, name: &str, names: &[String]) -> Vec<String> {
-    let lacking = header.extra.iter().filter(|extra| !names.contains(&extra.column.value));
+    let lacking = header.extra.iter().filter(|extra| places(names, &extra.column.value).is_empty());
     let notes = lacking.map(|extra| {
         let (column, kept) = (&extra.column.value, &extra.name.value);
         format!("{name} has no column `{column}`, which the recording keeps as `{kept}`")
@@ -215,7 +222,7 @@ pub(super) fn find_columns(header: &Header, names: &[String]) -> Result<Vec<Vec<
 }
 
 /// The columns with a name; where there is none, those that have a unit behind it, `x [mm]` or `x (mm)`.
-fn places(names: &[String], wanted: &str) -> Vec<usize> {
+pub(super) fn places(names: &[String], wanted: &str) -> Vec<usize> {
     let those = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
         names.iter().enumerate().filter(|(_, name)| is(name)).map(|(number, _)| number).collect()
     };

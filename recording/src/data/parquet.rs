@@ -171,6 +171,9 @@ fn read_group<R: ChunkReader + 'static>(
         if slot.len() == 0 {
             *slot = read_column(reader, one, chunk.column_descr().max_def_level())?;
         }
+        if slot.len() != rows {
+            return Err(general("a column has not as many values as its group has rows"));
+        }
     }
     Ok(columns)
 }

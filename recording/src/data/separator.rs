@@ -1,6 +1,7 @@
 //! What stands between the cells: what the recording file says; else a comma, a semicolon or a tab, told by the first row.
 
 use super::super::form::{Form, Separator};
+use super::layout::places;
 use super::lines::{SPACES, split, unquoted};
 
 /// The separators that are tried.
@@ -38,7 +39,7 @@ pub(super) fn separator_of(header: &[u8], wanted: &[&str], form: &Form) -> Resul
     }
     let found = |separator: u8| {
         let names = names(header, separator);
-        wanted.iter().filter(|wanted| names.iter().any(|name| name == *wanted)).count()
+        wanted.iter().filter(|wanted| !places(&names, wanted).is_empty()).count()
     };
     let most = parts.iter().map(|(separator, _)| found(*separator)).max().unwrap_or(0);
     let best: Vec<_> = parts.iter().filter(|(separator, _)| found(*separator) == most).collect();

@@ -129,8 +129,19 @@ impl Stamp {
 
     /// How much later it is than another one.
     pub(super) fn since(self, earlier: Self) -> f64 {
-        let whole = i128::from(self.whole) - i128::from(earlier.whole);
-        whole as f64 + (self.part - earlier.part)
+        // Two numbers in floating point differ as they are.
+        if self.whole == 0 && earlier.whole == 0 {
+            return self.part - earlier.part;
+        }
+        let ((own, part), (before, part_before)) = (self.split(), earlier.split());
+        let whole = i128::from(own) - i128::from(before);
+        whole as f64 + (part - part_before)
+    }
+
+    /// The whole number of units, and what is beyond it by less than one.
+    fn split(self) -> (i64, f64) {
+        let more = self.part.trunc();
+        (self.whole.saturating_add(whole_of(more)), self.part - more)
     }
 }
 

@@ -9,9 +9,9 @@ use calamine::{Reader, Xlsx, XlsxError};
 use zip::ZipArchive;
 
 use super::super::{Header, Recording};
-use super::columns::{Columns, Width};
+use super::columns::{Cells, Columns, Width};
 use super::error::DataError;
-use super::layout::{find_columns, notes_of_extra};
+use super::layout::{ONE_UNIT, find_columns, notes_of_extra, same_units};
 use super::worksheet::Rows;
 use super::{MOST_NUMBERS, settle};
 
@@ -42,6 +42,10 @@ impl Header {
         let columns = find_columns(self, &names).map_err(|(message, help)| {
             DataError::new(name, format!("sheet `{sheet}`: {message}")).help(help)
         })?;
+        if let Some(units) = rows.units()? {
+            same_units(self, (&names, &columns), |cell| units.text(cell))
+                .map_err(|(cell, message)| units.error(cell, message).help(ONE_UNIT))?;
+        }
         let notes = notes_of_extra(self, name, &names);
         let mut table = Columns::new(self, &columns, Width::Exactly(names.len()), name, MOST_NUMBERS);
         while let Some(row) = rows.next_row()? {

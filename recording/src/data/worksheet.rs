@@ -81,16 +81,28 @@ impl<'n, 'b, R: Read + Seek> Rows<'n, 'b, R> {
         Ok(names.collect())
     }
 
+    /// The row of units, `#unit` and a unit for each column, where the next row is one.
+    pub(super) fn units(&mut self) -> Result<Option<Row<'n>>, DataError> {
+        if self.again.is_some() {
+            return Ok(None);
+        }
+        let Some(row) = self.read_row()? else { return Ok(None) };
+        if row.get(0).is_some_and(|first| first.text() == "#unit") {
+            return Ok(Some(row));
+        }
+        if !row.is_comment() {
+            self.again = Some(row);
+        }
+        Ok(None)
+    }
+
     /// The next row in which anything stands and that is no comment.
     pub(super) fn next_row(&mut self) -> Result<Option<Row<'n>>, DataError> {
         if let Some(row) = self.again.take() {
             return Ok(Some(row));
         }
         while let Some(row) = self.read_row()? {
-            let first = row.cells.first().map(|(_, value)| value.text());
-            if !first.is_some_and(|text| text.starts_with('#'))
-                || matches!(row.cells.first(), Some((_, Value::Error(_))))
-            {
+            if !row.is_comment() {
                 return Ok(Some(row));
             }
         }
@@ -158,7 +170,8 @@ fn value_of(cell: &DataRef<'_>) -> Option<Value> {
         DataRef::DateTime(date) => {
             // What lies within a day is a time of day, which is added to a date.
             let days = date.as_f64();
-            Some(Value::Date(Stamp::days(if days.abs() < 1.0 { days } else { days - DAYS_TO_1970 })))
+            let time_of_day = date.is_duration() || days.abs() < 1.0;
+            Some(Value::Date(Stamp::days(if time_of_day { days } else { days - DAYS_TO_1970 })))
         }
         DataRef::Error(error) => Some(Value::Error(error.to_string())),
         DataRef::Empty => None,
@@ -176,6 +189,12 @@ impl Value {
 }
 
 impl Row<'_> {
+    /// Whether it begins with `#`; so do errors of a sheet (`#DIV/0!`), which are none.
+    fn is_comment(&self) -> bool {
+        let first = self.cells.first().filter(|(_, value)| !matches!(value, Value::Error(_)));
+        first.is_some_and(|(_, value)| value.text().starts_with('#'))
+    }
+
     fn get(&self, column: u32) -> Option<&Value> {
         let found = self.cells.binary_search_by_key(&column, |(column, _)| *column).ok()?;
         self.cells.get(found).map(|(_, value)| value)
@@ -219,6 +238,10 @@ impl Cells for Row<'_> {
     }
 
     fn date(&self, indices: &[usize]) -> Result<Stamp, BadCell> {
+        // Of a date in two cells both must be there.
+        if indices.iter().any(|index| self.at(*index).is_none()) {
+            return Ok(Stamp::MISSING);
+        }
         let mut texts = Vec::new();
         let mut sum: Option<Stamp> = None;
         for index in indices {

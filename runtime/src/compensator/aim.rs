@@ -95,14 +95,16 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
             let columns = self.prediction.columns(&*self.directions);
             let from = (sample, &target, &self.convergence, &self.limits);
             let next = pose.next(&mut self.prediction, from, columns, &step, out)?;
-            gone = step.until(&next, &pose.reach, out);
+            gone = step.until(&next, &pose.reach, self.prediction.motors_moved(), out);
             gone.check(iterations)?;
             columns.correct(sample.position, next.pull, out);
             next.posed.commands.write(out);
+            self.prediction.let_motors_follow(sample.position, out);
             step = next;
             if gone.is_settled(&self.convergence) {
                 self.limits.check_rotation(step.posed.commands.correction(sample.position))?;
-                self.limits.check(|| sqrt(pose.reach.distance_squared(step.tip)))?;
+                let by_motors = self.prediction.by_motors_squared();
+                self.limits.check(|| sqrt(pose.reach.distance_squared(step.tip) + by_motors))?;
                 let step = step.behind_ramp(&mut self.prediction, sample, out)?;
                 let remaining = add_scaled(step.tip, -1.0, pose.reach.tip(columns, step.pull));
                 return Ok((step, remaining, iterations));
@@ -122,7 +124,8 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         Ok(kinematics.squares().map_or_else(|| Reach::new(self.directions), Reach::straight))
     }
 
-    /// The pose of the rotary axes after a step; leaves in `out` the commands of that step.
+    /// The pose of the rotary axes after a step; leaves in `out` the commands of that step, with the shares of the
+    /// slides as this pose has them.
     fn pose(
         &mut self,
         sample: &Sample<'_>,
@@ -139,6 +142,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         let direction = add_scaled(kinematics.direction(out), -1.0, target.direction);
         self.prediction.columns(&*self.directions).correct(sample.position, step.pull, out);
         step.posed.commands.write(out);
+        self.prediction.let_motors_follow(sample.position, out);
         Ok(Pose { tip, direction, reach })
     }
 }
@@ -194,10 +198,10 @@ impl Step {
         Self { angles, posed: Posed::turned(aiming, angles, sample), tip: zero, pull: zero, lean: zero }
     }
 
-    /// How far it is to the next one, `out` holding the commands of this one.
-    fn until(&self, next: &Self, reach: &Reach, out: &[f64]) -> Gone {
+    /// How far it is to the next one, `by_motors` of it by what motors correct themselves, mm^2, `out` holding the commands of this one.
+    fn until(&self, next: &Self, reach: &Reach, by_motors: f64, out: &[f64]) -> Gone {
         // Not from the commands of the slides, which far from the origin are too coarse to tell when it ends.
-        let moved = reach.distance_squared(add_scaled(next.tip, -1.0, self.tip));
+        let moved = reach.distance_squared(add_scaled(next.tip, -1.0, self.tip)) + by_motors;
         Gone { turned: next.posed.commands.distance_squared(out), moved }
     }
 

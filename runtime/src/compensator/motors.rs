@@ -11,12 +11,50 @@ use crate::{Kinematics, Share};
 /// beam, for each of the slides X Y Z U V W.
 pub(super) const MOST: usize = 24;
 
-/// How far the position of a motor may be from where its axes put it, mm: a thousandth of what any drive resolves, and far above
-/// what sums of positions round by.
+/// How far the position of a motor may be from where its axes put it, mm: what fine scales resolve, and far above what sums of positions
+/// round by.
 const ROUNDING: f64 = 1e-6;
 
-/// What the error motions that motors correct are in this cycle, mm or rad, in the order of [`Kinematics::squaring`].
-pub(super) type Corrected = [f64; MOST];
+/// What motors correct by themselves in this cycle.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Corrected {
+    /// The values of the error motions, mm or rad, in the order of [`Kinematics::squaring`].
+    values: [f64; MOST],
+    /// The square of how far the commands of the motors have moved between the last two readings, over all motors: mm^2.
+    moved: f64,
+}
+
+impl Corrected {
+    /// Nothing.
+    pub(super) const NONE: Self = Self { values: [0.0; MOST], moved: 0.0 };
+
+    /// The square of how far the commands of the motors have moved with the last reading, beside the axes that they follow: mm^2.
+    pub(super) const fn moved(&self) -> f64 {
+        self.moved
+    }
+
+    /// The square of what motors correct by themselves, over all motors: mm^2.
+    pub(super) fn square(&self, squaring: &[Share]) -> f64 {
+        square(squaring, |place| number(&self.values, place))
+    }
+}
+
+/// The square over all motors of the sum of shares of something, by the places of the shares.
+fn square(squaring: &[Share], of: impl Fn(usize) -> f64) -> f64 {
+    let of_motor = |motor: usize| {
+        let own = squaring.iter().enumerate().filter(|(_, share)| share.motor == motor);
+        own.fold(0.0, |sum, (place, share)| sum + share.weight * of(place))
+    };
+    let mut sum = 0.0;
+    for (place, share) in squaring.iter().enumerate() {
+        // Each motor once, with its first share.
+        if !squaring.iter().take(place).any(|before| before.motor == share.motor) {
+            let part = of_motor(share.motor);
+            sum += part * part;
+        }
+    }
+    sum
+}
 
 /// Checks the shares of a machine: motors stand behind all axes that they follow, and what they correct is an error motion.
 ///
@@ -62,9 +100,12 @@ pub(super) fn check_positions(following: &[Share], position: &[f64]) -> Result<(
 #[cold]
 #[inline(never)]
 pub(super) fn take(squaring: &[Share], values: &mut [f64], corrected: &mut Corrected) {
-    for (share, kept) in squaring.iter().zip(corrected) {
+    let before = corrected.values;
+    for (share, kept) in squaring.iter().zip(&mut corrected.values) {
         *kept = number(values, share.of);
     }
+    let after = &corrected.values;
+    corrected.moved = square(squaring, |place| number(after, place) - number(&before, place));
     for share in squaring {
         if let Some(value) = values.get_mut(share.of) {
             *value = 0.0;
@@ -76,7 +117,7 @@ pub(super) fn take(squaring: &[Share], values: &mut [f64], corrected: &mut Corre
 #[cold]
 #[inline(never)]
 pub(super) fn subtract(squaring: &[Share], values: &mut [f64], corrected: &Corrected) {
-    for (place, (share, kept)) in squaring.iter().zip(corrected).enumerate() {
+    for (place, (share, kept)) in squaring.iter().zip(&corrected.values).enumerate() {
         // The rotation of a beam stands there for each of its motors.
         let again = squaring.iter().take(place).any(|before| before.of == share.of);
         if let Some(value) = values.get_mut(share.of).filter(|_| !again) {
@@ -105,19 +146,9 @@ pub(super) fn follow<K: Kinematics + ?Sized>(
             *command += share.weight * moved;
         }
     }
-    for (share, value) in kinematics.squaring().iter().zip(corrected) {
+    for (share, value) in kinematics.squaring().iter().zip(&corrected.values) {
         if let Some(command) = out.get_mut(share.motor) {
             *command -= share.weight * value;
         }
     }
-}
-
-/// The greatest correction that a motor makes by itself, mm.
-pub(super) fn greatest(squaring: &[Share], corrected: &Corrected) -> f64 {
-    squaring.iter().fold(0.0, |greatest: f64, share| {
-        let own = squaring.iter().zip(corrected).filter(|(other, _)| other.motor == share.motor);
-        let sum = own.fold(0.0, |sum, (own, value)| sum + own.weight * value).abs();
-        // A NaN stays, so that the limit refuses it.
-        if sum <= greatest { greatest } else { sum }
-    })
 }

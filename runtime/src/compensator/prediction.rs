@@ -6,7 +6,7 @@
 use super::inverse::Columns;
 use super::motors::{self, Corrected};
 use super::turns::{Turned, Turns};
-use super::{Convergence, Limits, Needs, Refusal, copy, same_length};
+use super::{Convergence, Needs, Refusal, copy, same_length};
 use crate::math::all_finite;
 use crate::sample::number;
 use crate::{ErrorMotions, Kinematics, MotionReader, Sample, Sines, TermState};
@@ -34,6 +34,9 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
     #[inline]
     pub(super) fn begin(&mut self, sample: &Sample<'_>) -> Result<[f64; 3], Refusal> {
         self.check(sample)?;
+        if self.motors_correct() {
+            self.by_motors = Corrected::NONE;
+        }
         self.advance(sample);
         self.kinematics.turn(sample.position, &mut self.sines);
         let error = self.error(sample, sample.position)?;
@@ -139,13 +142,16 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
         }
     }
 
-    /// Refuses what motors correct by themselves where it is over the limit.
+    /// The square of how far motors went with the last reading by what they correct themselves: mm^2.
     #[inline]
-    pub(super) fn check_motors(&self, limits: &Limits) -> Result<(), Refusal> {
-        if !self.motors_correct() {
-            return Ok(());
-        }
-        limits.check(|| motors::greatest(self.kinematics.squaring(), &self.by_motors))
+    pub(super) fn motors_moved(&self) -> f64 {
+        if self.motors_correct() { self.by_motors.moved() } else { 0.0 }
+    }
+
+    /// The square of what motors correct by themselves: mm^2.
+    #[inline]
+    pub(super) fn by_motors_squared(&self) -> f64 {
+        if self.motors_correct() { self.by_motors.square(self.kinematics.squaring()) } else { 0.0 }
     }
 
     /// Searches for the commands of the rotary axes that correct their own angles, and writes them to `out`, with the position of the

@@ -10,7 +10,8 @@ use crate::math::sqrt;
 /// What a correction must not exceed.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Limits {
-    /// Greatest length of a correction over all slides, in mm; none: no limit. A NaN refuses every correction.
+    /// Greatest length of a correction over all slides, and over what motors of a beam correct by themselves beside the slide that they
+    /// carry, in mm; none: no limit. A NaN refuses every correction.
     pub compensation: Option<f64>,
     /// Greatest correction of rotary axes, over all of them, in rad; none: no limit. A NaN refuses every correction. What an axis that lies
     /// nearly along the tool would turn for its direction is cut to it, and not refused.

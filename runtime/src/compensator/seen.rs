@@ -4,6 +4,7 @@
 //! exists because error motions belong to the commands and lever arms to the angles at which the axes stand.
 
 use super::Refusal;
+use super::motors;
 use super::prediction::{Prediction, travels};
 use super::turns::Turned;
 use crate::math::all_finite;
@@ -70,6 +71,10 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
             };
             own.add(turning.axis, 0.0, -corrected);
             *value -= corrected;
+        }
+        match part {
+            Part::Corrected => motors::take(kinematics.squaring(), values.as_mut(), &mut self.by_motors),
+            Part::Left => motors::subtract(kinematics.squaring(), values.as_mut(), &self.by_motors),
         }
         posed.commands.stand(sample.position, out);
         posed.stands.write(out);

@@ -60,8 +60,9 @@ pub(super) fn check<K: Kinematics + ?Sized>(
     }
     motors::check_shares(kinematics)?;
     let needs = check_terms(motions, axes)?;
+    let turns = Turns::new(kinematics, motions)?;
     check_aiming(kinematics)?;
-    Ok(Needs { turns: Turns::new(kinematics, motions)?, ..needs })
+    Ok(Needs { turns, ..needs })
 }
 
 /// Checks that each axis that corrects the direction of the tool is one of the machine, and that they are with those that correct their own
@@ -71,6 +72,9 @@ fn check_aiming<K: Kinematics + ?Sized>(kinematics: &K) -> Result<(), SetupError
     // Those of one axis stand together. `chunk_by` would say it in a word, and keeps a way to panic.
     let before = [None].into_iter().chain(own.iter().map(|turning| Some(turning.axis)));
     let mut turned = own.iter().zip(before).filter(|(turning, before)| Some(turning.axis) != *before).count();
+    if turned > tilts::AXES {
+        return Err(SetupError::Turning { turning: own.len().saturating_sub(1) });
+    }
     for (number, &axis) in kinematics.aiming().iter().enumerate() {
         let before = kinematics.aiming().iter().take(number);
         let known = kinematics.turning().iter().any(|turning| turning.axis == axis);

@@ -11,7 +11,7 @@ use crate::math::{add_scaled, dot, length, sqrt};
 /// ISO 841 names three rotary axes: A, B and C.
 pub(super) const AXES: usize = 3;
 
-/// Below this, the square of what the axes turn the direction by in some direction counts as this.
+/// The least square that an error is divided by: an axis turns at most a hundred times as far as the direction.
 const LEAST: f64 = 1.0 / (GREATEST_AMPLIFICATION * GREATEST_AMPLIFICATION);
 
 /// The columns of T, which turn the direction, and how far they turn it.
@@ -54,12 +54,10 @@ impl Tilts {
     /// way, or by as much as the error there, whichever is more: a limit cuts what the pose makes of an error, and not the error.
     pub(super) fn angles(&self, lean: [f64; 3], most: f64) -> [f64; AXES] {
         let hard = self.hardest(lean);
-        let easy = self.undone(add_scaled(lean, -1.0, hard), self.greater);
-        let turn = self.undone(hard, self.less);
-        let room = sqrt((most * most - dot(easy, easy)).max(0.0));
-        let (bound, wanted) = (room.max(length(hard)), length(turn));
-        let part = if wanted > bound { bound / wanted } else { 1.0 };
-        add_scaled(easy, part, turn)
+        let easy = add_scaled(lean, -1.0, hard);
+        let first = cut(self.undone(easy, self.greater), most.max(length(easy)));
+        let room = sqrt((most * most - dot(first, first)).max(0.0));
+        add_scaled(first, 1.0, cut(self.undone(hard, self.less), room.max(length(hard))))
     }
 
     /// The part of an error in the direction in which the axes turn the tool least.
@@ -86,6 +84,12 @@ impl Tilts {
     fn shares(&self, vector: [f64; 3]) -> [f64; AXES] {
         self.columns.map(|column| dot(column, vector))
     }
+}
+
+/// A turn, shortened to a bound where it is longer.
+fn cut(turn: [f64; AXES], bound: f64) -> [f64; AXES] {
+    let wanted = length(turn);
+    if wanted > bound { turn.map(|angle| angle * (bound / wanted)) } else { turn }
 }
 
 /// The square of the area between two vectors.
@@ -135,6 +139,10 @@ mod tests {
         assert!((angle - 60e-6).abs() < 1e-15);
         assert!(length(add_scaled(left(&one, LEAN), -1.0, [0.0, LEAN[1], 0.0])) < 1e-15);
         assert_eq!(axes([[0.0; 2]; AXES]).angles(LEAN, f64::INFINITY), [0.0; AXES]);
+        // In front of its singular pose a single axis is held to the limit as the second of two is: 40 urad / 0.02 are 2 mrad.
+        let weak = axes([[0.0, 0.02], [0.0; 2], [0.0; 2]]);
+        let [free, limited] = [f64::INFINITY, 1e-3].map(|most| weak.angles([0.0, -40e-6, 0.0], most)[0]);
+        assert!((free + 2e-3).abs() < 1e-15 && (limited + 1e-3).abs() < 1e-15, "{free} {limited}");
     }
 
     /// In front of the pose in which the second axis turns nothing: the exact answer as far as it is no more than a hundred times the

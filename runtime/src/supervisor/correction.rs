@@ -5,8 +5,8 @@
 //! the next, and the difference has to go away slowly.
 
 use super::Transition;
-use crate::Limits;
 use crate::math::sqrt;
+use crate::{Limits, Share};
 
 /// Less of an offset, or of a step, counts as none: sums of time steps round.
 const NOTHING: f64 = 1e-9;
@@ -22,8 +22,6 @@ pub struct AxisMemory {
     offset: f64,
     /// Whether it is a rotary axis that corrects its own angle, or the direction of the tool.
     turns: bool,
-    /// Whether it is a motor that only follows other axes, whose corrections have its limits already.
-    follows: bool,
 }
 
 impl AxisMemory {
@@ -38,6 +36,8 @@ impl AxisMemory {
 #[derive(Debug)]
 pub(super) struct Correction<'a> {
     axes: &'a mut [AxisMemory],
+    /// The motors, by the axes that they follow.
+    following: &'a [Share],
     /// Whether the correction of the last cycle was that of the compensator.
     active: bool,
     /// Whether the next cycle begins a transition.
@@ -50,17 +50,16 @@ impl<'a> Correction<'a> {
     /// The correction that the memory holds, on its way to whatever is wanted first.
     pub(super) fn new(
         axes: &'a mut [AxisMemory],
+        following: &'a [Share],
         turns: impl Fn(usize) -> bool,
-        follows: impl Fn(usize) -> bool,
     ) -> Self {
         for (number, axis) in axes.iter_mut().enumerate() {
-            axis.follows = follows(number);
             axis.turns = turns(number);
             if !axis.made.is_finite() {
                 axis.made = 0.0;
             }
         }
-        Self { axes, active: false, switched: true, left: 0.0 }
+        Self { axes, following, active: false, switched: true, left: 0.0 }
     }
 
     /// What is remembered of each axis.
@@ -78,18 +77,23 @@ impl<'a> Correction<'a> {
         self.size(|axis| axis.made).slides
     }
 
-    /// The size of a number over all axes but those that only follow others.
+    /// The size of a number over all axes. Of a motor counts what it has beside the axes that it follows, which count themselves.
     fn size(&self, of: impl Fn(&AxisMemory) -> f64) -> Size {
         let root = |turns: bool| {
-            sqrt(self.axes.iter().filter(|axis| axis.turns == turns && !axis.follows).fold(
-                0.0,
-                |sum, axis| {
-                    let part = of(axis);
-                    sum + part * part
-                },
-            ))
+            let mut sum = 0.0;
+            for (number, axis) in self.axes.iter().enumerate().filter(|(_, axis)| axis.turns == turns) {
+                let part = of(axis) - self.followed(number, &of);
+                sum += part * part;
+            }
+            sqrt(sum)
         };
         Size { slides: root(false), turns: root(true) }
+    }
+
+    /// The part of a number of a motor that it has from the axes that it follows; 0 of an axis.
+    fn followed(&self, axis: usize, of: &impl Fn(&AxisMemory) -> f64) -> f64 {
+        let own = self.following.iter().filter(|share| share.motor == axis);
+        own.fold(0.0, |sum, share| sum + share.weight * self.axes.get(share.of).map_or(0.0, of))
     }
 
     /// Takes what is wanted now: the compensator's commands less the positions where its correction is active, and else

@@ -1,11 +1,11 @@
 //! Motors in the runtime: what a machine may say of them, and how corrections of theirs go through a servo cycle.
 //!
-//! In: a machine of two slides whose motors are crossed, or whose first slide has two. Out: commands by hand, bit for bit the same row by row
-//! and in a batch, and mistakes in the set-up.
+//! In: a machine of two slides whose motors are crossed, or whose second slide has two. Out: commands by hand, bit for bit the same row by
+//! row and in a batch; a correction that fades in within its limit; and mistakes in the set-up.
 
 use abbe_runtime::{
-    Batch, BatchWork, Compensator, Direction, ErrorMotion, Input, Kinematics, Lanes, Refusal, Sample,
-    SetupError, Share, Term, TermState, Work,
+    AxisMemory, Batch, BatchWork, Compensator, Direction, ErrorMotion, Input, Kinematics, Lanes, Limits,
+    Memory, Refusal, Sample, SetupError, Share, Supervisor, Term, TermState, Transition, Work,
 };
 
 /// Slides X and Y, and behind them the motors; error motions EXX, EYY and those of both motors.
@@ -126,5 +126,44 @@ fn shares_that_name_what_the_machine_lacks_are_refused() {
         let work = Work { directions: &mut directions, motions: &mut values, travel: &mut [] };
         let refused = Compensator::new(&machine, &motions, &mut [], work).map(|_| ()).unwrap_err();
         assert_eq!(refused, SetupError::Share { share: wrong });
+    }
+}
+
+/// Y is sent 0.9 mm back, and both its motors with it; the first by 0.3 mm more for an error of its own. A correction of that length
+/// fades in straight, since it never comes over the limit: of a motor counts what it has beside its slide.
+#[test]
+fn a_beam_counts_once_against_the_limit() {
+    let machine =
+        Machine { following: vec![share(2, 1, 1.0), share(3, 1, 1.0)], squaring: vec![share(2, 2, 1.0)] };
+    let of = |value: f64| [Term::Constant { value }];
+    let (of_slide, of_motor) = (of(0.9), of(0.3));
+    let motions = [&[][..], &of_slide, &of_motor, &[]].map(|terms| ErrorMotion { terms });
+    let mut states = [TermState::default(); 2];
+    let (mut directions, mut values) = ([[0.0; 3]; 4], [0.0; 4]);
+    let work = Work { directions: &mut directions, motions: &mut values, travel: &mut [] };
+    let mut compensator = Compensator::new(&machine, &motions, &mut states, work).unwrap();
+    // sqrt(0.9^2 + 0.3^2) = 0.9487
+    compensator.limits = Limits { compensation: Some(0.95), ..Limits::default() };
+    let mut axes = [AxisMemory::default(); 4];
+    let memory = Memory { axes: &mut axes, temperature: &mut [], silence: &mut [] };
+    let mut supervisor = Supervisor::new(compensator, memory).unwrap();
+    supervisor.transition = Transition { fade: 1.0, ..Transition::default() };
+    let sample = Sample {
+        position: &[10.0, 20.0, 20.0, 20.0],
+        travel: &[],
+        direction: &[Direction::Positive; 4],
+        velocity: &[],
+        temperature: &[],
+        time_step: 0.1,
+    };
+    let mut command = [0.0; 4];
+    for cycle in 1..=12 {
+        let done = supervisor.cycle(&sample, &mut command);
+        let part = f64::from(cycle.min(10)) / 10.0;
+        let expected = [10.0, 20.0 - 0.9 * part, 20.0 - 1.2 * part, 20.0 - 0.9 * part];
+        for (command, expected) in command.iter().zip(expected) {
+            assert!((command - expected).abs() < 1e-9, "cycle {cycle}: {command} is not {expected}");
+        }
+        assert!((done.correction - part * (0.9_f64.powi(2) + 0.3_f64.powi(2)).sqrt()).abs() < 1e-9);
     }
 }

@@ -34,8 +34,8 @@ fn built(rest: &str, errors: &str) -> (Built, Equations) {
     (Built::with(machine, &format!("{constants}errors: {errors}\n")), compiled.equations)
 }
 
-/// Positions of X, Y and Z with those of the motors behind them.
-fn with_motors(equations: &Equations, axes: [f64; 3]) -> Vec<f64> {
+/// Positions of the axes with those of the motors behind them.
+fn with_motors<const AXES: usize>(equations: &Equations, axes: [f64; AXES]) -> Vec<f64> {
     let mut position = axes.to_vec();
     position.resize(equations.axes.len(), 0.0);
     for share in equations.following() {
@@ -175,4 +175,44 @@ fn a_drive_is_refused_over_the_limit_and_a_motor_out_of_place() {
     position[4] = 0.001;
     let refused = commanded(&machine, &position, &ways, None);
     assert_eq!(refused, Err(Refusal::Motor { axis: 4, expected: 0.0, found: 0.001 }));
+}
+
+/// A screw of the first drive that waves, and nothing else: the slides have nothing to do, and the search must go on for the drive alone.
+#[test]
+fn a_drive_that_errs_alone_is_sent_where_its_own_error_cancels() {
+    let machine = built(BEAM, "{EY1: [{cyclic: {period: 10 mm, amplitude: 20 um, phase: 0 deg}}]}");
+    let wave = |place: f64| 0.020 * (2.0 * std::f64::consts::PI * place / 10.0).sin();
+    for y in [250.0, 252.3, 254.9] {
+        let position = with_motors(&machine.1, [150.0, y, 0.0]);
+        let command = commanded(&machine, &position, &[Direction::Positive; 5], None).unwrap();
+        close(command[3] + wave(command[3]), y, 1e-9);
+        close(command[4], y, 1e-9);
+    }
+}
+
+/// Where rotary axes aim the tool, motors stand where the slides put them, and a beam turns itself back as without.
+#[test]
+fn motors_follow_slides_and_square_their_beam_where_rotary_axes_aim() {
+    let crossed = "topology: CAFXYZ\norientation: true\ntransmission: {P: X + Y, Q: X - Y}\n";
+    let machine = built(crossed, "{EXX: 10 um, EYY: 4 um, EBX: 30 urad}");
+    let position = with_motors(&machine.1, [100.0, 50.0, 20.0, 0.5, 0.3]);
+    let command = commanded(&machine, &position, &[Direction::Positive; 7], None).unwrap();
+    let moved = |axis: usize| command[axis] - position[axis];
+    assert!(moved(0).abs() > 0.005 && moved(4).abs() > 1e-6, "{command:?}");
+    close(moved(5), moved(0) + moved(1), 1e-12);
+    close(moved(6), moved(0) - moved(1), 1e-12);
+    // The beam turns about the tool, which then points as before: the rotary axes have nothing to do.
+    let rotary = "  workpiece:\n    - rotary: A\n      along: +A\n    - rotary: C\n      along: +C\n";
+    let commands = ["true", "uncorrected"].map(|orientation| {
+        let rest =
+            format!("orientation: {orientation}\n{}", BEAM.replace("chain:\n", &format!("chain:\n{rotary}")));
+        let machine = built(&rest, "{EY1: 40 um, EY2: -30 um, ECY: 10 urad, EXX: 7 um}");
+        let position = with_motors(&machine.1, [150.0, 250.0, 20.0, 0.5, 0.3]);
+        commanded(&machine, &position, &[Direction::Positive; 7], None).unwrap()
+    });
+    for (aimed, told) in commands[0].iter().zip(&commands[1]) {
+        close(*aimed, *told, 1e-9);
+    }
+    // EY1 and what ECY is over the 400 mm to the first drive, with their signs: the beam is sent back by both.
+    close(commands[0][5] - 250.0 - (commands[0][1] - 250.0), -0.040 + 400.0 * 10e-6, 1e-9);
 }

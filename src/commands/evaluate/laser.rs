@@ -1,7 +1,7 @@
 //! The figures of a laser's file. In: a set-up of one measurement, or the file of an instrument itself. Out: its evaluation, or why there
 //! is none.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use evaluation::iso230_2::Target;
 use evaluation::{Cycle, Evaluation, of_cycle};
@@ -18,23 +18,25 @@ use crate::output::{Person, show};
 /// What a file of an instrument alone is taken for: it does not name its axis, and the figures do not depend on it.
 const ALONE: &str = "setup: 1\nmachine: FX\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\nmeasurements:\n";
 
-/// The evaluation of a set-up or of a laser's file; nothing of any other file.
-pub(super) fn evaluated(path: &Path) -> Result<Option<Evaluation>, Failure> {
+/// The evaluation of a set-up or of a laser's file, and the files that it was read from; nothing of any other file.
+pub(super) fn evaluated(path: &Path) -> Result<Option<(Evaluation, Vec<PathBuf>)>, Failure> {
     let Some(head) = load::head_of_file(path)? else { return Ok(None) };
     if file::is_sectioned(&head) {
-        let mut evaluation = of_setup(SetUp::read(alone(path), path, &Person::default())?, path)?;
+        let setup = SetUp::read(alone(path), path, &Person::default())?;
+        let mut evaluation = of_setup(&setup, path)?;
         let note = "The file does not name its axis, which is called X here, nor its sense: a set-up file says both.";
         evaluation.positioning.iter_mut().for_each(|line| line.notes.push(note.to_owned()));
-        return Ok(Some(evaluation));
+        return Ok(Some((evaluation, setup.files())));
     }
     let Ok(source) = load::read(path) else { return Ok(None) };
     let root = yaml::read(&source, &mut Diagnostics::new());
     // A recording has a `setup` too, which is no version.
     let is_setup = |root: &yaml::Node| root.get("setup").is_some_and(|version| version.text().is_some());
-    match root.is_some_and(|root| is_setup(&root)) {
-        true => of_setup(SetUp::read(source, path, &Person::default())?, path).map(Some),
-        false => Ok(None),
+    if !root.is_some_and(|root| is_setup(&root)) {
+        return Ok(None);
     }
+    let setup = SetUp::read(source, path, &Person::default())?;
+    Ok(Some((of_setup(&setup, path)?, setup.files())))
 }
 
 /// The set-up of a file that has none.
@@ -44,8 +46,8 @@ fn alone(path: &Path) -> SourceFile {
     SourceFile::new(path.display().to_string(), format!("{ALONE}  - {{motion: EXX, data: '{name}'}}\n"))
 }
 
-fn of_setup(read: SetUp, path: &Path) -> Result<Evaluation, Failure> {
-    let (SetUp { source, equations, setup, .. }, [measured]) = (&read, read.data.as_slice()) else {
+fn of_setup(read: &SetUp, path: &Path) -> Result<Evaluation, Failure> {
+    let (SetUp { source, equations, setup, .. }, [measured]) = (read, read.data.as_slice()) else {
         return Err(Failure::wrong(format!(
             "error: {} has {} measurements\nhelp: a set-up of one file, of an axis's own motion such as EXX, is evaluated",
             path.display(),

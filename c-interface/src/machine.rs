@@ -30,6 +30,8 @@ pub trait CompiledMachine: Kinematics + Copy + Send + 'static {
     const CONSTANTS: &'static [ConstantOfMachine];
     /// Its axes, in the order of positions.
     const AXES: &'static [AxisOfMachine];
+    /// Its motors, which are axes that follow others: the number of the motor, that of an axis, and how far the motor goes for each mm of it.
+    const FOLLOWS: &'static [(usize, usize, f64)] = &[];
     /// Its error motions, in the order of the equations.
     const MOTIONS: &'static [MotionOfMachine];
     /// Those without a lever at the tool tip, which a calibration may list.
@@ -62,12 +64,18 @@ pub(crate) fn names<M: CompiledMachine>() -> MachineNames {
     MachineNames {
         machine: M::NAME.to_owned(),
         constants: M::CONSTANTS.iter().map(|&(name, default)| (name.to_owned(), default)).collect(),
-        axes: M::AXES
-            .iter()
-            .map(|&(letter, rotary)| AxisName { letter: letter.to_owned(), rotary, follows: Vec::new() })
-            .collect(),
+        axes: M::AXES.iter().enumerate().map(axis_name::<M>).collect(),
         motions: M::MOTIONS.iter().map(|motion| motion_name::<M>(*motion)).collect(),
         unseen: M::UNSEEN.iter().map(|motion| motion_name::<M>(*motion)).collect(),
+    }
+}
+
+fn axis_name<M: CompiledMachine>((number, &(letter, rotary)): (usize, &AxisOfMachine)) -> AxisName {
+    let own = M::FOLLOWS.iter().filter(|(motor, ..)| *motor == number);
+    AxisName {
+        letter: letter.to_owned(),
+        rotary,
+        follows: own.map(|&(_, of, weight)| (of, weight)).collect(),
     }
 }
 

@@ -310,6 +310,23 @@ pub struct Parameter {
     pub value: ParameterValue,
 }
 
+impl Parameter {
+    /// The fitted numbers in it, each by its name: `lost_motion`; `coefficients[1]` of a list, whose first number is that of the term's
+    /// [first power](TermKind::first_power).
+    pub fn estimates(&self, kind: TermKind) -> Vec<(String, Estimate)> {
+        match &self.value {
+            ParameterValue::Fitted(estimate) => vec![(self.name.to_owned(), estimate.clone())],
+            ParameterValue::List(list) => {
+                let named = |(power, estimate): (usize, &Estimate)| {
+                    (format!("{}[{power}]", self.name), estimate.clone())
+                };
+                (kind.first_power()..).zip(list).map(named).collect()
+            }
+            ParameterValue::Name(_) | ParameterValue::Places(..) | ParameterValue::Given(..) => Vec::new(),
+        }
+    }
+}
+
 /// The value of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ParameterValue {

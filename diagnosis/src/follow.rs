@@ -16,7 +16,7 @@ use crate::candidates;
 use crate::certainty::{Certainty, WIDTH_95};
 use crate::crossing;
 use crate::design::{Design, Regressor};
-use crate::diagnosis::{Estimate, Finding, ParameterValue};
+use crate::diagnosis::{Estimate, Finding};
 use crate::engine;
 use crate::fit;
 use crate::model::{Effect, Fitted, Model, Place};
@@ -193,8 +193,9 @@ struct Sized {
     model: Model,
     design: Design,
     swept: Swept,
-    /// For each column, its variance for noise of unit size.
+    /// The variance of the noise, in that by which rows are weighted.
     scale: f64,
+    /// For each column how many times wider its interval is than the likelihood has it.
     widths: Vec<f64>,
     /// Whether a column was told from those before it.
     told: Vec<bool>,
@@ -246,6 +247,7 @@ impl Sized {
     fn sizes(&self, study: &Study<'_>, number: usize) -> Vec<Size> {
         let Some(fitted) = self.model.get(number) else { return Vec::new() };
         let shape = fitted.effect.shape.core();
+        let Some(kind) = TermKind::of_name(shape.name()) else { return Vec::new() };
         let free = usize::from(matches!(shape, Shape::Polynomial { .. } | Shape::SensorPolynomial { .. }));
         let columns = self.design.columns(number);
         let untold = |column: usize| self.told.get(column) != Some(&true);
@@ -272,25 +274,14 @@ impl Sized {
         let certainty = Certainty::linear(covariance);
         let held = fitted.effect.shape.nonlinear().map(|parameter| parameter.name);
         let parameters = Described::new(study, fitted, &certainty).parameters();
-        let mut sizes = Vec::new();
-        for parameter in parameters.into_iter().filter(|parameter| Some(parameter.name) != held) {
-            match parameter.value {
-                ParameterValue::Fitted(estimate) => {
-                    sizes.push(Size { name: parameter.name.to_owned(), estimate });
-                }
-                ParameterValue::List(list) => {
-                    let named =
-                        |(place, estimate)| Size { name: format!("{}[{place}]", parameter.name), estimate };
-                    sizes.extend(list.into_iter().enumerate().map(named));
-                }
-                _ => {}
-            }
-        }
+        let fitted = parameters.iter().filter(|parameter| Some(parameter.name) != held);
+        let sizes = fitted
+            .flat_map(|parameter| parameter.estimates(kind))
+            .map(|(name, estimate)| Size { name, estimate });
         // What no interval was found for was not told: a node that no row comes near, the free power of a polynomial.
         let of_node = |place: usize| !partly || !untold(first + place);
         let known = |size: &Size| size.estimate.ci95.0 < size.estimate.ci95.1;
         sizes
-            .into_iter()
             .enumerate()
             .filter(|(place, size)| of_node(*place) && known(size))
             .map(|(_, size)| size)

@@ -97,16 +97,7 @@ fn found(job: &Job, kind: Option<&str>, equations: &Equations, diagnosis: &Diagn
 
 fn of_finding(job: &Job, equations: &Equations, number: usize, finding: &Finding) -> Vec<Vec<Cell>> {
     let (calibration, family) = (calibration_of(equations, finding), family(finding));
-    let fitted = finding.parameters.iter().flat_map(|parameter| match &parameter.value {
-        ParameterValue::Fitted(estimate) => vec![(parameter.name.to_owned(), estimate.clone())],
-        ParameterValue::List(list) => {
-            let named = |(place, estimate): (usize, &Estimate)| {
-                (format!("{}[{place}]", parameter.name), estimate.clone())
-            };
-            list.iter().enumerate().map(named).collect()
-        }
-        _ => Vec::new(),
-    });
+    let fitted = finding.parameters.iter().flat_map(|parameter| parameter.estimates(finding.kind()));
     let row = |(name, estimate): (String, Estimate)| {
         let mut row = head(job);
         row.extend([

@@ -46,8 +46,8 @@ struct Found {
 /// recording tells three terms of each of them apart.
 const MOST: usize = 64;
 
-/// Two waves are one where their periods lie within so many times both intervals: of a thousand pairs of one wave in two recordings, one
-/// lies outside 1.96 * 1.7 = 3.3 standard errors.
+/// Two waves are one where their periods differ by less than this many half widths of both intervals together. Of a thousand pairs of one
+/// wave in two recordings one is further apart, by 1.96 * 1.7 = 3.3 standard errors.
 const TOGETHER: f64 = 1.7;
 
 /// The effects of a machine, those found most often first, then the surest: what is not told from others is then the rarest.

@@ -32,7 +32,7 @@ fn an_effect_too_weak_to_be_claimed_has_a_size_and_an_interval_that_holds_the_tr
     let effects = [followed(&bench, "EXX", backlash(0))];
     let mut held = 0;
     for seed in 1..=60 {
-        // Where there is none, the interval holds nothing.
+        // Where there is no backlash, the interval holds zero.
         let truth = [0.0, 0.1e-3][usize::from(seed % 2 == 0)];
         let errors = format!("{{EXX: [{{backlash: {{lost_motion: {truth:e} mm}}}}]}}");
         let found = sizes(&bench, &errors, seed, &effects);
@@ -41,7 +41,7 @@ fn an_effect_too_weak_to_be_claimed_has_a_size_and_an_interval_that_holds_the_tr
         let (low, high) = size.estimate.ci95;
         held += usize::from((low..=high).contains(&truth));
     }
-    // Of 60 intervals of 95 %, fewer than 51 hold the truth once in 1e4.
+    // Of 60 intervals of 95 %, fewer than 51 hold the truth once in 1400.
     assert!(held >= 51, "{held} of 60");
 }
 

@@ -12,7 +12,7 @@ use crate::diagnosis::Estimate;
 /// Below each end.
 const TAIL: f64 = 0.025;
 
-/// The amplitude, in a unit of so many for one of the coefficients; nothing where a coefficient is not known.
+/// The amplitude in a unit, of which `factor` make one of that of the coefficients; nothing where a coefficient is not known.
 pub(super) fn amplitude(
     coefficients: &[f64],
     covariance: &DMatrix<f64>,
@@ -51,7 +51,7 @@ fn offset(reached: f64, probability: f64) -> f64 {
     (low + high) / 2.0
 }
 
-/// So many standard deviations beyond what was reached no offset leaves 2.5 % below it.
+/// An offset of 5 standard deviations more than the length that was reached leaves less than 1e-6 below it, and not 2.5 %.
 const FAR: f64 = 5.0;
 
 /// Halvings of an interval until nothing of it is left in ten digits.
@@ -72,7 +72,8 @@ fn below(reached: f64, offset: f64) -> f64 {
     let mut sum = density(from) + density(to);
     let mut place = 1.0;
     while place < STEPS {
-        sum += if place % 2.0 == 0.0 { 2.0 } else { 4.0 } * density(from + place * step);
+        let weight = if place % 2.0 == 0.0 { 2.0 } else { 4.0 };
+        sum += weight * density(from + place * step);
         place += 1.0;
     }
     sum * step / 3.0
@@ -81,7 +82,7 @@ fn below(reached: f64, offset: f64) -> f64 {
 /// A normal distribution has less than 1e-15 beyond.
 const SPREAD: f64 = 8.0;
 
-/// Steps of the integral, an even number: the density is as smooth as a normal one, so that the rule is right to nine digits.
+/// Steps of the integral, an even number: the rule is right to 1e-7, as is the Bessel function.
 const STEPS: f64 = 128.0;
 
 /// exp(-x) I0(x), to 2e-7: Abramowitz and Stegun, 9.8.1 and 9.8.2.

@@ -49,7 +49,7 @@ fn searched(crossed: bool, concealed: &str, seed: u64) -> Vec<(String, f64, f64)
         .collect()
 }
 
-/// Asserts that there is this one finding alone, and its size is right within its interval, so often widened that no noise leaves it.
+/// Asserts that this is the only finding, and that its size is right within `FAR` times its interval.
 #[track_caller]
 fn alone(found: &[(String, f64, f64)], name: &str, size: f64) {
     let [(known, value, half)] = found else { panic!("{found:?}") };

@@ -44,7 +44,7 @@ impl Shown {
         if name == "deg" {
             return Self { unit: name, scale, digits: OF_DEGREES };
         }
-        // So many decimals show the second digit of the finest value.
+        // The fewest decimals that show the second digit of the finest value.
         let enough = (LEAST..MOST).find(|digits| finest * scale * tens(*digits) >= 10.0);
         Self { unit: name, scale, digits: if finest > 0.0 { enough.unwrap_or(MOST) } else { LEAST } }
     }

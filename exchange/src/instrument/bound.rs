@@ -1,6 +1,6 @@
 //! How large a correction may be. In: a calibration that was measured. Out: the limit that its own data give, for whoever sets none.
 //!
-//! A controller that is told no limit moves by whatever a slip of a unit or of a sign makes of a table. What was measured tells how large
+//! A controller that is told no limit moves by whatever a slip of a unit makes of a table. What was measured tells how large
 //! corrections are; twice as much leaves room for another place of the tool and for what changes until the next calibration.
 
 use model_dsl::calibration::Calibration;
@@ -9,7 +9,8 @@ use model_dsl::source::Spanned;
 
 use crate::controller::{Geometry, Space, Wanted};
 
-/// So many times the largest correction.
+/// The limit is this many times the largest correction: room for another place of the tool, and for what changes until the next
+/// calibration. A slip of a unit makes ten times as much and more.
 const ROOM: f64 = 2.0;
 
 /// The largest correction within the measured range, and the limit that it gives: mm.

@@ -12,7 +12,7 @@ const SMALL: (f64, f64) = (168.0, 36.0);
 /// What is left free around it.
 const EDGE: f64 = 3.0;
 
-/// More points than pixels are one band: so many are drawn, the last ones.
+/// The most points that are drawn, the last ones: more than there are pixels would be one band.
 const MOST: usize = 160;
 
 /// The small drawing; nothing of an empty series.

@@ -1,6 +1,7 @@
 //! What a library for controllers in C has beside the machine: its names, its equations as text, and the function that opens
 //! it. In: the equations. Out: tokens that need the crate `abbe_c`; everything that C calls but for `abbe_open` is there.
 
+use abbe_runtime::Share;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -44,6 +45,13 @@ fn compiled_machine(equations: &Equations) -> TokenStream {
         let (letter, rotary) = (&axis.letter, axis.rotary);
         quote! { (#letter, #rotary) }
     });
+    let follows: Vec<_> = equations
+        .following()
+        .into_iter()
+        .map(|Share { motor, of, weight }| quote! { (#motor, #of, #weight) })
+        .collect();
+    let follows = (!follows.is_empty())
+        .then(|| quote! { const FOLLOWS: &'static [(usize, usize, f64)] = &[#(#follows),*]; });
     let counted = motions.iter().chain(&unseen).flat_map(|motion| {
         let name = &motion.name;
         motion.counted.iter().map(move |Counted { from, is }| quote! { (#name, #from, #is) })
@@ -58,6 +66,7 @@ fn compiled_machine(equations: &Equations) -> TokenStream {
             const NAME: &'static str = #machine;
             const CONSTANTS: &'static [::abbe_c::ConstantOfMachine] = &[#(#constants),*];
             const AXES: &'static [::abbe_c::AxisOfMachine] = &[#(#axes),*];
+            #follows
             const MOTIONS: &'static [::abbe_c::MotionOfMachine] = &[#(#motions),*];
             const UNSEEN: &'static [::abbe_c::MotionOfMachine] = &[#(#unseen),*];
             const COUNTED: &'static [::abbe_c::CountedOfMachine] = &[#(#counted),*];

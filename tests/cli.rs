@@ -530,6 +530,27 @@ fn new_files_are_taken_by_the_commands_that_read_them() {
     }
     let setup = fs::read_to_string(folder.join("setup.yaml")).unwrap();
     assert!(setup.contains("measurements:\n  - {motion: EXX, data: data.csv,"), "{setup}");
+    // A file in another folder is named from there.
+    fs::create_dir_all(folder.join("made/here")).unwrap();
+    for arguments in [
+        &["new", "calibration", &at("mill.yaml"), "--output", &at("made/known.yaml")][..],
+        &[
+            "new",
+            "recording",
+            &at("data.csv"),
+            "--machine",
+            &at("mill.yaml"),
+            "--output",
+            &at("made/here/r.yaml"),
+        ],
+        &["new", "setup", &at("data.csv"), "--output", &at("made/setup.yaml")],
+        &["simulate", &at("made/known.yaml"), &at("path.yaml"), "--output", &at("simulated-too")],
+        &["diagnose", &at("made/here/r.yaml")],
+    ] {
+        let run = abbe(arguments, "");
+        assert_eq!(run.status, 0, "{arguments:?}: {}", run.err);
+    }
+    assert!(fs::read_to_string(folder.join("made/setup.yaml")).unwrap().contains("data: ../data.csv,"));
     let again = abbe(&["new", "XYFZ", "--output", &at("mill.yaml")], "");
     assert!(again.status == 2 && again.err.contains("is there already"), "{}", again.err);
     fs::remove_dir_all(folder).unwrap();
@@ -604,4 +625,16 @@ fn a_result_goes_over_no_file_that_was_read() {
         );
     }
     assert_eq!(fs::read_to_string(&machine).unwrap(), before);
+}
+
+#[test]
+fn new_recordings_of_other_formats_have_the_names_that_these_say() {
+    let written = root().join("recording/tests/recording/written");
+    for (file, column) in [("polars-zstd.parquet", "column: "), ("openpyxl.xlsx", "column: ")] {
+        let path = written.join(file).display().to_string();
+        let run = abbe(&["new", "recording", &path], "");
+        assert!(run.status == 0 && run.out.contains(column) && run.out.is_ascii(), "{}{}", run.out, run.err);
+    }
+    let run = abbe(&["new", "recording", &written.join("h5py.h5").display().to_string()], "");
+    assert!(run.status == 2 && run.out.is_empty() && run.err.contains("HDF5"), "{}", run.err);
 }

@@ -42,11 +42,39 @@ const MOST_NUMBERS: usize = 1 << 28;
 /// Bytes that are read at once.
 const BUFFER: usize = 1 << 18;
 
+/// What is asked of a file to know its format: none begins with more.
+const MOST_BEGINNING: u64 = 256;
+
 /// What Parquet begins with.
 const PARQUET: &[u8] = b"PAR1";
 
 /// What a workbook begins with, and all other packed folders.
 const ZIP: &[u8] = b"PK\x03\x04";
+
+/// The names of the columns of a table that says itself which they are: Parquet, or the first sheet of a workbook. Nothing of a text.
+///
+/// # Errors
+///
+/// A file that cannot be read, and one of a format that is not read.
+pub fn column_names(path: &Path) -> Result<Option<Vec<String>>, DataError> {
+    let name = path.display().to_string();
+    let unreadable = |error: std::io::Error| DataError::new(&name, format!("it cannot be read: {error}"));
+    let mut file = File::open(path).map_err(unreadable)?;
+    let mut start = Vec::new();
+    file.by_ref().take(MOST_BEGINNING).read_to_end(&mut start).map_err(unreadable)?;
+    if let Some((what, help)) = foreign(&start) {
+        return Err(DataError::new(&name, format!("it is {what}, which is not read")).help(help));
+    }
+    if !start.starts_with(PARQUET) && !start.starts_with(ZIP) {
+        return Ok(None);
+    }
+    file.rewind().map_err(unreadable)?;
+    let names = contained(&name, || match start.starts_with(PARQUET) {
+        true => parquet::names(&name, &file),
+        false => workbook::names(&name, BufReader::with_capacity(BUFFER, &file)),
+    });
+    names.map(Some)
+}
 
 impl Header {
     /// Reads the data from a file: CSV, CSV packed by gzip, Parquet or a workbook (`.xlsx`), told by its first bytes.

@@ -1,7 +1,7 @@
 //! `abbe new`: a commented file to start from. In: its kind, and what it is of: a topology word, a machine, a table, files of
 //! instruments. Out: the file, on standard output or under a name of its own.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::machine::template;
@@ -9,6 +9,8 @@ use model_dsl::source::SourceFile;
 use workshop::begin;
 use workshop::failure::Failure;
 use workshop::load::{self, Loaded};
+use workshop::named::{machine_name, relative};
+use workshop::written::folder;
 
 use super::calibrate::files::setup_to_fill_in;
 use crate::arguments::{New, NewFile};
@@ -20,22 +22,33 @@ pub(crate) fn run(command: &New) -> Result<(), Failure> {
     let file = command.file.as_ref();
     let target = Target { output: command.output.clone(), force: command.force };
     target.check(&file.map(files_read).unwrap_or_default())?;
+    let here = command.output.as_deref().map_or_else(|| PathBuf::from("."), folder);
     let text = match file {
-        Some(file) => text(file)?,
+        Some(file) => text(file, &here)?,
         None => machine(command.topology.as_deref().unwrap_or_default())?,
     };
     target.put(&text)
 }
 
-fn text(file: &NewFile) -> Result<String, Failure> {
+/// The text of the file, which names others from the folder where it will be.
+fn text(file: &NewFile, here: &Path) -> Result<String, Failure> {
+    // What is no file is a name that means the same everywhere.
+    let named = |machine: &str| machine_name(machine, Path::new(""), here);
     match file {
         NewFile::Machine { topology } => machine(topology),
         NewFile::Calibration { machine } => {
-            Ok(begin::calibration(machine, &loaded(machine)?.compiled.equations))
+            Ok(begin::calibration(&named(machine)?, &loaded(machine)?.compiled.equations))
         }
         NewFile::Path { machine } => Ok(begin::path(&loaded(machine)?.compiled.equations)),
-        NewFile::Recording { data, machine } => begin::recording_of(data, machine.as_deref()),
-        NewFile::Setup { files } => Ok(setup_to_fill_in(&files.iter().collect::<Vec<_>>())),
+        NewFile::Recording { data, machine } => {
+            let columns = begin::columns(data)?;
+            let machine = machine.as_deref().map(named).transpose()?;
+            Ok(begin::recording(&relative(here, data)?, &columns, machine.as_deref()))
+        }
+        NewFile::Setup { files } => {
+            let names = files.iter().map(|file| relative(here, file)).collect::<Result<Vec<_>, _>>()?;
+            Ok(setup_to_fill_in(&files.iter().zip(&names).collect::<Vec<_>>()))
+        }
     }
 }
 

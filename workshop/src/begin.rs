@@ -7,4 +7,4 @@ mod recording;
 
 pub use calibration::calibration;
 pub use path::path;
-pub use recording::{columns, recording, recording_of, table_alone};
+pub use recording::{Columns, columns, recording, table_alone};

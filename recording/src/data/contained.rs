@@ -7,7 +7,6 @@ use std::cell::Cell;
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::Once;
 
-use super::super::Recording;
 use super::error::DataError;
 
 thread_local! {
@@ -31,10 +30,7 @@ fn keep_quiet() {
 }
 
 /// Reads a file, whatever is wrong with it. What the reader would print on a panic is not shown.
-pub(super) fn contained(
-    name: &str,
-    read: impl FnOnce() -> Result<Recording, DataError>,
-) -> Result<Recording, DataError> {
+pub(super) fn contained<T>(name: &str, read: impl FnOnce() -> Result<T, DataError>) -> Result<T, DataError> {
     keep_quiet();
     READS.set(true);
     let read = panic::catch_unwind(AssertUnwindSafe(read));

@@ -8,7 +8,7 @@ use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::{ParquetMetaDataReader, RowGroupMetaData};
 use parquet::file::reader::ChunkReader;
-use parquet::schema::types::ColumnDescriptor;
+use parquet::schema::types::{ColumnDescriptor, SchemaDescriptor};
 
 use super::super::{ChannelKind, ChannelPlace, Header, Names, Recording};
 use super::cell::BadCell;
@@ -23,6 +23,21 @@ use super::{MOST_NUMBERS, settle};
 /// How many values are asked for at once.
 const BATCH: usize = 1 << 16;
 
+/// The names of the columns of a file in Parquet.
+pub(super) fn names<R: ChunkReader>(name: &str, file: &R) -> Result<Vec<String>, DataError> {
+    let metadata =
+        ParquetMetaDataReader::new().parse_and_finish(file).map_err(|error| broken(name, &error))?;
+    Ok(names_of(metadata.file_metadata().schema_descr()))
+}
+
+fn names_of(schema: &SchemaDescriptor) -> Vec<String> {
+    schema.columns().iter().map(|column| column.path().parts().join(".")).collect()
+}
+
+fn broken(name: &str, error: &ParquetError) -> DataError {
+    DataError::new(name, format!("it cannot be read: {error}"))
+}
+
 impl Header {
     /// Reads the data from a file in Parquet.
     pub(super) fn read_parquet<R: ChunkReader + 'static>(
@@ -30,13 +45,12 @@ impl Header {
         name: &str,
         file: R,
     ) -> Result<Recording, DataError> {
-        let broken = |error: ParquetError| DataError::new(name, format!("it cannot be read: {error}"));
+        let broken = |error: ParquetError| broken(name, &error);
         self.refuse_form(name)?;
         let metadata = ParquetMetaDataReader::new().parse_and_finish(&file).map_err(broken)?;
         let file = Arc::new(file);
         let schema = metadata.file_metadata().schema_descr();
-        let names: Vec<String> =
-            schema.columns().iter().map(|column| column.path().parts().join(".")).collect();
+        let names = names_of(schema);
         let columns =
             find_columns(self, &names).map_err(|(message, help)| DataError::new(name, message).help(help))?;
         let mut wanted = Vec::new();

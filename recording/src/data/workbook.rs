@@ -8,7 +8,7 @@ use std::io::{self, Read, Seek};
 use calamine::{Reader, Xlsx, XlsxError};
 use zip::ZipArchive;
 
-use super::super::{Header, Recording};
+use super::super::{Form, Header, Recording};
 use super::columns::{Cells, Columns, Width};
 use super::error::DataError;
 use super::layout::{ONE_UNIT, find_columns, notes_of_extra, same_units};
@@ -17,6 +17,20 @@ use super::{MOST_NUMBERS, settle};
 
 /// What a workbook may hold unpacked: a sheet with all rows that there can be, 2^20, and some ten columns.
 const LARGEST: u64 = 1 << 28;
+
+/// The names of the columns of the first sheet.
+pub(super) fn names(name: &str, mut file: impl Read + Seek) -> Result<Vec<String>, DataError> {
+    check_size(name, &mut file)?;
+    let mut book = Xlsx::new(&mut file).map_err(|error| broken(name, &error))?;
+    let sheets = book.sheet_names();
+    let sheet = sheets.first().ok_or_else(|| DataError::new(name, "it has no sheet"))?;
+    let cells = book.worksheet_cells_reader(sheet).map_err(|error| broken(name, &error))?;
+    Rows::new(name, cells, false).names(&Form::default())
+}
+
+fn broken(name: &str, error: &XlsxError) -> DataError {
+    DataError::new(name, format!("it cannot be read: {error}")).help("save the table as `.xlsx` or as CSV")
+}
 
 impl Header {
     /// Reads the data from the first sheet of a workbook, or from the one that the recording file names.
@@ -30,10 +44,7 @@ impl Header {
             return Err(error.help("leave `separator` out of the recording file"));
         }
         check_size(name, &mut file)?;
-        let broken = |error: XlsxError| {
-            DataError::new(name, format!("it cannot be read: {error}"))
-                .help("save the table as `.xlsx` or as CSV")
-        };
+        let broken = |error: XlsxError| broken(name, &error);
         let mut book = Xlsx::new(&mut file).map_err(broken)?;
         let sheet = self.sheet_of(name, &book.sheet_names())?;
         let cells = book.worksheet_cells_reader(&sheet).map_err(broken)?;

@@ -22,7 +22,7 @@ pub(super) fn setup_among(files: &[PathBuf]) -> Result<&Path, Failure> {
             "error: one set-up makes one calibration\nhelp: name all files under its `measurements`"
                 .to_owned(),
         )),
-        (_, data) => Err(Failure::wrong(format!("{WHY}\n\n{}", indented(&setup_to_fill_in(data))))),
+        (_, data) => Err(Failure::wrong(format!("{WHY}\n\n{}", indented(&beside(data))))),
     }
 }
 
@@ -43,37 +43,41 @@ fn indented(text: &str) -> String {
     text.lines().map(|line| format!("    {line}\n")).collect()
 }
 
-/// A set-up of these files, to be filled in.
-pub(in crate::commands) fn setup_to_fill_in(data: &[&PathBuf]) -> String {
+/// A set-up beside these files.
+fn beside(data: &[&PathBuf]) -> String {
+    let name = |path: &&PathBuf| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    let names: Vec<String> = data.iter().map(name).collect();
+    setup_to_fill_in(&data.iter().copied().zip(&names).collect::<Vec<_>>())
+}
+
+/// A set-up of these files, to be filled in; each with the name by which the set-up finds it.
+pub(in crate::commands) fn setup_to_fill_in(data: &[(&PathBuf, &String)]) -> String {
     let mut text = "setup: 1\nmachine: XYFZ\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}\n".to_owned();
     let text_of = |path: &Path| load::read(path).map(|file| file.text().to_owned()).unwrap_or_default();
-    let is_volumetric = |path: &&&PathBuf| volumetric_form(&text_of(path)).is_some();
-    let (volumetric, others): (Vec<&&PathBuf>, Vec<&&PathBuf>) = data.iter().partition(is_volumetric);
-    let form = |path: &&PathBuf| saved_form(&text_of(path));
-    let (saved, measured): (Vec<&&PathBuf>, Vec<&&PathBuf>) =
-        others.into_iter().partition(|path| form(path).is_some());
-    let name = |path: &Path| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-    for path in volumetric {
-        text += &format!("volumetric: {}\n", name(path));
+    let is_volumetric = |(path, _): &&(&PathBuf, &String)| volumetric_form(&text_of(path)).is_some();
+    let (volumetric, others): (Vec<_>, Vec<_>) = data.iter().partition(is_volumetric);
+    let form = |path: &Path| saved_form(&text_of(path));
+    let (saved, measured): (Vec<_>, Vec<_>) = others.into_iter().partition(|(path, _)| form(path).is_some());
+    for (_, name) in volumetric {
+        text += &format!("volumetric: {name}\n");
     }
     if !saved.is_empty() {
         text += "corrections:\n";
     }
-    for path in saved {
+    for (path, name) in saved {
         let more = match form(path) {
             Some(SavedForm::Screw) => ", axis: X, type: 1",
             Some(SavedForm::Codes) => ", x: [10 mm, 210 mm], y: [10 mm, 210 mm]",
             _ => "",
         };
-        text += &format!("  - {{data: {}{more}}}\n", name(path));
+        text += &format!("  - {{data: {name}{more}}}\n");
     }
     if !measured.is_empty() {
         text += "measurements:\n";
     }
-    for path in measured {
+    for (_, name) in measured {
         text += &format!(
-            "  - {{motion: EXX, data: {}, targets: {{origin: 0 mm, sign: +1}}, deviations: {{sign: +1}}}}\n",
-            name(path)
+            "  - {{motion: EXX, data: {name}, targets: {{origin: 0 mm, sign: +1}}, deviations: {{sign: +1}}}}\n"
         );
     }
     text

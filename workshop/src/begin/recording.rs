@@ -60,49 +60,67 @@ const UNITS: [&str; 18] = [
     "degC", "K", "N",
 ];
 
-/// The names of the columns of a table, from its first line; `None` where that is no line of names.
-#[must_use]
-pub fn columns(first_line: &str) -> Option<Vec<String>> {
-    let line = first_line.trim_start_matches('\u{feff}').trim().trim_start_matches('#').trim();
-    let separator = [',', ';', '\t'].into_iter().find(|separator| line.contains(*separator))?;
-    let names = line.split(separator).map(|name| name.trim().trim_matches('"').to_owned());
-    let names: Vec<String> = names.collect();
-    let is_name = |name: &String| {
-        name.parse::<f64>().is_err()
-            && name.chars().any(char::is_alphabetic)
-            && !name.contains([':', '{', '}'])
-    };
-    names.iter().any(is_name).then_some(names)
+/// The columns of a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Columns {
+    /// Their names.
+    pub names: Vec<String>,
+    /// The line in which they stand, where it is not the first that is no comment.
+    line: Option<usize>,
 }
 
-/// A commented recording file for the table in a file.
+/// The columns of the table in a file: of Parquet and workbooks as they say, of a text the last line above the first row of numbers.
 ///
 /// # Errors
 ///
-/// A file that cannot be read, and one whose first line has no names of columns.
-pub fn recording_of(data: &Path, machine: Option<&str>) -> Result<String, Failure> {
+/// A file that cannot be read, and one in which no names stand above numbers.
+pub fn columns(data: &Path) -> Result<Columns, Failure> {
+    if let Some(names) = ::recording::column_names(data).map_err(|error| Failure::wrong(error.to_string()))? {
+        return Ok(Columns { names, line: None });
+    }
     let head = load::head_of_file(data)?.map_or_else(|| load::bytes(data), Ok)?;
-    let head = String::from_utf8_lossy(&head);
-    let name = data.file_name().unwrap_or(data.as_os_str()).to_string_lossy();
-    let named = head.lines().take(MOST_LINES).find_map(columns);
-    let named = named.ok_or_else(|| {
+    let text = String::from_utf8_lossy(&head);
+    of_text(&text).ok_or_else(|| {
         Failure::no(format!(
-            "error: {} has no row with names of columns, separated by commas, semicolons or tabs\n\
-             help: write names above the numbers, such as `t,x_cmd,y_cmd`",
+            "error: {} has no names of columns above its numbers, separated by commas, semicolons or tabs\n\
+             help: write them above the first row of numbers, such as `t,x_cmd,y_cmd`, without a `#`",
             data.display()
         ))
-    })?;
-    Ok(recording(&name, &named, machine))
+    })
+}
+
+/// The columns of a text; nothing where no names stand above a row of numbers.
+fn of_text(text: &str) -> Option<Columns> {
+    let text = text.trim_start_matches('\u{feff}');
+    let lines = text.lines().enumerate().take(MOST_LINES);
+    let lines: Vec<(usize, &str)> = lines.filter(|(_, line)| !line.trim().is_empty()).collect();
+    let data = lines.iter().position(|(_, line)| is_of_numbers(line))?;
+    let above = lines.get(..data)?.iter().rev().find(|(_, line)| !line.starts_with("#unit"));
+    let (number, header) = *above.filter(|(_, line)| !line.starts_with('#'))?;
+    let separator = separator_of(lines.get(data)?.1)?;
+    let names: Vec<String> =
+        header.split(separator).map(|name| name.trim().trim_matches('"').to_owned()).collect();
+    let first = lines.iter().find(|(_, line)| !line.starts_with('#'))?.0;
+    Some(Columns { names, line: (first != number).then(|| number.saturating_add(1)) })
+}
+
+fn separator_of(line: &str) -> Option<char> {
+    [',', ';', '\t'].into_iter().find(|separator| line.contains(*separator))
+}
+
+/// Whether most cells of a line are numbers. Dates and words may stand among them.
+fn is_of_numbers(line: &str) -> bool {
+    let Some(separator) = separator_of(line).filter(|_| !line.starts_with('#')) else { return false };
+    let cells: Vec<&str> = line.split(separator).map(str::trim).filter(|cell| !cell.is_empty()).collect();
+    let numbers = cells.iter().filter(|cell| cell.parse::<f64>().is_ok()).count();
+    numbers > 0 && numbers.saturating_mul(2) >= cells.len()
 }
 
 /// Why a table makes no recording by itself, with a recording file for its columns; `None` where the file is no table.
 #[must_use]
 pub fn table_alone(data: &Path) -> Option<Failure> {
-    let head = load::head_of_file(data).ok()??;
-    let head = String::from_utf8_lossy(&head);
-    let first = head.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#'))?;
     let name = data.file_name().unwrap_or(data.as_os_str()).to_string_lossy();
-    let text = recording(&name, &columns(first)?, None);
+    let text = recording(&name, &columns(data).ok()?, None);
     let text: String = text.lines().map(|line| format!("    {line}\n")).collect();
     Some(Failure::wrong(format!(
         "error: {} is a table, and does not say what its columns mean\n\
@@ -113,8 +131,12 @@ pub fn table_alone(data: &Path) -> Option<Failure> {
 
 /// A commented recording file for a table with these columns; `machine` names the machine, where it is known.
 #[must_use]
-pub fn recording(data: &str, columns: &[String], machine: Option<&str>) -> String {
-    let guesses: Vec<Option<Guess>> = guessed(columns);
+pub fn recording(data: &str, columns: &Columns, machine: Option<&str>) -> String {
+    let guesses: Vec<Option<Guess>> = guessed(&columns.names);
+    let data = match columns.line {
+        Some(line) => format!("{{file: {}, header: {line}}}", quoted(data)),
+        None => quoted(data),
+    };
     let has = |kind: &str| guesses.iter().flatten().any(|guess| guess.channel.starts_with(kind));
     let instrument = if has("deviation") { "ballbar" } else { "position" };
     let mut text = format!(
@@ -124,12 +146,11 @@ pub fn recording(data: &str, columns: &[String], machine: Option<&str>) -> Strin
          machine: {}\n\
          # calibration: mill.yaml   # what is known of the machine already\n\
          instrument: {instrument}   # position, ballbar, linear, straightness, angular or probe\n\
-         data: {}\n\
+         data: {data}\n\
          channels:\n",
-        machine.unwrap_or("XYFZ   # a machine file, a shipped machine or a topology word"),
-        quoted(data)
+        machine.unwrap_or("XYFZ   # a machine file, a shipped machine or a topology word")
     );
-    for (column, guess) in columns.iter().zip(&guesses) {
+    for (column, guess) in columns.names.iter().zip(&guesses) {
         text += &channel(column, guess.as_ref());
     }
     if instrument == "ballbar" {
@@ -236,7 +257,8 @@ mod tests {
     use crate::load;
 
     fn channels(first_line: &str) -> Vec<(String, String)> {
-        let guesses = guessed(&columns(first_line).unwrap());
+        let names: Vec<String> = first_line.split(';').map(str::to_owned).collect();
+        let guesses = guessed(&names);
         guesses.into_iter().flatten().map(|guess| (guess.channel, guess.unit)).collect()
     }
 
@@ -259,9 +281,15 @@ mod tests {
     }
 
     #[test]
-    fn numbers_and_yaml_are_no_names() {
-        for line in ["1,2,3", "recording: 1", "", "channels: {a: 1, b: 2}", "just words"] {
-            assert_eq!(columns(line), None, "{line}");
+    fn names_stand_above_the_first_row_of_numbers() {
+        let names = |text: &str| of_text(text).map(|columns| (columns.names.join("|"), columns.line));
+        assert_eq!(names("t,x\n0,1\n"), Some(("t|x".to_owned(), None)));
+        assert_eq!(names("# a program\n\nt;x\n#unit;s;mm\n0;1\n"), Some(("t|x".to_owned(), None)));
+        assert_eq!(names("Spindle test, machine 3\nt,x\n0,1\n"), Some(("t|x".to_owned(), Some(2))));
+        assert_eq!(names("when\tx\n2026-07-09T10:00:00\t1\n"), Some(("when|x".to_owned(), None)));
+        for none in ["1,2\n3,4\n", "# t,x\n0,1\n", "recording: 1\ntitle: a, b\n", "", "just words, and more"]
+        {
+            assert_eq!(names(none), None, "{none}");
         }
     }
 
@@ -269,7 +297,9 @@ mod tests {
     fn a_ballbar_and_positions_are_read_as_they_are() {
         let equations = load::machine("XYFZ", None, &()).ok().unwrap().compiled.equations;
         for line in ["time,run,x_cmd,y_cmd,dev_um,'odd'", "t,x,measured x", "Zeit [s]\tX soll\tX ist\ttrue"] {
-            let text = recording("my data.csv", &columns(line).unwrap(), None);
+            let numbers: String =
+                line.chars().map(|letter| if ",\t".contains(letter) { letter } else { '1' }).collect();
+            let text = recording("my data.csv", &of_text(&format!("{line}\n{numbers}\n")).unwrap(), None);
             let source = SourceFile::new("recording.yaml", text);
             let mut diagnostics = Diagnostics::new();
             let root = yaml::read(&source, &mut diagnostics).unwrap();

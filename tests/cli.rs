@@ -638,3 +638,24 @@ fn new_recordings_of_other_formats_have_the_names_that_these_say() {
     let run = abbe(&["new", "recording", &written.join("h5py.h5").display().to_string()], "");
     assert!(run.status == 2 && run.out.is_empty() && run.err.contains("HDF5"), "{}", run.err);
 }
+
+#[test]
+fn no_result_is_written_over_what_it_was_read_from() {
+    let folder = std::env::temp_dir().join(format!("abbe-over-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    let at = |name: &str| folder.join(name).display().to_string();
+    fs::write(folder.join("x.csv"), "target,deviation\n0,0\n100,1\n200,3\n").unwrap();
+    let setup = "setup: 1\nmachine: FX\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\nmeasurements:\n  - {motion: EXX, data: x.csv, \
+                 targets: {unit: mm, origin: 0 mm, sign: +1}, deviations: {unit: um, sign: +1}}\n";
+    fs::write(folder.join("setup.yaml"), setup).unwrap();
+    let before = fs::read_to_string(folder.join("x.csv")).unwrap();
+    // By its name, and by a link that leads to it.
+    #[cfg(unix)]
+    std::os::unix::fs::symlink(folder.join("x.csv"), folder.join("link.txt")).unwrap();
+    for target in ["x.csv", "link.txt"] {
+        let run = abbe(&["evaluate", &at("setup.yaml"), "--output", &at(target), "--force"], "");
+        assert!(run.status == 2 && run.err.contains("one of the other files of this command"), "{}", run.err);
+        assert_eq!(fs::read_to_string(folder.join("x.csv")).unwrap(), before);
+    }
+    fs::remove_dir_all(folder).unwrap();
+}

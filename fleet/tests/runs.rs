@@ -34,7 +34,7 @@ fn record(folder: &Path, name: &str, lost_motion: f64) {
     }
     fs::write(folder.join(format!("{name}.csv")), table).unwrap();
     let text = format!(
-        "recording: 1\nmachine: FX\ndate: {name}\ninstrument: position\ndata: {name}.csv\nchannels: {{time: {{column: t, unit: s}}, \
+        "recording: 1\nmachine: FX\ndate: {name}\ninstrument: position\ndata: {{file: {name}.csv}}\nchannels: {{time: {{column: t, unit: s}}, \
          command.x: {{column: xc, unit: mm}}, measured.x: {{column: xm, unit: mm}}}}\n"
     );
     fs::write(folder.join(format!("{name}.yaml")), text).unwrap();

@@ -79,6 +79,26 @@ fn a_reader_that_goes_away() {
     }
 }
 
+/// What a command says by its status, and what else it writes, does not depend on who reads its report.
+#[test]
+fn a_reader_that_goes_away_hides_nothing() {
+    let folder = folder("closed-status");
+    stage(&folder);
+    let verdicts = "adequate,undecided,unexplained,left-out-physics,not-repeatable";
+    for (arguments, expected) in [
+        (&["diagnose", "@/recording.yaml", "--fail-on", verdicts][..], 1),
+        (&["diagnose", "@/recording.yaml", "--write-calibration", "/proc/new.yaml"], 2),
+        (&["calibrate", "@/set-up.yaml", "--output", "/proc/new.yaml"], 2),
+    ] {
+        let mut command = program();
+        command.args(placed(arguments, &folder)).stdin(Stdio::null());
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(status(&output), expected, "{arguments:?}: {}", text(&output.stderr));
+    }
+}
+
 /// A report that could not be written was not made: no script may take it for one.
 #[test]
 fn an_output_that_is_full() {

@@ -166,3 +166,26 @@ impl fmt::Display for Stamp {
         write!(f, "{}", part.strip_prefix('0').unwrap_or_default())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Stamp;
+
+    /// The stamp of a text of digits.
+    fn stamp(text: &str) -> Stamp {
+        Stamp::digits(text, text.parse().unwrap())
+    }
+
+    #[test]
+    fn stamps_of_few_digits_and_of_many_lose_nothing_beside_each_other() {
+        let first = stamp("1785453317.5");
+        // One has as many digits as a number in floating point holds, the others more.
+        for (text, later) in
+            [("1785453317.500001", 1e-6), ("1785453317.500002", 2e-6), ("1785453318.25", 0.75)]
+        {
+            assert!((stamp(text).since(first) - later).abs() < 1e-12, "{text}");
+            assert!((first.since(stamp(text)) + later).abs() < 1e-12, "{text}");
+        }
+        assert_eq!(stamp("4.221").since(stamp("2.163")), 4.221 - 2.163);
+    }
+}

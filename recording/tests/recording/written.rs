@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use recording::{DataError, Recording};
+use recording::{DataError, Place, Recording};
 
 use crate::common::header;
 
@@ -177,4 +177,29 @@ fn other_formats_are_named() {
         assert!(error.help.unwrap().contains(way) && shown.contains("to_parquet"), "{shown}");
         assert!(shown.chars().all(|letter| letter == '\n' || !letter.is_control()), "{shown:?}");
     }
+}
+
+/// `openpyxl-clock.xlsx`: a row of units, in which x is in um; a row without a time of day; a duration of 30 hours and some seconds.
+fn clock(time: &str, unit: &str) -> Result<Recording, DataError> {
+    let channels = format!("time: {time}, measured.x: {{column: x, unit: {unit}}}");
+    let text = text("clock.xlsx", &channels).replace("run: {column: n}, ", "");
+    header(&text).read_data(&path("openpyxl-clock.xlsx"))
+}
+
+#[test]
+fn a_sheet_with_units_is_held_to_them() {
+    let read = clock("{column: ran, unit: date}", "um").unwrap();
+    // A sheet holds days, of which a number in floating point is exact to 2e-11 s.
+    let mut seconds = read.time.iter().zip([0.0, 1.0, 2.0]);
+    assert!(seconds.all(|(time, second)| (time - second).abs() < 1e-10), "{:?}", read.time);
+    assert!((read.measured[0].as_deref().unwrap()[2] - 0.5e-3).abs() < 1e-15);
+    let error = clock("{column: ran, unit: date}", "mm").unwrap_err();
+    assert_eq!(error.place, Some(Place::Cell { row: 2, column: 5 }));
+    assert!(error.message.contains("`um` here and in `mm`"), "{}", error.message);
+}
+
+#[test]
+fn a_date_without_its_time_of_day_is_none() {
+    let error = clock("{column: [day, clock], unit: date}", "um").unwrap_err();
+    assert_eq!(error.place, Some(Place::Cell { row: 4, column: 1 }), "{error}");
 }

@@ -226,6 +226,11 @@ fn nothing_that_is_read_is_written_over() {
         let refused = check_target(&folder.join(name), &inputs).err().unwrap_or_else(|| panic!("{name}"));
         assert!(words(&refused).contains(why), "{name}");
     }
+    // A mapping says besides how the table is written.
+    let text =
+        fs::read_to_string(folder.join("r.yaml")).unwrap().replace("data: d.csv", "data: {file: d.csv}");
+    let named = Files::named_in(&SourceFile::new("r.yaml", text), &folder.join("r.yaml"));
+    assert!(named.all(None).contains(&folder.join("d.csv")));
     fs::write(folder.join("old.yaml"), "").unwrap();
     for name in ["new.yaml", "old.yaml"] {
         assert!(check_target(&folder.join(name), &inputs).is_ok(), "{name}");

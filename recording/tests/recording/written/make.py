@@ -99,3 +99,15 @@ mdf = asammdf.MDF()
 mdf.append(asammdf.Signal(numpy.array(t), numpy.array(t), name="t"))
 mdf.save(folder / "asammdf.mf4", overwrite=True)
 mdf.close()
+
+# A row of units, a date and a time of day in two cells, a time without its date, and a time that has been running for more than a day.
+book = openpyxl.Workbook()
+sheet = book.active
+sheet.append(["day", "clock", "ran", "x"])
+sheet.append(["#unit", None, None, None, "um"])
+for row in range(3):
+    clock = None if row == 1 else datetime.time(10, 0, row)
+    sheet.append([datetime.date(2026, 7, 9), clock, datetime.timedelta(hours=30, seconds=row), 0.25 * row])
+for cells in sheet.iter_rows(min_row=3, min_col=3, max_col=3):
+    cells[0].number_format = "[h]:mm:ss"
+book.save(folder / "openpyxl-clock.xlsx")

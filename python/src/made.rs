@@ -222,8 +222,8 @@ pub(crate) fn update(
     let one = calibration.get();
     let (known, path) = (one.calibrated(), one.path());
     let output = output.map(file::path).transpose()?;
-    let read: Vec<PathBuf> =
-        all.iter().map(|one| one.get().text_file().path.clone()).chain([path.to_owned()]).collect();
+    let paths: Vec<PathBuf> = all.iter().map(|one| one.get().text_file().path.clone()).collect();
+    let read = updated::files((known, path), parts.iter().zip(paths.iter().map(PathBuf::as_path)));
     let (report, calibration) = working(py, |heard| {
         updated::check_machine((known, path), &parts, heard)?;
         if let Some(target) = &output {

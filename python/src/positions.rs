@@ -78,7 +78,7 @@ impl Rows {
         let error = |(row, place): (usize, usize)| match directions.get(place) {
             Some(direction) => answers.outcomes.get(row).and_then(|outcome| outcome.error.get(*direction)),
             None => {
-                answers.leans.get(row).and_then(|lean| lean.without.get(place.checked_sub(directions.len())?))
+                answers.leans.get(row).and_then(|lean| lean.get(place.checked_sub(directions.len())?))
             }
         };
         self.array(py, Array2::from_shape_fn(shape, |at| error(at).copied().unwrap_or(f64::NAN)))

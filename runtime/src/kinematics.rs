@@ -5,6 +5,7 @@
 //! [`Compensator`](crate::Compensator).
 
 use crate::Lanes;
+use crate::sample::number;
 
 /// The sines and the cosines of the rotary axes that the equations read, in the order of the axes; zero beyond them. ISO 841
 /// names three rotary axes: A, B and C.
@@ -28,6 +29,21 @@ pub struct Share {
     pub of: usize,
     /// How far the motor goes for each mm of the axis; or what its own travel is, mm, for each mm or rad of the error motion.
     pub weight: f64,
+}
+
+/// Puts motors where the axes that they [follow](Kinematics::following) stand.
+pub fn place_motors(following: &[Share], position: &mut [f64]) {
+    for share in following {
+        if let Some(place) = position.get_mut(share.motor) {
+            *place = 0.0;
+        }
+    }
+    for share in following {
+        let of = number(position, share.of);
+        if let Some(place) = position.get_mut(share.motor) {
+            *place += share.weight * of;
+        }
+    }
 }
 
 /// The compiled equations of one machine: what the topology says, with the machine's constants already in it.

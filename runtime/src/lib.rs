@@ -134,7 +134,7 @@ pub use compensator::{
 pub use direction::{Direction, DirectionTracker};
 pub use exchanged::Exchanged;
 pub use factor::{Factor, Within};
-pub use kinematics::{Kinematics, Share, Sines, Turning};
+pub use kinematics::{Kinematics, Share, Sines, Turning, place_motors};
 pub use lanes::Lanes;
 pub use motion::{ErrorMotion, ErrorMotions, MotionReader};
 pub use real::Real;

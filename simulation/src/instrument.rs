@@ -58,6 +58,30 @@ pub enum Instrument {
     },
 }
 
+impl Instrument {
+    /// A bar about a declared centre (mm, part frame), without faults.
+    pub fn ballbar(center: [f64; 3], radius: f64) -> Self {
+        Self::Ballbar { center: Some(center), radius: Some(radius), eccentricity: [0.0; 3], offset: 0.0 }
+    }
+
+    /// A beam in a direction, without faults, along the axis that moves. Along a diagonal, where none is named, it reads what a probe in that
+    /// direction reads.
+    pub fn linear(axis: Option<usize>, direction: [f64; 3]) -> Self {
+        match axis {
+            Some(axis) => Self::Linear { axis, direction, cosine: 0.0 },
+            None => Self::Probe { normal: Normal::Fixed(direction) },
+        }
+    }
+
+    /// A reading in a direction across the axis that moves; as a probe where none is named.
+    pub fn straightness(axis: Option<usize>, direction: [f64; 3]) -> Self {
+        match axis {
+            Some(axis) => Self::Straightness { axis, direction },
+            None => Self::Probe { normal: Normal::Fixed(direction) },
+        }
+    }
+}
+
 /// Which way a surface looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Normal {

@@ -6,10 +6,9 @@ use std::path::{Path, PathBuf};
 use update::{Method, Options, Update, report};
 use workshop::calibrated::{self, Calibrated};
 use workshop::failure::Failure;
-use workshop::named::Files;
-use workshop::recorded::{self, Recorded};
+use workshop::recorded;
 use workshop::updated;
-use workshop::written::{self, folder};
+use workshop::written;
 
 use crate::arguments::{Update as Arguments, UpdateFormat, UpdateMethod};
 use crate::output::{Person, print};
@@ -24,7 +23,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let person = Person::new(arguments.quiet);
     updated::check_machine((&known, &arguments.calibration), &parts, &person)?;
     if let Some(target) = &arguments.output {
-        check_target(target, arguments, &known, &parts)?;
+        let measurements = parts.iter().zip(arguments.measurements.iter().map(PathBuf::as_path));
+        let read = updated::files((&known, &arguments.calibration), measurements);
+        written::check_folder(target, "--output")?;
+        written::check_new(target, ("--output", "calibration.yaml"), &read, arguments.force)?;
     }
     let updated = updated::update(&known, &parts, &options(arguments), &person)?;
     // The report is shown also where the file cannot be written, the file is written also where the reader is gone.
@@ -48,36 +50,6 @@ fn options(arguments: &Arguments) -> Options {
         datum: arguments.datum.displaced,
         compensated: arguments.compensated,
     }
-}
-
-/// Refuses a place that cannot be written to, before any work is done.
-fn check_target(
-    target: &Path,
-    arguments: &Arguments,
-    known: &Calibrated,
-    parts: &[Recorded],
-) -> Result<(), Failure> {
-    let wrong = |what: &str, help: &str| {
-        Err(Failure::wrong(format!("error: {} {what}\nhelp: {help}", target.display())))
-    };
-    if !folder(target).is_dir() {
-        return wrong("cannot be written: there is no such folder", "--output takes the name of a file");
-    }
-    if target.file_name().is_none() || target.is_dir() {
-        return wrong("is a folder", "--output takes the name of a file");
-    }
-    let machine = known.calibration.machine.value.as_str();
-    let parts = parts.iter().zip(&arguments.measurements);
-    let mut read: Vec<PathBuf> = parts.flat_map(|(part, path)| Files::of(part, path).all(None)).collect();
-    read.extend([arguments.calibration.clone(), arguments.calibration.with_file_name(machine)]);
-    let same = |file: PathBuf| file.canonicalize().ok().zip(target.canonicalize().ok());
-    if read.into_iter().filter_map(same).any(|(file, target)| file == target) {
-        return wrong("is one of the files that the update is read from", "--output takes another name");
-    }
-    if target.exists() && !arguments.force {
-        return wrong("is there already", "--output takes another place, --force replaces it");
-    }
-    Ok(())
 }
 
 /// Writes the new calibration, its machine file named from its own folder.

@@ -1,7 +1,7 @@
 //! The coefficients of a calibration, changed to what measured parts show. In: a calibration, recordings of parts. Out: what was changed,
 //! and the new calibration file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use model_dsl::calibration;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
@@ -10,7 +10,7 @@ use update::{Inputs, Options, Update, UpdateError};
 
 use crate::calibrated::Calibrated;
 use crate::failure::Failure;
-use crate::named::machine_name;
+use crate::named::{Files, machine_name};
 use crate::recorded::Recorded;
 use crate::told::Listener;
 use crate::written::{comment, folder};
@@ -48,6 +48,16 @@ pub fn datum(text: &str) -> Result<Datum, String> {
         }
     }
     Ok(Datum { displaced: free, turned: false })
+}
+
+/// All files that an update is read from: the calibration with its machine, and the recordings with what they name.
+pub fn files<'p>(
+    (known, calibration): (&Calibrated, &Path),
+    parts: impl IntoIterator<Item = (&'p Recorded, &'p Path)>,
+) -> Vec<PathBuf> {
+    let parts = parts.into_iter().flat_map(|(part, path)| Files::of(part, path).all(None));
+    let machine = calibration.with_file_name(&known.calibration.machine.value);
+    parts.chain([calibration.to_owned(), machine]).collect()
 }
 
 /// Updates a calibration from recordings of parts of its machine, which are [checked](check_machine) already.

@@ -2,7 +2,8 @@
 //! pose, without what changes with time, temperature, velocity or load; and what those are, by name.
 
 use abbe_runtime::{
-    Compensator, Direction, ErrorMotion, Kinematics, Refusal, Sample, Term, TermState, Work, states_needed,
+    Compensator, Direction, ErrorMotion, Kinematics, Refusal, Sample, Term, TermState, Work, place_motors,
+    states_needed,
 };
 use model_dsl::calibration::vocabulary::State;
 use model_dsl::calibration::{CalibratedTerm, Calibration, CurveValues};
@@ -35,18 +36,7 @@ impl Pose {
     /// The pose with motors where their axes put them.
     fn with_motors(&self, machine: &Interpreter) -> Self {
         let mut placed = self.clone();
-        let following = machine.following();
-        for share in following {
-            if let Some(position) = placed.position.get_mut(share.motor) {
-                *position = 0.0;
-            }
-        }
-        for share in following {
-            let axis = self.position.get(share.of).copied().unwrap_or(f64::NAN);
-            if let Some(position) = placed.position.get_mut(share.motor) {
-                *position += share.weight * axis;
-            }
-        }
+        place_motors(machine.following(), &mut placed.position);
         placed
     }
 

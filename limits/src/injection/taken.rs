@@ -3,7 +3,7 @@
 
 use model_dsl::calibration::MachineNames;
 use recording::{AxisChannels, Instrument as Recorder, Named, Recording};
-use simulation::{Column, Commands, Instrument, Normal};
+use simulation::{Column, Commands, Instrument};
 
 use crate::injection::columns::{difference, filled, rms, straightened};
 use crate::injection::effect::Path;
@@ -61,20 +61,9 @@ pub fn column_of(recording: &mut Recording, outlet: Outlet) -> Option<&mut Vec<f
 pub fn instrument(recording: &Recording, names: &MachineNames) -> Result<(Instrument, Vec<Outlet>), String> {
     let instrument = match &recording.instrument {
         Recorder::Position => return positions(recording, names),
-        Recorder::Ballbar { center, radius } => Instrument::Ballbar {
-            center: Some(*center),
-            radius: Some(*radius),
-            eccentricity: [0.0; 3],
-            offset: 0.0,
-        },
-        Recorder::Linear(line) => match line.axis {
-            Some(axis) => Instrument::Linear { axis, direction: line.direction, cosine: 0.0 },
-            None => Instrument::Probe { normal: Normal::Fixed(line.direction) },
-        },
-        Recorder::Straightness(line) => match line.axis {
-            Some(axis) => Instrument::Straightness { axis, direction: line.direction },
-            None => Instrument::Probe { normal: Normal::Fixed(line.direction) },
-        },
+        Recorder::Ballbar { center, radius } => Instrument::ballbar(*center, *radius),
+        Recorder::Linear(line) => Instrument::linear(line.axis, line.direction),
+        Recorder::Straightness(line) => Instrument::straightness(line.axis, line.direction),
         Recorder::Angular { axis, about } => Instrument::Angular { axis: *axis, about: *about },
         Recorder::Probe => return Err("a probe's readings cannot be made again".to_owned()),
     };
@@ -118,10 +107,8 @@ pub fn commands(recording: &Recording) -> Commands {
         unit: named.unit.clone(),
         values: filled(&named.values),
     };
-    let position = |axis: &AxisChannels| {
-        let known = axis.command.as_ref().or(axis.actual.as_ref()).or(axis.measured.as_ref());
-        known.map_or_else(|| vec![0.0; recording.time.len()], |known| filled(known))
-    };
+    let position =
+        |axis: &AxisChannels| axis.position().map_or_else(|| vec![0.0; recording.time.len()], filled);
     Commands {
         time: recording.time.clone(),
         run: recording.run.clone(),

@@ -1,12 +1,12 @@
 //! The error at a place. In: a compensator and a place. Out: the error there, of a machine that came forward and stands.
 
 use abbe_runtime::{
-    Compensator, Direction, ErrorMotion, Kinematics, Sample, Share, TermState, Work, states_needed,
+    Compensator, Direction, ErrorMotion, Kinematics, Sample, Share, TermState, Work, place_motors,
+    states_needed,
 };
 use model_dsl::calibration::SensorReadings;
 
 use super::Leaning;
-use super::state::place_motors;
 use super::table::Wanted;
 use crate::calibrated::Calibrated;
 use crate::failure::Failure;

@@ -3,7 +3,7 @@
 
 use std::iter;
 
-use abbe_runtime::{Direction, DirectionTracker, Sample, Share};
+use abbe_runtime::{Direction, DirectionTracker, Sample, Share, place_motors};
 use model_dsl::calibration::{Calibration, SensorReadings};
 
 /// The numbers of a row: mm, rad, s, degC.
@@ -133,20 +133,5 @@ impl<'s> State<'s> {
         }
         let all = self.sensors.update(|index| self.inputs.get(index).copied().unwrap_or(f64::NAN));
         self.temperature.copy_from_slice(all);
-    }
-}
-
-/// Puts motors where the axes that they follow stand.
-pub(super) fn place_motors(motors: &[Share], position: &mut [f64]) {
-    for share in motors {
-        if let Some(slot) = position.get_mut(share.motor) {
-            *slot = 0.0;
-        }
-    }
-    for share in motors {
-        let of = position.get(share.of).copied().unwrap_or_default();
-        if let Some(slot) = position.get_mut(share.motor) {
-            *slot += share.weight * of;
-        }
     }
 }

@@ -12,7 +12,7 @@ use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
 use rayon::prelude::*;
 
-use super::{Lean, Leaning, Row, State, timed};
+use super::{Leaning, Row, State, timed};
 use crate::calibrated::Calibrated;
 use crate::failure::Failure;
 
@@ -64,8 +64,8 @@ pub struct Answers {
     pub commands: Vec<Vec<f64>>,
     /// The errors, with them and without.
     pub outcomes: Vec<Outcome>,
-    /// The error of the tool's direction; empty where it is not derived.
-    pub leans: Vec<Lean>,
+    /// The error of the tool's direction without compensation, rad; empty where it is not derived.
+    pub leans: Vec<[f64; 3]>,
     /// What was left out, a sentence each.
     pub warnings: Vec<String>,
 }
@@ -208,7 +208,7 @@ impl Answering<'_> {
     }
 
     /// The error of the tool's direction in each row of a piece.
-    fn leans(&self, batch: &Batch<'_>, rows: usize, start: &[TermState]) -> Vec<Lean> {
+    fn leans(&self, batch: &Batch<'_>, rows: usize, start: &[TermState]) -> Vec<[f64; 3]> {
         let Some(leaning) = Leaning::new(self.equations(), &self.machine, self.motions) else {
             return Vec::new();
         };
@@ -218,14 +218,15 @@ impl Answering<'_> {
         };
         let each = (0..rows).map(|row| {
             let directions = batch.direction.iter().filter_map(|column| column.get(row)).copied();
-            leaning.take(&Sample {
+            let sample = Sample {
                 position: &at(batch.position, row),
                 travel: &at(batch.travel, row),
                 direction: &directions.collect::<Vec<_>>(),
                 velocity: &at(batch.velocity, row),
                 temperature: &at(batch.temperature, row),
                 time_step: batch.time_step.get(row).copied().unwrap_or_default(),
-            })
+            };
+            leaning.take(&sample).without
         });
         each.collect()
     }
@@ -354,11 +355,7 @@ errors:
             let commands: Vec<f64> = answers.commands.iter().map(|column| column[number]).collect();
             assert_eq!(out, commands, "row {number}");
             if let Some(leaning) = &mut leaning {
-                assert_eq!(
-                    leaning.take(&state.sample()).without,
-                    answers.leans[number].without,
-                    "row {number}"
-                );
+                assert_eq!(leaning.take(&state.sample()).without, answers.leans[number], "row {number}");
             }
         }
     }

@@ -48,21 +48,9 @@ fn column(named: &Named) -> Column {
 fn instrument(recording: &Recording) -> Result<Instrument, String> {
     Ok(match &recording.instrument {
         Recorder::Position => position_channels(recording),
-        Recorder::Ballbar { center, radius } => Instrument::Ballbar {
-            center: Some(*center),
-            radius: Some(*radius),
-            eccentricity: [0.0; 3],
-            offset: 0.0,
-        },
-        Recorder::Linear(line) => match line.axis {
-            Some(axis) => Instrument::Linear { axis, direction: line.direction, cosine: 0.0 },
-            // Along a diagonal it reads what a probe in that direction reads.
-            None => Instrument::Probe { normal: Normal::Fixed(line.direction) },
-        },
-        Recorder::Straightness(line) => match line.axis {
-            Some(axis) => Instrument::Straightness { axis, direction: line.direction },
-            None => Instrument::Probe { normal: Normal::Fixed(line.direction) },
-        },
+        Recorder::Ballbar { center, radius } => Instrument::ballbar(*center, *radius),
+        Recorder::Linear(line) => Instrument::linear(line.axis, line.direction),
+        Recorder::Straightness(line) => Instrument::straightness(line.axis, line.direction),
         Recorder::Angular { axis, about } => Instrument::Angular { axis: *axis, about: *about },
         Recorder::Probe => Instrument::Probe { normal: Normal::Fixed(one_normal(recording)?) },
     })

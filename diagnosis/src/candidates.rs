@@ -165,8 +165,8 @@ fn along(study: &Study<'_>, motion: usize, axis: usize, travel: &Travel, grids: 
     }
     let (center, scale) = ((travel.low + travel.high) / 2.0, travel.range() / 2.0);
     shapes.push(Shape::Backlash { axis, wind_up: 0.0 });
-    // What is smooth along a beam is told as that of its slide: its two motors would only be another name for it, and many terms of four
-    // motions would draw what one table of one motion does.
+    // What is smooth along a beam is told of its slide. Its two motors could say the same in other names, and would then share what one
+    // table tells.
     let powers = if study.equations.motions[motion].shares_beam() { 0 } else { HIGHEST_POWER };
     shapes.extend((1..=powers).map(|degree| Shape::Polynomial { axis, degree, center, scale }));
     shapes.push(Shape::Acceleration { axis });

@@ -58,7 +58,7 @@ pub struct Evaluation {
     pub machine: String,
     /// The instrument, as recording files call it.
     pub instrument: &'static str,
-    /// The date of the test, where the recording's times are dates.
+    /// When it was recorded, where its file says so.
     pub date: Option<String>,
     /// The temperatures while it was recorded: each sensor with its least and its greatest value, degC.
     pub temperatures: Vec<(String, [f64; 2])>,
@@ -122,6 +122,7 @@ pub fn evaluate(inputs: &Inputs<'_>) -> Evaluation {
     let mut evaluation = Evaluation {
         file: inputs.recording.file.clone(),
         title: inputs.recording.title.clone(),
+        date: inputs.recording.date.map(|date| date.day()),
         machine: inputs.equations.machine.clone(),
         instrument: instrument(&inputs.recording.instrument),
         temperatures: temperatures(inputs.recording),

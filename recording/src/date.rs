@@ -5,6 +5,7 @@
 
 use std::fmt;
 
+use chrono::{DateTime, Datelike, NaiveDate};
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::yaml::Node;
 
@@ -18,9 +19,6 @@ pub struct Moment {
 /// The seconds at which the year 1 begins.
 const FIRST: i64 = -62_135_596_800;
 
-/// Seconds of a day.
-const DAY: i64 = 86_400;
-
 /// The code for what is no date.
 const NO_DATE: &str = "E0631";
 
@@ -28,8 +26,8 @@ impl Moment {
     /// The moment so many seconds after 1970 began; nothing outside years 1 to 9999.
     #[must_use]
     pub fn new(seconds: i64) -> Option<Self> {
-        let end = days(10_000, 1, 1)?.checked_mul(DAY)?;
-        (FIRST..end).contains(&seconds).then_some(Self { seconds })
+        let year = DateTime::from_timestamp(seconds, 0)?.year();
+        (1..=9999).contains(&year).then_some(Self { seconds })
     }
 
     /// The first moment there is.
@@ -41,17 +39,10 @@ impl Moment {
     /// A date with a time of day: nothing where there is no such day or time.
     #[must_use]
     pub fn of([year, month, day]: [i64; 3], [hour, minute, second]: [i64; 3]) -> Option<Self> {
-        let there = (1..=9999).contains(&year)
-            && (1..=12).contains(&month)
-            && (1..=length(year, month)).contains(&day)
-            && (0..24).contains(&hour)
-            && (0..60).contains(&minute)
-            && (0..60).contains(&second);
-        if !there {
-            return None;
-        }
-        let of_day = hour.checked_mul(3600)?.checked_add(minute.checked_mul(60)?)?.checked_add(second)?;
-        Self::new(days(year, month, day)?.checked_mul(DAY)?.checked_add(of_day)?)
+        let small = |number: i64| u32::try_from(number).ok();
+        let date = NaiveDate::from_ymd_opt(i32::try_from(year).ok()?, small(month)?, small(day)?)?;
+        let moment = date.and_hms_opt(small(hour)?, small(minute)?, small(second)?)?;
+        Self::new(moment.and_utc().timestamp())
     }
 
     /// Reads `2026-07-09`, `2026-07-09 22:59` and `2026-07-09T22:59:28`, with `Z` or `+02:00` behind a time.
@@ -88,36 +79,25 @@ impl Moment {
     /// `2026-07`.
     #[must_use]
     pub fn month(self) -> String {
-        let [year, month, _] = self.date();
-        format!("{year:04}-{month:02}")
+        self.written("%Y-%m")
     }
 
     /// `2026-07-09`.
     #[must_use]
     pub fn day(self) -> String {
-        let [year, month, day] = self.date();
-        format!("{year:04}-{month:02}-{day:02}")
+        self.written("%Y-%m-%d")
     }
 
-    /// Year, month and day: Hinnant's algorithm, in which years begin in March so that the leap day is their last one.
-    fn date(self) -> [i64; 3] {
-        let days = self.seconds.div_euclid(DAY).saturating_add(DAYS_TO_1970);
-        let (era, of_era) = (days.div_euclid(ERA), days.rem_euclid(ERA));
-        let leaps = of_era / 1460 - of_era / 36_524 + of_era / 146_096;
-        let year = (of_era - leaps) / 365;
-        let of_year = of_era - (365 * year + year / 4 - year / 100);
-        let shifted = (5 * of_year + 2) / 153;
-        let day = of_year - (153 * shifted + 2) / 5 + 1;
-        let month = if shifted < 10 { shifted + 3 } else { shifted - 9 };
-        [year + 400 * era + i64::from(month <= 2), month, day]
+    fn written(self, form: &str) -> String {
+        DateTime::from_timestamp(self.seconds, 0)
+            .map(|moment| moment.format(form).to_string())
+            .unwrap_or_default()
     }
 }
 
 impl fmt::Display for Moment {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let of_day = self.seconds.rem_euclid(DAY);
-        let (hour, minute, second) = (of_day / 3600, of_day / 60 % 60, of_day % 60);
-        write!(formatter, "{}T{hour:02}:{minute:02}:{second:02}", self.day())
+        formatter.write_str(&self.written("%Y-%m-%dT%H:%M:%S"))
     }
 }
 
@@ -159,32 +139,6 @@ fn zoned(time: &str) -> Option<(&str, i64)> {
         numbers::<2>(zone, ':', [2, 2]).or_else(|| numbers::<1>(zone, ':', [2]).map(|[hour]| [hour, 0]));
     let [hour, minute] = parts.filter(|[hour, minute]| *hour < 24 && *minute < 60)?;
     Some((clock, sign * (hour * 3600 + minute * 60)))
-}
-
-fn length(year: i64, month: i64) -> i64 {
-    let leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
-    match month {
-        2 if leap => 29,
-        2 => 28,
-        4 | 6 | 9 | 11 => 30,
-        _ => 31,
-    }
-}
-
-/// Days of 400 years.
-const ERA: i64 = 146_097;
-
-/// Days from the first of March of the year 0 to 1970.
-const DAYS_TO_1970: i64 = 719_468;
-
-/// Days from 1970 to a date.
-fn days(year: i64, month: i64, day: i64) -> Option<i64> {
-    let year = if month <= 2 { year.checked_sub(1)? } else { year };
-    let (era, of_era) = (year.div_euclid(400), year.rem_euclid(400));
-    let shifted = if month > 2 { month - 3 } else { month + 9 };
-    let of_year = (153 * shifted + 2) / 5 + day - 1;
-    let days = of_era * 365 + of_era / 4 - of_era / 100 + of_year;
-    era.checked_mul(ERA)?.checked_add(days)?.checked_sub(DAYS_TO_1970)
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use model_dsl::yaml::Node;
 
 use super::Instrument;
 use super::channel::{Channel, Channels, read_channels, warn_shared_columns};
-use super::date::check_date;
+use super::date::{Moment, check_date, date_of};
 use super::form::{Form, read_data};
 use super::place::check_runs;
 use super::setup::{Kind, read_setup};
@@ -40,6 +40,8 @@ const KEYS: [&str; 12] = [
 pub struct Header {
     /// Its title.
     pub title: Option<String>,
+    /// When it was made.
+    pub date: Option<Moment>,
     /// The machine as the file names it: a shipped machine's name, a path, or a topology word.
     pub machine: Spanned<String>,
     /// The calibration file that the file names, a path from its own folder.
@@ -174,6 +176,7 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
     let (data, form) = data?;
     Some(Header {
         title: title.map(|title| title.value),
+        date: date_of(root),
         machine,
         calibration,
         constants,

@@ -69,6 +69,8 @@ pub struct Recording {
     pub file: String,
     /// Its title.
     pub title: Option<String>,
+    /// When it was made.
+    pub date: Option<Moment>,
     /// What measured, and how it was set up.
     pub instrument: Instrument,
     /// Whether the part was clamped anew where it was measured, so that it lies there with a displacement and a rotation of its own.

@@ -96,8 +96,8 @@ pub trait Kinematics {
     /// The motors, which are axes that follow others: where a motor stands is the sum of its shares of axes. Behind a crossed
     /// transmission motor A stands at x + y; the two motors of a beam stand both at y. Motors come behind all axes that they follow.
     ///
-    /// A motor moves the tip nowhere by itself: its [direction](Self::directions) is zero. Terms read where it stands and which way it
-    /// went, and its command is that of its axes.
+    /// A motor moves the tip nowhere by itself: its [direction](Self::directions) is zero. Terms read its position and its direction of
+    /// motion. Its command follows from those of its axes.
     #[inline(always)]
     fn following(&self) -> &[Share] {
         &[]
@@ -158,7 +158,8 @@ pub trait Kinematics {
     }
 
     /// For each axis, whether its [direction](Self::directions) is known to be zero at every position; empty where nothing is
-    /// said. A search for a command then leaves out these axes, and a batch reads motions that depend on nothing else once.
+    /// said. A search for a command then leaves out these axes, and a batch reads motions that depend on nothing else once. A motor
+    /// whose axes move does not rest, though its direction is zero.
     fn resting(&self) -> &[bool] {
         &[]
     }

@@ -31,7 +31,7 @@ pub trait ErrorMotions {
     fn read<'k>(&self, from: MotionReader<'_>, kept: &'k mut [f64]) -> Option<Self::Values<'k>>;
 
     /// [`read`](Self::read) once more in the same state of the machine, but at positions that differ for axes that correct:
-    /// those that have a [direction](crate::Kinematics::directions).
+    /// those that have a [direction](crate::Kinematics::directions), and motors that follow them.
     #[inline]
     fn read_moved<'k>(&self, from: MotionReader<'_>, kept: &'k mut [f64]) -> Option<Self::Values<'k>> {
         self.read(from, kept)

@@ -1,4 +1,4 @@
-//! `abbe derive`: the error equations of a machine in one of five notations.
+//! `abbe derive`: the error equations of a machine in one of six notations.
 
 use std::path::PathBuf;
 

@@ -66,10 +66,12 @@ pub fn write(
             Ok::<_, Failure>((path, staged))
         })
         .transpose()?;
-    written::calibration(target, &text, equations(recorded, diagnosis))?;
+    let calibration = written::staged_calibration(target, &text, equations(recorded, diagnosis))?;
+    // The machine file first: no calibration may name one that is not there.
     if let Some((path, staged)) = beside {
         staged.keep().map_err(|error| written::cannot_write(&path, &error))?;
     }
+    calibration.keep().map_err(|error| written::cannot_write(target, &error))?;
     tell(target, diagnosis, listener);
     Ok(())
 }

@@ -35,12 +35,17 @@ pub fn comment(text: &str) -> String {
 
 /// Writes a calibration; nothing is written that the compiler would not take.
 pub fn calibration(target: &Path, text: &str, equations: &Equations) -> Result<(), Failure> {
+    staged_calibration(target, text, equations)?.keep().map_err(|error| cannot_write(target, &error))
+}
+
+/// Writes a calibration beside its place, so that it can get its name together with other files.
+pub fn staged_calibration(target: &Path, text: &str, equations: &Equations) -> Result<Staged, Failure> {
     let source = SourceFile::new(target.display().to_string(), text);
     let mut diagnostics = Diagnostics::new();
     let root = yaml::read(&source, &mut diagnostics);
     let read = root.and_then(|root| calibration::read(&root, &equations.names(), &mut diagnostics));
     match read {
-        Some(_) => whole(target, text),
+        Some(_) => staged(target, |file| file.write_all(text.as_bytes())),
         None => Err(Failure::Wrong(Words::marked(&source, &diagnostics).then(
             "error: the calibration was not written, since it could not be read again; this is a fault of Abbe",
         ))),

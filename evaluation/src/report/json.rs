@@ -14,7 +14,8 @@ pub fn json(evaluation: &Evaluation) -> String {
     let value = object!({
         "schema": "abbe-evaluation/1",
         "recording": {"file": evaluation.file, "title": evaluation.title, "machine": evaluation.machine,
-                      "instrument": evaluation.instrument},
+                      "instrument": evaluation.instrument, "date": evaluation.date},
+        "temperatures": evaluation.temperatures.iter().map(temperature).collect::<Vec<Value>>(),
         "positioning": evaluation.positioning.iter().map(positioning).collect::<Vec<Value>>(),
         "diagonals": evaluation.diagonals.as_ref().map(diagonals),
         "circles": evaluation.circles.iter().map(circle).collect::<Vec<Value>>(),
@@ -24,6 +25,10 @@ pub fn json(evaluation: &Evaluation) -> String {
     let mut text = serde_json::to_string_pretty(&value).unwrap_or_default();
     text.push('\n');
     text
+}
+
+fn temperature((sensor, [least, greatest]): &(String, [f64; 2])) -> Value {
+    object!({"sensor": sensor, "least": least, "greatest": greatest, "unit": "degC"})
 }
 
 fn not_given(one: &NotGiven) -> Value {

@@ -125,7 +125,7 @@ fn motions(sheet: &Sheet, equations: &Equations) -> String {
     format!(
         "<div class=\"wide\"><table class=\"motions\">\n<thead><tr><th>Symbol</th><th>ISO 230-1</th><th>Meaning</th>\
          <th>Unit</th><th>Reaches</th><th>Compensable</th>{arms}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n\
-         <p>Compensable is what slides cancel by moving the tip; the rest is told and left. This is the geometry: which terms of a motion a controller can know in time is told by the calibration \
+         <p>Compensable is what slides cancel at the tip, and what rotary axes cancel of their own angles and of the direction of the tool; the rest is told and left. This is the geometry: which terms of a motion a controller can know in time is told by the calibration \
          (E0425).{of_tool}</p>\n"
     )
 }

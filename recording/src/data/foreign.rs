@@ -21,7 +21,7 @@ const NUMPY: &str = "make a table of it, in Python: `pandas.DataFrame(numpy.load
 const SQLITE: &str = "make a table of it, in Python: `pandas.read_sql(\"select * from name\", sqlite3.connect(\"x.db\")).to_parquet(\"x.parquet\")`";
 const PACKED: &str = "unpack it, or pack it with gzip";
 
-/// The kinds that people have been given, the longer beginnings first.
+/// The kinds that people have been given.
 const KINDS: [Kind; 14] = [
     Kind { begins: b"\x89HDF\r\n\x1a\n", what: "an HDF5 file", help: HDF5 },
     Kind { begins: b"MATLAB 7.3 MAT-file", what: "a MAT file of version 7.3, which is HDF5", help: MAT_73 },

@@ -25,6 +25,7 @@ pub(super) fn settle(
     let mut recording = Recording {
         file: name.to_owned(),
         title: header.title.clone(),
+        date: header.date,
         instrument: header.instrument.clone(),
         free_datum: header.free_datum,
         axes: vec![AxisChannels::default(); header.axes.len()],

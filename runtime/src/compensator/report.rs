@@ -193,7 +193,7 @@ impl fmt::Display for Refusal {
             Self::Motor { axis, expected, found } => {
                 write!(
                     f,
-                    "axis {axis} is a motor that stands at {expected} mm where its axes are, not at {found} mm"
+                    "axis {axis} is a motor: its axes put it at {expected} mm, the sample has it at {found} mm"
                 )
             }
             Self::NotConverging { iterations, distance } => write!(

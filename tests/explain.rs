@@ -51,7 +51,6 @@ fn emitted() -> BTreeSet<String> {
         "exchange/src",
         "workshop/src",
         "fleet/src",
-        "workshop/src",
         "src",
     ] {
         for path in rust_files(&root().join(folder)) {

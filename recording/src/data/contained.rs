@@ -40,3 +40,17 @@ pub(super) fn contained<T>(name: &str, read: impl FnOnce() -> Result<T, DataErro
         Err(error.help("write the file anew, or save the table as CSV"))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reader_that_panics_has_failed_and_the_next_one_reads() {
+        let failed = contained("x", || -> Result<u8, DataError> { panic!("a sum that is too large") });
+        assert!(failed.unwrap_err().message.contains("it cannot be read"));
+        assert_eq!(contained("x", || Ok(7)).unwrap(), 7);
+        // Panics of a test are shown as before.
+        assert!(!READS.get());
+    }
+}

@@ -438,8 +438,8 @@ fn nothing_is_written_over_and_nothing_half() {
     bench.write("there.yaml", "mine");
     for (target, words) in [
         ("there.yaml", "is there already"),
-        ("x.rtl", "one of the other files"),
-        ("setup.yaml", "one of the other files"),
+        ("x.rtl", "one of the files that this command"),
+        ("setup.yaml", "one of the files that this command"),
         ("no/c.yaml", "no such folder"),
     ] {
         let run = abbe(&["calibrate", &setup, "--output", &at(target)], "");

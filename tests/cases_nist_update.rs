@@ -491,8 +491,8 @@ fn the_command_refuses_with_places_and_writes_nothing() {
         (&[known, &linear, "--output", &new], 2, &["E0627", "linear.yaml", "probe"]),
         (&[other, &part, "--output", &new], 2, &["nist-turning-center", "postech-mill"]),
         (&[known, &part, "--output", &there], 2, &["is there already", "--force"]),
-        (&[known, &part, "--output", known, "--force"], 2, &["read from"]),
-        (&[known, &part, "--output", &data, "--force"], 2, &["read from"]),
+        (&[known, &part, "--output", known, "--force"], 2, &["reads or writes"]),
+        (&[known, &part, "--output", &data, "--force"], 2, &["reads or writes"]),
         (&[known, &part, "--output", &at("no/such/folder.yaml")], 2, &["no such folder"]),
         (&[known, &part, "--datum", "w"], 2, &["--datum"]),
     ];

@@ -619,7 +619,7 @@ fn a_result_goes_over_no_file_that_was_read() {
     for command in ["derive", "expand"] {
         let run = abbe(&[command, &machine, "--output", &machine, "--force"], "");
         assert!(
-            run.status == 2 && run.err.contains("is one of the other files of this command"),
+            run.status == 2 && run.err.contains("is one of the files that this command reads or writes"),
             "{}",
             run.err
         );
@@ -654,7 +654,11 @@ fn no_result_is_written_over_what_it_was_read_from() {
     std::os::unix::fs::symlink(folder.join("x.csv"), folder.join("link.txt")).unwrap();
     for target in ["x.csv", "link.txt"] {
         let run = abbe(&["evaluate", &at("setup.yaml"), "--output", &at(target), "--force"], "");
-        assert!(run.status == 2 && run.err.contains("one of the other files of this command"), "{}", run.err);
+        assert!(
+            run.status == 2 && run.err.contains("one of the files that this command reads or writes"),
+            "{}",
+            run.err
+        );
         assert_eq!(fs::read_to_string(folder.join("x.csv")).unwrap(), before);
     }
     fs::remove_dir_all(folder).unwrap();

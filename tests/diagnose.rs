@@ -257,7 +257,7 @@ fn a_verdict_that_scripts_wait_for_is_a_status() {
     assert_eq!(run(&["--fail-on", "wrong"]).status, 2);
     let over = run(&["--output", &recording, "--force"]);
     assert!(
-        over.status == 2 && over.err.contains("is one of the other files of this command"),
+        over.status == 2 && over.err.contains("is one of the files that this command reads or writes"),
         "{}",
         over.err
     );

@@ -133,7 +133,7 @@ fn no_map_is_drawn_over_nothing_or_over_what_is_there() {
     drawing(&map(&folder, CORNERS, &["--force"]), &at(&folder, "map.svg"));
     let known = at(&folder, "known.yaml");
     for (target, said) in [
-        (known.clone(), "one of the other files"),
+        (known.clone(), "one of the files that this command"),
         (at(&folder, "no/such/map.svg"), "no such folder"),
         (at(&folder, ""), "is a folder"),
     ] {
@@ -176,7 +176,7 @@ fn a_simulation_shows_its_path_in_each_plane_and_its_readings() {
     let data = at(&folder, "new/data.csv");
     let own = simulate(&data, &["--force"]);
     assert_eq!(own.status, 2);
-    assert!(own.err.contains("one of the other files"), "{}", own.err);
+    assert!(own.err.contains("one of the files that this command"), "{}", own.err);
     assert!(fs::read_to_string(&data).unwrap().starts_with("t_s,run,"), "the data stand as they were");
     // Nor over the data of a recording that is driven again.
     let recording = at(&folder, "new/recording.yaml");

@@ -80,7 +80,7 @@ pub fn check_new(
         .iter()
         .any(|other| other == target || place(other).is_some_and(|other| place(target) == Some(other)))
     {
-        return wrong("is one of the other files of this command", &name);
+        return wrong("is one of the files that this command reads or writes", &name);
     }
     if target.exists() && !force {
         return wrong("is there already", &format!("{option} takes another place, --force replaces it"));

@@ -5,7 +5,6 @@
 //! asked to be: subtracting the error at the target leaves the difference of the two.
 
 mod aim;
-mod batch;
 mod inverse;
 mod motors;
 mod prediction;
@@ -23,7 +22,6 @@ use self::turns::Turned;
 use crate::math::{add_scaled, all_finite, sqrt};
 use crate::{ErrorMotion, ErrorMotions, Kinematics, Sample, Share, Sines, TermState};
 
-pub use self::batch::{Batch, BatchSizes, BatchWork};
 pub use self::report::{
     Convergence, DirectionOutcome, GREATEST_AMPLIFICATION, Limits, Outcome, Refusal, SetupError, Work,
 };

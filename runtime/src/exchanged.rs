@@ -5,7 +5,7 @@
 
 use core::cell::Cell;
 
-use crate::{Kinematics, Lanes, Share, Sines, Turning};
+use crate::{Kinematics, Share, Sines, Turning};
 
 /// Passes the methods of [`Kinematics`] that give numbers on to another machine.
 macro_rules! numbers_of {
@@ -21,10 +21,6 @@ macro_rules! numbers_of {
         fn error_with(&self, sines: &Sines, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
             let $machine = self;
             $of.error_with(sines, position, travel, motions)
-        }
-        fn error_lanes(&self, position: &[Lanes], travel: &[Lanes], motions: &[Lanes]) -> Option<[Lanes; 3]> {
-            let $machine = self;
-            $of.error_lanes(position, travel, motions)
         }
         fn nominal(&self, position: &[f64]) -> [f64; 3] {
             let $machine = self;

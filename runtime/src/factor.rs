@@ -6,10 +6,11 @@
 
 use core::f64::consts::TAU;
 
-use crate::sample::Readings;
+use crate::math::{exp_m1, sin};
+use crate::sample::OneSample;
 use crate::term::check::{FINE, not_negative};
 use crate::term::memory::{advance_filter, advance_warmth, advance_width};
-use crate::{Real, Sample, Table, TermState};
+use crate::{Sample, Table, TermState};
 
 /// The range in which a state was seen. Outside, a factor holds the value that it has at the end, as a table does.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -27,9 +28,9 @@ impl Within {
     /// The state, or the end of the range beyond which it lies; NaN at NaN.
     #[must_use]
     #[inline]
-    pub fn hold<T: Real>(self, state: T) -> T {
-        let below = state.above(self.to.into(), self.to.into(), state);
-        T::from(self.from).above(below, self.from.into(), below)
+    pub fn hold(self, state: f64) -> f64 {
+        let below = if state > self.to { self.to } else { state };
+        if self.from > below { self.from } else { below }
     }
 
     const fn is_usable(self) -> bool {
@@ -135,7 +136,7 @@ impl Factor<'_> {
     /// The value in what is read; `memory` is what the factor remembers, none before its first cycle.
     // Always: see `MotionReader::term`.
     #[inline(always)]
-    pub(crate) fn read<R: Readings>(&self, from: &mut R, memory: Option<&R::Number>) -> R::Number {
+    pub(crate) fn read(&self, from: &mut OneSample<'_>, memory: Option<&f64>) -> f64 {
         match *self {
             Self::Position { axis, power, within } => {
                 let position = within.hold(from.position(axis));
@@ -146,20 +147,20 @@ impl Factor<'_> {
             Self::Speed { axis, within } => within.hold(magnitude(from.velocity(axis))),
             Self::Fading { axis, over } => {
                 let speed = magnitude(from.velocity(axis));
-                R::Number::from(1.0) + (-speed / over.into()).exp_m1()
+                1.0 + exp_m1(-speed / over)
             }
             Self::Temperature { sensor, reference, time_constant, within } => {
                 let now = from.temperature(sensor);
                 let filtered = if time_constant > 0.0 { memory.copied().unwrap_or(now) } else { now };
-                within.hold(filtered) - reference.into()
+                within.hold(filtered) - reference
             }
             Self::Play { sensor, reference, .. } => {
-                memory.copied().unwrap_or(from.temperature(sensor)) - reference.into()
+                memory.copied().unwrap_or(from.temperature(sensor)) - reference
             }
-            Self::Warmth { .. } => memory.copied().unwrap_or(0.0.into()),
+            Self::Warmth { .. } => memory.copied().unwrap_or(0.0),
             Self::Turn { axis, period, phase } => {
-                let turn = R::Number::from(TAU) * (from.position(axis) / period.into());
-                (turn + phase.into()).sin_cos().0
+                let turn = TAU * (from.position(axis) / period);
+                sin(turn + phase)
             }
             Self::Curve { axis, ref table } => from.table(table, axis),
         }
@@ -247,8 +248,8 @@ impl Factor<'_> {
 }
 
 /// The size of a velocity.
-fn magnitude<T: Real>(velocity: T) -> T {
-    velocity.above(0.0.into(), velocity, -velocity)
+fn magnitude(velocity: f64) -> f64 {
+    if velocity > 0.0 { velocity } else { -velocity }
 }
 
 /// Finite and above zero.

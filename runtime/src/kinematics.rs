@@ -4,7 +4,6 @@
 //! which each axis can correct it. It exists so that generated code and the compiler's interpreter serve the same
 //! [`Compensator`](crate::Compensator).
 
-use crate::Lanes;
 use crate::sample::number;
 
 /// The sines and the cosines of the rotary axes that the equations read, in the order of the axes; zero beyond them. ISO 841
@@ -75,13 +74,6 @@ pub trait Kinematics {
     #[inline(always)]
     fn error_with(&self, _sines: &Sines, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
         self.error(position, travel, motions)
-    }
-
-    /// [`Kinematics::error`] in every lane at once, bit for bit; none: the machine answers row by row only.
-    ///
-    /// Generated code and the compiler's interpreter have it. A slice of the wrong length gives NaN in all lanes.
-    fn error_lanes(&self, _position: &[Lanes], _travel: &[Lanes], _motions: &[Lanes]) -> Option<[Lanes; 3]> {
-        None
     }
 
     /// The error motions that rotary axes correct themselves: those of their own angles, in the order of the axes. An axis that only
@@ -158,8 +150,7 @@ pub trait Kinematics {
     }
 
     /// For each axis, whether its [direction](Self::directions) is known to be zero at every position; empty where nothing is
-    /// said. A search for a command then leaves out these axes, and a batch reads motions that depend on nothing else once. A motor
-    /// whose axes move does not rest, though its direction is zero.
+    /// said. A search for a command then leaves out these axes. A motor whose axes move does not rest, though its direction is zero.
     fn resting(&self) -> &[bool] {
         &[]
     }

@@ -33,12 +33,6 @@
 //! the angle wanted, in front of the search for the slides, which correct the rest. Where rotary axes correct the direction of the tool as
 //! well ([`Kinematics::aiming`]), one search finds the commands of all axes, in the pose in which the rotary axes then stand.
 //!
-//! # Batches
-//!
-//! [`Compensator::compensate_batch`] takes many samples, a slice for each quantity, and gives for each row what
-//! [`Compensator::compensate`] gives, to the bit, rows side by side in [`Lanes`]. Maps, paths and files are for it; a servo
-//! cycle has one sample.
-//!
 //! # A single slide
 //!
 //! A slide X whose scale grows by 70 um/m and whose screw has 10 um of lost motion:
@@ -118,26 +112,22 @@ mod direction;
 mod exchanged;
 mod factor;
 mod kinematics;
-mod lanes;
 pub mod math;
 mod motion;
-mod real;
 mod sample;
 mod supervisor;
 mod table;
 mod term;
 
 pub use compensator::{
-    Batch, BatchSizes, BatchWork, Compensator, Convergence, DirectionOutcome, GREATEST_AMPLIFICATION, Limits,
-    Outcome, Refusal, SetupError, Work, states_needed,
+    Compensator, Convergence, DirectionOutcome, GREATEST_AMPLIFICATION, Limits, Outcome, Refusal, SetupError,
+    Work, states_needed,
 };
 pub use direction::{Direction, DirectionTracker};
 pub use exchanged::Exchanged;
 pub use factor::{Factor, Within};
 pub use kinematics::{Kinematics, Share, Sines, Turning, place_motors};
-pub use lanes::Lanes;
 pub use motion::{ErrorMotion, ErrorMotions, MotionReader};
-pub use real::Real;
 pub use sample::Sample;
 pub use supervisor::{AxisMemory, Cycle, Memory, State, Supervisor, Transition};
 pub use table::{Bundle, Table, TableError, Values};

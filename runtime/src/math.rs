@@ -5,8 +5,6 @@
 
 mod sine;
 
-use crate::Real;
-
 pub use sine::{sin_cos, sin_cos_each};
 
 /// Sine of an angle in rad.
@@ -63,19 +61,19 @@ pub(crate) const fn nothing(mut sum: f64, numbers: &[f64]) -> f64 {
 /// Scalar product of two vectors.
 #[inline]
 #[must_use]
-pub fn dot<T: Real>(a: [T; 3], b: [T; 3]) -> T {
+pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// `a + factor * b`, component by component.
 #[inline]
 #[must_use]
-pub fn add_scaled<T: Real>(a: [T; 3], factor: T, b: [T; 3]) -> [T; 3] {
+pub fn add_scaled(a: [f64; 3], factor: f64, b: [f64; 3]) -> [f64; 3] {
     [a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]]
 }
 
 /// Euclidean length of a vector.
 #[must_use]
-pub fn length<T: Real>(a: [T; 3]) -> T {
-    dot(a, a).sqrt()
+pub fn length(a: [f64; 3]) -> f64 {
+    sqrt(dot(a, a))
 }

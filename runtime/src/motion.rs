@@ -5,8 +5,8 @@
 
 mod reader;
 
-use crate::sample::{LaneSample, OneSample, Readings};
-use crate::{Lanes, Real, Sample, Term, TermState};
+use crate::sample::OneSample;
+use crate::{Sample, Term, TermState};
 
 pub use self::reader::MotionReader;
 
@@ -77,10 +77,29 @@ impl ErrorMotion<'_> {
         self.read(&mut OneSample::new(sample), states, true)
     }
 
-    /// [`value`](Self::value) in what is read, or [`corrected`](Self::corrected).
+    /// [`value`](Self::value) in what is read, or [`corrected`](Self::corrected): the sum over the terms, each times the factors before
+    /// it; NaN where there is not one state a term.
     #[inline]
     pub(crate) fn read(&self, from: &mut OneSample<'_>, states: &[TermState], corrected: bool) -> f64 {
-        self.sum(states, |term, state| term.read_one(from, state, corrected))
+        match (self.terms, states) {
+            // Most motions have one term, for which setting up a loop would cost more than the sum.
+            ([term], [state]) => term.read_one(from, state, corrected),
+            (terms, states) if terms.len() == states.len() => {
+                let (mut sum, mut factors) = (0.0, None);
+                for (term, state) in terms.iter().zip(states) {
+                    let value = term.read_one(from, state, corrected);
+                    let product = factors.map_or(value, |before: f64| before * value);
+                    if term.is_factor() {
+                        factors = Some(product);
+                    } else {
+                        sum += product;
+                        factors = None;
+                    }
+                }
+                sum
+            }
+            _ => f64::NAN,
+        }
     }
 
     /// Both of these where one table or one number makes them, as in most motions: without a state, and without the way
@@ -91,40 +110,6 @@ impl ErrorMotion<'_> {
             [Term::Table { axis, table }] => Some(from.table(table, *axis)),
             [Term::Constant { value }] => Some(*value),
             _ => None,
-        }
-    }
-
-    /// Whether a search for a command changes it: a term reads an axis that is not known to rest.
-    pub(crate) fn moves(&self, resting: &[bool]) -> bool {
-        self.terms.iter().filter_map(Term::axis).any(|axis| resting.get(axis) != Some(&true))
-    }
-
-    /// [`value`](Self::value) in every lane; `memories` holds what each term remembers, or the value is NaN.
-    pub(crate) fn read_lanes(&self, from: &mut LaneSample<'_>, memories: &[Lanes]) -> Lanes {
-        self.sum(memories, |term, memory| term.read(from, Some(memory)))
-    }
-
-    /// The sum over the terms, each times the factors before it; NaN where there is not one memory a term.
-    #[inline]
-    fn sum<M, T: Real>(&self, memories: &[M], mut of: impl FnMut(&Term<'_>, &M) -> T) -> T {
-        match (self.terms, memories) {
-            // Most motions have one term, for which setting up a loop would cost more than the sum.
-            ([term], [memory]) => of(term, memory),
-            (terms, memories) if terms.len() == memories.len() => {
-                let (mut sum, mut factors) = (T::from(0.0), None);
-                for (term, memory) in terms.iter().zip(memories) {
-                    let value = of(term, memory);
-                    let product = factors.map_or(value, |before: T| before * value);
-                    if term.is_factor() {
-                        factors = Some(product);
-                    } else {
-                        sum = sum + product;
-                        factors = None;
-                    }
-                }
-                sum
-            }
-            _ => f64::NAN.into(),
         }
     }
 

@@ -8,7 +8,7 @@ mod readings;
 use crate::Direction;
 use crate::math::nothing;
 
-pub(crate) use self::readings::{LaneSample, OneSample, Readings, lanes, number};
+pub(crate) use self::readings::{OneSample, number};
 
 /// The state of the machine in one servo cycle, borrowed from the caller.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -8,12 +8,12 @@ mod place;
 
 use core::fmt;
 
+use crate::Direction;
 use crate::math::{all_finite, floor};
-use crate::{Direction, Real};
 
 pub use self::bundle::Bundle;
+pub(crate) use self::place::Place;
 use self::place::{Even, Last, MOST};
-pub(crate) use self::place::{LanePlace, Place};
 
 /// The values of a table at its nodes: one curve, or one for each direction of motion.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -280,6 +280,6 @@ fn within_a_turn(way: f64, length: f64) -> f64 {
 
 /// Linear interpolation; exactly `low` at 0.
 #[inline]
-fn between<T: Real>(low: T, high: T, part: T) -> T {
+fn between(low: f64, high: f64, part: f64) -> f64 {
     low + (high - low) * part
 }

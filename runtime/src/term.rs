@@ -9,8 +9,9 @@ pub(crate) mod memory;
 use core::f64::consts::TAU;
 
 use self::memory::{advance_filter, advance_play, follow, followed, take_up};
-use crate::sample::{OneSample, Readings};
-use crate::{Factor, Real, Sample, Table};
+use crate::math::sin;
+use crate::sample::OneSample;
+use crate::{Factor, Sample, Table};
 
 pub use self::memory::TermState;
 
@@ -127,9 +128,9 @@ impl Term<'_> {
     /// The value in what is read; `memory` is what the term remembers, none before its first cycle.
     // Always: see `MotionReader::term`.
     #[inline(always)]
-    pub(crate) fn read<R: Readings>(&self, from: &mut R, memory: Option<&R::Number>) -> R::Number {
+    pub(crate) fn read(&self, from: &mut OneSample<'_>, memory: Option<&f64>) -> f64 {
         match *self {
-            Self::Constant { value } => value.into(),
+            Self::Constant { value } => value,
             Self::Polynomial { input: Input::Axis(axis), coefficients } => {
                 horner(coefficients, from.position(axis))
             }
@@ -142,22 +143,22 @@ impl Term<'_> {
             }
             Self::Table { axis, ref table } => from.table(table, axis),
             Self::Backlash { axis, lost_motion, wind_up, .. } => {
-                R::Number::from(-0.5 * lost_motion) * take_up(from, axis, wind_up, memory)
+                -0.5 * lost_motion * take_up(from, axis, wind_up, memory)
             }
             Self::Cyclic { axis, period, amplitude, phase } => {
-                let turn = R::Number::from(TAU) * (from.position(axis) / period.into());
-                R::Number::from(amplitude) * (turn + phase.into()).sin_cos().0
+                let turn = TAU * (from.position(axis) / period);
+                amplitude * sin(turn + phase)
             }
             Self::Expansion { axis, sensor, coefficient, reference } => {
-                let warmer = from.temperature(sensor) - reference.into();
-                R::Number::from(coefficient) * warmer * from.position(axis)
+                let warmer = from.temperature(sensor) - reference;
+                coefficient * warmer * from.position(axis)
             }
             Self::Growth { sensor, coefficient, reference, time_constant } => {
                 let now = from.temperature(sensor);
                 let filtered = if time_constant > 0.0 { memory.copied().unwrap_or(now) } else { now };
-                R::Number::from(coefficient) * (filtered - reference.into())
+                coefficient * (filtered - reference)
             }
-            Self::Lag { axis, gain } => -from.velocity(axis) / gain.into(),
+            Self::Lag { axis, gain } => -from.velocity(axis) / gain,
             Self::Factor(ref factor) => factor.read(from, memory),
         }
     }
@@ -209,6 +210,6 @@ impl Term<'_> {
 }
 
 /// The polynomial with the given coefficients from the constant upwards; NaN at NaN, even where it has no coefficient.
-fn horner<T: Real>(coefficients: &[f64], at: T) -> T {
-    coefficients.iter().rev().fold(T::from(0.0) * at, |sum, &coefficient| sum * at + coefficient.into())
+fn horner(coefficients: &[f64], at: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0 * at, |sum, &coefficient| sum * at + coefficient)
 }

@@ -2,22 +2,22 @@
 //! standard output, row by row, in constant memory.
 
 mod answering;
+mod lines;
 
 use std::cell::RefCell;
 use std::io::{self, IsTerminal};
 use std::path::Path;
 use std::rc::Rc;
 
-use abbe_runtime::{Compensator, ErrorMotion, Exchanged, TermState, Work, states_needed};
+use abbe_runtime::ErrorMotion;
 use csv::ByteRecord;
 use exchange::controller::Unit;
 use model_dsl::calibration::Tool;
 use model_dsl::diagnostic::Diagnostics;
-use model_dsl::program::Interpreter;
 use workshop::calibrated::{self, Calibrated};
 use workshop::failure::Failure;
 use workshop::load;
-use workshop::rows::{Leaning, output_columns, timed};
+use workshop::rows::{output_columns, timed};
 use workshop::written;
 
 use crate::arguments::Compensate;
@@ -25,10 +25,10 @@ use crate::map::Map;
 use crate::output::{Person, warn};
 use crate::positions::{Layout, State, Summary, Wanted, quoted};
 use crate::progress::Progress;
-use answering::{Answering, Input, Machines};
+use answering::{Answering, Input};
 
 /// Bytes that are read at once, where there are as many.
-const CAPACITY: usize = 1 << 16;
+const CAPACITY: usize = 1 << 18;
 
 /// So many mistakes of a header are told.
 const MOST_TOLD: usize = 100;
@@ -53,18 +53,7 @@ pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
     }
     let terms = calibrated.terms(|left_out| warn(&left_out));
     let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
-    let machines = machines(&calibrated);
-    let machine = Exchanged::new(&machines.without);
-    let mut states = vec![TermState::default(); states_needed(&motions)];
-    let equations = &calibrated.equations;
-    let mut directions = vec![[0.0; 3]; equations.axes.len()];
-    let (mut values, mut travel) = (vec![0.0; equations.motions.len()], vec![0.0; equations.travels.len()]);
-    let work = Work { directions: &mut directions, motions: &mut values, travel: &mut travel };
-    let mut compensator = Compensator::new(&machine, &motions, &mut states, work)
-        .map_err(|error| Failure::wrong(format!("error: the calibration cannot be run: {error}")))?;
-    compensator.limits = calibrated.calibration.limits.of_compensator();
-    let leaning = Leaning::new(equations, &machines.without, &motions);
-    let mut rows = Rows::open(&calibrated, command, (&machines, &machine), (compensator, leaning))?;
+    let mut rows = Rows::open(&calibrated, &motions, command)?;
     // Rows on a terminal are their own progress, and whoever types them needs none.
     let seen = command.quiet || io::stdout().is_terminal() || io::stdin().is_terminal();
     let progress = Progress::new(seen, "compensating");
@@ -83,16 +72,6 @@ fn tool_table(calibrated: &Calibrated, path: &Path, unit: Unit) -> Result<Vec<To
     if diagnostics.has_errors() { Err(Failure::marked(&source, &diagnostics)) } else { Ok(tools) }
 }
 
-/// The machine without a tool and with each.
-fn machines(calibrated: &Calibrated) -> Machines {
-    let of = |constants: &[f64]| Interpreter::new(&calibrated.equations, constants);
-    let calibration = &calibrated.calibration;
-    Machines {
-        without: of(&calibration.constants),
-        with: calibration.tools.iter().map(|tool| of(&tool.constants)).collect(),
-    }
-}
-
 /// The rows on their way from standard input to standard output.
 struct Rows<'c> {
     reader: csv::Reader<Input<'c>>,
@@ -106,13 +85,11 @@ impl<'c> Rows<'c> {
     /// Reads the header and writes the header of the output.
     fn open(
         calibrated: &'c Calibrated,
+        motions: &'c [ErrorMotion<'c>],
         command: &Compensate,
-        (machines, machine): (&'c Machines, &'c Exchanged<&'c Interpreter>),
-        (compensator, leaning): (Compensator<'c, Exchanged<&'c Interpreter>>, Option<Leaning<'c>>),
     ) -> Result<Self, Failure> {
         let equations = &calibrated.equations;
-        let mut answering = Answering::new(equations, (machines, machine), compensator, command.skip_bad);
-        answering.leaning = leaning;
+        let mut answering = Answering::new(calibrated, motions, command.skip_bad);
         answering.summary = command.summary.then(Summary::default);
         answering.map = command.map.as_ref().map(|_| Map::new(equations, &calibrated.calibration));
         let answering = Rc::new(RefCell::new(answering));
@@ -153,7 +130,7 @@ impl<'c> Rows<'c> {
         })
     }
 
-    /// Reads all rows; they are answered as they fill a batch, and before more of them are waited for.
+    /// Reads all rows; they are answered when many have come, and before more of them are waited for.
     fn stream(&mut self, progress: &Progress) -> Result<(), Failure> {
         let mut row = ByteRecord::new();
         while self.next(&mut row)? {
@@ -163,10 +140,7 @@ impl<'c> Rows<'c> {
             let taken = self.state.take(&row);
             let mut answering = self.answering.borrow_mut();
             match taken {
-                Ok(()) => {
-                    answering.change_tool(self.state.tool())?;
-                    answering.take(&mut row, self.row, &self.state.sample())?;
-                }
+                Ok(()) => answering.take(&mut row, self.row, (&self.state.sample(), self.state.tool()))?,
                 Err(mistake) => answering.refuse(&row, self.row, &mistake)?,
             }
         }
@@ -200,7 +174,7 @@ impl<'c> Rows<'c> {
         if skipped > 0 && skipped + 1 == self.row {
             return Err(Failure::no("error: standard input: no row could be compensated".to_owned()));
         }
-        answering.draw().transpose()
+        answering.draw()
     }
 }
 

@@ -34,12 +34,30 @@ impl Summary {
             with.take(length(lean.with));
         }
     }
+
+    /// Takes what other rows come to.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.rows += other.rows;
+        self.without.add(&other.without);
+        self.with.add(&other.with);
+        if let Some((without, with)) = &other.leaning {
+            let own = self.leaning.get_or_insert_default();
+            own.0.add(without);
+            own.1.add(with);
+        }
+    }
 }
 
 impl Range {
     fn take(&mut self, value: f64) {
         self.least = Some(self.least.map_or(value, |least| least.min(value)));
         self.most = self.most.max(value);
+    }
+
+    fn add(&mut self, other: &Self) {
+        let least = [self.least, other.least].into_iter().flatten();
+        self.least = least.reduce(f64::min);
+        self.most = self.most.max(other.most);
     }
 
     /// In a unit of which so many are one of its own; of both units whose tenth no machine tool repeats.

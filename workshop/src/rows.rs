@@ -1,18 +1,24 @@
 //! Rows of positions as samples of a machine's state. In: a calibrated machine and the numbers of rows, one after the other. Out: what
 //! the runtime reads in each: directions, velocities and temperatures included; and, of a whole table, the answers.
 //!
-//! Who takes rows from a stream answers them itself ([`State`], [`Leaning`]); a table that is in memory is answered at once
-//! ([`table::answer`]).
+//! A stream is taken row by row ([`State`], [`Samples`]) and answered whenever enough of it has come ([`Answering`]); a table that is in
+//! memory is answered at once ([`table::answer`]).
 
+mod answering;
 pub mod field;
 mod leaning;
 mod needs;
+mod samples;
 mod state;
 pub mod table;
 
-pub use leaning::{Lean, Leaning};
+pub use answering::{Answer, Answering, Room};
+pub use leaning::Lean;
 pub use needs::timed;
+pub use samples::Samples;
 pub use state::{Row, State};
+
+use leaning::Leaning;
 
 use model_dsl::equations::Equations;
 

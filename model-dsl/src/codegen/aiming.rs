@@ -5,7 +5,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-use super::body::{Numbers, body};
+use super::body::body;
 use super::functions::{record, unused};
 use crate::equations::Equations;
 use crate::program::OrientationPrograms;
@@ -19,7 +19,7 @@ pub(super) fn aims(equations: &Equations, programs: &OrientationPrograms) -> Opt
         letters.join(", "),
         programs.aims.operations()
     ));
-    let body = body(equations, &programs.aims, Numbers::Plain);
+    let body = body(equations, &programs.aims);
     let (axes, prelude) = (unused("axes", body.reads.axes), body.prelude());
     let (count, bindings) = (Literal::usize_unsuffixed(aiming.len()), &body.bindings);
     let aims = body.results.chunks(3).map(|aim| quote! { [#(#aim),*] });
@@ -38,10 +38,9 @@ pub(super) fn aims(equations: &Equations, programs: &OrientationPrograms) -> Opt
 /// What the interface of the runtime asks for.
 pub(super) fn kinematics(equations: &Equations) -> Option<TokenStream> {
     let aiming = equations.aiming().into_iter().map(Literal::usize_unsuffixed);
-    let nan = quote! { f64::NAN };
-    let (position, of_axes) = record(&nan, "position", "Axes", equations.axes.len());
-    let (travel, of_travels) = record(&nan, "travel", "Travels", equations.travels.len());
-    let (values, of_motions) = record(&nan, "motions", "Motions", equations.motions.len());
+    let (position, of_axes) = record("position", "Axes", equations.axes.len());
+    let (travel, of_travels) = record("travel", "Travels", equations.travels.len());
+    let (values, of_motions) = record("motions", "Motions", equations.motions.len());
     let of_travels = (!equations.travels.is_empty()).then(|| quote! { &#of_travels, });
     (!equations.aiming().is_empty()).then(|| {
         quote! {

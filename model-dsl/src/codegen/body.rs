@@ -19,8 +19,6 @@ pub(super) struct Body {
     pub(super) constants: TokenStream,
     /// The sines and cosines that it reads, in the order of the axes.
     pub(super) turned: Vec<Turned>,
-    /// What it computes with.
-    numbers: Numbers,
     /// Values that are used more than once.
     pub(super) bindings: TokenStream,
     /// One expression for each result.
@@ -52,11 +50,7 @@ impl Body {
     /// What works out the sines and cosines that it reads from `axes`, all at once.
     pub(super) fn sines(&self) -> TokenStream {
         let angles = self.turned.iter().map(|turned| &turned.angle);
-        let function = match self.numbers {
-            Numbers::Plain => quote! { ::abbe_runtime::math::sin_cos_each },
-            Numbers::Any => quote! { T::sin_cos_each },
-        };
-        quote! { #function([#(#angles),*]) }
+        quote! { ::abbe_runtime::math::sin_cos_each([#(#angles),*]) }
     }
 }
 
@@ -79,25 +73,15 @@ enum Binding {
     Atom,
 }
 
-/// What a function computes with.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Numbers {
-    /// Plain `f64`.
-    Plain,
-    /// Any `T` that is an `abbe_runtime::Real`: one row, or several side by side.
-    Any,
-}
-
 struct Printer<'p> {
     equations: &'p Equations,
     program: &'p Program,
-    numbers: Numbers,
     uses: Vec<usize>,
 }
 
 /// Writes a program as a function body.
-pub(super) fn body(equations: &Equations, program: &Program, numbers: Numbers) -> Body {
-    let printer = Printer { equations, program, numbers, uses: program.uses() };
+pub(super) fn body(equations: &Equations, program: &Program) -> Body {
+    let printer = Printer { equations, program, uses: program.uses() };
     let shared = (0..program.steps.len()).filter(|step| printer.is_shared(*step));
     let bindings = shared.map(|step| {
         let name = step_name(step);
@@ -108,9 +92,8 @@ pub(super) fn body(equations: &Equations, program: &Program, numbers: Numbers) -
     let reads = reads(&inputs);
     Body {
         reads,
-        constants: constants(reads, numbers),
+        constants: constants(reads),
         turned: turned(equations, &inputs),
-        numbers,
         bindings: bindings.collect(),
         results: program.results.iter().map(|result| printer.value(*result).0).collect(),
     }
@@ -123,9 +106,9 @@ impl Printer<'_> {
 
     fn value(&self, value: Value) -> (TokenStream, Binding) {
         match value {
-            Value::Zero => self.number(0.0),
+            Value::Zero => number_literal(0.0),
             Value::Number(number) => {
-                self.number(self.program.numbers.get(number).copied().unwrap_or(f64::NAN))
+                number_literal(self.program.numbers.get(number).copied().unwrap_or(f64::NAN))
             }
             Value::Input(read) => (input(self.equations, read), Binding::Atom),
             Value::Step(step) if self.is_shared(step) => {
@@ -133,14 +116,6 @@ impl Printer<'_> {
                 (quote! { #name }, Binding::Atom)
             }
             Value::Step(step) => self.step(step),
-        }
-    }
-
-    fn number(&self, number: f64) -> (TokenStream, Binding) {
-        let (literal, binding) = number_literal(number);
-        match self.numbers {
-            Numbers::Plain => (literal, binding),
-            Numbers::Any => (quote! { T::from(#literal) }, Binding::Atom),
         }
     }
 
@@ -256,13 +231,11 @@ fn reads(inputs: &BTreeSet<Input>) -> Reads {
     reads
 }
 
-fn constants(reads: Reads, numbers: Numbers) -> TokenStream {
-    match numbers {
-        _ if !reads.constants => TokenStream::new(),
-        Numbers::Plain => quote! { let constants = &self.constants; },
-        Numbers::Any => quote! {
-            let constants = Constants::from_array(self.constants.to_array().map(T::from));
-        },
+fn constants(reads: Reads) -> TokenStream {
+    if reads.constants {
+        quote! { let constants = &self.constants; }
+    } else {
+        TokenStream::new()
     }
 }
 

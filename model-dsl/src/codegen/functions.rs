@@ -5,9 +5,8 @@ use abbe_runtime::Share;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-use super::body::{Body, Numbers, Reads, body, number};
+use super::body::{Body, Reads, body, number};
 use super::held::Held;
-use super::structs::of_any;
 use super::{aiming, docs, measured};
 use crate::equations::Equations;
 use crate::program::{OrientationPrograms, Programs};
@@ -50,7 +49,7 @@ fn parameters(equations: &Equations, body: &Body) -> TokenStream {
 }
 
 fn nominal(equations: &Equations, programs: &Programs) -> TokenStream {
-    let body = body(equations, &programs.nominal, Numbers::Plain);
+    let body = body(equations, &programs.nominal);
     let about = docs::attributes(&format!(
         "The nominal position of the tool tip relative to the part: X, Y, Z of the part's frame \\[mm\\], 0 where not sensitive.\n\n{}\n\n{}.",
         docs::nominal_equations(equations),
@@ -68,44 +67,24 @@ fn nominal(equations: &Equations, programs: &Programs) -> TokenStream {
     }
 }
 
-/// The error for the records of doubles that a controller has, and in any numbers for the interface.
+/// The error; where sines and cosines stay the same while a command is searched for, from these as well.
 fn error(equations: &Equations, programs: &Programs) -> TokenStream {
-    let body = body(equations, &programs.error, Numbers::Any);
+    let body = body(equations, &programs.error);
     let about = docs::attributes(&format!(
         "The error of the tool tip relative to the part to first order, actual minus commanded: X, Y, Z of the part's frame \\[mm\\], 0 where not sensitive.\n\n{}\n\n{}.",
         docs::error_equations(equations),
         programs.error.operations()
     ));
-    let (plain, given) = match equations.travels.len() {
-        0 => Default::default(),
-        _ => (quote! { , travels: &Travels }, quote! { , travels }),
-    };
-    let in_any = error_in(equations, &body, &given);
-    quote! {
-        #about
-        #[inline]
-        #[must_use]
-        pub fn error(&self, axes: &Axes #plain, motions: &Motions) -> [f64; 3] {
-            self.error_in(axes #given, motions)
-        }
-        #in_any
-    }
-}
-
-/// The error in any numbers; where sines and cosines stay the same while a command is searched for, with them as well.
-fn error_in(equations: &Equations, body: &Body, given: &TokenStream) -> TokenStream {
-    let Body { reads, constants, bindings, results, .. } = body;
-    let about = quote! {
-        /// [`Machine::error`] in one row or in several side by side, as [`abbe_runtime::Lanes`].
-        #[inline]
-        #[must_use]
-    };
-    match Held::new(equations, body) {
+    let prelude = body.prelude();
+    let Body { reads, constants, bindings, results, .. } = &body;
+    match Held::new(equations, &body) {
         None => {
-            let (records, prelude) = (records(equations, *reads), body.prelude());
+            let records = records(equations, *reads);
             quote! {
                 #about
-                pub fn error_in<T: ::abbe_runtime::Real>(&self, #records) -> [T; 3] {
+                #[inline]
+                #[must_use]
+                pub fn error(&self, #records) -> [f64; 3] {
                     #prelude #bindings
                     [#(#results),*]
                 }
@@ -114,16 +93,19 @@ fn error_in(equations: &Equations, body: &Body, given: &TokenStream) -> TokenStr
         Some(held) => {
             let (every, sines) = (records(equations, Reads::EVERYTHING), held.sines());
             let records = records(equations, Reads { axes: reads.positions, ..*reads });
-            let turned = held.parameter(body, &quote! { T });
+            let turned = held.parameter(&body);
+            let travels = (!equations.travels.is_empty()).then(|| quote! { travels, });
             quote! {
                 #about
-                pub fn error_in<T: ::abbe_runtime::Real>(&self, #every) -> [T; 3] {
-                    self.error_turned(Self::sines_in(axes), axes #given, motions)
+                #[inline]
+                #[must_use]
+                pub fn error(&self, #every) -> [f64; 3] {
+                    self.error_turned(Self::sines_in(axes), axes, #travels motions)
                 }
                 #sines
-                /// [`Machine::error_in`] where its rotary axes have these sines and cosines.
+                /// [`Machine::error`] where its rotary axes have these sines and cosines.
                 #[inline(always)]
-                fn error_turned<T: ::abbe_runtime::Real>(&self, #turned, #records) -> [T; 3] {
+                fn error_turned(&self, #turned, #records) -> [f64; 3] {
                     #constants #bindings
                     [#(#results),*]
                 }
@@ -132,20 +114,18 @@ fn error_in(equations: &Equations, body: &Body, given: &TokenStream) -> TokenStr
     }
 }
 
-/// The parameters `axes`, `travels` and `motions` in any numbers, with an underscore where the body does not read them.
+/// The parameters `axes`, `travels` and `motions`, with an underscore where the body does not read them.
 fn records(equations: &Equations, reads: Reads) -> TokenStream {
     let (axes, motions) = (unused("axes", reads.axes), unused("motions", reads.motions));
-    let of_axes = of_any(equations.axes.len());
-    let of_motions = of_any(equations.motions.len());
     let travels = (!equations.travels.is_empty()).then(|| {
-        let (name, of_travels) = (unused("travels", reads.travels), of_any(equations.travels.len()));
-        quote! { #name: &Travels #of_travels, }
+        let name = unused("travels", reads.travels);
+        quote! { #name: &Travels, }
     });
-    quote! { #axes: &Axes #of_axes, #travels #motions: &Motions #of_motions }
+    quote! { #axes: &Axes, #travels #motions: &Motions }
 }
 
 fn levers(equations: &Equations, programs: &Programs) -> TokenStream {
-    let body = body(equations, &programs.levers, Numbers::Plain);
+    let body = body(equations, &programs.levers);
     let about = docs::attributes(&format!(
         "The lever arm of every error motion, in the order of [`Motions::NAMES`]: X, Y, Z of the part's frame, a pure number for a displacement, mm for an angle.\n\n{}.",
         programs.levers.operations()
@@ -165,7 +145,7 @@ fn levers(equations: &Equations, programs: &Programs) -> TokenStream {
 }
 
 fn directions(equations: &Equations, programs: &Programs) -> TokenStream {
-    let body = body(equations, &programs.directions, Numbers::Plain);
+    let body = body(equations, &programs.directions);
     let (axes, prelude) = (unused("axes", body.reads.axes), body.prelude());
     let count = Literal::usize_unsuffixed(equations.axes.len());
     let Body { constants, bindings, results, .. } = &body;
@@ -184,7 +164,7 @@ fn directions(equations: &Equations, programs: &Programs) -> TokenStream {
             }
         },
         Some(held) => {
-            let turned = held.parameter(&body, &quote! { f64 });
+            let turned = held.parameter(&body);
             quote! {
                 #about
                 pub fn directions(&self, axes: &Axes) -> [[f64; 3]; #count] {
@@ -202,8 +182,8 @@ fn directions(equations: &Equations, programs: &Programs) -> TokenStream {
 
 /// The direction of the tool, and its error.
 fn orientation(equations: &Equations, programs: &OrientationPrograms) -> TokenStream {
-    let nominal = body(equations, &programs.nominal, Numbers::Plain);
-    let error = body(equations, &programs.error, Numbers::Plain);
+    let nominal = body(equations, &programs.nominal);
+    let error = body(equations, &programs.error);
     let about_nominal = docs::attributes(&format!(
         "The direction of the tool without errors, from its tip towards the spindle: I, J, K in the part's frame, pure numbers, a vector of length 1.\n\n{}\n\n{}.",
         docs::direction_equations(equations),
@@ -238,11 +218,11 @@ fn orientation(equations: &Equations, programs: &OrientationPrograms) -> TokenSt
 
 /// The sines and cosines that stay the same while a command is searched for.
 fn held(equations: &Equations, programs: &Programs) -> Option<Held> {
-    Held::new(equations, &body(equations, &programs.error, Numbers::Any))
+    Held::new(equations, &body(equations, &programs.error))
 }
 
 fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
-    let directions = body(equations, &programs.directions, Numbers::Plain);
+    let directions = body(equations, &programs.directions);
     let vary = directions.reads.axes;
     let known = fixed_directions(&directions).or_else(|| resting(equations));
     let squares = equations.squares().map(squares);
@@ -270,14 +250,6 @@ fn kinematics(equations: &Equations, programs: &Programs) -> TokenStream {
                 self.error_from(#sines position, travel, motions)
             }
             #with_sines
-            fn error_lanes(
-                &self,
-                position: &[::abbe_runtime::Lanes],
-                travel: &[::abbe_runtime::Lanes],
-                motions: &[::abbe_runtime::Lanes],
-            ) -> Option<[::abbe_runtime::Lanes; 3]> {
-                Some(self.error_from(#sines position, travel, motions))
-            }
             fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {
                 let found = match position.try_into() {
                     Ok(position) => Machine::directions(self, &Axes::from_array(position)),
@@ -366,24 +338,23 @@ fn resting(equations: &Equations) -> Option<TokenStream> {
 
 /// The error from slices.
 fn error_from(equations: &Equations, held: Option<&Held>) -> TokenStream {
-    let nan = quote! { T::from(f64::NAN) };
-    let (position, of_axes) = record(&nan, "position", "Axes", equations.axes.len());
-    let (travel, of_travels) = record(&nan, "travel", "Travels", equations.travels.len());
-    let (values, of_motions) = record(&nan, "motions", "Motions", equations.motions.len());
+    let (position, of_axes) = record("position", "Axes", equations.axes.len());
+    let (travel, of_travels) = record("travel", "Travels", equations.travels.len());
+    let (values, of_motions) = record("motions", "Motions", equations.motions.len());
     let of_travels = (!equations.travels.is_empty()).then(|| quote! { &#of_travels, });
-    let slices = quote! { position: &[T], travel: &[T], motions: &[T] };
+    let slices = quote! { position: &[f64], travel: &[f64], motions: &[f64] };
     let (sines, error) = match held {
-        None => (None, quote! { self.error_in(&#of_axes, #of_travels &#of_motions) }),
+        None => (None, quote! { self.error(&#of_axes, #of_travels &#of_motions) }),
         Some(held) => {
-            let sines = held.of(&quote! { T });
+            let sines = held.of();
             let error = quote! { self.error_turned(sines, &#of_axes, #of_travels &#of_motions) };
             (Some(quote! { sines: #sines, }), error)
         }
     };
     quote! {
-        /// [`Machine::error_in`] from slices, NaN where one has the wrong length.
+        /// [`Machine::error`] from slices, NaN where one has the wrong length.
         #[inline(always)]
-        fn error_from<T: ::abbe_runtime::Real>(&self, #sines #slices) -> [T; 3] {
+        fn error_from(&self, #sines #slices) -> [f64; 3] {
             #position
             #values
             #travel
@@ -392,15 +363,10 @@ fn error_from(equations: &Equations, held: Option<&Held>) -> TokenStream {
     }
 }
 
-/// The check of a slice that becomes a record of so many fields, in numbers of which this is the one that is none, and the record.
-pub(super) fn record(
-    nan: &TokenStream,
-    slice: &str,
-    record: &str,
-    fields: usize,
-) -> (TokenStream, TokenStream) {
+/// The check of a slice that becomes a record of so many fields, and the record.
+pub(super) fn record(slice: &str, record: &str, fields: usize) -> (TokenStream, TokenStream) {
     let (slice, record) = (quote::format_ident!("{slice}"), quote::format_ident!("{record}"));
-    let otherwise = quote! { else { return [#nan; 3] }; };
+    let otherwise = quote! { else { return [f64::NAN; 3] }; };
     if fields == 0 {
         (quote! { let [] = *#slice #otherwise }, quote! { #record {} })
     } else {

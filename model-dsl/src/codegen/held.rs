@@ -38,33 +38,33 @@ impl Held {
         !body.reads.positions && body.turned.iter().all(|turned| self.axes.contains(&turned.axis))
     }
 
-    /// Their type in numbers of a type.
-    pub(super) fn of(&self, number: &TokenStream) -> TokenStream {
+    /// Their type.
+    pub(super) fn of(&self) -> TokenStream {
         let count = &self.count;
-        quote! { ([#number; #count], [#number; #count]) }
+        quote! { ([f64; #count], [f64; #count]) }
     }
 
     /// The parameter that brings those into scope which a body reads.
-    pub(super) fn parameter(&self, body: &Body, number: &TokenStream) -> TokenStream {
+    pub(super) fn parameter(&self, body: &Body) -> TokenStream {
         let read: Vec<_> =
             self.axes.iter().map(|axis| body.turned.iter().find(|turned| turned.axis == *axis)).collect();
-        let (names, of) = (body::names(&read), self.of(number));
+        let (names, of) = (body::names(&read), self.of());
         quote! { #names: #of }
     }
 
     /// The functions that work them out.
     pub(super) fn sines(&self) -> TokenStream {
-        let (sines, given, count) = (&self.sines, self.of(&quote! { T }), &self.count);
+        let (sines, given, count) = (&self.sines, self.of(), &self.count);
         quote! {
             /// The sines and cosines of the rotary axes that the error reads.
-            fn sines_in<T: ::abbe_runtime::Real>(axes: &Axes<T>) -> #given {
+            fn sines_in(axes: &Axes) -> #given {
                 #sines
             }
             /// The same from a slice, NaN where it has the wrong length.
-            fn sines_of<T: ::abbe_runtime::Real>(position: &[T]) -> #given {
+            fn sines_of(position: &[f64]) -> #given {
                 match position.try_into() {
                     Ok(position) => Self::sines_in(&Axes::from_array(position)),
-                    Err(_) => ([T::from(f64::NAN); #count], [T::from(f64::NAN); #count]),
+                    Err(_) => ([f64::NAN; #count], [f64::NAN; #count]),
                 }
             }
         }

@@ -30,17 +30,7 @@ pub(super) fn all(equations: &Equations) -> TokenStream {
     }
 }
 
-/// `<T>` after the name of a record with so many fields.
-pub(super) fn of_any(fields: usize) -> TokenStream {
-    if fields == 0 {
-        TokenStream::new()
-    } else {
-        quote! { <T> }
-    }
-}
-
-/// A record of numbers with its names and its conversions from and to an array. The numbers are doubles unless said
-/// otherwise; a record without fields has none. `derives_default` where the default of all is 0.
+/// A record of numbers with its names and its conversions from and to an array. `derives_default` where the default of all is 0.
 fn record(name: &str, about: &str, fields: &[(String, String)], derives_default: bool) -> TokenStream {
     let ident = format_ident!("{name}");
     let count = Literal::usize_unsuffixed(fields.len());
@@ -48,11 +38,6 @@ fn record(name: &str, about: &str, fields: &[(String, String)], derives_default:
     let docs: Vec<_> = fields.iter().map(|(_, doc)| docs::attributes(doc)).collect();
     let about = docs::attributes(about);
     let names: Vec<_> = fields.iter().map(|(name, _)| name).collect();
-    let (default, bound, number) = match fields.len() {
-        0 => (quote! {}, quote! {}, quote! { f64 }),
-        _ => (quote! { <T = f64> }, quote! { <T: Copy> }, quote! { T }),
-    };
-    let argument = of_any(fields.len());
     let derived = if derives_default {
         quote! { Default, }
     } else {
@@ -61,22 +46,20 @@ fn record(name: &str, about: &str, fields: &[(String, String)], derives_default:
     quote! {
         #about
         #[derive(Clone, Copy, Debug, #derived PartialEq)]
-        pub struct #ident #default {
-            #(#docs pub #idents: #number,)*
+        pub struct #ident {
+            #(#docs pub #idents: f64,)*
         }
         impl #ident {
             /// The names, in the order of the array.
             pub const NAMES: [&'static str; #count] = [#(#names),*];
-        }
-        impl #bound #ident #argument {
             /// The record from an array.
             #[must_use]
-            pub const fn from_array([#(#idents),*]: [#number; #count]) -> Self {
+            pub const fn from_array([#(#idents),*]: [f64; #count]) -> Self {
                 Self { #(#idents),* }
             }
             /// The record as an array.
             #[must_use]
-            pub const fn to_array(self) -> [#number; #count] {
+            pub const fn to_array(self) -> [f64; #count] {
                 [#(self.#idents),*]
             }
         }

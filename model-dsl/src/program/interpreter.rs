@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use abbe_runtime::math::sin_cos;
-use abbe_runtime::{Kinematics, Lanes, Real, Share, Turning};
+use abbe_runtime::{Kinematics, Share, Turning};
 
 use super::{Column, Input, OrientationPrograms, Programs, Tape};
 use crate::equations::Equations;
@@ -137,30 +137,28 @@ impl Interpreter {
         triples(self.run_columns(&self.turns, positions, travels))
     }
 
-    /// A sum over the error motions in one row, or in several side by side; NaN for a slice of the wrong length.
-    fn sum_in<T: Real>(&self, tape: &Tape, position: &[T], travel: &[T], motions: &[T]) -> [T; 3] {
+    /// A sum over the error motions; NaN for a slice of the wrong length.
+    fn sum_in(&self, tape: &Tape, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
         let lengths = (position.len(), travel.len(), motions.len());
         if lengths != (self.rotary.len(), self.travels.len(), self.motions) {
-            return [f64::NAN.into(); 3];
+            return [f64::NAN; 3];
         }
         triple(&self.run(tape, position, travel, motions))
     }
 
-    fn run<T: Real>(&self, tape: &Tape, position: &[T], travel: &[T], motions: &[T]) -> Vec<T> {
-        let turn = |(angle, rotary): (&T, &bool)| {
-            if *rotary { angle.sin_cos() } else { (T::from(0.0), T::from(1.0)) }
-        };
-        let turns: Vec<(T, T)> = match self.rotary.contains(&true) {
+    fn run(&self, tape: &Tape, position: &[f64], travel: &[f64], motions: &[f64]) -> Vec<f64> {
+        let turn = |(angle, rotary): (&f64, &bool)| if *rotary { sin_cos(*angle) } else { (0.0, 1.0) };
+        let turns: Vec<(f64, f64)> = match self.rotary.contains(&true) {
             true => position.iter().zip(&self.rotary).map(turn).collect(),
             false => Vec::new(),
         };
-        let or_nan = |values: &[T], number: usize| values.get(number).copied().unwrap_or(f64::NAN.into());
+        let or_nan = |values: &[f64], number: usize| values.get(number).copied().unwrap_or(f64::NAN);
         tape.run(|input| match input {
             Input::Position(axis) => or_nan(position, axis),
             Input::Travel(number) => or_nan(travel, number),
-            Input::Constant(number) => self.constants.get(number).copied().unwrap_or(f64::NAN).into(),
-            Input::Cos(axis) => turns.get(axis).map_or(f64::NAN.into(), |(_, cosine)| *cosine),
-            Input::Sin(axis) => turns.get(axis).map_or(f64::NAN.into(), |(sine, _)| *sine),
+            Input::Constant(number) => self.constants.get(number).copied().unwrap_or(f64::NAN),
+            Input::Cos(axis) => turns.get(axis).map_or(f64::NAN, |(_, cosine)| *cosine),
+            Input::Sin(axis) => turns.get(axis).map_or(f64::NAN, |(sine, _)| *sine),
             Input::Motion(motion) => or_nan(motions, motion),
         })
     }
@@ -229,10 +227,6 @@ impl Kinematics for Interpreter {
         self.sum_in(&self.error, position, travel, motions)
     }
 
-    fn error_lanes(&self, position: &[Lanes], travel: &[Lanes], motions: &[Lanes]) -> Option<[Lanes; 3]> {
-        Some(self.sum_in(&self.error, position, travel, motions))
-    }
-
     fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {
         let all = self.run(&self.directions, position, &[], &[]);
         for (slot, values) in directions.iter_mut().zip(all.chunks(3)) {
@@ -289,10 +283,10 @@ impl Kinematics for Interpreter {
     }
 }
 
-fn triple<T: Real>(values: &[T]) -> [T; 3] {
+fn triple(values: &[f64]) -> [f64; 3] {
     match values {
         [x, y, z] => [*x, *y, *z],
-        _ => [f64::NAN.into(); 3],
+        _ => [f64::NAN; 3],
     }
 }
 

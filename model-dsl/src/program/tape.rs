@@ -1,8 +1,6 @@
 //! Programs laid out for running. In: a program. Out: its operations over one array of values,
 //! each value at a place of its own, so that running it looks nothing up.
 
-use abbe_runtime::Real;
-
 use super::column::Room;
 use super::{Column, Input, Program, Step, Value};
 
@@ -62,14 +60,14 @@ impl Tape {
         self.inputs.iter().any(|input| matches!(input, Input::Position(_) | Input::Sin(_) | Input::Cos(_)))
     }
 
-    /// Runs the tape on the inputs that `given` supplies; one number, or one in each lane, for each result.
-    pub fn run<T: Real>(&self, given: impl Fn(Input) -> T) -> Vec<T> {
+    /// Runs the tape on the inputs that `given` supplies; one number for each result.
+    pub fn run(&self, given: impl Fn(Input) -> f64) -> Vec<f64> {
         let places = self.numbers.len() + self.inputs.len() + self.operations.len();
         // With room for the results, which then need no array of their own.
         let mut values = Vec::with_capacity(places + self.results.len());
-        values.extend(self.numbers.iter().map(|number| T::from(*number)));
+        values.extend(&self.numbers);
         values.extend(self.inputs.iter().map(|input| given(*input)));
-        let at = |values: &[T], place: usize| values.get(place).copied().unwrap_or(f64::NAN.into());
+        let at = |values: &[f64], place: usize| values.get(place).copied().unwrap_or(f64::NAN);
         for (operation, first, second) in &self.operations {
             let (a, b) = (at(&values, *first), at(&values, *second));
             values.push(match operation {

@@ -228,7 +228,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
 
     /// The directions of the axes: those that are known when the code is compiled, or else these.
     #[inline]
-    pub(super) fn columns<'c, T>(&self, found: &'c [[T; 3]]) -> Columns<'c, T>
+    pub(super) fn columns<'c>(&self, found: &'c [[f64; 3]]) -> Columns<'c>
     where
         'a: 'c,
     {

@@ -1,10 +1,10 @@
-//! Reading curves with even steps, at one position or at several side by side.
+//! Reading curves with even steps.
 //!
-//! In: positions of an axis, and the direction of each. Out: the values there. It exists because the curves of an axis
+//! In: the position of an axis, and its direction. Out: the value there. It exists because the curves of an axis
 //! mostly have the same nodes, so that a place that was found for one of them serves all.
 
 use super::{Nodes, Table, between, read_at, within_a_turn};
-use crate::{Direction, Lanes, Real};
+use crate::Direction;
 
 /// Even nodes: the first, how many of them there are for each mm or rad, and the last.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -36,24 +36,18 @@ impl Last {
     }
 }
 
-/// Where an axis lies between even nodes, in one row or in several, and the direction in which it moves there.
+/// Where an axis lies between even nodes, and the direction in which it moves there.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Located<I, T, D> {
+pub(crate) struct Place {
     axis: usize,
     even: Even,
     /// Indices of the nodes below and above; at the last node and beyond both are the last.
-    below: I,
-    above: I,
+    below: usize,
+    above: usize,
     /// The part of the way from one to the other, from 0 to less than 1; 0 beyond the ends.
-    part: T,
-    direction: D,
+    part: f64,
+    direction: Direction,
 }
-
-/// Where one position lies.
-pub(crate) type Place = Located<usize, f64, Direction>;
-
-/// Where positions side by side lie.
-pub(crate) type LanePlace = Located<[usize; Lanes::WIDTH], Lanes, [Direction; Lanes::WIDTH]>;
 
 impl Table<'_> {
     /// The value where an axis is, on the curve of its direction; NaN where there is no such axis.
@@ -88,42 +82,15 @@ impl Table<'_> {
             Nodes::At { at, repeats } => read_at(curve, at, repeats, position),
         }
     }
-
-    /// The value in each lane, on the curve of its direction: [`read`](Self::read), bit for bit.
-    pub(crate) fn read_lanes(
-        &self,
-        axis: usize,
-        position: Lanes,
-        direction: &[Direction; Lanes::WIDTH],
-        known: &mut Option<LanePlace>,
-    ) -> Lanes {
-        let mut curves = direction.iter().map(|direction| self.curve(*direction));
-        match self.nodes {
-            Nodes::Even(even) => {
-                known.take_if(|place| !place.is(axis, even));
-                let place = known.get_or_insert_with(|| LanePlace::new(even, axis, position, *direction));
-                if core::ptr::eq(self.forward, self.reverse) {
-                    place.read(|| self.forward)
-                } else {
-                    place.read(|| curves.next().unwrap_or_default())
-                }
-            }
-            Nodes::At { at, repeats } => position.map(|position| {
-                curves.next().map_or(f64::NAN, |curve| read_at(curve, at, repeats, position))
-            }),
-        }
-    }
 }
 
-impl<I, T, D> Located<I, T, D> {
+impl Place {
     /// Whether this is the place of an axis between these nodes.
     #[inline(always)]
     fn is(&self, axis: usize, even: Even) -> bool {
         self.axis == axis && self.even.is(even)
     }
-}
 
-impl Place {
     #[inline(always)]
     pub(super) fn new(even: Even, axis: usize, position: f64, direction: Direction) -> Self {
         let (below, part) = even.place(position);
@@ -135,30 +102,6 @@ impl Place {
     #[inline]
     pub(super) fn read(&self, curve: &[f64]) -> f64 {
         between(node(curve, self.below), node(curve, self.above), self.part)
-    }
-}
-
-impl LanePlace {
-    fn new(even: Even, axis: usize, position: Lanes, direction: [Direction; Lanes::WIDTH]) -> Self {
-        let mut below = [0; Lanes::WIDTH];
-        let mut part = even.steps(position);
-        for (below, part) in below.iter_mut().zip(part.iter_mut()) {
-            (*below, *part) = split(*part);
-        }
-        let above = below.map(|node| node.saturating_add(1).min(even.last.index()));
-        Self { axis, even, below, above, part, direction }
-    }
-
-    /// Reads a curve in each lane.
-    #[inline]
-    fn read<'v>(&self, mut curve: impl FnMut() -> &'v [f64]) -> Lanes {
-        let (mut low, mut high) = (self.part, self.part);
-        let nodes = self.below.iter().zip(&self.above);
-        for ((low, high), (below, above)) in low.iter_mut().zip(high.iter_mut()).zip(nodes) {
-            let curve = curve();
-            (*low, *high) = (node(curve, *below), node(curve, *above));
-        }
-        between(low, high, self.part)
     }
 }
 
@@ -191,19 +134,8 @@ impl Even {
 
     /// How many steps a position lies behind the first node.
     #[inline]
-    fn count<T: Real>(self, position: T) -> T {
-        (position - self.start.into()) * self.per_unit.into()
-    }
-
-    /// The same within the table: from 0 to the number of the last; NaN remains.
-    #[inline]
-    fn steps(self, position: Lanes) -> Lanes {
-        let last = self.last.index() as f64;
-        let (zero, end) = (Lanes::from(0.0), Lanes::from(last));
-        let count = self.count(position);
-        let count = if self.last.repeats() { count.map(|count| within_a_turn(count, last)) } else { count };
-        let inside = zero.above(count, zero, count);
-        inside.above(end, end, inside)
+    const fn count(self, position: f64) -> f64 {
+        (position - self.start) * self.per_unit
     }
 }
 

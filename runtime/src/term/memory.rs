@@ -6,7 +6,7 @@
 
 use crate::Sample;
 use crate::math::exp_m1;
-use crate::sample::{Readings, number};
+use crate::sample::{OneSample, number};
 
 /// What a term remembers from cycle to cycle: the take-up of a play, the filtered temperature of a growth, the warmth that a
 /// factor has gathered, how far the correction of a reversal has come.
@@ -31,12 +31,7 @@ impl TermState {
 }
 
 /// The take-up of a play: the direction itself, or where there is a wind-up the u of the play operator.
-pub(super) fn take_up<R: Readings>(
-    from: &R,
-    axis: usize,
-    wind_up: f64,
-    memory: Option<&R::Number>,
-) -> R::Number {
+pub(super) fn take_up(from: &OneSample<'_>, axis: usize, wind_up: f64, memory: Option<&f64>) -> f64 {
     let direction = from.sign(axis);
     if wind_up > 0.0 { memory.copied().unwrap_or(direction) } else { direction }
 }

@@ -2,9 +2,7 @@
 //!
 //! In: positions and directions. Out: the same with everything else filled in. It exists so that a test shows only what it is about.
 
-use abbe_runtime::{
-    Compensator, Direction, ErrorMotion, Kinematics, Lanes, Real, Sample, TermState, Work, states_needed,
-};
+use abbe_runtime::{Compensator, Direction, ErrorMotion, Kinematics, Sample, TermState, Work, states_needed};
 
 /// A sample at rest, all axes of which moved last in the positive direction; room for six axes.
 pub(crate) fn at(position: &[f64]) -> Sample<'_> {
@@ -104,15 +102,14 @@ pub(crate) struct TableMill {
 
 impl TableMill {
     /// A vector of the bed in the frame of the part, which C has turned about Z.
-    pub(crate) fn in_part<T: Real>(c: T, [x, y, z]: [T; 3]) -> [T; 3] {
+    pub(crate) fn in_part(c: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let (sin, cos) = c.sin_cos();
         [cos * x + sin * y, cos * y - sin * x, z]
     }
 
-    /// The error in one row or in several.
-    fn equations<T: Real>(&self, [_, y, z, c]: [T; 4], motions: [T; 9]) -> [T; 3] {
+    fn equations(&self, [_, y, z, c]: [f64; 4], motions: [f64; 9]) -> [f64; 3] {
         let [exx, eyx, exy, eyy, ezz, eax, ebx, ecx, ec0y] = motions;
-        let [xt, yt, zt] = self.tool.map(T::from);
+        let [xt, yt, zt] = self.tool;
         let (ly, lz) = (y + yt, z + zt);
         let bed = [
             exx + exy - ly * ecx + lz * ebx - y * ec0y,
@@ -138,9 +135,6 @@ impl Kinematics for TableMill {
             (Ok(position), Ok(motions)) => self.equations(position, motions),
             _ => [f64::NAN; 3],
         }
-    }
-    fn error_lanes(&self, position: &[Lanes], _travel: &[Lanes], motions: &[Lanes]) -> Option<[Lanes; 3]> {
-        Some(self.equations(position.try_into().ok()?, motions.try_into().ok()?))
     }
     fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {
         let c = position[3];

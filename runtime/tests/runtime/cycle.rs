@@ -409,3 +409,34 @@ fn bad_factors_are_named_too() {
         Err(SetupError::LoneFactor { motion: 0, term: 1 })
     );
 }
+
+/// A slide along X beside which, wherever it is not at 5, the tip is said to be infinitely far in Y.
+struct Lost;
+
+impl Kinematics for Lost {
+    fn axes(&self) -> usize {
+        1
+    }
+    fn travels(&self) -> &[usize] {
+        &[]
+    }
+    fn motions(&self) -> usize {
+        1
+    }
+    fn error(&self, position: &[f64], _travel: &[f64], motions: &[f64]) -> [f64; 3] {
+        [motions[0], if position == [5.0] { 0.0 } else { f64::INFINITY }, 0.0]
+    }
+    fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {
+        Slide.directions(position, directions);
+    }
+}
+
+#[test]
+fn an_error_without_bounds_is_refused_where_no_axis_reaches_it() {
+    let exx = [Term::Constant { value: 0.25 }];
+    let motions = [ErrorMotion { terms: &exx }];
+    let mut command = [0.0];
+    let (result, _) = with(&Lost, &motions, |slide| slide.compensate(&at(&[5.0]), &mut command));
+    assert!(matches!(result, Err(Refusal::NotConverging { .. })), "{result:?}");
+    assert_eq!(command, [5.0]);
+}

@@ -4,7 +4,6 @@
 
 #![expect(clippy::unwrap_used, reason = "in a test a panic is the report, in its helpers too")]
 
-mod batch;
 mod bundles;
 mod common;
 mod cycle;

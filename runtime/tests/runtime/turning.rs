@@ -4,9 +4,9 @@
 //! never sees.
 
 use abbe_runtime::{
-    AxisMemory, Batch, BatchWork, Compensator, Convergence, Direction, DirectionTracker, ErrorMotion, Input,
-    Kinematics, Lanes, Limits, Memory, Real, Refusal, Sample, SetupError, State, Supervisor, Table, Term,
-    TermState, Transition, Turning, Values, Work,
+    AxisMemory, Compensator, Convergence, Direction, DirectionTracker, ErrorMotion, Input, Kinematics,
+    Limits, Memory, Refusal, Sample, SetupError, State, Supervisor, Table, Term, TermState, Transition,
+    Turning, Values, Work,
 };
 use proptest::prelude::*;
 
@@ -24,17 +24,17 @@ const MILL: Table2 = Table2 { turning: OWN };
 const CLAMPED: Table2 = Table2 { turning: &[] };
 
 /// A place over the table as the part sees it, the table being turned by an angle.
-fn in_part<T: Real>(c: T, [x, y]: [T; 2]) -> [T; 2] {
+fn in_part(c: f64, [x, y]: [f64; 2]) -> [f64; 2] {
     let (sine, cosine) = c.sin_cos();
     [cosine * x + sine * y, cosine * y - sine * x]
 }
 
 impl Table2 {
-    fn equations<T: Real>([x, y, c]: [T; 3], [exx, eyy, exc, ecc, ec0c]: [T; 5]) -> [T; 3] {
+    fn equations([x, y, c]: [f64; 3], [exx, eyy, exc, ecc, ec0c]: [f64; 5]) -> [f64; 3] {
         let turned = ecc + ec0c;
         // The part turned further by a small angle sees the tip turned back: p + e y, q - e x.
         let [dx, dy] = in_part(c, [exx - exc + turned * y, eyy - turned * x]);
-        [dx, dy, T::from(0.0)]
+        [dx, dy, 0.0]
     }
 }
 
@@ -53,9 +53,6 @@ impl Kinematics for Table2 {
             (Ok(position), Ok(motions)) => Self::equations(position, motions),
             _ => [f64::NAN; 3],
         }
-    }
-    fn error_lanes(&self, position: &[Lanes], _travel: &[Lanes], motions: &[Lanes]) -> Option<[Lanes; 3]> {
-        Some(Self::equations(position.try_into().ok()?, motions.try_into().ok()?))
     }
     fn turning(&self) -> &[Turning] {
         self.turning
@@ -137,45 +134,6 @@ proptest! {
         let (tip, angle) = real(&command, &motions, &at(&target));
         prop_assert!((angle - c).abs() < 2e-10);
         prop_assert!(apart(tip, in_part(c, place)) < 1e-7);
-    }
-
-    /// Rows side by side are rows one after the other.
-    #[test]
-    fn batches_give_what_single_rows_give(
-        places in prop::collection::vec(prop::array::uniform3(-200.0..200.0_f64), 1..20),
-        values in prop::collection::vec(-0.02..0.02_f64, 8), slope in -1e-4..1e-4_f64,
-    ) {
-        let table = Table::uniform(-210.0, 60.0, Values::Both(&values)).unwrap();
-        let own = [Term::Table { axis: 2, table }];
-        let exx = [Term::Polynomial { input: Input::Axis(0), coefficients: &[0.01, slope] }];
-        let motions = [&exx[..], &[], &[], &own, &[]].map(|terms| ErrorMotion { terms });
-        let columns: Vec<Vec<f64>> =
-            (0..3).map(|axis| places.iter().map(|place| place[axis]).collect()).collect();
-        let position: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-        let forward = vec![Direction::Positive; places.len()];
-        let direction = [&forward[..]; 3];
-        let time_step = vec![0.001; places.len()];
-        let batch = Batch {
-            position: &position, travel: &[], direction: &direction, velocity: &[], temperature: &[],
-            time_step: &time_step,
-        };
-        let mut out = vec![vec![0.0; places.len()]; 3];
-        let mut answers = vec![Err(Refusal::NotFinite); places.len()];
-        with(&MILL, &motions, |mill| {
-            let sizes = mill.batch_sizes();
-            let mut lanes = vec![Lanes::default(); sizes.lanes];
-            let mut numbers = vec![0.0; sizes.numbers];
-            let mut directions = vec![Direction::Positive; sizes.directions];
-            let work = BatchWork { lanes: &mut lanes, numbers: &mut numbers, directions: &mut directions };
-            let mut columns: Vec<&mut [f64]> = out.iter_mut().map(Vec::as_mut_slice).collect();
-            mill.compensate_batch(&batch, work, &mut columns, &mut answers).unwrap();
-        });
-        for (row, place) in places.iter().enumerate() {
-            let mut command = [0.0; 3];
-            let (alone, _) = with(&MILL, &motions, |mill| mill.compensate(&at(place), &mut command));
-            prop_assert_eq!(&answers[row], &alone);
-            prop_assert_eq!([out[0][row], out[1][row], out[2][row]], command);
-        }
     }
 }
 

@@ -1,24 +1,26 @@
 //! Rows that are read become rows that are written. In: rows with the state of the machine in each. Out: the same rows with
-//! errors and compensated positions, in their order, a batch at a time.
+//! errors and compensated positions, in their order, as many at a time as one read of the input brings.
 
 use std::cell::RefCell;
-use std::io::{self, Read};
+use std::io::{self, BufWriter, Read, Write};
 use std::rc::Rc;
 
-use abbe_runtime::{Compensator, Exchanged, Refusal, Sample};
+use abbe_runtime::{ErrorMotion, Sample, TermState, states_needed};
 use csv::ByteRecord;
-use model_dsl::equations::Equations;
-use model_dsl::program::Interpreter;
+use workshop::calibrated::Calibrated;
 use workshop::failure::Failure;
-use workshop::rows::{Lean, Leaning};
+use workshop::rows::{self, Room, Samples};
 
 use super::CAPACITY;
-use crate::decimal::Decimal;
+use super::lines::{self, Lines};
 use crate::map::Map;
-use crate::positions::{Layout, Pending, Summary, quoted};
+use crate::positions::{Column, Layout, Summary};
 
 /// The longest row, in bytes; what is longer is no table, and would have to be kept as a whole.
 const LONGEST_ROW: u64 = 1 << 20;
+
+/// So many rows are answered at once at the most: enough pieces for many processors, and some MB.
+const MOST_PENDING: usize = 1 << 13;
 
 /// Standard input that has every row answered and shown before it waits for more, so that a program at the other end of
 /// the pipes gets every answer before it asks the next question.
@@ -54,27 +56,19 @@ impl Read for Input<'_> {
     }
 }
 
-/// The machine without a tool, and with each tool of the calibration.
-pub(super) struct Machines {
-    pub(super) without: Interpreter,
-    pub(super) with: Vec<Interpreter>,
-}
-
-/// Those who answer: the compensator, and all that hears of its answers.
+/// Those who answer: the machine, and all that hears of its answers.
 pub(super) struct Answering<'c> {
-    equations: &'c Equations,
-    compensator: Compensator<'c, Exchanged<&'c Interpreter>>,
-    machines: &'c Machines,
-    machine: &'c Exchanged<&'c Interpreter>,
-    /// The tool of the rows that are pending.
+    machine: rows::Answering<'c>,
+    motions: &'c [ErrorMotion<'c>],
+    /// The position of each axis that a program moves, in a row.
+    axes: Vec<Column>,
+    /// The rows that are pending, as they were read, each with its number; and spare ones behind them.
+    records: Vec<(ByteRecord, u64)>,
+    /// The state of the machine in each of them.
+    samples: Samples<'c>,
+    /// The tool of the last row.
     tool: Option<usize>,
-    pending: Pending,
-    /// What follows the direction of the tool, where the machine derives it.
-    pub(super) leaning: Option<Leaning<'c>>,
-    /// The error of that direction in the rows that are pending; nothing where it is not derived.
-    leans: Vec<Lean>,
-    writer: csv::Writer<io::StdoutLock<'static>>,
-    number: Decimal,
+    output: BufWriter<io::StdoutLock<'static>>,
     skip_bad: bool,
     /// How many rows were left out.
     pub(super) skipped: u64,
@@ -90,24 +84,15 @@ pub(super) struct Answering<'c> {
 
 impl<'c> Answering<'c> {
     /// Nobody has asked yet.
-    pub(super) fn new(
-        equations: &'c Equations,
-        (machines, machine): (&'c Machines, &'c Exchanged<&'c Interpreter>),
-        compensator: Compensator<'c, Exchanged<&'c Interpreter>>,
-        skip_bad: bool,
-    ) -> Self {
-        let mut builder = csv::WriterBuilder::new();
+    pub(super) fn new(calibrated: &'c Calibrated, motions: &'c [ErrorMotion<'c>], skip_bad: bool) -> Self {
         Self {
-            equations,
-            compensator,
-            machines,
-            machine,
+            machine: rows::Answering::new(calibrated, motions),
+            motions,
+            axes: Vec::new(),
+            records: Vec::new(),
+            samples: Samples::new(motions),
             tool: None,
-            pending: Pending::default(),
-            leaning: None,
-            leans: Vec::new(),
-            writer: builder.flexible(true).buffer_capacity(CAPACITY).from_writer(io::stdout().lock()),
-            number: Decimal::default(),
+            output: BufWriter::with_capacity(CAPACITY, io::stdout().lock()),
             skip_bad,
             skipped: 0,
             summary: None,
@@ -119,133 +104,110 @@ impl<'c> Answering<'c> {
 
     /// Writes the header, and the units where the input has them.
     pub(super) fn begin(&mut self, layout: &Layout, added: Vec<String>) -> Result<(), Failure> {
-        self.pending = Pending::new(layout, &self.compensator);
-        self.writer.write_record(layout.header.iter().chain(&added)).map_err(closed)?;
-        let Some(units) = &layout.units else { return Ok(()) };
-        let tip = self.equations.rows.iter().map(|_| "mm".to_owned());
-        let errors = tip.chain(self.equations.orientation.iter().map(|_| "rad".to_owned()));
-        let axes = layout.axes.iter().map(|column| units.get(column.index).cloned().unwrap_or_default());
-        let motors = self.equations.axes.iter().filter(|axis| axis.is_motor()).map(|_| "mm".to_owned());
-        let axes = axes.chain(motors);
-        let mark = std::iter::once("#unit".to_owned());
-        self.writer.write_record(mark.chain(units.iter().cloned()).chain(errors).chain(axes)).map_err(closed)
-    }
-
-    /// Takes the tool of the next row: the rows before it are answered with theirs.
-    pub(super) fn change_tool(&mut self, tool: Option<usize>) -> Result<(), Failure> {
-        if tool != self.tool {
-            self.answer()?;
-            let with = tool.and_then(|tool| self.machines.with.get(tool));
-            self.machine.exchange(with.unwrap_or(&self.machines.without));
-            self.tool = tool;
+        self.axes.clone_from(&layout.axes);
+        let mut head = lines::writer();
+        head.write_record(layout.header.iter().chain(&added)).map_err(|error| lines::failed(&error))?;
+        if let Some(units) = &layout.units {
+            let units = self.units(layout, units);
+            head.write_record(units).map_err(|error| lines::failed(&error))?;
         }
-        Ok(())
+        self.show(&lines::text(head)?)
     }
 
-    /// Takes a row with the state of the machine in it; leaves another record in its place.
+    /// The row of units, with those of the columns that are added.
+    fn units(&self, layout: &Layout, units: &[String]) -> Vec<String> {
+        let equations = self.machine.equations();
+        let tip = equations.rows.iter().map(|_| "mm".to_owned());
+        let direction = equations.orientation.iter().map(|_| "rad".to_owned());
+        let axes = layout.axes.iter().map(|column| units.get(column.index).cloned().unwrap_or_default());
+        let motors = equations.axes.iter().filter(|axis| axis.is_motor()).map(|_| "mm".to_owned());
+        let mark = std::iter::once("#unit".to_owned());
+        mark.chain(units.iter().cloned()).chain(tip).chain(direction).chain(axes).chain(motors).collect()
+    }
+
+    /// Takes a row with the state of the machine and its tool in it; leaves another record in its place.
     pub(super) fn take(
         &mut self,
         row: &mut ByteRecord,
         number: u64,
-        sample: &Sample<'_>,
+        (sample, tool): (&Sample<'_>, Option<usize>),
     ) -> Result<(), Failure> {
-        self.pending.push(row, number, sample);
-        self.leans.extend(self.leaning.as_mut().map(|leaning| leaning.take(sample)));
-        if self.pending.is_full() { self.answer() } else { Ok(()) }
+        let place = self.samples.len();
+        if place == self.records.len() {
+            self.records.push((ByteRecord::new(), 0));
+        }
+        if let Some(slot) = self.records.get_mut(place) {
+            std::mem::swap(&mut slot.0, row);
+            slot.1 = number;
+        }
+        self.samples.push(sample, tool);
+        self.tool = tool;
+        if self.samples.len() < MOST_PENDING { Ok(()) } else { self.answer() }
     }
 
     /// Refuses a row that is no state of a machine.
     pub(super) fn refuse(&mut self, row: &ByteRecord, number: u64, mistake: &str) -> Result<(), Failure> {
         self.answer()?;
-        bad(row, number, mistake, self.skip_bad, &mut self.skipped)
+        if self.skip_bad {
+            self.skipped += 1;
+            return Ok(());
+        }
+        Err(lines::bad(row, number, mistake))
     }
 
     /// Answers what is pending, as far as the first bad row where none may be left out.
     pub(super) fn answer(&mut self) -> Result<(), Failure> {
-        // Before the header is read there is not even room for a row.
-        if self.pending.len() == 0 {
+        if self.samples.is_empty() {
             return Ok(());
         }
         let done = self.answer_rows();
-        self.pending.clear();
-        self.leans.clear();
+        self.samples.clear();
         done
     }
 
     fn answer_rows(&mut self) -> Result<(), Failure> {
-        self.compensate()
-            .map_err(|refusal| Failure::wrong(format!("error: the rows cannot be compensated: {refusal}")))?;
-        for row in 0..self.pending.len() {
-            let (record, number) = self.pending.record(row);
-            match self.pending.answer(row) {
-                Ok(outcome) => {
-                    let lean = self.leans.get(row).copied();
-                    self.write(row, &outcome.error, lean.as_ref())?;
-                    self.summary.iter_mut().for_each(|summary| summary.take(&outcome, lean.as_ref()));
-                    self.map.iter_mut().for_each(|map| self.pending.show(row, map));
-                }
-                Err(refusal) => {
-                    bad(record, number, &refusal.to_string(), self.skip_bad, &mut self.skipped)?;
-                }
+        let Self { machine, samples, records, .. } = self;
+        let (axes, skip_bad) = (self.axes.clone(), self.skip_bad);
+        let begin = || Lines::new(machine.equations(), &axes, skip_bad);
+        let pieces = machine.answer(samples, begin, |lines, row, answer| {
+            records.get(row).is_some_and(|record| lines.take(row, record, answer))
+        })?;
+        pieces.into_iter().try_for_each(|piece| self.take_lines(piece))
+    }
+
+    /// Writes the lines of a piece, and lets all hear of them.
+    fn take_lines(&mut self, piece: Lines<'_>) -> Result<(), Failure> {
+        self.skipped += piece.skipped;
+        if let Some(map) = &mut self.map {
+            for row in &piece.answered {
+                let sample = self.samples.sample(*row);
+                map.take(sample.position, sample.temperature.to_vec());
             }
         }
-        Ok(())
+        self.summary.iter_mut().for_each(|summary| summary.add(&piece.summary));
+        let failure = piece.failure;
+        self.show(&lines::text(piece.writer)?)?;
+        failure.map_or(Ok(()), Err)
     }
 
-    /// Has all rows compensated; one by one where rotary axes correct the direction of the tool, since each row then has an error of it
-    /// that stays.
-    fn compensate(&mut self) -> Result<(), Refusal> {
-        let rows = self.pending.len();
-        if self.equations.aiming().is_empty() {
-            return self.pending.compensate(0..rows, &mut self.compensator);
-        }
-        for (row, lean) in self.leans.iter_mut().enumerate() {
-            self.pending.compensate(row..row + 1, &mut self.compensator)?;
-            lean.with = self.compensator.direction().map_or([f64::NAN; 3], |direction| direction.remaining);
-        }
-        Ok(())
-    }
-
-    /// Writes the input's cells, the errors and the compensated positions in the units of their columns.
-    fn write(&mut self, row: usize, error: &[f64; 3], lean: Option<&Lean>) -> Result<(), Failure> {
-        for cell in self.pending.record(row).0 {
-            self.writer.write_field(cell).map_err(closed)?;
-        }
-        let errors = self.equations.rows.iter().map(|row| error[row.direction.index()]);
-        let leans = lean.iter().flat_map(|lean| lean.without);
-        for value in errors.chain(leans).chain(self.pending.commands(row)) {
-            self.writer.write_field(self.number.text(value)).map_err(closed)?;
-        }
-        self.writer.write_record(None::<&[u8]>).map_err(closed)
+    fn show(&mut self, text: &[u8]) -> Result<(), Failure> {
+        self.output.write_all(text).map_err(|error| cannot_write(&error))
     }
 
     /// Shows what is written.
     pub(super) fn flush(&mut self) -> Result<(), Failure> {
-        self.writer.flush().map_err(|error| Failure::io("cannot write to standard output", &error))
+        self.output.flush().map_err(|error| cannot_write(&error))
     }
 
-    /// The map of what was answered, where one is asked for.
-    pub(super) fn draw(&mut self) -> Option<Result<String, Failure>> {
-        self.map.as_ref().map(|map| map.draw(&mut self.compensator))
+    /// The map of what was answered, where one is asked for, with the tool of the last row.
+    pub(super) fn draw(&self) -> Result<Option<String>, Failure> {
+        let Some(map) = &self.map else { return Ok(None) };
+        let mut room = Room::new(self.machine.equations());
+        let mut states = vec![TermState::default(); states_needed(self.motions)];
+        map.draw(&mut room.compensator(self.machine.machine(self.tool), self.motions, &mut states)?).map(Some)
     }
 }
 
-/// Leaves a bad row out, or says why it is bad.
-fn bad(row: &ByteRecord, number: u64, mistake: &str, skip: bool, skipped: &mut u64) -> Result<(), Failure> {
-    if skip {
-        *skipped += 1;
-        return Ok(());
-    }
-    let cells: Vec<_> = row.iter().take(12).map(|cell| quoted(&String::from_utf8_lossy(cell))).collect();
-    let cells = cells.join(",");
-    Err(Failure::no(format!(
-        "error: standard input, row {number} under the header (`{cells}`): {mistake}\nhelp: --skip-bad leaves such rows out and counts them"
-    )))
-}
-
-fn closed(error: csv::Error) -> Failure {
-    match error.into_kind() {
-        csv::ErrorKind::Io(error) => Failure::io("cannot write to standard output", &error),
-        other => Failure::wrong(format!("error: cannot write to standard output: {other:?}")),
-    }
+fn cannot_write(error: &io::Error) -> Failure {
+    Failure::io("cannot write to standard output", error)
 }

@@ -1,13 +1,12 @@
 //! The error at a place. In: a compensator and a place. Out: the error there, of a machine that came forward and stands.
 
 use abbe_runtime::{
-    Compensator, Direction, ErrorMotion, Kinematics, Sample, Share, TermState, Work, place_motors,
-    states_needed,
+    Compensator, Direction, ErrorMotion, Kinematics, Sample, Share, TermState, place_motors, states_needed,
 };
 use model_dsl::calibration::SensorReadings;
 
-use super::Leaning;
 use super::table::Wanted;
+use super::{Answering, Leaning, Room};
 use crate::calibrated::Calibrated;
 use crate::failure::Failure;
 
@@ -83,14 +82,12 @@ pub fn errors(
     }
     let terms = calibrated.terms(left_out);
     let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
-    let machine = wanted.machine(calibrated);
+    let answering = Answering::new(calibrated, &motions);
+    let machine = answering.machine(wanted.tool);
     let equations = &calibrated.equations;
     let mut states = vec![TermState::default(); states_needed(&motions)];
-    let mut directions = vec![[0.0; 3]; equations.axes.len()];
-    let (mut values, mut travel) = (vec![0.0; equations.motions.len()], vec![0.0; equations.travels.len()]);
-    let work = Work { directions: &mut directions, motions: &mut values, travel: &mut travel };
-    let mut compensator = Compensator::new(&machine, &motions, &mut states, work)
-        .map_err(|error| Failure::wrong(format!("error: the calibration cannot be run: {error}")))?;
+    let mut room = Room::new(equations);
+    let mut compensator = room.compensator(machine, &motions, &mut states)?;
     let mut readings = SensorReadings::of_terms(&calibrated.calibration.sensors);
     let mut inputs = vec![f64::NAN; calibrated.calibration.sensors.len()];
     for ((number, _), value) in calibrated.calibration.sensors.inputs().zip(temperature) {
@@ -103,7 +100,7 @@ pub fn errors(
     let at = |moved: &[(usize, f64); 2]| {
         let error = field.at(moved).unwrap_or([f64::NAN; 3]);
         let tip = equations.rows.iter().filter_map(|row| error.get(row.direction.index()).copied());
-        let leaning = Leaning::new(equations, &machine, &motions);
+        let leaning = Leaning::new(equations, machine, &motions);
         let lean = leaning.map(|mut leaning| leaning.take(&field.sample()).without);
         tip.chain(lean.into_iter().flatten()).collect()
     };

@@ -16,7 +16,7 @@ pub struct Lean {
 }
 
 /// Follows the error motions of a machine that derives the direction of its tool.
-pub struct Leaning<'c> {
+pub(super) struct Leaning<'c> {
     /// With any tool: no constant of a machine turns one.
     machine: &'c Interpreter,
     motions: &'c [ErrorMotion<'c>],
@@ -30,7 +30,7 @@ pub struct Leaning<'c> {
 
 impl<'c> Leaning<'c> {
     /// Before the first row; none for a machine that does not derive the direction of its tool.
-    pub fn new(
+    pub(super) fn new(
         equations: &Equations,
         machine: &'c Interpreter,
         motions: &'c [ErrorMotion<'c>],
@@ -47,12 +47,12 @@ impl<'c> Leaning<'c> {
 
     /// The same where the terms remember something already, as a compensator has left it.
     #[must_use]
-    pub fn remembering(self, states: &[TermState]) -> Self {
+    pub(super) fn remembering(self, states: &[TermState]) -> Self {
         Self { states: states.to_vec(), ..self }
     }
 
     /// Takes the memories over to the next row, and gives what the direction of the tool is wrong by at its position.
-    pub fn take(&mut self, sample: &Sample<'_>) -> Lean {
+    pub(super) fn take(&mut self, sample: &Sample<'_>) -> Lean {
         // The compensator refuses such a row, and remembers nothing of it.
         if !sample.is_finite() {
             return Lean { without: [f64::NAN; 3], with: [f64::NAN; 3] };

@@ -1,23 +1,11 @@
 //! A table of positions that is in memory, answered at once. In: columns of positions and of what else is known in each row. Out: for
-//! each row the error and the compensated position, on all processors, to the last bit what one row after the other gives.
-//!
-//! What rows remember of the rows before them is taken along first, row by row; then pieces of the table are answered side by side,
-//! each from what is remembered where it begins.
+//! each row the error and the compensated position.
 
-use abbe_runtime::{
-    Batch, BatchWork, Compensator, Direction, ErrorMotion, Lanes, Outcome, Refusal, Sample, TermState, Work,
-    states_needed,
-};
-use model_dsl::equations::Equations;
-use model_dsl::program::Interpreter;
-use rayon::prelude::*;
+use abbe_runtime::{Direction, ErrorMotion, Outcome, Refusal};
 
-use super::{Leaning, Row, State, timed};
+use super::{Answer, Answering, Row, Samples, State, timed};
 use crate::calibrated::Calibrated;
 use crate::failure::Failure;
-
-/// Rows of a piece: so many that a processor is worth waking for them, and a whole number of lanes.
-const PIECE: usize = 512 * Lanes::WIDTH;
 
 /// Columns of rows, one entry a row: mm, rad, s, degC.
 #[derive(Clone, Debug, Default)]
@@ -48,15 +36,6 @@ pub struct Wanted {
     pub left_out: bool,
 }
 
-impl Wanted {
-    /// The machine with the tool.
-    pub(super) fn machine(&self, calibrated: &Calibrated) -> Interpreter {
-        let tool = self.tool.and_then(|tool| calibrated.calibration.tools.get(tool));
-        let constants = tool.map_or(&calibrated.calibration.constants, |tool| &tool.constants);
-        Interpreter::new(&calibrated.equations, constants)
-    }
-}
-
 /// The answers, row by row.
 #[derive(Clone, Debug, Default)]
 pub struct Answers {
@@ -82,164 +61,73 @@ pub fn answer(calibrated: &Calibrated, table: &Table, wanted: &Wanted) -> Result
     let mut warnings = Vec::new();
     let terms = calibrated.terms(|left_out| warnings.push(left_out));
     let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
-    let machine = wanted.machine(calibrated);
-    let answering = Answering { calibrated, machine, motions: &motions, compensated: wanted.compensated };
-    let followed = answering.follow(table, &wanted.hysteresis)?;
-    let pieces: Vec<Result<Answers, Failure>> = followed
-        .starts
-        .par_iter()
-        .enumerate()
-        .map(|(piece, start)| answering.piece(&followed, piece, start))
-        .collect();
-    let axes = calibrated.equations.axes.len();
-    let mut all = Answers { commands: vec![Vec::new(); axes], warnings, ..Answers::default() };
-    for piece in pieces {
-        let piece = piece?;
-        all.commands.iter_mut().zip(piece.commands).for_each(|(all, own)| all.extend(own));
-        all.outcomes.extend(piece.outcomes);
-        all.leans.extend(piece.leans);
+    let mut answering = Answering::new(calibrated, &motions);
+    answering.compensated = wanted.compensated;
+    let samples = follow(calibrated, &motions, table, wanted)?;
+    let begin = || (Answers::new(calibrated.equations.axes.len()), None);
+    let pieces =
+        answering.answer(&samples, begin, |(answers, refusal), row, answer| match answer.outcome {
+            Ok(outcome) => {
+                answers.push(outcome, answer);
+                true
+            }
+            Err(why) => {
+                *refusal = Some(refused(row, &why));
+                false
+            }
+        })?;
+    let mut all = Answers::new(calibrated.equations.axes.len());
+    all.warnings = warnings;
+    for (piece, refusal) in pieces {
+        if let Some(refusal) = refusal {
+            return Err(refusal);
+        }
+        all.append(piece);
     }
     Ok(all)
 }
 
-/// What all pieces have in common.
-struct Answering<'a> {
-    calibrated: &'a Calibrated,
-    machine: Interpreter,
-    motions: &'a [ErrorMotion<'a>],
-    compensated: bool,
-}
+impl Answers {
+    fn new(axes: usize) -> Self {
+        Self { commands: vec![Vec::new(); axes], ..Self::default() }
+    }
 
-/// The state of the machine in every row, a vector for each quantity, and what terms remember where each piece begins.
-#[derive(Default)]
-struct Followed {
-    position: Vec<Vec<f64>>,
-    travel: Vec<Vec<f64>>,
-    direction: Vec<Vec<Direction>>,
-    velocity: Vec<Vec<f64>>,
-    temperature: Vec<Vec<f64>>,
-    time_step: Vec<f64>,
-    starts: Vec<Vec<TermState>>,
-}
+    fn push(&mut self, outcome: Outcome, answer: &Answer<'_>) {
+        self.commands.iter_mut().zip(answer.command).for_each(|(column, place)| column.push(*place));
+        self.outcomes.push(outcome);
+        self.leans.extend(answer.lean.map(|lean| lean.without));
+    }
 
-impl Followed {
-    fn push(&mut self, sample: &Sample<'_>) {
-        push(&mut self.position, sample.position);
-        push(&mut self.travel, sample.travel);
-        push(&mut self.direction, sample.direction);
-        push(&mut self.velocity, sample.velocity);
-        push(&mut self.temperature, sample.temperature);
-        self.time_step.push(sample.time_step);
+    fn append(&mut self, piece: Self) {
+        self.commands.iter_mut().zip(piece.commands).for_each(|(all, own)| all.extend(own));
+        self.outcomes.extend(piece.outcomes);
+        self.leans.extend(piece.leans);
     }
 }
 
-impl Answering<'_> {
-    fn equations(&self) -> &Equations {
-        &self.calibrated.equations
-    }
-
-    /// Takes the state along, from the first row to the last.
-    fn follow(&self, table: &Table, hysteresis: &[f64]) -> Result<Followed, Failure> {
-        let calibration = &self.calibrated.calibration;
-        let mut state =
-            State::new(calibration, self.equations().following(), timed(calibration).is_some(), hysteresis);
-        let mut states = vec![TermState::default(); states_needed(self.motions)];
-        let mut followed = Followed::default();
-        let mut row = Buffers::default();
-        for number in 0..table.position.first().map_or(0, Vec::len) {
-            row.fill(table, number);
-            let taken = state.take(&row.row(table.time.as_ref().and_then(|time| time.get(number)).copied()));
-            taken.map_err(|mistake| refused(number, &mistake))?;
-            let sample = state.sample();
-            if !sample.is_finite() {
-                return Err(refused(number, &Refusal::NotFinite));
-            }
-            if number.is_multiple_of(PIECE) {
-                followed.starts.push(states.clone());
-            }
-            remember(self.motions, &sample, &mut states);
-            followed.push(&sample);
+/// Takes the state of the machine along, from the first row to the last.
+fn follow<'m>(
+    calibrated: &Calibrated,
+    motions: &'m [ErrorMotion<'m>],
+    table: &Table,
+    wanted: &Wanted,
+) -> Result<Samples<'m>, Failure> {
+    let calibration = &calibrated.calibration;
+    let motors = calibrated.equations.following();
+    let mut state = State::new(calibration, motors, timed(calibration).is_some(), &wanted.hysteresis);
+    let mut samples = Samples::new(motions);
+    let mut row = Buffers::default();
+    for number in 0..table.position.first().map_or(0, Vec::len) {
+        row.fill(table, number);
+        let taken = state.take(&row.row(table.time.as_ref().and_then(|time| time.get(number)).copied()));
+        taken.map_err(|mistake| refused(number, &mistake))?;
+        let sample = state.sample();
+        if !sample.is_finite() {
+            return Err(refused(number, &Refusal::NotFinite));
         }
-        Ok(followed)
+        samples.push(&sample, wanted.tool);
     }
-
-    /// Answers one piece of a table.
-    fn piece(&self, all: &Followed, piece: usize, start: &[TermState]) -> Result<Answers, Failure> {
-        let first = piece.saturating_mul(PIECE);
-        let rows = all.time_step.len().saturating_sub(first).min(PIECE);
-        let equations = self.equations();
-        let (mut states, mut directions) = (start.to_vec(), vec![[0.0; 3]; equations.axes.len()]);
-        let (mut values, mut travel) =
-            (vec![0.0; equations.motions.len()], vec![0.0; equations.travels.len()]);
-        let work = Work { directions: &mut directions, motions: &mut values, travel: &mut travel };
-        let mut compensator = Compensator::new(&self.machine, self.motions, &mut states, work)
-            .map_err(|error| Failure::wrong(format!("error: the calibration cannot be run: {error}")))?;
-        compensator.limits = self.calibrated.calibration.limits.of_compensator();
-        compensator.enabled = self.compensated;
-        let sizes = compensator.batch_sizes();
-        let (mut lanes, mut numbers) = (vec![Lanes::default(); sizes.lanes], vec![0.0; sizes.numbers]);
-        let mut ways = vec![Direction::default(); sizes.directions];
-        let work = BatchWork { lanes: &mut lanes, numbers: &mut numbers, directions: &mut ways };
-        let of = |columns| slices(columns, first, rows);
-        let (position, direction) = (of(&all.position), slices(&all.direction, first, rows));
-        let batch = Batch {
-            position: &position,
-            travel: &of(&all.travel),
-            direction: &direction,
-            velocity: &of(&all.velocity),
-            temperature: &of(&all.temperature),
-            time_step: all.time_step.get(first..first.saturating_add(rows)).unwrap_or_default(),
-        };
-        let mut answers = vec![Err(Refusal::NotFinite); rows];
-        let mut commands = vec![vec![0.0; rows]; equations.axes.len()];
-        let mut out: Vec<&mut [f64]> = commands.iter_mut().map(Vec::as_mut_slice).collect();
-        compensator
-            .compensate_batch(&batch, work, &mut out, &mut answers)
-            .map_err(|refusal| Failure::wrong(format!("error: the rows cannot be compensated: {refusal}")))?;
-        let outcomes = answers.into_iter().enumerate();
-        let outcomes = outcomes
-            .map(|(row, answer)| answer.map_err(|refusal| refused(first.saturating_add(row), &refusal)));
-        Ok(Answers {
-            outcomes: outcomes.collect::<Result<_, _>>()?,
-            leans: self.leans(&batch, rows, start),
-            commands,
-            warnings: Vec::new(),
-        })
-    }
-
-    /// The error of the tool's direction in each row of a piece.
-    fn leans(&self, batch: &Batch<'_>, rows: usize, start: &[TermState]) -> Vec<[f64; 3]> {
-        let Some(leaning) = Leaning::new(self.equations(), &self.machine, self.motions) else {
-            return Vec::new();
-        };
-        let mut leaning = leaning.remembering(start);
-        let at = |columns: &[&[f64]], row: usize| -> Vec<f64> {
-            columns.iter().filter_map(|column| column.get(row)).copied().collect()
-        };
-        let each = (0..rows).map(|row| {
-            let directions = batch.direction.iter().filter_map(|column| column.get(row)).copied();
-            let sample = Sample {
-                position: &at(batch.position, row),
-                travel: &at(batch.travel, row),
-                direction: &directions.collect::<Vec<_>>(),
-                velocity: &at(batch.velocity, row),
-                temperature: &at(batch.temperature, row),
-                time_step: batch.time_step.get(row).copied().unwrap_or_default(),
-            };
-            leaning.take(&sample).without
-        });
-        each.collect()
-    }
-}
-
-/// Takes the memory of every term over to a row.
-fn remember(motions: &[ErrorMotion<'_>], sample: &Sample<'_>, states: &mut [TermState]) {
-    let mut rest = states;
-    for motion in motions {
-        let (own, others) = rest.split_at_mut_checked(motion.terms.len()).unwrap_or_default();
-        motion.advance(sample, own);
-        rest = others;
-    }
+    Ok(samples)
 }
 
 /// The numbers of one row.
@@ -281,25 +169,18 @@ fn refused(row: usize, why: &dyn std::fmt::Display) -> Failure {
     Failure::no(format!("error: row {row}, counted from 0: {why}"))
 }
 
-/// Adds a row to columns; the first row makes them.
-fn push<T: Copy>(columns: &mut Vec<Vec<T>>, row: &[T]) {
-    columns.resize_with(row.len(), Vec::new);
-    columns.iter_mut().zip(row).for_each(|(column, value)| column.push(*value));
-}
-
-fn slices<T>(columns: &[Vec<T>], first: usize, rows: usize) -> Vec<&[T]> {
-    let rows = first..first.saturating_add(rows);
-    columns.iter().map(|column| column.get(rows.clone()).unwrap_or_default()).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use std::path::Path;
 
+    use abbe_runtime::{Compensator, TermState, Work, states_needed};
+    use model_dsl::program::Interpreter;
     use model_dsl::source::SourceFile;
 
     use super::*;
     use crate::calibrated;
+    use crate::rows::leaning::Leaning;
+    use crate::rows::samples::PIECE;
 
     /// A machine with all that is remembered: a play that winds up, a filter and a curve; and, with rotary axes, the tool's direction.
     fn machine() -> Calibrated {
@@ -338,7 +219,7 @@ errors:
 
         let terms = calibrated.terms(|_| panic!("nothing is left out"));
         let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
-        let machine = wanted.machine(&calibrated);
+        let machine = Interpreter::new(&calibrated.equations, &calibrated.calibration.constants);
         let mut states = vec![TermState::default(); states_needed(&motions)];
         let (mut directions, mut values) = (vec![[0.0; 3]; axes], vec![0.0; motions.len()]);
         let work = Work { directions: &mut directions, motions: &mut values, travel: &mut [] };

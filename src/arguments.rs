@@ -200,6 +200,9 @@ pub(crate) struct Compensate {
     /// The unit of the offsets in that table.
     #[arg(long, value_enum, default_value_t = LinearUnit::Mm, requires = "tools")]
     pub(crate) tools_unit: LinearUnit,
+    /// The tool of rows that name none, and of the map: one of the calibration's tools, or of that table.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) tool: Option<String>,
     /// Leave rows out that cannot be read or compensated, and count them on standard error.
     #[arg(long)]
     pub(crate) skip_bad: bool,
@@ -301,6 +304,9 @@ pub(crate) struct Update {
 pub(crate) struct Evaluate {
     /// A recording: stations approached from both sides, or circles. Or a set-up file of one measurement, or a laser's file.
     pub(crate) recording: PathBuf,
+    /// The tool that was in the machine: one of the tools of the calibration that the recording names.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) tool: Option<String>,
     /// How to write the figures.
     #[arg(long, value_enum, default_value_t = EvaluationFormat::Text)]
     pub(crate) format: EvaluationFormat,
@@ -319,6 +325,9 @@ pub(crate) struct Export {
     pub(crate) format: ExportFormat,
     /// The calibration file of the machine.
     pub(crate) calibration: PathBuf,
+    /// The tool that the files are for: one of the calibration's tools; by default its constants themselves.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) tool: Option<String>,
     /// The folder for the files.
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     pub(crate) output: PathBuf,

@@ -126,7 +126,9 @@ fn a_second_tool_is_told_where_tools_are_exchanged() {
 
 #[test]
 fn published_equations_agree_and_a_flipped_sign_is_named() {
-    for machine in ["excello-921", "nist-turning-center"] {
+    let agreeing =
+        ["excello-921", "linuxcnc-xyzac-trt", "linuxcnc-xyzbc-trt", "nist-turning-center", "printer-skew"];
+    for machine in agreeing {
         let run = abbe(&["check", machine, &format!("published/{machine}.eqs")], "");
         assert_eq!(run.status, 0, "{}", run.out);
     }

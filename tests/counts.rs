@@ -58,7 +58,8 @@ fn a_lone_rotary_stage_has_six() {
 
 #[test]
 fn shipped_machines() {
-    let counts = [8, 21, 43, 31, 21, 43, 21, 21, 21];
+    let counts = [27, 8, 21, 43, 5, 5, 21, 21, 31, 21, 3, 43, 21, 21, 21];
+    assert_eq!(SHIPPED.len(), counts.len());
     for (shipped, count) in SHIPPED.iter().zip(counts) {
         let equations = compiled(&shipped.text());
         assert_eq!(equations.motions.len(), count, "{}", shipped.name);

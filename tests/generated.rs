@@ -14,7 +14,7 @@ use proc_macro2::TokenStream;
 
 use crate::agreement::{asking, compiled};
 use crate::oracle::draw;
-use crate::shipped::{SHIPPED, root};
+use crate::shipped::{SHIPPED, root, shipped};
 
 /// What is asked of a machine at a point, however it was compiled.
 #[derive(Debug, PartialEq)]
@@ -129,6 +129,12 @@ fn generated(name: &str, point: &Point) -> Answers {
         "trunnion-5axis" => answers!(abbe_generated::trunnion_5axis, point),
         "xfyz-mill" => answers!(abbe_generated::xfyz_mill, point),
         "xyfz-mill" => answers!(abbe_generated::xyfz_mill, point),
+        "cai-wafer-grinder" => answers!(abbe_generated::cai_wafer_grinder, point),
+        "linuxcnc-xyzac-trt" => answers!(abbe_generated::linuxcnc_xyzac_trt, point),
+        "linuxcnc-xyzbc-trt" => answers!(abbe_generated::linuxcnc_xyzbc_trt, point),
+        "msl-moving-bridge" => answers!(abbe_generated::msl_moving_bridge, point),
+        "msl-moving-table" => answers!(abbe_generated::msl_moving_table, point),
+        "printer-skew" => answers!(abbe_generated::printer_skew, point),
         "xyzf-mill" => answers!(abbe_generated::xyzf_mill, point),
         _ => panic!("{name} is shipped and not tested here"),
     }
@@ -179,6 +185,12 @@ fn generated_refuses_wrong_lengths(name: &str, point: &Point) {
         "trunnion-5axis" => machine!(trunnion_5axis),
         "xfyz-mill" => machine!(xfyz_mill),
         "xyfz-mill" => machine!(xyfz_mill),
+        "cai-wafer-grinder" => machine!(cai_wafer_grinder),
+        "linuxcnc-xyzac-trt" => machine!(linuxcnc_xyzac_trt),
+        "linuxcnc-xyzbc-trt" => machine!(linuxcnc_xyzbc_trt),
+        "msl-moving-bridge" => machine!(msl_moving_bridge),
+        "msl-moving-table" => machine!(msl_moving_table),
+        "printer-skew" => machine!(printer_skew),
         "xyzf-mill" => machine!(xyzf_mill),
         _ => panic!("{name} is shipped and not tested here"),
     }
@@ -222,7 +234,7 @@ fn generated_code_is_the_interpreter() {
 #[test]
 fn records_keep_the_order_of_the_equations() {
     use abbe_generated::nist_turning_center::{Axes, Constants, Machine, Motions, Travels};
-    let equations = compiled(&SHIPPED[3].text());
+    let equations = compiled(&shipped("nist-turning-center").text());
     assert_eq!(Machine::NAME, equations.machine);
     assert_eq!(
         Axes::NAMES.to_vec(),
@@ -268,9 +280,9 @@ mod by_macro {
 #[test]
 fn the_macro_gives_the_same_numbers() {
     for seed in 0..10 {
-        let lathe = point(&compiled(&SHIPPED[0].text()), seed);
+        let lathe = point(&compiled(&shipped("excello-921").text()), seed);
         assert_eq!(answers!(crate::generated::by_macro::lathe, &lathe), generated("excello-921", &lathe));
-        let trunnion = point(&compiled(&SHIPPED[5].text()), seed);
+        let trunnion = point(&compiled(&shipped("trunnion-5axis").text()), seed);
         assert_eq!(
             answers!(crate::generated::by_macro::trunnion, &trunnion),
             generated("trunnion-5axis", &trunnion)

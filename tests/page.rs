@@ -29,7 +29,12 @@ fn short(value: f64) -> String {
 fn the_worked_example_is_what_the_exact_machine_does() {
     for shipped in SHIPPED {
         let (machine, equations) = ((shipped.described)(), compiled(&shipped.text()));
-        let worked = example(&equations).unwrap();
+        // Squarenesses turn nothing, and axes that are wrong in their own angle alone have no tilt to work through.
+        let Some(worked) = example(&equations) else {
+            let without = ["linuxcnc-xyzac-trt", "linuxcnc-xyzbc-trt", "printer-skew"];
+            assert!(without.contains(&shipped.name), "{}", shipped.name);
+            continue;
+        };
         assert_eq!(worked.value, 10e-6);
         let motion = &equations.motions[worked.motion];
         let straight = State {
@@ -163,9 +168,15 @@ fn what_one_slide_cancels() {
 #[test]
 fn the_page_says_what_check_says() {
     for (machine, file) in [
+        ("cai-wafer-grinder", "published/cai-wafer-grinder.eqs"),
         ("excello-921", "published/excello-921.eqs"),
+        ("linuxcnc-xyzac-trt", "published/linuxcnc-xyzac-trt.eqs"),
+        ("linuxcnc-xyzbc-trt", "published/linuxcnc-xyzbc-trt.eqs"),
+        ("msl-moving-bridge", "published/msl-moving-bridge.eqs"),
+        ("msl-moving-table", "published/msl-moving-table.eqs"),
         ("nist-turning-center", "published/nist-turning-center.eqs"),
         ("postech-mill", "published/postech-carriage.eqs"),
+        ("printer-skew", "published/printer-skew.eqs"),
     ] {
         let text = abbe(&["derive", machine, "--format", "html"], "").out;
         let checked = abbe(&["check", machine, file], "").out;

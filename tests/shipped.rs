@@ -21,11 +21,17 @@ pub(crate) struct Shipped {
 
 /// All of `machines/`.
 pub(crate) const SHIPPED: &[Shipped] = &[
+    Shipped { name: "cai-wafer-grinder", described: wafer_grinder },
     Shipped { name: "excello-921", described: excello },
     Shipped { name: "fxyz-mill", described: || of_word("FXYZ") },
     Shipped { name: "head-table-5axis", described: head_table },
+    Shipped { name: "linuxcnc-xyzac-trt", described: || tilting_table('A') },
+    Shipped { name: "linuxcnc-xyzbc-trt", described: || tilting_table('B') },
+    Shipped { name: "msl-moving-bridge", described: || of_word("FYXZ") },
+    Shipped { name: "msl-moving-table", described: || of_word("XFYZ") },
     Shipped { name: "nist-turning-center", described: nist },
     Shipped { name: "postech-mill", described: postech },
+    Shipped { name: "printer-skew", described: printer },
     Shipped { name: "trunnion-5axis", described: trunnion },
     Shipped { name: "xfyz-mill", described: || of_word("XFYZ") },
     Shipped { name: "xyfz-mill", described: || of_word("XYFZ") },
@@ -38,6 +44,11 @@ impl Shipped {
         let path = root().join("machines").join(format!("{}.yaml", self.name));
         fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
     }
+}
+
+/// The one of that name.
+pub(crate) fn shipped(name: &str) -> &'static Shipped {
+    SHIPPED.iter().find(|shipped| shipped.name == name).unwrap_or_else(|| panic!("{name} is not shipped"))
 }
 
 /// The root of the repository.
@@ -217,6 +228,75 @@ fn head_table() -> Machine {
             axis('Z', "+Z", ["0", "0", "0"]),
             axis('B', "+B", ["Xb", "Yb", "Zb"]),
             tip("tip", ["0", "0", "-L"]),
+        ],
+        ..of_word("FX")
+    }
+}
+
+/// LinuxCNC's trunnions: C stands on A or B, whose axis passes that of C; only the axes' own positions are wrong.
+fn tilting_table(tilt: char) -> Machine {
+    let (along, offset) = if tilt == 'A' { ("+A", "Yo") } else { ("+B", "Xo") };
+    let own = |letter: char| format!("E{letter}{letter}");
+    let one = |link: Link, letter: char| with(link, &[(own(letter).as_str(), own(letter).as_str())]);
+    let mut swivel = one(axis(tilt, along, ["Xr", "Yr", "Zr"]), tilt);
+    let across = usize::from(tilt == 'A');
+    for (at, name) in [(across, offset), (2, "Zo")] {
+        swivel.origin[at].push((1.0, Some(name.to_owned())));
+    }
+    let back = format!("-{offset}");
+    let mut table = ["0", "0", "-Zo"];
+    table[across] = &back;
+    let mut part = link(Kind::Part, "blank", "", ["-Xr", "-Yr", "-Zr"]);
+    part.origin[2].push((-1.0, Some("Lt".to_owned())));
+    let slide = |letter: char, along: &str| one(axis(letter, along, ["0", "0", "0"]), letter);
+    Machine {
+        workpiece: vec![swivel, one(axis('C', "+C", table), 'C'), part],
+        tool: vec![slide('X', "+X"), slide('Y', "+Y"), slide('Z', "+Z"), tip("tip", ["0", "0", "-Lt"])],
+        ..of_word("FX")
+    }
+}
+
+/// A printer that is not square.
+fn printer() -> Machine {
+    let zero = ["0", "0", "0"];
+    Machine {
+        tool: vec![
+            with(axis('X', "+X", zero), &[]),
+            with(axis('Y', "+Y", zero), &[("EC0Y", "EC0Y")]),
+            with(axis('Z', "+Z", zero), &[("EA0Z", "EA0Z"), ("EB0Z", "EB0Z")]),
+            tip("nozzle", zero),
+        ],
+        ..of_word("FX")
+    }
+}
+
+/// Cai's grinder: the wafer turns on C, C rides on X; the wheel turns freely on Z.
+fn wafer_grinder() -> Machine {
+    let all = |id: &str, small: &str, alignments: &[(&str, &str)]| -> Vec<(String, String)> {
+        let motions =
+            [("EX", "dx"), ("EY", "dy"), ("EZ", "dz"), ("EA", "ex"), ("EB", "ey"), ("EC", "ez")].into_iter();
+        let six = motions.map(|(iso, own)| (format!("{iso}{id}"), format!("{own}{small}")));
+        let more = alignments.iter().map(|(iso, own)| (format!("{iso}{id}"), (*own).to_owned()));
+        let free = ["C", "S"].contains(&id);
+        six.filter(|(iso, _)| !free || !iso.starts_with("EC")).chain(more).collect()
+    };
+    let listed = |link: Link, small: &str, alignments: &[(&str, &str)]| {
+        let names = all(&link.id.clone(), small, alignments);
+        with(link, &names.iter().map(|(iso, own)| (iso.as_str(), own.as_str())).collect::<Vec<_>>())
+    };
+    let zero = ["0", "0", "0"];
+    let mut z = listed(axis('Z', "+Z", zero), "z", &[("EB0", "eta")]);
+    z.errors.iter_mut().flatten().last().expect("eta").rotates = true;
+    let wheel = link(Kind::Spindle, "S", "+Z", zero);
+    Machine {
+        workpiece: vec![
+            listed(axis('X', "+X", zero), "x", &[]),
+            listed(axis('C', "+C", zero), "c2", &[("EA0", "azoc2"), ("EB0", "bzoc2")]),
+        ],
+        tool: vec![
+            z,
+            listed(wheel, "c1", &[("EA0", "azoc1"), ("EB0", "bzoc1")]),
+            tip("grain", ["Xt", "Yt", "0"]),
         ],
         ..of_word("FX")
     }

@@ -9,7 +9,7 @@ use model_dsl::notation::{Format, print};
 use model_dsl::source::SourceFile;
 
 use crate::agreement::{asking, compiled};
-use crate::shipped::{SHIPPED, Shipped};
+use crate::shipped::{SHIPPED, shipped};
 
 /// Compares with `snapshots/<name>.snap`.
 fn pinned(name: &str, text: &str) {
@@ -47,8 +47,4 @@ fn generated(name: &str, text: String) -> String {
     let source = SourceFile::new(format!("{name}.yaml"), text);
     let (tokens, _, _) = model_dsl::rust_tokens(&source).unwrap();
     model_dsl::codegen::file(&tokens, &format!("{name}.yaml")).unwrap()
-}
-
-fn shipped(name: &str) -> &'static Shipped {
-    SHIPPED.iter().find(|shipped| shipped.name == name).unwrap()
 }

@@ -53,6 +53,123 @@ fn each_row_is_answered_with_its_tool() {
     }
 }
 
+/// `--tool` is the tool of rows that name none; a row that names one has that.
+#[test]
+fn a_tool_is_named_once_for_all_rows() {
+    let with = file("once.yaml", &calibration("Xt: 0 mm, Yt: 0 mm, Zt: 150 mm", TOOLS));
+    let alone = file("once-alone.yaml", &calibration("Xt: 0 mm, Yt: 0 mm, Zt: 80 mm", ""));
+    let rows = "x,y,z\n0,0,0\n100,0,0\n";
+    let expected = compensated(&alone, rows).out;
+    for name in ["T1", "1"] {
+        let run = abbe(&["compensate", &with, "--tool", name], rows);
+        assert_eq!((run.status, run.err.as_str(), run.out.as_str()), (0, "", expected.as_str()));
+    }
+    assert_ne!(compensated(&with, rows).out, expected);
+    let mixed = "x,y,z,tool\n0,0,0,\n100,0,0,probe\n";
+    let named = "x,y,z,tool\n0,0,0,T1\n100,0,0,probe\n";
+    let numbers = |text: &str| text.replace(",T1,", ",,");
+    assert_eq!(
+        abbe(&["compensate", &with, "--tool", "T1"], mixed).out,
+        numbers(&compensated(&with, named).out)
+    );
+}
+
+#[test]
+fn the_map_is_that_of_the_named_tool() {
+    let corners = "x,y,z\n0,0,0\n100,100,50\n";
+    let drawn = |calibration: &str, name: &str, options: &[&str]| {
+        let map = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("tools").join(name);
+        let map = map.to_str().unwrap();
+        let run = abbe(&[&["compensate", calibration, "--map", map, "--force"], options].concat(), corners);
+        assert_eq!((run.status, run.err.as_str()), (0, ""));
+        fs::read_to_string(map).unwrap()
+    };
+    let with = file("map.yaml", &calibration("Xt: 0 mm, Yt: 0 mm, Zt: 150 mm", TOOLS));
+    let alone = file("map-alone.yaml", &calibration("Xt: 0 mm, Yt: 0 mm, Zt: 80 mm", ""));
+    let expected = drawn(&alone, "alone.svg", &[]);
+    assert_eq!(drawn(&with, "named.svg", &["--tool", "T1"]), expected);
+    assert_ne!(drawn(&with, "none.svg", &[]), expected);
+}
+
+/// X pitches more and more along its way: the table of its error depends on the length of the tool.
+#[test]
+fn exported_files_are_those_of_the_named_tool() {
+    let pitch = "errors:\n  EBX: [{polynomial: {unit: urad, per: mm, coefficients: [0, 0.1]}}]\n";
+    let text = |length: u32, tools: &str| {
+        format!(
+            "calibration: 1\nmachine: FXYZ\nconstants: {{Xt: 0 mm, Yt: 0 mm, Zt: {length} mm}}\n{tools}{pitch}"
+        )
+    };
+    let exported = |name: &str, text: &str, options: &[&str]| {
+        let calibration = file(&format!("{name}.yaml"), text);
+        let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("tools").join(name);
+        fs::create_dir_all(&folder).unwrap();
+        let output = folder.to_str().unwrap();
+        let ways =
+            ["--range", "X=0:100", "--range", "Y=0:100", "--range", "Z=0:100", "--output", output, "--force"];
+        let run = abbe(&[&["export", "linuxcnc", &calibration], &ways[..], options].concat(), "");
+        assert_eq!(run.status, 0, "{}", run.err);
+        fs::read_to_string(folder.join("x.comp")).unwrap()
+    };
+    let expected = exported("export-alone", &text(80, ""), &[]);
+    assert_eq!(exported("export-named", &text(150, TOOLS), &["--tool", "T1"]), expected);
+    assert_ne!(exported("export-none", &text(150, TOOLS), &[]), expected);
+}
+
+/// The centre of a circle is where the tip is: the figures of a recording with a tool are those of a calibration with its constants.
+#[test]
+fn a_recording_is_evaluated_with_the_named_tool() {
+    let recorded = fs::read_to_string("recordings/postech-ballbar/recording.yaml").unwrap();
+    let data = fs::canonicalize("recordings/postech-ballbar/data.csv").unwrap();
+    let evaluated = |name: &str, constants: &str, tools: &str, options: &[&str]| {
+        let machine = format!("calibration: 1\nmachine: postech-mill\nconstants: {{{constants}}}\n{tools}");
+        file(&format!("{name}-calibration.yaml"), &machine);
+        let text = recorded
+            .replace("../../calibrations/postech-mill.yaml", &format!("{name}-calibration.yaml"))
+            .replace("data: data.csv", &format!("data: {}", data.display()));
+        let recording = file(&format!("{name}.yaml"), &text);
+        abbe(&[&["evaluate", &recording, "--format", "json", "--quiet"], options].concat(), "")
+    };
+    let tools = "tools: {long: {Xt: 30 mm, Zt: 90 mm}}\n";
+    let alone = evaluated("evaluate-alone", "Xt: 30 mm, Yt: 0 mm, Zt: 90 mm", "", &[]);
+    let named = evaluated("evaluate-named", "Xt: 0 mm, Yt: 0 mm, Zt: 120 mm", tools, &["--tool", "long"]);
+    let none = evaluated("evaluate-none", "Xt: 0 mm, Yt: 0 mm, Zt: 120 mm", tools, &[]);
+    assert_eq!((named.status, named.err.as_str()), (alone.status, ""));
+    let figures = |run: &Run| {
+        run.out.replace("evaluate-named", "evaluate-alone").replace("evaluate-none", "evaluate-alone")
+    };
+    assert_eq!(figures(&named), figures(&alone));
+    assert_ne!(figures(&none), figures(&alone));
+}
+
+#[test]
+fn a_name_that_no_tool_has_is_refused_before_anything_is_written() {
+    let with = file("refused.yaml", &calibration("Xt: 0 mm, Yt: 0 mm, Zt: 150 mm", TOOLS));
+    let without = file("refused-none.yaml", &calibration("Xt: 0 mm, Yt: 0 mm, Zt: 150 mm", ""));
+    let told = |words: &[&str], help: &str| {
+        let run = abbe(words, "x,y,z\n0,0,0\n");
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{words:?}");
+        assert!(run.err.contains(help), "{}", run.err);
+    };
+    for command in [&["compensate"][..], &["export", "linuxcnc"]] {
+        let with = [command, &[&with, "--tool", "prob"]].concat();
+        told(&with, "error: --tool: the calibration has no tool `prob`\nhelp: is it `probe`?");
+        let without = [command, &[&without, "--tool", "T1"]].concat();
+        told(&without, "help: write `tools: {T1: {Zt: 120 mm}}` in it");
+    }
+    told(
+        &["evaluate", "recordings/postech-ballbar/recording.yaml", "--tool", "T1"],
+        "error: --tool: the calibration has no tool `T1`",
+    );
+    let bare = fs::read_to_string("recordings/postech-ballbar/recording.yaml").unwrap();
+    let data = fs::canonicalize("recordings/postech-ballbar/data.csv").unwrap();
+    let bare = bare
+        .replace("calibration: ../../calibrations/postech-mill.yaml\n", "")
+        .replace("data: data.csv", &format!("data: {}", data.display()));
+    let bare = file("bare.yaml", &bare);
+    told(&["evaluate", &bare, "--tool", "T1"], "error: --tool: the file names no calibration");
+}
+
 #[test]
 fn a_tool_that_is_not_there_is_told_with_its_row() {
     let with = file("known.yaml", &calibration("Xt: 0 mm, Yt: 0 mm, Zt: 150 mm", TOOLS));

@@ -18,6 +18,7 @@ use workshop::calibrated::{self, Calibrated};
 use workshop::failure::Failure;
 use workshop::load;
 use workshop::rows::{output_columns, timed};
+use workshop::tools;
 use workshop::written;
 
 use crate::arguments::Compensate;
@@ -41,6 +42,9 @@ pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
     let mut calibrated = calibrated::read(&command.calibration, &Person::default())?;
     if let Some(path) = &command.tools {
         calibrated.calibration.tools = tool_table(&calibrated, path, command.tools_unit.into())?;
+    }
+    if let Some(name) = &command.tool {
+        tools::mount(&mut calibrated.calibration, name)?;
     }
     let calibrated = calibrated;
     if let Some(target) = &command.map {

@@ -8,6 +8,7 @@ use workshop::failure::Failure;
 use workshop::named::Files;
 use workshop::origin;
 use workshop::recorded;
+use workshop::tools;
 
 use crate::arguments::{Evaluate, EvaluationFormat};
 use crate::output::Person;
@@ -16,10 +17,17 @@ use crate::progress::Progress;
 /// Runs the command. Status 1 where the recording gives no figure at all; the report says why.
 pub(crate) fn run(arguments: &Evaluate) -> Result<(), Failure> {
     if let Some((evaluation, files)) = laser::evaluated(&arguments.recording)? {
+        if arguments.tool.is_some() {
+            return Err(no_calibration());
+        }
         arguments.target.check(&files)?;
         return tell(arguments, &evaluation);
     }
-    let recorded = recorded::read_in_order(&arguments.recording, &Person::new(arguments.quiet))?;
+    let mut recorded = recorded::read_in_order(&arguments.recording, &Person::new(arguments.quiet))?;
+    if let Some(name) = &arguments.tool {
+        let calibrated = recorded.calibration.as_mut().ok_or_else(no_calibration)?;
+        tools::mount(&mut calibrated.calibration, name)?;
+    }
     arguments.target.check(&Files::of(&recorded, &arguments.recording).all(None))?;
     let progress = Progress::new(arguments.quiet, "evaluating");
     let evaluation = evaluation::evaluate(&Inputs {
@@ -30,6 +38,15 @@ pub(crate) fn run(arguments: &Evaluate) -> Result<(), Failure> {
     let evaluation = if recorded.in_order { evaluation.in_order() } else { evaluation };
     drop(progress);
     tell(arguments, &evaluation)
+}
+
+/// Tools are a calibration's.
+fn no_calibration() -> Failure {
+    Failure::wrong(
+        "error: --tool: the file names no calibration, and no other file has tools
+         help: write `calibration: FILE` in the recording file"
+            .to_owned(),
+    )
 }
 
 fn tell(arguments: &Evaluate, evaluation: &Evaluation) -> Result<(), Failure> {

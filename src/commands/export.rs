@@ -11,13 +11,18 @@ use workshop::calibrated;
 use workshop::exported::{self, TABLES, listed, refused};
 use workshop::failure::Failure;
 use workshop::load;
+use workshop::tools;
 
 use crate::arguments::{Export, ExportFormat, ExportValue, LinearUnit};
 use crate::output::{Person, print};
 
 /// Runs the command.
 pub(crate) fn run(command: &Export) -> Result<(), Failure> {
-    let calibrated = calibrated::read(&command.calibration, &Person::default())?;
+    let mut calibrated = calibrated::read(&command.calibration, &Person::default())?;
+    if let Some(name) = &command.tool {
+        tools::mount(&mut calibrated.calibration, name)?;
+    }
+    let calibrated = calibrated;
     if !command.leave_out_uncompensable {
         calibrated.refuse_uncompensable()?;
     }

@@ -4,13 +4,9 @@
 use abbe_runtime::{Direction, Sample};
 use csv::ByteRecord;
 use model_dsl::calibration::Calibration;
-use model_dsl::suggest::nearest;
-use workshop::rows;
+use workshop::{rows, tools};
 
 use super::{Column, Layout};
-
-/// The most tools that a message lists: more than a line of a terminal are not read.
-const MOST_TOOLS_TOLD: usize = 10;
 
 /// The machine's state, from row to row.
 pub(crate) struct State<'s> {
@@ -85,11 +81,7 @@ impl<'s> State<'s> {
         }
         let found = self.calibration.tool(name);
         found.map(Some).ok_or_else(|| {
-            let tools = || self.calibration.tools.iter().map(|tool| tool.name.value.as_str());
-            let help = match nearest(name, tools()) {
-                Some(near) => format!("is it `{near}`?"),
-                None => format!("there are {}", tools().take(MOST_TOOLS_TOLD).collect::<Vec<_>>().join(", ")),
-            };
+            let help = tools::instead(self.calibration, name);
             format!("column `tool`: the calibration has no tool `{}`; {help}", quoted(name))
         })
     }

@@ -20,6 +20,7 @@ pub mod set_up;
 pub mod shipped;
 pub mod simulated;
 pub mod told;
+pub mod tools;
 pub mod topology;
 pub mod updated;
 pub mod written;

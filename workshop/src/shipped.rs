@@ -2,12 +2,18 @@
 //! text of the machine file; the file of printed equations.
 
 /// The names of the shipped machines with their files.
-pub const MACHINES: [(&str, &str); 9] = [
+pub const MACHINES: [(&str, &str); 15] = [
+    ("cai-wafer-grinder", include_str!("../../machines/cai-wafer-grinder.yaml")),
     ("excello-921", include_str!("../../machines/excello-921.yaml")),
     ("fxyz-mill", include_str!("../../machines/fxyz-mill.yaml")),
     ("head-table-5axis", include_str!("../../machines/head-table-5axis.yaml")),
+    ("linuxcnc-xyzac-trt", include_str!("../../machines/linuxcnc-xyzac-trt.yaml")),
+    ("linuxcnc-xyzbc-trt", include_str!("../../machines/linuxcnc-xyzbc-trt.yaml")),
+    ("msl-moving-bridge", include_str!("../../machines/msl-moving-bridge.yaml")),
+    ("msl-moving-table", include_str!("../../machines/msl-moving-table.yaml")),
     ("nist-turning-center", include_str!("../../machines/nist-turning-center.yaml")),
     ("postech-mill", include_str!("../../machines/postech-mill.yaml")),
+    ("printer-skew", include_str!("../../machines/printer-skew.yaml")),
     ("trunnion-5axis", include_str!("../../machines/trunnion-5axis.yaml")),
     ("xfyz-mill", include_str!("../../machines/xfyz-mill.yaml")),
     ("xyfz-mill", include_str!("../../machines/xyfz-mill.yaml")),
@@ -20,7 +26,7 @@ pub fn machine(name: &str) -> Option<&'static str> {
 }
 
 /// The equations in print of some shipped machines: the machine, the name of their file, their text.
-const PUBLISHED: [(&str, &str, &str); 3] = [
+const PUBLISHED: [(&str, &str, &str); 9] = [
     ("excello-921", "published/excello-921.eqs", include_str!("../../published/excello-921.eqs")),
     (
         "nist-turning-center",
@@ -28,6 +34,32 @@ const PUBLISHED: [(&str, &str, &str); 3] = [
         include_str!("../../published/nist-turning-center.eqs"),
     ),
     ("postech-mill", "published/postech-carriage.eqs", include_str!("../../published/postech-carriage.eqs")),
+    (
+        "cai-wafer-grinder",
+        "published/cai-wafer-grinder.eqs",
+        include_str!("../../published/cai-wafer-grinder.eqs"),
+    ),
+    (
+        "linuxcnc-xyzac-trt",
+        "published/linuxcnc-xyzac-trt.eqs",
+        include_str!("../../published/linuxcnc-xyzac-trt.eqs"),
+    ),
+    (
+        "linuxcnc-xyzbc-trt",
+        "published/linuxcnc-xyzbc-trt.eqs",
+        include_str!("../../published/linuxcnc-xyzbc-trt.eqs"),
+    ),
+    (
+        "msl-moving-bridge",
+        "published/msl-moving-bridge.eqs",
+        include_str!("../../published/msl-moving-bridge.eqs"),
+    ),
+    (
+        "msl-moving-table",
+        "published/msl-moving-table.eqs",
+        include_str!("../../published/msl-moving-table.eqs"),
+    ),
+    ("printer-skew", "published/printer-skew.eqs", include_str!("../../published/printer-skew.eqs")),
 ];
 
 /// The name and the text of the equations that were published about a machine, where its file is a shipped one, word for

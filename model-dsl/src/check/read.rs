@@ -140,7 +140,7 @@ fn kind(name: Option<&Spanned<String>>, machine: &Machine, diagnostics: &mut Dia
             );
             None
         }
-        words => Some(Kind { selection: words == ["significant"], link: None }),
+        words => Some(Kind { selection: words.last() == Some(&"significant"), link: None }),
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+mod sets;
+
 use super::vocabulary::Vocabulary;
 use super::{Report, Verdict, check, differences};
 use crate::Compiled;

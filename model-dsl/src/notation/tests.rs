@@ -9,7 +9,7 @@ use crate::equations::{Equations, Names};
 use crate::source::SourceFile;
 
 /// All shipped machines.
-pub(super) const MACHINES: [&str; 9] = [
+pub(super) const MACHINES: [&str; 15] = [
     "excello-921",
     "nist-turning-center",
     "postech-mill",
@@ -17,6 +17,12 @@ pub(super) const MACHINES: [&str; 9] = [
     "xfyz-mill",
     "xyfz-mill",
     "xyzf-mill",
+    "msl-moving-bridge",
+    "msl-moving-table",
+    "printer-skew",
+    "cai-wafer-grinder",
+    "linuxcnc-xyzac-trt",
+    "linuxcnc-xyzbc-trt",
     "trunnion-5axis",
     "head-table-5axis",
 ];

@@ -26,10 +26,10 @@ for name, given in json.load(open(sys.argv[1] + '/given.json')).items():
     module = importlib.import_module(name)
     values, motions = given['values'], given['motions']
     assert set(values) == set(module.VALUES) and set(motions) == set(module.MOTIONS), name
-    summed = {}
+    summed = dict.fromkeys(module.nominal(values), 0.0)
     for motion, arms in module.levers(values).items():
         for direction, arm in arms.items():
-            summed[direction] = summed.get(direction, 0.0) + arm * motions[motion]
+            summed[direction] += arm * motions[motion]
     answers[name] = [module.nominal(values), module.error(values, motions), summed, module.error(values, {}),
                      module.direction(values), module.direction_error(values, motions)]
 json.dump(answers, sys.stdout)

@@ -48,10 +48,12 @@ fn main() {
 fn table(judged: &judged::Judged) -> String {
     let mut text =
         "| planted | raised in week | what is said in the last week |\n| --- | --- | --- |\n".to_owned();
-    for (what, week, sentence) in &judged.raised {
+    for judged::Raised { what, week, sentence, .. } in &judged.raised {
         let week = week.map_or_else(|| "never".to_owned(), |week| week.to_string());
         text += &format!("| {what} | {week} | {sentence} |\n");
     }
+    let square = judged.raised.iter().map(|raised| raised.claimed.0).next_back().unwrap_or_default();
+    text += &format!("\nthe squareness is a finding in {square} recordings before it is there\n");
     text += &format!("\n{} quiet series, {} other alarms", judged.quiet, judged.other.len());
     text += &judged.other.iter().map(|alarm| format!("\n- {alarm}")).collect::<String>();
     let (held, all) = judged.held;

@@ -29,8 +29,9 @@ pub(super) fn machines(
         |table| Ok::<_, Failure>(by_machine(read(&fleet.results, table, (None, &current), &mut hear)?));
     let (mut verdicts, mut recordings) = (rows(Table::Verdicts)?, rows(Table::Recordings)?);
     let mut followed = rows(Table::Followed)?;
+    let named: BTreeSet<&str> = fleet.machines.iter().map(|machine| machine.name.as_str()).collect();
     for name in filed_machines(&fleet.results)? {
-        if fleet.machines.iter().all(|machine| machine.name != name) {
+        if !named.contains(name.as_str()) {
             let text = format!(
                 "warning: there are results of `{name}`, which the fleet file does not name: they are not shown"
             );

@@ -24,7 +24,8 @@ pub fn run(bytes: &[u8]) {
         // A pattern finds the time in any name, its own and all of the file, in bounded time.
         if let Some(time) = &machine.time {
             let text = source.text();
-            let end = (0..=LONGEST.min(text.len())).rev().find(|end| text.is_char_boundary(*end)).unwrap_or(0);
+            let end =
+                (0..=LONGEST.min(text.len())).rev().find(|end| text.is_char_boundary(*end)).unwrap_or(0);
             let _ = time.find(&text[..end]);
             let found = time.find("mill-07/2026-07-09_225928/DD.MM.YYYY 20260709.yaml");
             assert!(found.is_none_or(|found| found.day().len() == 10), "{found:?}");

@@ -55,8 +55,12 @@ fn told(done: Done) -> String {
     let Done { recordings, diagnosed, followed, waiting, put_off } = done;
     let waiting = match waiting {
         0 => String::new(),
-        1 => "; one machine waits for the rest of its recordings: run again when they are diagnosed".to_owned(),
-        more => format!("; {more} machines wait for the rest of their recordings: run again when they are diagnosed"),
+        1 => {
+            "; one machine waits for the rest of its recordings: run again when they are diagnosed".to_owned()
+        }
+        more => format!(
+            "; {more} machines wait for the rest of their recordings: run again when they are diagnosed"
+        ),
     };
     let put_off = match put_off {
         0 => String::new(),

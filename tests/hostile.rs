@@ -133,6 +133,11 @@ fn files_of_instruments() {
     target_holds("instrument", 3000);
 }
 
+#[test]
+fn fleet_files() {
+    target_holds("fleet", 3000);
+}
+
 /// A kind of file without a test here would be searched by hand alone.
 #[test]
 fn every_target_is_tested() {

@@ -1,6 +1,6 @@
 """Whether an engine loses or doubles anything when a worker is killed: python killed.py ENGINE FLEET
 
-In: `ray.py` or `dask.py`, and a fleet file without results. Runs the engine, kills a call of `abbe` and its parent, the worker, while jobs
+In: `on_ray.py` or `on_dask.py`, and a fleet file without results. Runs the engine, kills a call of `abbe` and its parent, the worker, while jobs
 are under way, and holds the results against those of `abbe fleet run`, byte for byte.
 """
 

@@ -1,11 +1,13 @@
 """How many recordings a second, how much memory, and what a kill loses: python load.py FOLDER [RECORDINGS [ROWS [KILLS]]]
 
-In: a folder for a fleet that is made. Simulates one recording of so many rows and copies it with other noise, runs the fleet, kills it with
-SIGKILL at random moments, goes on, and counts what is there: every recording once.
+In: a folder for a fleet that is made. Simulates recordings of so many rows, runs the fleet undisturbed, then anew with SIGKILL at random
+moments, goes on, and counts what is there: every recording once, the same bytes as before.
 """
 
+import hashlib
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -66,25 +68,41 @@ def run(fleet, seconds=None):
     return time.time() - begun, peak, False
 
 
+def sums(results):
+    """Every file of the results by what it holds."""
+    files = sorted(path for path in results.rglob("*") if path.is_file())
+    return {str(path.relative_to(results)): hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
+
+
 def main(folder, count="10000", rows="4000", kills="20"):
     folder, count = Path(folder), int(count)
     make(folder, count, int(rows))
     fleet = folder / "fleet.yaml"
+    alone, most_alone, _ = run(fleet)
+    print(f"{count} recordings of {rows} rows: {alone:.0f} s, {count / alone:.2f} a second, {most_alone:.0f} MiB at most", flush=True)
+    undisturbed = sums(folder / "results")
+    if int(kills) == 0:
+        again, _, _ = run(fleet)
+        print(f"nothing to do takes {again:.1f} s")
+        return
+    shutil.move(folder / "results", folder / "undisturbed")
     random.seed(2)
-    whole, peak, killed = 0.0, 0.0, 0
-    share = float(os.environ.get("SECONDS_BEFORE_KILL", "10"))
+    killed, peak = 0, 0.0
+    # So that the moments are spread over the whole run.
+    share = 2 * alone / int(kills)
     for _ in range(int(kills)):
-        seconds, most, was_killed = run(fleet, random.uniform(0.1, share))
-        whole, peak, killed = whole + seconds, max(peak, most), killed + was_killed
-    seconds, most, _ = run(fleet)
-    whole, peak = whole + seconds, max(peak, most)
+        _, most, was_killed = run(fleet, random.uniform(0.0, 0.9 * share))
+        peak, killed = max(peak, most), killed + was_killed
+    _, most, _ = run(fleet)
     for table in ["recordings", "verdicts", "parameters", "followed"]:
         files = list((folder / "results" / table).rglob("*.parquet"))
         names = {file.name.split("-")[0] for file in files}
         assert len(files) == len(names) == count, f"{table}: {len(files)} files of {len(names)} recordings, not {count}"
+    left = {path: sum for path, sum in sums(folder / "results").items() if not path.endswith(".part")}
+    assert left == undisturbed, "other bytes than of the run that was not disturbed"
     again, _, _ = run(fleet)
-    print(f"{count} recordings of {rows} rows: {whole:.0f} s, {count / whole:.1f} a second, {peak:.0f} MiB at most;")
-    print(f"killed {killed} times: nothing lost, nothing twice; nothing to do takes {again:.1f} s")
+    print(f"killed {killed} times, {max(peak, most):.0f} MiB at most: nothing lost, nothing twice, the same bytes as undisturbed")
+    print(f"nothing to do takes {again:.1f} s")
 
 
 if __name__ == "__main__":

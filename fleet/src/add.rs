@@ -1,6 +1,7 @@
 //! Results from elsewhere. In: folders of results, or files of them. Out: those that are results of this fleet's recordings as they are,
 //! filed with its own.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -10,7 +11,8 @@ use workshop::told::Listener;
 
 use crate::file::Fleet;
 use crate::jobs::{Job, job, places};
-use crate::results::{Filed, Table, There, files, replace, write_file};
+use crate::results::{Filed, Table, write_file};
+use crate::shelf::{Shelf, files};
 use crate::table;
 
 /// What was added.
@@ -27,9 +29,9 @@ pub struct Added {
 /// Takes the results in folders over, each a `results` folder of the same fleet elsewhere. Only what was made from the recordings as they
 /// are here is taken; the listener hears of the others.
 pub fn add(fleet: &Fleet, folders: &[PathBuf], listener: &dyn Listener) -> Result<Added, Failure> {
-    let jobs: Vec<Job> = places(fleet, &()).into_iter().map(|place| job(fleet, place)).collect();
-    let known = Table::OF_DIAGNOSIS.map(|table| There::of(&fleet.results, table).map(|there| (table, there)));
-    let known = known.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let jobs = places(fleet, &()).into_iter().filter_map(|place| job(fleet, place).ok());
+    let jobs: BTreeMap<String, Job> = jobs.map(|job| (job.result(), job)).collect();
+    let shelf = Shelf::of(&fleet.results, None)?;
     let mut added = Added::default();
     for folder in folders {
         let there = files(folder, Table::Recordings)?;
@@ -40,7 +42,7 @@ pub fn add(fleet: &Fleet, folders: &[PathBuf], listener: &dyn Listener) -> Resul
             )));
         }
         for path in there {
-            take(fleet, (&jobs, &known), (folder, &path), &mut added, listener)?;
+            take(fleet, (&jobs, &shelf), (folder, &path), &mut added, listener)?;
         }
     }
     Ok(added)
@@ -48,13 +50,13 @@ pub fn add(fleet: &Fleet, folders: &[PathBuf], listener: &dyn Listener) -> Resul
 
 fn take(
     fleet: &Fleet,
-    (jobs, known): (&[Job], &[(Table, There)]),
+    (jobs, shelf): (&BTreeMap<String, Job>, &Shelf),
     (folder, path): (&Path, &Path),
     added: &mut Added,
     listener: &dyn Listener,
 ) -> Result<(), Failure> {
     let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let Some(job) = jobs.iter().find(|job| job.name() == name) else {
+    let Some(job) = jobs.get(&name) else {
         added.refused += 1;
         let text =
             format!("warning: {} is no result of a recording of this fleet as it is now", path.display());
@@ -71,7 +73,7 @@ fn take(
     for table in Table::OF_DIAGNOSIS {
         copy(&filed.path(folder, table), &filed.path(&fleet.results, table))?;
     }
-    known.iter().try_for_each(|(table, there)| replace(&fleet.results, &filed, *table, there))?;
+    shelf.replace(&fleet.results, &filed)?;
     added.taken += 1;
     Ok(())
 }

@@ -3,11 +3,14 @@
 //!
 //! Recordings scatter by more than their intervals say: a machine is warmer on one day than on another, and is set up anew. How much more
 //! is estimated beside each change from the series itself (Paule and Mandel: the scatter at which the weighted squares are as many as the
-//! degrees of freedom), and so Student's distribution is asked and not the normal one. Where neighbours in time are alike beside the
-//! change, the series says less than its points: the variance is stretched by (1 + r) / (1 - r), as for a first-order process.
+//! degrees of freedom), and so Student's distribution is asked and not the normal one. Where intervals are unequal, a few recordings tell
+//! the scatter: the degrees of freedom are those of the variance that is estimated (Satterthwaite). Where neighbours in time are alike
+//! beside the change, the series says less than its points: the variance is stretched by (1 + r) / (1 - r), as for a first-order process,
+//! and r is freed of what a fit takes from it in a short series (Marriott and Pope).
 
 use serde::Serialize;
 
+use crate::history::BOUND;
 use crate::series::Series;
 use crate::student::{quantile, two_sided};
 
@@ -67,24 +70,21 @@ pub(crate) fn change(series: &Series) -> Option<Change> {
     }
     let trend = trend(&points, first, last);
     let step = step(&points);
-    // Both were looked for.
+    // Both were looked for, and either might have been plain by chance (Bonferroni): whichever is told, its probability is twice its own.
     let doubled = |change: Change| Change { probability: (2.0 * change.probability).min(1.0), ..change };
     match (
         trend.map(|(change, left)| (doubled(change), left)),
         step.map(|(change, left)| (doubled(change), left)),
     ) {
         (Some((trend, of_trend)), Some((step, of_step))) => {
-            // The likelier form where both are plain, else the plainer one.
-            let plain = trend.probability.max(step.probability) < PLAIN;
+            // The likelier form where neither is chance by the bound of all alarms, else the plainer one.
+            let plain = trend.probability.max(step.probability) < BOUND;
             let steps = if plain { of_step < of_trend } else { step.probability < trend.probability };
             Some(if steps { step } else { trend })
         }
         (trend, step) => trend.or(step).map(|(change, _)| change),
     }
 }
-
-/// Below this probability a form is no chance; which of two it is then is asked of what they leave.
-const PLAIN: f64 = 1e-3;
 
 /// The line over time, and what it leaves.
 fn trend(points: &[(f64, f64, f64)], first: f64, last: f64) -> Option<(Change, f64)> {
@@ -121,8 +121,7 @@ fn step(points: &[(f64, f64, f64)]) -> Option<(Change, f64)> {
     let column: Vec<f64> = (0..points.len()).map(|number| f64::from(u8::from(number >= place))).collect();
     let line = line(points, &column).filter(|_| gain > 0.0)?;
     let change = told(&line, "step", place);
-    let looked_at = f64::from(u32::try_from(count).unwrap_or(u32::MAX));
-    Some((Change { probability: (change.probability * looked_at).min(1.0), ..change }, line.left))
+    Some((Change { probability: (change.probability * number(count)).min(1.0), ..change }, line.left))
 }
 
 fn told(line: &Line, kind: &'static str, from: usize) -> Change {
@@ -145,8 +144,8 @@ fn told(line: &Line, kind: &'static str, from: usize) -> Change {
 fn line(points: &[(f64, f64, f64)], column: &[f64]) -> Option<Line> {
     let scatter = scatter(points, column);
     let (level, slope, variances) = weighted(points, column, scatter)?;
-    let number = |count: usize| f64::from(u32::try_from(count).unwrap_or(u32::MAX));
     let count = number(points.len());
+    let fitted = fitted(column);
     let residuals: Vec<f64> = points
         .iter()
         .zip(column)
@@ -154,11 +153,49 @@ fn line(points: &[(f64, f64, f64)], column: &[f64]) -> Option<Line> {
         .collect();
     let squares: f64 = residuals.iter().map(|left| left * left).sum();
     let neighbours: f64 = residuals.windows(2).map(|pair| pair.iter().product::<f64>()).sum();
-    let alike = if squares > 0.0 { (neighbours / squares).clamp(0.0, MOST_ALIKE) } else { 0.0 };
+    let alike = if squares > 0.0 { alike(neighbours / squares, count, fitted) } else { 0.0 };
     let stretch = (1.0 + alike) / (1.0 - alike);
-    let freedom = (count / stretch - 2.0).max(1.0);
+    let freedom = freedom(points, column, scatter, variances).min(count / stretch - fitted).max(1.0);
     let variances = variances.map(|variance| variance * stretch);
     Some(Line { level, slope, variances, left: squares + log_sizes(points, scatter), freedom })
+}
+
+pub(crate) fn number(count: usize) -> f64 {
+    f64::from(u32::try_from(count).unwrap_or(u32::MAX))
+}
+
+/// How many numbers are fitted: the level, and the column where it is one.
+fn fitted(column: &[f64]) -> f64 {
+    if column.iter().all(|x| *x == 0.0) { 1.0 } else { 2.0 }
+}
+
+/// How alike neighbours are whose products over their squares are `r`: nothing where they are apart, and of fewer than five nobody knows.
+fn alike(r: f64, count: f64, fitted: f64) -> f64 {
+    if count <= 4.0 { 0.0 } else { freed(r, count, fitted).clamp(0.0, MOST_ALIKE) }
+}
+
+/// The correlation of neighbours without what a fit of so many numbers takes from it, which is (fitted + 4 r) / count.
+fn freed(r: f64, count: f64, fitted: f64) -> f64 {
+    (count * r + fitted) / (count - 4.0)
+}
+
+/// The degrees of freedom of the variance of the slope (of the level, where there is no slope), as far as the scatter makes it: twice its
+/// square over the variance that it has itself, since the scatter is estimated. Of equal intervals those of the points.
+fn freedom(points: &[(f64, f64, f64)], column: &[f64], scatter: f64, variances: [f64; 3]) -> f64 {
+    let [of_level, of_slope, both] = variances;
+    let told = fitted(column);
+    let row = if told > 1.0 { [both, of_slope] } else { [of_level, 0.0] };
+    let (mut left, mut rate) = (0.0, 0.0);
+    for ((_, _, error), x) in points.iter().zip(column) {
+        let weight = 1.0 / (error * error + scatter).max(f64::MIN_POSITIVE.sqrt());
+        let share = weight * (of_level + 2.0 * both * x + of_slope * x * x);
+        left += weight * (1.0 - share);
+        rate += (weight * (row[0] + row[1] * x)).powi(2);
+    }
+    let variance = if told > 1.0 { of_slope } else { of_level };
+    let all = number(points.len()) - told;
+    let freedom = (variance / rate * left).powi(2) / all;
+    if freedom.is_finite() { freedom.min(all) } else { all }
 }
 
 /// A series in which neighbours are more alike than this is one drift, of which no number of points says more.
@@ -172,8 +209,7 @@ fn log_sizes(points: &[(f64, f64, f64)], scatter: f64) -> f64 {
 /// The variance from recording to recording beside their own errors at which the weighted squares are as many as the degrees of freedom;
 /// 0 where the errors alone give that many.
 fn scatter(points: &[(f64, f64, f64)], column: &[f64]) -> f64 {
-    let flat = column.iter().all(|x| *x == 0.0);
-    let freedom = f64::from(u32::try_from(points.len()).unwrap_or(u32::MAX)) - if flat { 1.0 } else { 2.0 };
+    let freedom = number(points.len()) - fitted(column);
     let squares = |scatter: f64| {
         let Some((level, slope, _)) = weighted(points, column, scatter) else { return 0.0 };
         let left = |((_, value, error), x): (&(f64, f64, f64), &f64)| {
@@ -223,8 +259,21 @@ fn weighted(points: &[(f64, f64, f64)], column: &[f64], scatter: f64) -> Option<
     Some((level, slope, [of_xx / determinant, all / determinant, -of_x / determinant]))
 }
 
-/// The mean of a series with its variance, the scatter from recording to recording in it.
-pub(crate) fn mean(series: &Series) -> Option<(f64, f64)> {
+/// The level of values that scatter.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Level {
+    /// The level.
+    pub(crate) value: f64,
+    /// Its variance.
+    pub(crate) variance: f64,
+    /// The variance from value to value beside their own errors.
+    pub(crate) scatter: f64,
+    /// The degrees of freedom of the variance.
+    pub(crate) freedom: f64,
+}
+
+/// The mean of a series, the scatter from recording to recording and how alike neighbours are in its variance.
+pub(crate) fn mean(series: &Series) -> Option<Level> {
     let points: Vec<(f64, f64, f64)> = series
         .points
         .iter()
@@ -234,18 +283,20 @@ pub(crate) fn mean(series: &Series) -> Option<(f64, f64)> {
         })
         .collect();
     let flat = vec![0.0; points.len()];
-    let (level, _, [variance, ..]) = weighted(&points, &flat, scatter(&points, &flat))?;
-    (level.is_finite() && variance.is_finite()).then_some((level, variance))
+    let Line { level: value, variances: [variance, ..], freedom, .. } = line(&points, &flat)?;
+    let scatter = scatter(&points, &flat);
+    (value.is_finite() && variance.is_finite()).then_some(Level { value, variance, scatter, freedom })
 }
 
-/// Level and variance of values that scatter by more than their errors, and by how much more.
-pub(crate) fn level(values: &[(f64, f64)]) -> Option<(f64, f64, f64)> {
+/// The level of values with their variances, in no order of time.
+pub(crate) fn level(values: &[(f64, f64)]) -> Option<Level> {
     let points: Vec<(f64, f64, f64)> =
         values.iter().map(|(value, variance)| (0.0, *value, variance.sqrt())).collect();
     let flat = vec![0.0; points.len()];
     let scatter = scatter(&points, &flat);
-    let (level, _, [variance, ..]) = weighted(&points, &flat, scatter)?;
-    Some((level, variance, scatter))
+    let (value, _, variances) = weighted(&points, &flat, scatter)?;
+    let freedom = freedom(&points, &flat, scatter, variances).max(1.0);
+    Some(Level { value, variance: variances[0], scatter, freedom })
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The first stage of a job. In: a recording. Out: the rows of its result: what was recorded, what the diagnosis says, what it found.
 //!
-//! A recording that cannot be read has a result too: its row says why.
+//! A recording that cannot be read has a result too: its row says why. One that cannot be read now, and may be the next time, has none.
 
 use std::path::Path;
 
@@ -14,8 +14,9 @@ use workshop::failure::Failure;
 use workshop::recorded;
 
 use crate::file::Fleet;
-use crate::jobs::Job;
-use crate::results::{Filed, Table, There, moment, replace, write, write_file};
+use crate::jobs::{Job, PutOff, job as job_of};
+use crate::results::{Filed, Table, moment, write, write_file};
+use crate::shelf::Shelf;
 use crate::table::Cell;
 
 /// The word of a verdict for a recording that cannot be read.
@@ -28,9 +29,9 @@ struct Rows {
     parameters: Vec<Vec<Cell>>,
 }
 
-/// Diagnoses a recording and files the result in place of an older one.
-pub(crate) fn run(fleet: &Fleet, job: &Job, paged: bool, there: &[(Table, There)]) -> Result<(), Failure> {
-    let Some(machine) = fleet.machines.get(job.place.machine) else { return Ok(()) };
+/// Diagnoses a recording and files the result in place of an older one; tells where it is put off.
+pub(crate) fn run(fleet: &Fleet, job: &Job, paged: bool, shelf: &Shelf) -> Result<Option<PutOff>, Failure> {
+    let Some(machine) = fleet.machines.get(job.place.machine) else { return Ok(None) };
     let filed = Filed { machine: &machine.name, time: job.time, id: &job.place.id, key: &job.key };
     let rows = match diagnosis_of(&job.place.path, paged) {
         Ok((equations, diagnosis)) => {
@@ -39,12 +40,43 @@ pub(crate) fn run(fleet: &Fleet, job: &Job, paged: bool, there: &[(Table, There)
             }
             found(job, machine.kind.as_deref(), &equations, &diagnosis)
         }
-        Err(why) => unread(fleet, job, machine.kind.as_deref(), &why),
+        Err(why) => match put_off(fleet, job, &why) {
+            Some(put_off) => return Ok(Some(put_off)),
+            None => unread(fleet, job, machine.kind.as_deref(), &why),
+        },
     };
     write(&fleet.results, &filed, Table::Parameters, &rows.parameters)?;
     write(&fleet.results, &filed, Table::Verdicts, &[rows.verdict])?;
     write(&fleet.results, &filed, Table::Recordings, &[rows.recording])?;
-    there.iter().try_for_each(|(table, there)| replace(&fleet.results, &filed, *table, there))
+    shelf.replace(&fleet.results, &filed)?;
+    Ok(None)
+}
+
+/// Draws the page of a recording that was diagnosed without one; there is none of a recording that cannot be read.
+pub(crate) fn draw(fleet: &Fleet, job: &Job) -> Result<(), Failure> {
+    let Some(machine) = fleet.machines.get(job.place.machine) else { return Ok(()) };
+    let filed = Filed { machine: &machine.name, time: job.time, id: &job.place.id, key: &job.key };
+    match diagnosis_of(&job.place.path, true) {
+        Ok((_, diagnosis)) => write_file(&filed.page(&fleet.results), page(job, &diagnosis).as_bytes()),
+        Err(_) => Ok(()),
+    }
+}
+
+/// Why a recording that could not be read may be read the next time; nothing where its files can be read whole, hold what they held when
+/// the job was listed, and are refused in the same words again.
+fn put_off(fleet: &Fleet, job: &Job, why: &Failure) -> Option<PutOff> {
+    let again = match job_of(fleet, job.place.clone()) {
+        Err(put_off) => return Some(put_off),
+        Ok(again) => again,
+    };
+    let same = || diagnosis_of(&job.place.path, false).is_err_and(|again| words(&again) == words(why));
+    let changes = || "its files are not what they were a moment ago".to_owned();
+    let is_lasting = !words(why).is_empty() && again.key == job.key && same();
+    (!is_lasting).then(|| PutOff { label: job.place.label.clone(), why: changes() })
+}
+
+fn words(why: &Failure) -> String {
+    why.words().map(|words| words.text(false)).unwrap_or_default()
 }
 
 fn diagnosis_of(path: &Path, pictured: bool) -> Result<(Equations, Diagnosis), Failure> {
@@ -141,7 +173,7 @@ fn calibration_of(equations: &Equations, finding: &Finding) -> String {
 
 /// The result of a recording that cannot be read.
 fn unread(fleet: &Fleet, job: &Job, kind: Option<&str>, why: &Failure) -> Rows {
-    let words = why.words().map(|words| words.text(false)).unwrap_or_default();
+    let words = words(why);
     // The same words wherever the folder of the fleet is.
     let folder = format!("{}/", fleet.folder.display());
     let words = if folder == "/" { words } else { words.replace(&folder, "") };

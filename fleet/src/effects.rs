@@ -6,7 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use diagnosis::{is_event, told_by};
 
 use crate::key::Sum;
-use crate::results::Known;
+use crate::name::Name;
+use crate::shelf::Known;
 use crate::table::Row;
 
 /// An effect of a machine.
@@ -46,9 +47,10 @@ struct Found {
 /// recording tells three terms of each of them apart.
 const MOST: usize = 64;
 
-/// Two waves are one where their periods differ by less than this many half widths of both intervals together. Of a thousand pairs of one
-/// wave in two recordings one is further apart, by 1.96 * 1.7 = 3.3 standard errors.
-const TOGETHER: f64 = 1.7;
+/// Two waves are one where their periods differ by less than this many times the half widths of both intervals, put together as errors
+/// that know nothing of each other are: 4.9 standard errors of the difference, which chance passes once in a million pairs. A machine has
+/// up to some ten thousand recordings, each of which is held against the surest one, and one in a hundred machines may get a wave twice.
+const TOGETHER: f64 = 2.5;
 
 /// The effects of a machine, those found most often first, then the surest: what is not told from others is then the rarest.
 pub(crate) fn effects(parameters: &[Known]) -> Vec<Effect> {
@@ -143,7 +145,9 @@ impl Effect {
     fn is(&self, other: &Self) -> bool {
         self.family == other.family
             && match (&self.period, &other.period) {
-                (Some(one), Some(two)) => (one.value - two.value).abs() <= TOGETHER * (one.half + two.half),
+                (Some(one), Some(two)) => {
+                    (one.value - two.value).abs() <= TOGETHER * one.half.hypot(two.half)
+                }
                 (None, None) => true,
                 _ => false,
             }
@@ -154,14 +158,7 @@ impl Effect {
 fn named_apart(effects: &mut [Effect]) {
     for effect in effects {
         if let Some(Period { value, half, unit }) = &effect.period {
-            // As many digits as the interval leaves.
-            let digits = (-(half.max(value.abs() * 1e-6)).log10()).ceil().clamp(0.0, 6.0);
-            effect.name = format!("{} {} {unit}", effect.family, rounded(*value, digits));
+            effect.name = Name::of_wave(&effect.family, (*value, *half), unit);
         }
     }
-}
-
-fn rounded(value: f64, digits: f64) -> f64 {
-    let scale = 10_f64.powf(digits);
-    (value * scale).round() / scale
 }

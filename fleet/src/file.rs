@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use glob::Pattern as Glob;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::fields::{self, Fields, Wording};
-use model_dsl::source::{Span, Spanned};
+use model_dsl::source::{SourceFile, Span, Spanned};
 use model_dsl::yaml::{self, Node};
 use workshop::failure::Failure;
 use workshop::load;
@@ -53,16 +53,19 @@ const LONGEST_NAME: usize = 80;
 pub fn read(path: &Path, listener: &dyn Listener) -> Result<Fleet, Failure> {
     let source = load::read(path)?;
     let mut diagnostics = Diagnostics::new();
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let fleet =
-        yaml::read(&source, &mut diagnostics).and_then(|root| read_all(&root, folder, &mut diagnostics));
-    match fleet.filter(|_| !diagnostics.has_errors()) {
+    match of(&source, path.parent().unwrap_or(Path::new("")), &mut diagnostics) {
         Some(fleet) => {
             listener.hear(&Words::marked(&source, &diagnostics));
             Ok(fleet)
         }
         None => Err(Failure::marked(&source, &diagnostics)),
     }
+}
+
+/// Reads the text of a fleet file that is in a folder; nothing where there is an error among what is found.
+pub fn of(source: &SourceFile, folder: &Path, diagnostics: &mut Diagnostics) -> Option<Fleet> {
+    let root = yaml::read(source, diagnostics)?;
+    read_all(&root, folder, diagnostics).filter(|_| !diagnostics.has_errors())
 }
 
 fn keys(what: &str) -> Wording<'_> {
@@ -166,13 +169,11 @@ fn glob(node: &Node, diagnostics: &mut Diagnostics) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use model_dsl::source::SourceFile;
 
     fn fleet(text: &str) -> Result<Fleet, Vec<(&'static str, String)>> {
         let source = SourceFile::new("fleet.yaml", text);
         let mut diagnostics = Diagnostics::new();
-        let root = yaml::read(&source, &mut diagnostics);
-        let fleet = root.and_then(|root| read_all(&root, Path::new("shop"), &mut diagnostics));
+        let fleet = of(&source, Path::new("shop"), &mut diagnostics);
         let marked =
             |one: &Diagnostic| (one.code, text.get(one.span.start..one.span.end).unwrap_or("").to_owned());
         let mistakes: Vec<_> = diagnostics.iter().map(marked).collect();
@@ -223,8 +224,7 @@ mod tests {
                 for text in [format!("{before}{letter}"), format!("{before}{letter}{after}")] {
                     let source = SourceFile::new("fleet.yaml", &text);
                     let mut diagnostics = Diagnostics::new();
-                    let root = yaml::read(&source, &mut diagnostics);
-                    let fleet = root.and_then(|root| read_all(&root, Path::new(""), &mut diagnostics));
+                    let fleet = of(&source, Path::new(""), &mut diagnostics);
                     assert!(fleet.is_some() || diagnostics.has_errors(), "{text}");
                     let within = |one: &Diagnostic| text.get(one.span.start..one.span.end).is_some();
                     assert!(diagnostics.iter().all(within), "{text}");

@@ -14,32 +14,38 @@ use workshop::recorded::{self, Recorded};
 
 use crate::effects::Effect;
 use crate::file::Fleet;
-use crate::jobs::Job;
-use crate::results::{Filed, Table, There, moment, replace, write};
+use crate::jobs::{Job, PutOff};
+use crate::results::{Filed, Table, moment, write};
+use crate::shelf::Shelf;
 use crate::table::Cell;
 
 /// Follows the effects of a machine in a recording and files the rows under a key. A recording that is `unfit`, whose diagnosis could not
-/// tell anything or says that its files are wrong, has none.
+/// tell anything or says that its files are wrong, has none. One that was read when it was diagnosed and cannot be read now is put off.
 pub(crate) fn run(
     fleet: &Fleet,
     job: &Job,
     (effects, key): (&[Effect], &str),
     unfit: bool,
-    there: &There,
-) -> Result<(), Failure> {
-    let Some(machine) = fleet.machines.get(job.place.machine) else { return Ok(()) };
+    shelf: &Shelf,
+) -> Result<Option<PutOff>, Failure> {
+    let Some(machine) = fleet.machines.get(job.place.machine) else { return Ok(None) };
     let sizes = match unfit || effects.is_empty() {
         true => Vec::new(),
-        // What cannot be read any more since it was diagnosed is told when it is diagnosed anew.
-        false => {
-            recorded::read(&job.place.path, &()).map(|recorded| sizes(&recorded, effects)).unwrap_or_default()
-        }
+        false => match recorded::read(&job.place.path, &()) {
+            Ok(recorded) => sizes(&recorded, effects),
+            Err(why) => {
+                let why = why.words().map(|words| words.text(false)).unwrap_or_default();
+                let why = why.lines().next().unwrap_or_default().to_owned();
+                return Ok(Some(PutOff { label: job.place.label.clone(), why }));
+            }
+        },
     };
     let rows: Vec<Vec<Cell>> =
         effects.iter().zip(sizes).flat_map(|(effect, sizes)| rows(job, effect, sizes)).collect();
     let filed = Filed { machine: &machine.name, time: job.time, id: &job.place.id, key };
     write(&fleet.results, &filed, Table::Followed, &rows)?;
-    replace(&fleet.results, &filed, Table::Followed, there)
+    shelf.replace_in(&fleet.results, &filed, Table::Followed)?;
+    Ok(None)
 }
 
 fn sizes(recorded: &Recorded, effects: &[Effect]) -> Vec<Vec<Size>> {

@@ -74,6 +74,8 @@ pub struct Entry {
     pub verdict: String,
     /// The verdict as a sentence, or why it could not be read.
     pub sentence: String,
+    /// Whether it is where the fleet file looks for it: what was told by a recording that is gone stays in the history.
+    pub listed: bool,
     /// The page of its diagnosis, where one was written.
     pub page: Option<PathBuf>,
 }
@@ -86,7 +88,7 @@ impl Machine {
     }
 }
 
-/// The history of a fleet up to a moment. Results that cannot be read are told to the listener and left out.
+/// The history of a fleet up to a moment: of what was recorded, and of the effects that were found until then. Results that cannot be read are told to the listener and left out.
 pub fn history(fleet: &Fleet, until: Moment, listener: &dyn Listener) -> Result<History, Failure> {
     let mut machines = gather::machines(fleet, until, listener)?;
     for machine in &mut machines {

@@ -1,5 +1,6 @@
 //! Jobs: what there is to do. In: a fleet. Out: its recordings, each with its time and with the key of what it would be made from.
 
+use std::io;
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
@@ -14,6 +15,7 @@ use workshop::told::Listener;
 
 use crate::file::{Fleet, Machine};
 use crate::key::{Sum, of_texts};
+use crate::results::{decoded, encoded};
 
 /// A recording of the fleet.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -38,29 +40,81 @@ pub(crate) struct Job {
     pub(crate) key: String,
 }
 
+/// A recording that cannot be read now, and may be the next time: nothing is filed about it.
+#[derive(Clone, Debug)]
+pub(crate) struct PutOff {
+    /// Its path from the fleet's folder.
+    pub(crate) label: String,
+    /// Why, in words.
+    pub(crate) why: String,
+}
+
 impl Job {
-    /// The name of the job and of its result.
-    pub(crate) fn name(&self) -> String {
+    /// The name of its result.
+    pub(crate) fn result(&self) -> String {
         format!("{}-{}", self.place.id, self.key)
     }
+
+    /// The name by which it is asked for: what it is made from, its machine and its path, so that nothing else need be looked at.
+    pub(crate) fn name(&self, fleet: &Fleet) -> String {
+        let machine = fleet.machines.get(self.place.machine).map_or("", |machine| &machine.name);
+        format!("{}/{}/{}", self.key, encoded(machine), self.place.label)
+    }
+}
+
+/// The recording and the key that the name of a job tells; nothing where the fleet has no such recording.
+pub(crate) fn named(fleet: &Fleet, name: &str) -> Option<(Place, String)> {
+    let (key, rest) = name.split_once('/')?;
+    let (machine, label) = rest.split_once('/')?;
+    let known = machine_named(fleet, machine)?;
+    let own = place(fleet, known, fleet.folder.join(label));
+    let fits = known.1.recordings.iter().any(|pattern| fits(pattern, label));
+    let is_own = fits && own.label == label && is_recording(fleet, &own.path);
+    // A pattern that names a folder in a roundabout way is looked up.
+    let found = || places_of(fleet, known, &()).into_iter().find(|place| place.label == label);
+    let place = if is_own { Some(own) } else { found() };
+    Some((place?, key.to_owned()))
+}
+
+/// The machine of which a job tells the name, with its number.
+pub(crate) fn machine_named<'f>(fleet: &'f Fleet, name: &str) -> Option<(usize, &'f Machine)> {
+    let name = decoded(name);
+    fleet.machines.iter().enumerate().find(|(_, machine)| machine.name == name)
 }
 
 /// The recordings that are there, in the order of machines and paths; the listener hears of paths that match none.
 pub(crate) fn places(fleet: &Fleet, listener: &dyn Listener) -> Vec<Place> {
+    let machines = fleet.machines.iter().enumerate();
+    machines.flat_map(|machine| places_of(fleet, machine, listener)).collect()
+}
+
+/// Those of one machine.
+pub(crate) fn places_of(
+    fleet: &Fleet,
+    (number, machine): (usize, &Machine),
+    listener: &dyn Listener,
+) -> Vec<Place> {
     let mut places = Vec::new();
-    for (number, machine) in fleet.machines.iter().enumerate() {
-        for pattern in &machine.recordings {
-            let found = matching(fleet, pattern);
-            if found.is_empty() {
-                let text = format!("warning: no file matches `{pattern}` of the machine `{}`", machine.name);
-                listener.hear(&text.into());
-            }
-            places.extend(found.into_iter().map(|path| place(fleet, (number, machine), path)));
+    for pattern in &machine.recordings {
+        let found = matching(fleet, pattern);
+        if found.is_empty() {
+            let text = format!("warning: no file matches `{pattern}` of the machine `{}`", machine.name);
+            listener.hear(&text.into());
         }
+        places.extend(found.into_iter().map(|path| place(fleet, (number, machine), path)));
     }
     places.sort();
     places.dedup();
     places
+}
+
+/// A star never stands for a slash, nor for the point of a hidden file.
+const OPTIONS: MatchOptions =
+    MatchOptions { case_sensitive: true, require_literal_separator: true, require_literal_leading_dot: true };
+
+/// Whether a pattern, as it stands in the fleet file, is one of a path from the fleet's folder.
+fn fits(pattern: &str, label: &str) -> bool {
+    Glob::new(pattern).is_ok_and(|pattern| pattern.matches_with(label, OPTIONS))
 }
 
 fn matching(fleet: &Fleet, pattern: &str) -> Vec<PathBuf> {
@@ -71,14 +125,13 @@ fn matching(fleet: &Fleet, pattern: &str) -> Vec<PathBuf> {
         "" => pattern.to_owned(),
         folder => format!("{}/{pattern}", Glob::escape(folder)),
     };
-    // A star never stands for a slash, nor for the point of a hidden file.
-    let options = MatchOptions {
-        case_sensitive: true,
-        require_literal_separator: true,
-        require_literal_leading_dot: true,
-    };
-    let found = glob_with(&whole, options).into_iter().flatten().filter_map(Result::ok);
-    found.filter(|path| path.is_file() && !path.starts_with(&fleet.results)).collect()
+    let found = glob_with(&whole, OPTIONS).into_iter().flatten().filter_map(Result::ok);
+    found.filter(|path| is_recording(fleet, path)).collect()
+}
+
+/// Whether a path that fits is a recording: a file, and none of the results.
+fn is_recording(fleet: &Fleet, path: &Path) -> bool {
+    path.is_file() && !path.starts_with(&fleet.results)
 }
 
 fn place(fleet: &Fleet, (number, machine): (usize, &Machine), path: PathBuf) -> Place {
@@ -89,11 +142,16 @@ fn place(fleet: &Fleet, (number, machine): (usize, &Machine), path: PathBuf) -> 
 }
 
 /// What a recording holds now.
-pub(crate) fn job(fleet: &Fleet, place: Place) -> Job {
+pub(crate) fn job(fleet: &Fleet, place: Place) -> Result<Job, PutOff> {
     let source = load::read(&place.path).ok();
     let time = time(fleet, &place, source.as_ref());
-    let key = key(&place.path, source.as_ref(), time);
-    Job { place, time, key }
+    match key(&place.path, source.as_ref(), time) {
+        Ok(key) => Ok(Job { place, time, key }),
+        Err((path, error)) => {
+            let why = format!("{} cannot be read now: {error}", path.display());
+            Err(PutOff { label: place.label, why })
+        }
+    }
 }
 
 /// When it was made: as its file says, else as its name does, else when the file was written.
@@ -110,15 +168,16 @@ fn written(path: &Path) -> Option<Moment> {
     Moment::new(i64::try_from(since.as_secs()).ok()?)
 }
 
-/// The sum of the recording, of all files that it names, and of its time, by which it is filed.
-fn key(path: &Path, source: Option<&SourceFile>, time: Moment) -> String {
-    let sum = Sum::versioned().text(&time.to_string()).file(path);
-    let Some(source) = source else { return sum.digits() };
+/// The sum of the recording, of all files that it names, and of its time, by which it is filed; or the file that cannot be read now.
+fn key(path: &Path, source: Option<&SourceFile>, time: Moment) -> Result<String, (PathBuf, io::Error)> {
+    let add = |sum: Sum, file: &Path| sum.file(file).map_err(|error| (file.to_owned(), error));
+    let sum = add(Sum::versioned().text(&time.to_string()), path)?;
+    let Some(source) = source else { return Ok(sum.digits()) };
     let files = Files::named_in(source, path);
     let known = files.calibration.as_deref().and_then(machine_of_calibration);
     // What is no file is a name that the version of Abbe knows, and stands in the file that names it.
-    let named = files.all(known.as_deref()).into_iter().skip(1);
-    named.fold(sum, |sum, file| sum.file(&file)).digits()
+    let mut named = files.all(known.as_deref()).into_iter().skip(1);
+    Ok(named.try_fold(sum, |sum, file| add(sum, &file))?.digits())
 }
 
 /// The machine as a calibration names it.

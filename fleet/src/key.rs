@@ -3,8 +3,8 @@
 //! The sum is XXH3 of 128 bits, which the table format brings along: it tells files apart that differ by chance or by work, and is no
 //! guard against a forger, who could as well write the result.
 
-use std::fs::File;
-use std::io::Read;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
 use twox_hash::XxHash3_128;
@@ -13,7 +13,7 @@ use twox_hash::XxHash3_128;
 pub(crate) struct Sum(XxHash3_128);
 
 /// The form of the results: another one makes all of them anew.
-const FORM: &str = "1";
+const FORM: &str = "2";
 
 /// How much of a file is read at once.
 const PIECE: usize = 1 << 16;
@@ -35,9 +35,21 @@ impl Sum {
         self
     }
 
-    /// Adds what a file holds, or that it cannot be read.
-    pub(crate) fn file(mut self, path: &Path) -> Self {
-        let Ok(mut file) = File::open(path) else { return self.text("none") };
+    /// Adds what a file holds; that there is none, or none that has an end, is a content too.
+    ///
+    /// # Errors
+    ///
+    /// Where a file that is there cannot be read now and may be another time: it is locked, the network is slow, memory is short.
+    pub(crate) fn file(self, path: &Path) -> io::Result<Self> {
+        match fs::metadata(path).and_then(|there| there.is_file().then(|| File::open(path)).transpose()) {
+            Ok(Some(mut file)) => self.content(&mut file),
+            Ok(None) => Ok(self.text("no file")),
+            Err(error) if is_lasting(&error) => Ok(self.text("none")),
+            Err(error) => Err(error),
+        }
+    }
+
+    fn content(mut self, file: &mut File) -> io::Result<Self> {
         let (mut piece, mut length) = (vec![0; PIECE], 0_u64);
         loop {
             match file.read(&mut piece) {
@@ -46,18 +58,24 @@ impl Sum {
                     length = length.saturating_add(read as u64);
                     self.0.write(piece.get(..read).unwrap_or_default());
                 }
-                Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
-                Err(_) => return self.text("broken"),
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
             }
         }
         self.0.write(&length.to_le_bytes());
-        self
+        Ok(self)
     }
 
     /// The digits.
     pub(crate) fn digits(self) -> String {
         format!("{:032x}", self.0.finish_128())
     }
+}
+
+/// Whether an error is of the name itself, which stays until somebody changes the files: all others may pass.
+fn is_lasting(error: &io::Error) -> bool {
+    use ErrorKind::{InvalidFilename, InvalidInput, IsADirectory, NotADirectory, NotFound};
+    matches!(error.kind(), NotFound | NotADirectory | IsADirectory | InvalidFilename | InvalidInput)
 }
 
 /// The sum of texts alone, whatever the version.

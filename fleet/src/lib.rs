@@ -8,6 +8,8 @@
 
 pub mod add;
 mod between;
+#[cfg(test)]
+mod chance;
 mod change;
 mod diagnosed;
 mod effects;
@@ -16,10 +18,12 @@ mod followed;
 pub mod history;
 mod jobs;
 mod key;
+mod name;
 pub mod report;
 mod results;
 pub mod run;
 mod series;
+mod shelf;
 mod student;
 mod table;
 mod time;

@@ -8,6 +8,7 @@ mod text;
 pub use html::{Pages, page, pages};
 pub use text::text;
 
+use crate::change::FEWEST;
 use crate::history::{Followed, History, Machine};
 use crate::series::days;
 
@@ -44,14 +45,37 @@ fn worst(machine: &Machine) -> Option<&Followed> {
         .map(|(followed, _)| followed)
 }
 
+/// What a machine did since it is looked at, in a few words: what changed most plainly, or why nothing can be told.
+fn most(machine: &Machine) -> String {
+    let effects = machine.series.iter().filter(|followed| !followed.series.is_noise()).count();
+    match worst(machine) {
+        Some(worst) => brief(worst),
+        None if machine.series.is_empty() => "no recording gives a number that could be followed".to_owned(),
+        None => {
+            let effects = match effects {
+                0 => "the noise is followed, since nothing else was found".to_owned(),
+                1 => "1 number and the noise are followed".to_owned(),
+                more => format!("{more} numbers and the noise are followed"),
+            };
+            format!("{effects}; a change is told from {FEWEST} recordings on")
+        }
+    }
+}
+
+/// How many recordings a machine has, and how many of them are where the fleet file looks no more.
+fn count(machine: &Machine) -> String {
+    let all = machine.recordings.len();
+    let recordings = if all == 1 { "1 recording".to_owned() } else { format!("{all} recordings") };
+    match machine.recordings.iter().filter(|entry| !entry.listed).count() {
+        0 => recordings,
+        gone => format!("{recordings}, {gone} of them no longer there"),
+    }
+}
+
 /// A change in a few words; that it is no more than chance gives, where there is no alarm about it.
 fn brief(followed: &Followed) -> String {
     let series = &followed.series;
-    let name = if series.is_noise() {
-        "noise".to_owned()
-    } else {
-        format!("{} of {}", series.parameter, series.effect)
-    };
+    let name = series.name();
     let Some(change) = &followed.change else {
         return format!("{name}: too few recordings to tell a change");
     };

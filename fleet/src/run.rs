@@ -3,7 +3,7 @@
 //! Jobs have two stages. Each recording is diagnosed; when all of a machine are, what was found in any of them is followed in each. A
 //! machine whose effects have changed since is followed anew, which takes a small part of the time.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZero;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -16,10 +16,12 @@ use workshop::told::Listener;
 
 use crate::diagnosed;
 use crate::effects::{Effect, effects, key};
-use crate::file::Fleet;
+use crate::file::{Fleet, Machine};
 use crate::followed;
-use crate::jobs::{Job, job, places};
-use crate::results::{Filed, Table, There, read, tidy};
+use crate::jobs::{Job, Place, PutOff, job, machine_named, named, places, places_of};
+use crate::key::of_texts;
+use crate::results::{Filed, Table, encoded};
+use crate::shelf::{Current, Known, Shelf, read, tidy};
 
 /// One of several parts into which jobs are shared, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +43,8 @@ pub struct Done {
     pub followed: usize,
     /// Machines that wait until all of their recordings are diagnosed.
     pub waiting: usize,
+    /// Jobs that are put off to the next run, since something cannot be read now.
+    pub put_off: usize,
 }
 
 /// How far a run has come.
@@ -61,10 +65,12 @@ pub struct Pending {
     pub stage: &'static str,
     /// The machine.
     pub machine: String,
-    /// The recording: a path from the fleet's folder.
-    pub recording: String,
+    /// The recording that is diagnosed: a path from the fleet's folder.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recording: Option<String>,
     /// When it was made.
-    pub time: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<String>,
 }
 
 impl Pending {
@@ -95,32 +101,44 @@ impl Shard {
     }
 }
 
-/// The recordings of a fleet with what is there of them.
+/// The recordings of a fleet, or of one machine of it, with what is there of them.
 struct Plan<'f> {
     fleet: &'f Fleet,
+    /// In the order of machines.
     jobs: Vec<Job>,
-    there: BTreeMap<Table, There>,
+    /// What cannot be read now.
+    put_off: Vec<PutOff>,
+    /// The machine, where it is of one alone.
+    machine: Option<&'f str>,
+    shelf: Shelf,
 }
 
 impl<'f> Plan<'f> {
     fn new(fleet: &'f Fleet, listener: &dyn Listener) -> Result<Self, Failure> {
-        let places = places(fleet, listener);
-        let jobs = places.into_par_iter().map(|place| job(fleet, place)).collect();
-        let mut plan = Self { fleet, jobs, there: BTreeMap::new() };
-        plan.look()?;
-        Ok(plan)
+        Self::of(fleet, places(fleet, listener), None)
+    }
+
+    fn of_machine(fleet: &'f Fleet, (number, machine): (usize, &'f Machine)) -> Result<Self, Failure> {
+        Self::of(fleet, places_of(fleet, (number, machine), &()), Some(&machine.name))
+    }
+
+    fn of(fleet: &'f Fleet, places: Vec<Place>, machine: Option<&'f str>) -> Result<Self, Failure> {
+        let read: Vec<Result<Job, PutOff>> = places.into_par_iter().map(|place| job(fleet, place)).collect();
+        let (mut jobs, mut put_off) = (Vec::new(), Vec::new());
+        for read in read {
+            match read {
+                Ok(job) => jobs.push(job),
+                Err(why) => put_off.push(why),
+            }
+        }
+        let shelf = Shelf::of(&fleet.results, machine)?;
+        Ok(Self { fleet, jobs, put_off, machine, shelf })
     }
 
     /// Looks anew which results are there.
     fn look(&mut self) -> Result<(), Failure> {
-        for table in Table::ALL {
-            self.there.insert(table, There::of(&self.fleet.results, table)?);
-        }
+        self.shelf = Shelf::of(&self.fleet.results, self.machine)?;
         Ok(())
-    }
-
-    fn of(&self, table: Table) -> There {
-        self.there.get(&table).cloned().unwrap_or_default()
     }
 
     fn filed<'j>(&'j self, job: &'j Job, key: &'j str) -> Filed<'j> {
@@ -129,71 +147,88 @@ impl<'f> Plan<'f> {
     }
 
     fn is_diagnosed(&self, job: &Job) -> bool {
-        let there = self.there.get(&Table::Recordings);
-        there.is_some_and(|there| {
-            there.holds(&self.fleet.results, &self.filed(job, &job.key), Table::Recordings)
-        })
+        self.shelf.holds(&self.fleet.results, &self.filed(job, &job.key), Table::Recordings)
+    }
+
+    fn is_followed(&self, follow: &Follow<'_>) -> bool {
+        self.shelf.holds(&self.fleet.results, &self.filed(follow.job, &follow.key), Table::Followed)
+    }
+
+    /// The jobs of one part or of all.
+    fn own(&self, shard: Option<Shard>) -> impl Iterator<Item = &Job> {
+        self.jobs.iter().filter(move |job| shard.is_none_or(|shard| shard.has(&job.place.id)))
     }
 
     /// What is to be diagnosed, of one part or of all.
     fn undiagnosed(&self, shard: Option<Shard>) -> Vec<&Job> {
-        let own = |job: &&Job| shard.is_none_or(|shard| shard.has(&job.place.id));
-        self.jobs.iter().filter(own).filter(|job| !self.is_diagnosed(job)).collect()
+        self.own(shard).filter(|job| !self.is_diagnosed(job)).collect()
     }
 
-    /// What is to be followed, machine by machine, of those of which all is diagnosed; and how many others there are.
-    fn unfollowed(&self, shard: Option<Shard>) -> Result<(Vec<Follow<'_>>, usize), Failure> {
-        let (mut pending, mut waiting) = (Vec::new(), 0);
-        for number in 0..self.fleet.machines.len() {
-            let jobs: Vec<&Job> = self.jobs.iter().filter(|job| job.place.machine == number).collect();
-            if jobs.iter().any(|job| !self.is_diagnosed(job)) {
-                waiting += 1;
-                continue;
-            }
-            pending.extend(self.follow_of(number, &jobs)?.into_iter().filter(|follow| {
-                shard.is_none_or(|shard| shard.has(&follow.job.place.id)) && !self.is_followed(follow)
-            }));
+    /// What is diagnosed and has no page.
+    fn undrawn(&self, shard: Option<Shard>) -> Vec<&Job> {
+        let has_page = |job: &Job| self.shelf.holds_page(&self.fleet.results, &self.filed(job, &job.key));
+        self.own(shard).filter(|job| self.is_diagnosed(job) && !has_page(job)).collect()
+    }
+
+    /// Takes away what runs that were killed have left beside what replaces it, and what is of recordings that were moved.
+    fn clear(&self) -> Result<(), Failure> {
+        let mut known = BTreeMap::new();
+        for job in self.jobs.iter().filter(|job| self.is_diagnosed(job)) {
+            let filed = self.filed(job, &job.key);
+            self.shelf.replace(&self.fleet.results, &filed)?;
+            known.insert(job.key.as_str(), filed.machine);
         }
-        Ok((pending, waiting))
+        // Where something is put off, nobody knows what else is not to be seen now.
+        match self.put_off.is_empty() {
+            true => self.shelf.clear_moved(&known, &self.listed()),
+            false => Ok(()),
+        }
+    }
+
+    /// The recordings that are at their places.
+    fn listed(&self) -> BTreeSet<&str> {
+        self.jobs.iter().map(|job| job.place.id.as_str()).collect()
+    }
+
+    /// The second stage of all machines of which all is diagnosed; and how many others there are.
+    fn follows(&self) -> Result<(Vec<Follow<'_>>, usize), Failure> {
+        let (mut follows, mut waiting) = (Vec::new(), 0);
+        for jobs in self.jobs.chunk_by(|one, next| one.place.machine == next.place.machine) {
+            match jobs.iter().all(|job| self.is_diagnosed(job)) {
+                true => follows.extend(self.follow_of(jobs)?),
+                false => waiting += 1,
+            }
+        }
+        Ok((follows, waiting))
     }
 
     /// The second stage of the jobs of a machine.
-    fn follow_of<'j>(&self, number: usize, jobs: &[&'j Job]) -> Result<Vec<Follow<'j>>, Failure> {
-        let Some(machine) = self.fleet.machines.get(number).filter(|_| !jobs.is_empty()) else {
-            return Ok(Vec::new());
-        };
+    fn follow_of<'j>(&self, jobs: &'j [Job]) -> Result<Vec<Follow<'j>>, Failure> {
+        let machine = jobs.first().and_then(|job| self.fleet.machines.get(job.place.machine));
+        let Some(machine) = machine.map(|machine| machine.name.as_str()) else { return Ok(Vec::new()) };
+        let listed: BTreeSet<&str> = jobs.iter().map(|job| job.place.id.as_str()).collect();
+        let current = Current::of(&self.fleet.results, Some(machine), &listed)?;
         let mut broken = Vec::new();
-        let parameters =
-            read(&self.fleet.results, Table::Parameters, Some(&machine.name), &mut |why| broken.push(why))?;
-        let verdicts =
-            read(&self.fleet.results, Table::Verdicts, Some(&machine.name), &mut |why| broken.push(why))?;
+        let mut rows =
+            |table| read(&self.fleet.results, table, (Some(machine), &current), &mut |why| broken.push(why));
+        let (parameters, verdicts) = (rows(Table::Parameters)?, rows(Table::Verdicts)?);
         if let Some(why) = broken.first() {
             return Err(Failure::no(
                 why.replacen("warning", "error", 1)
                     + "\nhelp: remove it, and the file of the same name in `recordings`: it is then made anew",
             ));
         }
-        let unfit: Vec<&str> = verdicts
-            .iter()
-            .filter(|known| is_unfit(known.row.text("verdict"), known.row.count("changes")))
-            .map(|known| known.id.as_str())
-            .collect();
-        let fit = parameters.iter().filter(|known| !unfit.contains(&known.id.as_str()));
+        let is_unfit = |known: &&Known| is_unfit(known.row.text("verdict"), known.row.count("changes"));
+        let unfit: BTreeSet<&str> = verdicts.iter().filter(is_unfit).map(|known| known.id.as_str()).collect();
+        let fit = parameters.iter().filter(|known| !unfit.contains(known.id.as_str()));
         let effects: Arc<[Effect]> = effects(&fit.cloned().collect::<Vec<_>>()).into();
-        let follow = |job: &&'j Job| Follow {
+        let follow = |job: &'j Job| Follow {
             job,
             key: key((&job.key, &job.place.id), &effects),
-            unfit: unfit.contains(&job.place.id.as_str()),
+            unfit: unfit.contains(job.place.id.as_str()),
             effects: Arc::clone(&effects),
         };
         Ok(jobs.iter().map(follow).collect())
-    }
-
-    fn is_followed(&self, follow: &Follow<'_>) -> bool {
-        let there = self.there.get(&Table::Followed);
-        there.is_some_and(|there| {
-            there.holds(&self.fleet.results, &self.filed(follow.job, &follow.key), Table::Followed)
-        })
     }
 }
 
@@ -211,17 +246,20 @@ struct Follow<'j> {
 }
 
 impl Follow<'_> {
-    fn name(&self) -> String {
-        format!("{FOLLOW}{}-{}", self.job.place.id, self.key)
-    }
-
-    fn run(&self, fleet: &Fleet, there: &There) -> Result<(), Failure> {
-        followed::run(fleet, self.job, (&self.effects, &self.key), self.unfit, there)
+    fn run(&self, fleet: &Fleet, shelf: &Shelf) -> Result<Option<PutOff>, Failure> {
+        followed::run(fleet, self.job, (&self.effects, &self.key), self.unfit, shelf)
     }
 }
 
+/// The name of the second stage of a machine: what all of it is made from, and the machine. It is one job, since what is followed is known
+/// from all recordings of the machine, and would be looked up by each of them.
+fn name_of(machine: &str, follows: &[Follow<'_>]) -> String {
+    let keys: Vec<&str> = follows.iter().map(|follow| follow.key.as_str()).collect();
+    format!("{FOLLOW}{}/{}", of_texts(&keys), encoded(machine))
+}
+
 /// Does all jobs that are not done, on all processors; those of a part where one is given. `pages` writes the page of each diagnosis
-/// too. A run that is stopped, or killed, goes on with the next one.
+/// too, and those that are missing. A run that is stopped, or killed, goes on with the next one.
 pub fn all(
     fleet: &Fleet,
     (shard, pages): (Option<Shard>, bool),
@@ -230,36 +268,66 @@ pub fn all(
 ) -> Result<Done, Failure> {
     tidy(&fleet.results)?;
     let mut plan = Plan::new(fleet, listener)?;
-    let there: Vec<(Table, There)> = Table::OF_DIAGNOSIS.map(|table| (table, plan.of(table))).into();
+    plan.clear()?;
+    let told = |step: &'static str| move |done| progress(Step { step, done });
     let pending = plan.undiagnosed(shard);
-    each(
-        &pending,
-        |done| progress(Step { step: "diagnosing", done }),
-        |job| diagnosed::run(fleet, job, pages, &there),
-    )?;
-    let diagnosed = pending.len();
+    let mut put_off =
+        each(&pending, told("diagnosing"), |job| diagnosed::run(fleet, job, pages, &plan.shelf))?;
+    let diagnosed = pending.len().saturating_sub(put_off.len());
+    if pages {
+        let pending = plan.undrawn(shard);
+        each(&pending, told("drawing"), |job| diagnosed::draw(fleet, job).map(|()| None))?;
+    }
     plan.look()?;
-    let there = plan.of(Table::Followed);
-    let (pending, waiting) = plan.unfollowed(shard)?;
-    each(&pending, |done| progress(Step { step: "following", done }), |follow| follow.run(fleet, &there))?;
-    Ok(Done { recordings: plan.jobs.len(), diagnosed, followed: pending.len(), waiting })
+    let (follows, waiting) = plan.follows()?;
+    let mut pending = Vec::new();
+    for follow in &follows {
+        match plan.is_followed(follow) {
+            // What a run that was killed has left beside it.
+            true => plan.shelf.replace_in(
+                &fleet.results,
+                &plan.filed(follow.job, &follow.key),
+                Table::Followed,
+            )?,
+            false if shard.is_none_or(|shard| shard.has(&follow.job.place.id)) => pending.push(follow),
+            false => {}
+        }
+    }
+    let later = each(&pending, told("following"), |follow| follow.run(fleet, &plan.shelf))?;
+    let followed = pending.len().saturating_sub(later.len());
+    put_off.extend(later);
+    put_off.extend(plan.put_off.iter().cloned());
+    for PutOff { label, why } in &put_off {
+        listener.hear(&format!("warning: {label} is put off to the next run: {why}").into());
+    }
+    Ok(Done {
+        recordings: plan.jobs.len().saturating_add(plan.put_off.len()),
+        diagnosed,
+        followed,
+        waiting,
+        put_off: put_off.len(),
+    })
 }
 
 /// Runs jobs on all processors, one at a time on each: what a job shares out itself goes to the common pool, whose threads do not begin
 /// other jobs meanwhile, so that memory stays that of so many recordings. A failure to write ends the run once the jobs under way are done.
+/// Tells what is put off.
 fn each<T: Sync>(
     jobs: &[T],
     told: impl Fn((usize, usize)) + Sync,
-    run: impl Fn(&T) -> Result<(), Failure> + Sync,
-) -> Result<(), Failure> {
+    run: impl Fn(&T) -> Result<Option<PutOff>, Failure> + Sync,
+) -> Result<Vec<PutOff>, Failure> {
     let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let failed = Mutex::new(None);
+    let (failed, put_off) = (Mutex::new(None), Mutex::new(Vec::new()));
     let has_failed = || failed.lock().unwrap_or_else(PoisonError::into_inner).is_some();
     let work = || {
         while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !has_failed()) {
-            if let Err(failure) = run(job) {
-                failed.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(failure);
-                break;
+            match run(job) {
+                Ok(later) => put_off.lock().unwrap_or_else(PoisonError::into_inner).extend(later),
+                Err(failure) => {
+                    failed.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(failure);
+                    break;
+                }
             }
             told((done.fetch_add(1, Ordering::Relaxed).saturating_add(1), jobs.len()));
         }
@@ -270,7 +338,10 @@ fn each<T: Sync>(
             scope.spawn(work);
         }
     });
-    failed.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+    let failed = failed.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let mut put_off = put_off.into_inner().unwrap_or_else(PoisonError::into_inner);
+    put_off.sort_by(|one: &PutOff, other| one.label.cmp(&other.label));
+    failed.map_or(Ok(put_off), Err)
 }
 
 /// What is still to be done.
@@ -280,63 +351,70 @@ pub fn pending(
     listener: &dyn Listener,
 ) -> Result<Vec<Pending>, Failure> {
     let plan = Plan::new(fleet, listener)?;
-    let told = |job: &Job, name: String, stage: &'static str| Pending {
-        job: name,
-        stage,
-        machine: fleet
-            .machines
-            .get(job.place.machine)
-            .map(|machine| machine.name.clone())
-            .unwrap_or_default(),
-        recording: job.place.label.clone(),
-        time: job.time.to_string(),
-    };
-    let first = plan.undiagnosed(shard).into_iter().map(|job| told(job, job.name(), "diagnose"));
-    let (follow, _) = plan.unfollowed(shard)?;
-    let second = follow.iter().map(|follow| told(follow.job, follow.name(), "follow"));
-    Ok(first.chain(second).collect())
+    let name =
+        |job: &Job| fleet.machines.get(job.place.machine).map_or("", |machine| &machine.name).to_owned();
+    let first = plan.undiagnosed(shard).into_iter().map(|job| Pending {
+        job: job.name(fleet),
+        stage: "diagnose",
+        machine: name(job),
+        recording: Some(job.place.label.clone()),
+        time: Some(job.time.to_string()),
+    });
+    let mut pending: Vec<Pending> = first.collect();
+    let (follows, _) = plan.follows()?;
+    for follows in follows.chunk_by(|one, next| one.job.place.machine == next.job.place.machine) {
+        let machine = follows.first().map(|follow| name(follow.job)).unwrap_or_default();
+        let own = shard.is_none_or(|shard| shard.has(&of_texts(&[&machine])));
+        if own && follows.iter().any(|follow| !plan.is_followed(follow)) {
+            let job = name_of(&machine, follows);
+            pending.push(Pending { job, stage: "follow", machine, recording: None, time: None });
+        }
+    }
+    Ok(pending)
 }
 
-/// Does one job by its name, as [`pending`] tells it.
+/// Does one job by its name, as [`pending`] tells it: of a diagnosis nothing is looked at but its recording and the names of the results of
+/// its machine, of what follows the recordings of its machine.
 pub fn one(fleet: &Fleet, name: &str, pages: bool) -> Result<(), Failure> {
-    let (follows, rest) = match name.strip_prefix(FOLLOW) {
-        Some(rest) => (true, rest),
-        None => (false, name),
-    };
-    let (id, key) = rest.split_once('-').unwrap_or((rest, ""));
-    let mut places = places(fleet, &());
-    let Some(place) = places.iter().find(|place| place.id == id).cloned() else {
+    let unknown = || {
         let help = "help: `abbe fleet run --list` tells the jobs there are";
-        return Err(Failure::wrong(format!("error: no recording of the fleet has the job `{name}`\n{help}")));
+        Failure::wrong(format!("error: no recording of the fleet has the job `{name}`\n{help}"))
     };
-    let changed = || {
-        let help = "help: list the jobs again: what was asked for is not what is to be done now";
-        Failure::no(format!("error: {} is not as it was when it was listed\n{help}", place.label))
-    };
-    if !follows {
-        let job = job(fleet, place.clone());
-        if job.key != key {
-            return Err(changed());
-        }
-        let there =
-            Table::OF_DIAGNOSIS.map(|table| There::of(&fleet.results, table).map(|there| (table, there)));
-        return diagnosed::run(fleet, &job, pages, &there.into_iter().collect::<Result<Vec<_>, _>>()?);
+    if let Some((_, machine)) = name.strip_prefix(FOLLOW).and_then(|rest| rest.split_once('/')) {
+        return follow_all(fleet, machine_named(fleet, machine).ok_or_else(unknown)?, name);
     }
-    places.retain(|other| other.machine == place.machine);
-    let mut plan = Plan {
-        fleet,
-        jobs: places.into_par_iter().map(|place| job(fleet, place)).collect(),
-        there: BTreeMap::new(),
-    };
-    plan.look()?;
-    let jobs: Vec<&Job> = plan.jobs.iter().collect();
-    if jobs.iter().any(|job| !plan.is_diagnosed(job)) {
-        return Err(changed());
+    let (place, key) = named(fleet, name).ok_or_else(unknown)?;
+    let label = place.label.clone();
+    let job = job(fleet, place).map_err(later)?;
+    if job.key != key {
+        return Err(changed(&label));
     }
-    let follow = plan.follow_of(place.machine, &jobs)?;
-    let follow =
-        follow.iter().find(|follow| follow.job.place.id == id && follow.key == key).ok_or_else(changed)?;
-    follow.run(fleet, &plan.of(Table::Followed))
+    let machine = fleet.machines.get(job.place.machine).map(|machine| machine.name.as_str());
+    let shelf = Shelf::of(&fleet.results, machine)?;
+    diagnosed::run(fleet, &job, pages, &shelf)?.map_or(Ok(()), |put_off| Err(later(put_off)))
+}
+
+/// The second stage of a machine.
+fn follow_all(fleet: &Fleet, (number, machine): (usize, &Machine), name: &str) -> Result<(), Failure> {
+    let plan = Plan::of_machine(fleet, (number, machine))?;
+    let (follows, waiting) = plan.follows()?;
+    if waiting > 0 || name_of(&machine.name, &follows) != name {
+        return Err(changed(&format!("the machine {}", machine.name)));
+    }
+    for follow in follows.iter().filter(|follow| !plan.is_followed(follow)) {
+        follow.run(fleet, &plan.shelf)?.map_or(Ok(()), |put_off| Err(later(put_off)))?;
+    }
+    Ok(())
+}
+
+fn changed(what: &str) -> Failure {
+    let help = "help: list the jobs again: what was asked for is not what is to be done now";
+    Failure::no(format!("error: {what} is not as it was when it was listed\n{help}"))
+}
+
+fn later(put_off: PutOff) -> Failure {
+    let PutOff { label, why } = put_off;
+    Failure::no(format!("error: {label} cannot be diagnosed now: {why}\nhelp: do the job again later"))
 }
 
 #[cfg(test)]

@@ -38,6 +38,9 @@ pub struct Point {
     pub claimed: bool,
 }
 
+/// The name of the series of noise.
+pub(crate) const NOISE: &str = "noise";
+
 /// Half of a 95 % interval in standard errors.
 const WIDTH_95: f64 = 1.959_964;
 
@@ -65,6 +68,11 @@ pub(crate) fn as_text<S: serde::Serializer>(time: &Moment, serializer: S) -> Res
 }
 
 impl Series {
+    /// What it is called: `lost_motion of EXX backlash axis=X`, or `noise`.
+    pub(crate) fn name(&self) -> String {
+        if self.is_noise() { NOISE.to_owned() } else { format!("{} of {}", self.parameter, self.effect) }
+    }
+
     /// Whether it is the noise: a level, of which the logarithm is compared.
     pub(crate) fn is_noise(&self) -> bool {
         self.term.is_empty()

@@ -2,6 +2,8 @@
 
 #![expect(clippy::unwrap_used, clippy::expect_used, reason = "a test, whose shop is its own")]
 
+#[path = "../src/chance.rs"]
+mod chance;
 #[path = "../examples/fleet-proof/judged.rs"]
 mod judged;
 #[path = "../examples/fleet-proof/shop.rs"]
@@ -30,11 +32,28 @@ fn planted_changes_are_raised_and_nothing_else_is() {
     assert_eq!(one.followed + two.followed + rest.followed, 6 * 14 + 1);
     assert_eq!(run::all(&fleet, (None, false), &(), &|_| {}).ok().unwrap().followed, 0);
     let judged = judged::judged(shop, &fleet);
-    assert!(judged.raised.iter().all(|(_, week, _)| week.is_some()), "{judged:?}");
+    for (number, raised) in judged.raised.iter().enumerate() {
+        let ((size, half), truth) = (raised.size, shop.planted(number));
+        assert!(raised.week.is_some() && !raised.sentence.is_empty(), "{}: {judged:?}", raised.what);
+        // Three changes: that all three intervals are twice too narrow is chance in none of ten thousand.
+        assert!(
+            (size - truth).abs() <= 2.0 * half && half < truth / 4.0,
+            "{size} +- {half} for {truth}: {raised:?}"
+        );
+    }
+    let kinds: Vec<&str> = judged.raised.iter().map(|raised| raised.kind).collect();
+    assert_eq!(kinds, ["trend", "trend", "step"]);
+    // The step is told at its week, and its effect is found in no recording before.
+    assert_eq!((judged.raised[2].from, judged.raised[2].claimed.0), (shop.step(), 0));
+    assert!(judged.raised[2].claimed.1 > 0);
+    // Its week is counted from 1, and none knows of it before.
+    assert!(judged.raised[2].week > Some(shop.step()));
     assert!(judged.other.is_empty(), "{judged:?}");
+    // Of those that hold 93 to 97 of a hundred.
     let (held, all) = judged.held;
-    // Of 95 % of 200 and more, less than 91 % come once in 1e3.
-    assert!(all > 200 && held * 100 > all * 91, "{held} of {all}");
+    let cases = u32::try_from(all).unwrap();
+    let (least, most) = (chance::bounds(cases, 0.93).0, chance::bounds(cases, 0.97).1);
+    assert!(all > 200 && (least..=most).contains(&held), "{held} of {all}, from {least} to {most}");
     let history = fleet::history(&fleet, shop.time(20), &()).ok().unwrap();
     let text = report::text(&history, 100);
     assert!(text.contains("mill-06: ") && report::json(&history).contains("no machine `nothing`"), "{text}");

@@ -2,14 +2,17 @@
 
 #![expect(clippy::unwrap_used, clippy::panic, reason = "a test")]
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::thread;
+use std::time::{Duration, SystemTime};
 
 use fleet::file::Fleet;
 use fleet::{add, file, run};
 use recording::Moment;
+use workshop::told::{Listener, Words};
 
 /// A folder that goes with its test.
 struct Folder(PathBuf);
@@ -101,11 +104,7 @@ fn a_recording_that_is_measured_anew_replaces_its_result() {
     let done = all(&fleet);
     assert_eq!(done.diagnosed, 1);
     assert_eq!(files(&fleet.results).len(), 4 * DAYS.len());
-    let history = fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
-    let backlash = history.machines[0].series.iter().find(|known| known.series.term == "backlash").unwrap();
-    let values: Vec<f64> = backlash.series.points.iter().map(|point| (point.value * 1e3).round()).collect();
-    assert_eq!(values, [4.0, 9.0, 4.0]);
-    assert!(backlash.change.is_none(), "three recordings tell no change");
+    assert_eq!(backlash(&fleet), [4.0, 9.0, 4.0]);
 }
 
 #[test]
@@ -113,15 +112,27 @@ fn jobs_by_name_give_what_a_run_gives_and_old_names_are_refused() {
     let (folder, fleet) = fleet("jobs");
     let listed = run::pending(&fleet, None, &()).ok().unwrap();
     assert!(listed.iter().all(|job| job.stage == "diagnose") && listed.len() == 3);
+    assert!(listed[0].job.ends_with("/stage%201%2Fb/a stage/2026-01-31.yaml"), "{}", listed[0].job);
     record(&folder.0.join("a stage"), DAYS[0], 5.0);
     let refused = |name: &str| run::one(&fleet, name, false).err().unwrap().words().unwrap().text(false);
     assert!(refused(&listed[0].job).contains("not as it was when it was listed"));
-    assert!(refused("00-00").contains("no recording of the fleet"));
-    for _ in 0..2 {
-        for job in run::pending(&fleet, None, &()).ok().unwrap() {
-            run::one(&fleet, &job.job, false).ok().unwrap();
-        }
+    for unknown in [
+        "00-00",
+        "00/stage%201%2Fb/a stage/3.yaml",
+        "00/stage%201%2Fb/fleet.yaml",
+        "00/other/a",
+        "follow-00/other",
+    ] {
+        assert!(refused(unknown).contains("no recording of the fleet"), "{unknown}");
     }
+    assert!(refused("follow-00/stage%201%2Fb").contains("not as it was when it was listed"));
+    let stages = ["diagnose", "follow"].map(|stage| {
+        let listed = run::pending(&fleet, None, &()).ok().unwrap();
+        assert!(listed.iter().all(|job| job.stage == stage), "{stage}");
+        listed.iter().for_each(|job| run::one(&fleet, &job.job, false).ok().unwrap());
+        listed.len()
+    });
+    assert_eq!(stages, [3, 1], "a machine is followed by one job");
     assert!(run::pending(&fleet, None, &()).ok().unwrap().is_empty());
     let by_name = files(&fleet.results);
     fs::rename(&fleet.results, folder.0.join("elsewhere")).unwrap();
@@ -139,6 +150,194 @@ fn jobs_by_name_give_what_a_run_gives_and_old_names_are_refused() {
 }
 
 #[test]
+fn a_job_by_name_looks_at_its_own_recording_alone() {
+    let (folder, fleet) = fleet("alone");
+    let listed = run::pending(&fleet, None, &()).ok().unwrap();
+    // Nothing but the recording itself can be read.
+    for day in DAYS.iter().skip(1) {
+        fs::remove_file(folder.0.join(format!("a stage/{day}.yaml"))).unwrap();
+    }
+    run::one(&fleet, &listed[0].job, false).ok().unwrap();
+    assert_eq!(files(&fleet.results).len(), 3);
+}
+
+/// What a run that was killed before it could take away what it replaced has left: the results of before beside those of now.
+fn left_behind(fleet: &Fleet, before: &BTreeMap<PathBuf, Vec<u8>>) {
+    for (path, bytes) in before {
+        if !path.exists() {
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, bytes).unwrap();
+            // It was there first.
+            let file = fs::File::options().write(true).open(path).unwrap();
+            file.set_modified(SystemTime::now() - Duration::from_secs(3600)).unwrap();
+        }
+    }
+    assert!(files(&fleet.results).len() > 4 * DAYS.len());
+}
+
+/// The lost motions of the stage over time, in um.
+fn backlash(fleet: &Fleet) -> Vec<f64> {
+    let history = fleet::history(fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
+    let backlash = history.machines[0].series.iter().find(|known| known.series.term == "backlash").unwrap();
+    backlash.series.points.iter().map(|point| (point.value * 1e3).round()).collect()
+}
+
+#[test]
+fn a_kill_between_the_new_result_and_the_end_of_the_old_one_doubles_nothing() {
+    let (folder, fleet) = fleet("killed");
+    all(&fleet);
+    let before = files(&fleet.results);
+    record(&folder.0.join("a stage"), DAYS[1], 9.0);
+    all(&fleet);
+    let after = files(&fleet.results);
+    left_behind(&fleet, &before);
+    assert_eq!(backlash(&fleet), [4.0, 9.0, 4.0], "readers take the newer one of each recording");
+    let history = fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
+    assert_eq!(history.machines[0].recordings.len(), 3);
+    let done = all(&fleet);
+    assert_eq!((done.diagnosed, done.followed), (0, 0));
+    assert!(files(&fleet.results) == after, "the next run takes the older ones away");
+}
+
+#[test]
+fn a_recording_that_is_gone_stays_in_the_history_and_one_that_was_moved_counts_once() {
+    let (folder, fleet) = fleet("moved");
+    all(&fleet);
+    let stage = folder.0.join("a stage");
+    let machine = |fleet: &Fleet| {
+        let history = fleet::history(fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
+        let text = fleet::report::text(&history, 200);
+        let listed: Vec<bool> = history.machines[0].recordings.iter().map(|entry| entry.listed).collect();
+        (listed, text)
+    };
+    fs::rename(stage.join("2026-02-01.yaml"), stage.join("2-moved.yaml")).unwrap();
+    fs::remove_file(stage.join("2026-02-02.yaml")).unwrap();
+    let (listed, text) = machine(&fleet);
+    assert_eq!(listed, [true, false, false]);
+    assert!(text.contains("3 recordings, 2 of them no longer there"), "{text}");
+    // Diagnosed under its new path it is one recording, of which the older result goes.
+    assert_eq!(all(&fleet).diagnosed, 1);
+    let (listed, text) = machine(&fleet);
+    assert_eq!(listed, [true, true, false]);
+    assert!(text.contains("3 recordings, 1 of them no longer there"), "{text}");
+    all(&fleet);
+    let names: Vec<PathBuf> = files(&fleet.results).into_keys().collect();
+    assert_eq!(names.len(), 4 * DAYS.len(), "{names:?}");
+    assert_eq!(backlash(&fleet), [4.0, 4.0, 4.0]);
+    // A machine that the fleet file names no more is told.
+    let text = "fleet: 1\nmachines: {other: {recordings: \"a stage/2*.yaml\"}}\n";
+    fs::write(folder.0.join("fleet.yaml"), text).unwrap();
+    let heard = Heard::default();
+    let other = file::read(&folder.0.join("fleet.yaml"), &()).ok().unwrap();
+    fleet::history(&other, Moment::read("2026-03-01").unwrap(), &heard).ok().unwrap();
+    assert!(heard.0.borrow().iter().any(|text| text.contains("results of `stage 1/b`")), "{:?}", heard.0);
+}
+
+/// What was said.
+#[derive(Default)]
+struct Heard(RefCell<Vec<String>>);
+
+impl Listener for Heard {
+    fn hear(&self, words: &Words) {
+        self.0.borrow_mut().push(words.text(false));
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn what_cannot_be_read_now_is_put_off_and_what_is_wrong_is_filed() {
+    let (folder, fleet) = fleet("later");
+    let data = |day: &str| folder.0.join(format!("a stage/{day}.csv"));
+    let aside = fs::read(data(DAYS[0])).unwrap();
+    // A link to itself cannot be opened, as a file that is locked or on a disk that does not answer.
+    fs::remove_file(data(DAYS[0])).unwrap();
+    std::os::unix::fs::symlink(data(DAYS[0]), data(DAYS[0])).unwrap();
+    // No such file, and no table: that lasts until somebody changes it.
+    fs::remove_file(data(DAYS[1])).unwrap();
+    fs::write(data(DAYS[2]), "nothing").unwrap();
+    let heard = Heard::default();
+    let done = run::all(&fleet, (None, false), &heard, &|_| {}).ok().unwrap();
+    assert_eq!((done.recordings, done.diagnosed, done.put_off), (3, 2, 1));
+    let put_off = |text: &String| text.contains("2026-01-31.yaml is put off to the next run");
+    assert!(heard.0.borrow().iter().any(put_off), "{:?}", heard.0);
+    let known = |of: &str| {
+        files(&fleet.results.join("verdicts"))
+            .into_keys()
+            .filter(|path| path.to_string_lossy().contains(of))
+            .count()
+    };
+    assert_eq!((known("2026-01"), known("2026-02")), (0, 2));
+    assert_eq!(
+        (all(&fleet).diagnosed, all(&fleet).put_off),
+        (0, 1),
+        "what is wrong is not read again, what is put off is"
+    );
+    fs::remove_file(data(DAYS[0])).unwrap();
+    fs::write(data(DAYS[0]), aside).unwrap();
+    let done = all(&fleet);
+    assert_eq!((done.diagnosed, done.put_off), (1, 0));
+    // A result that is there stays while its recording cannot be read.
+    let whole = files(&fleet.results);
+    fs::remove_file(data(DAYS[0])).unwrap();
+    std::os::unix::fs::symlink(data(DAYS[0]), data(DAYS[0])).unwrap();
+    assert_eq!(all(&fleet).put_off, 1);
+    assert!(files(&fleet.results) == whole);
+}
+
+#[test]
+fn the_history_of_a_day_knows_nothing_of_what_was_found_later() {
+    let (folder, fleet) = fleet("until");
+    // Nothing is to be found before the last day.
+    for day in DAYS.iter().take(2) {
+        record(&folder.0.join("a stage"), day, 0.0);
+    }
+    all(&fleet);
+    let on = |moment: &str| {
+        let history = fleet::history(&fleet, Moment::read(moment).unwrap(), &()).ok().unwrap();
+        let [machine] = history.machines.try_into().ok().unwrap();
+        let followed = machine.series.iter().filter(|known| known.series.term == "backlash");
+        (machine.recordings.len(), followed.map(|known| known.series.points.len()).collect::<Vec<_>>())
+    };
+    assert_eq!(on("2026-02-01T23:59:59"), (2, vec![]));
+    assert_eq!(on("2026-02-02"), (3, vec![3]));
+}
+
+#[test]
+fn pages_are_drawn_later_and_go_with_their_results() {
+    let (folder, fleet) = fleet("pages");
+    all(&fleet);
+    let pages = || files(&fleet.results.join("pages")).into_keys().collect::<Vec<_>>();
+    assert!(pages().is_empty());
+    let done = run::all(&fleet, (None, true), &(), &|_| {}).ok().unwrap();
+    assert_eq!((done.diagnosed, pages().len()), (0, 3));
+    record(&folder.0.join("a stage"), DAYS[1], 9.0);
+    let before = pages();
+    run::all(&fleet, (None, true), &(), &|_| {}).ok().unwrap();
+    assert_eq!(pages().len(), 3);
+    assert_ne!(pages(), before, "the page of what was measured anew takes the place of the old one");
+}
+
+#[test]
+fn what_is_not_told_says_why() {
+    let (folder, fleet) = fleet("why");
+    let text = || {
+        all(&fleet);
+        let history = fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
+        fleet::report::text(&history, 200)
+    };
+    let few = text();
+    assert!(
+        few.contains("1 number and the noise are followed; a change is told from 5 recordings on"),
+        "{few}"
+    );
+    for day in DAYS {
+        fs::write(folder.0.join(format!("a stage/{day}.csv")), "nothing").unwrap();
+    }
+    let none = text();
+    assert!(none.contains("no recording gives a number that could be followed"), "{none}");
+}
+
+#[test]
 fn a_broken_result_is_told_and_nothing_panics() {
     let (_folder, fleet) = fleet("broken");
     all(&fleet);
@@ -148,8 +347,19 @@ fn a_broken_result_is_told_and_nothing_panics() {
             [&b""[..], b"PAR1", bytes.get(..bytes.len() / 2).unwrap(), b"PAR1aaaaPAR1\xff\xff\xff\x7fPAR1"]
         {
             fs::write(path, broken).unwrap();
-            let history = fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
-            assert_eq!(history.machines.len(), 1);
+            let heard = Heard::default();
+            let history = fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &heard).ok().unwrap();
+            let heard = heard.0.into_inner();
+            // What was found is read where it is followed.
+            let is_read = !path.to_string_lossy().contains("/parameters/");
+            let told =
+                |text: &String| text.contains(path.to_str().unwrap()) && text.contains("cannot be read");
+            assert_eq!(heard.iter().filter(|text| told(text)).count(), usize::from(is_read), "{heard:?}");
+            let entries = history.machines[0].recordings.len();
+            assert_eq!(
+                entries,
+                DAYS.len() - usize::from(is_read && !path.to_string_lossy().contains("/followed/"))
+            );
         }
         fs::write(path, bytes).unwrap();
     }

@@ -7,6 +7,7 @@
 
 pub mod calibration;
 pub mod equations;
+pub mod fleet;
 pub mod instrument;
 pub mod machine;
 pub mod mutate;
@@ -19,7 +20,7 @@ mod text;
 pub type Run = fn(&[u8]);
 
 /// Every kind of file with its function.
-pub const TARGETS: [(&str, Run); 7] = [
+pub const TARGETS: [(&str, Run); 8] = [
     ("machine", machine::run),
     ("calibration", calibration::run),
     ("recording", recording::run),
@@ -27,4 +28,5 @@ pub const TARGETS: [(&str, Run); 7] = [
     ("path", path::run),
     ("positions", positions::run),
     ("instrument", instrument::run),
+    ("fleet", fleet::run),
 ];

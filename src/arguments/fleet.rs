@@ -68,13 +68,15 @@ pub(crate) struct FleetShow {
     /// Write the page of the fleet and a page for each machine into this folder.
     #[arg(long, value_name = "FOLDER", conflicts_with = "format")]
     pub(crate) output: Option<PathBuf>,
-    /// Tell what was known on this day, as in 2026-06-30; by default today.
+    /// Tell what was known at the end of this day, as in 2026-06-30; by default today.
     #[arg(long, value_name = "DATE", value_parser = moment)]
     pub(crate) until: Option<Moment>,
 }
 
+/// A moment; of a day alone its last one, since what was recorded on it belongs to it.
 fn moment(text: &str) -> Result<Moment, String> {
-    Moment::read(text)
+    Moment::read(&format!("{}T23:59:59", text.trim()))
+        .or_else(|| Moment::read(text))
         .ok_or_else(|| "a day is written as 2026-06-30, or 2026-06-30T12:00 with the time".to_owned())
 }
 

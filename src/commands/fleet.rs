@@ -52,13 +52,21 @@ fn run_jobs(arguments: &FleetRun) -> Result<(), Failure> {
 }
 
 fn told(done: Done) -> String {
-    let Done { recordings, diagnosed, followed, waiting } = done;
+    let Done { recordings, diagnosed, followed, waiting, put_off } = done;
     let waiting = match waiting {
         0 => String::new(),
-        1 => "; one machine waits for the other parts: run again when they are done".to_owned(),
-        more => format!("; {more} machines wait for the other parts: run again when they are done"),
+        1 => {
+            "; one machine waits for the rest of its recordings: run again when they are diagnosed".to_owned()
+        }
+        more => format!(
+            "; {more} machines wait for the rest of their recordings: run again when they are diagnosed"
+        ),
     };
-    format!("{recordings} recordings: {diagnosed} diagnosed, {followed} followed anew{waiting}")
+    let put_off = match put_off {
+        0 => String::new(),
+        some => format!("; {some} put off to the next run"),
+    };
+    format!("{recordings} recordings: {diagnosed} diagnosed, {followed} followed anew{waiting}{put_off}")
 }
 
 fn take_over(arguments: &FleetAdd) -> Result<(), Failure> {

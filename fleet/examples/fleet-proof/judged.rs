@@ -6,11 +6,30 @@ use fleet::history;
 
 use crate::shop::{PLANTED, Shop};
 
+/// What was made of a planted change.
+#[derive(Debug, Default)]
+pub(crate) struct Raised {
+    /// The machine and the effect.
+    pub(crate) what: String,
+    /// The week in which it was raised first, counted from 1.
+    pub(crate) week: Option<usize>,
+    /// What is said in the last week.
+    pub(crate) sentence: String,
+    /// `trend` or `step`, in the last week.
+    pub(crate) kind: &'static str,
+    /// The size with half of its 95 % interval, mm or rad.
+    pub(crate) size: (f64, f64),
+    /// The recording at which it steps.
+    pub(crate) from: usize,
+    /// In how many recordings it was found by itself, of those before the week in which it begins, and of the others.
+    pub(crate) claimed: (usize, usize),
+}
+
 /// What was made of it.
 #[derive(Debug, Default)]
 pub(crate) struct Judged {
-    /// For each planted change: the week in which it was raised first, counted from 1, and the sentence of the last week.
-    pub(crate) raised: Vec<(String, Option<usize>, String)>,
+    /// The planted changes.
+    pub(crate) raised: Vec<Raised>,
     /// Alarms about anything else in any week, each once.
     pub(crate) other: Vec<String>,
     /// Series in which nothing was planted.
@@ -24,7 +43,10 @@ pub(crate) fn judged(shop: Shop, fleet: &Fleet) -> Judged {
     let mut judged = Judged {
         raised: PLANTED
             .iter()
-            .map(|(machine, effect, _)| (format!("{}: {effect}", shop.name(*machine)), None, String::new()))
+            .map(|(machine, effect, _)| Raised {
+                what: format!("{}: {effect}", shop.name(*machine)),
+                ..Raised::default()
+            })
             .collect(),
         ..Judged::default()
     };
@@ -37,9 +59,9 @@ pub(crate) fn judged(shop: Shop, fleet: &Fleet) -> Judged {
                     && alarm.parameter == *parameter
             };
             match PLANTED.iter().position(planted).and_then(|number| judged.raised.get_mut(number)) {
-                Some((_, first, sentence)) => {
-                    first.get_or_insert(week + 1);
-                    sentence.clone_from(&alarm.reason);
+                Some(raised) => {
+                    raised.week.get_or_insert(week + 1);
+                    raised.sentence.clone_from(&alarm.reason);
                 }
                 None => judged.other.push(format!("week {}: {}: {}", week + 1, alarm.machine, alarm.reason)),
             }
@@ -58,7 +80,10 @@ fn count(shop: Shop, history: &fleet::History, judged: &mut Judged) {
             let planted = |(machine, effect, parameter): &(usize, &str, &str)| {
                 *machine == number && series.effect.starts_with(effect) && series.parameter == *parameter
             };
-            judged.quiet += usize::from(!PLANTED.iter().any(planted));
+            match PLANTED.iter().position(planted).and_then(|number| judged.raised.get_mut(number)) {
+                Some(raised) => tell(shop, followed, raised),
+                None => judged.quiet += 1,
+            }
             for point in series.points.iter().filter(|_| !series.term.is_empty()) {
                 let week =
                     (0..shop.weeks).find(|week| shop.time(*week).day() == point.time.day()).expect("a week");
@@ -68,4 +93,13 @@ fn count(shop: Shop, history: &fleet::History, judged: &mut Judged) {
             }
         }
     }
+}
+
+fn tell(shop: Shop, followed: &fleet::history::Followed, raised: &mut Raised) {
+    if let Some(change) = &followed.change {
+        (raised.kind, raised.size, raised.from) = (change.kind, (change.size, change.half), change.from);
+    }
+    let claimed = |point: &&fleet::history::Point| point.claimed;
+    let (before, after) = followed.series.points.split_at(shop.step().min(followed.series.points.len()));
+    raised.claimed = (before.iter().filter(claimed).count(), after.iter().filter(claimed).count());
 }

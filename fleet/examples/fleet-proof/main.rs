@@ -41,17 +41,20 @@ fn main() {
         "{} recordings, {} diagnosed and {} followed in {seconds:.0} s\n",
         done.recordings, done.diagnosed, done.followed
     );
-    print!("{}", table(&judged::judged(shop, &fleet)));
+    print!("{}", table(shop, &judged::judged(shop, &fleet)));
 }
 
 /// The table, in Markdown.
-fn table(judged: &judged::Judged) -> String {
-    let mut text =
-        "| planted | raised in week | what is said in the last week |\n| --- | --- | --- |\n".to_owned();
-    for (what, week, sentence) in &judged.raised {
+fn table(shop: shop::Shop, judged: &judged::Judged) -> String {
+    let mut text = "| planted | raised in week | told of it, as a share | what is said in the last week |\n| --- | --- | --- | --- |\n"
+        .to_owned();
+    for (number, judged::Raised { what, week, sentence, size, .. }) in judged.raised.iter().enumerate() {
         let week = week.map_or_else(|| "never".to_owned(), |week| week.to_string());
-        text += &format!("| {what} | {week} | {sentence} |\n");
+        let (share, half) = (size.0 / shop.planted(number), size.1 / shop.planted(number));
+        text += &format!("| {what} | {week} | {share:.3} +- {half:.3} | {sentence} |\n");
     }
+    let square = judged.raised.iter().map(|raised| raised.claimed.0).next_back().unwrap_or_default();
+    text += &format!("\nthe squareness is a finding in {square} recordings before it is there\n");
     text += &format!("\n{} quiet series, {} other alarms", judged.quiet, judged.other.len());
     text += &judged.other.iter().map(|alarm| format!("\n- {alarm}")).collect::<String>();
     let (held, all) = judged.held;

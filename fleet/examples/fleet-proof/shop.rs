@@ -97,6 +97,13 @@ impl Shop {
         (self.weeks * 14).div_ceil(26)
     }
 
+    /// How much a planted change is over all weeks, mm or rad.
+    pub(crate) fn planted(self, number: usize) -> f64 {
+        let (first, last) = (self.truth(number, 0), self.truth(number, self.weeks.saturating_sub(1)));
+        let parts = [last.backlash_x - first.backlash_x, last.wave - first.wave, last.square - first.square];
+        parts.into_iter().sum()
+    }
+
     /// Writes all files.
     pub(crate) fn write(self, folder: &Path) {
         let mut fleet = "fleet: 1\nmachines:\n".to_owned();

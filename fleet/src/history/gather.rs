@@ -1,6 +1,6 @@
 //! Gathering. In: the tables of results. Out: machines with their recordings and series, in the order of time.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use recording::Moment;
 use workshop::failure::Failure;
@@ -9,11 +9,11 @@ use workshop::told::Listener;
 use super::{Entry, Followed, Machine};
 use crate::diagnosed::{ERROR, time_of};
 use crate::file::Fleet;
-use crate::results::{Filed, Known, Table, read};
-use crate::series::{Point, Series};
-
-/// The name of the series of noise.
-const NOISE: &str = "noise";
+use crate::jobs::places;
+use crate::name::Name;
+use crate::results::{Filed, Table};
+use crate::series::{NOISE, Point, Series};
+use crate::shelf::{Current, Known, machines as filed_machines, read};
 
 /// The machines of a fleet, with what was recorded until a moment.
 pub(super) fn machines(
@@ -22,20 +22,34 @@ pub(super) fn machines(
     listener: &dyn Listener,
 ) -> Result<Vec<Machine>, Failure> {
     let mut hear = |why: String| listener.hear(&why.into());
-    let mut verdicts = by_machine(read(&fleet.results, Table::Verdicts, None, &mut hear)?, until);
-    let mut recordings = by_machine(read(&fleet.results, Table::Recordings, None, &mut hear)?, until);
-    let mut followed = by_machine(read(&fleet.results, Table::Followed, None, &mut hear)?, until);
+    let places = places(fleet, &());
+    let listed: BTreeSet<&str> = places.iter().map(|place| place.id.as_str()).collect();
+    let current = Current::of(&fleet.results, None, &listed)?;
+    let mut rows =
+        |table| Ok::<_, Failure>(by_machine(read(&fleet.results, table, (None, &current), &mut hear)?));
+    let (mut verdicts, mut recordings) = (rows(Table::Verdicts)?, rows(Table::Recordings)?);
+    let mut followed = rows(Table::Followed)?;
+    let named: BTreeSet<&str> = fleet.machines.iter().map(|machine| machine.name.as_str()).collect();
+    for name in filed_machines(&fleet.results)? {
+        if !named.contains(name.as_str()) {
+            let text = format!(
+                "warning: there are results of `{name}`, which the fleet file does not name: they are not shown"
+            );
+            listener.hear(&text.into());
+        }
+    }
     let machine = |machine: &crate::file::Machine| {
         let of = |rows: &mut BTreeMap<String, Vec<(Moment, Known)>>| {
             rows.remove(&machine.name).unwrap_or_default()
         };
-        let (verdicts, recordings) = (of(&mut verdicts), of(&mut recordings));
-        let mut series = series(&of(&mut followed));
+        let verdicts: Vec<_> = of(&mut verdicts).into_iter().filter(|(time, _)| *time <= until).collect();
+        let recordings = of(&mut recordings);
+        let mut series = series(&of(&mut followed), &listed, until);
         series.extend(noise(&verdicts));
         Machine {
             name: machine.name.clone(),
             kind: machine.kind.clone(),
-            recordings: entries(fleet, &verdicts, &recordings),
+            recordings: entries(fleet, &verdicts, &recordings, &listed),
             series: series
                 .into_iter()
                 .map(|series| Followed { series, change: None, alarm: false })
@@ -45,11 +59,11 @@ pub(super) fn machines(
     Ok(fleet.machines.iter().map(machine).collect())
 }
 
-/// The rows of each machine up to a moment, in the order of time; of one moment in that of the paths.
-fn by_machine(rows: Vec<Known>, until: Moment) -> BTreeMap<String, Vec<(Moment, Known)>> {
+/// The rows of each machine in the order of time; of one moment in that of the paths.
+fn by_machine(rows: Vec<Known>) -> BTreeMap<String, Vec<(Moment, Known)>> {
     let mut machines: BTreeMap<String, Vec<(Moment, Known)>> = BTreeMap::new();
     for known in rows {
-        if let Some(time) = time_of(known.row.count("time")).filter(|time| *time <= until) {
+        if let Some(time) = time_of(known.row.count("time")) {
             machines.entry(known.machine.clone()).or_default().push((time, known));
         }
     }
@@ -61,7 +75,12 @@ fn by_machine(rows: Vec<Known>, until: Moment) -> BTreeMap<String, Vec<(Moment, 
     machines
 }
 
-fn entries(fleet: &Fleet, verdicts: &[(Moment, Known)], recordings: &[(Moment, Known)]) -> Vec<Entry> {
+fn entries(
+    fleet: &Fleet,
+    verdicts: &[(Moment, Known)],
+    recordings: &[(Moment, Known)],
+    listed: &BTreeSet<&str>,
+) -> Vec<Entry> {
     let errors: BTreeMap<&str, &str> =
         recordings.iter().map(|(_, known)| (known.id.as_str(), known.row.text("error"))).collect();
     let entry = |(time, known): &(Moment, Known)| {
@@ -75,16 +94,50 @@ fn entries(fleet: &Fleet, verdicts: &[(Moment, Known)], recordings: &[(Moment, K
             recording: known.row.text("recording").to_owned(),
             verdict: known.row.text("verdict").to_owned(),
             sentence: sentence.to_owned(),
+            listed: listed.contains(known.id.as_str()),
             page,
         })
     };
     verdicts.iter().filter_map(entry).collect()
 }
 
-/// The numbers that were followed, in the order of their names.
-fn series(followed: &[(Moment, Known)]) -> Vec<Series> {
+/// The names under which effects are followed now: that of a wave has its period as it was found most surely, which changes while there
+/// are more recordings. The rows of a recording that is no longer there keep an older one, and belong to the like effect of today.
+struct Names<'r> {
+    today: BTreeMap<&'r str, Name>,
+}
+
+impl<'r> Names<'r> {
+    fn of(followed: &'r [(Moment, Known)], listed: &BTreeSet<&str>) -> Self {
+        let today = followed.iter().filter(|(_, known)| listed.contains(known.id.as_str()));
+        let names = today.map(|(_, known)| known.row.text("effect"));
+        Self { today: names.map(|name| (name, Name::of(name))).collect() }
+    }
+
+    fn today<'s>(&'s self, name: &'s str) -> &'s str {
+        if self.today.contains_key(name) {
+            return name;
+        }
+        let own = Name::of(name);
+        self.today.iter().find(|(_, other)| other.is_like(&own)).map_or(name, |(today, _)| today)
+    }
+}
+
+/// The numbers that were followed until a moment, in the order of their names: of effects that were found by then. One that was found in
+/// no recording that it is followed in is always told.
+fn series(followed: &[(Moment, Known)], listed: &BTreeSet<&str>, until: Moment) -> Vec<Series> {
+    let names = Names::of(followed, listed);
+    let claims = followed.iter().filter(|(_, known)| known.row.flag("claimed"));
+    let mut found: BTreeMap<&str, Moment> = BTreeMap::new();
+    for (time, known) in claims {
+        found.entry(names.today(known.row.text("effect"))).or_insert(*time);
+    }
     let mut all: BTreeMap<(&str, &str), Series> = BTreeMap::new();
-    for (time, Known { row, .. }) in followed {
+    for (time, Known { row, .. }) in followed.iter().filter(|(time, _)| *time <= until) {
+        let effect = names.today(row.text("effect"));
+        if found.get(effect).is_some_and(|found| *found > until) {
+            continue;
+        }
         let Some((value, low, high)) = row
             .number("value")
             .zip(row.number("low"))
@@ -93,8 +146,8 @@ fn series(followed: &[(Moment, Known)]) -> Vec<Series> {
         else {
             continue;
         };
-        let series = all.entry((row.text("effect"), row.text("parameter"))).or_insert_with(|| Series {
-            effect: row.text("effect").to_owned(),
+        let series = all.entry((effect, row.text("parameter"))).or_insert_with(|| Series {
+            effect: effect.to_owned(),
             motion: row.text("motion").to_owned(),
             term: row.text("term").to_owned(),
             parameter: row.text("parameter").to_owned(),

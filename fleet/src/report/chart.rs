@@ -25,7 +25,7 @@ pub(super) fn small(followed: &Followed) -> Option<String> {
     let span = |from: f64, to: f64| if to > from { to - from } else { 1.0 };
     let across = |point: &Point| EDGE + (SMALL.0 - 2.0 * EDGE) * (point.days() - first) / span(first, last);
     let up = |value: f64| SMALL.1 - EDGE - (SMALL.1 - 2.0 * EDGE) * (value - ends.0) / span(ends.0, ends.1);
-    let title = format!("{} of {} over time", followed.series.parameter, followed.series.effect);
+    let title = format!("{} over time", followed.series.name());
     let mut drawing = Drawing::new(SMALL.0, SMALL.1, &title);
     let whiskers: String = points
         .iter()
@@ -62,13 +62,8 @@ pub(super) fn plot(followed: &Followed) -> Option<String> {
         .iter()
         .flat_map(|point| [(week(point), point.low), (week(point), point.high), gap])
         .collect();
-    let name = if series.is_noise() {
-        "noise".to_owned()
-    } else {
-        format!("{} of {}", series.parameter, series.effect)
-    };
     let axis = Axis::exactly(&format!("weeks since {}", first.time.day()), "");
-    let mut plot = Cartesian::new(&name, axis, Axis::new(&series.parameter, &series.unit))
+    let mut plot = Cartesian::new(&series.name(), axis, Axis::new(&series.parameter, &series.unit))
         .series(Drawn::new("95 % interval", Look::of(0).toned(Tone::Quiet), Draw::Line, intervals))
         .series(Drawn::new("found here", Look::of(0), Draw::Marks, marks(true)))
         .series(Drawn::new("followed", Look::of(2), Draw::Hollow, marks(false)));

@@ -6,7 +6,7 @@ use std::path::Path;
 use pages::plot::RULES;
 use pages::text::escape;
 
-use super::{age, brief, chart, worst};
+use super::{age, brief, chart, count, most, worst};
 use crate::history::{Alarm, BOUND, History, Machine};
 use crate::results::encoded;
 
@@ -114,7 +114,7 @@ fn of_alarm(alarm: &Alarm, links: &Links<'_>) -> String {
 fn row(history: &History, machine: &Machine, links: &Links<'_>) -> String {
     let worst = worst(machine);
     let (verdict, change) = match machine.last() {
-        Some(last) => (last.verdict.as_str(), worst.map_or_else(|| "nothing is followed".to_owned(), brief)),
+        Some(last) => (last.verdict.as_str(), most(machine)),
         None => ("no result yet", String::new()),
     };
     format!(
@@ -132,10 +132,9 @@ fn ranges(history: &History) -> String {
     let row = |range: &crate::history::Range| {
         let number = |value: f64| escape(&super::number(value, &range.unit));
         format!(
-            "<tr><td>{}</td><td>{} of {}</td><td>{}</td><td>{} to {}</td></tr>\n",
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{} to {}</td></tr>\n",
             escape(&range.kind),
-            escape(&range.parameter),
-            escape(&range.effect),
+            escape(&range.name()),
             range.machines.len(),
             number(range.expected.0),
             number(range.expected.1)
@@ -157,10 +156,10 @@ fn of_machine(history: &History, machine: &Machine, links: &Links<'_>) -> String
     let kind = machine.kind.as_ref().map(|kind| format!(", {kind}")).unwrap_or_default();
     let age = age(history, machine).map(|age| format!(", last test {age}")).unwrap_or_default();
     let mut body = format!(
-        "<section id=\"{}\">\n<h1>{}</h1>\n<p class=\"source\">{} recordings{}{}</p>\n",
+        "<section id=\"{}\">\n<h1>{}</h1>\n<p class=\"source\">{}{}{}</p>\n",
         encoded(&machine.name),
         escape(&machine.name),
-        machine.recordings.len(),
+        count(machine),
         escape(&kind),
         age
     );
@@ -193,8 +192,9 @@ fn of_machine(history: &History, machine: &Machine, links: &Links<'_>) -> String
                 None => name,
             };
             let sentence = escape(&entry.sentence);
+            let gone = if entry.listed { "" } else { " <span class=\"source\">(no longer there)</span>" };
             format!(
-                "<tr><td class=\"name\">{}</td><td>{name}</td><td>{sentence}</td></tr>\n",
+                "<tr><td class=\"name\">{}</td><td>{name}{gone}</td><td>{sentence}</td></tr>\n",
                 entry.time.day()
             )
         })

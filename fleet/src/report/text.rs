@@ -1,6 +1,6 @@
 //! The report as text. In: a history. Out: alarms, then a line a machine.
 
-use super::{age, brief, worst};
+use super::{age, count, most};
 use crate::history::{BOUND, History};
 
 /// The report for a terminal that is so many columns wide.
@@ -11,8 +11,7 @@ pub fn text(history: &History, columns: usize) -> String {
         let options = textwrap::Options::new(columns.max(40)).initial_indent("").subsequent_indent(indent);
         textwrap::fill(text, options) + "\n"
     };
-    let count = history.alarms.len();
-    let alarms = match count {
+    let alarms = match history.alarms.len() {
         0 => "no alarm".to_owned(),
         1 => "1 alarm".to_owned(),
         more => format!("{more} alarms"),
@@ -43,13 +42,8 @@ pub fn text(history: &History, columns: usize) -> String {
             continue;
         };
         let age = age(history, machine).unwrap_or_default();
-        let worst = worst(machine).map_or_else(|| "nothing is followed".to_owned(), brief);
-        let line = format!(
-            "{}: {} ({age}), {} recordings; {worst}",
-            machine.name,
-            last.verdict,
-            machine.recordings.len()
-        );
+        let (count, most) = (count(machine), most(machine));
+        let line = format!("{}: {} ({age}), {count}; {most}", machine.name, last.verdict);
         text += &paragraph(&line, "  ");
     }
     text

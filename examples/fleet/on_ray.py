@@ -1,4 +1,4 @@
-"""Runs the jobs of a fleet on a Ray cluster: python ray.py fleet.yaml [ADDRESS]
+"""Runs the jobs of a fleet on a Ray cluster: python on_ray.py fleet.yaml [ADDRESS]
 
 Without an address Ray starts on this computer. A job whose worker is killed is done again by another one, up to three times.
 """
@@ -6,12 +6,9 @@ Without an address Ray starts on this computer. A job whose worker is killed is 
 import os
 import sys
 
-# This file has the name of the package.
-sys.path = [folder for folder in sys.path if os.path.abspath(folder or ".") != os.path.dirname(os.path.abspath(__file__))]
-import ray  # noqa: E402
+import ray
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import jobs  # noqa: E402
+import jobs
 
 
 @ray.remote(num_cpus=1, max_retries=3, retry_exceptions=True)

@@ -1,4 +1,4 @@
-"""Runs the jobs of a fleet on a Dask cluster: python dask.py fleet.yaml [ADDRESS]
+"""Runs the jobs of a fleet on a Dask cluster: python on_dask.py fleet.yaml [ADDRESS]
 
 Without an address a cluster of as many processes as processors starts on this computer. A worker that is killed is started again, and its
 job is done again, up to three times. `dask_jobqueue` and `dask_kubernetes` give clusters on SLURM and on Kubernetes.
@@ -7,12 +7,9 @@ job is done again, up to three times. `dask_jobqueue` and `dask_kubernetes` give
 import os
 import sys
 
-# This file has the name of the package.
-sys.path = [folder for folder in sys.path if os.path.abspath(folder or ".") != os.path.dirname(os.path.abspath(__file__))]
-from distributed import Client, LocalCluster  # noqa: E402
+from distributed import Client, LocalCluster
 
-sys.path.append(os.path.dirname(os.path.abspath(__file__)))
-import jobs  # noqa: E402
+import jobs
 
 
 def do(folder, fleet, job):

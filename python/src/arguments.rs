@@ -38,11 +38,11 @@ impl<'py> Entries<'py> {
 
     /// The numbers of an argument by their names.
     pub(crate) fn numbers(given: Option<&Self>, name: &str) -> PyResult<Vec<(String, f64)>> {
-        let pairs = Self::pairs(given, name)?.into_iter();
-        pairs
-            .map(|(key, value)| Ok((number(&value, &format!("`{name}[\"{key}\"]`"))?, key)))
-            .map(|pair| pair.map(|(value, key)| (key, value)))
-            .collect()
+        let number = |(key, value): (String, Bound<'py, PyAny>)| {
+            let number = number(&value, &format!("`{name}[\"{key}\"]`"))?;
+            Ok((key, number))
+        };
+        Self::pairs(given, name)?.into_iter().map(number).collect()
     }
 
     /// What stands at a name.

@@ -47,7 +47,7 @@ impl<'py> Table<'py> {
     pub(crate) fn read(table: &Bound<'py, PyAny>) -> PyResult<Self> {
         let py = table.py();
         let columns: Vec<Column<'_>> = if let Ok(columns) = table.extract() {
-            let columns = Entries::pairs(Some(&columns), "table")?.into_iter();
+            let columns = Entries::pairs(Some(&columns), "source")?.into_iter();
             columns.map(|(name, values)| Column::new(&name, Source::Array(values))).collect()
         } else if table.hasattr("__arrow_c_stream__")? {
             match arrow::read(table) {

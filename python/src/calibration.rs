@@ -13,7 +13,8 @@ use workshop::rows::error_columns;
 use workshop::rows::table::{self, Answers, Wanted};
 use workshop::written::{self, check_folder, check_new, folder};
 
-use crate::error::{Heard, working, wrong};
+use crate::arguments::Entries;
+use crate::error::{working, wrong};
 use crate::file::{self, Text};
 use crate::machine::Machine;
 use crate::mapped;
@@ -25,7 +26,7 @@ use crate::positions::{Given, Rows};
 /// counted from the current folder.
 ///
 /// Positions are arrays of the shape (n, axes), float64, mm and deg, the axes in the order of `axes`; one position alone has the shape
-/// (axes,). Rows follow each other in time: an axis that is not told its direction has that of its last motion, and what remembers
+/// (axes,). A table whose columns have the letters of the axes as names (a DataFrame, a dict of arrays) is taken by these. Rows follow each other in time: an axis that is not told its direction has that of its last motion, and what remembers
 /// (a wind-up, a filter) remembers the rows before.
 ///
 /// >>> import abbe
@@ -53,7 +54,7 @@ impl Calibration {
         Machine::named(py, name, self.text.folder())
     }
 
-    /// The letters of the axes, in the order of arrays of positions.
+    /// The letters of the axes, in the order of arrays of positions; motors that have none of their own follow, in what `compensate` gives.
     #[getter]
     fn axes(&self) -> Vec<&str> {
         self.calibrated.equations.axes.iter().map(|axis| axis.letter.as_str()).collect()
@@ -120,21 +121,22 @@ impl Calibration {
         py: Python<'py>,
         positions: &Bound<'py, PyAny>,
         direction: Option<&Bound<'py, PyAny>>,
-        temperatures: Option<&Bound<'py, PyDict>>,
+        temperatures: Option<Entries<'py>>,
         time: Option<&Bound<'py, PyAny>>,
         tool: Option<&str>,
-        travels: Option<&Bound<'py, PyDict>>,
+        travels: Option<Entries<'py>>,
         hysteresis: f64,
         leave_out_uncompensable: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let (temperatures, travels) = (temperatures.as_ref(), travels.as_ref());
         let given = Given { positions, direction, temperatures, time, travels };
         let wanted = self.wanted(py, tool, hysteresis, leave_out_uncompensable)?;
-        let rows = Rows::read(py, &self.calibrated, &given)?;
-        let answers = self.answer(py, &rows, &wanted)?;
+        let (rows, answers) = self.answer(py, &given, &wanted)?;
         rows.errors(py, &self.calibrated, &answers)
     }
 
-    /// The positions to command so that the tool tip goes where `positions` say: an array of the same shape, mm and deg.
+    /// The positions to command so that the tool tip goes where `positions` say: an array of the same shape, mm and deg; a machine whose
+    /// motors drive several axes together has a column more for each motor.
     ///
     /// The arguments are those of `error`. A correction beyond the calibration's limit is refused, with the number of its row.
     ///
@@ -150,17 +152,17 @@ impl Calibration {
         py: Python<'py>,
         positions: &Bound<'py, PyAny>,
         direction: Option<&Bound<'py, PyAny>>,
-        temperatures: Option<&Bound<'py, PyDict>>,
+        temperatures: Option<Entries<'py>>,
         time: Option<&Bound<'py, PyAny>>,
         tool: Option<&str>,
-        travels: Option<&Bound<'py, PyDict>>,
+        travels: Option<Entries<'py>>,
         hysteresis: f64,
         leave_out_uncompensable: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
+        let (temperatures, travels) = (temperatures.as_ref(), travels.as_ref());
         let given = Given { positions, direction, temperatures, time, travels };
         let wanted = self.wanted(py, tool, hysteresis, leave_out_uncompensable)?;
-        let rows = Rows::read(py, &self.calibrated, &given)?;
-        let answers = self.answer(py, &rows, &Wanted { compensated: true, ..wanted })?;
+        let (rows, answers) = self.answer(py, &given, &Wanted { compensated: true, ..wanted })?;
         rows.commands(py, &answers)
     }
 
@@ -184,15 +186,15 @@ impl Calibration {
         py: Python<'py>,
         plane: &str,
         points: Option<&Bound<'py, PyAny>>,
-        ranges: Option<&Bound<'py, PyDict>>,
-        at: Option<&Bound<'py, PyDict>>,
-        temperatures: Option<&Bound<'py, PyDict>>,
+        ranges: Option<Entries<'py>>,
+        at: Option<Entries<'py>>,
+        temperatures: Option<Entries<'py>>,
         tool: Option<&str>,
         leave_out_uncompensable: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let plane = mapped::Plane::read(py, &self.calibrated, plane, points, ranges, at)?;
+        let plane = mapped::Plane::read(py, &self.calibrated, plane, points, ranges.as_ref(), at.as_ref())?;
         let wanted = self.wanted(py, tool, 0.0, leave_out_uncompensable)?;
-        plane.map(py, &self.calibrated, temperatures, &wanted)
+        plane.map(py, &self.calibrated, temperatures.as_ref(), &wanted)
     }
 
     /// Writes the calibration file, its machine named from the new file's folder; a file that is there is replaced only with `force`.
@@ -220,6 +222,14 @@ impl Calibration {
         let (source, folder) = (text.source.clone(), text.folder());
         let calibrated = working(py, |heard| calibrated::of(source, folder, heard))?;
         Ok(Self { calibrated, text })
+    }
+
+    /// A calibration, or one that is read from its file or dictionary.
+    pub(crate) fn taken<'py>(given: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Self>> {
+        match given.cast::<Self>() {
+            Ok(calibration) => Ok(calibration.clone()),
+            Err(_) => Bound::new(given.py(), Self::new(given)?),
+        }
     }
 
     /// What was read of it.
@@ -258,8 +268,14 @@ impl Calibration {
         Ok(Wanted { tool, hysteresis, compensated: false, left_out })
     }
 
-    fn answer(&self, py: Python<'_>, rows: &Rows, wanted: &Wanted) -> PyResult<Answers> {
-        working(py, |heard| answered(&self.calibrated, rows, wanted, heard))
+    fn answer(&self, py: Python<'_>, given: &Given<'_, '_>, wanted: &Wanted) -> PyResult<(Rows, Answers)> {
+        let rows = Rows::read(py, &self.calibrated, given)?;
+        let answers = working(py, |heard| {
+            let mut answers = table::answer(&self.calibrated, &rows.table, wanted)?;
+            answers.warnings.drain(..).for_each(|text| heard.take(text));
+            Ok(answers)
+        })?;
+        Ok((rows, answers))
     }
 
     fn write_to(&self, target: &Path, force: bool) -> Result<(), Failure> {
@@ -274,15 +290,4 @@ impl Calibration {
         renamed.machine.value = machine;
         written::calibration(target, &calibration::write(&renamed, &equations.names()), equations)
     }
-}
-
-fn answered(
-    calibrated: &Calibrated,
-    rows: &Rows,
-    wanted: &Wanted,
-    heard: &Heard,
-) -> Result<Answers, Failure> {
-    let mut answers = table::answer(calibrated, &rows.table, wanted)?;
-    answers.warnings.drain(..).for_each(|text| heard.take(text));
-    Ok(answers)
 }

@@ -43,20 +43,21 @@ use crate::running;
 #[pyo3(signature = (recordings, holdout = None, watch = None))]
 pub(crate) fn diagnose(
     py: Python<'_>,
-    recordings: Vec<PyRef<'_, Recording>>,
-    holdout: Option<PyRef<'_, Recording>>,
+    recordings: &Bound<'_, PyAny>,
+    holdout: Option<&Bound<'_, PyAny>>,
     watch: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Diagnosis> {
-    let fitted = recordings.len();
-    let all: Vec<&PyRef<'_, Recording>> = recordings.iter().chain(&holdout).collect();
+    let mut all = Recording::all_taken(recordings)?;
+    let fitted = all.len();
+    all.extend(holdout.map(Recording::taken).transpose()?);
     if fitted == 0 {
         return Err(wrong(py, "there is no recording to diagnose"));
     }
     let mut together: Vec<Recorded> = Vec::new();
     for one in &all {
-        recorded::add(&mut together, one.recorded().clone()).map_err(|failure| raised(py, &failure))?;
+        recorded::add(&mut together, one.get().recorded().clone()).map_err(|failure| raised(py, &failure))?;
     }
-    let inputs: Vec<Text> = all.iter().map(|one| one.text_file().clone()).collect();
+    let inputs: Vec<Text> = all.iter().map(|one| one.get().text_file().clone()).collect();
     let job = move |show: &mut dyn FnMut(Progress)| {
         let (fit, held) = together.split_at(fitted.min(together.len()));
         let found = diagnosed::diagnose(fit, held.first(), Keep::Traces, show);

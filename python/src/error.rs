@@ -7,7 +7,7 @@ use model_dsl::source::SourceFile;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyUserWarning};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::PyDict;
 use workshop::failure::Failure;
 use workshop::told::{Listener, Part, Words};
 
@@ -16,8 +16,9 @@ create_exception!(
     Error,
     PyException,
     "A file, an argument or the data are wrong.\n\n\
-     `str(error)` is the text that the command line shows: the place, the words there, what to write instead.\n\
-     `error.text` is the same text; `error.code` the code of the first finding that has one (`\"E0422\"`; `abbe.explain`\n\
+     `str(error)` is the text that the command line shows, with arguments in place of its options: the place, the words\n\
+     there, what to write instead.\n\
+     `error.text` is the same text; `error.code` the code of the first finding (`\"E0422\"`; `abbe.explain`\n\
      tells more) or None; `error.spans` a list of places, a dict each with `code`, `message`, `help`, `file`, `line`,\n\
      `column`, `start`, `end` (lines and columns counted from 1, start and end in bytes of the file); `error.status` the\n\
      exit status of the command line: 1 where the data say no, 2 where a file or an argument is wrong."
@@ -32,7 +33,7 @@ create_exception!(
 
 /// A failure as an error of Python.
 pub(crate) fn raised(py: Python<'_>, failure: &Failure) -> PyErr {
-    let text = failure.words().map(|words| words.text(false)).unwrap_or_default();
+    let text = failure.words().map(spoken).unwrap_or_default();
     let error = Error::new_err(text.clone());
     match told(py, &error, failure, &text) {
         Ok(()) => error,
@@ -45,21 +46,45 @@ pub(crate) fn wrong(py: Python<'_>, text: impl Into<String>) -> PyErr {
     raised(py, &Failure::wrong(format!("error: {}", text.into())))
 }
 
+/// Options of the command line, and what a caller of Python writes in their place.
+const OPTIONS: [(&str, &str); 12] = [
+    ("--at", "at"),
+    ("--counts", "counts"),
+    ("--force", "force=True"),
+    ("--known", "known"),
+    ("--leave-out-uncompensable", "leave_out_uncompensable=True"),
+    ("--name", "name"),
+    ("--output", "output"),
+    ("--points", "points"),
+    ("--range", "ranges"),
+    ("--tables", "tables"),
+    ("--value", "value"),
+    ("--write-calibration", "path"),
+];
+
+/// Words of the workshop as text: those of the command line, but that options are arguments.
+fn spoken(words: &Words) -> String {
+    let part = |part: &Part| match part {
+        Part::Plain(text) => {
+            OPTIONS.iter().fold(text.clone(), |text, (option, own)| text.replace(option, own))
+        }
+        Part::Marked { source, found } => Words::marked(source, found).text(false),
+    };
+    let parts: Vec<String> = words.parts().map(part).filter(|text| !text.is_empty()).collect();
+    parts.join("\n")
+}
+
 fn told(py: Python<'_>, error: &PyErr, failure: &Failure, text: &str) -> PyResult<()> {
-    let spans = PyList::empty(py);
-    let mut code = None;
+    let mut spans = Vec::new();
     for part in failure.words().into_iter().flat_map(Words::parts) {
         let Part::Marked { source, found } = part else { continue };
         for diagnostic in found.iter().filter(|one| one.severity == Severity::Error) {
-            // What an outer file says comes first; the reason stands below, and has the code that helps.
-            code = Some(diagnostic.code);
-            spans.append(place(py, source, diagnostic)?)?;
+            spans.push((diagnostic.code, place(py, source, diagnostic)?));
         }
     }
-    let first = spans.get_item(0).ok().map(|span| span.get_item("code")).transpose()?;
     let value = error.value(py);
-    value.setattr("code", first.map_or_else(|| code.into_pyobject(py).map(Bound::into_any), Ok)?)?;
-    value.setattr("spans", spans)?;
+    value.setattr("code", spans.first().map(|(code, _)| *code))?;
+    value.setattr("spans", spans.into_iter().map(|(_, place)| place).collect::<Vec<_>>())?;
     value.setattr("text", text)?;
     value.setattr("status", if matches!(failure, Failure::No(_)) { 1 } else { 2 })
 }
@@ -109,7 +134,7 @@ impl Heard {
 
 impl Listener for Heard {
     fn hear(&self, words: &Words) {
-        self.take(words.text(false));
+        self.take(spoken(words));
     }
 }
 

@@ -3,16 +3,17 @@
 use std::path::PathBuf;
 
 use exchange::controller::{Geometry, Kind, Options, Sense, Space, Unit, Wanted};
-use model_dsl::equations::Equations;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use workshop::calibrated::Calibrated;
 use workshop::exported::{self, FORMATS, TABLES};
 use workshop::failure::Failure;
 
+use crate::arguments::{self, Entries};
 use crate::calibration::Calibration;
 use crate::error::{raised, working, wrong};
 use crate::file;
+use crate::space;
 
 /// The files that a controller loads: `files` holds their texts by name, `str()` is the report of `abbe export`: what each file is, how it
 /// is loaded, and what it cannot carry.
@@ -71,18 +72,18 @@ impl Exported {
 pub(crate) fn export(
     py: Python<'_>,
     format: &str,
-    calibration: &Bound<'_, Calibration>,
+    calibration: &Bound<'_, PyAny>,
     output: Option<&Bound<'_, PyAny>>,
     force: bool,
-    ranges: Option<&Bound<'_, PyDict>>,
-    at: Option<&Bound<'_, PyDict>>,
+    ranges: Option<Entries<'_>>,
+    at: Option<Entries<'_>>,
     points: Option<usize>,
     value: Option<&str>,
     r#type: Option<u8>,
     unit: Option<&str>,
     tables: Option<usize>,
-    name: Option<&Bound<'_, PyDict>>,
-    counts: Option<&Bound<'_, PyDict>>,
+    name: Option<Entries<'_>>,
+    counts: Option<Entries<'_>>,
     leave_out_uncompensable: bool,
 ) -> PyResult<Exported> {
     let Some((_, format)) = FORMATS.iter().find(|(known, _)| *known == format) else {
@@ -121,9 +122,10 @@ pub(crate) fn export(
             Some(_) => return Err(one_of("value", "error or correction")),
         },
         tables: tables.unwrap_or(TABLES),
-        names: pairs(name)?,
-        counts: pairs(counts)?,
+        names: names(name.as_ref())?,
+        counts: Entries::numbers(counts.as_ref(), "counts")?,
     };
+    let calibration = Calibration::taken(calibration)?;
     let calibrated = calibration.get().calibrated();
     let equations = &calibrated.equations;
     let named = options.names.iter().map(|(axis, _)| axis).chain(options.counts.iter().map(|(axis, _)| axis));
@@ -135,7 +137,7 @@ pub(crate) fn export(
     if options.counts.iter().any(|(_, counts)| *counts <= 0.0) {
         return Err(one_of("counts", "above zero"));
     }
-    let wanted = wanted(equations, pairs(ranges)?, pairs(at)?);
+    let wanted = space::wanted(equations, ranges.as_ref(), at.as_ref())?;
     let folder = output.map(file::path).transpose()?;
     exported::check_options(*format, &given, "").map_err(|failure| raised(py, &failure))?;
     working(py, |heard| {
@@ -167,28 +169,14 @@ fn made(
     Ok(Exported { files: export.files.into_iter().map(|file| (file.name, file.text)).collect(), text })
 }
 
-/// The entries of a dictionary, in its order.
-pub(crate) fn pairs<'py, T>(given: Option<&Bound<'py, PyDict>>) -> PyResult<Vec<(String, T)>>
-where
-    T: for<'a> FromPyObject<'a, 'py>,
-{
-    let entries = given.into_iter().flatten();
-    entries.map(|(key, value)| Ok((key.extract()?, value.extract().map_err(Into::into)?))).collect()
-}
-
-/// What the caller says of the workspace, in mm and rad.
-fn wanted(equations: &Equations, ranges: Vec<(String, [f64; 2])>, at: Vec<(String, f64)>) -> Wanted {
-    let internal = |letter: &str, place: f64| {
-        let rotary = equations.axes.iter().any(|axis| axis.letter == letter && axis.rotary);
-        if rotary { place.to_radians() } else { place }
+/// The controller's own names of axes: text, or the number of a motor.
+fn names(given: Option<&Entries<'_>>) -> PyResult<Vec<(String, String)>> {
+    let name = |(axis, name): (String, Bound<'_, PyAny>)| match name.extract::<i64>() {
+        Ok(number) => Ok((axis, number.to_string())),
+        Err(_) => {
+            let name = arguments::text(&name, &format!("`name[\"{axis}\"]`"))?;
+            Ok((axis, name))
+        }
     };
-    let range = |(letter, ends): (String, [f64; 2])| {
-        let ends = ends.map(|end| internal(&letter, end));
-        (letter, ends)
-    };
-    let place = |(letter, place): (String, f64)| {
-        let place = internal(&letter, place);
-        (letter, place)
-    };
-    Wanted { ranges: ranges.into_iter().map(range).collect(), reference: at.into_iter().map(place).collect() }
+    Entries::pairs(given, "name")?.into_iter().map(name).collect()
 }

@@ -4,15 +4,16 @@
 //! A dictionary is written as the file it stands for and read like one, so that both are checked by the same rules, and a mistake is
 //! shown at its place.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Display, Formatter, Write as _};
 use std::path::{Path, PathBuf};
 
 use model_dsl::source::SourceFile;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PySequence, PyString};
 use workshop::failure::Failure;
 use workshop::load;
 
+use crate::arguments::{self, Entries, is_text, kind};
 use crate::error::{raised, wrong};
 
 /// The text of a file and where it stands.
@@ -31,36 +32,38 @@ impl Text {
 
 /// A path: a string, or what `os.fspath` takes.
 pub(crate) fn path(value: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
-    value.extract()
+    arguments::path(value, "a file is named by a path")
 }
 
 /// Reads a file, or writes out a dictionary under the name `called`.
 pub(crate) fn text(value: &Bound<'_, PyAny>, called: &str) -> PyResult<Text> {
     let py = value.py();
-    if let Ok(entries) = value.cast::<PyDict>() {
-        let source = SourceFile::new(format!("<{called}>"), written(entries)?);
+    if let Ok(Entries(entries)) = value.extract() {
+        let source = SourceFile::new(format!("<{called}>"), written(&entries, called)?);
         return Ok(Text { source, path: PathBuf::from(called) });
     }
-    let path = path(value)?;
+    let path = arguments::path(value, &format!("a {called} is given by a path or a dictionary"))?;
     let source: Result<SourceFile, Failure> = py.detach(|| load::read(&path));
     Ok(Text { source: source.map_err(|failure| raised(py, &failure))?, path })
 }
 
 /// A dictionary as YAML: a line for each of its keys, and for each key of those that hold dictionaries.
-pub(crate) fn written(entries: &Bound<'_, PyDict>) -> PyResult<String> {
+pub(crate) fn written(entries: &Bound<'_, PyDict>, called: &str) -> PyResult<String> {
+    let top = Place { outer: None, step: Step::Key(called), depth: 0 };
     let mut text = String::new();
     for (key, value) in entries {
-        let key = scalar(&key)?;
-        match value.cast::<PyDict>() {
-            Ok(inner) if !inner.is_empty() => {
-                // Writing into a string cannot fail.
-                let _ = writeln!(text, "{key}:");
+        let key = top.key(&key)?;
+        let place = top.inside(Step::Key(&key));
+        // Writing into a string cannot fail.
+        match value.extract() {
+            Ok(Entries(inner)) if !inner.is_empty() => {
+                let _ = writeln!(text, "{}:", spelled(&key));
                 for (key, value) in inner {
-                    let _ = writeln!(text, "  {}: {}", scalar(&key)?, flow(&value, 0)?);
+                    let _ = writeln!(text, "  {}", entry(&key, &value, &place)?);
                 }
             }
             _ => {
-                let _ = writeln!(text, "{key}: {}", flow(&value, 0)?);
+                let _ = writeln!(text, "{}: {}", spelled(&key), flow(&value, &place)?);
             }
         }
     }
@@ -70,84 +73,148 @@ pub(crate) fn written(entries: &Bound<'_, PyDict>) -> PyResult<String> {
 /// Deeper than any file goes; a list that holds itself has no end.
 const DEEPEST: usize = 32;
 
+/// Where a value stands in a dictionary, from the outside: `calibration.errors.EXX[0]`.
+struct Place<'a> {
+    outer: Option<&'a Place<'a>>,
+    step: Step<'a>,
+    depth: usize,
+}
+
+enum Step<'a> {
+    Key(&'a str),
+    Item(usize),
+}
+
+impl Place<'_> {
+    fn key(&self, key: &Bound<'_, PyAny>) -> PyResult<String> {
+        arguments::text(key, &format!("a key of {self}"))
+    }
+
+    fn inside<'a>(&'a self, step: Step<'a>) -> Place<'a> {
+        Place { outer: Some(self), step, depth: self.depth.saturating_add(1) }
+    }
+}
+
+impl Display for Place<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        if let Some(outer) = self.outer {
+            write!(f, "{outer}")?;
+        }
+        match self.step {
+            Step::Key(key) if self.outer.is_none() => write!(f, "{key}"),
+            Step::Key(key) => write!(f, ".{key}"),
+            Step::Item(number) => write!(f, "[{number}]"),
+        }
+    }
+}
+
+fn entry(key: &Bound<'_, PyAny>, value: &Bound<'_, PyAny>, place: &Place<'_>) -> PyResult<String> {
+    let key = place.key(key)?;
+    Ok(format!("{}: {}", spelled(&key), flow(value, &place.inside(Step::Key(&key)))?))
+}
+
 /// A value on one line.
-fn flow(value: &Bound<'_, PyAny>, depth: usize) -> PyResult<String> {
+fn flow(value: &Bound<'_, PyAny>, place: &Place<'_>) -> PyResult<String> {
     let py = value.py();
-    if depth > DEEPEST {
+    if place.depth > DEEPEST {
         return Err(wrong(py, "a dictionary holds others too deeply to be a file"));
     }
-    let depth = depth.saturating_add(1);
-    if let Ok(entries) = value.cast::<PyDict>() {
-        let parts: PyResult<Vec<String>> = entries
-            .iter()
-            .map(|(key, value)| Ok(format!("{}: {}", scalar(&key)?, flow(&value, depth)?)))
-            .collect();
-        return Ok(format!("{{{}}}", parts?.join(", ")));
+    if let Some(plain) = scalar(value, place)? {
+        return Ok(plain);
     }
-    if is_scalar(value) {
-        return scalar(value);
+    if let Ok(Entries(entries)) = value.extract() {
+        let entries: PyResult<Vec<String>> =
+            entries.iter().map(|(key, value)| entry(&key, &value, place)).collect();
+        return Ok(format!("{{{}}}", entries?.join(", ")));
     }
-    // Numbers of NumPy, and its arrays, say what they are in Python.
-    if let Ok(plain) = value.call_method0("tolist") {
-        return flow(&plain, depth);
+    if let Some(plain) = plain(value)? {
+        return flow(&plain, place);
     }
-    let items = value.try_iter().map_err(|_| {
-        let kind = value.get_type().name().map_or_else(|_| String::new(), |name| name.to_string());
-        wrong(
-            py,
-            format!(
-                "a value of type {kind} has no place in a file\nhelp: write text, a number, a list or a dict"
-            ),
-        )
-    })?;
-    let items: PyResult<Vec<String>> = items.map(|item| flow(&item?, depth)).collect();
-    Ok(format!("[{}]", items?.join(", ")))
+    if value.is_instance_of::<PySequence>() && !is_text(value) {
+        let items = value.try_iter()?.enumerate();
+        let items: PyResult<Vec<String>> =
+            items.map(|(number, item)| flow(&item?, &place.inside(Step::Item(number)))).collect();
+        return Ok(format!("[{}]", items?.join(", ")));
+    }
+    // Any other number of Python: a fraction, a decimal one.
+    match value.extract::<f64>() {
+        Ok(number) => float(py, number),
+        Err(_) => {
+            let message = format!("{place} is of type {}, which has no place in a file", kind(value));
+            Err(wrong(py, format!("{message}\nhelp: write text, a number, a list or a dictionary")))
+        }
+    }
 }
 
-fn is_scalar(value: &Bound<'_, PyAny>) -> bool {
-    value.is_none()
-        || value.is_instance_of::<PyString>()
-        || value.is_instance_of::<PyBool>()
-        || value.is_instance_of::<PyInt>()
-        || value.is_instance_of::<PyFloat>()
-        || value.hasattr("__fspath__").unwrap_or(false)
-}
-
-fn scalar(value: &Bound<'_, PyAny>) -> PyResult<String> {
+/// What is written as it is: nothing, yes and no, text, paths, numbers.
+fn scalar(value: &Bound<'_, PyAny>, place: &Place<'_>) -> PyResult<Option<String>> {
+    let py = value.py();
     if value.is_none() {
-        return Ok("null".to_owned());
+        return Ok(Some("null".to_owned()));
     }
     if let Ok(yes) = value.cast::<PyBool>() {
-        return Ok(if yes.is_true() { "true" } else { "false" }.to_owned());
+        return Ok(Some(if yes.is_true() { "true" } else { "false" }.to_owned()));
     }
-    if value.is_instance_of::<PyInt>() || value.is_instance_of::<PyFloat>() {
-        // As Python writes them: the shortest text that is this number again.
-        return Ok(value.repr()?.to_string());
+    if value.is_instance_of::<PyInt>() {
+        // The number alone: some kinds of whole numbers have names, which they show.
+        return Ok(Some(py.get_type::<PyInt>().call_method1("__repr__", (value,))?.to_string()));
     }
-    let text = if value.is_instance_of::<PyString>() {
-        value.extract::<String>()?
-    } else {
-        value.extract::<PathBuf>()?.display().to_string()
-    };
-    Ok(quoted(&text))
+    if value.is_instance_of::<PyFloat>() {
+        return float(py, value.extract()?).map(Some);
+    }
+    let path = value.hasattr("__fspath__")?.then(|| value.call_method0("__fspath__")).transpose()?;
+    let text = path.as_ref().unwrap_or(value);
+    if path.is_none() && !text.is_instance_of::<PyString>() {
+        return Ok(None);
+    }
+    Ok(Some(spelled(&arguments::text(text, &place.to_string())?)))
 }
 
-/// Text as it is where YAML takes it for itself, and else in double quotes.
-fn quoted(text: &str) -> String {
+/// As Python writes it: the shortest text that is this number again.
+fn float(py: Python<'_>, number: f64) -> PyResult<String> {
+    Ok(PyFloat::new(py, number).repr()?.to_string())
+}
+
+/// The plain objects that an array or a number of another library stands for; none where it is no such thing, or where there are none of
+/// its kind, as for times.
+fn plain<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let array = match value.hasattr("tolist")? {
+        true => value.clone(),
+        false if value.hasattr("__array__")? => {
+            value.py().import("numpy")?.call_method1("asarray", (value,))?
+        }
+        false => return Ok(None),
+    };
+    let kind = array.getattr("dtype").and_then(|dtype| dtype.getattr("kind")?.extract::<String>());
+    if !kind.is_ok_and(|kind| ["b", "i", "u", "f", "U", "O"].contains(&kind.as_str())) {
+        return Ok(None);
+    }
+    let plain = array.call_method0("tolist")?;
+    Ok((!plain.get_type().is(value.get_type())).then_some(plain))
+}
+
+/// Words that some version of YAML takes for something else than text.
+const WORDS: [&str; 9] = ["null", "true", "false", "yes", "no", "on", "off", "y", "n"];
+
+/// Text as it is where every YAML takes it for itself, a name or a number with its unit, and else in double quotes.
+fn spelled(text: &str) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "_-+./ ^".contains(letter);
-    let first =
-        text.chars().next().is_some_and(|letter| letter.is_ascii_alphanumeric() || "+-./_".contains(letter));
-    if first && text.chars().all(plain) && !text.ends_with(' ') && !text.starts_with("- ") && text != "-" {
+    let is_name = text.starts_with(|letter: char| letter.is_ascii_alphabetic())
+        && !WORDS.iter().any(|word| text.eq_ignore_ascii_case(word));
+    let number = text.trim_start_matches(['+', '-', '.']);
+    let is_quantity = number.starts_with(|digit: char| digit.is_ascii_digit()) && text.contains(' ');
+    if (is_name || is_quantity) && text.chars().all(plain) && text.trim() == text {
         return text.to_owned();
     }
     let mut quoted = String::from('"');
     for letter in text.chars() {
         match letter {
-            '"' => quoted.push_str("\\\""),
-            '\\' => quoted.push_str("\\\\"),
-            '\n' => quoted.push_str("\\n"),
-            '\t' => quoted.push_str("\\t"),
-            letter if letter.is_control() => {
+            '"' | '\\' => quoted.extend(['\\', letter]),
+            // What ends a line, or may not stand in a file: all of it fits four digits.
+            letter
+                if letter.is_control()
+                    || matches!(letter, '\u{2028}' | '\u{2029}' | '\u{feff}' | '\u{fffe}' | '\u{ffff}') =>
+            {
                 let _ = write!(quoted, "\\u{:04x}", u32::from(letter));
             }
             letter => quoted.push(letter),

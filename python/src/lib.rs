@@ -4,6 +4,7 @@
 //! at places. Nothing is worked out here: every number comes from the crates that the command line calls too, by way of
 //! [`workshop`].
 
+mod arguments;
 mod arrow;
 mod calibration;
 mod columns;
@@ -19,6 +20,7 @@ mod positions;
 mod recording;
 mod report;
 mod running;
+mod space;
 
 use pyo3::prelude::*;
 
@@ -31,7 +33,6 @@ mod _abbe {
     use super::diagnosis::{Diagnosis, diagnose};
     #[pymodule_export]
     use super::error::{AbbeWarning, Error};
-    #[pymodule_export]
     #[pymodule_export]
     use super::exported::{Exported, export};
     #[pymodule_export]

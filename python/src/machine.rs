@@ -1,20 +1,19 @@
 //! `abbe.Machine`. In: a topology word, the name of a shipped machine or a file. Out: its equations in the notations of the compiler,
 //! and its lever arms as arrays.
 
-use std::collections::HashMap;
 use std::path::Path;
 
 use model_dsl::equations::{Equations, Names};
 use model_dsl::notation::{self, Format};
 use model_dsl::program::Interpreter;
+use numpy::IntoPyArray;
 use numpy::ndarray::Array3;
-use numpy::{AllowTypeChange, IntoPyArray, PyArrayLike1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use workshop::load::{self, Loaded};
 
+use crate::arguments::{self, Entries, array};
 use crate::error::{raised, working, wrong};
-use crate::file;
 use crate::page::framed;
 
 /// A machine: a chain of links, and the equations that follow from it.
@@ -37,7 +36,7 @@ pub(crate) struct Machine {
 impl Machine {
     #[new]
     fn new(machine: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let name = file::path(machine)?.display().to_string();
+        let name = Self::name_of(machine)?;
         let loaded = working(machine.py(), |heard| load::machine(&name, None, heard))?;
         Ok(Self { loaded, given: name })
     }
@@ -156,11 +155,11 @@ impl Machine {
     fn levers<'py>(
         &self,
         py: Python<'py>,
-        constants: Option<HashMap<String, f64>>,
-        positions: Option<&Bound<'py, PyDict>>,
+        constants: Option<Entries<'py>>,
+        positions: Option<Entries<'py>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let constants = self.constant_values(py, &constants.unwrap_or_default())?;
-        let places = Places::read(py, self.derived(), positions)?;
+        let constants = self.constant_values(py, constants.as_ref())?;
+        let places = Places::read(py, self.derived(), positions.as_ref())?;
         let equations = self.derived();
         let levers = py.detach(|| {
             let positions: Vec<&[f64]> = places.columns.iter().map(Vec::as_slice).collect();
@@ -173,8 +172,7 @@ impl Machine {
             let direction = rows.get(direction).copied().unwrap_or_default();
             levers.get(motion).and_then(|lever| lever.get(direction)?.get(row).copied()).unwrap_or(f64::NAN)
         });
-        let array = array.into_pyarray(py).into_any();
-        if places.alone { array.get_item(0) } else { Ok(array) }
+        arguments::answered(array.into_pyarray(py).into_any(), places.alone)
     }
 
     fn _repr_html_(&self) -> String {
@@ -198,9 +196,15 @@ impl Machine {
         Ok(Self { loaded, given: file.map_or_else(|| name.to_owned(), |file| file.display().to_string()) })
     }
 
-    /// The word, name or path that it was made from.
-    pub(crate) fn given(&self) -> &str {
-        &self.given
+    /// What names a machine: a word, a name or a path; of a machine the one that it was made from.
+    pub(crate) fn name_of(machine: &Bound<'_, PyAny>) -> PyResult<String> {
+        match machine.cast::<Self>() {
+            Ok(machine) => Ok(machine.get().given.clone()),
+            Err(_) => {
+                let what = "a machine is given by a topology word, the name of a shipped machine or a path";
+                Ok(arguments::path(machine, what)?.display().to_string())
+            }
+        }
     }
 
     fn derived(&self) -> &Equations {
@@ -211,20 +215,16 @@ impl Machine {
         notation::print(self.derived(), format, Names::Symbols)
     }
 
-    fn constant_values(&self, py: Python<'_>, given: &HashMap<String, f64>) -> PyResult<Vec<f64>> {
+    fn constant_values(&self, py: Python<'_>, given: Option<&Entries<'_>>) -> PyResult<Vec<f64>> {
+        let given = Entries::numbers(given, "constants")?;
         let known = &self.derived().constants;
-        let mut names: Vec<&String> = given.keys().collect();
-        names.sort_unstable();
-        if let Some(stray) = names.into_iter().find(|name| !known.iter().any(|known| *known.name == **name)) {
-            let all = self.constants().join(", ");
-            return Err(wrong(
-                py,
-                format!("{} has no constant `{stray}`\nhelp: its constants are {all}", self.name()),
-            ));
+        if let Some((stray, _)) = given.iter().find(|(name, _)| !known.iter().any(|one| *one.name == **name))
+        {
+            let help = format!("help: its constants are {}", self.constants().join(", "));
+            return Err(wrong(py, format!("{} has no constant `{stray}`\n{help}", self.name())));
         }
-        let value =
-            |name: &str, default: Option<f64>| given.get(name).copied().or(default).unwrap_or_default();
-        Ok(known.iter().map(|constant| value(&constant.name, constant.default)).collect())
+        let value = |name: &str| given.iter().find(|(known, _)| known == name).map(|(_, value)| *value);
+        Ok(known.iter().map(|one| value(&one.name).or(one.default).unwrap_or_default()).collect())
     }
 }
 
@@ -237,43 +237,33 @@ struct Places {
 }
 
 impl Places {
-    fn read(py: Python<'_>, equations: &Equations, given: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
-        let mut columns = vec![None; equations.axes.len()];
+    fn read(py: Python<'_>, equations: &Equations, given: Option<&Entries<'_>>) -> PyResult<Self> {
+        let mut columns: Vec<Vec<f64>> = vec![vec![0.0]; equations.axes.len()];
         let (mut rows, mut alone) = (1, true);
-        for (key, value) in given.into_iter().flatten() {
-            let key: String = key.extract()?;
-            let axis = equations.axes.iter().position(|axis| *axis.variable == *key);
-            let Some(axis) = axis else {
+        for (key, value) in Entries::pairs(given, "positions")? {
+            let known = equations.axes.iter().zip(&mut columns).find(|(axis, _)| *axis.variable == *key);
+            let Some((axis, column)) = known else {
                 let all: Vec<&str> = equations.axes.iter().map(|axis| &*axis.variable).collect();
                 let help = format!("help: its axes are {}", all.join(", "));
                 return Err(wrong(py, format!("{} has no axis `{key}`\n{help}", equations.machine)));
             };
-            let rotary = equations.axes.get(axis).is_some_and(|axis| axis.rotary);
-            let internal = |place: f64| if rotary { place.to_radians() } else { place };
-            let numbers: Vec<f64> = match value.extract::<f64>() {
-                Ok(number) => vec![number],
-                Err(_) => {
-                    let array: PyArrayLike1<'_, f64, AllowTypeChange> = value.extract()?;
-                    alone = false;
-                    array.as_array().iter().copied().collect()
-                }
-            };
-            if numbers.len() != 1 && rows != 1 && rows != numbers.len() {
-                return Err(wrong(
-                    py,
-                    format!("`{key}` has {} positions, others have {rows}", numbers.len()),
-                ));
+            let numbers = array(&value, &key)?;
+            let numbers = numbers.as_array();
+            let (dimensions, length) = (numbers.ndim(), numbers.len());
+            if dimensions > 1 || dimensions == 1 && !alone && length != rows {
+                let found = arguments::shape(numbers.shape());
+                let wanted = if alone { "(n,)".to_owned() } else { format!("({rows},), as others have") };
+                return Err(wrong(py, format!("`{key}` has the shape {found}, not {wanted}")));
             }
-            rows = if numbers.len() == 1 { rows } else { numbers.len() };
-            if let Some(slot) = columns.get_mut(axis) {
-                *slot = Some(numbers.into_iter().map(internal).collect::<Vec<f64>>());
+            if dimensions == 1 {
+                (rows, alone) = (length, false);
             }
+            let internal = |place: &f64| if axis.rotary { place.to_radians() } else { *place };
+            *column = numbers.iter().map(internal).collect();
         }
-        let full = |column: Option<Vec<f64>>| match column.as_deref() {
-            None => vec![0.0; rows],
-            Some([one]) => vec![*one; rows],
-            Some(all) => all.to_vec(),
-        };
-        Ok(Self { columns: columns.into_iter().map(full).collect(), rows, alone })
+        for column in columns.iter_mut().filter(|column| column.len() != rows) {
+            *column = vec![column.first().copied().unwrap_or_default(); rows];
+        }
+        Ok(Self { columns, rows, alone })
     }
 }

@@ -40,7 +40,7 @@ use crate::report::Report;
 #[pyfunction]
 #[pyo3(signature = (calibration, path, *, seed = None, known = None, output = None, force = false))]
 pub(crate) fn simulate(
-    calibration: &Bound<'_, Calibration>,
+    calibration: &Bound<'_, PyAny>,
     path: &Bound<'_, PyAny>,
     seed: Option<u64>,
     known: Option<&Bound<'_, PyAny>>,
@@ -48,6 +48,7 @@ pub(crate) fn simulate(
     force: bool,
 ) -> PyResult<Recording> {
     let py = calibration.py();
+    let calibration = Calibration::taken(calibration)?;
     let one = calibration.get();
     let (calibrated, calibration_path) = (one.calibrated(), one.path());
     let known = known.map(file::path).transpose()?;
@@ -183,7 +184,7 @@ pub(crate) fn calibrate(
                     compensated = false))]
 #[expect(clippy::too_many_arguments, reason = "each is a name for the caller")]
 pub(crate) fn update(
-    calibration: &Bound<'_, Calibration>,
+    calibration: &Bound<'_, PyAny>,
     recordings: &Bound<'_, PyAny>,
     output: Option<&Bound<'_, PyAny>>,
     force: bool,
@@ -207,18 +208,14 @@ pub(crate) fn update(
     };
     let options = Options { method, tolerance, datum: datum.displaced, compensated };
     let mut parts = Vec::new();
-    let all: Vec<Bound<'_, Recording>> = match recordings.cast::<Recording>() {
-        Ok(one) => vec![one.clone()],
-        Err(_) => {
-            recordings.try_iter()?.map(|one| Ok(one?.cast_into::<Recording>()?)).collect::<PyResult<_>>()?
-        }
-    };
+    let all = Recording::all_taken(recordings)?;
     for one in &all {
         recorded::add(&mut parts, one.get().recorded().clone()).map_err(|failure| raised(py, &failure))?;
     }
     if datum.turned {
         parts.iter_mut().for_each(|part| part.recording.free_datum = true);
     }
+    let calibration = Calibration::taken(calibration)?;
     let one = calibration.get();
     let (known, path) = (one.calibrated(), one.path());
     let output = output.map(file::path).transpose()?;

@@ -1,7 +1,7 @@
 //! Maps: the error over a plane of two axes. In: a calibrated machine, the axes and from where to where they go. Out: arrays of positions
 //! and of errors there.
 
-use exchange::controller::{Space, Wanted as WantedSpace};
+use exchange::controller::Space;
 use numpy::IntoPyArray;
 use numpy::ndarray::Array3;
 use pyo3::prelude::*;
@@ -11,8 +11,10 @@ use workshop::failure::Failure;
 use workshop::rows::field;
 use workshop::rows::table::Wanted;
 
+use crate::arguments::{self, Entries};
 use crate::error::{raised, working, wrong};
 use crate::positions::temperatures;
+use crate::space;
 
 /// Places of an axis where nothing else is said.
 const POINTS: usize = 21;
@@ -36,8 +38,8 @@ impl Plane {
         calibrated: &Calibrated,
         plane: &str,
         points: Option<&Bound<'_, PyAny>>,
-        ranges: Option<&Bound<'_, PyDict>>,
-        at: Option<&Bound<'_, PyDict>>,
+        ranges: Option<&Entries<'_>>,
+        at: Option<&Entries<'_>>,
     ) -> PyResult<Self> {
         let equations = &calibrated.equations;
         let axis = |letter: char| equations.axes.iter().position(|axis| axis.letter == letter.to_string());
@@ -51,29 +53,10 @@ impl Plane {
             let help = format!("help: write two of the machine's axes, {}", all.join(", "));
             return Err(wrong(py, format!("`{plane}` is no plane of two axes\n{help}")));
         };
-        let internal = |letter: &str, place: f64| {
-            let rotary = equations.axes.iter().any(|axis| axis.letter == letter && axis.rotary);
-            if rotary { place.to_radians() } else { place }
-        };
-        let mut wanted = WantedSpace::default();
-        for (letter, ends) in ranges.into_iter().flatten() {
-            let (letter, [from, to]) = (letter.extract::<String>()?, ends.extract::<[f64; 2]>()?);
-            let ends = [from, to].map(|end| internal(&letter, end));
-            wanted.ranges.push((letter, ends));
-        }
-        for (letter, place) in at.into_iter().flatten() {
-            let letter: String = letter.extract()?;
-            let place = internal(&letter, place.extract()?);
-            wanted.reference.push((letter, place));
-        }
+        let wanted = space::wanted(equations, ranges, at)?;
         let space = Space::new(equations, &calibrated.calibration, &wanted)
             .map_err(|refused| raised(py, &Failure::wrong(refused.to_string())))?;
-        let points = match points {
-            None => [POINTS; 2],
-            Some(points) => {
-                points.extract::<[usize; 2]>().or_else(|_| points.extract().map(|one| [one; 2]))?
-            }
-        };
+        let points = points.map_or(Ok([POINTS; 2]), both)?;
         if points.contains(&0)
             || points.into_iter().try_fold(1, usize::checked_mul).is_none_or(|all| all > MOST)
         {
@@ -90,7 +73,7 @@ impl Plane {
         &self,
         py: Python<'py>,
         calibrated: &Calibrated,
-        given: Option<&Bound<'py, PyDict>>,
+        given: Option<&Entries<'_>>,
         wanted: &Wanted,
     ) -> PyResult<Bound<'py, PyDict>> {
         let inputs: Vec<f64> = temperatures(py, calibrated, given, 1)?.into_iter().flatten().collect();
@@ -117,6 +100,15 @@ impl Plane {
         map.set_item("error", Array3::from_shape_fn(shape, of).into_pyarray(py))?;
         Ok(map)
     }
+}
+
+/// How many places two axes have: a number for both, or one for each.
+fn both(points: &Bound<'_, PyAny>) -> PyResult<[usize; 2]> {
+    let refused = |_| {
+        let found = arguments::kind(points);
+        wrong(points.py(), format!("`points` is a whole number, or two of them, found {points} ({found})"))
+    };
+    points.extract().or_else(|_| points.extract().map(|one| [one; 2])).map_err(refused)
 }
 
 /// Places from one end to the other, evenly.

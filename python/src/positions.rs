@@ -2,24 +2,26 @@
 //! answers, and its answers as arrays.
 
 use abbe_runtime::Direction;
+use model_dsl::equations::Equations;
 use model_dsl::quantity::parse_unit;
 use numpy::ndarray::{Array2, ArrayView2, ArrayViewD, Axis};
-use numpy::{AllowTypeChange, IntoPyArray, PyArrayLikeDyn};
+use numpy::{IntoPyArray, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::PyMapping;
 use workshop::calibrated::Calibrated;
 use workshop::rows::table::{Answers, Table};
 use workshop::rows::timed;
 
+use crate::arguments::{self, Entries, column, shape};
 use crate::error::wrong;
 
 /// What a caller says of rows.
 pub(crate) struct Given<'a, 'py> {
     pub(crate) positions: &'a Bound<'py, PyAny>,
     pub(crate) direction: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) temperatures: Option<&'a Bound<'py, PyDict>>,
+    pub(crate) temperatures: Option<&'a Entries<'py>>,
     pub(crate) time: Option<&'a Bound<'py, PyAny>>,
-    pub(crate) travels: Option<&'a Bound<'py, PyDict>>,
+    pub(crate) travels: Option<&'a Entries<'py>>,
 }
 
 /// Rows in columns, and whether they came as one position without rows.
@@ -30,13 +32,11 @@ pub(crate) struct Rows {
     factors: Vec<f64>,
 }
 
-type Numbers<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
-
 impl Rows {
     /// Reads the arrays.
     pub(crate) fn read(py: Python<'_>, calibrated: &Calibrated, given: &Given<'_, '_>) -> PyResult<Self> {
         let axes = calibrated.equations.programmed();
-        let array: Numbers<'_> = given.positions.extract()?;
+        let array = by_axis(given.positions, "positions", &calibrated.equations)?;
         let array = array.as_array();
         let (positions, alone) = rows_of(py, "positions", &array, axes)?;
         let rows = positions.nrows();
@@ -49,8 +49,8 @@ impl Rows {
         let table = Table {
             position: position.collect(),
             travel: travels(py, calibrated, given.travels, rows)?,
-            direction: directions(py, given.direction, rows, axes)?,
-            time: given.time.map(|time| column(py, "time", time, rows)).transpose()?,
+            direction: directions(py, given.direction, rows, &calibrated.equations)?,
+            time: given.time.map(|time| column(time, "time", rows)).transpose()?,
             temperature: temperatures(py, calibrated, given.temperatures, rows)?,
         };
         if let (Some(why), None) = (timed(&calibrated.calibration), &table.time) {
@@ -77,9 +77,7 @@ impl Rows {
         let shape = (answers.outcomes.len(), directions.len().saturating_add(leans));
         let error = |(row, place): (usize, usize)| match directions.get(place) {
             Some(direction) => answers.outcomes.get(row).and_then(|outcome| outcome.error.get(*direction)),
-            None => {
-                answers.leans.get(row).and_then(|lean| lean.get(place.checked_sub(directions.len())?))
-            }
+            None => answers.leans.get(row).and_then(|lean| lean.get(place.checked_sub(directions.len())?)),
         };
         self.array(py, Array2::from_shape_fn(shape, |at| error(at).copied().unwrap_or(f64::NAN)))
     }
@@ -95,22 +93,31 @@ impl Rows {
     }
 
     fn array<'py>(&self, py: Python<'py>, array: Array2<f64>) -> PyResult<Bound<'py, PyAny>> {
-        if self.alone && array.nrows() == 1 {
-            return Ok(array.remove_axis_owned().into_pyarray(py).into_any());
-        }
-        Ok(array.into_pyarray(py).into_any())
+        arguments::answered(array.into_pyarray(py).into_any(), self.alone)
     }
 }
 
-/// The one row of an array that has but one.
-trait OneRow {
-    fn remove_axis_owned(self) -> numpy::ndarray::Array1<f64>;
-}
-
-impl OneRow for Array2<f64> {
-    fn remove_axis_owned(self) -> numpy::ndarray::Array1<f64> {
-        self.index_axis_move(Axis(0), 0)
+/// An array with a column for each axis; of a table, whose columns have names, those that have the names of the axes.
+fn by_axis<'py>(
+    given: &Bound<'py, PyAny>,
+    name: &str,
+    equations: &Equations,
+) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
+    let py = given.py();
+    if !given.is_instance_of::<PyMapping>() && !given.hasattr("columns")? {
+        return arguments::array(given, name);
     }
+    let columns = equations.axes.iter().filter(|axis| !axis.is_motor()).map(|axis| {
+        let named = |letter: &str| given.get_item(letter).ok();
+        named(&axis.letter).or_else(|| named(&axis.letter.to_lowercase())).ok_or_else(|| {
+            let help =
+                "help: its columns have the letters of the axes as names; an array has them in that order";
+            wrong(py, format!("`{name}` has no column `{}`\n{help}", axis.letter))
+        })
+    });
+    let columns: Vec<Bound<'_, PyAny>> = columns.collect::<PyResult<_>>()?;
+    let table = py.import("numpy")?.call_method1("column_stack", (columns,));
+    arguments::array(&table.map_err(|error| wrong(py, format!("`{name}`: {}", error.value(py))))?, name)
 }
 
 /// An array of rows, or of one position alone.
@@ -121,43 +128,27 @@ fn rows_of<'a>(
     width: usize,
 ) -> PyResult<(ArrayView2<'a, f64>, bool)> {
     let alone = array.ndim() == 1;
-    let shape = array.shape().to_vec();
+    let found = shape(array.shape());
     let view = if alone { array.view().insert_axis(Axis(0)) } else { array.view() };
     let view = view.into_dimensionality().ok().filter(|view: &ArrayView2<'_, f64>| view.ncols() == width);
     let view = view.ok_or_else(|| {
         let help =
             format!("help: it has a row for each position, and in it a number for each of {width} axes");
-        wrong(py, format!("`{name}` has the shape {shape:?}, not (n, {width})\n{help}"))
+        wrong(py, format!("`{name}` has the shape {found}, not (n, {width})\n{help}"))
     })?;
     Ok((view, alone))
-}
-
-/// A number for each row; one number stands for all of them.
-pub(crate) fn column(
-    py: Python<'_>,
-    name: &str,
-    value: &Bound<'_, PyAny>,
-    rows: usize,
-) -> PyResult<Vec<f64>> {
-    let array: Numbers<'_> = value.extract()?;
-    let array = array.as_array();
-    match (array.ndim(), array.len()) {
-        (0, _) => Ok(vec![array.iter().copied().next().unwrap_or(f64::NAN); rows]),
-        (1, length) if length == rows => Ok(array.iter().copied().collect()),
-        _ => Err(wrong(py, format!("`{name}` has the shape {:?}, not ({rows},)", array.shape()))),
-    }
 }
 
 fn directions(
     py: Python<'_>,
     given: Option<&Bound<'_, PyAny>>,
     rows: usize,
-    axes: usize,
+    equations: &Equations,
 ) -> PyResult<Vec<Vec<Direction>>> {
     let Some(given) = given else { return Ok(Vec::new()) };
-    let array: Numbers<'_> = given.extract()?;
+    let array = by_axis(given, "direction", equations)?;
     let array = array.as_array();
-    let (view, _) = rows_of(py, "direction", &array, axes)?;
+    let (view, _) = rows_of(py, "direction", &array, equations.programmed())?;
     if view.nrows() != rows && view.nrows() != 1 {
         return Err(wrong(py, format!("`direction` has {} rows, `positions` has {rows}", view.nrows())));
     }
@@ -176,7 +167,7 @@ fn directions(
 pub(crate) fn temperatures(
     py: Python<'_>,
     calibrated: &Calibrated,
-    given: Option<&Bound<'_, PyDict>>,
+    given: Option<&Entries<'_>>,
     rows: usize,
 ) -> PyResult<Vec<Vec<f64>>> {
     let sensors = &calibrated.calibration.sensors;
@@ -184,14 +175,13 @@ pub(crate) fn temperatures(
     let all: Vec<&str> = sensors.iter().map(|sensor| sensor.name.value.as_str()).collect();
     named(py, "temperatures", given, &all)?;
     let read = |name: &&str| {
-        let value = given.map(|given| given.get_item(*name)).transpose()?.flatten();
-        let value = value.ok_or_else(|| {
+        let value = Entries::at(given, name)?.ok_or_else(|| {
             let help = format!(
                 "help: temperatures={{\"{name}\": ...}} takes a number, or one for each row, in degC"
             );
             wrong(py, format!("there is no temperature of sensor {name}, which the calibration uses\n{help}"))
         })?;
-        column(py, name, &value, rows)
+        column(&value, &format!("temperatures[\"{name}\"]"), rows)
     };
     names.iter().map(read).collect()
 }
@@ -199,25 +189,25 @@ pub(crate) fn temperatures(
 fn travels(
     py: Python<'_>,
     calibrated: &Calibrated,
-    given: Option<&Bound<'_, PyDict>>,
+    given: Option<&Entries<'_>>,
     rows: usize,
 ) -> PyResult<Vec<Vec<f64>>> {
-    let Some(given) = given else { return Ok(Vec::new()) };
+    if given.is_none() {
+        return Ok(Vec::new());
+    }
     let names: Vec<&str> = calibrated.equations.travels.iter().map(|travel| &*travel.name).collect();
-    named(py, "travels", Some(given), &names)?;
+    named(py, "travels", given, &names)?;
     let read = |name: &&str| {
-        let value = given.get_item(*name)?;
-        let value = value
+        let value = Entries::at(given, name)?
             .ok_or_else(|| wrong(py, format!("there is no travel `{name}`; give all travels or none")))?;
-        column(py, name, &value, rows)
+        column(&value, &format!("travels[\"{name}\"]"), rows)
     };
     names.iter().map(read).collect()
 }
 
 /// Refuses names that mean nothing.
-fn named(py: Python<'_>, what: &str, given: Option<&Bound<'_, PyDict>>, known: &[&str]) -> PyResult<()> {
-    for key in given.into_iter().flat_map(|given| given.keys()) {
-        let key: String = key.extract()?;
+fn named(py: Python<'_>, what: &str, given: Option<&Entries<'_>>, known: &[&str]) -> PyResult<()> {
+    for (key, _) in Entries::pairs(given, what)? {
         if !known.contains(&key.as_str()) {
             let all = if known.is_empty() {
                 "there are none".to_owned()

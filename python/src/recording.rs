@@ -12,6 +12,7 @@ use recording::{Header, Instrument};
 use workshop::named::Files;
 use workshop::recorded::{self, Recorded};
 
+use crate::arguments::{self, Entries};
 use crate::calibration::Calibration;
 use crate::columns::Table;
 use crate::error::{Heard, raised, working, wrong};
@@ -26,8 +27,8 @@ const TABLE: &str = "<table>";
 /// `Recording("circle.yaml")` reads a recording file. `Recording(table, machine=..., units=..., setup=...)` takes a table in memory:
 /// anything with `__arrow_c_stream__` (pandas, polars, pyarrow ...), or a dict of arrays. Its columns are named as the channels of a
 /// recording file are: `time`, `run`, `command.x`, `actual.x`, `measured.x`, `deviation`, `temperature.spindle`, `load.feed`; or
-/// `channels` gives the column of each channel, `{"command.x": "x_cmd"}`. `units` gives the unit of each channel or column; all others of
-/// the arguments are the keys of a recording file. Files that they name are counted from the current folder. A column of dates and
+/// `channels` gives the column of each channel, `{"command.x": "x_cmd"}`. `units` gives the unit of each channel or column; a column that
+/// is named as a channel is one, and needs its unit. All others of the arguments are the keys of a recording file. Files that they name are counted from the current folder. A column of dates and
 /// times is a time too, counted from its first; a column `run` is the channel `run`; what is missing (null, NaN) was not measured.
 ///
 /// >>> import abbe, numpy as np
@@ -52,14 +53,14 @@ impl Recording {
     fn new(
         source: &Bound<'_, PyAny>,
         machine: Option<&Bound<'_, PyAny>>,
-        units: Option<&Bound<'_, PyDict>>,
-        channels: Option<&Bound<'_, PyDict>>,
-        setup: Option<&Bound<'_, PyDict>>,
+        units: Option<Entries<'_>>,
+        channels: Option<Entries<'_>>,
+        setup: Option<Entries<'_>>,
         instrument: Option<&str>,
         calibration: Option<&Bound<'_, PyAny>>,
-        constants: Option<&Bound<'_, PyDict>>,
-        holdout: Option<&Bound<'_, PyDict>>,
-        title: Option<&str>,
+        constants: Option<Entries<'_>>,
+        holdout: Option<Entries<'_>>,
+        title: Option<&Bound<'_, PyString>>,
     ) -> PyResult<Self> {
         let py = source.py();
         let is_file = source.is_instance_of::<PyString>() || source.hasattr("__fspath__")?;
@@ -83,22 +84,22 @@ impl Recording {
         let machine = machine.ok_or_else(|| {
             wrong(py, "a table does not say what machine it is of\nhelp: machine=... takes a machine file, a shipped machine's name or a topology word")
         })?;
-        head.set_item("machine", machine_named(machine)?)?;
+        head.set_item("machine", Machine::name_of(machine)?)?;
         if let Some(calibration) = calibration {
             head.set_item("calibration", calibration_named(calibration)?)?;
         }
         if let Some(constants) = constants {
-            head.set_item("constants", constants)?;
+            head.set_item("constants", constants.0)?;
         }
         head.set_item("instrument", instrument.unwrap_or("position"))?;
         head.set_item("data", "memory")?;
-        head.set_item("channels", channels_of(py, channels, units, &table.names())?)?;
+        head.set_item("channels", channels_of(py, channels.as_ref(), units.as_ref(), &table.names())?)?;
         for (key, value) in [("setup", setup), ("holdout", holdout)] {
-            if let Some(value) = value {
+            if let Some(Entries(value)) = value {
                 head.set_item(key, value)?;
             }
         }
-        let source = SourceFile::new("<recording>", file::written(&head)?);
+        let source = SourceFile::new("<recording>", file::written(&head, "recording")?);
         Self::of_table(py, Text { source, path: PathBuf::from("recording") }, &table)
     }
 
@@ -199,6 +200,29 @@ impl Recording {
 }
 
 impl Recording {
+    /// A recording, or one that is read from its file.
+    pub(crate) fn taken<'py>(given: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Self>> {
+        if let Ok(recording) = given.cast::<Self>() {
+            return Ok(recording.clone());
+        }
+        let what = "a recording is an abbe.Recording or the path of a recording file";
+        Bound::new(given.py(), Self::of_file(given.py(), arguments::path(given, what)?)?)
+    }
+
+    /// One recording or several, each of which may be given by its file.
+    pub(crate) fn all_taken<'py>(given: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, Self>>> {
+        let is_path = given.is_instance_of::<PyString>() || given.hasattr("__fspath__")?;
+        if is_path || given.cast::<Self>().is_ok() {
+            return Ok(vec![Self::taken(given)?]);
+        }
+        if given.extract::<Entries<'_>>().is_ok() || given.hasattr("__arrow_c_stream__")? {
+            let help = "help: abbe.Recording(table, machine=..., units=...) says it";
+            return Err(wrong(given.py(), format!("a table does not say what its columns mean\n{help}")));
+        }
+        let Ok(all) = given.try_iter() else { return Ok(vec![Self::taken(given)?]) };
+        all.map(|one| Self::taken(&one?)).collect()
+    }
+
     /// Reads a file and its data.
     pub(crate) fn of_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let recorded = working(py, |heard| recorded::read(&path, heard))?;
@@ -211,7 +235,7 @@ impl Recording {
         Self { recorded, text }
     }
 
-    fn of_table(py: Python<'_>, text: Text, table: &Table) -> PyResult<Self> {
+    fn of_table(py: Python<'_>, text: Text, table: &Table<'_>) -> PyResult<Self> {
         let names = table.names();
         let heard = Heard::default();
         let data =
@@ -262,18 +286,11 @@ impl Recording {
     }
 }
 
-/// The name of a machine: of an object the one it was made from.
-fn machine_named(machine: &Bound<'_, PyAny>) -> PyResult<String> {
-    match machine.cast::<Machine>() {
-        Ok(machine) => Ok(machine.get().given().to_owned()),
-        Err(_) => Ok(file::path(machine)?.display().to_string()),
-    }
-}
-
 /// The name of a calibration: of an object its file.
 fn calibration_named(calibration: &Bound<'_, PyAny>) -> PyResult<String> {
     let Ok(known) = calibration.cast::<Calibration>() else {
-        return Ok(file::path(calibration)?.display().to_string());
+        let what = "a calibration is an abbe.Calibration or a path";
+        return Ok(arguments::path(calibration, what)?.display().to_string());
     };
     let path = known.get().path();
     if path.is_file() {
@@ -285,35 +302,37 @@ fn calibration_named(calibration: &Bound<'_, PyAny>) -> PyResult<String> {
     ))
 }
 
-/// `channels` of the recording file: for each channel its column and unit.
+/// The first words of the names of channels.
+const CHANNELS: [&str; 9] =
+    ["time", "run", "deviation", "command", "actual", "measured", "normal", "temperature", "load"];
+
+/// `channels` of the recording file: for each channel its column and unit. A column that is named as a channel is one.
 fn channels_of<'py>(
     py: Python<'py>,
-    given: Option<&Bound<'py, PyDict>>,
-    units: Option<&Bound<'py, PyDict>>,
+    given: Option<&Entries<'py>>,
+    units: Option<&Entries<'py>>,
     names: &[String],
 ) -> PyResult<Bound<'py, PyDict>> {
     let channels = PyDict::new(py);
     let mut columns = Vec::new();
-    let unit_of = |name: &str| units.map(|units| units.get_item(name)).transpose().map(Option::flatten);
-    for (channel, column) in given.into_iter().flatten() {
-        let channel: String = channel.extract()?;
-        if column.is_instance_of::<PyDict>() {
-            channels.set_item(channel, column)?;
+    for (channel, column) in Entries::pairs(given, "channels")? {
+        if let Ok(Entries(entry)) = column.extract() {
+            channels.set_item(channel, entry)?;
             continue;
         }
-        let column: String = column.extract()?;
-        let unit = unit_of(&channel)?.or(unit_of(&column)?);
+        let column = arguments::text(&column, &format!("`channels[\"{channel}\"]`"))?;
+        let unit = Entries::at(units, &channel)?.or(Entries::at(units, &column)?);
         channels.set_item(&channel, entry(py, &column, unit)?)?;
         columns.push(column);
     }
-    for (name, unit) in units.into_iter().flatten() {
-        let name: String = name.extract()?;
+    let with_units = Entries::pairs(units, "units")?;
+    let named = with_units.into_iter().map(|(name, unit)| (name, Some(unit)));
+    let is_channel = |name: &&String| name.split('.').next().is_some_and(|word| CHANNELS.contains(&word));
+    let others = names.iter().filter(is_channel).map(|name| (name.clone(), None));
+    for (name, unit) in named.chain(others) {
         if !channels.contains(&name)? && !columns.contains(&name) {
-            channels.set_item(&name, entry(py, &name, Some(unit))?)?;
+            channels.set_item(&name, entry(py, &name, unit)?)?;
         }
-    }
-    if names.iter().any(|name| name == "run") && !channels.contains("run")? {
-        channels.set_item("run", entry(py, "run", None)?)?;
     }
     Ok(channels)
 }

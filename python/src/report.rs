@@ -81,7 +81,8 @@ pub(crate) fn loads<'py>(py: Python<'py>, json: &str) -> PyResult<Bound<'py, PyA
 /// >>> abbe.evaluate(stage).data["schema"]
 /// 'abbe-evaluation/1'
 #[pyfunction]
-pub(crate) fn evaluate(py: Python<'_>, recording: &Bound<'_, Recording>) -> Report {
+pub(crate) fn evaluate(py: Python<'_>, recording: &Bound<'_, PyAny>) -> PyResult<Report> {
+    let recording = Recording::taken(recording)?;
     let one = recording.get();
     let (recorded, path) = (one.recorded(), &one.text_file().path);
     let evaluation = py.detach(|| {
@@ -91,13 +92,13 @@ pub(crate) fn evaluate(py: Python<'_>, recording: &Bound<'_, Recording>) -> Repo
             recording: &recorded.recording,
         })
     });
-    Report {
+    Ok(Report {
         title: "evaluate",
         text: evaluation::report::text(&evaluation),
         json: evaluation::report::json(&evaluation),
         html: Some(evaluation::report::html(&evaluation, &origin::evaluate(path))),
         calibration: None,
-    }
+    })
 }
 
 /// What a diagnostic, a term, a factor or the name of an error motion means; without a name the list of all.

@@ -37,4 +37,6 @@ def stage_table() -> dict[str, np.ndarray]:
     return {"time": t, "command.x": x, "measured.x": x - 0.005 * np.sign(np.sin(np.pi * t / 4)) + noise}
 
 
+MILL = str(ROOT / "calibrations" / "postech-mill.yaml")
+
 UNITS = {"time": "s", "command.x": "mm", "measured.x": "mm"}

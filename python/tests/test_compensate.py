@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 import pathlib
+import threading
+import time
 
 import numpy as np
 import pytest
-from conftest import command
+from conftest import MILL, command
 
 import abbe
-
-MILL = "calibrations/postech-mill.yaml"
 
 TRUNNION = {
     "calibration": 1,
@@ -118,6 +119,40 @@ def test_a_map_is_the_errors_at_its_places(root: pathlib.Path) -> None:
             at = dict(zip("XYZ", (x, 100.0, z)))
             position = [at[axis] for axis in mill.axes]
             assert np.array_equal(drawn["error"][row, column], mill.error(position, direction=[1, 1, 1]))
+
+
+def processor_times() -> dict[str, int]:
+    """How long each thread of this program has worked, in ticks of the system."""
+    tasks = pathlib.Path("/proc/self/task").iterdir()
+    return {task.name: int((task / "stat").read_text().rsplit(")", 1)[1].split()[11]) for task in tasks}
+
+
+@pytest.mark.parametrize("name", ["error", "compensate"])
+def test_all_processors_work_and_other_threads_go_on(name: str, root: pathlib.Path) -> None:
+    answer = getattr(abbe.Calibration(MILL), name)
+    positions = np.random.default_rng(1).uniform(0, 400, (400_000, 3))
+    ticks: list[float] = []
+    done = threading.Event()
+
+    def tick() -> None:
+        while not done.wait(0.001):
+            ticks.append(time.perf_counter())
+
+    other = threading.Thread(target=tick)
+    other.start()
+    before = processor_times() if os.path.exists("/proc/self/task") else None
+    begun = time.perf_counter()
+    answer(positions)
+    ended = time.perf_counter()
+    after = processor_times() if before is not None else {}
+    done.set()
+    other.join()
+    within = [begun, *(moment for moment in ticks if begun < moment < ended), ended]
+    longest = max(later - earlier for earlier, later in zip(within, within[1:]))
+    assert longest < 0.5 * (ended - begun), f"another thread waited {longest:.2f} s of {ended - begun:.2f} s"
+    if before is not None and len(os.sched_getaffinity(0)) > 1:
+        busy = [task for task, worked in after.items() if worked - before.get(task, 0) >= 2]
+        assert len(busy) > 1, "one thread alone has worked"
 
 
 def test_what_is_wrong_is_an_error(root: pathlib.Path) -> None:

@@ -7,7 +7,6 @@ import pathlib
 import subprocess
 import sys
 import textwrap
-import time
 
 import numpy as np
 import pytest
@@ -143,19 +142,39 @@ def test_progress_is_told_and_an_exception_ends_the_wait(stage_table: dict[str, 
         abbe.diagnose(recording, progress=refuse)
 
 
-def test_keys_that_interrupt_end_the_wait(root: pathlib.Path) -> None:
-    program = textwrap.dedent(f"""
-        import os, signal, threading, time, abbe
-        recording = abbe.Recording({RECORDING!r})
-        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
-        begun = time.monotonic()
+def test_keys_that_interrupt_end_the_wait() -> None:
+    """A diagnosis of 300 s of a mill at 200 Hz takes seconds; it is interrupted in the midst, and another one is made afterwards."""
+    program = textwrap.dedent("""
+        import os, signal, threading, time
+        import numpy as np
+        import abbe
+
+        def recorded(rows):
+            t = np.arange(rows) * 0.005
+            table, units = {"time": t}, {"time": "s"}
+            for axis, period in [("x", 4.0), ("y", 5.3), ("z", 7.1)]:
+                at = 100 - 100 * np.cos(2 * np.pi * t / period)
+                noise = np.random.default_rng(1).normal(0, 0.0003, rows)
+                table |= {f"command.{axis}": at, f"measured.{axis}": at - 0.005 * np.sign(np.sin(2 * np.pi * t / period)) + noise}
+                units |= {f"command.{axis}": "mm", f"measured.{axis}": "mm"}
+            return abbe.Recording(table, machine="XYFZ", units=units, constants={"Xt": "0 mm", "Yt": "0 mm", "Zt": "120 mm"})
+
+        long, short = recorded(60_000), recorded(4_000)
+        begun, told = [], []
+
+        def interrupt(step, done):
+            # Once it works, not before: the key comes in the midst of the work.
+            if not begun:
+                begun.append(True)
+                threading.Timer(0.5, lambda: (told.append(time.monotonic()), os.kill(os.getpid(), signal.SIGINT))).start()
+
         try:
-            while True:
-                abbe.diagnose(recording, progress=False)
+            abbe.diagnose(long, progress=interrupt)
+            print("not interrupted")
         except KeyboardInterrupt:
-            print("interrupted")
+            print("interrupted", time.monotonic() - told[0] < 1)
+        terms = abbe.diagnose(short, progress=False).findings["term"]
+        print(sorted(terms))
     """)
-    begun = time.monotonic()
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
-    assert done.stdout == "interrupted\n", done.stderr
-    assert time.monotonic() - begun < 30
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False)
+    assert done.stdout.splitlines() == ["interrupted True", "['backlash', 'backlash', 'backlash']"], done.stdout + done.stderr

@@ -38,7 +38,7 @@ def test_the_page(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> No
 @pytest.mark.parametrize("library", ["", "scipy", "h5py", "nptdms", "asammdf", "polars"])
 def test_recipes(library: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     if library:
-        pytest.importorskip(library)
+        pytest.importorskip(library, reason=f"{library} is not installed: its recipe is not tried")
         WRITE[library](tmp_path)
     monkeypatch.chdir(tmp_path)
     known: dict[str, object] = {}

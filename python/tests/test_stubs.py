@@ -1,10 +1,14 @@
-"""The stubs say what the compiled module has: the same names, and the same parameters with the same defaults."""
+"""The stubs say what the compiled module has: the same names, and the same parameters with the same defaults. A type checker agrees."""
 
 from __future__ import annotations
 
 import ast
 import inspect
 import pathlib
+import subprocess
+import sys
+
+import pytest
 
 import abbe
 from abbe import _abbe
@@ -57,3 +61,22 @@ def test_members_and_parameters() -> None:
                     assert parameters(member) == signature(getattr(thing, name)), f"{node.name}.{name}"
                     compared += 1
     assert compared > 20
+
+
+def test_everything_has_a_type() -> None:
+    """Each parameter and each result."""
+    functions = [node for node in ast.walk(TREE) if isinstance(node, ast.FunctionDef)]
+    for function in functions:
+        arguments = function.args
+        named = [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs]
+        bare = [one.arg for one in named if one.annotation is None and one.arg not in ("self", "cls")]
+        assert not bare and function.returns is not None, function.name
+
+
+@pytest.mark.parametrize("checker", ["mypy", "mypy.stubtest"])
+def test_a_type_checker_agrees(checker: str, tmp_path: pathlib.Path) -> None:
+    pytest.importorskip("mypy", reason="mypy is not installed: types are not checked")
+    typed = str(pathlib.Path(__file__).with_name("typed.py"))
+    what = {"mypy": ["--strict", typed], "mypy.stubtest": ["abbe._abbe"]}[checker]
+    done = subprocess.run([sys.executable, "-m", checker, *what], capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr

@@ -142,7 +142,7 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
     if let Some(version) = fields.need("recording", wording, diagnostics) {
         check_version(version, diagnostics);
     }
-    let title = fields.get("title").and_then(|node| word(node, "`title`", diagnostics));
+    let title = fields.get("title").and_then(|node| read_title(node, diagnostics));
     if let Some(node) = fields.get("date") {
         check_date(node, diagnostics);
     }
@@ -175,7 +175,7 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
     let setup = setup?;
     let (data, form) = data?;
     Some(Header {
-        title: title.map(|title| title.value),
+        title,
         date: date_of(root),
         machine,
         calibration,
@@ -228,6 +228,12 @@ fn check_version(node: &Node, diagnostics: &mut Diagnostics) {
         None => format!("`recording` is the version of the format, found {}", node.kind_name()),
     };
     diagnostics.push(Diagnostic::error("E0602", node.span, message).help("write `recording: 1`"));
+}
+
+/// A line for people, as it was written: blanks in quotes are part of it, the end of the line of a block is not.
+fn read_title(node: &Node, diagnostics: &mut Diagnostics) -> Option<String> {
+    word(node, "`title`", diagnostics)?;
+    node.text().map(|text| text.trim_matches('\n').to_owned())
 }
 
 fn read_instrument(node: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned<Kind>> {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import sys
 from types import TracebackType
+from typing import Any
 
 _WIDTH = 30
 
@@ -13,7 +14,7 @@ class Bar:
     """Shown from the first report on, gone when the work is done."""
 
     def __init__(self, wanted: bool) -> None:
-        self._handle = None
+        self._handle: Any = None
         self._drawn = False
         self._notebook = wanted and _in_notebook()
         self._terminal = wanted and not self._notebook and sys.stderr is not None and sys.stderr.isatty()
@@ -47,12 +48,13 @@ class Bar:
             self._display("")
 
     def _display(self, markup: str) -> None:
-        from IPython.display import HTML, display
+        from IPython import display
 
+        shown: Any = display
         if self._handle is None:
-            self._handle = display(HTML(markup), display_id=True)
+            self._handle = shown.display(shown.HTML(markup), display_id=True)
         else:
-            self._handle.update(HTML(markup))
+            self._handle.update(shown.HTML(markup))
 
 
 def _in_notebook() -> bool:

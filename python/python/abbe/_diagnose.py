@@ -33,14 +33,7 @@ def diagnose(
     >>> found.verdict, found.findings["term"]
     ('left-out-physics', ['backlash'])
     """
-    single = isinstance(recordings, (_abbe.Recording, str, PathLike))
-    all_of_them = [_read(one) for one in ([recordings] if single else recordings)]
-    held_out = None if holdout is None else _read(holdout)
     if callable(progress):
-        return _abbe.diagnose(all_of_them, held_out, progress)
+        return _abbe.diagnose(recordings, holdout, progress)
     with Bar(bool(progress)) as bar:
-        return _abbe.diagnose(all_of_them, held_out, bar.show if bar.watched else None)
-
-
-def _read(recording: _abbe.Recording | str | PathLike[str]) -> _abbe.Recording:
-    return recording if isinstance(recording, _abbe.Recording) else _abbe.Recording(recording)
+        return _abbe.diagnose(recordings, holdout, bar.show if bar.watched else None)

@@ -1,4 +1,4 @@
-"""Two drawings with matplotlib (``pip install abbe[plot]``): residuals by a state, and the error over a plane.
+"""Two drawings with matplotlib (``pip install "./python[plot]"``): residuals by a state, and the error over a plane.
 
 Both draw into axes of matplotlib that the caller may give, and return them; nothing is shown.
 """
@@ -78,16 +78,13 @@ def error_map(
         number = names.index(column)
         factor, unit = (1e3, "um") if number in tip else (1e6, "urad")
         values, what = drawn["error"][:, :, number] * factor, f"{column} ({unit})"
-    across, along = plane
+    across, along = plane[0], plane[1]
     mesh = axes.pcolormesh(drawn[across], drawn[along], values, shading="nearest")
     axes.figure.colorbar(mesh, ax=axes, label=what)
-    axes.set_xlabel(f"{across} ({_unit(across)})")
-    axes.set_ylabel(f"{along} ({_unit(along)})")
+    units = dict(zip(calibration.axes, calibration.machine.units))
+    axes.set_xlabel(f"{across} ({units[across]})")
+    axes.set_ylabel(f"{along} ({units[along]})")
     return axes
-
-
-def _unit(axis: str) -> str:
-    return "deg" if axis in "ABC" else "mm"
 
 
 def _axes(ax: Axes | None) -> Axes:

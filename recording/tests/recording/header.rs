@@ -56,6 +56,19 @@ fn every_channel_has_its_meaning() {
     assert_eq!(extra, ["c", "r"]);
 }
 
+#[test]
+fn a_title_is_what_was_written() {
+    let titled = |written: &str| header(&FULL.replace("\"circle: both directions\"", written)).title;
+    for (written, title) in [
+        ("\" night 4 \"", " night 4 "),
+        ("\"null\"", "null"),
+        ("12:30:00", "12:30:00"),
+        ("|\n  night 4", "night 4"),
+    ] {
+        assert_eq!(titled(written).as_deref(), Some(title), "{written}");
+    }
+}
+
 /// The sizes of units are the definitions: 1 in = 25.4 mm, 32 degF = 0 degC, 3600 arcsec = 1 deg.
 #[test]
 fn numbers_become_those_of_the_inside() {

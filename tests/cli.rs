@@ -363,6 +363,65 @@ fn a_bad_row_stops_the_stream_unless_it_may_be_skipped() {
     assert_eq!(nothing.status, 1);
 }
 
+/// Semicolons and tabs are read and written; the numbers are those behind commas.
+#[test]
+fn cells_are_separated_as_the_header_has_them() {
+    let calibration = file("separated", "backlash.yaml", BACKLASH);
+    let commas = abbe(&["compensate", &calibration], "x,y,z\n1,0,0\n0.5,0,0\n");
+    assert_eq!(column(&commas.out, "error_x"), [-0.005, 0.005]);
+    for separator in [";", "\t"] {
+        let rows = "x,y,z\n1,0,0\n0.5,0,0\n".replace(',', separator);
+        let run = abbe(&["compensate", &calibration], &rows);
+        assert_eq!((run.status, run.out), (0, commas.out.replace(',', separator)), "{}", run.err);
+    }
+}
+
+/// A unit behind a name is that of its column, in and out.
+#[test]
+fn units_may_stand_behind_the_names() {
+    let calibration = file("behind", "backlash.yaml", BACKLASH);
+    let run = abbe(&["compensate", &calibration], "x [in],y (mm),z\n1,0,0\n");
+    assert_eq!(run.status, 0, "{}", run.err);
+    assert!(run.out.starts_with("x [in],y (mm),z,error_x,"), "{}", run.out);
+    // 25.4 mm and half of the lost motion, in inches.
+    assert!((column(&run.out, "x_comp")[0] - 25.405 / 25.4).abs() < 1e-9, "{}", run.out);
+    let two = abbe(&["compensate", &calibration], "x [in],y,z\n#unit,mm,mm,mm\n1,0,0\n");
+    assert!(
+        two.status == 2 && two.err.contains("column `x` has two units, `in` in its name and `mm`"),
+        "{}",
+        two.err
+    );
+    let none = abbe(&["compensate", &calibration], "x [left],y,z\n1,0,0\n");
+    assert!(none.status == 2 && none.err.contains("`left` of column `x` is not a unit"), "{}", none.err);
+}
+
+#[test]
+fn what_is_no_table_of_text_is_told() {
+    let calibration = file("no-text", "backlash.yaml", BACKLASH);
+    let workbook = abbe(&["compensate", &calibration], "PK\u{3}\u{4}\u{14}\0");
+    assert!(
+        workbook.status == 1 && workbook.err.contains("workbook") && workbook.err.contains("CSV"),
+        "{}",
+        workbook.err
+    );
+}
+
+/// Rows beyond a table are counted, with the farthest; what is a rounding beyond its end is not.
+#[test]
+fn rows_beyond_the_tables_are_counted() {
+    let table = BACKLASH.replace(
+        "backlash: {lost_motion: 10 um}",
+        "table: {axis: X, start: 0 mm, step: 250 mm, unit: um, values: [0, 5, 8]}",
+    );
+    let calibration = file("beyond", "table.yaml", &table);
+    let inside = abbe(&["compensate", &calibration], "x,y,z\n0,0,0\n500.0001,0,900\n");
+    assert_eq!((inside.status, inside.err.as_str()), (0, ""));
+    let beyond = abbe(&["compensate", &calibration], "x,y,z\n-20,0,0\n100,0,0\n5000,0,0\n700,0,0\n");
+    let told = "3 rows lie outside of what was measured of X, 0 to 500 mm, as far as 5000 mm";
+    assert!(beyond.status == 0 && beyond.err.contains(told), "{}", beyond.err);
+    assert_eq!(column(&beyond.out, "error_x"), [0.0, 0.002, 0.008, 0.008]);
+}
+
 #[test]
 fn mistakes_in_the_header_are_all_told() {
     let calibration = file("header", "backlash.yaml", BACKLASH);

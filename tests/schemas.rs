@@ -174,6 +174,8 @@ fn the_schemas_are_schemas() {
         let schema = schema(name);
         assert!(jsonschema::meta::is_valid(&schema), "{name}");
         assert_eq!(schema["$schema"], "http://json-schema.org/draft-07/schema#", "{name}");
+        // The version is that of the form, which is the value of its first key.
+        assert_eq!(schema["$id"], format!("urn:abbe:{name}:1"));
     }
 }
 

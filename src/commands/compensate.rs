@@ -3,9 +3,10 @@
 
 mod answering;
 mod lines;
+mod separator;
 
 use std::cell::RefCell;
-use std::io::{self, IsTerminal};
+use std::io::{self, BufRead, IsTerminal};
 use std::path::Path;
 use std::rc::Rc;
 
@@ -27,6 +28,7 @@ use crate::output::{Person, warn};
 use crate::positions::{Layout, State, Summary, Wanted, quoted};
 use crate::progress::Progress;
 use answering::{Answering, Input};
+use separator::Separator;
 
 /// Bytes that are read at once, where there are as many.
 const CAPACITY: usize = 1 << 18;
@@ -93,14 +95,17 @@ impl<'c> Rows<'c> {
         command: &Compensate,
     ) -> Result<Self, Failure> {
         let equations = &calibrated.equations;
-        let mut answering = Answering::new(calibrated, motions, command.skip_bad);
+        let mut stdin = io::stdin().lock();
+        let first = stdin.fill_buf().map_err(|error| Failure::io("cannot read standard input", &error))?;
+        let separator = Separator::of(first)?;
+        let mut answering = Answering::new(calibrated, motions, separator, command.skip_bad);
         answering.summary = command.summary.then(Summary::default);
         answering.map = command.map.as_ref().map(|_| Map::new(equations, &calibrated.calibration));
         let answering = Rc::new(RefCell::new(answering));
-        let input = Input::new(Rc::clone(&answering));
+        let input = Input::new(stdin, Rc::clone(&answering));
         let mut builder = csv::ReaderBuilder::new();
-        let mut reader =
-            builder.has_headers(false).flexible(true).buffer_capacity(CAPACITY).from_reader(input);
+        builder.has_headers(false).flexible(true).delimiter(separator.byte()).buffer_capacity(CAPACITY);
+        let mut reader = builder.from_reader(input);
         let mut header = ByteRecord::new();
         if !read(&mut reader, &answering, &mut header)? {
             return Err(Failure::no(
@@ -171,6 +176,7 @@ impl<'c> Rows<'c> {
             let rows = if skipped == 1 { "row was" } else { "rows were" };
             warn(&format!("warning: {skipped} bad {rows} left out"));
         }
+        answering.reach.told().for_each(|outside| warn(&outside));
         if let Some(summary) = &answering.summary {
             warn(&summary.to_string());
         }

@@ -63,7 +63,12 @@ pub(crate) struct Layout {
 }
 
 struct Reader<'a> {
+    /// The header's cells, as they are written.
     header: Vec<String>,
+    /// The names of the columns: a unit in brackets behind a name, as in `x [mm]`, is no part of it.
+    names: Vec<String>,
+    /// These units.
+    units_of_names: Vec<Option<String>>,
     units: Option<Vec<String>>,
     read: Vec<bool>,
     mistakes: Vec<String>,
@@ -83,12 +88,10 @@ impl Layout {
             .collect();
         let units =
             units.map(|units| unit_row(units, header.len())).transpose().map_err(|mistake| vec![mistake])?;
-        if header.len() == 1 && header.iter().any(|only| only.contains([';', '\t'])) {
-            return Err(vec!["the columns are not separated by commas; write `x,y,z`".to_owned()]);
-        }
-        let mut reader =
-            Reader { read: vec![false; header.len()], header, units, mistakes: Vec::new(), wanted };
-        if reader.header.first().is_some_and(|first| first.parse::<f64>().is_ok()) {
+        let (names, units_of_names) = header.iter().map(|cell| named(cell)).unzip();
+        let read = vec![false; header.len()];
+        let mut reader = Reader { header, names, units_of_names, units, read, mistakes: Vec::new(), wanted };
+        if reader.names.first().is_some_and(|first| first.parse::<f64>().is_ok()) {
             return Err(vec![
                 "the first row is no header; write the columns' names above it, `x,y,z`".to_owned(),
             ]);
@@ -97,6 +100,16 @@ impl Layout {
         let layout = reader.layout();
         if reader.mistakes.is_empty() { Ok(layout) } else { Err(reader.mistakes) }
     }
+}
+
+/// The name of a column, and the unit in brackets behind it: `x [mm]`, `x (mm)`.
+fn named(cell: &str) -> (String, Option<String>) {
+    let brackets = [('[', ']'), ('(', ')')];
+    let found = brackets.iter().find_map(|(open, close)| {
+        let (name, unit) = cell.strip_suffix(*close)?.split_once(*open)?;
+        (!name.trim().is_empty()).then(|| (name.trim().to_owned(), Some(unit.trim().to_owned())))
+    });
+    found.unwrap_or_else(|| (cell.to_owned(), None))
 }
 
 /// `#unit,mm,mm`: the mark in a cell of its own before the units of all columns.
@@ -116,12 +129,12 @@ impl Reader<'_> {
     /// A column may stand once, and not under a name that the output needs.
     fn repeated(&mut self) {
         for name in output_columns(self.wanted.equations) {
-            if self.header.contains(&name) {
+            if self.names.contains(&name) {
                 self.mistakes.push(format!("column `{name}` is one of the output's; rename it"));
             }
         }
         let mut known = BTreeSet::new();
-        for name in self.header.iter().filter(|name| !name.is_empty()) {
+        for name in self.names.iter().filter(|name| !name.is_empty()) {
             if !known.insert(name) {
                 self.mistakes.push(format!("column `{}` stands twice", quoted(name)));
             }
@@ -180,7 +193,7 @@ impl Reader<'_> {
     }
 
     fn find(&mut self, name: &str) -> Option<usize> {
-        let index = self.header.iter().position(|own| own == name)?;
+        let index = self.names.iter().position(|own| own == name)?;
         if let Some(read) = self.read.get_mut(index) {
             *read = true;
         }
@@ -189,8 +202,17 @@ impl Reader<'_> {
 
     fn optional(&mut self, name: &str, default: &str) -> Option<Column> {
         let index = self.find(name)?;
-        let written = self.units.as_ref().and_then(|units| units.get(index)).filter(|unit| !unit.is_empty());
-        let unit = written.map_or(default, String::as_str);
+        let below = self.units.as_ref().and_then(|units| units.get(index)).filter(|unit| !unit.is_empty());
+        let beside = self.units_of_names.get(index).and_then(Option::as_ref);
+        if let (Some(below), Some(beside)) = (below, beside)
+            && below != beside
+        {
+            let (below, beside) = (quoted(below), quoted(beside));
+            self.mistakes.push(format!(
+                "column `{name}` has two units, `{beside}` in its name and `{below}` below it"
+            ));
+        }
+        let unit = below.or(beside).map_or(default, String::as_str);
         let expected = match default {
             "deg" => Dimension::ANGLE,
             "s" => Dimension::TIME,
@@ -216,9 +238,9 @@ impl Reader<'_> {
     }
 
     fn required(&mut self, name: &str, default: &str, what: &str) -> Column {
-        let known = self.header.iter().any(|own| own == name);
+        let known = self.names.iter().any(|own| own == name);
         if !known {
-            let near = nearest(name, self.header.iter().map(String::as_str));
+            let near = nearest(name, self.names.iter().map(String::as_str));
             let help = near.map(|near| format!("; is it `{}`?", quoted(near))).unwrap_or_default();
             self.mistakes.push(format!("there is no column `{name}`, {what}{help}"));
         }

@@ -13,8 +13,9 @@ use workshop::rows::{self, Room, Samples};
 
 use super::CAPACITY;
 use super::lines::{self, Lines};
+use super::separator::Separator;
 use crate::map::Map;
-use crate::positions::{Column, Layout, Summary};
+use crate::positions::{Column, Layout, Reach, Summary};
 
 /// The longest row, in bytes; what is longer is no table, and would have to be kept as a whole.
 const LONGEST_ROW: u64 = 1 << 20;
@@ -33,8 +34,8 @@ pub(super) struct Input<'c> {
 
 impl<'c> Input<'c> {
     /// Standard input, with those who answer what it brings.
-    pub(super) fn new(answering: Rc<RefCell<Answering<'c>>>) -> Self {
-        Self { stdin: io::stdin().lock(), answering, taken: 0 }
+    pub(super) fn new(stdin: io::StdinLock<'static>, answering: Rc<RefCell<Answering<'c>>>) -> Self {
+        Self { stdin, answering, taken: 0 }
     }
 }
 
@@ -69,9 +70,12 @@ pub(super) struct Answering<'c> {
     /// The tool of the last row.
     tool: Option<usize>,
     output: BufWriter<io::StdoutLock<'static>>,
+    separator: Separator,
     skip_bad: bool,
     /// How many rows were left out.
     pub(super) skipped: u64,
+    /// The rows beyond what was measured.
+    pub(super) reach: Reach,
     /// What the answers come to, where it is asked for.
     pub(super) summary: Option<Summary>,
     /// What a map is drawn from, where one is asked for.
@@ -84,7 +88,12 @@ pub(super) struct Answering<'c> {
 
 impl<'c> Answering<'c> {
     /// Nobody has asked yet.
-    pub(super) fn new(calibrated: &'c Calibrated, motions: &'c [ErrorMotion<'c>], skip_bad: bool) -> Self {
+    pub(super) fn new(
+        calibrated: &'c Calibrated,
+        motions: &'c [ErrorMotion<'c>],
+        separator: Separator,
+        skip_bad: bool,
+    ) -> Self {
         Self {
             machine: rows::Answering::new(calibrated, motions),
             motions,
@@ -93,8 +102,10 @@ impl<'c> Answering<'c> {
             samples: Samples::new(motions),
             tool: None,
             output: BufWriter::with_capacity(CAPACITY, io::stdout().lock()),
+            separator,
             skip_bad,
             skipped: 0,
+            reach: Reach::new(&calibrated.equations, &calibrated.calibration),
             summary: None,
             map: None,
             begun: 0,
@@ -105,7 +116,7 @@ impl<'c> Answering<'c> {
     /// Writes the header, and the units where the input has them.
     pub(super) fn begin(&mut self, layout: &Layout, added: Vec<String>) -> Result<(), Failure> {
         self.axes.clone_from(&layout.axes);
-        let mut head = lines::writer();
+        let mut head = lines::writer(self.separator);
         head.write_record(layout.header.iter().chain(&added)).map_err(|error| lines::failed(&error))?;
         if let Some(units) = &layout.units {
             let units = self.units(layout, units);
@@ -141,6 +152,7 @@ impl<'c> Answering<'c> {
             slot.1 = number;
         }
         self.samples.push(sample, tool);
+        self.reach.take(sample.position);
         self.tool = tool;
         if self.samples.len() < MOST_PENDING { Ok(()) } else { self.answer() }
     }
@@ -167,8 +179,8 @@ impl<'c> Answering<'c> {
 
     fn answer_rows(&mut self) -> Result<(), Failure> {
         let Self { machine, samples, records, .. } = self;
-        let (axes, skip_bad) = (self.axes.clone(), self.skip_bad);
-        let begin = || Lines::new(machine.equations(), &axes, skip_bad);
+        let (axes, skip_bad, separator) = (self.axes.clone(), self.skip_bad, self.separator);
+        let begin = || Lines::new(machine.equations(), &axes, separator, skip_bad);
         let pieces = machine.answer(samples, begin, |lines, row, answer| {
             records.get(row).is_some_and(|record| lines.take(row, record, answer))
         })?;

@@ -6,6 +6,7 @@ use model_dsl::equations::Equations;
 use workshop::failure::Failure;
 use workshop::rows::Answer;
 
+use super::separator::Separator;
 use crate::decimal::Decimal;
 use crate::positions::{Column, Summary, quoted};
 
@@ -27,13 +28,18 @@ pub(super) struct Lines<'l> {
 
 impl<'l> Lines<'l> {
     /// No line yet, of a machine whose axes have their positions in these columns.
-    pub(super) fn new(equations: &'l Equations, axes: &'l [Column], skip_bad: bool) -> Self {
+    pub(super) fn new(
+        equations: &'l Equations,
+        axes: &'l [Column],
+        separator: Separator,
+        skip_bad: bool,
+    ) -> Self {
         Self {
             equations,
             axes,
             skip_bad,
             number: Decimal::default(),
-            writer: writer(),
+            writer: writer(separator),
             summary: Summary::default(),
             answered: Vec::new(),
             skipped: 0,
@@ -75,8 +81,8 @@ impl<'l> Lines<'l> {
 }
 
 /// Writes rows of any width to memory.
-pub(super) fn writer() -> csv::Writer<Vec<u8>> {
-    csv::WriterBuilder::new().flexible(true).from_writer(Vec::new())
+pub(super) fn writer(separator: Separator) -> csv::Writer<Vec<u8>> {
+    csv::WriterBuilder::new().delimiter(separator.byte()).flexible(true).from_writer(Vec::new())
 }
 
 /// What was written.

@@ -2,11 +2,12 @@
 //! standard output, row by row, in constant memory.
 
 mod answering;
+mod input;
 mod lines;
 mod separator;
 
 use std::cell::RefCell;
-use std::io::{self, BufRead, IsTerminal};
+use std::io::{self, IsTerminal};
 use std::path::Path;
 use std::rc::Rc;
 
@@ -15,10 +16,11 @@ use csv::ByteRecord;
 use exchange::controller::Unit;
 use model_dsl::calibration::Tool;
 use model_dsl::diagnostic::Diagnostics;
+use rayon::Scope;
 use workshop::calibrated::{self, Calibrated};
 use workshop::failure::Failure;
 use workshop::load;
-use workshop::rows::{output_columns, timed};
+use workshop::rows::{self, output_columns, timed};
 use workshop::tools;
 use workshop::written;
 
@@ -27,7 +29,8 @@ use crate::map::Map;
 use crate::output::{Person, warn};
 use crate::positions::{Layout, State, Summary, Wanted, quoted};
 use crate::progress::Progress;
-use answering::{Answering, Input};
+use answering::Answering;
+use input::{Chunks, Input};
 use separator::Separator;
 
 /// Bytes that are read at once, where there are as many.
@@ -59,14 +62,25 @@ pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
     }
     let terms = calibrated.terms(|left_out| warn(&left_out));
     let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
-    let mut rows = Rows::open(&calibrated, &motions, command)?;
+    let machine = rows::Answering::new(&calibrated, &motions);
+    let drawn = rayon::in_place_scope(|scope| stream(scope, &calibrated, (&machine, &motions), command))?;
+    command.map.as_ref().zip(drawn).map_or(Ok(()), |(target, drawing)| written::whole(target, &drawing))
+}
+
+/// Takes the rows from standard input to standard output; gives the map that was asked for.
+fn stream<'c>(
+    scope: &Scope<'c>,
+    calibrated: &'c Calibrated,
+    machine: (&'c rows::Answering<'c>, &'c [ErrorMotion<'c>]),
+    command: &Compensate,
+) -> Result<Option<String>, Failure> {
+    let mut rows = Rows::open(scope, calibrated, machine, command)?;
     // Rows on a terminal are their own progress, and whoever types them needs none.
     let seen = command.quiet || io::stdout().is_terminal() || io::stdin().is_terminal();
     let progress = Progress::new(seen, "compensating");
     let done = rows.stream(&progress);
     drop(progress);
-    let drawn = rows.finish(done)?;
-    command.map.as_ref().zip(drawn).map_or(Ok(()), |(target, drawing)| written::whole(target, &drawing))
+    rows.finish(done)
 }
 
 /// The tools of LinuxCNC's table.
@@ -79,30 +93,30 @@ fn tool_table(calibrated: &Calibrated, path: &Path, unit: Unit) -> Result<Vec<To
 }
 
 /// The rows on their way from standard input to standard output.
-struct Rows<'c> {
-    reader: csv::Reader<Input<'c>>,
-    answering: Rc<RefCell<Answering<'c>>>,
+struct Rows<'s, 'c> {
+    reader: csv::Reader<Input<'s, 'c>>,
+    answering: Rc<RefCell<Answering<'s, 'c>>>,
     state: State<'c>,
     first: Option<ByteRecord>,
     row: u64,
 }
 
-impl<'c> Rows<'c> {
+impl<'s, 'c> Rows<'s, 'c> {
     /// Reads the header and writes the header of the output.
     fn open(
+        scope: &'s Scope<'c>,
         calibrated: &'c Calibrated,
-        motions: &'c [ErrorMotion<'c>],
+        machine: (&'c rows::Answering<'c>, &'c [ErrorMotion<'c>]),
         command: &Compensate,
     ) -> Result<Self, Failure> {
         let equations = &calibrated.equations;
-        let mut stdin = io::stdin().lock();
-        let first = stdin.fill_buf().map_err(|error| Failure::io("cannot read standard input", &error))?;
-        let separator = Separator::of(first)?;
-        let mut answering = Answering::new(calibrated, motions, separator, command.skip_bad);
+        let chunks = Chunks::begin().map_err(|error| Failure::io("cannot read standard input", &error))?;
+        let separator = Separator::of(chunks.rest())?;
+        let mut answering = Answering::new(scope, calibrated, machine, separator, command.skip_bad);
         answering.summary = command.summary.then(Summary::default);
         answering.map = command.map.as_ref().map(|_| Map::new(equations, &calibrated.calibration));
         let answering = Rc::new(RefCell::new(answering));
-        let input = Input::new(stdin, Rc::clone(&answering));
+        let input = Input::new(chunks, Rc::clone(&answering));
         let mut builder = csv::ReaderBuilder::new();
         builder.has_headers(false).flexible(true).delimiter(separator.byte()).buffer_capacity(CAPACITY);
         let mut reader = builder.from_reader(input);
@@ -200,9 +214,9 @@ fn tell_unread(names: &[String]) {
 }
 
 /// Reads the next row; `false` at the end.
-fn read<'c>(
-    reader: &mut csv::Reader<Input<'c>>,
-    answering: &RefCell<Answering<'c>>,
+fn read<'s, 'c>(
+    reader: &mut csv::Reader<Input<'s, 'c>>,
+    answering: &RefCell<Answering<'s, 'c>>,
     row: &mut ByteRecord,
 ) -> Result<bool, Failure> {
     answering.borrow_mut().begun = reader.position().byte();

@@ -62,23 +62,33 @@ impl Tape {
 
     /// Runs the tape on the inputs that `given` supplies; one number for each result.
     pub fn run(&self, given: impl Fn(Input) -> f64) -> Vec<f64> {
-        let places = self.numbers.len() + self.inputs.len() + self.operations.len();
+        let known = self.numbers.len() + self.inputs.len();
+        let places = known + self.operations.len();
         // With room for the results, which then need no array of their own.
         let mut values = Vec::with_capacity(places + self.results.len());
-        values.extend(&self.numbers);
+        values.extend_from_slice(&self.numbers);
         values.extend(self.inputs.iter().map(|input| given(*input)));
+        values.resize(places + self.results.len(), f64::NAN);
         let at = |values: &[f64], place: usize| values.get(place).copied().unwrap_or(f64::NAN);
-        for (operation, first, second) in &self.operations {
-            let (a, b) = (at(&values, *first), at(&values, *second));
-            values.push(match operation {
+        // As a slice: a vector would have its length written again at every step.
+        let slots = values.as_mut_slice();
+        for (place, (operation, first, second)) in (known..).zip(&self.operations) {
+            let (a, b) = (at(slots, *first), at(slots, *second));
+            let result = match operation {
                 Operation::Add => a + b,
                 Operation::Sub => a - b,
                 Operation::Mul => a * b,
                 Operation::Neg => -a,
-            });
+            };
+            if let Some(slot) = slots.get_mut(place) {
+                *slot = result;
+            }
         }
-        for place in &self.results {
-            values.push(at(&values, *place));
+        for (place, result) in (places..).zip(&self.results) {
+            let value = at(slots, *result);
+            if let Some(slot) = slots.get_mut(place) {
+                *slot = value;
+            }
         }
         values.drain(..places);
         values

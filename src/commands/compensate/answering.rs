@@ -1,12 +1,13 @@
 //! Rows that are read become rows that are written. In: rows with the state of the machine in each. Out: the same rows with
-//! errors and compensated positions, in their order, as many at a time as one read of the input brings.
+//! errors and compensated positions, in their order, some thousand at a time, while the next ones are read.
 
-use std::cell::RefCell;
-use std::io::{self, BufWriter, Read, Write};
-use std::rc::Rc;
+use std::io::{self, BufWriter, Write};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, sync_channel};
 
 use abbe_runtime::{ErrorMotion, Sample, TermState, states_needed};
 use csv::ByteRecord;
+use rayon::Scope;
 use workshop::calibrated::Calibrated;
 use workshop::failure::Failure;
 use workshop::rows::{self, Room, Samples};
@@ -17,56 +18,50 @@ use super::separator::Separator;
 use crate::map::Map;
 use crate::positions::{Column, Layout, Reach, Summary};
 
-/// The longest row, in bytes; what is longer is no table, and would have to be kept as a whole.
-const LONGEST_ROW: u64 = 1 << 20;
-
-/// So many rows are answered at once at the most: enough pieces for many processors, and some MB.
+/// So many rows are answered at once: enough pieces for many processors, and some MB.
 const MOST_PENDING: usize = 1 << 13;
 
-/// Standard input that has every row answered and shown before it waits for more, so that a program at the other end of
-/// the pipes gets every answer before it asks the next question.
-pub(super) struct Input<'c> {
-    stdin: io::StdinLock<'static>,
-    answering: Rc<RefCell<Answering<'c>>>,
-    /// How many bytes were read.
-    taken: u64,
-}
-
-impl<'c> Input<'c> {
-    /// Standard input, with those who answer what it brings.
-    pub(super) fn new(stdin: io::StdinLock<'static>, answering: Rc<RefCell<Answering<'c>>>) -> Self {
-        Self { stdin, answering, taken: 0 }
-    }
-}
-
-impl Read for Input<'_> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let mut answering = self.answering.borrow_mut();
-        if let Err(failure) = answering.answer().and_then(|()| answering.flush()) {
-            answering.failure = Some(failure);
-            return Err(io::Error::other("the rows before could not be answered"));
-        }
-        if self.taken.saturating_sub(answering.begun) > LONGEST_ROW {
-            let mistake = "error: standard input: a row is longer than 1 MiB";
-            answering.failure = Some(Failure::no(mistake.to_owned()));
-            return Err(io::Error::other("the row is too long"));
-        }
-        let read = self.stdin.read(buffer)?;
-        self.taken += u64::try_from(read).unwrap_or_default();
-        Ok(read)
-    }
-}
-
-/// Those who answer: the machine, and all that hears of its answers.
-pub(super) struct Answering<'c> {
-    machine: rows::Answering<'c>,
-    motions: &'c [ErrorMotion<'c>],
-    /// The position of each axis that a program moves, in a row.
-    axes: Vec<Column>,
-    /// The rows that are pending, as they were read, each with its number; and spare ones behind them.
+/// Rows that wait for their answers.
+struct Batch<'c> {
+    /// The rows as they were read, each with its number; and spare ones behind them.
     records: Vec<(ByteRecord, u64)>,
     /// The state of the machine in each of them.
     samples: Samples<'c>,
+}
+
+impl<'c> Batch<'c> {
+    fn new(motions: &'c [ErrorMotion<'c>]) -> Self {
+        Self { records: Vec::new(), samples: Samples::new(motions) }
+    }
+
+    /// Has the rows answered, piece by piece.
+    fn answer(
+        &self,
+        machine: &rows::Answering<'c>,
+        begin: impl Fn() -> Lines<'c> + Sync,
+    ) -> Result<Vec<Lines<'c>>, Failure> {
+        machine.answer(&self.samples, begin, |lines, row, answer| {
+            self.records.get(row).is_some_and(|record| lines.take(row, record, answer))
+        })
+    }
+}
+
+/// Rows with their lines.
+type Answered<'c> = Result<(Batch<'c>, Vec<Lines<'c>>), Failure>;
+
+/// Those who answer: the machine, and all that hears of its answers.
+pub(super) struct Answering<'s, 'c> {
+    scope: &'s Scope<'c>,
+    machine: &'c rows::Answering<'c>,
+    motions: &'c [ErrorMotion<'c>],
+    /// The position of each axis that a program moves, in a row.
+    axes: Arc<[Column]>,
+    /// The rows that were read last.
+    pending: Batch<'c>,
+    /// Those before them, which are being answered meanwhile.
+    before: Option<Receiver<Answered<'c>>>,
+    /// The storage of rows that were answered.
+    spare: Option<Batch<'c>>,
     /// The tool of the last row.
     tool: Option<usize>,
     output: BufWriter<io::StdoutLock<'static>>,
@@ -86,20 +81,23 @@ pub(super) struct Answering<'c> {
     pub(super) failure: Option<Failure>,
 }
 
-impl<'c> Answering<'c> {
-    /// Nobody has asked yet.
+impl<'s, 'c> Answering<'s, 'c> {
+    /// Nobody has asked yet. Rows are answered within the scope, while others are read.
     pub(super) fn new(
+        scope: &'s Scope<'c>,
         calibrated: &'c Calibrated,
-        motions: &'c [ErrorMotion<'c>],
+        (machine, motions): (&'c rows::Answering<'c>, &'c [ErrorMotion<'c>]),
         separator: Separator,
         skip_bad: bool,
     ) -> Self {
         Self {
-            machine: rows::Answering::new(calibrated, motions),
+            scope,
+            machine,
             motions,
-            axes: Vec::new(),
-            records: Vec::new(),
-            samples: Samples::new(motions),
+            axes: Arc::new([]),
+            pending: Batch::new(motions),
+            before: None,
+            spare: None,
             tool: None,
             output: BufWriter::with_capacity(CAPACITY, io::stdout().lock()),
             separator,
@@ -115,7 +113,7 @@ impl<'c> Answering<'c> {
 
     /// Writes the header, and the units where the input has them.
     pub(super) fn begin(&mut self, layout: &Layout, added: Vec<String>) -> Result<(), Failure> {
-        self.axes.clone_from(&layout.axes);
+        self.axes = layout.axes.as_slice().into();
         let mut head = lines::writer(self.separator);
         head.write_record(layout.header.iter().chain(&added)).map_err(|error| lines::failed(&error))?;
         if let Some(units) = &layout.units {
@@ -143,18 +141,20 @@ impl<'c> Answering<'c> {
         number: u64,
         (sample, tool): (&Sample<'_>, Option<usize>),
     ) -> Result<(), Failure> {
-        let place = self.samples.len();
-        if place == self.records.len() {
-            self.records.push((ByteRecord::new(), 0));
+        let Batch { records, samples } = &mut self.pending;
+        let place = samples.len();
+        if place == records.len() {
+            records.push((ByteRecord::new(), 0));
         }
-        if let Some(slot) = self.records.get_mut(place) {
+        if let Some(slot) = records.get_mut(place) {
             std::mem::swap(&mut slot.0, row);
             slot.1 = number;
         }
-        self.samples.push(sample, tool);
+        samples.push(sample, tool);
+        let full = samples.len() >= MOST_PENDING;
         self.reach.take(sample.position);
         self.tool = tool;
-        if self.samples.len() < MOST_PENDING { Ok(()) } else { self.answer() }
+        if full { self.hand_over() } else { Ok(()) }
     }
 
     /// Refuses a row that is no state of a machine.
@@ -167,32 +167,71 @@ impl<'c> Answering<'c> {
         Err(lines::bad(row, number, mistake))
     }
 
-    /// Answers what is pending, as far as the first bad row where none may be left out.
+    /// Answers all rows that were read, as far as the first bad one where none may be left out.
     pub(super) fn answer(&mut self) -> Result<(), Failure> {
-        if self.samples.is_empty() {
+        let before = self.wait()?;
+        self.take_back(before)?;
+        if self.pending.samples.is_empty() {
             return Ok(());
         }
-        let done = self.answer_rows();
-        self.samples.clear();
-        done
+        let lines = self.pending.answer(self.machine, self.lines())?;
+        let next = Batch::new(self.motions);
+        let mut batch = std::mem::replace(&mut self.pending, next);
+        let taken = self.take_all(&batch, lines);
+        batch.samples.clear();
+        self.pending = batch;
+        taken
     }
 
-    fn answer_rows(&mut self) -> Result<(), Failure> {
-        let Self { machine, samples, records, .. } = self;
-        let (axes, skip_bad, separator) = (self.axes.clone(), self.skip_bad, self.separator);
-        let begin = || Lines::new(machine.equations(), &axes, separator, skip_bad);
-        let pieces = machine.answer(samples, begin, |lines, row, answer| {
-            records.get(row).is_some_and(|record| lines.take(row, record, answer))
-        })?;
-        pieces.into_iter().try_for_each(|piece| self.take_lines(piece))
+    /// Has the rows that were read answered while those before them are written and the next ones are read.
+    fn hand_over(&mut self) -> Result<(), Failure> {
+        let before = self.wait()?;
+        let mut next = self.spare.take().unwrap_or_else(|| Batch::new(self.motions));
+        next.samples.follow(&self.pending.samples);
+        let batch = std::mem::replace(&mut self.pending, next);
+        let (sender, receiver) = sync_channel(1);
+        let (machine, begin) = (self.machine, self.lines());
+        self.scope.spawn(move |_| {
+            let lines = batch.answer(machine, begin);
+            // Nobody listens any more after a failure.
+            let _ = sender.send(lines.map(|lines| (batch, lines)));
+        });
+        self.before = Some(receiver);
+        self.take_back(before)
+    }
+
+    /// Waits for the rows that were handed over.
+    fn wait(&mut self) -> Result<Option<(Batch<'c>, Vec<Lines<'c>>)>, Failure> {
+        let Some(receiver) = self.before.take() else { return Ok(None) };
+        let lost = |_| Failure::wrong("error: rows were lost on their way".to_owned());
+        receiver.recv().map_err(lost)?.map(Some)
+    }
+
+    /// Writes rows that were handed over.
+    fn take_back(&mut self, answered: Option<(Batch<'c>, Vec<Lines<'c>>)>) -> Result<(), Failure> {
+        let Some((batch, lines)) = answered else { return Ok(()) };
+        self.take_all(&batch, lines)?;
+        self.spare = Some(batch);
+        Ok(())
+    }
+
+    /// What the lines of a piece are gathered in.
+    fn lines(&self) -> impl Fn() -> Lines<'c> + Send + Sync + use<'c> {
+        let (equations, axes) = (self.machine.equations(), Arc::clone(&self.axes));
+        let (separator, skip_bad) = (self.separator, self.skip_bad);
+        move || Lines::new(equations, Arc::clone(&axes), separator, skip_bad)
+    }
+
+    fn take_all(&mut self, batch: &Batch<'c>, pieces: Vec<Lines<'c>>) -> Result<(), Failure> {
+        pieces.into_iter().try_for_each(|piece| self.take_lines(batch, piece))
     }
 
     /// Writes the lines of a piece, and lets all hear of them.
-    fn take_lines(&mut self, piece: Lines<'_>) -> Result<(), Failure> {
+    fn take_lines(&mut self, batch: &Batch<'c>, piece: Lines<'c>) -> Result<(), Failure> {
         self.skipped += piece.skipped;
         if let Some(map) = &mut self.map {
             for row in &piece.answered {
-                let sample = self.samples.sample(*row);
+                let sample = batch.samples.sample(*row);
                 map.take(sample.position, sample.temperature.to_vec());
             }
         }

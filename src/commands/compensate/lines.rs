@@ -1,6 +1,8 @@
 //! Lines of the output. In: rows as they were read, and what they are answered. Out: their text, in their order, and what it comes to;
 //! as far as the first bad row where none may be left out.
 
+use std::sync::Arc;
+
 use csv::ByteRecord;
 use model_dsl::equations::Equations;
 use workshop::failure::Failure;
@@ -13,7 +15,7 @@ use crate::positions::{Column, Summary, quoted};
 /// The lines of rows that follow each other.
 pub(super) struct Lines<'l> {
     equations: &'l Equations,
-    axes: &'l [Column],
+    axes: Arc<[Column]>,
     skip_bad: bool,
     number: Decimal,
     pub(super) writer: csv::Writer<Vec<u8>>,
@@ -30,7 +32,7 @@ impl<'l> Lines<'l> {
     /// No line yet, of a machine whose axes have their positions in these columns.
     pub(super) fn new(
         equations: &'l Equations,
-        axes: &'l [Column],
+        axes: Arc<[Column]>,
         separator: Separator,
         skip_bad: bool,
     ) -> Self {

@@ -110,6 +110,12 @@ impl<'m> Samples<'m> {
         }
     }
 
+    /// Forgets all rows, and goes on behind the last row of others.
+    pub fn follow(&mut self, others: &Self) {
+        self.clear();
+        self.states.clone_from(&others.states);
+    }
+
     /// Forgets all rows, and keeps what terms remember behind the last.
     pub fn clear(&mut self) {
         self.position.all.clear();

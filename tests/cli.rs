@@ -293,11 +293,13 @@ fn temperatures_come_from_columns_and_a_missing_one_is_named() {
 }
 
 #[test]
-fn a_lag_needs_the_time() {
+fn a_lag_reads_the_time() {
     let text = BACKLASH.replace("backlash: {lost_motion: 10 um}", "lag: {gain: 20 1/s}");
     let calibration = file("lag", "lag.yaml", &text);
-    let untimed = abbe(&["compensate", &calibration], "x,y,z\n0,0,0\n");
-    assert!(untimed.status == 2 && untimed.err.contains("`t`"), "{}", untimed.err);
+    // Without it, rows are points at which the machine stands.
+    let untimed = abbe(&["compensate", &calibration], "x,y,z\n0,0,0\n1,0,0\n");
+    assert_eq!((untimed.status, column(&untimed.out, "x_comp")), (0, vec![0.0, 1.0]));
+    assert!(untimed.err.contains("a machine that stands: the term `lag`"), "{}", untimed.err);
     let run = abbe(&["compensate", &calibration], "t,x,y,z\n0,0,0,0\n0.1,1,0,0\n");
     // 10 mm/s at 20 1/s lags 0.5 mm.
     assert_eq!(column(&run.out, "error_x"), [0.0, -0.5]);

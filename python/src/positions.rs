@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyMapping;
 use workshop::calibrated::Calibrated;
 use workshop::rows::table::{Answers, Table};
-use workshop::rows::timed;
+use workshop::rows::{Timed, timed};
 
 use crate::arguments::{self, Entries, column, shape};
 use crate::error::wrong;
@@ -53,7 +53,7 @@ impl Rows {
             time: given.time.map(|time| column(time, "time", rows)).transpose()?,
             temperature: temperatures(py, calibrated, given.temperatures, rows)?,
         };
-        if let (Some(why), None) = (timed(&calibrated.calibration), &table.time) {
+        if let (Some(Timed::Memory(why)), None) = (timed(&calibrated.calibration), &table.time) {
             return Err(wrong(
                 py,
                 format!(

@@ -20,7 +20,7 @@ use rayon::Scope;
 use workshop::calibrated::{self, Calibrated};
 use workshop::failure::Failure;
 use workshop::load;
-use workshop::rows::{self, output_columns, timed};
+use workshop::rows::{self, Timed, output_columns, timed};
 use workshop::tools;
 use workshop::written;
 
@@ -137,6 +137,10 @@ impl<'s, 'c> Rows<'s, 'c> {
             )
         })?;
         tell_unread(&layout.unread);
+        let needed = timed(&calibrated.calibration);
+        if layout.time.is_none() {
+            needed.iter().filter_map(Timed::standing).for_each(|standing| warn(&standing));
+        }
         answering.borrow_mut().begin(&layout, output_columns(equations))?;
         let hysteresis: Vec<f64> = equations
             .axes
@@ -147,7 +151,7 @@ impl<'s, 'c> Rows<'s, 'c> {
         Ok(Self {
             reader,
             answering,
-            state: State::new(layout, wanted.time.is_some(), calibration, &hysteresis),
+            state: State::new(layout, needed.is_some(), calibration, &hysteresis),
             first: (more && !units).then_some(second),
             row: 0,
         })
@@ -236,7 +240,10 @@ fn wanted(calibrated: &Calibrated) -> Wanted<'_> {
     Wanted {
         equations: &calibrated.equations,
         sensors,
-        time: timed(&calibrated.calibration),
+        time: timed(&calibrated.calibration).and_then(|needed| match needed {
+            Timed::Memory(why) => Some(why),
+            Timed::Velocity(_) => None,
+        }),
         tools: !calibrated.calibration.tools.is_empty(),
     }
 }

@@ -14,7 +14,7 @@ pub mod table;
 
 pub use answering::{Answer, Answering, Room};
 pub use leaning::Lean;
-pub use needs::timed;
+pub use needs::{Timed, timed};
 pub use samples::Samples;
 pub use state::{Row, State};
 

@@ -118,8 +118,17 @@ fn spaces_without_a_header() {
     // Without a column of times.
     let stepped = text(spaces, "{every: 0.5 s}", "{column: 1, unit: mm}");
     assert_eq!(recording(&stepped, "1\n2\n3\n").unwrap().time, [0.0, 0.5, 1.0]);
-    // `camonitor` writes the name, the date, the time of day, the value, and what is wrong with it.
+    // `camonitor` writes the name, the date, the time of day, the value, and what is wrong with it. These lines are its own, of EPICS 7.0.7
+    // and EPICS 7.0.4, as its users show them.
     let monitored = text(spaces, "{column: [2, 3], unit: date}", "{column: 4, unit: mm}");
+    let shown = "MY-DEVICE-PREFIX:AI            2025-02-06 00:49:49.136633 182\n\
+                 MY-DEVICE-PREFIX:AI            2025-02-06 00:49:50.138049 183\n\
+                 MY-DEVICE-PREFIX:AI            2025-02-06 00:49:51.139423 184\n";
+    let read = recording(&monitored, shown).unwrap();
+    assert!((read.time[2] - 2.002_79).abs() < 1e-9, "{:?}", read.time);
+    assert_eq!(read.measured[0].as_deref().unwrap(), [182.0, 183.0, 184.0]);
+    let shown = "TST{Tank:1}T-Sp                2020-08-06 02:41:05.251229 30  \n";
+    assert_eq!(recording(&monitored, shown).unwrap().measured[0].as_deref().unwrap(), [30.0]);
     let lines =
         "S:X:RBV 2026-07-30 23:15:17.123456 1.234 \nS:X:RBV 2026-07-30 23:15:17.623456 1.25 HIGH MINOR\n";
     let read = recording(&monitored, lines).unwrap();

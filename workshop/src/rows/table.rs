@@ -58,7 +58,8 @@ pub fn answer(calibrated: &Calibrated, table: &Table, wanted: &Wanted) -> Result
     if !wanted.left_out {
         calibrated.refuse_uncompensable()?;
     }
-    let mut warnings = Vec::new();
+    let needed = if table.time.is_none() { timed(&calibrated.calibration) } else { None };
+    let mut warnings: Vec<String> = needed.and_then(|needed| needed.standing()).into_iter().collect();
     let terms = calibrated.terms(|left_out| warnings.push(left_out));
     let motions: Vec<ErrorMotion<'_>> = terms.iter().map(|terms| ErrorMotion { terms }).collect();
     let mut answering = Answering::new(calibrated, &motions);

@@ -203,3 +203,22 @@ fn a_date_without_its_time_of_day_is_none() {
     let error = clock("{column: [day, clock], unit: date}", "um").unwrap_err();
     assert_eq!(error.place, Some(Place::Cell { row: 4, column: 1 }), "{error}");
 }
+
+/// `halsampler.txt` is by LinuxCNC's `halsampler -t` of a generator: a sine of 5 Hz and 2.5 about zero, and the sawtooth of the same, once
+/// a millisecond. The first sample has the number 0 and is that of 1 ms.
+#[test]
+fn samples_of_a_hal() {
+    let file = "recording: 1\nmachine: FX\ninstrument: position\n\
+                data: {file: d, separator: spaces, header: none}\n\
+                channels: {time: {column: 1, unit: ms}, command.x: {column: 3, unit: mm}, measured.x: {column: 2, unit: mm}}\n";
+    let read = header(file).read_data(&path("halsampler.txt")).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(read.time.len(), 40);
+    let (sine, sawtooth) = (read.measured[0].as_deref().unwrap(), read.axes[0].command.as_deref().unwrap());
+    for (row, time) in read.time.iter().enumerate() {
+        assert!((time - 1e-3 * row as f64).abs() < 1e-12, "row {row} at {time}");
+        let turns = 5.0 * (time + 1e-3);
+        // Six places are written.
+        assert!((sine[row] - 2.5 * (std::f64::consts::TAU * turns).sin()).abs() < 1e-6, "row {row}");
+        assert!((sawtooth[row] - (5.0 * turns - 2.5)).abs() < 1e-6, "row {row}");
+    }
+}

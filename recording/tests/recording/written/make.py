@@ -1,5 +1,6 @@
 """Writes the tables of this folder, each as its program writes it: polars, pyarrow, pandas, openpyxl, XlsxWriter,
-DuckDB, fastparquet, h5py, SciPy, npTDMS, asammdf. Not run by the tests: what it wrote is kept.
+DuckDB, fastparquet, h5py, SciPy, npTDMS, asammdf. Not run by the tests: what it wrote is kept. `halsampler.txt` is LinuxCNC's and
+not of this script; its test says of what it is.
 
 The table is the same in all: 40 rows, 50 ms apart from 2026-07-30T23:15:17.123456 (UTC) on; x is a quarter of the row's
 number, missing in row 7 where the format can say so; n is the run, 1 and then 2 from row 20 on.

@@ -424,6 +424,36 @@ fn rows_beyond_the_tables_are_counted() {
     assert_eq!(column(&beyond.out, "error_x"), [0.0, 0.002, 0.008, 0.008]);
 }
 
+/// Some thousand rows are answered while the next ones are read, and what terms remember goes on from one of these batches to the next.
+/// X goes up by 10 mm and back; from the reversal on, the wind-up of 10 mm takes up the play in proportion to the way.
+#[test]
+fn rows_remember_across_all_that_is_read_ahead() {
+    let wound = BACKLASH.replace("lost_motion: 10 um", "lost_motion: 10 um, wind_up: 10 mm");
+    let calibration = file("ahead", "wound.yaml", &wound);
+    let (top, rows) = (10_000_i32, 20_000_i32);
+    let place = |row: i32| f64::from(top - (top - row).abs()) / 1000.0;
+    let header = "x,y,z\n".to_owned();
+    let table: Vec<String> = (0..=rows).map(|row| format!("{:.3},0,0\n", place(row))).collect();
+    let run = abbe(&["compensate", &calibration], &(header.clone() + &table.concat()));
+    assert_eq!(run.status, 0, "{}", run.err);
+    let errors = column(&run.out, "error_x");
+    assert_eq!(errors.len(), table.len());
+    for (row, error) in (0..=rows).zip(errors) {
+        let back = if row > top { place(top) - place(row) } else { 0.0 };
+        let taken_up = 1.0 - 2.0 * back / 10.0;
+        assert!((error + 0.005 * taken_up).abs() < 1e-8, "row {row}: {error}");
+    }
+    // A bad row ends it where it stands, however much was read beyond it.
+    let mut broken = table;
+    broken[12_345] = "1,zero,0\n".to_owned();
+    let rows = header + &broken.concat();
+    let stopped = abbe(&["compensate", &calibration], &rows);
+    assert_eq!((stopped.status, stopped.out.lines().count()), (1, 1 + 12_345));
+    assert!(stopped.err.contains("row 12346 under the header"), "{}", stopped.err);
+    let skipped = abbe(&["compensate", "--skip-bad", &calibration], &rows);
+    assert_eq!((skipped.status, skipped.out.lines().count()), (0, 1 + 20_000));
+}
+
 #[test]
 fn mistakes_in_the_header_are_all_told() {
     let calibration = file("header", "backlash.yaml", BACKLASH);

@@ -174,7 +174,8 @@ fn alike(r: f64, count: f64, fitted: f64) -> f64 {
     if count <= 4.0 { 0.0 } else { freed(r, count, fitted).clamp(0.0, MOST_ALIKE) }
 }
 
-/// The correlation of neighbours without what a fit of so many numbers takes from it, which is (fitted + 4 r) / count.
+/// The correlation of neighbours, corrected for its bias: in a series of `count` points from which `fitted` numbers were fitted, the
+/// estimate is too low by (fitted + 4 r) / count.
 fn freed(r: f64, count: f64, fitted: f64) -> f64 {
     (count * r + fitted) / (count - 4.0)
 }

@@ -15,7 +15,7 @@ pub(crate) struct Sum(XxHash3_128);
 /// The form of the results: another one makes all of them anew.
 const FORM: &str = "2";
 
-/// How much of a file is read at once.
+/// How much of a file is read at once, in bytes: as much as a pipe of Linux holds.
 const PIECE: usize = 1 << 16;
 
 impl Sum {
@@ -35,7 +35,7 @@ impl Sum {
         self
     }
 
-    /// Adds what a file holds; that there is none, or none that has an end, is a content too.
+    /// Adds what a file holds. A file that is missing, or a device without an end, counts as a content of its own.
     ///
     /// # Errors
     ///

@@ -251,8 +251,8 @@ impl Follow<'_> {
     }
 }
 
-/// The name of the second stage of a machine: what all of it is made from, and the machine. It is one job, since what is followed is known
-/// from all recordings of the machine, and would be looked up by each of them.
+/// The name of the job that follows the effects of a machine: the hash of what it is made from, and the machine. It is one job, since what
+/// is followed depends on all recordings of the machine.
 fn name_of(machine: &str, follows: &[Follow<'_>]) -> String {
     let keys: Vec<&str> = follows.iter().map(|follow| follow.key.as_str()).collect();
     format!("{FOLLOW}{}/{}", of_texts(&keys), encoded(machine))

@@ -254,7 +254,7 @@ pub(crate) fn read(
     for (id, keys) in &there.0 {
         let Some(key) = current.key(id) else { continue };
         let all = keys.iter().flat_map(|(key, paths)| paths.iter().map(move |path| (key, path)));
-        // What is followed is filed under a key of its own.
+        // A table of followed effects has its own key.
         let own = |(of, _): &(&String, &PathBuf)| table == Table::Followed || of.as_str() == key;
         let Some((_, path)) = newest(all.filter(own)) else { continue };
         match table::read(path) {

@@ -350,7 +350,7 @@ fn a_broken_result_is_told_and_nothing_panics() {
             let heard = Heard::default();
             let history = fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &heard).ok().unwrap();
             let heard = heard.0.into_inner();
-            // What was found is read where it is followed.
+            // A history reads no tables of parameters: `run` does, when it follows effects.
             let is_read = !path.to_string_lossy().contains("/parameters/");
             let told =
                 |text: &String| text.contains(path.to_str().unwrap()) && text.contains("cannot be read");

@@ -9,7 +9,7 @@ use pyo3::types::{PyByteArray, PyBytes, PyDict, PyMapping, PyString};
 
 use crate::error::wrong;
 
-/// The types of pandas that say that there is no value.
+/// The types that pandas uses for missing values.
 const MISSING: [&str; 2] = ["NAType", "NaTType"];
 
 /// A dictionary, or any other mapping.

@@ -33,7 +33,7 @@ use answering::Answering;
 use input::{Chunks, Input};
 use separator::Separator;
 
-/// Bytes that are read at once, where there are as many.
+/// The most bytes that are read or written at once: several times what a pipe holds, so that a file takes few calls of the system.
 const CAPACITY: usize = 1 << 18;
 
 /// So many mistakes of a header are told.

@@ -18,7 +18,7 @@ use super::separator::Separator;
 use crate::map::Map;
 use crate::positions::{Column, Layout, Reach, Summary};
 
-/// So many rows are answered at once: enough pieces for many processors, and some MB.
+/// So many rows are answered at once: 32 pieces, so that 16 processors have two each and seldom wait for the last one; and some MB.
 const MOST_PENDING: usize = 1 << 13;
 
 /// Rows that wait for their answers.
@@ -47,7 +47,7 @@ impl<'c> Batch<'c> {
 }
 
 /// Rows with their lines.
-type Answered<'c> = Result<(Batch<'c>, Vec<Lines<'c>>), Failure>;
+type Answered<'c> = (Batch<'c>, Vec<Lines<'c>>);
 
 /// Those who answer: the machine, and all that hears of its answers.
 pub(super) struct Answering<'s, 'c> {
@@ -59,7 +59,7 @@ pub(super) struct Answering<'s, 'c> {
     /// The rows that were read last.
     pending: Batch<'c>,
     /// Those before them, which are being answered meanwhile.
-    before: Option<Receiver<Answered<'c>>>,
+    before: Option<Receiver<Result<Answered<'c>, Failure>>>,
     /// The storage of rows that were answered.
     spare: Option<Batch<'c>>,
     /// The tool of the last row.
@@ -174,21 +174,15 @@ impl<'s, 'c> Answering<'s, 'c> {
         if self.pending.samples.is_empty() {
             return Ok(());
         }
-        let lines = self.pending.answer(self.machine, self.lines())?;
-        let next = Batch::new(self.motions);
-        let mut batch = std::mem::replace(&mut self.pending, next);
-        let taken = self.take_all(&batch, lines);
-        batch.samples.clear();
-        self.pending = batch;
-        taken
+        let batch = self.next_batch();
+        let lines = batch.answer(self.machine, self.lines())?;
+        self.take_back(Some((batch, lines)))
     }
 
     /// Has the rows that were read answered while those before them are written and the next ones are read.
     fn hand_over(&mut self) -> Result<(), Failure> {
         let before = self.wait()?;
-        let mut next = self.spare.take().unwrap_or_else(|| Batch::new(self.motions));
-        next.samples.follow(&self.pending.samples);
-        let batch = std::mem::replace(&mut self.pending, next);
+        let batch = self.next_batch();
         let (sender, receiver) = sync_channel(1);
         let (machine, begin) = (self.machine, self.lines());
         self.scope.spawn(move |_| {
@@ -200,17 +194,24 @@ impl<'s, 'c> Answering<'s, 'c> {
         self.take_back(before)
     }
 
+    /// Gives the rows that were read away; the next ones go on from what terms remember behind them.
+    fn next_batch(&mut self) -> Batch<'c> {
+        let mut next = self.spare.take().unwrap_or_else(|| Batch::new(self.motions));
+        next.samples.follow(&self.pending.samples);
+        std::mem::replace(&mut self.pending, next)
+    }
+
     /// Waits for the rows that were handed over.
-    fn wait(&mut self) -> Result<Option<(Batch<'c>, Vec<Lines<'c>>)>, Failure> {
+    fn wait(&mut self) -> Result<Option<Answered<'c>>, Failure> {
         let Some(receiver) = self.before.take() else { return Ok(None) };
         let lost = |_| Failure::wrong("error: rows were lost on their way".to_owned());
         receiver.recv().map_err(lost)?.map(Some)
     }
 
-    /// Writes rows that were handed over.
-    fn take_back(&mut self, answered: Option<(Batch<'c>, Vec<Lines<'c>>)>) -> Result<(), Failure> {
+    /// Writes rows that were answered, and keeps their storage.
+    fn take_back(&mut self, answered: Option<Answered<'c>>) -> Result<(), Failure> {
         let Some((batch, lines)) = answered else { return Ok(()) };
-        self.take_all(&batch, lines)?;
+        lines.into_iter().try_for_each(|piece| self.take_lines(&batch, piece))?;
         self.spare = Some(batch);
         Ok(())
     }
@@ -220,10 +221,6 @@ impl<'s, 'c> Answering<'s, 'c> {
         let (equations, axes) = (self.machine.equations(), Arc::clone(&self.axes));
         let (separator, skip_bad) = (self.separator, self.skip_bad);
         move || Lines::new(equations, Arc::clone(&axes), separator, skip_bad)
-    }
-
-    fn take_all(&mut self, batch: &Batch<'c>, pieces: Vec<Lines<'c>>) -> Result<(), Failure> {
-        pieces.into_iter().try_for_each(|piece| self.take_lines(batch, piece))
     }
 
     /// Writes the lines of a piece, and lets all hear of them.

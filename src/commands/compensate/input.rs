@@ -16,7 +16,7 @@ use super::answering::Answering;
 /// The longest row, in bytes; what is longer is no table, and would have to be kept as a whole.
 const LONGEST_ROW: u64 = 1 << 20;
 
-/// So many chunks are read ahead: one is enough while another is taken, and the second lets neither side wait for the other's pace.
+/// So many chunks are read ahead: the next one is there while one is taken, and another is on its way.
 const AHEAD: usize = 2;
 
 /// What was read of standard input, by a thread of its own.

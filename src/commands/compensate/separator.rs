@@ -43,3 +43,30 @@ impl Separator {
 fn refused(what: &str, help: &str) -> Failure {
     Failure::no(format!("error: standard input is {what}\nhelp: {help}"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_header_tells_what_separates() {
+        for (first, expected) in [
+            ("x,y\n1;5,2\n", Separator::Comma),
+            ("x;y\n1,5;2\n", Separator::Semicolon),
+            ("x\ty\n1,5\t2\n", Separator::Tab),
+            ("x\n1,5\n", Separator::Comma),
+            ("", Separator::Comma),
+        ] {
+            assert_eq!(Separator::of(first.as_bytes()).ok(), Some(expected), "{first:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_text_in_utf_8_is_named() {
+        let told = |first: &[u8]| Separator::of(first).err().unwrap().words().unwrap().text(false);
+        assert!(told(b"PK\x03\x04\x14\0").contains("a workbook"));
+        for first in [&b"\xff\xfex\0,\0"[..], b"\xfe\xff\0x\0,"] {
+            assert!(told(first).contains("UTF-16") && told(first).contains("save it as UTF-8"));
+        }
+    }
+}

@@ -3,8 +3,8 @@
 
 use abbe_runtime::{Direction, ErrorMotion, Sample, TermState, states_needed};
 
-/// Rows of a piece: so many that setting up a compensator for them takes no part of the time, and so few that what one read of a file
-/// brings is enough for all processors.
+/// Rows of a piece, for each of which a compensator is set up. Of 32, 256 and 1024 rows, 32 took 12 % more processor time, and 256 as much as
+/// 1024; with 256, what one read of a file brings is enough for all processors.
 pub(super) const PIECE: usize = 256;
 
 /// Entries of the same width, one after the other.
@@ -112,12 +112,6 @@ impl<'m> Samples<'m> {
 
     /// Forgets all rows, and goes on behind the last row of others.
     pub fn follow(&mut self, others: &Self) {
-        self.clear();
-        self.states.clone_from(&others.states);
-    }
-
-    /// Forgets all rows, and keeps what terms remember behind the last.
-    pub fn clear(&mut self) {
         self.position.all.clear();
         self.travel.all.clear();
         self.direction.all.clear();
@@ -126,6 +120,7 @@ impl<'m> Samples<'m> {
         self.time_step.clear();
         self.tools.clear();
         self.starts.clear();
+        self.states.clone_from(&others.states);
     }
 
     /// The number of the tool in a row.

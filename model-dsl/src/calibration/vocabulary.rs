@@ -185,7 +185,9 @@ pub const VOCABULARY: [Entry; 17] = [
         form: Form::Plain,
         keys: &[
             quantity("lost_motion", Kind::MOTION).role(Role::Linear),
-            quantity("wind_up", Kind::POSITION).bound(Bound::NotNegative).or("the backlash is taken up at once"),
+            quantity("wind_up", Kind::POSITION)
+                .bound(Bound::NotNegative)
+                .or("the backlash is taken up at once"),
             quantity(RAMP, Kind::TIME)
                 .bound(Bound::NotNegative)
                 .or("it is corrected at once")

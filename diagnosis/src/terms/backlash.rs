@@ -1,4 +1,4 @@
-//! `backlash`: play, reversal error, pre-sliding hysteresis. In: direction and travel of an axis. Out: -d/2, or -u/2 of
+//! `backlash`: lost motion, reversal error, pre-sliding hysteresis. In: direction and travel of an axis. Out: -d/2, or -u/2 of
 //! the play operator, where u within [-1, 1] follows q by 2 dq / w.
 
 use super::Memory;

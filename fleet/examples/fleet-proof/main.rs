@@ -46,7 +46,7 @@ fn main() {
 
 /// The table, in Markdown.
 fn table(shop: shop::Shop, judged: &judged::Judged) -> String {
-    let mut text = "| planted | raised in week | told of it, as a share | what is said in the last week |\n| --- | --- | --- | --- |\n"
+    let mut text = "| planted | raised in week | reported change, as a share of the true one | what is said in the last week |\n| --- | --- | --- | --- |\n"
         .to_owned();
     for (number, judged::Raised { what, week, sentence, size, .. }) in judged.raised.iter().enumerate() {
         let week = week.map_or_else(|| "never".to_owned(), |week| week.to_string());

@@ -45,7 +45,7 @@ pub enum CalibratedTerm {
         axis: usize,
         /// B, mm or rad.
         lost_motion: f64,
-        /// w, in the axis's mm or rad, not negative; 0: the play is taken up at once.
+        /// w, in the axis's mm or rad, not negative; 0: the backlash is taken up at once.
         wind_up: f64,
     },
     /// `-H d exp(-(t - t_reversal)/tau)`: a spike after each reversal.

@@ -180,17 +180,19 @@ pub const VOCABULARY: [Entry; 17] = [
     Entry {
         kind: TermKind::Backlash,
         name: "backlash",
-        physics: "play, reversal error, pre-sliding hysteresis",
+        physics: "lost motion, reversal error, pre-sliding hysteresis",
         state: State::Direction,
         form: Form::Plain,
         keys: &[
             quantity("lost_motion", Kind::MOTION).role(Role::Linear),
-            quantity("wind_up", Kind::POSITION).bound(Bound::NotNegative).or("the play is taken up at once"),
+            quantity("wind_up", Kind::POSITION)
+                .bound(Bound::NotNegative)
+                .or("the backlash is taken up at once"),
             quantity(RAMP, Kind::TIME)
                 .bound(Bound::NotNegative)
                 .or("it is corrected at once")
                 .role(Role::Setting),
-            flag(INSIDE_LOOP).or("no position loop answers it").role(Role::Setting),
+            flag(INSIDE_LOOP).or("no position loop responds to it").role(Role::Setting),
             OWN_AXIS,
         ],
         not_compensable: None,
@@ -325,14 +327,14 @@ pub const VOCABULARY: [Entry; 17] = [
         keys: &[
             LOAD,
             quantity("coefficient", Kind { of: Base::Motion, per: &[Base::Load] }).role(Role::Linear),
-            flag(INSIDE_LOOP).or("no position loop answers it").role(Role::Setting),
+            flag(INSIDE_LOOP).or("no position loop responds to it").role(Role::Setting),
         ],
         not_compensable: Some("no controller knows the load in time"),
     },
     Entry {
         kind: TermKind::Delay,
         name: "delay",
-        physics: "dead time: an axis that is told later than the others, or answers later",
+        physics: "dead time: an axis that gets its commands later than the others, or responds later",
         state: State::Velocity,
         form: Form::Plain,
         keys: &[quantity("time", Kind::TIME).bound(Bound::NotZero), OWN_AXIS],

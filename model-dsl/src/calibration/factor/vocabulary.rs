@@ -223,7 +223,7 @@ pub const FACTORS: [FactorEntry; 15] = [
         name: "temperature",
         state: State::Temperature,
         value: "T* - T0",
-        physics: "a play, a squareness or a stiffness that follows a temperature",
+        physics: "a backlash, a squareness or a stiffness that follows a temperature",
         keys: &[
             key("temperature", FactorHolds::Sensor),
             REFERENCE,

@@ -1,6 +1,7 @@
 //! The arguments of the command line. In: words. Out: one command with its options.
 
 mod choices;
+mod examples;
 mod fleet;
 mod values;
 
@@ -21,7 +22,7 @@ use crate::target::Target;
 
 /// Compiles a machine tool's kinematic chain into its error equations and compensation code.
 #[derive(Parser)]
-#[command(name = "abbe", version, arg_required_else_help = true, max_term_width = 100)]
+#[command(name = "abbe", version, arg_required_else_help = true, max_term_width = 100, after_help = examples::ABBE)]
 pub(crate) struct Arguments {
     /// Whether words for people are coloured. `auto`: where a terminal shows them, unless NO_COLOR is set.
     #[arg(long, global = true, value_enum, value_name = "WHEN", default_value_t = Color::Auto)]
@@ -34,38 +35,55 @@ pub(crate) struct Arguments {
 #[derive(Subcommand)]
 pub(crate) enum Command {
     /// Derive the error equations of a machine.
+    #[command(after_help = examples::DERIVE)]
     Derive(Derive),
     /// Compare a machine's equations with a published set, term by term.
+    #[command(after_help = examples::CHECK)]
     Check(Check),
     /// Print the Rust code that a machine file compiles to.
+    #[command(after_help = examples::EXPAND)]
     Expand(Expand),
     /// Read positions (CSV) and write the predicted errors and the compensated positions.
+    #[command(after_help = examples::COMPENSATE)]
     Compensate(Compensate),
     /// Find what the model of a machine leaves out, from recordings of the real one.
+    #[command(after_help = examples::DIAGNOSE)]
     Diagnose(Diagnose),
     /// Tell what a recording could show: from which size on each effect would be found in it.
+    #[command(after_help = examples::LIMITS)]
     Limits(Limits),
     /// Tell what a path would show that was not driven yet, and what to drive besides.
+    #[command(after_help = examples::PLAN)]
     Plan(Plan),
     /// Write the recording that a calibration predicts: an exact machine, its instrument and their noise.
+    #[command(after_help = examples::SIMULATE)]
     Simulate(Simulate),
     /// Make a calibration from instruments' files (lasers, levels, straightedges), or from what a controller corrects already.
+    #[command(after_help = examples::CALIBRATE)]
     Calibrate(Calibrate),
     /// Change the coefficients of a calibration to what measured parts show.
+    #[command(after_help = examples::UPDATE)]
     Update(Update),
     /// Give the standard figures of positioning and of circles from a recording (ISO 230-2, ISO 230-4).
+    #[command(after_help = examples::EVALUATE)]
     Evaluate(Evaluate),
     /// Diagnose the recordings of many machines over years, once each, and tell what changed.
+    #[command(after_help = examples::FLEET)]
     Fleet(Fleet),
     /// Write the files that a controller loads, and tell what they cannot carry.
+    #[command(after_help = examples::EXPORT)]
     Export(Export),
     /// Write a commented file to start from: of a machine, a calibration, a recording, a set-up or a path.
+    #[command(after_help = examples::NEW)]
     New(New),
     /// Explain a diagnostic code, a term, an error motion, a topology word or a word of the glossary; alone: list them.
+    #[command(after_help = examples::EXPLAIN)]
     Explain(Explain),
     /// Print the completions of a shell for this command line.
+    #[command(after_help = examples::COMPLETIONS)]
     Completions(Completions),
     /// Print the manual page, or write the pages of all commands into a folder.
+    #[command(after_help = examples::MAN)]
     Man(Man),
 }
 
@@ -390,16 +408,19 @@ pub(crate) struct New {
 #[derive(Subcommand)]
 pub(crate) enum NewFile {
     /// A machine file of a topology word, with its chain written out.
+    #[command(after_help = examples::NEW_MACHINE)]
     Machine {
         /// Axes that carry the part, F for the bed, axes that carry the tool.
         topology: String,
     },
     /// A calibration file with every constant and error motion of a machine, all zero.
+    #[command(after_help = examples::NEW_CALIBRATION)]
     Calibration {
         /// A machine file, the name of a shipped machine, or a topology word such as XYFZ.
         machine: String,
     },
     /// A recording file for the columns of a table.
+    #[command(after_help = examples::NEW_RECORDING)]
     Recording {
         /// The table: its first line has the names of the columns.
         data: PathBuf,
@@ -408,12 +429,14 @@ pub(crate) enum NewFile {
         machine: Option<String>,
     },
     /// A set-up file for the files of instruments and controllers, which `abbe calibrate` reads.
+    #[command(after_help = examples::NEW_SETUP)]
     Setup {
         /// The files.
         #[arg(required = true)]
         files: Vec<PathBuf>,
     },
     /// A path file for a machine, which `abbe simulate` and `abbe plan` drive.
+    #[command(after_help = examples::NEW_PATH)]
     Path {
         /// A machine file, the name of a shipped machine, or a topology word such as XYFZ.
         machine: String,

@@ -64,13 +64,23 @@ pub(crate) fn column(out: &str, name: &str) -> Vec<f64> {
 
 #[test]
 fn every_format_of_every_name_prints() {
-    for format in ["text", "latex", "html", "json", "maxima"] {
+    for format in ["text", "latex", "html", "json", "maxima", "python", "svg"] {
         for names in ["iso", "symbols"] {
             let run = abbe(&["derive", "excello-921", "--format", format, "--names", names], "");
             assert_eq!((run.status, run.err.as_str()), (0, ""), "{format} {names}");
             assert!(run.out.contains("excello-921"), "{format} {names}");
         }
     }
+}
+
+/// The drawing alone is that of the page, as a file that shows without one.
+#[test]
+fn the_drawing_of_a_chain_is_that_of_its_page() {
+    let picture = abbe(&["derive", "trunnion-5axis", "--format", "svg"], "").out;
+    assert!(picture.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\" "), "{picture}");
+    let body = picture.split("</style>\n").nth(1).unwrap();
+    assert!(body.contains("rotary C about") && body.matches("class=\"card\"").count() == 7, "{body}");
+    assert!(abbe(&["derive", "trunnion-5axis", "--format", "html"], "").out.contains(body));
 }
 
 #[test]

@@ -193,14 +193,41 @@ fn every_word_of_the_glossary_is_explained_as_the_guide_has_it() {
     let glossary = fs::read_to_string(root().join("docs/guide/glossary.md")).unwrap();
     let plain = |text: &str| text.replace('*', "").split_whitespace().collect::<Vec<_>>().join(" ");
     let entries: Vec<&str> = glossary.split("\n\n").filter(|entry| entry.starts_with("**")).collect();
-    assert!(entries.len() > 40);
+    assert!(entries.len() > 80);
+    let overview = plain(abbe(&["explain"], "").out.split("\nWords of the glossary\n").nth(1).unwrap());
     for entry in entries {
         let (words, text) = entry.strip_prefix("**").unwrap().split_once("**: ").unwrap();
+        assert!(overview.contains(words), "{words}");
         for word in words.split(", ") {
             for spelled in [word.to_owned(), word.to_lowercase().replace(' ', "-")] {
                 assert!(plain(&page(&spelled)).contains(&plain(text)), "{spelled}");
             }
         }
+    }
+}
+
+/// The order is that of a dictionary, in which a word is looked up.
+#[test]
+fn the_glossary_is_in_order() {
+    let glossary = fs::read_to_string(root().join("docs/guide/glossary.md")).unwrap();
+    let heads = glossary.split("\n\n").filter_map(|entry| entry.strip_prefix("**")?.split(['*', ',']).next());
+    let words: Vec<String> = heads.map(|word| word.to_lowercase().replace('-', " ")).collect();
+    assert!(words.is_sorted(), "{words:#?}");
+}
+
+#[test]
+fn a_word_of_the_trade_is_known_in_its_plural_too() {
+    for (word, title) in [
+        ("gantry", "Gantry: a word of the glossary"),
+        ("error motions", "Error motion: a word of the glossary"),
+        ("rams", "Quill, ram: a word of the glossary"),
+        ("racking", "Racking: a word of the glossary"),
+        (
+            "not-repeatable",
+            "Verdict, undecided, adequate, left-out physics, unexplained, not repeatable: a word",
+        ),
+    ] {
+        assert!(page(word).starts_with(title), "{word}");
     }
 }
 

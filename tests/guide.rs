@@ -6,8 +6,10 @@
 //! and `<!-- warns -->` against its standard error, where a line `...` stands for any lines; `<!-- ends: N -->` lets a command
 //! end with that status.
 
+mod gallery;
 mod links;
 mod pictures;
+mod site;
 
 use std::fs;
 use std::os::unix::fs::symlink;

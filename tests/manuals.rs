@@ -10,8 +10,13 @@ use crate::cli::abbe;
 
 /// The commands as the program's help lists them.
 fn commands() -> Vec<String> {
-    let help = abbe(&["--help"], "").out;
-    let rows = help.split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap();
+    listed(&abbe(&["--help"], "").out)
+}
+
+/// The commands that a help lists; none where it has none.
+pub(crate) fn listed(help: &str) -> Vec<String> {
+    let Some(rows) = help.split("Commands:\n").nth(1) else { return Vec::new() };
+    let rows = rows.split("\n\n").next().unwrap();
     let names = rows.lines().filter(|row| row.starts_with("  ") && !row.starts_with("   "));
     names.map(|row| row.split_whitespace().next().unwrap().to_owned()).filter(|name| name != "help").collect()
 }
@@ -86,6 +91,7 @@ fn every_command_has_a_manual_page() {
         let page = fs::read_to_string(folder.join(format!("abbe-{name}.1"))).unwrap();
         let plain = page.replace('\\', "");
         assert!(plain.contains(&format!(".TH abbe-{name} 1 ")), "{page}");
+        assert!(plain.contains("\n.SH EXAMPLES\nExamples (") && !plain.contains(".SH EXTRA"), "{page}");
         assert!(plain.contains(&format!("fBabbe {name}fR")), "the way to call it: {page}");
         for option in options(&name) {
             assert!(plain.contains(&option), "{name} {option}: {page}");

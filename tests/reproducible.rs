@@ -75,7 +75,7 @@ fn two_checkouts_give_the_same_bytes() {
     for shipped in SHIPPED {
         let machine = format!("machines/{}.yaml", shipped.name);
         add(&["expand", &machine]);
-        for format in ["text", "latex", "html", "json", "maxima"] {
+        for format in ["text", "latex", "html", "json", "maxima", "svg"] {
             add(&["derive", &machine, "--format", format]);
         }
     }

@@ -24,6 +24,7 @@ mod counts;
 mod dependencies;
 mod diagnose;
 mod evaluate;
+mod examples;
 mod experiments;
 mod explain;
 mod export;

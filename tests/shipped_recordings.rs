@@ -55,7 +55,10 @@ fn every_folder_is_listed_with_its_licence() {
     for entry in fs::read_dir(root().join("recordings")).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        assert!(!path.is_dir() || list.contains(&format!("[{name}]({name})")), "{name} is not listed");
+        assert!(
+            !path.is_dir() || list.contains(&format!("[{name}]({name}/README.md)")),
+            "{name} is not listed"
+        );
     }
     for (folder, licence) in REAL {
         let row = list.lines().find(|line| line.starts_with(&format!("| [{folder}]"))).unwrap();

@@ -9,8 +9,8 @@ use model_dsl::program::Interpreter;
 
 use super::text::{findings_hold, source};
 
-const FORMATS: [Format; 6] =
-    [Format::Text, Format::Latex, Format::Html, Format::Json, Format::Maxima, Format::Python];
+const FORMATS: [Format; 7] =
+    [Format::Text, Format::Latex, Format::Html, Format::Json, Format::Maxima, Format::Python, Format::Svg];
 
 /// Takes a file of any bytes as a machine file.
 pub fn run(bytes: &[u8]) {

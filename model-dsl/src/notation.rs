@@ -1,6 +1,6 @@
 //! The notation of equations: one tree of sums, products and letters, and writers of it.
 //!
-//! In: derived [`Equations`], and terms with their numbers ([`formula()`]). Out: plain text, LaTeX, a page with MathML, JSON, Maxima input or a Python module. What stands
+//! In: derived [`Equations`], and terms with their numbers ([`formula()`]). Out: plain text, LaTeX, a page with MathML, JSON, Maxima input, a Python module or a drawing of the chain. What stands
 //! where (order, signs, brackets, how a name is split into letter and subscript) is decided once, while the
 //! tree is built; a writer only spells it, so that no two formats can say different things.
 
@@ -52,6 +52,8 @@ pub enum Format {
     Maxima,
     /// A module for Python: NumPy and SymPy.
     Python,
+    /// The drawing of the chain alone, as an SVG file.
+    Svg,
 }
 
 /// Prints equations. JSON gives both names of every motion, whatever `names` says.
@@ -64,6 +66,7 @@ pub fn print(equations: &Equations, format: Format, names: Names) -> String {
         Format::Maxima => maxima::batch(&sheet()),
         Format::Python => python::module(&sheet()),
         Format::Json => json::object(equations),
+        Format::Svg => drawing(equations, names),
     }
 }
 

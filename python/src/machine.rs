@@ -111,7 +111,7 @@ impl Machine {
         self.loaded.page(Names::Symbols)
     }
 
-    /// The equations in a notation of `abbe derive`: `text`, `latex`, `html`, `json`, `maxima` or `python`; with the names of ISO 230-1
+    /// The equations in a notation of `abbe derive`: `text`, `latex`, `html`, `json`, `maxima` or `python`, or the drawing of the chain (`svg`); with the names of ISO 230-1
     /// (`iso`) or the machine file's symbols.
     ///
     /// >>> import abbe, json
@@ -131,8 +131,9 @@ impl Machine {
             "json" => Format::Json,
             "maxima" => Format::Maxima,
             "python" => Format::Python,
+            "svg" => Format::Svg,
             other => {
-                let help = "help: formats are text, latex, html, json, maxima, python";
+                let help = "help: formats are text, latex, html, json, maxima, python, svg";
                 return Err(wrong(py, format!("there is no format `{other}`\n{help}")));
             }
         };

@@ -10,7 +10,7 @@ import abbe
 
 
 @pytest.mark.parametrize("machine", ["XYFZ", "excello-921", "trunnion-5axis"])
-@pytest.mark.parametrize("format", ["text", "latex", "html", "json", "maxima", "python"])
+@pytest.mark.parametrize("format", ["text", "latex", "html", "json", "maxima", "python", "svg"])
 def test_notations(machine: str, format: str, root: object) -> None:
     assert abbe.Machine(machine).derive(format) == command("derive", machine, "--format", format)
 

@@ -28,6 +28,8 @@ pub(crate) enum Format {
     Maxima,
     /// A module for Python, with numbers, NumPy arrays or SymPy symbols.
     Python,
+    /// The drawing of the chain alone, as a picture.
+    Svg,
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use fleet::run::Shard;
 use recording::Moment;
 
-use super::LimitsFormat;
+use super::{LimitsFormat, examples};
 
 #[derive(Args)]
 pub(crate) struct Fleet {
@@ -18,10 +18,13 @@ pub(crate) struct Fleet {
 #[derive(Subcommand)]
 pub(crate) enum FleetCommand {
     /// Diagnose the recordings that have no result yet, and follow what was found in any of them in all of their machine.
+    #[command(after_help = examples::FLEET_RUN)]
     Run(FleetRun),
     /// Take over results that were made elsewhere from the same recordings.
+    #[command(after_help = examples::FLEET_ADD)]
     Add(FleetAdd),
     /// Tell how each machine is, what changed, and what to look at.
+    #[command(after_help = examples::FLEET_SHOW)]
     Show(FleetShow),
 }
 

@@ -1,4 +1,4 @@
-//! `abbe derive`: the error equations of a machine in one of six notations.
+//! `abbe derive`: the error equations of a machine in one of six notations, or the drawing of its chain.
 
 use std::path::PathBuf;
 
@@ -21,6 +21,7 @@ pub(crate) fn run(command: &Derive) -> Result<(), Failure> {
         Format::Json => notation::Format::Json,
         Format::Maxima => notation::Format::Maxima,
         Format::Python => notation::Format::Python,
+        Format::Svg => notation::Format::Svg,
     };
     let names = match command.names {
         Names::Iso => equations::Names::Iso,

@@ -42,5 +42,6 @@ fn write(folder: &Path, name: &str, command: Command) -> Result<(), Failure> {
 fn page(command: Command) -> Result<String, Failure> {
     let mut bytes = Vec::new();
     Page::new(command).render(&mut bytes).map_err(|error| Failure::io("cannot make the page", &error))?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    // What stands behind the options in a help are its examples.
+    Ok(String::from_utf8_lossy(&bytes).replace("\n.SH EXTRA\n", "\n.SH EXAMPLES\n"))
 }

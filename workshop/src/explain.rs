@@ -52,9 +52,9 @@ fn factors() -> Vec<(&'static FactorEntry, Entry<'static>)> {
     FactorKind::all().map(FactorKind::entry).zip(entry::read(FACTORS)).collect()
 }
 
-/// All codes and terms, a line each.
+/// All codes and terms, a line each, and the words of the glossary.
 pub fn overview() -> String {
-    page::overview(&codes(), &terms(), &factors())
+    page::overview(&codes(), &terms(), &factors(), &glossary::words().collect::<Vec<_>>())
 }
 
 /// The page of a code, a term, a factor, an error motion, a topology word or a word of the glossary; a name that is several of a term,

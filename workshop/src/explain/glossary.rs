@@ -14,7 +14,7 @@ struct Paragraph {
     text: &'static str,
 }
 
-/// The page of a word; letter case does not matter, and `-` stands for a space.
+/// The page of a word; letter case does not matter, `-` stands for a space, and a plural for its singular.
 pub(super) fn page(name: &str) -> Option<String> {
     let found = paragraphs().find(|one| one.words.split(", ").any(|word| same(word, name)))?;
     let text = found.text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -35,6 +35,9 @@ fn paragraphs() -> impl Iterator<Item = Paragraph> {
 }
 
 fn same(word: &str, name: &str) -> bool {
-    let spelled = |text: &str| text.replace('-', " ").to_lowercase();
+    let spelled = |text: &str| {
+        let text = text.replace('-', " ").to_lowercase();
+        text.strip_suffix('s').unwrap_or(&text).to_owned()
+    };
     spelled(word) == spelled(name)
 }

@@ -15,6 +15,7 @@ pub(super) fn overview(
     codes: &[Entry<'_>],
     terms: &[Entry<'_>],
     factors: &[(&FactorEntry, Entry<'_>)],
+    words: &[&str],
 ) -> String {
     let mut text = String::from("Terms\n-----\n\n");
     for term in terms {
@@ -28,6 +29,8 @@ pub(super) fn overview(
     for code in codes {
         line(&mut text, code.name, 7, code.title);
     }
+    text.push_str("\nWords of the glossary\n---------------------\n\n");
+    put(&mut text, &fill(&words.join(", "), WIDTH));
     text.push_str("\n`abbe explain NAME` tells more of each, of an error motion by its name, such as EX0C or EA(0Y)C, of a\n\
          topology word such as XYFZ, and of each word of the guide's glossary, such as squareness.\n");
     text

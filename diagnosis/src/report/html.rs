@@ -96,8 +96,8 @@ fn change(origin: &Origin<'_>) -> String {
     };
     let lines: String = origin.change.lines().map(line).collect();
     format!(
-        "<section>\n<h2>The calibration with the findings</h2>\n<p>What <code>--write-calibration</code> adds to what was \
-         known; + is new, - is gone.</p>\n<pre>{lines}</pre>\n</section>\n"
+        "<section>\n<h2>The calibration with the findings</h2>\n<p>The changes that <code>--write-calibration</code> makes to \
+         the known calibration; + is added, - is removed.</p>\n<pre>{lines}</pre>\n</section>\n"
     )
 }
 
@@ -108,7 +108,7 @@ fn command(origin: &Origin<'_>) -> String {
     }
     let [command, program] = [origin.command, origin.program].map(pages::text::escape);
     format!(
-        "<section>\n<h2>How this page is made again</h2>\n<pre>{command}</pre>\n<p class=\"source\">{program}; the same \
+        "<section>\n<h2>How to reproduce this page</h2>\n<pre>{command}</pre>\n<p class=\"source\">{program}. The same \
          recordings give the same page.</p>\n</section>\n"
     )
 }

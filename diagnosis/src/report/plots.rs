@@ -44,9 +44,9 @@ pub(super) fn sections(diagnosis: &Diagnosis) -> String {
     let Some(pictures) = &diagnosis.pictures else { return String::new() };
     let mut captions = Captions::default();
     let heading = if diagnosis.findings.is_empty() {
-        "What is left"
+        "Residuals"
     } else {
-        "How much each finding does, and what is left"
+        "The size of each finding, and the residuals"
     };
     let mut all = section(heading, &sizes::figures(diagnosis, pictures));
     for picture in &pictures.recordings {
@@ -55,7 +55,7 @@ pub(super) fn sections(diagnosis: &Diagnosis) -> String {
     let more = diagnosis.recordings.len().saturating_sub(pictures.recordings.len());
     if more > 0 {
         all += &format!(
-            "<p class=\"none\">{more} more recordings count for the findings and are not drawn.</p>\n"
+            "<p class=\"none\">{more} more recordings contribute to the findings and are not drawn.</p>\n"
         );
     }
     all
@@ -96,7 +96,7 @@ fn recording(
     if picture.of > picture.channels.len() {
         let more = picture.of - picture.channels.len();
         body += &format!(
-            "<p class=\"none\">{more} more channels count for the findings and are not drawn.</p>\n"
+            "<p class=\"none\">{more} more channels contribute to the findings and are not drawn.</p>\n"
         );
     }
     format!("<section>\n<h2>{}</h2>\n{body}</section>\n", escape(&heading))
@@ -124,7 +124,7 @@ fn shown(diagnosis: &Diagnosis, channel: &ChannelPicture) -> String {
     let drawn = channel.shown.outlier.iter().filter(|outlier| !**outlier).count();
     let mut sentences = vec![match thin::told(drawn, channel.samples) {
         Some(told) => {
-            format!("{told}, spread evenly over time, with the extremes.")
+            format!("{told}, evenly spread over time, with the extremes.")
         }
         None => format!("All {} samples are shown.", channel.samples),
     }];
@@ -135,7 +135,7 @@ fn shown(diagnosis: &Diagnosis, channel: &ChannelPicture) -> String {
         sentences.push("The findings change nothing here.".to_owned());
     }
     if !channel.unchanged && diagnosis.repeatability.is_some() {
-        sentences.push("After: every run has a zero of its own, since runs do not repeat.".to_owned());
+        sentences.push("After: every run has its own zero, because runs do not repeat.".to_owned());
     }
     if channel.outliers > 0 {
         sentences.push(format!("Outliers left out: {}.", channel.outliers));

@@ -1,4 +1,4 @@
-//! `backlash`: play, reversal error, pre-sliding hysteresis. In: direction and travel of an axis. Out: -d/2, or -u/2 of
+//! `backlash`: clearance, reversal error, pre-sliding hysteresis. In: direction and travel of an axis. Out: -d/2, or -u/2 of
 //! the play operator, where u within [-1, 1] follows q by 2 dq / w.
 
 use super::Memory;
@@ -6,9 +6,9 @@ use super::plausible::{Body, Range};
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "Play between the drive and what it moves, or friction that gives way only after the axis has \
-    turned: after each reversal the axis stays behind by the lost motion. Plausible: up to some tens \
-    of micrometres on a slide, and a degree on a rotary axis.";
+pub(super) const MEANING: &str = "A gap between the drive and the body that it moves, or friction that yields only after the \
+    axis has reversed. After each reversal the axis stays behind by the lost motion. Plausible: up to some tens of micrometres \
+    on a slide, or a degree on a rotary axis.";
 
 /// The plausible lost motion. A tenth of a millimetre is a slide whose nut is worn out; as a rotation it moves what is a metre
 /// away by as much. A rotary axis on gears may lose a degree.

@@ -45,7 +45,7 @@ pub enum CalibratedTerm {
         axis: usize,
         /// B, mm or rad.
         lost_motion: f64,
-        /// w, in the axis's mm or rad, not negative; 0: the play is taken up at once.
+        /// w, in the axis's mm or rad, not negative; 0: the lost motion is taken up at once.
         wind_up: f64,
     },
     /// `-H d exp(-(t - t_reversal)/tau)`: a spike after each reversal.
@@ -77,7 +77,7 @@ pub enum CalibratedTerm {
         axis: usize,
         /// K, 1/s, not zero; greater than zero where there is a natural frequency.
         gain: f64,
-        /// w/(2 pi), Hz, not negative; 0: a loop of first order.
+        /// w/(2 pi), Hz, not negative; 0: a first-order loop.
         frequency: f64,
     },
     /// `-a/K`.

@@ -9,8 +9,8 @@ mod sizes;
 mod spectrum;
 
 use pages::plot::{Axis, Draw, Look, Plot, Series, Tone, thin};
+use pages::text::printed;
 
-use super::markup::escape;
 use crate::diagnosis::Diagnosis;
 use crate::pictures::{ChannelPicture, Picture, Pictures};
 
@@ -28,7 +28,7 @@ impl Figure {
     fn html(&self) -> String {
         let caption = match self.caption.as_str() {
             "" => String::new(),
-            caption => format!("<figcaption>{}</figcaption>\n", escape(caption)),
+            caption => format!("<figcaption>{}</figcaption>\n", printed(caption)),
         };
         format!("<figure>\n{}{caption}</figure>\n", self.plot.draw().inline())
     }
@@ -81,8 +81,8 @@ fn recording(
         };
         body += &format!(
             "<h3>{}</h3>\n<p class=\"source\">{}</p>\n",
-            escape(&title),
-            escape(&shown(diagnosis, channel))
+            printed(&title),
+            printed(&shown(diagnosis, channel))
         );
         let mut figures = position::figures(diagnosis, channel, captions);
         if aside(diagnosis, pictures, channel) {
@@ -99,7 +99,7 @@ fn recording(
             "<p class=\"none\">{more} more channels contribute to the findings and are not drawn.</p>\n"
         );
     }
-    format!("<section>\n<h2>{}</h2>\n{body}</section>\n", escape(&heading))
+    format!("<section>\n<h2>{}</h2>\n{body}</section>\n", printed(&heading))
 }
 
 /// The channels: first the one in which something unexplained shows, then those that the findings change.
@@ -147,7 +147,7 @@ fn section(heading: &str, figures: &[Figure]) -> String {
     if figures.is_empty() {
         return String::new();
     }
-    format!("<section>\n<h2>{}</h2>\n{}</section>\n", escape(heading), grid(figures))
+    format!("<section>\n<h2>{}</h2>\n{}</section>\n", printed(heading), grid(figures))
 }
 
 fn grid(figures: &[Figure]) -> String {

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use pages::plot::RULES;
-use pages::text::escape;
+use pages::text::{escape, printed};
 
 use super::{age, brief, chart, count, most, worst};
 use crate::history::{Alarm, BOUND, History, Machine};
@@ -107,7 +107,7 @@ fn of_alarm(alarm: &Alarm, links: &Links<'_>) -> String {
         "<article class=\"alarm\">\n<p><strong><a href=\"{}\">{}</a></strong>: {}</p>\n<p>Look at {}.</p>\n{rests}</article>\n",
         escape(&(links.machine)(&alarm.machine)),
         escape(&alarm.machine),
-        escape(&alarm.reason),
+        printed(&alarm.reason),
         escape(&alarm.look_at)
     )
 }
@@ -124,14 +124,14 @@ fn row(history: &History, machine: &Machine, links: &Links<'_>) -> String {
         escape(&machine.name),
         escape(verdict),
         age(history, machine).unwrap_or_default(),
-        escape(&change),
+        printed(&change),
         worst.and_then(chart::small).unwrap_or_default()
     )
 }
 
 fn ranges(history: &History) -> String {
     let row = |range: &crate::history::Range| {
-        let number = |value: f64| escape(&super::number(value, &range.unit));
+        let number = |value: f64| printed(&super::number(value, &range.unit));
         format!(
             "<tr><td>{}</td><td>{}</td><td>{}</td><td>{} to {}</td></tr>\n",
             escape(&range.kind),
@@ -175,7 +175,7 @@ fn of_machine(history: &History, machine: &Machine, links: &Links<'_>) -> String
             Some(format!(
                 "<figure>{}<figcaption>{}</figcaption></figure>\n",
                 chart::plot(followed)?,
-                escape(&brief(followed))
+                printed(&brief(followed))
             ))
         })
         .collect();
@@ -192,7 +192,7 @@ fn of_machine(history: &History, machine: &Machine, links: &Links<'_>) -> String
                 Some(link) => format!("<a href=\"{}\">{name}</a>", escape(&link)),
                 None => name,
             };
-            let sentence = escape(&entry.sentence);
+            let sentence = printed(&entry.sentence);
             let gone = if entry.listed { "" } else { " <span class=\"source\">(deleted)</span>" };
             format!(
                 "<tr><td class=\"name\">{}</td><td>{name}{gone}</td><td>{sentence}</td></tr>\n",

@@ -2,7 +2,7 @@
 //! fetched.
 
 use pages::plot::{Axis, Cartesian, Draw, Line, Look, Plot, RULES, Series, Tone};
-use pages::text::escape;
+use pages::text::{escape, printed};
 
 use super::words;
 use crate::answer::{Found, Limit, Limits};
@@ -27,7 +27,7 @@ pub fn html(limits: &Limits, command: &str) -> String {
         limits.rows,
         escape(limits.verdict)
     );
-    body += &words::already(limits).map(|line| format!("<p>{}</p>\n", escape(&line))).unwrap_or_default();
+    body += &words::already(limits).map(|line| format!("<p>{}</p>\n", printed(&line))).unwrap_or_default();
     body += &table(limits);
     let never: Vec<String> =
         limits.all.iter().filter(|limit| limit.found.is_none()).map(words::never).collect();
@@ -49,7 +49,7 @@ fn section(heading: &str, body: &str) -> String {
 }
 
 fn list(heading: &str, lines: &[String]) -> String {
-    let lines: String = lines.iter().map(|line| format!("<li>{}</li>\n", escape(line))).collect();
+    let lines: String = lines.iter().map(|line| format!("<li>{}</li>\n", printed(line))).collect();
     if lines.is_empty() { lines } else { section(heading, &format!("<ul>\n{lines}</ul>\n")) }
 }
 
@@ -57,10 +57,10 @@ fn table(limits: &Limits) -> String {
     let row = |limit: &Limit| {
         Some(format!(
             "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td></tr>\n",
-            escape(&words::name(limit)),
-            escape(&words::size(limit)?),
-            escape(&words::interval(limit)),
-            escape(&words::told(limit))
+            printed(&words::name(limit)),
+            printed(&words::size(limit)?),
+            printed(&words::interval(limit)),
+            printed(&words::told(limit))
         ))
     };
     let rows: String = limits.all.iter().filter_map(row).collect();

@@ -310,7 +310,8 @@ fn notes(line: &Line, targets: &[TargetFigures], unit: Unit) -> Vec<String> {
     }
     if line.assumed() {
         notes.push(
-            "The recording does not contain the overrun at the ends. The first place of a run, and a place read twice where the motion reverses, are assumed to be approached as in the cycle of ISO 230-2."
+            "The recording does not contain the overrun at the ends. The first place of a run, and a place read twice where \
+             the motion reverses, are assumed to be approached as in the cycle of ISO 230-2."
                 .to_owned(),
         );
     }

@@ -68,7 +68,7 @@ fn count(machine: &Machine) -> String {
     let recordings = if all == 1 { "1 recording".to_owned() } else { format!("{all} recordings") };
     match machine.recordings.iter().filter(|entry| !entry.listed).count() {
         0 => recordings,
-        gone => format!("{recordings}, {gone} of them deleted"),
+        gone => format!("{recordings}, {gone} of them missing"),
     }
 }
 

@@ -214,12 +214,12 @@ fn a_recording_that_is_gone_stays_in_the_history_and_one_that_was_moved_counts_o
     fs::remove_file(stage.join("2026-02-02.yaml")).unwrap();
     let (listed, text) = machine(&fleet);
     assert_eq!(listed, [true, false, false]);
-    assert!(text.contains("3 recordings, 2 of them deleted"), "{text}");
+    assert!(text.contains("3 recordings, 2 of them missing"), "{text}");
     // Diagnosed under its new path it is one recording, of which the older result goes.
     assert_eq!(all(&fleet).diagnosed, 1);
     let (listed, text) = machine(&fleet);
     assert_eq!(listed, [true, true, false]);
-    assert!(text.contains("3 recordings, 1 of them deleted"), "{text}");
+    assert!(text.contains("3 recordings, 1 of them missing"), "{text}");
     all(&fleet);
     let names: Vec<PathBuf> = files(&fleet.results).into_keys().collect();
     assert_eq!(names.len(), 4 * DAYS.len(), "{names:?}");

@@ -23,7 +23,7 @@ pub(super) fn returns(diagnosis: &Diagnosis) -> Vec<String> {
         by_channel(diagnosis).filter_map(<[Returning]>::last).map(|one| returning(diagnosis, one)).collect();
     lines.extend([true, false].into_iter().filter_map(|twice| nothing(diagnosis, twice)));
     if lines.is_empty() && diagnosis.undecidable.is_some() {
-        lines.push("The noise was not determined, because these recordings decide nothing.".to_owned());
+        lines.push("No search was made for it, because these recordings decide nothing.".to_owned());
     }
     lines
 }

@@ -117,7 +117,7 @@ fn where_nothing_comes_back_a_sentence_says_why_and_nothing_is_drawn() {
         ),
         (
             of(Vec::new(), Some("A clock stands still.")),
-            "The noise was not determined, because these recordings decide nothing.",
+            "No search was made for it, because these recordings decide nothing.",
         ),
     ];
     for (page, sentence) in cases {

@@ -193,7 +193,7 @@ fn of_machine(history: &History, machine: &Machine, links: &Links<'_>) -> String
                 None => name,
             };
             let sentence = printed(&entry.sentence);
-            let gone = if entry.listed { "" } else { " <span class=\"source\">(deleted)</span>" };
+            let gone = if entry.listed { "" } else { " <span class=\"source\">(missing)</span>" };
             format!(
                 "<tr><td class=\"name\">{}</td><td>{name}{gone}</td><td>{sentence}</td></tr>\n",
                 entry.time.day()

@@ -43,14 +43,14 @@ impl<'m> Map<'m> {
     ) -> Result<String, Failure> {
         if self.rows == 0 && compensator.sensors() > 0 {
             return Err(Failure::no(
-                "error: no map can be drawn: the calibration reads temperatures, and no row has them"
+                "error: cannot draw a map: the calibration reads temperatures, but no row has them"
                     .to_owned(),
             ));
         }
         let slides = self.space.slides(self.equations);
         if slides.is_empty() {
             return Err(Failure::no(
-                "error: no map can be drawn: no slide has a table in the calibration or two positions on standard input\n\
+                "error: cannot draw a map: no slide has a table in the calibration or two positions on standard input\n\
                  help: give two opposite corners of the workspace as rows"
                     .to_owned(),
             ));

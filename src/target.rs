@@ -16,7 +16,7 @@ pub(crate) struct Target {
     /// Write the result to this file; by default it is printed.
     #[arg(long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Replace a file that is there already.
+    /// Replace an existing file.
     #[arg(long, requires = "output")]
     pub(crate) force: bool,
 }

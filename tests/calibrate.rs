@@ -338,7 +338,7 @@ fn pitch_and_yaw_are_taken_off_positioning_and_straightness() {
             );
         }
         let (calibration, names, report) = bench.calibration(&setup);
-        assert!(report.contains("lever arms taken off: EBX of up to"), "{report}");
+        assert!(report.contains("lever arms subtracted: EBX of up to"), "{report}");
         let from_first = |values: [f64; 5]| values.map(|value| value - values[0]);
         for (motion, truth) in [("EXX", POSITIONING), ("EYX", STRAIGHTNESS[0])] {
             for side in table(&calibration, &names, motion, 1e-3) {
@@ -437,10 +437,10 @@ fn nothing_is_written_over_and_nothing_half() {
     let at = |name: &str| bench.folder.join(name).to_str().unwrap().to_owned();
     bench.write("there.yaml", "mine");
     for (target, words) in [
-        ("there.yaml", "is there already"),
+        ("there.yaml", "already exists"),
         ("x.rtl", "one of the files that this command"),
         ("setup.yaml", "one of the files that this command"),
-        ("no/c.yaml", "no such folder"),
+        ("no/c.yaml", "its folder does not exist"),
     ] {
         let run = abbe(&["calibrate", &setup, "--output", &at(target)], "");
         assert_eq!(run.status, 2);

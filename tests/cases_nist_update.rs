@@ -455,7 +455,7 @@ fn the_command_writes_what_the_library_finds() {
         assert!((rms - all.after.rms).abs() < 1e-12);
         assert_eq!(read(&case, &place.join("new.yaml")).motions, expected.calibration.motions);
         let text = abbe(&arguments, "");
-        assert!(text.status == 0 && text.out.contains("Cannot be told apart from these points"));
+        assert!(text.status == 0 && text.out.contains("Collinear at these points"));
     }
     // The compiler's own doors take the file.
     let fed = abbe(
@@ -490,10 +490,10 @@ fn the_command_refuses_with_places_and_writes_nothing() {
         (&[known, &cold, "--output", &new], 2, &["E0626", "cold.yaml", "T27"]),
         (&[known, &linear, "--output", &new], 2, &["E0627", "linear.yaml", "probe"]),
         (&[other, &part, "--output", &new], 2, &["nist-turning-center", "postech-mill"]),
-        (&[known, &part, "--output", &there], 2, &["is there already", "--force"]),
+        (&[known, &part, "--output", &there], 2, &["already exists", "--force"]),
         (&[known, &part, "--output", known, "--force"], 2, &["reads or writes"]),
         (&[known, &part, "--output", &data, "--force"], 2, &["reads or writes"]),
-        (&[known, &part, "--output", &at("no/such/folder.yaml")], 2, &["no such folder"]),
+        (&[known, &part, "--output", &at("no/such/folder.yaml")], 2, &["its folder does not exist"]),
         (&[known, &part, "--datum", "w"], 2, &["--datum"]),
     ];
     for (arguments, status, words) in cases {

@@ -309,7 +309,7 @@ fn a_lag_reads_the_time() {
     // Without it, rows are points at which the machine stands.
     let untimed = abbe(&["compensate", &calibration], "x,y,z\n0,0,0\n1,0,0\n");
     assert_eq!((untimed.status, column(&untimed.out, "x_comp")), (0, vec![0.0, 1.0]));
-    assert!(untimed.err.contains("a machine that stands: the term `lag`"), "{}", untimed.err);
+    assert!(untimed.err.contains("static positions: the term `lag`"), "{}", untimed.err);
     let run = abbe(&["compensate", &calibration], "t,x,y,z\n0,0,0,0\n0.1,1,0,0\n");
     // 10 mm/s at 20 1/s lags 0.5 mm.
     assert_eq!(column(&run.out, "error_x"), [0.0, -0.5]);
@@ -429,7 +429,7 @@ fn rows_beyond_the_tables_are_counted() {
     let inside = abbe(&["compensate", &calibration], "x,y,z\n0,0,0\n500.0001,0,900\n");
     assert_eq!((inside.status, inside.err.as_str()), (0, ""));
     let beyond = abbe(&["compensate", &calibration], "x,y,z\n-20,0,0\n100,0,0\n5000,0,0\n700,0,0\n");
-    let told = "3 rows lie outside of what was measured of X, 0 to 500 mm, as far as 5000 mm";
+    let told = "3 rows are outside the measured range of X, 0 to 500 mm, as far as 5000 mm";
     assert!(beyond.status == 0 && beyond.err.contains(told), "{}", beyond.err);
     assert_eq!(column(&beyond.out, "error_x"), [0.0, 0.002, 0.008, 0.008]);
 }
@@ -469,7 +469,7 @@ fn mistakes_in_the_header_are_all_told() {
     let calibration = file("header", "backlash.yaml", BACKLASH);
     let run = abbe(&["compensate", &calibration], "x,Y,x,dir_q\n1,0,0,1\n");
     assert_eq!((run.status, run.out.as_str()), (2, ""));
-    for piece in ["column `x` stands twice", "no column `y`", "no column `z`"] {
+    for piece in ["column `x` occurs twice", "no column `y`", "no column `z`"] {
         assert!(run.err.contains(piece), "{piece}: {}", run.err);
     }
     let units = abbe(&["compensate", &calibration], "x,y,z\n#unit,mm,deg,mm\n1,0,0\n");
@@ -580,7 +580,7 @@ fn an_axis_cannot_move_in_no_time_where_its_speed_matters() {
     let text = BACKLASH.replace("backlash: {lost_motion: 10 um}", "lag: {gain: 20 1/s}");
     let lagging = file("still", "lag.yaml", &text);
     let run = abbe(&["compensate", &lagging], "t,x,y,z\n0,0,0,0\n0,1,0,0\n");
-    assert!(run.status == 1 && run.err.contains("time stands still"), "{}", run.err);
+    assert!(run.status == 1 && run.err.contains("the time does not advance"), "{}", run.err);
     let indifferent = file("still", "backlash.yaml", BACKLASH);
     assert_eq!(abbe(&["compensate", &indifferent], "t,x,y,z\n0,0,0,0\n0,1,0,0\n").status, 0);
 }
@@ -655,7 +655,7 @@ fn new_files_are_taken_by_the_commands_that_read_them() {
     }
     assert!(fs::read_to_string(folder.join("made/setup.yaml")).unwrap().contains("data: ../data.csv,"));
     let again = abbe(&["new", "XYFZ", "--output", &at("mill.yaml")], "");
-    assert!(again.status == 2 && again.err.contains("is there already"), "{}", again.err);
+    assert!(again.status == 2 && again.err.contains("already exists"), "{}", again.err);
     fs::remove_dir_all(folder).unwrap();
 }
 
@@ -701,7 +701,7 @@ fn a_result_goes_to_a_file_as_it_is_printed() {
         let refused = abbe(&[arguments, &["--output", &place]].concat(), "");
         assert_eq!((refused.status, refused.out.as_str()), (2, ""), "{arguments:?}");
         assert!(
-            refused.err.contains("there.txt is there already") && refused.err.contains("--force"),
+            refused.err.contains("there.txt already exists") && refused.err.contains("--force"),
             "{}",
             refused.err
         );
@@ -712,7 +712,7 @@ fn a_result_goes_to_a_file_as_it_is_printed() {
     }
     assert_eq!(abbe(&["derive", "FX", "--force"], "").status, 2, "--force is for --output");
     let nowhere = abbe(&["derive", "FX", "--output", "no/such/folder.txt"], "");
-    assert!(nowhere.status == 2 && nowhere.err.contains("there is no such folder"), "{}", nowhere.err);
+    assert!(nowhere.status == 2 && nowhere.err.contains("its folder does not exist"), "{}", nowhere.err);
 }
 
 #[test]

@@ -358,7 +358,7 @@ fn a_page_holds_every_finding_its_plots_the_change_and_its_command() {
     ] {
         assert!(page.contains(&format!("class=\"t\">{title}</text>")), "{title}");
     }
-    assert!(page.contains("0:1 against the circle of radius") && page.contains("100\u{a0}mm"));
+    assert!(page.contains("0:1 relative to the circle of radius") && page.contains("100\u{a0}mm"));
     assert!(page.contains(&format!("abbe diagnose {recording} --format html")));
     assert!(page.contains("Hollow marks: held out") && page.contains("after, held out ("));
     // What the diff adds stands in the calibration that was written.
@@ -384,7 +384,7 @@ fn what_a_diagnosis_is_read_from_is_never_written_over() {
         let kept = text(&target);
         let run = abbe(&["diagnose", &recording, "--write-calibration", target.to_str().unwrap()], "");
         assert_eq!((run.status, run.out.as_str()), (2, ""), "{name}");
-        assert!(run.err.contains("one of the files that the diagnosis is read from"), "{}", run.err);
+        assert!(run.err.contains("one of the files that the diagnosis reads"), "{}", run.err);
         assert_eq!(text(&target), kept, "{name}");
     }
     for target in [joined(&folder, "no/such/folder.yaml"), folder.to_str().unwrap().to_owned()] {
@@ -483,7 +483,7 @@ seed: 4
         let again = json(&done(abbe(&["diagnose", &next, "--format", "json"], "")));
         assert_eq!((&again["verdict"], &again["model"]), (&"adequate".into(), &serde_json::json!([])));
         assert_eq!(again["before"], found["after"]);
-        assert!(written.contains("# Mended: ECX has the wrong sign."), "{written}");
+        assert!(written.contains("# Corrected: ECX has the wrong sign."), "{written}");
     }
 
     #[test]
@@ -520,7 +520,7 @@ seed: 4
         let [recording, target] = ["recording.yaml", "other.yaml"].map(|name| joined(&folder, name));
         let run = abbe(&["diagnose", &recording, "--write-calibration", &target], "");
         assert_eq!(run.status, 2, "{}", run.err);
-        assert!(run.err.contains("never written over"), "{}", run.err);
+        assert!(run.err.contains("never overwrites"), "{}", run.err);
         assert!(!Path::new(&target).exists());
         assert_eq!(text(&folder.join("other-XFYZ.yaml")), kept);
     }
@@ -754,10 +754,10 @@ mod replay {
         );
         let output = joined(&folder, "out");
         for (arguments, words) in [
-            (vec![full.as_str(), &recording, "--seed", "3"], "leave --seed out"),
+            (vec![full.as_str(), &recording, "--seed", "3"], "leave out --seed"),
             (vec![&other, &recording], "is a recording of FX"),
             (vec![&warm, &recording], "`T1`"),
-            (vec![&table, &ring], "normal changes"),
+            (vec![&table, &ring], "a different normal in each row"),
         ] {
             let run = abbe(&[&["simulate"], &arguments[..], &["--output", &output]].concat(), "");
             assert_eq!((run.status, run.out.as_str()), (2, ""), "{arguments:?}: {}", run.err);
@@ -767,6 +767,6 @@ mod replay {
         // A recording is never replaced by its own prediction, unless that is asked for.
         let run = abbe(&["simulate", &full, &recording, "--output", folder.to_str().unwrap()], "");
         assert_eq!(run.status, 2);
-        assert!(run.err.contains("is there already"), "{}", run.err);
+        assert!(run.err.contains("already exists"), "{}", run.err);
     }
 }

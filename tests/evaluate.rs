@@ -93,7 +93,7 @@ fn text_says_the_same_in_a_terminal_s_width() {
         "Positioning of the slide X, at Y 140 mm, Z -50 mm",
         "26.00 um",
         "11 targets, 5 runs",
-        "The overrun at the ends is not in the recording",
+        "The recording does not contain the overrun at the ends",
     ] {
         assert!(run.out.contains(part), "{part} in {}", run.out);
     }
@@ -106,7 +106,7 @@ fn what_gives_no_figure_ends_with_status_one_and_the_reason() {
     let run = evaluated("motion", path, "text");
     assert_eq!((run.status, run.err.as_str()), (1, ""));
     assert!(
-        run.out.contains("positioning of X, because X was read in motion, a row every 0.050 s"),
+        run.out.contains("positioning of X, because X was read in motion, with a row every 0.050 s"),
         "{}",
         run.out
     );
@@ -150,7 +150,7 @@ fn rows_without_times_are_readings_in_their_order() {
     for (symbol, value) in [("B", 1.0), ("B_mean", -1.0), ("E", 3.0), ("M", 2.0), ("R", 1.0), ("A", 3.0)] {
         near(figure(line, symbol), value, 1e-9);
     }
-    assert!(line["notes"].to_string().contains("its rows were taken in their order"), "{line}");
+    assert!(line["notes"].to_string().contains("Its rows were taken in order"), "{line}");
     // Nothing else may do without times.
     let diagnosed = abbe(&["diagnose", recording.to_str().unwrap()], "");
     assert!(diagnosed.status == 2 && diagnosed.err.contains("E0601"), "{}", diagnosed.err);
@@ -185,7 +185,7 @@ fn a_laser_s_file_and_its_set_up_give_the_same_figures() {
             "{text}"
         );
     }
-    assert!(abbe(&["evaluate", &at("x's.rtl")], "").out.contains("does not name its axis"));
+    assert!(abbe(&["evaluate", &at("x's.rtl")], "").out.contains("names neither its axis"));
     fs::write(
         at("two.yaml"),
         format!("{head}  - {{motion: EXX, data: \"x's.rtl\"}}\n  - {{motion: EYY, data: \"x's.rtl\"}}\n"),

@@ -75,8 +75,8 @@ fn every_code_that_can_be_given_is_explained_and_no_other() {
         let text = page(code);
         let title = &listed()[code];
         assert!(text.starts_with(&format!("{code}: {title}\n\n")), "{text}");
-        assert_eq!(text.contains("This gives it"), !WITHOUT_EXAMPLE.contains(&code.as_str()), "{text}");
-        assert!(text.contains("\nMended\n------\n\n"), "{text}");
+        assert_eq!(text.contains("\nExample, as "), !WITHOUT_EXAMPLE.contains(&code.as_str()), "{text}");
+        assert!(text.contains("\nCorrected\n---------\n\n"), "{text}");
         let meaning = text.lines().nth(2).unwrap();
         assert!(meaning.len() > 20, "{text}");
     }
@@ -104,7 +104,7 @@ fn every_term_has_a_page_with_the_words_of_the_reports() {
             assert!(plain.contains(meaning), "{text}");
         }
         let sections =
-            ["Its value", "In a recording", "What else looks so", "How to measure it", "How to remove it"];
+            ["Its value", "In a recording", "What looks the same", "How to measure it", "How to remove it"];
         for section in sections {
             let rest =
                 text.split(&format!("\n{section}\n")).nth(1).unwrap_or_else(|| panic!("{section}: {text}"));
@@ -123,7 +123,7 @@ fn every_term_has_a_page_with_the_words_of_the_reports() {
 fn pages_refer_to_pages() {
     for name in TERM_NAMES.into_iter().chain(SETTINGS) {
         let text = page(name);
-        let also = text.split("What else looks so\n").nth(1).unwrap().split("\n\n").nth(1).unwrap();
+        let also = text.split("What looks the same\n").nth(1).unwrap().split("\n\n").nth(1).unwrap();
         for word in also.split('`').skip(1).step_by(2) {
             let known = TERM_NAMES.contains(&word) || SETTINGS.contains(&word);
             assert!(known || ["actual", "wind_up", "inside_loop"].contains(&word), "{name} speaks of {word}");
@@ -155,12 +155,14 @@ fn error_motions_are_told_by_their_names() {
             assert!(page.starts_with(&format!("{title}\n")) && page.contains(unit), "{name}: {page}");
         }
     }
-    assert!(page("EA(0Z)C").contains("EA(0Z)C, as ISO 230-1 writes, is the same error counted from Z."));
+    assert!(
+        page("EA(0Z)C").contains("EA(0Z)C, in the notation of ISO 230-1, is the same error counted from Z.")
+    );
     for (name, told) in [
-        ("EX0B", "EX(0C)B is the same place counted from C, where B stands on that"),
-        ("EX0C", "EX(0B)C is the same place counted from B, where C stands on that"),
-        ("EA(0X)C", "X does not show it, since it runs in that direction: EA(0X)C is refused"),
-        ("EX(0Y)C", "Y is a slide and has no place of its own: EX(0Y)C is refused"),
+        ("EX0B", "EX(0C)B is the same place counted from C, if C carries B"),
+        ("EX0C", "EX(0B)C is the same place counted from B, if B carries C"),
+        ("EA(0X)C", "EA(0X)C is refused (E0146): X runs in that direction and cannot show it."),
+        ("EX(0Y)C", "EX(0Y)C is refused (E0146): Y is a slide and has no place of its own."),
     ] {
         let page = page(name).split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(page.contains(told), "{name}: {page}");
@@ -177,13 +179,13 @@ fn unknown_names_are_refused_with_those_nearby() {
         ("E0199", "did you mean `E0109`, `E0119` or `E0129`?"),
         (
             "banana",
-            "`abbe explain` alone lists all codes and terms; it also knows error motions, topology words and the words of the \
-             guide's glossary",
+            "`abbe explain` without a name lists all codes and terms; it also explains error motions, topology words and the \
+             words of the guide's glossary",
         ),
         ("squarness", "did you mean `Squareness`?"),
     ] {
         let run = abbe(&["explain", name], "");
-        let told = format!("error: `{name}` is nothing that `abbe explain` knows\nhelp: {help}\n");
+        let told = format!("error: `abbe explain` does not know `{name}`\nhelp: {help}\n");
         assert_eq!((run.status, run.out.as_str(), run.err), (2, "", told));
     }
 }
@@ -236,12 +238,12 @@ fn topology_words_are_told_by_what_carries_what() {
     for (word, told) in [
         (
             "XYFZ",
-            "X carries the part, X stands on Y, Y stands on the bed. Z carries the tool, Z stands on the bed.",
+            "X carries the part, Y carries X, the bed carries Y. Z carries the tool, the bed carries Z.",
         ),
         ("xyfz", "part - X - Y - bed - Z - tool"),
         (
             "FXYZ",
-            "No axis carries the part: it is fixed to the bed. Z carries the tool, Z stands on Y, Y stands on X, X stands on the bed.",
+            "No axis carries the part: it is fixed to the bed. Z carries the tool, Y carries Z, X carries Y, the bed carries X.",
         ),
         ("FX", "Its 6 error motions: EXX, EYX, EZX, EAX, EBX, ECX."),
     ] {
@@ -353,8 +355,8 @@ fn block(text: &str) -> String {
 /// The example of a code, as its page shows it.
 pub(crate) fn example(code: &str) -> Option<Example> {
     let text = page(code);
-    let (_, rest) = text.split_once("This gives it, as ")?;
-    let (wrong, mended) = rest.split_once("\nMended\n").unwrap();
+    let (_, rest) = text.split_once("\nExample, as ")?;
+    let (wrong, mended) = rest.split_once("\nCorrected\n").unwrap();
     let heading = rest.lines().next().unwrap();
     let (heading, more) = heading.split_once(", ").unwrap_or((heading, ""));
     let (part, file) = match heading.strip_prefix("part of a ") {

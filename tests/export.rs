@@ -58,10 +58,10 @@ fn every_format_writes_files_and_tells_what_they_lose() {
         assert!(own < 0.01 && with < without, "{format}: {}", run.out);
         // The play of Y, 10 um, is what a file without directions loses: half of it.
         if matches!(format, "isg" | "etalon") {
-            assert!((rms(&run.out, "lost") - 5.0).abs() < 0.1, "{format}: {}", run.out);
+            assert!((rms(&run.out, "loss") - 5.0).abs() < 0.1, "{format}: {}", run.out);
         }
         if format == "sinumerik" {
-            assert!(rms(&run.out, "lost") < 0.05, "{}", run.out);
+            assert!(rms(&run.out, "loss") < 0.05, "{}", run.out);
         }
     }
 }
@@ -72,7 +72,7 @@ fn a_file_that_is_there_is_replaced_only_when_asked() {
     fs::write(folder.join("z.comp"), "mine\n").unwrap();
     let run = exported(&folder, "linuxcnc", &[]);
     assert_eq!(run.status, 2);
-    assert!(run.err.contains("z.comp is there already") && run.err.contains("--force"), "{}", run.err);
+    assert!(run.err.contains("z.comp already exists") && run.err.contains("--force"), "{}", run.err);
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "no file is written where one cannot be");
     assert_eq!(exported(&folder, "linuxcnc", &["--force"]).status, 0);
     assert_ne!(fs::read_to_string(folder.join("z.comp")).unwrap(), "mine\n");
@@ -98,7 +98,7 @@ fn files_that_are_there_are_read_as_the_controller_reads_them() {
     let text = fs::read_to_string(&x).unwrap();
     fs::write(&x, format!("# X\n{text}")).unwrap();
     let commented = check(&all);
-    assert!(commented.out.contains("line 1 is no triplet"), "{}", commented.out);
+    assert!(commented.out.contains("line 1 is not a triplet"), "{}", commented.out);
     assert_eq!(rms(&commented.out, "with these"), rms(&check(&all[1..]).out, "with these"));
     let unnamed = check(&[x.to_str().unwrap().to_owned()]);
     assert!(unnamed.status == 2 && unnamed.err.contains("E0804"), "{}", unnamed.err);
@@ -111,14 +111,14 @@ fn what_cannot_be_exported_is_refused_with_what_to_do() {
     for (format, more, says) in [
         ("linuxcnc", &["--points", "300"][..], "the controller takes 256"),
         ("linuxcnc", &["--at", "Q=3"], "no axis Q"),
-        ("linuxcnc", &["--range", "X=9:3"], "the range of X is none"),
-        ("linuxcnc", &["--output", nowhere.to_str().unwrap()], "no such folder"),
+        ("linuxcnc", &["--range", "X=9:3"], "the range of X is empty"),
+        ("linuxcnc", &["--output", nowhere.to_str().unwrap()], "does not exist"),
         ("pmac", &[], "--counts X=10000"),
         ("heidenhain", &[], "--value error"),
         ("sinumerik", &["--name", "Q=AX1"], "no such axis"),
-        ("isg", &["--counts", "X=10000"], "--counts says nothing to isg"),
-        ("linuxcnc", &["--value", "error"], "it is an option of sinumerik, heidenhain"),
-        ("pmac", &["--type", "1"], "it is an option of linuxcnc"),
+        ("isg", &["--counts", "X=10000"], "--counts has no effect on isg"),
+        ("linuxcnc", &["--value", "error"], "it is an option for sinumerik, heidenhain"),
+        ("pmac", &["--type", "1"], "it is an option for linuxcnc"),
     ] {
         let run = match more.first() {
             Some(&"--output") => abbe(&[&["export", format, &postech()], more].concat(), ""),
@@ -223,7 +223,7 @@ fn what_printers_and_hobby_mills_have_saved_comes_in_as_a_calibration() {
     fs::write(at("set-up.yaml"), format!("{head}{twice}")).unwrap();
     let run = abbe(&["calibrate", &at("set-up.yaml")], "");
     assert!(
-        run.status == 2 && run.err.contains("E0911") && run.err.contains("another file has given already"),
+        run.status == 2 && run.err.contains("E0911") && run.err.contains("another file already gives"),
         "{}",
         run.err
     );

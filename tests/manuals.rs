@@ -105,5 +105,5 @@ fn pages_that_cannot_be_written_are_told() {
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("a-file");
     fs::write(&file, "").unwrap();
     let run = abbe(&["man", "--output", file.to_str().unwrap()], "");
-    assert!(run.status == 2 && run.err.starts_with("error: cannot make "), "{}", run.err);
+    assert!(run.status == 2 && run.err.starts_with("error: cannot create "), "{}", run.err);
 }

@@ -30,7 +30,7 @@ fn near_a_singular_pose_the_reason_is_told_and_nothing_moves_far() {
     let run = compensated(&known, "x,b,w\n100,30,10\n100,89.99,10\n", &["--summary"]);
     assert_eq!(run.status, 1, "{}", run.err);
     assert!(run.err.contains("row 2 under the header"), "{}", run.err);
-    assert!(run.err.contains("times as far as the tip is to move"), "{}", run.err);
+    assert!(run.err.contains("times as far as the tip: here"), "{}", run.err);
     let rows = "x,b,w\n100,30,10\n100,89.99,10\n100,89.999,10\n100,90,10\n100,85,10\n";
     let run = compensated(&known, rows, &["--skip-bad", "--summary"]);
     assert_eq!(run.status, 0, "{}", run.err);
@@ -94,5 +94,5 @@ fn a_motion_without_a_lever_is_read_and_told() {
     assert!(run.err.contains("warning[W0402]: ECZ has no effect on gantry"), "{}", run.err);
     assert_eq!(column(&run.out, "x_comp"), [0.997]);
     let derived = abbe(&["derive", &known.replace("known.yaml", "gantry.yaml")], "").out;
-    assert!(derived.contains("Without effect, since they have no lever here: ECY, ECZ."), "{derived}");
+    assert!(derived.contains("Without effect, because they have no lever arm here: ECY, ECZ."), "{derived}");
 }

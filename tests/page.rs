@@ -62,7 +62,7 @@ fn the_worked_example_is_what_the_exact_machine_does() {
             let (sign, back) = if told > 0.0 { ('+', '\u{2212}') } else { ('\u{2212}', '+') };
             let size = short(told.abs() * 1e3);
             let sentence = format!(
-                "stands {size} \u{b5}m too far towards {sign}{0} of the part; compensation moves the tip by {back}{size} \u{b5}m in {0}",
+                "is {size} \u{b5}m too far towards {sign}{0} of the part. Compensation moves the tip by {back}{size} \u{b5}m in {0}",
                 row.direction
             );
             assert_eq!(text.contains(&sentence), reached, "{}: {sentence}", shipped.name);

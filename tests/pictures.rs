@@ -128,13 +128,13 @@ fn no_map_is_drawn_over_nothing_or_over_what_is_there() {
     fs::write(folder.join("map.svg"), "mine").unwrap();
     let there = map(&folder, CORNERS, &[]);
     assert_eq!((there.status, there.out.as_str()), (2, ""), "nothing is done at all");
-    assert!(there.err.contains("is there already") && there.err.contains("--force"), "{}", there.err);
+    assert!(there.err.contains("already exists") && there.err.contains("--force"), "{}", there.err);
     assert_eq!(fs::read_to_string(folder.join("map.svg")).unwrap(), "mine");
     drawing(&map(&folder, CORNERS, &["--force"]), &at(&folder, "map.svg"));
     let known = at(&folder, "known.yaml");
     for (target, said) in [
         (known.clone(), "one of the files that this command"),
-        (at(&folder, "no/such/map.svg"), "no such folder"),
+        (at(&folder, "no/such/map.svg"), "does not exist"),
         (at(&folder, ""), "is a folder"),
     ] {
         let run = abbe(&["compensate", &known, "--map", &target, "--force"], CORNERS);

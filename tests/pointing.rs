@@ -62,7 +62,7 @@ fn the_row_of_units_says_rad() {
 fn a_column_of_that_name_is_one_of_the_output() {
     let run = compensated("leaning-taken", HEAD, "errors: {EBX: 40 urad}\n", "x,z,b,error_i\n0,0,0,0\n", &[]);
     assert_eq!(run.status, 2);
-    assert!(run.err.contains("`error_i` is one of the output's"), "{}", run.err);
+    assert!(run.err.contains("`error_i` has the name of an output column"), "{}", run.err);
 }
 
 /// 30 urad of X and 40 urad of B about Y are 70 urad together; B takes its own away where it leaves the direction, and else all. 30 urad are

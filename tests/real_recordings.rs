@@ -97,7 +97,7 @@ fn documented_loop(found: &Value) -> Vec<Distance> {
 
 /// A load is said to be the loop's answer.
 fn not_a_cause(found: &Value, load: &str) {
-    let sentence = format!("What the load {load} does");
+    let sentence = format!("This recording cannot show the effect of the load {load}");
     let said = found["undecided"]
         .as_array()
         .unwrap()

@@ -130,7 +130,7 @@ fn a_simulation_writes_a_recording_that_conceals_what_is_not_known() {
     // Again: refused; forced: the same bytes; with another seed: others.
     let again = abbe(&arguments, "");
     assert_eq!(again.status, 2);
-    assert!(again.err.contains("is there already") && again.err.contains("--force"), "{}", again.err);
+    assert!(again.err.contains("already exists") && again.err.contains("--force"), "{}", again.err);
     let forced = |seed: &str| {
         let run = abbe(&[&arguments[..], &["--force", "--seed", seed]].concat(), "");
         assert_eq!(run.status, 0, "{}", run.err);
@@ -178,7 +178,7 @@ fn mistakes_end_with_status_two_and_write_nothing() {
         (vec![&calibration, &good, "--known", &other], "not of xyfz-mill"),
         (vec![&calibration, "nowhere.yaml"], "nowhere.yaml"),
         (vec![&good, &good], "calibration"),
-        (vec![&calibration, &calibration], "a path file begins with `path: 1`"),
+        (vec![&calibration, &calibration], "begin a path file with `path: 1`"),
     ] {
         let run = abbe(&[&["simulate"], &arguments[..], &["--output", output]].concat(), "");
         assert_eq!((run.status, run.out.as_str()), (2, ""), "{arguments:?}");

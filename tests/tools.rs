@@ -184,7 +184,7 @@ fn a_tool_that_is_not_there_is_told_with_its_row() {
     let without = file("without.yaml", &calibration("Xt: 0 mm, Yt: 0 mm, Zt: 150 mm", ""));
     let run = compensated(&without, "x,y,z,tool\n0,0,0,99\n");
     assert_eq!(run.status, 0);
-    assert!(run.err.contains("column `tool` is carried along"), "{}", run.err);
+    assert!(run.err.contains("column `tool` is copied to the output"), "{}", run.err);
 }
 
 #[test]

@@ -96,7 +96,7 @@ pub unsafe fn open<M: CompiledMachine>(
             (Status::Done, warnings)
         }
         Ok(Err(mistakes)) => (Status::Calibration, mistakes),
-        Err(_) => (Status::Fault, "error: a fault of Abbe".to_owned()),
+        Err(_) => (Status::Fault, "error: a bug in Abbe".to_owned()),
     };
     // SAFETY: null or room for so many bytes.
     unsafe { write_message(&words, message, size) };
@@ -378,7 +378,7 @@ pub unsafe extern "C" fn abbe_close(handle: *mut Abbe) {
 /// A status in words, in English; for any number. It lives for ever.
 #[unsafe(no_mangle)]
 pub extern "C" fn abbe_status_text(status: i32) -> *const c_char {
-    Status::of(status).map_or(c"no status of Abbe", Status::text).as_ptr()
+    Status::of(status).map_or(c"not a status of Abbe", Status::text).as_ptr()
 }
 
 /// The version of Abbe, such as `0.1.0`. It lives for ever.

@@ -42,9 +42,9 @@ impl Status {
             Self::Active => c"active: the correction is that of the model, or on its way to it",
             Self::Holding => c"holding: active with the last reading of a silent sensor",
             Self::Lost => c"lost: a sensor has been silent for too long, the correction fades out",
-            Self::Refused => c"refused: the sample has no correction, what was made fades out",
+            Self::Refused => c"refused: the sample has no correction, the present correction fades out",
             Self::Off => c"off: switched off, the correction fades out",
-            Self::NullPointer => c"null pointer: a pointer that is needed is null",
+            Self::NullPointer => c"null pointer: a required pointer is null",
             Self::WrongLength => {
                 c"wrong length: not one position for each axis, or one temperature for each sensor"
             }
@@ -53,7 +53,7 @@ impl Status {
             }
             Self::Calibration => c"calibration: the file cannot be used",
             Self::Busy => c"busy: another thread is in a call with this handle",
-            Self::Fault => c"fault: a fault of Abbe",
+            Self::Fault => c"fault: a bug in Abbe",
         }
     }
 

@@ -184,10 +184,10 @@ pub(crate) fn separate_by(study: &Study<'_>, this: &Effect, other: &Effect) -> S
                 .to_owned()
         }
         (Shape::Instrument(Setting::Cosine), _) | (_, Shape::Instrument(Setting::Cosine)) => {
-            "align the beam anew and repeat: a cosine error changes, a scale does not".to_owned()
+            "align the beam again and repeat: a cosine error changes, a scale error does not".to_owned()
         }
         (Shape::Instrument(_), _) | (_, Shape::Instrument(_)) => {
-            "set the instrument up anew, elsewhere, and repeat: what stays is the machine's".to_owned()
+            "set up the instrument again at another place and repeat: errors of the machine do not change".to_owned()
         }
         (Shape::Lag { axis: a, .. }, Shape::Lag { axis: b, .. }) if a != b => {
             format!("a straight line along {} alone", letter(*a))
@@ -215,7 +215,7 @@ fn by_lever(study: &Study<'_>, this: &Effect, other: &Effect) -> Option<String> 
     if first.0 == second.0 {
         let states = states_of(study, this, other);
         return Some(format!(
-            "nothing at the tool tip alone: their lever arms are the same; vary {states} separately"
+            "vary {states} separately: at the tool tip alone, the two have the same lever arms"
         ));
     }
     let names = [&first, &second].map(|(arms, _)| positions(arms));
@@ -237,10 +237,10 @@ fn by_lever(study: &Study<'_>, this: &Effect, other: &Effect) -> Option<String> 
             .filter(|d| !(first.1.contains(d) && second.1.contains(d)))
             .collect();
         if let Some(direction) = only.first() {
-            return Some(format!("measure direction {direction} too, which only one of them moves"));
+            return Some(format!("also measure direction {direction}, which only one of them affects"));
         }
     }
-    Some("the same path with a tool of another length, or at another place of the table".to_owned())
+    Some("the same path with a tool of another length or at another place of the table".to_owned())
 }
 
 /// The axis positions in lever arms.
@@ -279,7 +279,7 @@ pub(crate) fn factor_state(study: &Study<'_>, factor: &Factor<usize>) -> String 
         Factor::Temperature { sensor, .. } | Factor::Play { sensor, .. } => {
             format!("temperature {}", study.sensors[sensor])
         }
-        Factor::Warmth { axis, .. } => format!("the warmth that the motion of {} makes", of(axis)),
+        Factor::Warmth { axis, .. } => format!("the heat from the motion of {}", of(axis)),
         Factor::Load { load, .. } | Factor::Half { load, .. } | Factor::Spin { load, .. } => {
             format!("load {}", study.loads[load].0)
         }
@@ -309,7 +309,7 @@ pub(crate) fn state(study: &Study<'_>, effect: &Effect) -> String {
         }
         Shape::Coupling { axis, .. } => format!("the position of {}", of(*axis)),
         Shape::Backlash { axis, .. } => format!("the direction of {}", of(*axis)),
-        Shape::ReversalSpike { axis, .. } => format!("the time since {} turned", of(*axis)),
+        Shape::ReversalSpike { axis, .. } => format!("the time since the last reversal of {}", of(*axis)),
         Shape::Lag { axis, .. } => format!("the velocity of {}", of(*axis)),
         Shape::Acceleration { axis } => format!("the acceleration of {}", of(*axis)),
         Shape::Expansion { sensor, .. }

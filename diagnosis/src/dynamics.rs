@@ -67,7 +67,7 @@ fn looped(study: &Study<'_>, kept: &Model, known: &Model, conditions: &Condition
     geometric(0.5 * step, (40.0 * step).min(0.3), 2.0).into_iter().map(trial).collect()
 }
 
-/// Tries what a loop of first order, and what acts at once, cannot say: loops that ring, and friction on the drive, which the
+/// Tries what a first-order loop, and what acts at once, cannot say: loops that ring, and friction on the drive, which the
 /// loop answers.
 pub(crate) fn try_drives(study: &Study<'_>, model: Model, conditions: &Conditions<'_>) -> Model {
     let always = conditions.always;
@@ -105,7 +105,7 @@ fn drives(study: &Study<'_>, model: &Model, always: usize, axis: usize, loops: &
     known.split_off(1)
 }
 
-/// Whether [`try_drives`] may find something: a loop of first order beside what would imitate its ringing, or friction beside
+/// Whether [`try_drives`] may find something: a first-order loop beside what would imitate its ringing, or friction beside
 /// any loop.
 pub(crate) fn may_answer(model: &Model, always: usize) -> bool {
     let effects = || model[always..].iter().map(|fitted| &fitted.effect);

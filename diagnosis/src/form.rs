@@ -78,11 +78,7 @@ impl Words<'_> {
             (Some(number), [factor]) => format!("A {of} {}.", self.follows(number, factor)),
             (_, factors) => {
                 let states: Vec<String> = factors.iter().map(|factor| self.state(factor)).collect();
-                format!(
-                    "A {of} in proportion to {}, multiplied with one another{}.",
-                    listed(&states),
-                    self.most(term)
-                )
+                format!("A {of} in proportion to the product of {}{}.", listed(&states), self.most(term))
             }
         }
     }
@@ -132,7 +128,7 @@ impl Words<'_> {
                 between(within, within.from, within.to, "units")
             }
             Factor::Fading { axis, over } => format!(
-                "that is {} at rest and fades with {}: a third of {} is left at {over:.3} {}/s",
+                "that is {} at rest and fades with {}: a third of {} remains at {over:.3} {}/s",
                 at(1.0),
                 self.state(factor),
                 self.amount(number),
@@ -144,13 +140,13 @@ impl Words<'_> {
                 seconds(3.0 * time_constant)
             ),
             Factor::Spin { ref load, rate, .. } => format!(
-                "that swings by {}, {} times a second for each unit of {load}",
+                "that oscillates by {}, {} times per second for each unit of {load}",
                 self.amount(number.abs()),
                 significant(rate, 4)
             ),
             Factor::Half { at: half, .. } => {
                 format!(
-                    "that is {} without a load, of which half is left at {half:.3} units of {}",
+                    "that is {} without a load, of which half remains at {half:.3} units of {}",
                     at(1.0),
                     self.state(factor)
                 )

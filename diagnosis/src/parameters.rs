@@ -377,7 +377,7 @@ fn turned(phase: f64) -> f64 {
     phase - TAU * (phase / TAU).round()
 }
 
-/// The natural frequency of a loop with the inertia 1/w^2, Hz; 0 for a loop of first order.
+/// The natural frequency of a loop with the inertia 1/w^2, Hz; 0 for a first-order loop.
 fn natural(inertia: f64) -> f64 {
     if inertia > 0.0 { 1.0 / (TAU * inertia.sqrt()) } else { 0.0 }
 }

@@ -185,7 +185,7 @@ pub(crate) fn describe(study: &Study<'_>, scatter: &Scatter, unit: (f64, &'stati
         Some((name, r)) => format!(
             "neither the order of the runs nor a temperature explains it (closest: {name}, correlation {r:.2})"
         ),
-        None => "nothing that was recorded explains it".to_owned(),
+        None => "no recorded quantity explains it".to_owned(),
     };
     Repeatability {
         between_runs: scatter.between * unit.0,

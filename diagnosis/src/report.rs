@@ -21,7 +21,6 @@ mod instrument;
 mod item;
 mod json;
 mod lines;
-mod markup;
 mod parameter;
 mod physics;
 mod plots;

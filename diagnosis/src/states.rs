@@ -155,7 +155,7 @@ impl AxisRows<'_> {
         followed(self.position, self.direction, self.displaced, play, width)
     }
 
-    /// How the position changes with the inertia of the loop; 0 for a loop of first order.
+    /// How the position changes with the inertia of the loop; 0 for a first-order loop.
     pub(crate) fn inertia_slope(&self) -> Vec<f64> {
         self.inertia_slope.map_or_else(|| vec![0.0; self.position.len()], <[f64]>::to_vec)
     }

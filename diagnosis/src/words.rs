@@ -84,7 +84,7 @@ fn factor_word(factor: &Factor<usize>) -> &'static str {
 fn detail(study: &Study<'_>, effect: &Effect) -> String {
     let shown = bare_detail(study, effect);
     match effect.side().and_then(Side::answered_by) {
-        Some(_) => format!("{shown}, as far as the position loop lets it"),
+        Some(_) => format!("{shown}, as far as the position loop allows"),
         None => shown,
     }
 }
@@ -108,13 +108,10 @@ fn bare_detail(study: &Study<'_>, effect: &Effect) -> String {
             format!("a spike at every reversal of {}, gone within {}", name(*axis), seconds(3.0 * decay))
         }
         Shape::Lag { axis, inertia } if *inertia > 0.0 => {
-            format!(
-                "follows the velocity of {}, behind its position loop, which is of second order",
-                name(*axis)
-            )
+            format!("follows the velocity of {}, from its second-order position loop", name(*axis))
         }
         Shape::Lag { axis, .. } => {
-            format!("follows the velocity of {}, behind its position loop", name(*axis))
+            format!("follows the velocity of {}, from its position loop", name(*axis))
         }
         Shape::Acceleration { axis } => format!("follows the acceleration of {}", name(*axis)),
         Shape::Expansion { axis, sensor, .. } => {
@@ -130,7 +127,7 @@ fn bare_detail(study: &Study<'_>, effect: &Effect) -> String {
             format!("settles with time, within {}", seconds(3.0 * time_constant))
         }
         Shape::Vibration { frequency } => format!("oscillates at {frequency:.3} Hz"),
-        Shape::Coupling { axis, .. } => format!("changes with where {} stands", name(*axis)),
+        Shape::Coupling { axis, .. } => format!("changes with the position of {}", name(*axis)),
         Shape::Compliance { load } => format!("follows the load {}", study.loads[*load].0),
         Shape::Delay { axis, time } => format!("{} is {} late", name(*axis), seconds(*time)),
         Shape::Step { time } => format!("jumps once, at {}", seconds(*time)),
@@ -138,7 +135,7 @@ fn bare_detail(study: &Study<'_>, effect: &Effect) -> String {
             let states =
                 listed(&factors.iter().map(|factor| factor_state(study, factor)).collect::<Vec<_>>());
             match **core {
-                Shape::Constant => format!("follows {states}, multiplied with one another"),
+                Shape::Constant => format!("follows the product of {states}"),
                 ref core => {
                     let core = bare_detail(study, &Effect { place: effect.place, shape: core.clone() });
                     format!("{core}, by an amount that follows {states}")

@@ -169,7 +169,7 @@ pub(crate) fn evaluate(course: &Course<'_>, traces: Vec<PathTrace>) -> (Vec<Circ
     {
         without.push(NotGiven::new(
             "circular and radial deviations",
-            "the programmed path is no circle in XY, YZ or ZX",
+            "the programmed path is not a circle in XY, YZ or ZX",
         ));
     }
     (circles, without)
@@ -228,11 +228,13 @@ fn trace(course: &Course<'_>, reader: &Reader<'_>, own: &PathTrace) -> Trace {
 /// Greatest and least radial deviation about the nominal centre.
 fn set_up(places: &[Place], radius: f64, centered: bool) -> Result<[f64; 2], String> {
     if !centered {
-        return Err("without a calibration the machine's constants, and with them the centre, are not known"
-            .to_owned());
+        return Err(
+            "without a calibration, the constants of the machine and therefore the centre are unknown"
+                .to_owned(),
+        );
     }
     if places.is_empty() {
-        return Err("nothing was read on it".to_owned());
+        return Err("it has no readings".to_owned());
     }
     let [near, far] = ends(places, [0.0; 2]);
     Ok([far - radius, near - radius])
@@ -242,16 +244,16 @@ fn set_up(places: &[Place], radius: f64, centered: bool) -> Result<[f64; 2], Str
 fn trace_figures(own: &PathTrace, points: &[Point], radius: f64) -> Result<(TraceFigures, Place), String> {
     if !own.full() {
         return Err(format!(
-            "the path is no full circle: it goes around {:.0} degrees",
+            "the path is not a full circle: it covers {:.0} degrees",
             own.span().to_degrees()
         ));
     }
     let gap = widest_gap(points);
     if gap > WIDEST_GAP {
-        return Err(format!("nothing was read over {:.0} degrees of the circle", gap.to_degrees()));
+        return Err(format!("{:.0} degrees of the circle have no readings", gap.to_degrees()));
     }
     let places: Vec<Place> = points.iter().map(|point| point.place).collect();
-    let round = least_squares(&places).ok_or_else(|| "the readings make no circle".to_owned())?;
+    let round = least_squares(&places).ok_or_else(|| "the readings do not form a circle".to_owned())?;
     let [near, far] = ends(&places, round.center);
     let radial = [far - radius, near - radius];
     let figures = TraceFigures {

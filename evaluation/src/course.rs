@@ -46,7 +46,7 @@ impl<'c> Course<'c> {
         let programmed = |axis: usize| equations.programs(axis) && command(axis).is_some();
         let commanded: Vec<bool> = axes.clone().map(programmed).collect();
         if !commanded.contains(&true) {
-            return Err("it has no channel `command.<axis>`: the targets are not known".to_owned());
+            return Err("it has no channel `command.<axis>`, so the targets are unknown".to_owned());
         }
         let positions: Vec<Vec<f64>> =
             axes.map(|axis| command(axis).cloned().unwrap_or_else(|| vec![0.0; rows])).collect();
@@ -108,7 +108,7 @@ impl<'c> Course<'c> {
         let fed_back = |axis: usize| self.actual(axis).is_some() || is_still(self.positions.get(axis));
         if let Some(axis) = (0..self.positions.len()).find(|axis| !fed_back(*axis)) {
             let letter = self.letter(axis).to_lowercase();
-            return Err(format!("neither the tool tip nor `actual.{letter}` is in it"));
+            return Err(format!("it has neither the tool tip nor `actual.{letter}`"));
         }
         let columns: Vec<&[f64]> = self
             .positions

@@ -35,7 +35,7 @@ pub(crate) fn evaluate(lines: &[Positioning]) -> Option<Diagonals> {
             lines.iter().flat_map(|line| &line.figures).filter(|figure| figure.symbol == of).collect();
         let values: Vec<f64> = figures.iter().filter_map(|figure| figure.value.number()).collect();
         let value = if incomplete {
-            Err(format!("it takes all {BODY} body diagonals, and these are {}", names.len()))
+            Err(format!("it needs all {BODY} body diagonals, but there are {}", names.len()))
         } else if values.len() < lines.len() || values.is_empty() {
             Err(format!("a diagonal lacks {of}"))
         } else {
@@ -51,8 +51,8 @@ pub(crate) fn evaluate(lines: &[Positioning]) -> Option<Diagonals> {
         }
     };
     let figures = vec![
-        greatest("E_d", "greatest bidirectional systematic deviation of the diagonals", "E"),
-        greatest("B_d", "greatest reversal value of the diagonals", "B"),
+        greatest("E_d", "maximum bidirectional systematic deviation of the diagonals", "E"),
+        greatest("B_d", "maximum reversal value of the diagonals", "B"),
     ];
     Some(Diagonals { kind, names, figures })
 }

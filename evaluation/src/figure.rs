@@ -50,7 +50,7 @@ impl From<Result<f64, String>> for Given {
     fn from(result: Result<f64, String>) -> Self {
         match result {
             Ok(value) if value.is_finite() => Self::Value(value),
-            Ok(_) => Self::Not("its readings are too large to be reckoned with".to_owned()),
+            Ok(_) => Self::Not("its readings are too large for the calculation".to_owned()),
             Err(reason) => Self::Not(reason),
         }
     }

@@ -240,8 +240,8 @@ impl<'t> Axis<'t> {
 
     fn needs_both(&self) -> Result<(), String> {
         match (self.both.len(), self.sides(Way::Up).is_empty(), self.sides(Way::Down).is_empty()) {
-            (0, _, true) => Err("every target was approached upwards only".to_owned()),
-            (0, true, _) => Err("every target was approached downwards only".to_owned()),
+            (0, _, true) => Err("every target was approached only upwards".to_owned()),
+            (0, true, _) => Err("every target was approached only downwards".to_owned()),
             (0, _, _) => Err("no target was approached from both sides".to_owned()),
             _ => Ok(()),
         }

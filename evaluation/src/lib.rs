@@ -101,11 +101,10 @@ impl Evaluation {
     pub fn in_order(mut self) -> Self {
         if !self.circles.is_empty() {
             self.circles.clear();
-            let because = "it has no channel `time`, and rows in their order are readings at rest";
+            let because = "it has no channel `time`, so its rows are readings at rest";
             self.not_given.push(NotGiven::new("circular deviations", because));
         }
-        let note =
-            "The recording has no times: its rows were taken in their order, each as a reading at rest.";
+        let note = "The recording has no times. Its rows were taken in order, each as a reading at rest.";
         self.positioning.iter_mut().for_each(|line| line.notes.push(note.to_owned()));
         self
     }

@@ -153,7 +153,7 @@ pub(crate) fn evaluate(course: &Course<'_>, travelled: Travelled) -> (Vec<Positi
     }
     for (axis, step) in travelled.in_motion {
         let because = format!(
-            "{} was read in motion, a row every {:.3} s: stations hold the same command for 0.5 s or more",
+            "{} was read in motion, with a row every {:.3} s; a station holds the same command for at least 0.5 s",
             course.letter(axis),
             step
         );
@@ -162,7 +162,7 @@ pub(crate) fn evaluate(course: &Course<'_>, travelled: Travelled) -> (Vec<Positi
     if travelled.overfull {
         without.push(NotGiven::new(
             "positioning on further lines",
-            "the path has more lines than are told apart",
+            "the path has more lines than can be distinguished",
         ));
     }
     (lines, without)
@@ -185,7 +185,7 @@ fn positioning(course: &Course<'_>, line: &Line) -> Result<Positioning, String> 
     let reader = Reader::of(course, line, kind)?;
     let mut readings = targets(course, line, &reader, kind);
     if readings.is_empty() {
-        return Err("nothing was read at its stations".to_owned());
+        return Err("its stations have no readings".to_owned());
     }
     if reader.zero == Zero::Mean {
         take_mean_off(&mut readings);
@@ -289,10 +289,13 @@ fn fewer(targets: &[TargetFigures], unit: Unit) -> Vec<String> {
     let sides = counted.iter().flat_map(|target| [target.up, target.down]).flatten();
     let fewest = sides.map(|side| side.readings).min().unwrap_or(0);
     if fewest < RUNS {
-        notes.push(format!("ISO 230-2 asks for {RUNS} approaches of each target in each direction; the fewest here are {fewest}."));
+        notes.push(format!("ISO 230-2 requires {RUNS} approaches to each target in each direction; the fewest here are {fewest}."));
     }
     if unit == Unit::Length && counted.len() < TARGETS {
-        notes.push(format!("ISO 230-2 asks for at least {TARGETS} targets; here are {}.", counted.len()));
+        notes.push(format!(
+            "ISO 230-2 requires at least {TARGETS} targets; there are {} here.",
+            counted.len()
+        ));
     }
     notes
 }
@@ -301,12 +304,14 @@ fn notes(line: &Line, targets: &[TargetFigures], unit: Unit) -> Vec<String> {
     let mut notes = fewer(targets, unit);
     if line.approaches.iter().any(|approach| approach.single) {
         notes.push(
-            "Stations were read once each: the recording does not show that the axes stood while they were read.".to_owned(),
+            "Each station was read once, so the recording does not show that the axes were at rest."
+                .to_owned(),
         );
     }
     if line.assumed() {
         notes.push(
-            "The overrun at the ends is not in the recording: the first place of a run, and a place read twice where the motion turns, are taken to be approached as the cycle of ISO 230-2 has it."
+            "The recording does not contain the overrun at the ends. The first place of a run, and a place read twice where \
+             the motion reverses, are assumed to be approached as in the cycle of ISO 230-2."
                 .to_owned(),
         );
     }

@@ -37,7 +37,7 @@ pub fn add(fleet: &Fleet, folders: &[PathBuf], listener: &dyn Listener) -> Resul
         let there = files(folder, Table::Recordings)?;
         if there.is_empty() {
             return Err(Failure::wrong(format!(
-                "error: {} holds no results\nhelp: name the folder that holds the folder `recordings`",
+                "error: {} contains no results\nhelp: name the folder that contains the folder `recordings`",
                 folder.display()
             )));
         }
@@ -59,7 +59,7 @@ fn take(
     let Some(job) = jobs.get(&name) else {
         added.refused += 1;
         let text =
-            format!("warning: {} is no result of a recording of this fleet as it is now", path.display());
+            format!("warning: {} is not a result of a current recording of this fleet", path.display());
         listener.hear(&text.into());
         return Ok(());
     };

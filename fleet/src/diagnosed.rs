@@ -70,7 +70,7 @@ fn put_off(fleet: &Fleet, job: &Job, why: &Failure) -> Option<PutOff> {
         Ok(again) => again,
     };
     let same = || diagnosis_of(&job.place.path, false).is_err_and(|again| words(&again) == words(why));
-    let changes = || "its files are not what they were a moment ago".to_owned();
+    let changes = || "its files have just changed".to_owned();
     let is_lasting = !words(why).is_empty() && again.key == job.key && same();
     (!is_lasting).then(|| PutOff { label: job.place.label.clone(), why: changes() })
 }

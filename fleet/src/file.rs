@@ -82,16 +82,19 @@ fn read_all(root: &Node, folder: &Path, diagnostics: &mut Diagnostics) -> Option
     let fields = Fields::open(root, first, wording, &KEYS, diagnostics)?;
     if let Some(version) = fields.need("fleet", wording, diagnostics).filter(|node| node.text() != Some("1"))
     {
-        let message =
-            format!("fleets of version {} are not read", version.text().unwrap_or(version.kind_name()));
+        let message = format!(
+            "version {} of the fleet format is unknown",
+            version.text().unwrap_or(version.kind_name())
+        );
         diagnostics.push(Diagnostic::error("E1002", version.span, message).help("write `fleet: 1`"));
     }
     let results = fields.get("results").and_then(|node| fields::word(node, "`results`", FORM, diagnostics));
     let results = folder.join(results.map_or(RESULTS, |name| name.value));
     let machines = fields.need("machines", wording, diagnostics)?;
     let Some(entries) = machines.entries().filter(|entries| !entries.is_empty()) else {
-        let message = format!("`machines` is a mapping of names to machines, found {}", machines.kind_name());
-        let help = "write `mill-07: {recordings: \"mill-07/*.yaml\"}`, a machine a line";
+        let message =
+            format!("`machines` must be a mapping of names to machines, found {}", machines.kind_name());
+        let help = "write one line such as `mill-07: {recordings: \"mill-07/*.yaml\"}` for each machine";
         diagnostics.push(Diagnostic::error(FORM, machines.span, message).help(help));
         return None;
     };
@@ -108,10 +111,7 @@ fn another_kind(root: &Node, first: Span) -> Option<Diagnostic> {
     let other = || kinds.iter().find(|(key, _)| root.get(key).is_some());
     let (_, name) = root.get("fleet").is_none().then(other).flatten()?;
     let mistake = Diagnostic::error("E1002", first, format!("this is {name}, not a fleet file"));
-    Some(
-        mistake
-            .help("a fleet file begins with `fleet: 1`, and says where the recordings of each machine are"),
-    )
+    Some(mistake.help("begin with `fleet: 1`, and say where the recordings of each machine are"))
 }
 
 fn machine(name: &Spanned<String>, node: &Node, diagnostics: &mut Diagnostics) -> Option<Machine> {
@@ -120,9 +120,10 @@ fn machine(name: &Spanned<String>, node: &Node, diagnostics: &mut Diagnostics) -
         || name.value.len() > LONGEST_NAME
         || name.value.chars().any(char::is_control)
     {
-        let message = format!("a machine has a name of 1 to {LONGEST_NAME} letters on one line");
+        let message = format!("the name of a machine must have 1 to {LONGEST_NAME} characters on one line");
         diagnostics.push(
-            Diagnostic::error("E1005", name.span, message).help("write its name in the shop: `mill-07`"),
+            Diagnostic::error("E1005", name.span, message)
+                .help("write the name used in the shop, such as `mill-07`"),
         );
     }
     let wording = keys(&what);
@@ -151,15 +152,15 @@ fn machine(name: &Spanned<String>, node: &Node, diagnostics: &mut Diagnostics) -
 }
 
 fn no_pattern(span: Span, why: &str) -> Diagnostic {
-    let mistake = Diagnostic::error("E1006", span, format!("`time` is no pattern of a date: {why}"));
-    mistake.help("write `YYYY-MM-DD`, or `YYYY-MM-DD_hhmmss`, as it stands in the names of the files")
+    let mistake = Diagnostic::error("E1006", span, format!("`time` is not a pattern of a date: {why}"));
+    mistake.help("write `YYYY-MM-DD` or `YYYY-MM-DD_hhmmss`, as in the names of the files")
 }
 
 fn glob(node: &Node, diagnostics: &mut Diagnostics) -> Option<String> {
     let text = fields::word(node, "a path in `recordings`", FORM, diagnostics)?;
     if let Err(error) = Glob::new(text.value) {
-        let message = format!("`{}` is no pattern of files: {}", text.value, error.msg);
-        let help = "`*` stands for any letters of a name, and `**` alone between slashes for any folders";
+        let message = format!("`{}` is not a pattern of files: {}", text.value, error.msg);
+        let help = "use `*` for any characters of a name, and `**` alone between slashes for any folders";
         diagnostics.push(Diagnostic::error("E1007", text.span, message).help(help));
         return None;
     }

@@ -50,14 +50,14 @@ fn most(machine: &Machine) -> String {
     let effects = machine.series.iter().filter(|followed| !followed.series.is_noise()).count();
     match worst(machine) {
         Some(worst) => brief(worst),
-        None if machine.series.is_empty() => "no recording gives a number that could be followed".to_owned(),
+        None if machine.series.is_empty() => "no recording gives a number to follow".to_owned(),
         None => {
             let effects = match effects {
-                0 => "the noise is followed, since nothing else was found".to_owned(),
+                0 => "only the noise is followed, because nothing else was found".to_owned(),
                 1 => "1 number and the noise are followed".to_owned(),
                 more => format!("{more} numbers and the noise are followed"),
             };
-            format!("{effects}; a change is told from {FEWEST} recordings on")
+            format!("{effects}; changes are reported from {FEWEST} recordings on")
         }
     }
 }
@@ -68,7 +68,7 @@ fn count(machine: &Machine) -> String {
     let recordings = if all == 1 { "1 recording".to_owned() } else { format!("{all} recordings") };
     match machine.recordings.iter().filter(|entry| !entry.listed).count() {
         0 => recordings,
-        gone => format!("{recordings}, {gone} of them no longer there"),
+        gone => format!("{recordings}, {gone} of them missing"),
     }
 }
 
@@ -77,7 +77,7 @@ fn brief(followed: &Followed) -> String {
     let series = &followed.series;
     let name = series.name();
     let Some(change) = &followed.change else {
-        return format!("{name}: too few recordings to tell a change");
+        return format!("{name}: too few recordings to detect a change");
     };
     let size = match series.is_noise() {
         true => format!("{:.2} times", change.size.exp()),
@@ -85,6 +85,6 @@ fn brief(followed: &Followed) -> String {
     };
     match followed.alarm {
         true => format!("{name}: {} of {size}", change.kind),
-        false => format!("{name}: no change that is told ({} of {size})", change.kind),
+        false => format!("{name}: no reported change ({} of {size})", change.kind),
     }
 }

@@ -215,7 +215,7 @@ impl<'f> Plan<'f> {
         if let Some(why) = broken.first() {
             return Err(Failure::no(
                 why.replacen("warning", "error", 1)
-                    + "\nhelp: remove it, and the file of the same name in `recordings`: it is then made anew",
+                    + "\nhelp: remove it and the file of the same name in `recordings`; the next run makes them again",
             ));
         }
         let is_unfit = |known: &&Known| is_unfit(known.row.text("verdict"), known.row.count("changes"));
@@ -298,7 +298,7 @@ pub fn all(
     put_off.extend(later);
     put_off.extend(plan.put_off.iter().cloned());
     for PutOff { label, why } in &put_off {
-        listener.hear(&format!("warning: {label} is put off to the next run: {why}").into());
+        listener.hear(&format!("warning: {label} is postponed to the next run: {why}").into());
     }
     Ok(Done {
         recordings: plan.jobs.len().saturating_add(plan.put_off.len()),
@@ -377,7 +377,7 @@ pub fn pending(
 /// its machine, of what follows the recordings of its machine.
 pub fn one(fleet: &Fleet, name: &str, pages: bool) -> Result<(), Failure> {
     let unknown = || {
-        let help = "help: `abbe fleet run --list` tells the jobs there are";
+        let help = "help: `abbe fleet run --list` lists the jobs";
         Failure::wrong(format!("error: no recording of the fleet has the job `{name}`\n{help}"))
     };
     if let Some((_, machine)) = name.strip_prefix(FOLLOW).and_then(|rest| rest.split_once('/')) {
@@ -408,8 +408,8 @@ fn follow_all(fleet: &Fleet, (number, machine): (usize, &Machine), name: &str) -
 }
 
 fn changed(what: &str) -> Failure {
-    let help = "help: list the jobs again: what was asked for is not what is to be done now";
-    Failure::no(format!("error: {what} is not as it was when it was listed\n{help}"))
+    let help = "help: list the jobs again; the requested job is out of date";
+    Failure::no(format!("error: {what} has changed since it was listed\n{help}"))
 }
 
 fn later(put_off: PutOff) -> Failure {

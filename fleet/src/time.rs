@@ -33,7 +33,7 @@ impl Pattern {
             let length = match number {
                 Some((of, name)) => {
                     if seen.get(of) == Some(&true) {
-                        return Err(format!("`{name}` stands twice in it"));
+                        return Err(format!("`{name}` occurs twice in it"));
                     }
                     if let Some(seen) = seen.get_mut(of) {
                         *seen = true;
@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn a_pattern_without_a_date_is_refused() {
         assert_eq!(Pattern::read("YYYY-MM").unwrap_err(), "`DD` is missing in it");
-        assert_eq!(Pattern::read("YYYY-MM-DD-DD").unwrap_err(), "`DD` stands twice in it");
+        assert_eq!(Pattern::read("YYYY-MM-DD-DD").unwrap_err(), "`DD` occurs twice in it");
         assert!(Pattern::read("").is_err());
     }
 }

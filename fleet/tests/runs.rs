@@ -115,7 +115,7 @@ fn jobs_by_name_give_what_a_run_gives_and_old_names_are_refused() {
     assert!(listed[0].job.ends_with("/stage%201%2Fb/a stage/2026-01-31.yaml"), "{}", listed[0].job);
     record(&folder.0.join("a stage"), DAYS[0], 5.0);
     let refused = |name: &str| run::one(&fleet, name, false).err().unwrap().words().unwrap().text(false);
-    assert!(refused(&listed[0].job).contains("not as it was when it was listed"));
+    assert!(refused(&listed[0].job).contains("has changed since it was listed"));
     for unknown in [
         "00-00",
         "00/stage%201%2Fb/a stage/3.yaml",
@@ -125,7 +125,7 @@ fn jobs_by_name_give_what_a_run_gives_and_old_names_are_refused() {
     ] {
         assert!(refused(unknown).contains("no recording of the fleet"), "{unknown}");
     }
-    assert!(refused("follow-00/stage%201%2Fb").contains("not as it was when it was listed"));
+    assert!(refused("follow-00/stage%201%2Fb").contains("has changed since it was listed"));
     let stages = ["diagnose", "follow"].map(|stage| {
         let listed = run::pending(&fleet, None, &()).ok().unwrap();
         assert!(listed.iter().all(|job| job.stage == stage), "{stage}");
@@ -214,12 +214,12 @@ fn a_recording_that_is_gone_stays_in_the_history_and_one_that_was_moved_counts_o
     fs::remove_file(stage.join("2026-02-02.yaml")).unwrap();
     let (listed, text) = machine(&fleet);
     assert_eq!(listed, [true, false, false]);
-    assert!(text.contains("3 recordings, 2 of them no longer there"), "{text}");
+    assert!(text.contains("3 recordings, 2 of them missing"), "{text}");
     // Diagnosed under its new path it is one recording, of which the older result goes.
     assert_eq!(all(&fleet).diagnosed, 1);
     let (listed, text) = machine(&fleet);
     assert_eq!(listed, [true, true, false]);
-    assert!(text.contains("3 recordings, 1 of them no longer there"), "{text}");
+    assert!(text.contains("3 recordings, 1 of them missing"), "{text}");
     all(&fleet);
     let names: Vec<PathBuf> = files(&fleet.results).into_keys().collect();
     assert_eq!(names.len(), 4 * DAYS.len(), "{names:?}");
@@ -258,7 +258,7 @@ fn what_cannot_be_read_now_is_put_off_and_what_is_wrong_is_filed() {
     let heard = Heard::default();
     let done = run::all(&fleet, (None, false), &heard, &|_| {}).ok().unwrap();
     assert_eq!((done.recordings, done.diagnosed, done.put_off), (3, 2, 1));
-    let put_off = |text: &String| text.contains("2026-01-31.yaml is put off to the next run");
+    let put_off = |text: &String| text.contains("2026-01-31.yaml is postponed to the next run");
     assert!(heard.0.borrow().iter().any(put_off), "{:?}", heard.0);
     let known = |of: &str| {
         files(&fleet.results.join("verdicts"))
@@ -327,14 +327,14 @@ fn what_is_not_told_says_why() {
     };
     let few = text();
     assert!(
-        few.contains("1 number and the noise are followed; a change is told from 5 recordings on"),
+        few.contains("1 number and the noise are followed; changes are reported from 5 recordings on"),
         "{few}"
     );
     for day in DAYS {
         fs::write(folder.0.join(format!("a stage/{day}.csv")), "nothing").unwrap();
     }
     let none = text();
-    assert!(none.contains("no recording gives a number that could be followed"), "{none}");
+    assert!(none.contains("no recording gives a number to follow"), "{none}");
 }
 
 #[test]

@@ -88,7 +88,7 @@ impl Limit {
     /// `backlash of EXX`, `cyclic of EXX`; a play that winds up is a backlash too.
     pub fn name(&self) -> String {
         match self.subject.kind {
-            Kind::WindUp => format!("{} {} that winds up", self.motion, TermKind::Backlash.name()),
+            Kind::WindUp => format!("{} {} with wind-up", self.motion, TermKind::Backlash.name()),
             Kind::Term(term) => format!("{} {}", self.motion, term.name()),
         }
     }

@@ -97,7 +97,7 @@ impl Drawn {
         let time = |name: &'static str, value: f64| Self { name, value, unit: "s" };
         match *effect {
             Effect::Backlash { axis, wind_up, .. } if wind_up > 0.0 => {
-                Some(along("wound up over", axis, wind_up))
+                Some(along("wind-up of", axis, wind_up))
             }
             Effect::Table { axis, width, .. } => Some(along("width", axis, width)),
             Effect::Cyclic { axis, period, .. } => Some(along("period", axis, period)),

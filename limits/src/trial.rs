@@ -35,10 +35,8 @@ impl Known {
         let left = internal(alone.after.rms, alone.after.unit);
         match left.partial_cmp(&0.0) {
             Some(Ordering::Greater) if left.is_finite() => Ok(Self { base, alone, left }),
-            Some(_) => {
-                Err("its readings have no noise, so that an effect of any size would be found".to_owned())
-            }
-            None => Err("what the diagnosis leaves of it has no known size".to_owned()),
+            Some(_) => Err("its readings have no noise, so an effect of any size would be found".to_owned()),
+            None => Err("the size of its residuals is unknown".to_owned()),
         }
     }
 }

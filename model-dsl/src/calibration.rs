@@ -233,12 +233,12 @@ impl Calibration {
                 let name = term.value.name();
                 let message = match what {
                     NotCompensable::Factor(factor) => format!(
-                        "`{name}` of {motion} cannot be compensated in real time: its factor `{}` is not known",
+                        "`{name}` of {motion} cannot be compensated in real time: the controller does not know its factor `{}` in time",
                         factor.name()
                     ),
                     _ => format!("`{name}` of {motion} cannot be compensated in real time"),
                 };
-                let help = format!("{reason}; take it out of the file that is compensated");
+                let help = format!("{reason}; remove it from the file that is compensated");
                 diagnostics.push(Diagnostic::error("E0425", term.span, message).help(help));
             }
         }

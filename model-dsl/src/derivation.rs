@@ -317,9 +317,9 @@ fn warn_unseen(machine: &Machine, kept: &[usize], diagnostics: &mut Diagnostics)
             && kept.binary_search(&number).is_err()
         {
             let help = if machine.sensitive.len() == Axis::ALL.len() {
-                "take it out: it has no lever at the tool tip"
+                "remove it: it has no lever arm at the tool tip"
             } else {
-                "take it out, or add a direction to `sensitive`"
+                "remove it, or add a direction to `sensitive`"
             };
             diagnostics.push(
                 Diagnostic::warning("W0201", span, format!("no sensitive direction sees {}", motion.name))
@@ -339,9 +339,9 @@ fn warn_undriven(machine: &Machine, rows: &[Row], diagnostics: &mut Diagnostics)
         });
         if !driven {
             diagnostics.push(
-                Diagnostic::warning("W0202", *span, format!("no axis drives direction {direction}"))
-                    .label("its error can be derived but not compensated")
-                    .help("take it out of `sensitive` if nobody asks for it"),
+                Diagnostic::warning("W0202", *span, format!("no axis moves in direction {direction}"))
+                    .label("its error is derived but cannot be compensated")
+                    .help("remove it from `sensitive` unless you want to know its error"),
             );
         }
     }

@@ -46,7 +46,7 @@ pub struct Equations {
     /// One row for each sensitive direction, in order.
     pub rows: Vec<Row>,
     /// The direction of the tool from its tip towards the spindle, in the part's frame: I, J, K, a vector of length 1, with its error in
-    /// rad, whichever directions are sensitive. Three rows in the order X, Y, Z; none where the machine file does not ask for it
+    /// rad, whichever directions are sensitive. Three rows in the order X, Y, Z; none where the machine file does not request it
     /// (`orientation: true`). The error is square to the nominal direction: to first order a length does not change.
     pub orientation: Vec<Row>,
     /// The rotation of the tool relative to the part by the errors, rad, right-handed about X, Y, Z of the part's

@@ -84,7 +84,7 @@ fn tokens(text: &str) -> Result<Vec<Token<'_>>, ExpressionError> {
             1
         } else {
             let token = Token { text: &rest[..first.len_utf8()], start };
-            return Err(token.error(format!("`{first}` has no place in an expression")));
+            return Err(token.error(format!("`{first}` is not allowed in an expression")));
         };
         if !first.is_whitespace() {
             found.push(Token { text: &rest[..length], start });
@@ -135,7 +135,7 @@ impl<'a> Parser<'a, '_> {
         let value = self.sum()?;
         match self.peek() {
             None => Ok(value),
-            Some(token) => Err(token.error(format!("`{}` is not expected here", token.text))),
+            Some(token) => Err(token.error(format!("unexpected `{}`", token.text))),
         }
     }
 
@@ -151,7 +151,7 @@ impl<'a> Parser<'a, '_> {
 
     fn next(&mut self) -> Result<Token<'a>, ExpressionError> {
         let token = self.peek().ok_or(ExpressionError {
-            message: "something is missing at the end".to_owned(),
+            message: "the expression ends too early".to_owned(),
             start: self.end,
             end: self.end,
         })?;
@@ -202,7 +202,7 @@ impl<'a> Parser<'a, '_> {
         let token = self.next()?;
         let exponent = token.text.parse::<u32>().ok().filter(|power| *power <= MOST_POWER);
         let Some(exponent) = exponent else {
-            return Err(token.error(format!("a power is a whole number from 0 to {MOST_POWER}")));
+            return Err(token.error(format!("a power must be a whole number from 0 to {MOST_POWER}")));
         };
         let mut product = Polynomial::one();
         for _ in 0..exponent {
@@ -222,7 +222,7 @@ impl<'a> Parser<'a, '_> {
             return value.map(Polynomial::number).ok_or_else(|| token.error("this is not a number"));
         }
         if !token.starts_with(|c| c.is_ascii_alphabetic()) {
-            return Err(token.error(format!("`{}` is not expected here", token.text)));
+            return Err(token.error(format!("unexpected `{}`", token.text)));
         }
         match token.text {
             "sin" | "cos" if self.peek().is_some_and(|next| next.text == "(") => self.trigonometric(&token),
@@ -236,8 +236,8 @@ impl<'a> Parser<'a, '_> {
         self.close(&open)?;
         let axis = match (self.resolve)(argument.text) {
             Some(Symbol::Position(axis)) => axis,
-            Some(_) => return Err(argument.error("a sine or cosine takes the position of an axis")),
-            None => return Err(argument.error(format!("`{}` is not known here", argument.text))),
+            Some(_) => return Err(argument.error("a sine or cosine must take the position of an axis")),
+            None => return Err(argument.error(format!("`{}` is unknown here", argument.text))),
         };
         let symbol = if function.text == "sin" { Symbol::Sin(axis) } else { Symbol::Cos(axis) };
         Ok(Polynomial::symbol(symbol))
@@ -245,7 +245,7 @@ impl<'a> Parser<'a, '_> {
 
     fn symbol(&mut self, token: &Token<'a>, name: &str) -> Result<Polynomial, ExpressionError> {
         let symbol = (self.resolve)(name);
-        symbol.map(Polynomial::symbol).ok_or_else(|| token.error(format!("`{name}` is not known here")))
+        symbol.map(Polynomial::symbol).ok_or_else(|| token.error(format!("`{name}` is unknown here")))
     }
 
     fn close(&mut self, open: &Token<'a>) -> Result<(), ExpressionError> {
@@ -281,13 +281,16 @@ impl<'a> Parser<'a, '_> {
         let product = left * right;
         let bits = |value: &crate::algebra::Rational| value.numer().bits().max(value.denom().bits());
         if product.terms().any(|(_, value)| bits(value) > MOST_BITS) {
-            return Err(token.error("the product holds a number that is too long"));
+            return Err(token.error("the product contains a number with too many digits"));
         }
         Ok(product)
     }
 
     fn spend(&mut self, work: usize, token: &Token<'_>) -> Result<(), ExpressionError> {
-        self.work = self.work.checked_sub(work).ok_or_else(|| token.error("there is too much to expand"))?;
+        self.work = self
+            .work
+            .checked_sub(work)
+            .ok_or_else(|| token.error("the expression expands to too many terms"))?;
         Ok(())
     }
 }
@@ -301,7 +304,7 @@ fn quotient(
         Some(number) if !number.is_zero() => {
             Ok(dividend * &Polynomial::number(crate::algebra::Rational::one() / number))
         }
-        _ => Err(token.error("only division by a number other than zero is possible")),
+        _ => Err(token.error("only division by a nonzero number is allowed")),
     }
 }
 
@@ -336,14 +339,14 @@ mod tests {
     #[test]
     fn mistakes_are_located() {
         let cases = [
-            ("x + q", "`q` is not known here", 4, 5),
-            ("x +", "something is missing at the end", 3, 3),
+            ("x + q", "`q` is unknown here", 4, 5),
+            ("x +", "the expression ends too early", 3, 3),
             ("(x", "this parenthesis is not closed", 0, 1),
-            ("x # 1", "`#` has no place in an expression", 2, 3),
-            ("x/0", "only division by a number other than zero is possible", 1, 2),
-            ("x Zt", "`Zt` is not expected here", 2, 4),
-            ("x^99", "a power is a whole number from 0 to 16", 2, 4),
-            ("sin(Zt)", "a sine or cosine takes the position of an axis", 4, 6),
+            ("x # 1", "`#` is not allowed in an expression", 2, 3),
+            ("x/0", "only division by a nonzero number is allowed", 1, 2),
+            ("x Zt", "unexpected `Zt`", 2, 4),
+            ("x^99", "a power must be a whole number from 0 to 16", 2, 4),
+            ("sin(Zt)", "a sine or cosine must take the position of an axis", 4, 6),
         ];
         for (text, message, start, end) in cases {
             let expected = ExpressionError { message: message.to_owned(), start, end };
@@ -363,7 +366,7 @@ mod tests {
     #[test]
     fn work_is_bounded() {
         let told = |text: String| read(&text).map_err(|error| error.message);
-        let too_much = Err("there is too much to expand".to_owned());
+        let too_much = Err("the expression expands to too many terms".to_owned());
         assert_eq!(told(format!("x{}", "*sin(c)".repeat(20_000))), too_much);
         assert_eq!(told(format!("x{}", "*(x + Z1 + Zt)".repeat(200))), too_much);
         assert_eq!(told(format!("x{}", " - x".repeat(200_000))), too_much);

@@ -41,7 +41,7 @@ impl<'n> Fields<'n> {
         diagnostics: &mut Diagnostics,
     ) -> Option<Self> {
         let Some(entries) = node.entries() else {
-            let message = format!("{} is a mapping of keys, found {}", wording.what, node.kind_name());
+            let message = format!("{} must be a mapping of keys, found {}", wording.what, node.kind_name());
             let help =
                 format!("write `key: value` pairs, such as `{}: ...`", known.first().unwrap_or(&"key"));
             diagnostics.push(Diagnostic::error(wording.form, node.span, message).help(help));
@@ -103,8 +103,9 @@ pub fn word<'n>(
         Some(text) => Some(Spanned::new(text, node.span)),
         None => {
             let found = if node.text().is_some() { "an empty text" } else { node.kind_name() };
-            let message = format!("{what} is one word or number, found {found}");
-            diagnostics.push(Diagnostic::error(code, node.span, message).help("write it here, in one piece"));
+            let message = format!("{what} must be one word or number, found {found}");
+            diagnostics
+                .push(Diagnostic::error(code, node.span, message).help("write a single word or number here"));
             None
         }
     }
@@ -119,8 +120,8 @@ pub fn list<'n>(
 ) -> Option<&'n [Node]> {
     let items = node.items();
     if items.is_none() {
-        let message = format!("{what} is a list, found {}", node.kind_name());
-        let help = "write `[a, b, c]`, or one item a line behind `- `";
+        let message = format!("{what} must be a list, found {}", node.kind_name());
+        let help = "write `[a, b, c]`, or each item on its own line after `- `";
         diagnostics.push(Diagnostic::error(code, node.span, message).help(help));
     }
     items

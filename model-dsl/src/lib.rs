@@ -132,7 +132,7 @@ pub fn c_library_for(path: impl AsRef<Path>) -> Result<String, CompileError> {
 }
 
 /// The formatted code that a writer of tokens, and of more warnings, makes of a machine file.
-#[expect(clippy::print_stdout, reason = "a build script tells cargo its warnings on standard output")]
+#[expect(clippy::print_stdout, reason = "a build script passes its warnings to cargo on standard output")]
 fn code_for(
     path: &Path,
     tokens: impl Fn(&Equations) -> Result<(TokenStream, String), String>,

@@ -126,7 +126,7 @@ fn read_node(root: &Node, diagnostics: &mut Diagnostics) -> Option<Machine> {
         diagnostics.push(
             Diagnostic::error("E0119", place, "this is a calibration file, not a machine file")
                 .label("a machine file begins with `abbe: 1`")
-                .help("give the machine file, or what its key `machine` names"),
+                .help("give the machine file, or the machine that its key `machine` names"),
         );
         return None;
     }

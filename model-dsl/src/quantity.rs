@@ -138,7 +138,7 @@ fn finite(value: f64, text: &str) -> Result<f64, QuantityError> {
     if value.is_finite() {
         return Ok(value);
     }
-    let message = format!("`{}` is too large a number", text.trim());
+    let message = format!("`{}` is too large", text.trim());
     Err(QuantityError::new("E0302", 0..text.len(), message))
 }
 

@@ -66,7 +66,7 @@ pub(crate) fn run<T: Send + 'static>(
         }
         Err(RecvTimeoutError::Timeout) => py.check_signals().map(|()| None),
         Err(RecvTimeoutError::Disconnected) => {
-            Err(PyRuntimeError::new_err("the work ended without a result; this is a fault of Abbe"))
+            Err(PyRuntimeError::new_err("the work ended without a result; this is a bug in Abbe"))
         }
     };
     loop {

@@ -131,9 +131,11 @@ pub(super) fn read_channels(
     diagnostics: &mut Diagnostics,
 ) -> Channels {
     let Some(entries) = node.entries() else {
-        let message = format!("`channels` is a mapping of channels to columns, found {}", node.kind_name());
+        let message =
+            format!("`channels` must be a mapping of channels to columns, found {}", node.kind_name());
         let mistake = Diagnostic::error(FORM, node.span, message);
-        diagnostics.push(mistake.help("write `time: {column: t_s, unit: s}`, a line each"));
+        diagnostics
+            .push(mistake.help("write one line such as `time: {column: t_s, unit: s}` for each channel"));
         return Channels { known: Vec::new(), names: vec!["time".to_owned()] };
     };
     let names: Vec<String> = entries.iter().map(|(name, _)| name.value.clone()).collect();
@@ -218,7 +220,7 @@ fn read_unit(
     let Some(node) = fields.get("unit") else {
         let message = format!("`{}` needs a unit: it is {expected}", name.value);
         let mistake = Diagnostic::error("E0610", name.span, message);
-        diagnostics.push(mistake.help(format!("add `unit: {usual}` if that is what the column holds")));
+        diagnostics.push(mistake.help(format!("add `unit: {usual}` if that is the unit of the column")));
         return None;
     };
     let (unit, scale) = scaled_unit(node, name, diagnostics)?;
@@ -230,10 +232,9 @@ fn read_unit(
     };
     if !right {
         let written = node.text().unwrap_or("").trim();
-        let message = format!("`{}` is {expected}, `{written}` is {}", name.value, kind_name(found));
+        let message = format!("`{}` must be {expected}, but `{written}` is {}", name.value, kind_name(found));
         let mistake = Diagnostic::error("E0609", node.span, message);
-        diagnostics
-            .push(mistake.label("a unit of the wrong kind").help(format!("use a unit such as `{usual}`")));
+        diagnostics.push(mistake.label("wrong kind of unit").help(format!("use a unit such as `{usual}`")));
         return None;
     }
     Some((Some(unit), scale))
@@ -245,7 +246,7 @@ fn kind_name(dimension: Dimension) -> String {
 
 fn no_unit(name: &Spanned<String>, fields: &Fields<'_>, diagnostics: &mut Diagnostics) -> bool {
     let Some((key, _)) = fields.entry("unit") else { return true };
-    let message = format!("`{}` is a plain number and has no unit", name.value);
+    let message = format!("`{}` is a plain number without a unit", name.value);
     diagnostics.push(Diagnostic::error("E0611", key.span, message).help("leave `unit` out"));
     false
 }
@@ -277,11 +278,11 @@ fn commanded(name: &Spanned<String>, rest: &str, equations: &Equations) -> Resul
     let axis = axis_of(name, rest, equations)?;
     match equations.axes.get(axis) {
         Some(motor) if motor.is_motor() => {
-            let message = format!("motor {} is not commanded by itself", motor.letter);
+            let message = format!("motor {} has no command of its own", motor.letter);
             Err(Box::new(
                 Diagnostic::error("E0607", name.span, message)
-                    .label("it stands where its axes put it")
-                    .help("leave the column out; what the motor's own encoder reads is `actual`"),
+                    .label("its axes determine its position")
+                    .help("leave the column out; use `actual` for the reading of the motor's own encoder"),
             ))
         }
         _ => Ok(axis),
@@ -311,7 +312,7 @@ pub(super) fn insensitive(span: Span, direction: &str, equations: &Equations) ->
     let message = format!("{} is not sensitive in {direction}", equations.machine);
     let sensitive: Vec<String> = equations.rows.iter().map(|row| row.direction.to_string()).collect();
     Diagnostic::error("E0608", span, message).help(format!(
-        "its sensitive directions are {}; another one must stand in `sensitive` of the machine file",
+        "its sensitive directions are {}; add any other one to `sensitive` in the machine file",
         sensitive.join(", ")
     ))
 }
@@ -354,7 +355,9 @@ fn unknown_channel(name: &Spanned<String>, equations: &Equations) -> Diagnostic 
     let (family, rest) = name.value.split_once('.').unwrap_or((&name.value, ""));
     match nearest(family, FAMILIES).filter(|_| !rest.is_empty()) {
         Some(near) if near != family => mistake.help(format!("did you mean `{near}.{rest}`?")),
-        _ => mistake.help(format!("channels are {}, temperature.<name>, load.<name>", possible.join(", "))),
+        _ => {
+            mistake.help(format!("the channels are {}, temperature.<name>, load.<name>", possible.join(", ")))
+        }
     }
 }
 

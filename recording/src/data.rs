@@ -63,7 +63,7 @@ pub fn column_names(path: &Path) -> Result<Option<Vec<String>>, DataError> {
     let mut start = Vec::new();
     file.by_ref().take(MOST_BEGINNING).read_to_end(&mut start).map_err(unreadable)?;
     if let Some((what, help)) = foreign(&start) {
-        return Err(DataError::new(&name, format!("it is {what}, which is not read")).help(help));
+        return Err(DataError::new(&name, format!("it is {what}, which Abbe does not read")).help(help));
     }
     if !start.starts_with(PARQUET) && !start.starts_with(ZIP) {
         return Ok(None);
@@ -86,7 +86,7 @@ impl Header {
         let name = path.display().to_string();
         let unreadable = |error: std::io::Error| DataError::new(&name, format!("it cannot be read: {error}"));
         if path.is_dir() {
-            return Err(DataError::new(&name, "it is a folder, not a file of data"));
+            return Err(DataError::new(&name, "it is a folder, not a data file"));
         }
         let mut file = File::open(path).map_err(unreadable)?;
         // What is no file of its own, a pipe, can be read once: it is CSV.
@@ -129,11 +129,14 @@ impl Header {
             return self.read_lines(name, unpacked, MOST_NUMBERS);
         }
         if start.starts_with(PARQUET) || start.starts_with(ZIP) {
-            let error = DataError::new(name, "it is a Parquet file or a workbook, and comes as a stream");
-            return Err(error.help("give the file itself"));
+            let error = DataError::new(
+                name,
+                "it is a Parquet file or a workbook, which cannot be read from a stream",
+            );
+            return Err(error.help("give the name of the file"));
         }
         if let Some((what, help)) = foreign(start) {
-            return Err(DataError::new(name, format!("it is {what}, which is not read")).help(help));
+            return Err(DataError::new(name, format!("it is {what}, which Abbe does not read")).help(help));
         }
         self.read_lines(name, input, MOST_NUMBERS)
     }
@@ -141,8 +144,8 @@ impl Header {
     /// `most`: how many numbers may come.
     fn read_lines(&self, name: &str, text: impl BufRead, most: usize) -> Result<Recording, DataError> {
         if self.form.sheet.is_some() {
-            let error = DataError::new(name, "it is no workbook, and the recording file names a sheet");
-            return Err(error.help("leave `sheet` out of the recording file"));
+            let error = DataError::new(name, "it is not a workbook, but the recording file names a sheet");
+            return Err(error.help("remove `sheet` from the recording file"));
         }
         let mut lines = Lines::new(name, text, self.form.decimal_comma);
         let layout = Layout::read(self, &mut lines)?;

@@ -112,7 +112,7 @@ pub(super) fn check_date(node: &Node, diagnostics: &mut Diagnostics) {
     let read = node.text().and_then(Moment::read);
     if read.is_none() {
         let found = node.text().map_or_else(|| node.kind_name().to_owned(), |text| format!("`{text}`"));
-        let mistake = Diagnostic::error(NO_DATE, node.span, format!("`date` is a date, found {found}"));
+        let mistake = Diagnostic::error(NO_DATE, node.span, format!("`date` must be a date, found {found}"));
         diagnostics.push(mistake.help("write `2026-07-09`, or `2026-07-09T22:59:28` with the time"));
     }
 }

@@ -47,14 +47,14 @@ fn read_vector(node: &Node, items: &[Node], diagnostics: &mut Diagnostics) -> Op
         Diagnostic::error("E0617", node.span, message).help("write three numbers such as `[1, 1, 0]`")
     };
     let [x, y, z] = items else {
-        diagnostics.push(wrong(format!("a direction has three numbers, found {}", items.len())));
+        diagnostics.push(wrong(format!("a direction must have three numbers, found {}", items.len())));
         return None;
     };
     let mut read = |node| quantity::read_number(node, "a component of a direction", diagnostics);
     let (x, y, z) = (read(x), read(y), read(z));
     let vector = unit([x?.value, y?.value, z?.value]);
     if vector.is_none() {
-        diagnostics.push(wrong("a direction of length zero is none".to_owned()));
+        diagnostics.push(wrong("a direction cannot have length zero".to_owned()));
     }
     vector.map(|vector| Spanned::new(vector, node.span))
 }

@@ -102,7 +102,7 @@ fn read_separator(node: &Node, diagnostics: &mut Diagnostics) -> Option<Separato
     let written = word(node, "`separator`", diagnostics)?;
     let found = Separator::ALL.into_iter().find(|separator| separator.name() == written.value);
     if found.is_none() {
-        let message = format!("`{}` is not a separator that is known", written.value);
+        let message = format!("unknown separator `{}`", written.value);
         let mistake = Diagnostic::error(UNKNOWN_VALUE, written.span, message);
         let names = Separator::ALL.map(Separator::name);
         diagnostics.push(near_or_all(mistake, &written.value, "separators are", &names));
@@ -117,8 +117,8 @@ fn read_names(node: &Node, diagnostics: &mut Diagnostics) -> Option<Names> {
     }
     let line = written.value.parse().ok().filter(|line| *line > 0);
     if line.is_none() {
-        let message = format!("`header` is a line or `none`, found `{}`", written.value);
-        let help = "write `header: 7` where the names of the columns stand in line 7, or `header: none`";
+        let message = format!("`header` must be the number of a line or `none`, found `{}`", written.value);
+        let help = "write `header: 7` if line 7 has the names of the columns, or `header: none`";
         diagnostics.push(Diagnostic::error(UNKNOWN_VALUE, written.span, message).help(help));
     }
     line.map(Names::Line)
@@ -129,7 +129,7 @@ fn is_comma(node: &Node, diagnostics: &mut Diagnostics) -> bool {
     if !matches!(written.value.as_str(), "," | ".") {
         let message = format!("`{}` is not a decimal sign", written.value);
         let mistake = Diagnostic::error(UNKNOWN_VALUE, written.span, message);
-        diagnostics.push(mistake.help("write `decimal: \",\"`; a point is taken where it is left out"));
+        diagnostics.push(mistake.help("write `decimal: \",\"`, or leave it out for a point"));
     }
     written.value == ","
 }
@@ -139,8 +139,8 @@ fn check_commas(fields: &Fields<'_>, form: &Form, diagnostics: &mut Diagnostics)
     if !form.decimal_comma || form.separator != Some(Separator::Comma) {
         return;
     }
-    let message = "a comma cannot be the decimal sign and the separator too";
+    let message = "a comma cannot be both the decimal sign and the separator";
     let mistake = Diagnostic::error(FORM, fields.key_span("separator"), message);
     let mistake = mistake.also(fields.key_span("decimal"), "the decimal sign");
-    diagnostics.push(mistake.help("write `separator: semicolon` or `tab`, as the file has it"));
+    diagnostics.push(mistake.help("write `separator: semicolon` or `tab`, as in the file"));
 }

@@ -90,7 +90,7 @@ pub fn machine_of(root: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned<
         return None;
     }
     if root.entries().is_none() {
-        let message = format!("a recording is a mapping of keys, found {}", root.kind_name());
+        let message = format!("a recording must be a mapping of keys, found {}", root.kind_name());
         let mistake = Diagnostic::error(FORM, root.span, message);
         diagnostics.push(mistake.help("begin with `recording: 1` and `machine: ...`"));
         return None;
@@ -121,7 +121,7 @@ fn another_kind(root: &Node) -> Option<Diagnostic> {
     let (_, name) = kinds.iter().find(|(key, _)| is(key))?;
     let message = format!("this is {name}, not a recording file");
     let mistake = Diagnostic::error("E0602", first_key(root), message);
-    Some(mistake.help("a recording file begins with `recording: 1`, and names its machine and its data"))
+    Some(mistake.help("begin with `recording: 1`, and name the machine and the data"))
 }
 
 /// Reads everything that the recording file says, for a machine whose equations are known.
@@ -196,7 +196,8 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
 /// Constants that had other values while it was recorded: E0628 what is no constant of the machine.
 fn read_constants(node: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -> Vec<(usize, f64)> {
     let Some(entries) = node.entries() else {
-        let message = format!("`constants` is a mapping of names to lengths, found {}", node.kind_name());
+        let message =
+            format!("`constants` must be a mapping of names to lengths, found {}", node.kind_name());
         diagnostics.push(Diagnostic::error(FORM, node.span, message).help("write `{Zt: 150 mm}`"));
         return Vec::new();
     };
@@ -224,8 +225,8 @@ fn check_version(node: &Node, diagnostics: &mut Diagnostics) {
         return;
     }
     let message = match node.text() {
-        Some(text) => format!("recordings of version `{text}` are not read"),
-        None => format!("`recording` is the version of the format, found {}", node.kind_name()),
+        Some(text) => format!("version `{text}` of the recording format is unknown"),
+        None => format!("`recording` must be the version of the format, found {}", node.kind_name()),
     };
     diagnostics.push(Diagnostic::error("E0602", node.span, message).help("write `recording: 1`"));
 }
@@ -240,7 +241,7 @@ fn read_instrument(node: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned
     let written = word(node, "`instrument`", diagnostics)?;
     let found = Kind::ALL.into_iter().find(|kind| kind.name() == written.value);
     if found.is_none() {
-        let message = format!("`{}` is not an instrument that is known", written.value);
+        let message = format!("unknown instrument `{}`", written.value);
         let mistake = Diagnostic::error("E0605", written.span, message);
         let names = Kind::ALL.map(Kind::name);
         diagnostics.push(near_or_all(mistake, &written.value, "instruments are", &names));
@@ -260,9 +261,10 @@ fn read_holdout(
     let runs = fields.need("runs", wording, diagnostics)?;
     let items = fields::list(runs, "`runs`", FORM, diagnostics)?;
     if !channels.names.iter().any(|name| name == "run") && !channels.known.iter().any(Channel::is_wide) {
-        let message = "runs are held out, and no channel tells which row belongs to which run";
+        let message = "runs are held out, but no channel says which row belongs to which run";
         let mistake = Diagnostic::error("E0619", fields.key_span("runs"), message);
-        let help = "add `run: {column: ...}` to `channels`, or leave `holdout` out: then whole blocks of time are held out";
+        let help =
+            "add `run: {column: ...}` to `channels`, or leave `holdout` out to hold out blocks of time";
         diagnostics.push(mistake.help(help));
     }
     if items.is_empty() {
@@ -280,7 +282,7 @@ fn read_run(node: &Node, diagnostics: &mut Diagnostics) -> Option<i64> {
     let number = node.text().and_then(|text| text.trim().parse().ok());
     if number.is_none() {
         let found = node.text().map_or_else(|| node.kind_name().to_owned(), |text| format!("`{text}`"));
-        let message = format!("a run is a whole number, found {found}");
+        let message = format!("a run must be a whole number, found {found}");
         diagnostics.push(Diagnostic::error("E0620", node.span, message).help("write `runs: [3]`"));
     }
     number
@@ -288,9 +290,10 @@ fn read_run(node: &Node, diagnostics: &mut Diagnostics) -> Option<i64> {
 
 fn read_extra(node: &Node, diagnostics: &mut Diagnostics) -> Vec<Extra> {
     let Some(entries) = node.entries() else {
-        let message = format!("`extra` is a mapping of names to columns, found {}", node.kind_name());
+        let message = format!("`extra` must be a mapping of names to columns, found {}", node.kind_name());
         let mistake = Diagnostic::error(FORM, node.span, message);
-        diagnostics.push(mistake.help("write `counter.x: {column: c, unit: mm}`, a line each"));
+        diagnostics
+            .push(mistake.help("write one line such as `counter.x: {column: c, unit: mm}` for each column"));
         return Vec::new();
     };
     let extra = entries.iter().filter_map(|(name, node)| {

@@ -275,8 +275,8 @@ pub fn clamped_anew(parts: &[(&str, Turned)]) -> Option<String> {
     let all: Vec<String> = parts.iter().map(one).collect();
     (!all.is_empty()).then(|| {
         format!(
-            "A rotation of the part explains most of what was measured: {}. If the part was measured on another machine than it was \
-             made on, write `setup: {{datum: free}}` into its recording.",
+            "A rotation of the part explains most of the measured deviations: {}. If the part was measured on another machine \
+             than the one that made it, write `setup: {{datum: free}}` in its recording.",
             all.join(", ")
         )
     })

@@ -35,9 +35,9 @@ pub(super) fn read_place(
     let what = format!("`{}`", name.value);
     if let Some((key, node)) = fields.entry("columns") {
         if let Some((other, _)) = fields.entry("column") {
-            let message = format!("{what} has a `column`, or `columns` of runs, and not both");
+            let message = format!("{what} has both a `column` and `columns`");
             let mistake =
-                Diagnostic::error(APART, other.span, message).also(key.span, "a column for each run");
+                Diagnostic::error(APART, other.span, message).also(key.span, "one column for each run here");
             diagnostics.push(mistake.help("leave one of them out"));
         }
         let columns = read_names(node, &format!("`columns` of {what}"), diagnostics)?;
@@ -47,15 +47,15 @@ pub(super) fn read_place(
         };
         if !back.is_empty() && back.len() != columns.len() {
             let (there, again) = (columns.len(), back.len());
-            let message = format!("{what} has {there} columns and {again} on the way back");
+            let message = format!("{what} has {there} columns, but {again} for the way back");
             let mistake = Diagnostic::error(APART, fields.key_span("back"), message);
-            diagnostics.push(mistake.help("give each run a column in `columns` and one in `back`"));
+            diagnostics.push(mistake.help("give each run one column in `columns` and one in `back`"));
             return None;
         }
         return Some(ChannelPlace::Runs { columns, back });
     }
     if let Some((key, _)) = fields.entry("back") {
-        let mistake = Diagnostic::error(APART, key.span, format!("{what} has a way back and no `columns`"));
+        let mistake = Diagnostic::error(APART, key.span, format!("{what} has `back` but no `columns`"));
         diagnostics.push(mistake.help("write `columns: [run 1, run 2], back: [run 1 back, run 2 back]`"));
     }
     let node = fields.need("column", keys(&what), diagnostics)?;
@@ -63,8 +63,8 @@ pub(super) fn read_place(
     if dates && let Some(items) = node.items() {
         let columns = read_names(node, &named, diagnostics)?;
         if items.len() != 2 {
-            let message = format!("a date and a time of day stand in two columns, found {}", items.len());
-            let help = "write `column: [date, time]`, or the one column in which both stand";
+            let message = format!("a date and a time of day must be in two columns, found {}", items.len());
+            let help = "write `column: [date, time]`, or the one column that contains both";
             diagnostics.push(Diagnostic::error(FORM, node.span, message).help(help));
             return None;
         }
@@ -96,15 +96,17 @@ pub(super) fn read_every(
     let (key, node) = fields.entry("every")?;
     let other = ["column", "columns", "unit"].into_iter().find_map(|key| fields.entry(key));
     if let Some((other, _)) = other {
-        let message = "time has `every`, or a column, and not both";
-        let mistake = Diagnostic::error(APART, other.span, message).also(key.span, "from row to row");
-        diagnostics.push(mistake.help("leave one of them out; `every` has its own unit, `every: 1 ms`"));
+        let message = "time has both `every` and a column";
+        let mistake =
+            Diagnostic::error(APART, other.span, message).also(key.span, "the time from row to row");
+        diagnostics
+            .push(mistake.help("leave one of them out; give `every` its own unit, as in `every: 1 ms`"));
         return None;
     }
     let every = quantity::read(node, Dimension::TIME, "`every`", diagnostics)?;
     if every.value <= 0.0 {
         let mistake = Diagnostic::error(APART, every.span, "`every` must be greater than zero");
-        diagnostics.push(mistake.help("write the time from row to row, `every: 1 ms`"));
+        diagnostics.push(mistake.help("write the time the time from row to row, `every: 1 ms`"));
         return None;
     }
     let unit = Some(Spanned::new(SECOND, node.span));
@@ -123,7 +125,7 @@ pub(super) fn scaled_unit(
     let scaled = quantity::parse_quantity(text).ok().filter(|quantity| !quantity.is_bare());
     let Some(scaled) = scaled else {
         if is_date(text) {
-            let message = format!("`{}` is no time, and `date` is a way to write one", name.value);
+            let message = format!("`{}` is not a time, but `date` is a form of time", name.value);
             let mistake = Diagnostic::error("E0609", node.span, message);
             diagnostics.push(mistake.help("write the unit of the numbers in the column"));
             return None;
@@ -136,7 +138,7 @@ pub(super) fn scaled_unit(
     if number <= 0.0 {
         let message = format!("{what} must be greater than zero");
         let mistake = Diagnostic::error(APART, node.span, message);
-        diagnostics.push(mistake.help("write what one count is, `0.1 um`"));
+        diagnostics.push(mistake.help("write the size of one count, such as `0.1 um`"));
         return None;
     }
     Some((Spanned::new(unit, node.span), number))
@@ -151,26 +153,26 @@ pub(super) fn check_runs(channels: &[Channel], diagnostics: &mut Diagnostics) {
         _ => (0, 0),
     };
     for channel in wide.filter(|channel| runs(channel) != runs(first)) {
-        let message = format!("`{}` has other runs than `{}`", channel.name.value, first.name.value);
+        let message = format!("`{}` and `{}` have different runs", channel.name.value, first.name.value);
         let mistake =
             Diagnostic::error(APART, channel.name.span, message).also(first.name.span, "these runs");
-        diagnostics.push(mistake.help("give both a column for each run, and a way back or none"));
+        diagnostics.push(mistake.help("give both one column for each run here, and a way back or none"));
     }
     for channel in channels {
         let (message, help) = match (&channel.kind, &channel.place) {
             (ChannelKind::Run, _) => (
-                "the columns are runs, and so no channel tells them",
-                "leave the channel `run` out: the first of `columns` is run 1",
+                "the columns are the runs, so a channel `run` is not allowed",
+                "leave the channel `run` out; the first of `columns` is run 1",
             ),
             (ChannelKind::Time, ChannelPlace::Every) => continue,
             (ChannelKind::Time, _) => (
-                "a row is read in every run, and one column of times cannot tell when",
-                "write `time: {every: 10 s}`, the time from one row to the next",
+                "every run reads each row, so a column of times cannot apply to all of them",
+                "write the time from row to row, such as `time: {every: 10 s}`",
             ),
             _ => continue,
         };
         let mistake = Diagnostic::error(APART, channel.name.span, message)
-            .also(first.name.span, "a column for each run");
+            .also(first.name.span, "one column for each run here");
         diagnostics.push(mistake.help(help));
     }
 }

@@ -118,10 +118,10 @@ impl<'c> Context<'c> {
             .filter(|key| KEYS.contains(&key.value.as_str()) && !own.contains(&key.value.as_str()));
         for key in foreign {
             let name = self.instrument.value.name();
-            let message = format!("the instrument `{name}` has no `{}` in its set-up", key.value);
+            let message = format!("the set-up of the instrument `{name}` has no `{}`", key.value);
             let help = match own {
-                ["datum"] => "leave it out: its set-up has `datum` alone".to_owned(),
-                _ => format!("it is set up with {}", quoted(own)),
+                ["datum"] => "leave it out; the only key of its set-up is `datum`".to_owned(),
+                _ => format!("the keys of its set-up are {}", quoted(own)),
             };
             diagnostics.push(Diagnostic::error("E0616", key.span, message).help(help));
         }
@@ -143,8 +143,8 @@ impl<'c> Context<'c> {
         let Some(node) = self.get("datum").filter(|_| own) else { return Some(false) };
         let written = word(node, "`datum`", diagnostics)?;
         if written.value != "free" {
-            let message = format!("`datum` is `free`, found `{}`", written.value);
-            let help = "write `datum: free`; leave `datum` out where the part was measured as it was clamped when it was made";
+            let message = format!("`datum` must be `free`, found `{}`", written.value);
+            let help = "write `datum: free`, or leave `datum` out if the part stayed clamped as it was made";
             diagnostics.push(Diagnostic::error(FORM, written.span, message).help(help));
             return None;
         }
@@ -152,7 +152,7 @@ impl<'c> Context<'c> {
         let seen = self.instrument.value == Kind::Probe
             || self.channels.known.iter().any(|channel| places(&channel.kind));
         if !seen {
-            let message = "no channel shows how a part lies, and `datum` is that of a part";
+            let message = "`datum` is for a part, but no channel measures one";
             let mistake = Diagnostic::error("E0618", written.span, message);
             diagnostics
                 .push(mistake.help("add the channel `measured.x`, `.y` or `.z`, or leave `datum` out"));
@@ -199,8 +199,8 @@ impl<'c> Context<'c> {
         };
         if let Some(axis) = axis.filter(|axis| !along(*axis)) {
             let letter = self.letter(axis);
-            let message = format!("a linear instrument on axis {letter} reads along {letter}");
-            let help = "leave `direction` out, leave `axis` out for a diagonal, or take the instrument `straightness`";
+            let message = format!("a linear instrument on axis {letter} must read along {letter}");
+            let help = "leave `direction` out, leave `axis` out for a diagonal, or use the instrument `straightness`";
             diagnostics.push(Diagnostic::error("E0618", direction.span, message).help(help));
             return None;
         }
@@ -222,9 +222,9 @@ impl<'c> Context<'c> {
             && dot(own, direction.value).abs() > OBLIQUE
         {
             let letter = self.letter(axis);
-            let message = format!("the straightness of axis {letter} is read across {letter}");
+            let message = format!("the straightness of axis {letter} must be read across {letter}");
             let help =
-                format!("give a direction at right angles to {letter}, or take the instrument `linear`");
+                format!("give a direction at right angles to {letter}, or use the instrument `linear`");
             diagnostics.push(Diagnostic::error("E0618", direction.span, message).help(help));
             return None;
         }
@@ -242,7 +242,7 @@ impl<'c> Context<'c> {
         match turns.and_then(|axis| own_direction(self.equations, axis)) {
             Some(about) => Some(Instrument::Angular { axis, about }),
             None => {
-                let help = "add `direction: B`, what the reading turns about: A, B or C for X, Y or Z";
+                let help = "add the axis of rotation, such as `direction: B`: A, B or C for X, Y or Z";
                 self.missing("direction", help, diagnostics);
                 None
             }
@@ -261,9 +261,9 @@ impl<'c> Context<'c> {
         let setup = |normal| Some(Setup { instrument: Instrument::Probe, normal, free_datum });
         match (direction, first) {
             (Some(direction), Some(normal)) => {
-                let message = "a probe has a `direction`, or channels `normal.x`, and not both";
+                let message = "a probe has both a `direction` and channels such as `normal.x`";
                 let mistake = Diagnostic::error("E0618", direction.span, message);
-                let mistake = mistake.also(normal.name.span, "a normal for each row");
+                let mistake = mistake.also(normal.name.span, "a normal for each row here");
                 diagnostics.push(mistake.help("leave one of them out"));
                 None
             }
@@ -275,7 +275,7 @@ impl<'c> Context<'c> {
             (None, None) => {
                 let message = "a probe needs the normals of the surface";
                 let mistake = Diagnostic::error("E0614", self.instrument.span, message);
-                let help = "add the channels `normal.x`, `normal.y` and `normal.z`, or `setup: {direction: Z}` where all are one";
+                let help = "add the channels `normal.x`, `normal.y` and `normal.z`, or `setup: {direction: Z}` if all normals are the same";
                 diagnostics.push(mistake.help(help));
                 None
             }
@@ -290,7 +290,7 @@ impl<'c> Context<'c> {
                 }
                 let message = format!("the normals lack {}", lacking.join(" and "));
                 let mistake = Diagnostic::error("E0614", first.name.span, message);
-                diagnostics.push(mistake.help("a normal has a component in each sensitive direction"));
+                diagnostics.push(mistake.help("a normal needs a component in each sensitive direction"));
                 None
             }
         }
@@ -317,9 +317,11 @@ impl<'c> Context<'c> {
         let rotary = axis.filter(|axis| self.equations.axes.get(axis.value).is_some_and(|axis| axis.rotary));
         let Some(axis) = rotary else { return Some(()) };
         let name = self.instrument.value.name();
-        let message =
-            format!("the instrument `{name}` is for a slide, and {} turns", self.letter(axis.value));
-        let help = "take `angular` for its rotation, or `probe` for a displacement while it turns";
+        let message = format!(
+            "the instrument `{name}` is for a slide, but {} is a rotary axis",
+            self.letter(axis.value)
+        );
+        let help = "use `angular` for its rotation, or `probe` for a displacement while it rotates";
         diagnostics.push(Diagnostic::error("E0618", axis.span, message).help(help));
         None
     }
@@ -366,8 +368,9 @@ fn read_center(node: &Node, diagnostics: &mut Diagnostics) -> Option<[f64; 3]> {
             Some(items) => format!("a list of {}", items.len()),
             None => node.kind_name().to_owned(),
         };
-        let message = format!("`center` is a point of three coordinates, found {found}");
-        let help = "write `[275 mm, 140 mm, -50 mm]`, also where a direction is not sensitive";
+        let message = format!("`center` must be a point with three coordinates, found {found}");
+        let help =
+            "write all three, such as `[275 mm, 140 mm, -50 mm]`, even if a direction is not sensitive";
         diagnostics.push(Diagnostic::error(FORM, node.span, message).help(help));
         return None;
     };

@@ -55,10 +55,10 @@ fn measures(instrument: Kind, channel: &ChannelKind) -> bool {
 fn help_for_foreign(channel: &ChannelKind) -> &'static str {
     match channel {
         ChannelKind::Deviation => {
-            "`deviation` is the reading of ballbar, linear, straightness, angular and probe; `position` has `measured.x`"
+            "use `deviation` with ballbar, linear, straightness, angular and probe, and `measured.x` with `position`"
         }
-        ChannelKind::Normal(_) => "only `probe` has normals; put columns that are not used under `extra`",
-        _ => "the reading of this instrument is `deviation`; put columns that are not used under `extra`",
+        ChannelKind::Normal(_) => "use normals only with `probe`; list unused columns under `extra`",
+        _ => "use `deviation` for the reading of this instrument; list unused columns under `extra`",
     }
 }
 

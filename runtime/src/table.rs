@@ -86,12 +86,12 @@ impl fmt::Display for TableError {
                 write!(f, "the table needs {expected} values in each curve, found {found}")
             }
             Self::TooLong => write!(f, "the table has more than {MOST} even nodes"),
-            Self::Step => write!(f, "the step between nodes is zero, next to zero or not finite"),
+            Self::Step => write!(f, "the step between nodes is zero, close to zero or not finite"),
             Self::NotAscending { index } => {
-                write!(f, "node {index} (counted from 0) does not lie above the one before it")
+                write!(f, "node {index} (counted from 0) is not above the one before it")
             }
             Self::NotFinite => write!(f, "a start, a node or a value is not a finite number"),
-            Self::Lone => write!(f, "a table of one node cannot repeat itself"),
+            Self::Lone => write!(f, "a table of one node cannot repeat"),
             Self::Unlike { index } => {
                 write!(
                     f,

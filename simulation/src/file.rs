@@ -97,7 +97,7 @@ fn read_all(root: &Node, context: &mut Context<'_>) -> Option<PathFile> {
         if root.get("path").is_none() && root.get(key).is_some() {
             let message = format!("this is a {kind} file, not a path file");
             context
-                .report(Diagnostic::error("E0702", start, message).help("a path file begins with `path: 1`"));
+                .report(Diagnostic::error("E0702", start, message).help("begin a path file with `path: 1`"));
             return None;
         }
     }
@@ -133,8 +133,8 @@ fn version(section: &Section<'_, '_>, context: &mut Context<'_>) {
     let Some(node) = section.need("path", context) else { return };
     if node.text() != Some("1") {
         let message = match node.text() {
-            Some(text) => format!("paths of version `{text}` are not read"),
-            None => format!("`path` is the version of the format, found {}", node.kind_name()),
+            Some(text) => format!("version `{text}` of the path format is unknown"),
+            None => format!("`path` must be the version of the format, found {}", node.kind_name()),
         };
         context.report(Diagnostic::error("E0702", node.span, message).help("write `path: 1`"));
     }
@@ -151,7 +151,7 @@ fn shape(section: &Section<'_, '_>, start: Span, context: &mut Context<'_>) -> O
             None
         }
         [(first, _), (second, _), ..] => {
-            let mistake = Diagnostic::error("E0706", second.span, "a path has one shape");
+            let mistake = Diagnostic::error("E0706", second.span, "a path must have one shape");
             let mistake = mistake.also(first.span, format!("`{}` here", first.value));
             context.report(mistake.help("write one path file for each shape"));
             None
@@ -278,8 +278,8 @@ fn datum(
     context: &mut Context<'_>,
 ) -> Option<Datum> {
     if let Some(other) = instrument.filter(|instrument| !instrument.measures_parts()) {
-        let message = format!("`datum` is how a part lies, and this `{}` measures none", other.name());
-        let help = "leave `datum` out, or take `position` along x, y or z, or `probe`";
+        let message = format!("`datum` is for a part, but this `{}` measures none", other.name());
+        let help = "leave `datum` out, or use `position` along x, y or z, or `probe`";
         context.report(Diagnostic::error("E0703", name, message).help(help));
         return None;
     }
@@ -351,7 +351,7 @@ impl PathFile {
             }
         }
         let missing = |kind: &str, name: &str, example: &str| {
-            let message = format!("the calibration needs the {kind} `{name}`, and the path gives none");
+            let message = format!("the calibration needs the {kind} `{name}`, but the path gives none");
             Diagnostic::error("E0712", self.shape, message)
                 .help(format!("add `{kind}s: {{{name}: {example}}}`"))
         };
@@ -369,11 +369,11 @@ impl PathFile {
         let cannot = self.scenario.path.timeline(&rotary).err().map(|error| error.to_string());
         let circle = self.scenario.path.circle(rotary.len()).is_some();
         let needs = self.scenario.measurement.instrument.needs_circle() && !circle;
-        let needs = needs.then(|| "this path has no circle to take the instrument's centre from".to_owned());
+        let needs = needs.then(|| "this path has no circle that gives the instrument's centre".to_owned());
         for message in cannot.into_iter().chain(needs) {
             diagnostics.push(
                 Diagnostic::error("E0717", self.shape, message)
-                    .help("change the path, or tell the instrument its centre and radius"),
+                    .help("change the path, or give the instrument its centre and radius"),
             );
         }
     }

@@ -52,7 +52,7 @@ pub enum PathError {
 impl fmt::Display for PathError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoLength => formatter.write_str("the path leads nowhere: all its points are the same"),
+            Self::NoLength => formatter.write_str("the path has no length: all its points are the same"),
             Self::NotPositive(what) => write!(formatter, "{what} of a path must be greater than zero"),
             Self::TooLong => write!(formatter, "the path takes more than {MOST_INSTANTS} readings"),
             Self::NoAxis(axis) => {

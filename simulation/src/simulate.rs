@@ -143,7 +143,7 @@ impl fmt::Display for SimulationError {
         match self {
             Self::Path(error) => error.fmt(formatter),
             Self::Plant(error) => error.fmt(formatter),
-            Self::NoCircle => formatter.write_str("the path has no circle to take centre and radius from"),
+            Self::NoCircle => formatter.write_str("the path has no circle that gives centre and radius"),
             Self::NotRotary(axis) => write!(formatter, "axis number {axis} has no angle to measure"),
         }
     }

@@ -3,20 +3,20 @@
 use clap::ValueEnum;
 use diagnosis::diagnosis::Verdict;
 
-/// When words for people are coloured.
+/// When text for people is coloured.
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum Color {
-    /// Where a terminal shows them that knows colours.
+    /// On a terminal that supports colours.
     Auto,
     /// Also in files and pipes.
     Always,
-    /// Nowhere.
+    /// Never.
     Never,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum Format {
-    /// Plain text beside which a printed report can be held.
+    /// Plain text, for comparison with a printed report.
     Text,
     /// LaTeX, to include in a document.
     Latex,
@@ -45,15 +45,15 @@ pub(crate) enum ReportFormat {
 /// The verdicts of a diagnosis.
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum VerdictName {
-    /// The recordings cannot tell.
+    /// The recordings cannot decide.
     Undecided,
     /// Nothing systematic above the noise.
     Adequate,
-    /// Findings, or faults of the files, explain what is systematic.
+    /// Findings, or faults of the files, explain the systematic residuals.
     LeftOutPhysics,
-    /// Something systematic is left that no term fits.
+    /// Systematic residuals remain that no term fits.
     Unexplained,
-    /// Runs disagree by more than any model of the state could give.
+    /// Runs disagree by more than any model of the state can explain.
     NotRepeatable,
 }
 
@@ -80,11 +80,11 @@ pub(crate) enum Names {
 
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum UpdateMethod {
-    /// The pseudo-inverse of the scaled system: the least change in scaled coefficients.
+    /// The pseudo-inverse of the scaled system: the smallest change in scaled coefficients.
     Svd,
-    /// Least squares held towards the present calibration; the strength by generalised cross-validation.
+    /// Least squares regularised towards the present calibration, with the strength from generalised cross-validation.
     Ridge,
-    /// As few coefficients as pay; all others stand.
+    /// Only the coefficients that are worth their penalty; all others stay the same.
     Select,
 }
 
@@ -150,7 +150,7 @@ pub(crate) enum ExportFormat {
 pub(crate) enum ExportValue {
     /// The error, actual minus commanded: a positive number moves the axis in its negative direction.
     Error,
-    /// What is added to the command.
+    /// The value added to the command.
     Correction,
 }
 

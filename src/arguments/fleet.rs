@@ -17,13 +17,13 @@ pub(crate) struct Fleet {
 
 #[derive(Subcommand)]
 pub(crate) enum FleetCommand {
-    /// Diagnose the recordings that have no result yet, and follow what was found in any of them in all of their machine.
+    /// Diagnose the recordings without a result, and follow each finding through all recordings of its machine.
     #[command(after_help = examples::FLEET_RUN)]
     Run(FleetRun),
-    /// Take over results that were made elsewhere from the same recordings.
+    /// Add results that were made elsewhere from the same recordings.
     #[command(after_help = examples::FLEET_ADD)]
     Add(FleetAdd),
-    /// Tell how each machine is, what changed, and what to look at.
+    /// Report the state of each machine, what changed, and what to check.
     #[command(after_help = examples::FLEET_SHOW)]
     Show(FleetShow),
 }
@@ -33,16 +33,16 @@ pub(crate) struct FleetRun {
     /// The fleet file, which says where the recordings of each machine are.
     #[arg(default_value = "fleet.yaml")]
     pub(crate) fleet: PathBuf,
-    /// Do one of several parts of the jobs, as in 3/16: for several computers that share the folder.
+    /// Do one part of the jobs, as in 3/16, for several computers that share the folder.
     #[arg(long, value_name = "PART/OF", value_parser = shard)]
     pub(crate) shard: Option<Shard>,
-    /// Do nothing: print the jobs that are still to be done, one a line, as JSON.
+    /// Do nothing; print the remaining jobs as JSON, one per line.
     #[arg(long)]
     pub(crate) list: bool,
-    /// Do one job that --list printed, by its name; may be given several times.
+    /// Do one job that --list printed, by its name. May be repeated.
     #[arg(long, value_name = "JOB", conflicts_with_all = ["shard", "list"])]
     pub(crate) job: Vec<String>,
-    /// Write the page of each diagnosis as well, to which the pages of the fleet refer; it takes longer.
+    /// Also write the page of each diagnosis, to which the pages of the fleet link. Takes longer.
     #[arg(long, conflicts_with = "list")]
     pub(crate) pages: bool,
     /// Show no progress.
@@ -65,13 +65,13 @@ pub(crate) struct FleetShow {
     /// The fleet file, which says where the results are.
     #[arg(default_value = "fleet.yaml")]
     pub(crate) fleet: PathBuf,
-    /// How to write it.
+    /// How to write the report.
     #[arg(long, value_enum, default_value_t = LimitsFormat::Text)]
     pub(crate) format: LimitsFormat,
     /// Write the page of the fleet and a page for each machine into this folder.
     #[arg(long, value_name = "FOLDER", conflicts_with = "format")]
     pub(crate) output: Option<PathBuf>,
-    /// Tell what was known at the end of this day, as in 2026-06-30; by default today.
+    /// Report what was known at the end of this day, as in 2026-06-30; by default today.
     #[arg(long, value_name = "DATE", value_parser = moment)]
     pub(crate) until: Option<Moment>,
 }
@@ -80,9 +80,9 @@ pub(crate) struct FleetShow {
 fn moment(text: &str) -> Result<Moment, String> {
     Moment::read(&format!("{}T23:59:59", text.trim()))
         .or_else(|| Moment::read(text))
-        .ok_or_else(|| "a day is written as 2026-06-30, or 2026-06-30T12:00 with the time".to_owned())
+        .ok_or_else(|| "write a day such as 2026-06-30, or 2026-06-30T12:00 with the time".to_owned())
 }
 
 fn shard(text: &str) -> Result<Shard, String> {
-    Shard::read(text).ok_or_else(|| "a part is written as 3/16, from 1/16 to 16/16".to_owned())
+    Shard::read(text).ok_or_else(|| "write a part such as 3/16, from 1/16 to 16/16".to_owned())
 }

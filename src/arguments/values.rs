@@ -4,7 +4,7 @@
 pub(super) fn non_negative(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
-        _ => Err("not a number that is zero or more".to_owned()),
+        _ => Err("not a number of at least zero".to_owned()),
     }
 }
 

@@ -123,7 +123,7 @@ impl<'s, 'c> Rows<'s, 'c> {
         let mut header = ByteRecord::new();
         if !read(&mut reader, &answering, &mut header)? {
             return Err(Failure::no(
-                "error: standard input is empty; it begins with a header such as `x,y,z`".to_owned(),
+                "error: standard input is empty; it must begin with a header such as `x,y,z`".to_owned(),
             ));
         }
         let mut second = ByteRecord::new();
@@ -210,10 +210,10 @@ impl<'s, 'c> Rows<'s, 'c> {
 fn tell_unread(names: &[String]) {
     const MOST: usize = 20;
     for name in names.iter().take(MOST) {
-        warn(&format!("warning: column `{}` is carried along, and nothing reads it", quoted(name)));
+        warn(&format!("warning: column `{}` is copied to the output, but nothing reads it", quoted(name)));
     }
     if names.len() > MOST {
-        warn(&format!("warning: nor does anything read {} more columns", names.len() - MOST));
+        warn(&format!("warning: {} more columns are not read either", names.len() - MOST));
     }
 }
 

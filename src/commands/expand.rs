@@ -26,7 +26,7 @@ pub(crate) fn run(command: &Expand) -> Result<(), Failure> {
     };
     let name = Path::new(&loaded.origin).file_name().map(|name| name.to_string_lossy().into_owned());
     let code = codegen::file(&tokens, &name.unwrap_or(loaded.origin)).map_err(|error| {
-        Failure::wrong(format!("error: the generated code does not parse ({error}); this is a fault of Abbe"))
+        Failure::wrong(format!("error: the generated code does not parse ({error}); this is a bug in Abbe"))
     })?;
     command.target.put(&code)
 }

@@ -18,9 +18,9 @@ pub(crate) fn run(command: &Explain) -> Result<(), Failure> {
 fn unknown(name: &str, near: &[&str]) -> String {
     let named: Vec<String> = near.iter().map(|name| format!("`{name}`")).collect();
     let help = match named.as_slice() {
-        [] => "`abbe explain` alone lists all codes and terms; it also knows error motions, topology words and the words of the guide's glossary".to_owned(),
+        [] => "`abbe explain` without a name lists all codes and terms; it also explains error motions, topology words and the words of the guide's glossary".to_owned(),
         [one] => format!("did you mean {one}?"),
         [others @ .., last] => format!("did you mean {} or {last}?", others.join(", ")),
     };
-    format!("error: `{}` is nothing that `abbe explain` knows\nhelp: {help}", name.escape_debug())
+    format!("error: `abbe explain` does not know `{}`\nhelp: {help}", name.escape_debug())
 }

@@ -36,7 +36,7 @@ fn run_jobs(arguments: &FleetRun) -> Result<(), Failure> {
         let listed = pending(&fleet, arguments.shard, &Person::default())?;
         return listed.iter().try_for_each(|job| print(&job.line()));
     }
-    let progress = Progress::new(arguments.quiet, "looking what there is");
+    let progress = Progress::new(arguments.quiet, "looking for recordings");
     let show = |step: Step<'_>| {
         let (done, of) = step.done;
         if progress.is_watched() {
@@ -64,14 +64,14 @@ fn told(done: Done) -> String {
     };
     let put_off = match put_off {
         0 => String::new(),
-        some => format!("; {some} put off to the next run"),
+        some => format!("; {some} postponed to the next run"),
     };
-    format!("{recordings} recordings: {diagnosed} diagnosed, {followed} followed anew{waiting}{put_off}")
+    format!("{recordings} recordings: {diagnosed} diagnosed, {followed} followed again{waiting}{put_off}")
 }
 
 fn take_over(arguments: &FleetAdd) -> Result<(), Failure> {
     let fleet = read(&arguments.fleet)?;
     let added = add(&fleet, &arguments.results, &Person::default())?;
-    warn(&format!("{} results taken, {} known already, {} refused", added.taken, added.known, added.refused));
+    warn(&format!("{} results added, {} already known, {} refused", added.taken, added.known, added.refused));
     Ok(())
 }

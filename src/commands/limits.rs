@@ -58,7 +58,8 @@ pub(super) fn answered(known: &[Known], asked: &Asked, passes: bool, progress: &
 /// Prints what was found. Status 1 where nothing could be asked.
 pub(super) fn tell(found: Option<Found>, name: &str, asked: &Asked, command: &str) -> Result<(), Failure> {
     let found = found.filter(|found| !found.all.is_empty() || !found.already.is_empty());
-    let reason = "it shows no effect that was asked for: its axes do not move as that needs";
+    let reason =
+        "it can show none of the requested effects, because its axes do not make the motion that these need";
     let found = found.ok_or_else(|| cannot(name, reason))?;
     asked.target.put(&match asked.format {
         LimitsFormat::Text => report::text(&found),
@@ -82,12 +83,14 @@ pub(super) fn check_names(only: &[String], names: &MachineNames) -> Result<(), F
         Some(near) => format!("did you mean `{near}`?"),
         None => {
             format!(
-                "--only takes axes and error motions of the machine, and of kinds: {}",
+                "give --only axes and error motions of the machine, or the kinds {}",
                 Kind::names().join(", ")
             )
         }
     };
-    Err(Failure::wrong(format!("error: `{wrong}` is no effect, error motion or axis\nhelp: {help}")))
+    Err(Failure::wrong(format!(
+        "error: `{wrong}` is not an effect, an error motion or an axis\nhelp: {help}"
+    )))
 }
 
 /// The command that makes the page again.

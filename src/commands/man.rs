@@ -24,7 +24,7 @@ pub(crate) fn run(command: &Man) -> Result<(), Failure> {
 
 fn pages(program: Command, folder: &Path) -> Result<(), Failure> {
     fs::create_dir_all(folder)
-        .map_err(|error| Failure::io(&format!("cannot make {}", folder.display()), &error))?;
+        .map_err(|error| Failure::io(&format!("cannot create {}", folder.display()), &error))?;
     let commands: Vec<Command> =
         program.get_subcommands().filter(|one| one.get_name() != "help").cloned().collect();
     write(folder, "abbe", program)?;

@@ -70,7 +70,7 @@ fn others(command: &Simulate, calibrated: &Calibrated, source: &SourceFile, outp
 /// The recording that is to be replayed.
 fn recording(command: &Simulate) -> Result<Recorded, Failure> {
     if command.seed.is_some() {
-        let help = "help: leave --seed out: what a calibration predicts for a recording has no noise";
+        let help = "help: leave out --seed; the prediction for a recording has no noise";
         return Err(Failure::wrong(format!("error: {} is a recording\n{help}", command.path.display())));
     }
     recorded::read(&command.path, &Person::new(command.quiet))

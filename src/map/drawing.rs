@@ -129,7 +129,7 @@ impl Slice {
         let longest = self.longest();
         let told = match longest > 0.0 {
             true => {
-                format!("Longest error in this plane {}; {state}.", Unit::of("mm", longest).text(longest, 3))
+                format!("Largest error in this plane: {}; {state}.", Unit::of("mm", longest).text(longest, 3))
             }
             false => format!("No error in this plane; {state}."),
         };

@@ -93,7 +93,8 @@ impl Layout {
         let mut reader = Reader { header, names, units_of_names, units, read, mistakes: Vec::new(), wanted };
         if reader.names.first().is_some_and(|first| first.parse::<f64>().is_ok()) {
             return Err(vec![
-                "the first row is no header; write the columns' names above it, `x,y,z`".to_owned(),
+                "the first row is not a header; write the names of the columns above it, such as `x,y,z`"
+                    .to_owned(),
             ]);
         }
         reader.repeated();
@@ -120,7 +121,7 @@ fn unit_row(row: &ByteRecord, columns: usize) -> Result<Vec<String>, String> {
         return Ok(units);
     }
     Err(format!(
-        "the row of units has {} units for {columns} columns; write `#unit` and then one unit for each column, empty where it has none",
+        "the row of units has {} units for {columns} columns; write `#unit` and then one unit for each column, empty if it has none",
         units.len()
     ))
 }
@@ -130,13 +131,13 @@ impl Reader<'_> {
     fn repeated(&mut self) {
         for name in output_columns(self.wanted.equations) {
             if self.names.contains(&name) {
-                self.mistakes.push(format!("column `{name}` is one of the output's; rename it"));
+                self.mistakes.push(format!("column `{name}` has the name of an output column; rename it"));
             }
         }
         let mut known = BTreeSet::new();
         for name in self.names.iter().filter(|name| !name.is_empty()) {
             if !known.insert(name) {
-                self.mistakes.push(format!("column `{}` stands twice", quoted(name)));
+                self.mistakes.push(format!("column `{}` occurs twice", quoted(name)));
             }
         }
     }
@@ -186,7 +187,7 @@ impl Reader<'_> {
         if columns.iter().any(Option::is_some) {
             for (travel, _) in travels.iter().zip(&columns).filter(|(_, column)| column.is_none()) {
                 let name = &travel.name;
-                self.mistakes.push(format!("there is no column `{name}`; a file gives all travels or none"));
+                self.mistakes.push(format!("there is no column `{name}`; give all travels or none"));
             }
         }
         columns
@@ -225,7 +226,7 @@ impl Reader<'_> {
             }
             Ok(_) => {
                 self.mistakes.push(format!(
-                    "`{}` is not a unit for column `{name}`; write `{default}` or the like",
+                    "`{}` is not a unit for column `{name}`; write a unit such as `{default}`",
                     quoted(unit)
                 ));
                 None
@@ -241,7 +242,7 @@ impl Reader<'_> {
         let known = self.names.iter().any(|own| own == name);
         if !known {
             let near = nearest(name, self.names.iter().map(String::as_str));
-            let help = near.map(|near| format!("; is it `{}`?", quoted(near))).unwrap_or_default();
+            let help = near.map(|near| format!("; did you mean `{}`?", quoted(near))).unwrap_or_default();
             self.mistakes.push(format!("there is no column `{name}`, {what}{help}"));
         }
         self.optional(name, default).unwrap_or(Column { index: 0, factor: 1.0, offset: 0.0 })

@@ -81,10 +81,10 @@ impl Axis {
 
     fn told(&self) -> String {
         let Self { letter, unit: (unit, factor), measured: [low, high], outside, farthest, .. } = self;
-        let rows = if *outside == 1 { "1 row lies".to_owned() } else { format!("{outside} rows lie") };
+        let rows = if *outside == 1 { "1 row is".to_owned() } else { format!("{outside} rows are") };
         let [low, high, farthest] = [low, high, farthest].map(|place| rounded(place * factor));
         format!(
-            "warning: {rows} outside of what was measured of {letter}, {low} to {high} {unit}, as far as {farthest} {unit}; tables hold their last value there"
+            "warning: {rows} outside the measured range of {letter}, {low} to {high} {unit}, as far as {farthest} {unit}; tables keep their last value there"
         )
     }
 }

@@ -41,8 +41,10 @@ impl<'s> State<'s> {
     /// Takes a row; the error names the column and the text that is wrong in it, and the state stays as it was.
     pub(crate) fn take(&mut self, row: &ByteRecord) -> Result<(), String> {
         if row.len() != self.layout.width {
-            let hint = if row.len() > self.layout.width { "; a decimal comma would do that" } else { "" };
-            return Err(format!("{} cells under {} columns{hint}", row.len(), self.layout.width));
+            let hint =
+                if row.len() > self.layout.width { "; a decimal comma could be the cause" } else { "" };
+            let plural = if self.layout.width == 1 { "" } else { "s" };
+            return Err(format!("{} cells for {} column{plural}{hint}", row.len(), self.layout.width));
         }
         let tool = self.find_tool(row)?;
         let layout = &self.layout;

@@ -186,7 +186,7 @@ fn positions_of_other_countries() {
     let folder = folder("countries");
     stage(&folder);
     for (positions, parts) in [
-        ("x\n1,5\n", &["row 1", "2 cells under 1 column", "decimal comma"][..]),
+        ("x\n1,5\n", &["row 1", "2 cells for 1 column", "decimal comma"][..]),
         ("x\n\"1,5\"\n", &["row 1", "column `x`", "`1,5` is not a number", "decimal point"]),
         ("x;note\n1,5;a\n", &["row 1", "column `x`", "`1,5` is not a number", "decimal point"]),
         ("x\n1 000\n", &["row 1", "`1 000` is not a number"]),

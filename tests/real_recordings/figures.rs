@@ -101,7 +101,7 @@ fn table(found: &Value, distances: &[Distance]) -> String {
     let unexplained = &found["unexplained"];
     if unexplained.is_object() {
         rows.push(("unexplained".to_owned(), text_of(&unexplained["direction"])));
-        rows.push(("unexplained: rms where it shows".to_owned(), rms_of(unexplained, "rms")));
+        rows.push(("unexplained: rms where it appears".to_owned(), rms_of(unexplained, "rms")));
         rows.push(("unexplained: what".to_owned(), text_of(&unexplained["detail"])));
         let interval = &unexplained["interval"];
         if let (Some(from), Some(to)) = (interval["from"].as_f64(), interval["to"].as_f64()) {

@@ -57,7 +57,7 @@ pub(crate) fn coefficients(calibration: &Calibration, names: &MachineNames) -> C
             for (number, (part, value)) in values.into_iter().enumerate() {
                 let name = format!("{head}{part}");
                 if value == 0.0 {
-                    found.fixed.push(Fixed { name, reason: "is zero, and a relative change leaves it so" });
+                    found.fixed.push(Fixed { name, reason: "is zero, and a relative change keeps it zero" });
                     continue;
                 }
                 piece += usize::from(!whole);
@@ -136,9 +136,9 @@ fn unseen(term: &CalibratedTerm) -> Option<&'static str> {
 /// Why no point of a part shows what depends on this; nothing where one does.
 fn unseen_state(state: State) -> Option<&'static str> {
     match state {
-        State::Velocity | State::Acceleration => Some("is left out, since points are taken at rest"),
+        State::Velocity | State::Acceleration => Some("is left out, because points are measured at rest"),
         State::Reversal | State::Time | State::Load => {
-            Some("is left out: only a recording over time shows it, see abbe diagnose")
+            Some("is left out: only a recording over time shows it (see abbe diagnose)")
         }
         // What a product depends on, its factors say.
         State::Nothing
@@ -172,7 +172,7 @@ fn stands(term: &CalibratedTerm, head: &str) -> Vec<Fixed> {
         let optional = matches!(key.given, Given::Optional(_));
         term.part(key.name).is_some_and(|part| !(optional && part == Part::Number(0.0)))
     });
-    let reason = "shapes its term, which is not linear in it";
+    let reason = "changes the shape of its term, which is not linear in it";
     shapes.map(|key| Fixed { name: format!("{head}.{}", key.name), reason }).collect()
 }
 

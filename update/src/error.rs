@@ -30,16 +30,16 @@ impl fmt::Display for UpdateError {
         match self {
             Self::NoTemperature { sensor, .. } => write!(
                 formatter,
-                "the calibration reads the sensor {sensor}, and the recording has no channel `temperature.{sensor}`"
+                "the calibration reads the sensor {sensor}, but the recording has no channel `temperature.{sensor}`"
             ),
             Self::Instrument { .. } => {
                 formatter.write_str("only the instruments `probe` and `position` measure points of a part")
             }
             Self::NoPoints => {
-                formatter.write_str("the recordings hold no point with a reading and a position")
+                formatter.write_str("the recordings have no point with a reading and a position")
             }
             Self::NothingToMove => formatter.write_str(
-                "the calibration has no coefficient that could move: all are zero, or stand in terms that points do not show",
+                "the calibration has no coefficient that could change: all are zero, or in terms that points do not show",
             ),
             Self::NoDecomposition => formatter.write_str(
                 "the singular values could not be computed: the numbers of the calibration are too far apart",

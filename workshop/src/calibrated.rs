@@ -43,7 +43,7 @@ pub fn of(source: SourceFile, folder: Option<&Path>, listener: &dyn Listener) ->
         Failure::Wrong(reason) => {
             let unusable =
                 Diagnostic::error("E0426", name.span, format!("machine `{}` cannot be used", name.value))
-                    .label("named here; the reason stands below");
+                    .label("named here; the reason is below");
             let mut diagnostics = Diagnostics::new();
             diagnostics.push(unusable);
             Failure::Wrong(Words::marked(&source, &diagnostics).then(reason))
@@ -65,7 +65,7 @@ impl Calibrated {
         if diagnostics.is_empty() {
             return Ok(());
         }
-        let help = "help: --leave-out-uncompensable compensates the other terms without them";
+        let help = "help: use --leave-out-uncompensable to compensate only the other terms";
         Err(Failure::Wrong(Words::marked(&self.source, &diagnostics).then(help)))
     }
 

@@ -51,7 +51,7 @@ pub fn diagnose(
         Keep::Traces => diagnosis::diagnose_with_traces(&inputs, &mut show),
     };
     if diagnosis.recordings.iter().all(|recording| recording.samples == 0) {
-        return Err(Failure::no("error: the recordings hold no sample that could be used"));
+        return Err(Failure::no("error: the recordings have no usable sample"));
     }
     Ok(diagnosis)
 }

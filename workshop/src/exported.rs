@@ -46,7 +46,7 @@ pub fn check_options(format: Format, given: &[&str], dashes: &str) -> Result<(),
     let Some((option, formats)) = stray else { return Ok(()) };
     let names: Vec<&str> = formats.iter().map(|format| name(*format)).collect();
     Err(Failure::wrong(format!(
-        "error: {dashes}{option} says nothing to {}\nhelp: leave it out; it is an option of {}",
+        "error: {dashes}{option} has no effect on {}\nhelp: leave it out; it is an option for {}",
         name(format),
         names.join(", ")
     )))
@@ -123,7 +123,7 @@ fn check_targets(folder: &Path, targets: &[PathBuf], force: bool) -> Result<(), 
     for target in targets {
         if target.exists() && !force {
             return Err(Failure::wrong(format!(
-                "error: {} is there already\nhelp: --output takes another folder, --force replaces the file",
+                "error: {} already exists\nhelp: give another folder with --output, or replace the file with --force",
                 target.display()
             )));
         }
@@ -133,6 +133,6 @@ fn check_targets(folder: &Path, targets: &[PathBuf], force: bool) -> Result<(), 
     }
     let folder = folder.display();
     Err(Failure::wrong(format!(
-        "error: there is no such folder {folder}\nhelp: --output takes a folder that is there"
+        "error: folder {folder} does not exist\nhelp: give an existing folder with --output"
     )))
 }

@@ -55,8 +55,8 @@ pub fn write(
         && path.exists()
     {
         return Err(Failure::wrong(format!(
-            "error: {} is there already, and a machine file is never written over\nhelp: take it away, or give \
-             --write-calibration another name",
+            "error: {} already exists, and Abbe never overwrites a machine file\nhelp: move it away, or give --write-calibration \
+             another name",
             path.display()
         )));
     }
@@ -181,7 +181,7 @@ fn comments(recorded: &Recorded, files: &Files, diagnosis: &Diagnosis) -> String
     };
     let known = files.calibration.as_ref().filter(|_| recorded.calibration.is_some());
     let known = known.map_or_else(
-        || "nothing was; constants that the machine file does not give are 0".to_owned(),
+        || "nothing; constants that the machine file does not give are 0".to_owned(),
         |path| path.display().to_string(),
     );
     let mended = diagnosis.model.iter().map(|change| change.fault.as_str()).collect::<Vec<_>>().join("; ");
@@ -192,7 +192,7 @@ fn comments(recorded: &Recorded, files: &Files, diagnosis: &Diagnosis) -> String
         format!("Known before: {known}."),
     ];
     if !mended.is_empty() {
-        lines.push(format!("Mended: {mended}."));
+        lines.push(format!("Corrected: {mended}."));
     }
     lines.push(format!("Added: {added}."));
     lines.iter().map(|line| comment(line)).collect()
@@ -202,7 +202,7 @@ fn comments(recorded: &Recorded, files: &Files, diagnosis: &Diagnosis) -> String
 fn rms(diagnosis: &Diagnosis) -> String {
     let (before, after) = (&diagnosis.before, &diagnosis.after);
     let held_out = before.holdout_rms.zip(after.holdout_rms).map(|(one, other)| {
-        format!("; of the held-out ones {one:.6} {} before, {other:.6} {} after", before.unit, after.unit)
+        format!("; of the held-out samples {one:.6} {} before, {other:.6} {} after", before.unit, after.unit)
     });
     format!(
         "Rms of all samples {:.6} {} before, {:.6} {} after{}.",
@@ -219,10 +219,10 @@ fn tell(target: &Path, diagnosis: &Diagnosis, listener: &dyn Listener) {
     let warn = |text: String| listener.hear(&Words::from(text));
     let target = target.display();
     for change in diagnosis.model.iter().filter(|change| matches!(change.file, WrongFile::Recording(_))) {
-        warn(format!("note: {target} does not mend {}: {}; {}", change.name, change.fault, change.remedy));
+        warn(format!("note: {target} does not correct {}: {}; {}", change.name, change.fault, change.remedy));
     }
     if diagnosis.findings.is_empty() && diagnosis.model.is_empty() {
-        warn(format!("warning: no term was found: {target} holds what was known before, and nothing more"));
+        warn(format!("warning: no term was found: {target} contains only what was known before"));
     }
     for finding in diagnosis.findings.iter().filter(|finding| !finding.compensable) {
         warn(format!(

@@ -48,7 +48,7 @@ const MOST_BYTES: u64 = 8 * 1024 * 1024;
 /// Reads a text file.
 pub fn read(path: &Path) -> Result<SourceFile, Failure> {
     let text = String::from_utf8(bytes(path)?).map_err(|error| {
-        cannot(path, &format!("it is not UTF-8 text (byte {})", error.utf8_error().valid_up_to()))
+        cannot(path, &format!("the file is not UTF-8 text (byte {})", error.utf8_error().valid_up_to()))
     })?;
     Ok(SourceFile::new(path.display().to_string(), text))
 }
@@ -85,8 +85,9 @@ fn too_large(path: &Path) -> Failure {
     let source = SourceFile::new(path.display().to_string(), "");
     let message = format!("the file is larger than {} MiB", MOST_BYTES >> 20);
     let mut diagnostics = Diagnostics::new();
-    diagnostics
-        .push(Diagnostic::error("E0003", Span::default(), message).help("split it, or thin out its tables"));
+    diagnostics.push(
+        Diagnostic::error("E0003", Span::default(), message).help("split the file, or thin out its tables"),
+    );
     Failure::marked(&source, &diagnostics)
 }
 
@@ -107,7 +108,7 @@ pub fn machine(name: &str, folder: Option<&Path>, listener: &dyn Listener) -> Re
     }
     match there {
         Some(_) => Err(Failure::wrong(format!(
-            "error: {} is a folder\nhelp: write the path of a machine file in it",
+            "error: {} is a folder\nhelp: give the path of a machine file in it",
             path.display()
         ))),
         None => Err(Failure::wrong(unknown(name, &path))),
@@ -156,7 +157,7 @@ fn unknown(name: &str, path: &Path) -> String {
     let help = match beside.as_deref().or_else(|| nearest(name, names)) {
         Some(known) => format!("did you mean `{known}`?"),
         None => format!(
-            "write the path of a machine file, a topology word such as XYFZ, or one of: {}",
+            "give the path of a machine file, a topology word such as XYFZ, or one of: {}",
             names.join(", ")
         ),
     };

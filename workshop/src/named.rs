@@ -61,10 +61,10 @@ fn beside(file: &Path, name: &str) -> PathBuf {
 
 /// Refuses to write over what the diagnosis is read from, and into a folder that is not there: before any work is done.
 pub fn check_target(target: &Path, inputs: &[(Files, &Recorded)]) -> Result<(), Failure> {
-    let help = "help: --write-calibration takes the name of a new file, or of one that may be replaced";
+    let help = "help: give --write-calibration the name of a new file, or of one that may be replaced";
     let wrong = |what: &str| Failure::wrong(format!("error: {} {what}\n{help}", target.display()));
     if !folder(target).is_dir() {
-        return Err(wrong("cannot be written: there is no such folder"));
+        return Err(wrong("cannot be written: its folder does not exist"));
     }
     if target.file_name().is_none() || target.is_dir() {
         return Err(wrong("is a folder"));
@@ -75,7 +75,7 @@ pub fn check_target(target: &Path, inputs: &[(Files, &Recorded)]) -> Result<(), 
         files.all(known)
     });
     let same = read.filter_map(|file| file.canonicalize().ok()).any(|file| file == there);
-    if same { Err(wrong("is one of the files that the diagnosis is read from")) } else { Ok(()) }
+    if same { Err(wrong("is one of the files that the diagnosis reads")) } else { Ok(()) }
 }
 
 /// The machine as the recording names it: a file's path from the recording's folder, or the name as it is.
@@ -103,7 +103,7 @@ pub fn relative(folder: &Path, file: &Path) -> Result<String, Failure> {
 
 fn nameless(file: &Path) -> Failure {
     Failure::wrong(format!(
-        "error: {} cannot be named in the new file: its path is not UTF-8 text\nhelp: write the new file beside it, or rename its folders",
+        "error: the new file cannot name {}: its path is not UTF-8 text\nhelp: write the new file beside it, or rename its folders",
         file.display()
     ))
 }

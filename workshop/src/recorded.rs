@@ -191,12 +191,12 @@ fn read_calibration(
         return Ok(Some(calibrated));
     }
     let message = if of.machine == equations.machine {
-        format!("the calibration is for another machine that is named {} too", of.machine)
+        format!("the calibration is for another machine that is also named {}", of.machine)
     } else {
-        format!("the calibration is for {}, the recording of {}", of.machine, equations.machine)
+        format!("the calibration is for {}, but the recording is from {}", of.machine, equations.machine)
     };
     let mistake =
-        Diagnostic::error("E0624", name.span, message).also(header.machine.span, "the machine recorded");
+        Diagnostic::error("E0624", name.span, message).also(header.machine.span, "the recorded machine");
     Err(one(source, mistake.help("name the machine file that the calibration names, or another calibration")))
 }
 
@@ -238,7 +238,7 @@ pub fn unusable(
     let Failure::Wrong(reason) = failure else { return failure };
     let mistake = Diagnostic::error(code, name.span, format!("{what} `{}` cannot be used", name.value));
     let mut diagnostics = Diagnostics::new();
-    diagnostics.push(mistake.label("named here; the reason stands below"));
+    diagnostics.push(mistake.label("named here; the reason is below"));
     Failure::Wrong(Words::marked(source, &diagnostics).then(reason))
 }
 
@@ -261,7 +261,7 @@ impl Recorded {
         let first = self.source.name();
         if self.equations.names() != other.equations.names() {
             let message = format!(
-                "{} is a recording of {}, {first} one of {}",
+                "{} is a recording of {}, but {first} is one of {}",
                 other.source.name(),
                 other.equations.machine,
                 self.equations.machine
@@ -269,7 +269,7 @@ impl Recorded {
             let mistake = Diagnostic::error("E0625", other.named.machine, message);
             return Err(one(
                 &other.source,
-                mistake.help("give recordings of one machine, or one call for each machine"),
+                mistake.help("give recordings of one machine, or run the command once for each machine"),
             ));
         }
         match (&self.calibration, &other.calibration) {
@@ -282,13 +282,13 @@ impl Recorded {
             _ => {}
         }
         let named = |recorded: &Self| match &recorded.calibration_path {
-            Some(path) => format!("counts on {}", path.display()),
+            Some(path) => format!("starts from {}", path.display()),
             None => "names no calibration".to_owned(),
         };
         let message = format!("{} {}, {first} {}", other.source.name(), named(other), named(self));
         let place = other.named.calibration.unwrap_or(other.named.machine);
         let mistake = Diagnostic::error("E0625", place, message);
-        Err(one(&other.source, mistake.help("let all recordings name the same calibration")))
+        Err(one(&other.source, mistake.help("name the same calibration in all recordings")))
     }
 }
 
@@ -365,13 +365,13 @@ mod tests {
                 "another.yaml",
                 recording("machine: FX\ncalibration: known.yaml"),
                 "E0624",
-                "for stage, the recording of FX",
+                "for stage, but the recording is from FX",
             ),
             (
                 "alike.yaml",
                 recording("machine: other.yaml\ncalibration: known.yaml"),
                 "E0624",
-                "that is named stage too",
+                "that is also named stage",
             ),
             ("data.yaml", recording("machine: FX").replace("d.csv", "e.csv"), "e.csv: it cannot be read", ""),
         ];

@@ -104,7 +104,7 @@ impl SetUp {
         let about = [format!("Written by abbe calibrate from {}.", path.display())];
         let names: Vec<&str> = self.setup.taken().map(|name| name.value.as_str()).collect();
         let taken = (!names.is_empty())
-            .then(|| format!("Error motions that are not measured are those of {}.", names.join(", ")));
+            .then(|| format!("Error motions that were not measured are those of {}.", names.join(", ")));
         let about = about.into_iter().chain(taken).chain(report::comments(outcome, &self.equations));
         let comments: String = about.map(|line| comment(&line)).collect();
         Ok(comments + &calibration::write(&new, &self.equations.names()))

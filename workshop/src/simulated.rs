@@ -56,7 +56,7 @@ pub fn replayed(
     let names = calibrated.equations.names();
     if is_reordered(recorded, &names) {
         let text = format!(
-            "warning: {} is a recording of {}; what is simulated is {}, which has the same axes in another order",
+            "warning: {} is a recording of {}, but the simulated machine is {}, which has the same axes in another order",
             recorded.source.name(),
             recorded.equations.machine,
             names.machine
@@ -64,7 +64,7 @@ pub fn replayed(
         listener.hear(&text.into());
     } else if recorded.equations.names() != names {
         return Err(Failure::wrong(format!(
-            "error: {} is a recording of {}, {} a calibration of {}\nhelp: give both for the same machine",
+            "error: {} is a recording of {}, but {} is a calibration of {}\nhelp: give both for the same machine",
             recorded.source.name(),
             recorded.equations.machine,
             path.display(),
@@ -155,7 +155,7 @@ pub fn known_calibration(
     let known = calibrated::read(path, listener)?;
     if known.equations.names() != *names {
         return Err(Failure::wrong(format!(
-            "error: {} is a calibration of {}, not of {}\nhelp: --known takes another calibration of the same machine",
+            "error: {} is a calibration of {}, not of {}\nhelp: give --known another calibration of the same machine",
             path.display(),
             known.equations.machine,
             names.machine

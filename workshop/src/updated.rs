@@ -107,7 +107,7 @@ pub fn check_machine(
     for part in parts {
         if part.equations.names() != known.equations.names() {
             return Err(Failure::wrong(format!(
-                "error: {} is a recording of {}, {} a calibration of {}\nhelp: give both for the same machine",
+                "error: {} is a recording of {}, but {} is a calibration of {}\nhelp: give both for the same machine",
                 part.source.name(),
                 part.equations.machine,
                 path.display(),
@@ -117,7 +117,7 @@ pub fn check_machine(
         let other = part.calibration.as_ref().is_some_and(|own| own.calibration != known.calibration);
         if other {
             let text = format!(
-                "warning: {} counts on another calibration; it is {} that is updated",
+                "warning: {} names another calibration; the updated one is {}",
                 part.source.name(),
                 path.display()
             );
@@ -136,7 +136,7 @@ fn refused(error: &UpdateError, parts: &[Recorded]) -> Failure {
         }
         UpdateError::Instrument { recording } => {
             let help =
-                "abbe diagnose reads all instruments; a part is measured along normals or in positions";
+                "use abbe diagnose for other instruments; a part is measured as positions or along normals";
             (*recording, "E0627", "instrument", help.to_owned())
         }
         _ => return Failure::no(format!("error: {error}")),
@@ -168,7 +168,7 @@ fn comments(path: &Path, updated: &Update) -> String {
             updated.unknowns
         ),
         left,
-        "It holds where and at what temperatures the parts were made; elsewhere it is not tested.".to_owned(),
+        "It holds for the places and temperatures of the parts. It is not tested elsewhere.".to_owned(),
     ];
     lines.map(|line| comment(&line)).concat()
 }

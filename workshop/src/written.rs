@@ -47,7 +47,7 @@ pub fn staged_calibration(target: &Path, text: &str, equations: &Equations) -> R
     match read {
         Some(_) => staged(target, |file| file.write_all(text.as_bytes())),
         None => Err(Failure::Wrong(Words::marked(&source, &diagnostics).then(
-            "error: the calibration was not written, since it could not be read again; this is a fault of Abbe",
+            "error: the calibration was not written, because it could not be read back; this is a bug in Abbe",
         ))),
     }
 }
@@ -68,7 +68,7 @@ pub fn check_new(
     let wrong = |what: &str, help: &str| {
         Err(Failure::wrong(format!("error: {} {what}\nhelp: {help}", target.display())))
     };
-    let name = format!("{option} takes the name of a file such as {example}");
+    let name = format!("give {option} the name of a file, such as {example}");
     if target.file_name().is_none() || target.is_dir() {
         return wrong("is a folder", &name);
     }
@@ -83,7 +83,10 @@ pub fn check_new(
         return wrong("is one of the files that this command reads or writes", &name);
     }
     if target.exists() && !force {
-        return wrong("is there already", &format!("{option} takes another place, --force replaces it"));
+        return wrong(
+            "already exists",
+            &format!("give another path with {option}, or replace it with --force"),
+        );
     }
     Ok(())
 }
@@ -94,7 +97,7 @@ pub fn check_folder(target: &Path, option: &str) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::wrong(format!(
-        "error: {} cannot be written: there is no such folder\nhelp: {option} takes the name of a file in a folder that is there",
+        "error: {} cannot be written: its folder does not exist\nhelp: give {option} the name of a file in an existing folder",
         target.display()
     )))
 }

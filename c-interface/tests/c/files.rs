@@ -41,10 +41,7 @@ fn a_machine_file_that_says_something_else_is_refused() {
     folder.file("machine.yaml", MACHINE);
     let text = calibration(EMPTY).replace("machine: stage", "machine: machine.yaml");
     let why = loaded(&folder.file("numbers.yaml", &text)).err().unwrap();
-    has(
-        &why,
-        &["E0426", "numbers.yaml:2:10", "other names or equations", "abbe expand --c-abi machine.yaml"],
-    );
+    has(&why, &["E0426", "numbers.yaml:2:10", "the names or equations", "abbe expand --c-abi machine.yaml"]);
 }
 
 #[test]
@@ -53,7 +50,7 @@ fn a_machine_file_with_mistakes_is_refused_with_them() {
     folder.file("machine.yaml", "abbe: 1\nname: stage\ntopology: FQ\n");
     let text = calibration(EMPTY).replace("machine: stage", "machine: machine.yaml");
     let why = loaded(&folder.file("numbers.yaml", &text)).err().unwrap();
-    has(&why, &["E0426", "this file is no machine", "machine.yaml:3:"]);
+    has(&why, &["E0426", "this file is not a machine file", "machine.yaml:3:"]);
 }
 
 #[test]

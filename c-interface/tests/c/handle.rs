@@ -184,7 +184,7 @@ fn names_are_those_of_the_machine_and_its_calibration() {
         assert!(!abbe_axis_is_rotary(handle, 0));
         assert_eq!(CStr::from_ptr(abbe_version()).to_str(), Ok(env!("CARGO_PKG_VERSION")));
         assert_eq!(CStr::from_ptr(abbe_status_text(-5)), Status::Busy.text());
-        assert_eq!(CStr::from_ptr(abbe_status_text(6)), c"no status of Abbe");
+        assert_eq!(CStr::from_ptr(abbe_status_text(6)), c"not a status of Abbe");
         abbe_close(handle);
     }
 }

@@ -94,8 +94,8 @@ pub(crate) struct Factor {
 /// The factors by which numbers have to be multiplied when something was mixed up. With each one the list holds its inverse.
 pub(crate) const FACTORS: [Factor; 11] = [
     Factor { value: -1.0, name: "sign", meaning: "the sign is wrong" },
-    Factor { value: 2.0, name: "size", meaning: "halves were entered for wholes" },
-    Factor { value: 0.5, name: "size", meaning: "wholes were entered for halves" },
+    Factor { value: 2.0, name: "size", meaning: "half values were entered instead of full values" },
+    Factor { value: 0.5, name: "size", meaning: "full values were entered instead of half values" },
     Factor { value: ARCSECOND, name: "unit", meaning: "arcseconds were entered as urad" },
     Factor { value: 1.0 / ARCSECOND, name: "unit", meaning: "urad were entered as arcseconds" },
     Factor { value: 1e3, name: "unit", meaning: "the unit is a thousand times too small" },

@@ -11,7 +11,7 @@ const FACTORS: [(f64, &str); 5] = [
     (1e3, "the unit of {} is a thousand times too small"),
     (1e-3, "the unit of {} is a thousand times too large"),
     (25.4, "{} is in inches"),
-    (1.0 / 25.4, "{} is in millimetres, and is read as inches"),
+    (1.0 / 25.4, "{} is in millimetres but is read as inches"),
     (-1.0, "the sign of {} is wrong"),
 ];
 
@@ -48,7 +48,7 @@ pub(crate) fn change(study: &Study<'_>, (scene, channel): (usize, usize), slack:
         path: format!("channels.{}", observed.name),
         change: way.change,
         with: way.with,
-        remedy: "correct it in the recording file; nothing else can be told before".to_owned(),
+        remedy: "correct it in the recording file; before that, nothing else can be found".to_owned(),
         fault: way.fault,
         amount: None,
         share: 1.0 - (after / before).powi(2),

@@ -110,45 +110,45 @@ impl Words<'_> {
                 "reverse the order of its values".to_owned(),
             ),
             Fault::Shift { at, .. } => (
-                format!("{} stands at the wrong place of its axis", self.term(*at)),
+                format!("{} is at the wrong place of its axis", self.term(*at)),
                 "shift its nodes".to_owned(),
             ),
             Fault::Slip { at, nodes } => {
                 let (where_to, how) =
                     if *nodes > 0 { ("low", "one step higher") } else { ("high", "one step lower") };
                 (
-                    format!("the values of {} stand one node too {where_to} on the axis", self.term(*at)),
+                    format!("the values of {} are one node too {where_to} on the axis", self.term(*at)),
                     format!("start its nodes {how}"),
                 )
             }
             Fault::Axis { of, named, read } => {
                 let [named, read] = [*named, *read].map(|axis| &self.equations.axes[axis].letter);
                 (
-                    format!("{} names the axis {named}, and its values follow {read}", self.term(*of)),
-                    format!("write `axis: {read}` in it"),
+                    format!("{} names the axis {named}, but its values follow {read}", self.term(*of)),
+                    format!("write `axis: {read}` there"),
                 )
             }
             Fault::Directions(at) => (
-                format!("the two directions of {} are exchanged", self.term(*at)),
-                "exchange `forward` and `reverse`".to_owned(),
+                format!("the two directions of {} are swapped", self.term(*at)),
+                "swap `forward` and `reverse`".to_owned(),
             ),
             Fault::Exchange { one, other } => {
                 let [one, other] = [*one, *other].map(|motion| &self.equations.motions[motion].name);
                 (
-                    format!("{one} and {other} stand under the wrong error motions: they are swapped"),
+                    format!("{one} and {other} are under the wrong error motions: they are swapped"),
                     format!("swap the terms of {one} and {other}"),
                 )
             }
             Fault::Moved { from, to } => {
                 let [from, to] = [*from, *to].map(|motion| &self.equations.motions[motion].name);
                 (
-                    format!("the terms of {from} stand under the wrong error motion: they belong to {to}"),
-                    format!("write {to} in the place of {from}"),
+                    format!("the terms of {from} are under the wrong error motion: they belong to {to}"),
+                    format!("write {to} instead of {from}"),
                 )
             }
             Fault::Constant(number) => (
                 format!("the constant {} has the wrong value", self.equations.constants[*number].name),
-                "correct its value, or measure it".to_owned(),
+                "correct the value, or measure it".to_owned(),
             ),
             Fault::Order(word) => {
                 let old = self.inputs.chains.map_or("", |chains| chains.word);
@@ -168,8 +168,8 @@ impl Words<'_> {
                 (
                     format!("the temperature sensors {one} and {other} are swapped"),
                     format!(
-                        "swap the columns of temperature.{one} and temperature.{other} in the recordings; where the calibration has \
-                         the names the wrong way round, swap them there instead"
+                        "swap the columns of temperature.{one} and temperature.{other} in the recordings, or swap the two names \
+                         in the calibration if they are wrong there"
                     ),
                 )
             }

@@ -70,7 +70,7 @@ pub(super) fn words(study: &Study<'_>, quantity: Quantity) -> String {
         Quantity::Position(axis) => format!("position of {}", letter(axis)),
         Quantity::Branch(axis) => format!("position and direction of {}", letter(axis)),
         Quantity::Direction(axis) => format!("direction of {}", letter(axis)),
-        Quantity::Way(axis) => format!("way of {} since it turned, and direction", letter(axis)),
+        Quantity::Way(axis) => format!("travel of {} since its last reversal, and direction", letter(axis)),
         Quantity::Velocity(axis) => format!("velocity of {}", letter(axis)),
         Quantity::Acceleration(axis) => format!("acceleration of {}", letter(axis)),
         Quantity::Path => "place on the path".to_owned(),

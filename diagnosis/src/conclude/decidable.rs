@@ -33,13 +33,13 @@ pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
         (0..axes.len()).filter(|axis| !moving(*axis)).map(|axis| axes[axis].letter.as_str()).collect();
     if still.len() == axes.len() {
         sentences.push(
-            "What depends on position, direction or speed cannot be decided from this recording, because no axis moves."
+            "This recording cannot show what depends on position, direction or speed, because no axis moves."
                 .to_owned(),
         );
     } else if !still.is_empty() {
         let verb = if still.len() == 1 { "does" } else { "do" };
         sentences.push(format!(
-            "What depends on the motion of {} cannot be decided from this recording, because {} {verb} not move.",
+            "This recording cannot show what depends on the motion of {}, because {} {verb} not move.",
             still.join(" and "),
             if still.len() == 1 { "it" } else { "they" }
         ));
@@ -48,8 +48,8 @@ pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
         study.scenes.iter().map(|scene| scene.corners.iter().filter(|corner| **corner).count()).sum();
     if corners > 0 {
         sentences.push(format!(
-            "What happens at corners of the path cannot be decided in {corners} rows, which are left out, because the path \
-             turned between two rows, or an axis may have: it stood at one place twice, and it is not recorded from which \
+            "What happens at corners of the path cannot be decided in {corners} rows, which are left out. The path reversed \
+             between two rows, or may have done so: an axis is at one place twice, and the recording does not show from which \
              side it came the second time."
         ));
     }
@@ -58,16 +58,15 @@ pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
     sentences.extend(turned_alike(study));
     sentences.extend(clamped(study));
     if study.scenes.iter().all(|scene| scene.run_numbers().len() < 2) {
-        sentences.push(
-            "Whether runs repeat cannot be decided from this recording, because there is one run.".to_owned(),
-        );
+        sentences
+            .push("This recording cannot show whether runs repeat, because it has only one run.".to_owned());
     }
     sentences.extend(answers(study).iter().map(|answer| {
         let (name, axis) = (&study.loads[answer.load].0, &study.equations.axes[answer.axis].letter);
         format!(
-            "What the load {name} does to the drive of {axis} cannot be decided from this recording, because it is what the \
-             position loop of {axis} puts out: following error, velocity and programmed motion give {:.1} % of it. It \
-             answers the error.",
+            "This recording cannot show the effect of the load {name} on the drive of {axis}, because the load is the output of \
+             the position loop of {axis}: following error, velocity and programmed motion explain {:.1} % of it. The load \
+             responds to the error.",
             (1000.0 * answer.share).floor() / 10.0
         )
     }));
@@ -79,7 +78,7 @@ fn unturned(scene: &Scene<'_>) -> Option<String> {
     let lie = scene.lie.as_ref()?;
     (lie.rotations == [false; 3]).then(|| {
         format!(
-            "How the part of {} is turned cannot be decided, because its points lie in line with what was measured of them.",
+            "The rotation of the part of {} cannot be decided, because its points lie in line with the measured direction.",
             scene.recording.file
         )
     })
@@ -95,8 +94,8 @@ fn turned_alike(study: &Study<'_>) -> Option<String> {
         .collect();
     (!about.is_empty()).then(|| {
         format!(
-            "Whether the machine turns all that it makes about {} by a constant angle cannot be decided from these recordings, because \
-             each part was clamped anew (`datum: free`) and lies turned by an angle of its own.",
+            "These recordings cannot show whether the machine rotates all parts about {} by a constant angle, because each part \
+             was clamped again (`datum: free`) and is rotated by its own angle.",
             about.join(" or ")
         )
     })
@@ -126,9 +125,9 @@ fn end_points(study: &Study<'_>, scene: &Scene<'_>) -> Option<String> {
     let letters = axes.join(" and ");
     (!axes.is_empty()).then(|| {
         format!(
-            "What depends on the speed of {letters} cannot be decided from {file}, because its command is an end point: it \
-             stands while {letters} {runs} there, and no loop explains the way. Only the {used} rows in which {letters} {verb} at \
-             rest are used.",
+            "{file} cannot show what depends on the speed of {letters}, because its command is an end point: the command is \
+             constant while {letters} {runs} there, and no position loop explains the motion. Only the {used} rows in which \
+             {letters} {verb} at rest are used.",
             file = scene.recording.file
         )
     })
@@ -140,8 +139,8 @@ pub(super) fn crossed(study: &Study<'_>, model: &Model) -> Vec<String> {
     axes.map(|axis| {
         let letter = &study.equations.axes[axis].letter;
         format!(
-            "Whether more than its play holds {letter} for a moment after a reversal cannot be decided from this recording, \
-             because a play that {letter} crosses before it moves explains what is seen there."
+            "This recording cannot show whether friction also holds {letter} for a moment after a reversal, because the lost \
+             motion that {letter} crosses before it moves explains what is seen there."
         )
     })
     .collect()
@@ -150,8 +149,7 @@ pub(super) fn crossed(study: &Study<'_>, model: &Model) -> Vec<String> {
 /// What a fault of a file leaves open.
 pub(super) fn since_when(change: &Change) -> String {
     format!(
-        "Whether {} was wrong from the start or the machine was changed since cannot be decided from these recordings. They show that \
-         {}.",
+        "These recordings cannot show whether {} was wrong from the start or the machine has changed since. They show that {}.",
         change.name, change.fault
     )
 }
@@ -171,13 +169,14 @@ pub(super) fn too_little(study: &Study<'_>) -> Option<String> {
         }
     }
     let because = if fitted + held_out == 0 {
-        "it holds nothing that was observed".to_owned()
+        "it contains no observation".to_owned()
     } else if fitted < FEWEST {
         format!(
-            "{fitted} samples to fit are too few to tell an effect from noise (at least {FEWEST} are needed)"
+            "{fitted} samples are too few to separate an effect from noise (at least {FEWEST} are needed)"
         )
     } else if held_out == 0 {
-        "nothing is left to hold out, and what is not tested on other data is not claimed".to_owned()
+        "no data are left to hold out, and Abbe reports no finding that is not tested on other data"
+            .to_owned()
     } else {
         return None;
     };
@@ -220,8 +219,8 @@ pub(super) fn astray(study: &Study<'_>, bare: &Model) -> Option<String> {
             let median = sizes.get(sizes.len() / 2).copied().unwrap_or_default();
             if median > far_off(study, scene, channel) {
                 return Some(format!(
-                    "`{}` of {} does not follow the programmed path: half of its samples are off by more than {median:.3}; \
-                     look at its column, its unit and the axes",
+                    "`{}` of {} does not follow the programmed path: half of its samples deviate by more than {median:.3}; check \
+                     its column, its unit and the axes",
                     channel.name, study.scenes[scene].recording.file
                 ));
             }
@@ -255,7 +254,7 @@ pub(super) fn impossible(study: &Study<'_>) -> Option<String> {
                 format!("moves at {speed:.0} {unit}/s")
             };
             return Some(format!(
-                "the command of {} in {} {does}, as no machine does; look at the units of its column and of time",
+                "the command of {} in {} {does}, which no machine does; check the units of its column and of time",
                 axis.letter, scene.recording.file
             ));
         }
@@ -294,8 +293,8 @@ pub(super) fn misplaced(study: &Study<'_>) -> Option<String> {
             let center = center.map(|value| format!("{value:.3}")).join(", ");
             return Some(format!(
                 "the ballbar of {} is {radius:.3} mm long, and the programmed path is {median:.3} mm from its centre ({center}) \
-                 mm; look at the centre, which is that of the nominal tip with the tool's offset, at the radius, and at the \
-                 machine's constants",
+                 mm; check the centre, which is that of the nominal tip with the tool's offset, the radius, and the machine's \
+                 constants",
                 scene.recording.file
             ));
         }
@@ -315,8 +314,8 @@ pub(super) fn no_circle(study: &Study<'_>, bare: &Model) -> Option<String> {
         let largest = sizes.fold(0.0, |most: f64, value| most.max(value.abs()));
         (largest > BAR_READS + BAR_READS_OF_LENGTH * radius).then(|| {
             format!(
-                "the readings of {} are no circle about the declared centre: fitted to them, centre or length of the bar are \
-                 off by {largest:.1} mm; look at the columns of the axes, which may be exchanged, at their signs and units",
+                "the readings of {} are not a circle about the declared centre: a fit gives a centre or length of the bar that \
+                 differs by {largest:.1} mm; check the columns of the axes, which may be swapped, and their signs and units",
                 scene.recording.file
             )
         })

@@ -91,8 +91,8 @@ pub(super) fn on_the_way(study: &Study<'_>) -> Option<Unexplained> {
             rms: rms * factor,
             unit,
             detail: format!(
-                "the command of {letter} is the end point of its motion and not where it should be on the way: {} rows on the \
-                 way there tell nothing of the machine, and are left out",
+                "the command of {letter} is the end point of its motion, not its target on the way: {} rows on the way there \
+                 show nothing about the machine and are left out",
                 away.len()
             ),
             table_of: None,
@@ -137,8 +137,8 @@ fn by_state(study: &Study<'_>, found: &Found, moving: &Moving, units: &Units) ->
         rms: moving.rms * units.unit.0,
         unit: units.unit.1,
         detail: format!(
-            "some function of the {state} predicts {:.0} % of it where it was not fitted; no term of the vocabulary has \
-             this form",
+            "a function of the {state} predicts {:.0} % of it on data that was not fitted; no term of the vocabulary has this \
+             form",
             100.0 * share
         ),
         table_of: None,
@@ -161,7 +161,7 @@ fn smoothly(study: &Study<'_>, found: &Found, moving: Moving, units: &Units) -> 
         rms: moving.rms * units.unit.0,
         unit: units.unit.1,
         detail: format!(
-            "keeps its direction for {} and more, as no sensor's noise does: something of the machine is still left out{near}",
+            "keeps its direction for {} and more, unlike the noise of a sensor: something in the machine is still missing from the model{near}",
             words::seconds(moving.time)
         ),
         table_of: None,
@@ -186,7 +186,7 @@ fn near(study: &Study<'_>, suspect: &Suspect) -> String {
     let told: Vec<String> = told.collect();
     let told = if told.is_empty() { String::new() } else { format!(" ({})", told.join(", ")) };
     format!(
-        "; {} of {motion}{told} comes nearest: alone it would take {:.0} % of it, which so short a recording does not prove",
+        "; {} of {motion}{told} is the closest candidate: alone it would explain {:.0} % of it, but the recording is too short to prove it",
         effect.shape.name(),
         100.0 * suspect.share
     )
@@ -208,8 +208,9 @@ fn of_band(study: &Study<'_>, band: Band) -> Unexplained {
         interval: Some(Interval { of: IntervalOf::Frequency, from: band.from, to: band.to, unit: "Hz" }),
         rms: band.rms * factor,
         unit,
-        detail: "oscillates with a strength that comes and goes; a steady vibration would be one line, and this is a band"
-            .to_owned(),
+        detail:
+            "oscillates with a varying amplitude; a steady vibration would be one line, but this is a band"
+                .to_owned(),
         table_of: None,
     }
 }

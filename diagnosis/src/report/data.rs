@@ -13,7 +13,7 @@ pub(super) fn figures(diagnosis: &Diagnosis) -> Vec<Item> {
         ("known before", vec![before]),
         ("with findings", vec![after]),
     ];
-    vec![Item::new("Root mean square of the noise, and of what the model leaves".to_owned(), facts)]
+    vec![Item::new("Root mean square of the noise and of the residuals".to_owned(), facts)]
 }
 
 /// What of each channel comes back with which state, before any name: that all of the findings could explain at most; and of which
@@ -23,7 +23,7 @@ pub(super) fn returns(diagnosis: &Diagnosis) -> Vec<String> {
         by_channel(diagnosis).filter_map(<[Returning]>::last).map(|one| returning(diagnosis, one)).collect();
     lines.extend([true, false].into_iter().filter_map(|twice| nothing(diagnosis, twice)));
     if lines.is_empty() && diagnosis.undecidable.is_some() {
-        lines.push("It was not looked for: these recordings decide nothing.".to_owned());
+        lines.push("No search was made for it, because these recordings decide nothing.".to_owned());
     }
     lines
 }
@@ -43,7 +43,7 @@ pub(super) fn named(diagnosis: &Diagnosis, recording: usize, channel: &str) -> S
 
 fn returning(diagnosis: &Diagnosis, one: &Returning) -> String {
     format!(
-        "{}: {} of the residual comes back with the {}; what does not is {} (rms).",
+        "{}: {} of the residual comes back with the {}; the rest is {} (rms).",
         named(diagnosis, one.recording, &one.channel),
         percent(one.share),
         one.state,
@@ -58,9 +58,9 @@ fn nothing(diagnosis: &Diagnosis, driven_twice: bool) -> Option<String> {
         of.map(|NothingReturns { recording, channel, .. }| named(diagnosis, *recording, channel)).collect();
     let names = (!names.is_empty()).then(|| names.join(", "))?;
     Some(if driven_twice {
-        format!("{names}: nothing comes back; no state predicts more of the residual than chance gives.")
+        format!("{names}: nothing comes back; no state predicts more of the residual than chance.")
     } else {
-        format!("{names}: what comes back is not known; nothing was driven twice.")
+        format!("{names}: it is unknown what comes back, because nothing was driven twice.")
     })
 }
 

@@ -22,7 +22,7 @@ fn often(one: &Repeats) -> String {
         3 => "three times".to_owned(),
         many => format!("{many} times"),
     };
-    format!("it comes {times} a turn of the axis")
+    format!("it occurs {times} per turn of the axis")
 }
 
 /// The period as that of an element, `half the pitch of the screw (10 mm)`; nothing for the axis itself.

@@ -141,7 +141,7 @@ pub(super) fn estimate(estimate: &Estimate, kind: Kind) -> String {
     }
     match places_of(half) {
         None => format!(
-            "{} (the recordings say nothing of its interval)",
+            "{} (the recordings do not determine its interval)",
             scale.with_unit(&significant(value, 4))
         ),
         Some(places) if ((high + low) / 2.0 - value).abs() > 0.1 * half => {

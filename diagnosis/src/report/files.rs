@@ -13,7 +13,7 @@ pub(super) fn items(diagnosis: &Diagnosis) -> Vec<Item> {
 /// A fault in one sentence: what seems to be wrong, and how much of what the files leave it explains.
 pub(super) fn sentence(change: &Change) -> String {
     let explains = match change.share.is_finite() {
-        true => format!(": mended, it explains {}", percent(change.share)),
+        true => format!(": corrected, it explains {}", percent(change.share)),
         false => String::new(),
     };
     format!("It seems that {}{explains}.", change.fault)

@@ -46,7 +46,7 @@ fn form(finding: &Finding) -> Vec<String> {
     let Some(form) = &finding.form else { return Vec::new() };
     let physics = match form.physics.as_slice() {
         [] => String::new(),
-        known => format!("Machines have it: {}.", known.join("; ")),
+        known => format!("Examples: {}.", known.join("; ")),
     };
     vec![form.words.clone(), format!("{} = {}", finding.motion, form.equation.text), physics]
 }
@@ -69,12 +69,11 @@ fn place(location: &Location) -> String {
 }
 
 fn what(finding: &Finding) -> String {
-    let friction = friction(finding).filter(|_| !finding.explanation.contains("not play"));
     let repeats = repeats(finding);
     let sentences = [
         finding.explanation.as_str(),
         repeats.as_deref().unwrap_or_default(),
-        friction.unwrap_or_default(),
+        friction(finding).unwrap_or_default(),
         ahead(finding).unwrap_or_default(),
         pushed(finding).unwrap_or_default(),
     ];
@@ -87,7 +86,7 @@ fn evidence(evidence: &Evidence) -> String {
             let of = evidence.drive.as_ref().map(|axis| format!(" of the drive's feedback of {axis}"));
             format!("held-out rms{} {without} without it, {with} with it", of.unwrap_or_default())
         }
-        None => "no data could be held out: it is fitted, not tested".to_owned(),
+        None => "no data could be held out, so it is fitted but not tested".to_owned(),
     }
 }
 

@@ -2,9 +2,10 @@
 //! nothing fetched. It begins with the summary that the text begins with and with what comes back; findings in words stand next,
 //! plots of them after that, then what is open.
 
+use pages::text::printed;
+
 use super::brief;
 use super::item::{Fact, Item};
-use super::markup::escape;
 use super::plots;
 use super::sheet::{Body, Section, Summary, sheet};
 use crate::diagnosis::Diagnosis;
@@ -58,7 +59,7 @@ pub fn html(diagnosis: &Diagnosis, origin: &Origin<'_>) -> String {
 /// What the text begins with: machine, verdict, a line for each finding.
 fn summary(diagnosis: &Diagnosis, summary: &Summary) -> String {
     let word = diagnosis.verdict.word();
-    let [title, verdict] = [&summary.title, &summary.verdict].map(|text| escape(text));
+    let [title, verdict] = [&summary.title, &summary.verdict].map(|text| printed(text));
     let findings = table(&summary.findings);
     format!("<h1>{title}</h1>\n<p class=\"verdict\" data-verdict=\"{word}\">{verdict}.</p>\n{findings}")
 }
@@ -69,7 +70,7 @@ fn table(rows: &[brief::Row]) -> String {
         return String::new();
     }
     let row = |cells: &[String], mark: &str| {
-        let cells = cells.iter().map(|cell| format!("<{mark}>{}</{mark}>", escape(cell)));
+        let cells = cells.iter().map(|cell| format!("<{mark}>{}</{mark}>", printed(cell)));
         format!("<tr>{}</tr>\n", cells.collect::<String>())
     };
     let head = row(&brief::TITLES.map(str::to_owned), "th");
@@ -96,8 +97,8 @@ fn change(origin: &Origin<'_>) -> String {
     };
     let lines: String = origin.change.lines().map(line).collect();
     format!(
-        "<section>\n<h2>The calibration with the findings</h2>\n<p>What <code>--write-calibration</code> adds to what was \
-         known; + is new, - is gone.</p>\n<pre>{lines}</pre>\n</section>\n"
+        "<section>\n<h2>The calibration with the findings</h2>\n<p>The changes that <code>--write-calibration</code> makes to \
+         the known calibration; + is added, - is removed.</p>\n<pre>{lines}</pre>\n</section>\n"
     )
 }
 
@@ -108,7 +109,7 @@ fn command(origin: &Origin<'_>) -> String {
     }
     let [command, program] = [origin.command, origin.program].map(pages::text::escape);
     format!(
-        "<section>\n<h2>How this page is made again</h2>\n<pre>{command}</pre>\n<p class=\"source\">{program}; the same \
+        "<section>\n<h2>How to reproduce this page</h2>\n<pre>{command}</pre>\n<p class=\"source\">{program}. The same \
          recordings give the same page.</p>\n</section>\n"
     )
 }
@@ -118,16 +119,16 @@ fn section(section: &Section, plots: &str) -> String {
     let body = match &section.body {
         Body::Items(items) => items.iter().map(item).collect::<String>(),
         Body::List(lines) => {
-            let lines: String = lines.iter().map(|line| format!("<li>{}</li>\n", escape(line))).collect();
+            let lines: String = lines.iter().map(|line| format!("<li>{}</li>\n", printed(line))).collect();
             format!("<ol>\n{lines}</ol>\n")
         }
     };
-    format!("<section>\n<h2>{}</h2>\n{plots}{body}</section>\n", escape(section.heading))
+    format!("<section>\n<h2>{}</h2>\n{plots}{body}</section>\n", printed(section.heading))
 }
 
 fn item(item: &Item) -> String {
     let facts: String = item.facts.iter().map(fact).collect();
-    format!("<article>\n<h3>{}</h3>\n<dl>\n{facts}</dl>\n</article>\n", escape(&item.title))
+    format!("<article>\n<h3>{}</h3>\n<dl>\n{facts}</dl>\n</article>\n", printed(&item.title))
 }
 
 /// The line of a fact that its formula takes the place of.
@@ -136,8 +137,8 @@ const FORMULA: usize = 1;
 fn fact(fact: &Fact) -> String {
     let line = |(number, line): (usize, &String)| match &fact.formula {
         Some(formula) if number == FORMULA => format!("<dd>{formula}</dd>\n"),
-        _ => format!("<dd>{}</dd>\n", escape(line)),
+        _ => format!("<dd>{}</dd>\n", printed(line)),
     };
     let lines: String = fact.lines.iter().enumerate().map(line).collect();
-    format!("<dt>{}</dt>\n{lines}", escape(fact.label))
+    format!("<dt>{}</dt>\n{lines}", printed(fact.label))
 }

@@ -31,19 +31,17 @@ fn item(setting: &SettingFinding, diagnosis: &Diagnosis) -> Item {
 
 fn meaning(term: &str) -> &'static str {
     match SettingKind::of_name(term) {
-        Some(SettingKind::Eccentricity) => {
-            "The instrument's centre is not where the set-up says: true centre minus declared centre."
-        }
-        Some(SettingKind::Radius) => "The instrument is longer or shorter than the set-up says.",
+        Some(SettingKind::Eccentricity) => "The true centre minus the centre declared in the set-up.",
+        Some(SettingKind::Radius) => "The instrument is longer or shorter than declared in the set-up.",
         Some(SettingKind::Cosine) => {
-            "The beam stands at an angle to the motion, and reads every length too short."
+            "The beam is at an angle to the motion, so every length reads too short."
         }
         Some(SettingKind::Clock) => {
-            "The instrument's clock is off: it shows at a time what was so before, by the offset."
+            "The instrument's clock has an offset: at each time it shows an earlier state."
         }
         Some(SettingKind::Datum) => {
-            "The part lies turned where it was measured, right-handed about X (a), Y (b) and Z (c) of its frame, and a probed one \
-             displaced (x, y, z)."
+            "The part was rotated when it was measured, right-handed about X (a), Y (b) and Z (c) of its frame; a probed part \
+             was also displaced (x, y, z)."
         }
         Some(SettingKind::Offset) | None => "",
     }

@@ -37,7 +37,7 @@ fn span(list: &[Estimate], kind: Kind) -> String {
     let values = || list.iter().map(|fitted| fitted.value).filter(|value| value.is_finite());
     let (low, high) = values()
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
-    let Some(first) = list.first().filter(|_| low <= high) else { return "none is known".to_owned() };
+    let Some(first) = list.first().filter(|_| low <= high) else { return "unknown".to_owned() };
     let widest = list.iter().map(|fitted| (fitted.ci95.1 - fitted.ci95.0).abs() / 2.0).fold(0.0, f64::max);
     let scale = Scale::of(&first.unit, kind, low.abs().max(high.abs()));
     format!("{} numbers, {}", list.len(), scale.between(low, high, widest))

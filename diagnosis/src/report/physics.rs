@@ -11,9 +11,9 @@ use super::figure::stretch;
 pub(super) fn side(side: &str) -> &str {
     match side {
         "drive" => "in the drive",
-        "transmission" => "behind the drive's feedback: screw, play, guide",
+        "transmission" => "behind the drive's feedback: screw, nut, guide",
         "structure" => "in the structure",
-        "unknown" => "one sensor cannot tell on which side of the drive's feedback",
+        "unknown" => "side of the drive's feedback unknown with one sensor",
         other => other,
     }
 }
@@ -23,7 +23,7 @@ pub(super) fn state(state: &str) -> String {
     match state {
         "direction" => "depends on the direction of motion".to_owned(),
         "reversal" => "begins at each reversal".to_owned(),
-        "other-axis" => "depends on where another axis stands".to_owned(),
+        "other-axis" => "depends on the position of another axis".to_owned(),
         "" => String::new(),
         "constant" | "none" => "the same everywhere".to_owned(),
         other => format!("depends on {other}"),
@@ -54,8 +54,8 @@ pub(super) fn friction(finding: &Finding) -> Option<&'static str> {
     let turns = matches!(finding.kind(), TermKind::Backlash | TermKind::ReversalSpike)
         || finding.location.state == "direction";
     (turns && finding.location.side == "drive").then_some(
-        "The drive's own feedback shows it, so this is friction in the following error, not play: there is nothing to \
-         tighten behind the motor.",
+        "The drive's own feedback shows it, so this is friction in the following error and not a gap in the drive train: there \
+         is nothing to tighten behind the motor.",
     )
 }
 
@@ -67,48 +67,49 @@ pub(super) fn ahead(finding: &Finding) -> Option<&'static str> {
     };
     if finding.kind() == TermKind::Lag {
         return below("gain").then_some(
-            "Here it is below zero: the drive leads its command, by velocity over gain. Its feed-forward is too large, or the \
-             loop is quicker than the calibration says.",
+            "Its value is negative: the drive leads its command by velocity over gain. Its feed-forward is too large, or the \
+             loop is faster than the calibration says.",
         );
     }
     below("lost_motion").then_some(
-        "Here it is below zero: after a reversal the axis seems to run ahead, as no play makes it. Look at the sign of the \
-         sensor, and at a calibration that compensates more than there is.",
+        "Its value is negative: after a reversal the axis seems to run ahead, which no backlash causes. Check the sign of the \
+         sensor, and whether a calibration overcompensates.",
     )
 }
 
 /// What a load does inside a position loop; nothing for other findings.
 pub(super) fn pushed(finding: &Finding) -> Option<&'static str> {
     (finding.kind() == TermKind::Compliance && finding.location.inside_loop).then_some(
-        "It pushes the drive itself, whose position loop yields until it pushes back: the size is that of the loop's \
-         stiffness. Far more than a micrometre for each newton is a load in another unit than its column says.",
+        "The load acts on the drive itself, whose position loop yields until it balances the load. The size therefore depends on \
+         the stiffness of the loop. Far more than a micrometre per newton means that the load is in another unit than its column \
+         says.",
     )
 }
 
 /// What compensation takes away.
 pub(super) fn removed(finding: &Finding) -> &'static str {
     if !finding.compensable {
-        return "A controller cannot compensate it in real time: it does not know in time what this depends on.";
+        return "A controller cannot compensate it in real time: it does not know in time the quantity on which this depends.";
     }
     if friction(finding).is_some() {
-        return "A correction at each reversal removes it; friction compensation in the drive is the better place.";
+        return "A correction at each reversal removes it; friction compensation in the drive is better.";
     }
     match finding.kind() {
         TermKind::Constant | TermKind::Polynomial | TermKind::Table | TermKind::Coupling => {
-            "A controller can compensate it in real time, wherever it was measured."
+            "A controller can compensate it in real time within the measured range."
         }
         TermKind::Backlash => "A controller can compensate it in real time: a step at each reversal.",
         TermKind::Cyclic => {
-            "A controller can compensate it in real time, as long as the reference position stays."
+            "A controller can compensate it in real time, as long as the reference position does not change."
         }
         TermKind::Lag => {
-            "A controller can compensate it in real time; matched gains in the drives are the better place."
+            "A controller can compensate it in real time; matched gains in the drives are better."
         }
         TermKind::Expansion | TermKind::Growth => {
             "A controller that reads the sensor can compensate it in real time."
         }
         TermKind::Delay => {
-            "A controller can compensate it in real time; equal paths of the commands are the better place."
+            "A controller can compensate it in real time; equal command paths for all drives are better."
         }
         TermKind::ReversalSpike
         | TermKind::Acceleration
@@ -123,21 +124,21 @@ pub(super) fn removed(finding: &Finding) -> &'static str {
 /// What compensation leaves, or what helps in its place.
 pub(super) fn left(finding: &Finding) -> &'static str {
     match finding.kind() {
-        TermKind::Backlash => "What stays is the moment in which the axis crosses over.",
-        TermKind::Lag => "What stays is what is faster than the position loop.",
-        TermKind::Expansion | TermKind::Growth => "What stays is the heat that the sensor does not see.",
-        TermKind::Cyclic => "What stays is what changes with wear and with heat along the screw.",
-        TermKind::Table => "What stays is what lies between the nodes and outside the stretch.",
+        TermKind::Backlash => "The moment in which the axis crosses over remains.",
+        TermKind::Lag => "Errors faster than the position loop remain.",
+        TermKind::Expansion | TermKind::Growth => "The effect of heat that the sensor does not see remains.",
+        TermKind::Cyclic => "Changes with wear and with heat along the screw remain.",
+        TermKind::Table => "Errors between the nodes and outside the stretch remain.",
         TermKind::Constant | TermKind::Polynomial | TermKind::Coupling => {
-            "What stays is what changes after the measurement."
+            "Changes after the measurement remain."
         }
-        TermKind::ReversalSpike => "Friction compensation in the drive is what helps.",
-        TermKind::Acceleration => "Acceleration feed-forward in the drive, or gentler motion, is what helps.",
-        TermKind::Drift => "Warming up, or a sensor at the source of the heat, is what helps.",
-        TermKind::Vibration => "Balancing, damping or isolating its source is what helps.",
-        TermKind::Compliance => "A stiffer set-up, or less force, is what helps.",
-        TermKind::Delay => "What stays is what the command of the axis does within that time.",
-        TermKind::Step => "Looking for what moved, and measuring anew, is what helps.",
-        TermKind::Product => "What stays is what lies outside the states that the recording went through.",
+        TermKind::ReversalSpike => "Use friction compensation in the drive.",
+        TermKind::Acceleration => "Use acceleration feed-forward in the drive, or gentler motion.",
+        TermKind::Drift => "Warm up the machine, or place a sensor at the heat source.",
+        TermKind::Vibration => "Balance, damp or isolate its source.",
+        TermKind::Compliance => "Use a stiffer set-up or less force.",
+        TermKind::Delay => "Changes of the command within that time remain.",
+        TermKind::Step => "Find out what moved, and measure again.",
+        TermKind::Product => "Errors in states that the recording did not cover remain.",
     }
 }

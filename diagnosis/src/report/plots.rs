@@ -9,8 +9,8 @@ mod sizes;
 mod spectrum;
 
 use pages::plot::{Axis, Draw, Look, Plot, Series, Tone, thin};
+use pages::text::printed;
 
-use super::markup::escape;
 use crate::diagnosis::Diagnosis;
 use crate::pictures::{ChannelPicture, Picture, Pictures};
 
@@ -28,7 +28,7 @@ impl Figure {
     fn html(&self) -> String {
         let caption = match self.caption.as_str() {
             "" => String::new(),
-            caption => format!("<figcaption>{}</figcaption>\n", escape(caption)),
+            caption => format!("<figcaption>{}</figcaption>\n", printed(caption)),
         };
         format!("<figure>\n{}{caption}</figure>\n", self.plot.draw().inline())
     }
@@ -44,9 +44,9 @@ pub(super) fn sections(diagnosis: &Diagnosis) -> String {
     let Some(pictures) = &diagnosis.pictures else { return String::new() };
     let mut captions = Captions::default();
     let heading = if diagnosis.findings.is_empty() {
-        "What is left"
+        "Residuals"
     } else {
-        "How much each finding does, and what is left"
+        "The size of each finding, and the residuals"
     };
     let mut all = section(heading, &sizes::figures(diagnosis, pictures));
     for picture in &pictures.recordings {
@@ -55,7 +55,7 @@ pub(super) fn sections(diagnosis: &Diagnosis) -> String {
     let more = diagnosis.recordings.len().saturating_sub(pictures.recordings.len());
     if more > 0 {
         all += &format!(
-            "<p class=\"none\">{more} more recordings count for the findings and are not drawn.</p>\n"
+            "<p class=\"none\">{more} more recordings contribute to the findings and are not drawn.</p>\n"
         );
     }
     all
@@ -81,8 +81,8 @@ fn recording(
         };
         body += &format!(
             "<h3>{}</h3>\n<p class=\"source\">{}</p>\n",
-            escape(&title),
-            escape(&shown(diagnosis, channel))
+            printed(&title),
+            printed(&shown(diagnosis, channel))
         );
         let mut figures = position::figures(diagnosis, channel, captions);
         if aside(diagnosis, pictures, channel) {
@@ -96,10 +96,10 @@ fn recording(
     if picture.of > picture.channels.len() {
         let more = picture.of - picture.channels.len();
         body += &format!(
-            "<p class=\"none\">{more} more channels count for the findings and are not drawn.</p>\n"
+            "<p class=\"none\">{more} more channels contribute to the findings and are not drawn.</p>\n"
         );
     }
-    format!("<section>\n<h2>{}</h2>\n{body}</section>\n", escape(&heading))
+    format!("<section>\n<h2>{}</h2>\n{body}</section>\n", printed(&heading))
 }
 
 /// The channels: first the one in which something unexplained shows, then those that the findings change.
@@ -124,7 +124,7 @@ fn shown(diagnosis: &Diagnosis, channel: &ChannelPicture) -> String {
     let drawn = channel.shown.outlier.iter().filter(|outlier| !**outlier).count();
     let mut sentences = vec![match thin::told(drawn, channel.samples) {
         Some(told) => {
-            format!("{told}, spread evenly over time, with the extremes.")
+            format!("{told}, evenly spread over time, with the extremes.")
         }
         None => format!("All {} samples are shown.", channel.samples),
     }];
@@ -135,7 +135,7 @@ fn shown(diagnosis: &Diagnosis, channel: &ChannelPicture) -> String {
         sentences.push("The findings change nothing here.".to_owned());
     }
     if !channel.unchanged && diagnosis.repeatability.is_some() {
-        sentences.push("After: every run has a zero of its own, since runs do not repeat.".to_owned());
+        sentences.push("After: every run has its own zero, because runs do not repeat.".to_owned());
     }
     if channel.outliers > 0 {
         sentences.push(format!("Outliers left out: {}.", channel.outliers));
@@ -147,7 +147,7 @@ fn section(heading: &str, figures: &[Figure]) -> String {
     if figures.is_empty() {
         return String::new();
     }
-    format!("<section>\n<h2>{}</h2>\n{}</section>\n", escape(heading), grid(figures))
+    format!("<section>\n<h2>{}</h2>\n{}</section>\n", printed(heading), grid(figures))
 }
 
 fn grid(figures: &[Figure]) -> String {

@@ -13,11 +13,16 @@ pub(super) fn unexplained(diagnosis: &Diagnosis) -> Vec<Item> {
 }
 
 fn unexplained_item(unexplained: &Unexplained) -> Item {
-    let table = unexplained.table_of.as_ref().map(|motion| {
-        format!("A table of {motion} over this stretch could stand for it, without naming its cause.")
-    });
+    let table = unexplained
+        .table_of
+        .as_ref()
+        .map(|motion| format!("A table of {motion} over this stretch could represent it without a cause."));
     Item::new(
-        format!("{}: {} rms where it shows", unexplained.direction, size(unexplained.rms, unexplained.unit)),
+        format!(
+            "{}: {} rms where it appears",
+            unexplained.direction,
+            size(unexplained.rms, unexplained.unit)
+        ),
         [
             ("where", vec![place(unexplained)]),
             ("what", vec![unexplained.detail.clone()]),
@@ -49,7 +54,7 @@ pub(super) fn repeatability(diagnosis: &Diagnosis) -> Vec<Item> {
 
 fn repeatability_item(repeatability: &Repeatability) -> Item {
     let Repeatability { between_runs, expected, unit, detail } = repeatability;
-    let title = format!("Runs under the same state differ by {} (one sigma)", size(*between_runs, unit));
+    let title = format!("Runs in the same state differ by {} (one sigma)", size(*between_runs, unit));
     let expected = format!("the noise within runs gives {}", size(*expected, unit));
     Item::new(title, [("expected", vec![expected]), ("depends on", vec![detail.clone()])])
 }

@@ -15,7 +15,7 @@ pub(super) fn sentence(diagnosis: &Diagnosis) -> String {
 }
 
 fn undecided(diagnosis: &Diagnosis) -> String {
-    let sentence = diagnosis.undecidable.as_deref().unwrap_or("These recordings cannot tell.");
+    let sentence = diagnosis.undecidable.as_deref().unwrap_or("These recordings cannot decide anything.");
     format!("undecided: {}", sentence.trim_end_matches('.'))
 }
 
@@ -25,7 +25,7 @@ fn adequate(diagnosis: &Diagnosis) -> String {
         None => String::new(),
     };
     format!(
-        "adequate: nothing systematic stands above the noise{settings}; {}, {}{}",
+        "adequate: nothing systematic is above the noise{settings}; {}, {}{}",
         remaining(diagnosis),
         noise(diagnosis),
         denied(&diagnosis.denied)
@@ -55,8 +55,8 @@ fn subject(diagnosis: &Diagnosis) -> &'static str {
 fn found(diagnosis: &Diagnosis) -> String {
     let what = match (effects(diagnosis), settings(diagnosis)) {
         (Some(effects), _) => effects,
-        (None, Some(settings)) => format!("of the instruments and not of the machine ({settings})"),
-        (None, None) => "none that has a name".to_owned(),
+        (None, Some(settings)) => format!("of the instruments, not of the machine ({settings})"),
+        (None, None) => "none with a name".to_owned(),
     };
     format!("{what}; {}, {}", fall(diagnosis), noise(diagnosis))
 }
@@ -65,11 +65,9 @@ fn unexplained(diagnosis: &Diagnosis) -> String {
     let place = diagnosis.unexplained.as_ref().map(brief);
     let place = place.map_or_else(String::new, |place| format!(" {place}"));
     match effects(diagnosis) {
-        Some(effects) => format!(
-            "{effects}, and no term fits what stays{place}; {}, {}",
-            fall(diagnosis),
-            noise(diagnosis)
-        ),
+        Some(effects) => {
+            format!("{effects}, and no term fits the rest{place}; {}, {}", fall(diagnosis), noise(diagnosis))
+        }
         None => format!(
             "something systematic that no term fits{place}; {}, {}",
             remaining(diagnosis),
@@ -83,13 +81,13 @@ fn not_repeatable(diagnosis: &Diagnosis) -> String {
         Some(found) => {
             let [between, expected] =
                 [found.between_runs, found.expected].map(|value| size(value, found.unit));
-            format!("runs under the same state differ by {between} where the noise gives {expected}")
+            format!("runs in the same state differ by {between}, but the noise gives only {expected}")
         }
-        None => "runs under the same state differ by more than the noise".to_owned(),
+        None => "runs in the same state differ by more than the noise".to_owned(),
     };
     match effects(diagnosis) {
         Some(effects) => format!("{differ}; {effects}"),
-        None => format!("{differ}; no model of the state can follow that"),
+        None => format!("{differ}; no model of the state can explain that"),
     }
 }
 
@@ -142,7 +140,7 @@ fn fall(diagnosis: &Diagnosis) -> String {
     };
     match change(before_rms, after_rms, after.unit) {
         Some((before, after)) => format!("{name} falls from {before} to {after}"),
-        None => format!("{name} is not known"),
+        None => format!("{name} is unknown"),
     }
 }
 

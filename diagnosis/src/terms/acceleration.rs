@@ -3,8 +3,8 @@
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "What acceleration bends: feed-forward that is missing in the drive, or a column and a table that \
-    yield to inertia. Plausible: gains of some hundreds to tens of thousands 1/s^2.";
+pub(super) const MEANING: &str = "An effect of acceleration: missing feed-forward in the drive, or a column or table that yields \
+    to inertia. Plausible: gains from some hundreds to tens of thousands 1/s^2.";
 
 /// Gains, 1/s^2.
 pub(super) const PLAUSIBLE: (f64, f64) = (100.0, 1e5);

@@ -6,9 +6,9 @@ use super::plausible::{Body, Range};
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "Play between the drive and what it moves, or friction that gives way only after the axis has \
-    turned: after each reversal the axis stays behind by the lost motion. Plausible: up to some tens \
-    of micrometres on a slide, and a degree on a rotary axis.";
+pub(super) const MEANING: &str = "A gap between the drive and the body that it moves, or friction that yields only after the \
+    axis has reversed. After each reversal the axis stays behind by the lost motion. Plausible: up to some tens of micrometres \
+    on a slide, or a degree on a rotary axis.";
 
 /// The plausible lost motion. A tenth of a millimetre is a slide whose nut is worn out; as a rotation it moves what is a metre
 /// away by as much. A rotary axis on gears may lose a degree.

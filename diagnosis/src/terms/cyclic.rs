@@ -5,9 +5,9 @@ use super::wave;
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "An error that repeats with travel: the lead of a ball screw once a turn, a gear's teeth, the \
-    interpolation of an encoder, whose period then is its line spacing. Plausible: a few micrometres \
-    at the pitch of the screw, or a fraction of one at the encoder's period.";
+pub(super) const MEANING: &str = "An error that repeats with travel: a ball screw with the period of its lead, a gear with the \
+    period of its teeth, or the interpolation of an encoder with its line spacing. Plausible: a few micrometres at the pitch of \
+    the screw, or a fraction of a micrometre at the encoder's period.";
 
 pub(super) fn fill(rows: &Rows<'_>, axis: usize, period: f64, center: f64, out: &mut [Vec<f64>]) {
     wave(rows.axis(axis).position.iter().map(|position| (position - center) / period), out);

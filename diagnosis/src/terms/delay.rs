@@ -4,8 +4,8 @@
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "The axis is told its command later than the others, or answers later: by a time that is the same at \
-    every speed. Plausible: one to ten cycles of the controller.";
+pub(super) const MEANING: &str = "Dead time: the axis gets its command later than the others, or responds later, by a time that \
+    is the same at every speed. Plausible: one to ten cycles of the controller.";
 
 pub(super) fn fill(rows: &Rows<'_>, axis: usize, time: f64, out: &mut Vec<f64>) {
     let earlier = rows.earlier(axis, time);

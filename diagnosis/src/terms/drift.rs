@@ -3,7 +3,7 @@
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "Something settles with time that no sensor tells of: a warm-up, a fixture, a clamp. Plausible: \
+pub(super) const MEANING: &str = "Something settles with time, and no sensor shows it: a warm-up, a fixture, a clamp. Plausible: \
     micrometres, within minutes to hours.";
 
 pub(super) fn fill(rows: &Rows<'_>, time_constant: f64, out: &mut Vec<f64>) {

@@ -3,8 +3,8 @@
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "The scale or the screw grows with its temperature: an error proportional to travel and to the \
-    distance from 20 degC. Plausible: some 1e-6 to 2e-5 for each kelvin; steel has 11.5e-6.";
+pub(super) const MEANING: &str = "The scale or the screw expands with its temperature: an error proportional to travel and to \
+    the difference from 20 degC. Plausible: some 1e-6 to 2e-5 per kelvin; steel has 11.5e-6.";
 
 /// Coefficients, 1/K: aluminium, the softest of screws and scales, has 2.4e-5.
 pub(super) const PLAUSIBLE: (f64, f64) = (0.0, 3e-5);

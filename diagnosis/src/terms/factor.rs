@@ -9,8 +9,8 @@ use super::{Shape, known};
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "States of the machine multiplied with one another, in a form for which there is no name. What it \
-    depends on says where to look.";
+pub(super) const MEANING: &str = "A product of states of the machine, in a form that has no name. The states show where to \
+    look.";
 
 /// What a factor remembers from one stretch of rows to the next.
 #[derive(Clone, Copy, Debug, Default)]

@@ -5,9 +5,8 @@ use super::Memory;
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "The spindle or the structure grows or leans as it warms up; behind a time constant where its \
-    body warms later than the sensor. Plausible: up to some tens of micrometres, or of microradians, \
-    for each kelvin.";
+pub(super) const MEANING: &str = "The spindle or the structure expands or tilts as it warms up, with a time constant if the body \
+    warms later than the sensor. Plausible: up to some tens of micrometres or microradians per kelvin.";
 
 pub(super) fn fill(
     rows: &Rows<'_>,

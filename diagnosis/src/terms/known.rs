@@ -67,7 +67,7 @@ pub(crate) fn known(
     Some(pair)
 }
 
-/// 1/w^2 of a loop's natural frequency in Hz; 0 for a loop of first order.
+/// 1/w^2 of a loop's natural frequency in Hz; 0 for a first-order loop.
 fn inertia(frequency: f64) -> f64 {
     let natural = std::f64::consts::TAU * frequency;
     if frequency > 0.0 { 1.0 / (natural * natural) } else { 0.0 }

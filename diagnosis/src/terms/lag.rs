@@ -5,9 +5,8 @@
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "The position loop follows its command late, by velocity over gain. Loops of equal gain trace a \
-    circle too small, loops of unequal gain trace an ellipse at 45 degrees. Plausible gains: 10 to \
-    200 1/s.";
+pub(super) const MEANING: &str = "The following error of a position loop, velocity over gain. Loops of equal gain trace a circle \
+    that is too small; loops of unequal gain trace an ellipse at 45 degrees. Plausible gains: 10 to 200 1/s.";
 
 /// Gains of position loops, 1/s.
 pub(super) const PLAUSIBLE: (f64, f64) = (10.0, 200.0);

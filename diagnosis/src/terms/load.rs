@@ -3,7 +3,7 @@
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "The structure yields to the load. Plausible: hundredths to tenths of a micrometre for each \
+pub(super) const MEANING: &str = "The structure yields to the load. Plausible: hundredths to tenths of a micrometre per \
     newton.";
 
 pub(super) fn fill(rows: &Rows<'_>, load: usize, out: &mut Vec<f64>) {

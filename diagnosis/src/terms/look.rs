@@ -13,24 +13,24 @@ pub fn look_at(term: &str) -> Option<&'static str> {
             "the friction of the guides, their lubrication and wipers, and the friction compensation of the drive"
         }
         TermKind::Cyclic => {
-            "what turns or repeats with this period: the screw and its bearings, a gear or worm, the lines of a scale"
+            "parts that rotate or repeat with this period: the screw and its bearings, a gear or worm, the lines of a scale"
         }
         TermKind::Vibration => {
-            "what runs at this frequency: spindle, fan, pump, and what stands near the machine"
+            "sources that run at this frequency: spindle, fan, pump, and equipment near the machine"
         }
         TermKind::Constant | TermKind::Step => {
             "the alignment of the guides: levelling, the bolts of the foundation, a collision"
         }
         TermKind::Polynomial | TermKind::Table | TermKind::Coupling => {
-            "the guides and the scale of the axis: wear where it is used most, fastening, levelling"
+            "the guides and the scale of the axis: wear in the part used most, fastening, levelling"
         }
         TermKind::Lag | TermKind::Acceleration | TermKind::Delay => {
-            "the gains and the feedforward of the position loop, and what the axis carries"
+            "the gains and the feed-forward of the position loop, and the load on the axis"
         }
         TermKind::Expansion | TermKind::Growth | TermKind::Drift => {
-            "what warms the machine: cooling, the warm-up before the test, the place of the sensor"
+            "the heat balance of the machine: cooling, the warm-up before the test, the place of the sensor"
         }
-        TermKind::Compliance => "clamps, bearings and guides that give way under the load",
-        TermKind::Product => "what its factors name: the effect acts where all of them do",
+        TermKind::Compliance => "clamps, bearings and guides that yield under the load",
+        TermKind::Product => "the states that its factors name: the effect needs all of them",
     })
 }

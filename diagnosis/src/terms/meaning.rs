@@ -9,8 +9,8 @@ use super::{
 };
 
 /// What a constant is, physically.
-pub(super) const CONSTANT: &str = "An alignment: an axis that is not square to the others, or a body that stands at an angle. \
-    It does not change while the machine runs.";
+pub(super) const CONSTANT: &str = "An alignment: an axis that is not square to the others, or a body at an angle. It does not \
+    change while the machine runs.";
 
 /// What a term is physically, and how large it may well be: the words of the reports. `None` for a name that is no term of
 /// calibration files. A `polynomial` is one of positions; one of a temperature has the physics of `growth`.

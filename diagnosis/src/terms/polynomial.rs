@@ -6,8 +6,8 @@
 use super::Shape;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "A smooth error along the axis: of power 1 a scale error or an inclined guide, of higher powers a \
-    bent guide.";
+pub(super) const MEANING: &str = "A smooth error along the axis: power 1 is a scale error or an inclined guide, higher powers \
+    are a bent guide.";
 
 /// Fills the powers of x from `first` on.
 pub(crate) fn fill(inputs: &[f64], center: f64, scale: f64, first: usize, out: &mut [Vec<f64>]) {

@@ -5,9 +5,9 @@ use super::plausible::{Body, Range};
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "Static friction at standstill: for a moment after each reversal the axis sticks before the loop \
-    pulls it free. It shows as a spike at the quadrants of a circle and grows with feed. Plausible: \
-    a few micrometres, gone within a tenth of a second.";
+pub(super) const MEANING: &str = "Static friction: for a moment after each reversal the axis sticks before the loop pulls it \
+    free. It appears as a spike at the quadrants of a circle and grows with feed. Plausible: a few micrometres, gone within a \
+    tenth of a second.";
 
 /// The plausible height. Twenty micrometres is ten times what a circle shows of a good machine; as a rotation it moves what is a
 /// metre away by as much.

@@ -3,8 +3,8 @@
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "Something moved once and stayed: a crash, a slip, a clamp. It is dated by the recording's own clock. \
-    Plausible: micrometres to tenths of a millimetre.";
+pub(super) const MEANING: &str = "Something moved once and stayed: a collision, a slip, a clamp. The recording's clock gives its \
+    time. Plausible: micrometres to tenths of a millimetre.";
 
 pub(super) fn fill(rows: &Rows<'_>, time: f64, out: &mut Vec<f64>) {
     out.extend(rows.time.iter().map(|now| f64::from(u8::from(*now >= time))));

@@ -4,8 +4,8 @@
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "A curve along the axis that no smooth polynomial follows: a measured error of screw or guide, or \
-    a damaged place.";
+pub(super) const MEANING: &str = "A curve along the axis that no smooth polynomial describes: a measured error of a screw or \
+    guide, or a damaged place.";
 
 /// Where the values stand, in rising order, and whether they begin again after the last.
 #[derive(Clone, Copy)]

@@ -329,10 +329,7 @@ fn the_nonlinear_parameter_is_read_and_set() {
     }
     let play = Shape::Backlash { axis: 0, wind_up: 0.0 };
     assert!(play.nonlinear().is_none(), "play that is taken up at once has no wind-up to fit");
-    assert!(
-        Shape::Lag { axis: 0, inertia: 0.0 }.nonlinear().is_none(),
-        "a loop of first order has no inertia"
-    );
+    assert!(Shape::Lag { axis: 0, inertia: 0.0 }.nonlinear().is_none(), "a first-order loop has no inertia");
     assert!(Shape::Constant.nonlinear().is_none() && Shape::Constant.with_nonlinear(3.0) == Shape::Constant);
 }
 

@@ -4,8 +4,8 @@ use super::wave;
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
-pub(super) const MEANING: &str = "An oscillation in time that does not depend on where the axes are: mains, an amplifier, an \
-    imbalance, a pump. Its frequency is the best hint.";
+pub(super) const MEANING: &str = "An oscillation in time that does not depend on the positions of the axes: mains, an amplifier, \
+    an imbalance, a pump. Its frequency is the best clue.";
 
 pub(super) fn fill(rows: &Rows<'_>, frequency: f64, out: &mut [Vec<f64>]) {
     wave(rows.time.iter().map(|time| time * frequency), out);

@@ -300,7 +300,7 @@ fn slowly(seed: u64) -> simulation::Scenario {
 
 /// The sentence about an axis that crosses its play.
 fn crosses(diagnosis: &diagnosis::diagnosis::Diagnosis, letter: &str) -> bool {
-    let begins = format!("Whether more than its play holds {letter} for a moment");
+    let begins = format!("This recording cannot show whether friction also holds {letter} for a moment");
     diagnosis.undecided.iter().any(|sentence| sentence.starts_with(&begins))
 }
 

@@ -70,7 +70,7 @@ fn plates_turned_each_by_its_own_angle_show_the_squareness_of_the_machine() {
         let c = setting(&own, "datum", "c");
         assert!(off(&c, angle) < FAR && c.unit == "rad", "{c:?} {angle}");
     }
-    let turns = "about Z by a constant angle cannot be decided";
+    let turns = "cannot show whether the machine rotates all parts about Z by a constant angle";
     assert!(diagnosis.undecided.iter().any(|sentence| sentence.contains(turns)), "{:?}", diagnosis.undecided);
 }
 
@@ -177,7 +177,7 @@ fn a_line_of_points_that_shows_no_rotation_says_so() {
     let reads = Reads::Position { directions: [true, false, false], angles: Vec::new() };
     let line = part(&bench, "{}", [320.0, 0.0, 0.0], reads, Some(Datum::default()), 51);
     let diagnosis = told(&bench, &[line]);
-    let turned = "How the part of part51.yaml is turned cannot be decided";
+    let turned = "The rotation of the part of part51.yaml cannot be decided";
     assert!(
         diagnosis.undecided.iter().any(|sentence| sentence.starts_with(turned)),
         "{:?}",

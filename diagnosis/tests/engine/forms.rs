@@ -230,7 +230,7 @@ fn an_unbalance_that_follows_the_speed_of_a_spindle() {
     assert!((rate - 0.021).abs() < 0.021 * 3e-5, "{rate}");
     assert!((phase - 34_f64.to_radians()).abs() < 0.05, "{phase}");
     let told = form.form.as_ref().unwrap();
-    assert!(told.words.contains("0.02100 times a second for each unit of spindle"), "{}", told.words);
+    assert!(told.words.contains("0.02100 times per second for each unit of spindle"), "{}", told.words);
 }
 
 #[test]

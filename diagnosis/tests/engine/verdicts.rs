@@ -303,10 +303,10 @@ fn recordings_that_tell_nothing_say_why() {
     nothing_is_claimed(&diagnosed(&bench, &known, &[&fitted]), "hold out");
     let mut empty = record(stage_path());
     empty.measured = [None, None, None];
-    nothing_is_claimed(&diagnosed(&bench, &known, &[&empty]), "observed");
+    nothing_is_claimed(&diagnosed(&bench, &known, &[&empty]), "no observation");
     let mut blank = record(stage_path());
     blank.measured[0].as_mut().unwrap().fill(f64::NAN);
-    nothing_is_claimed(&diagnosed(&bench, &known, &[&blank]), "observed");
+    nothing_is_claimed(&diagnosed(&bench, &known, &[&blank]), "no observation");
     let none = diagnosed(&bench, &known, &[]);
     assert!(none.findings.is_empty() && !none.undecided.is_empty());
     // Without any position of the axis there is still a diagnosis.

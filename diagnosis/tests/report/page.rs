@@ -109,15 +109,15 @@ fn where_nothing_comes_back_a_sentence_says_why_and_nothing_is_drawn() {
     let cases = [
         (
             of(vec![nothing("measured.x", true), nothing("measured.z", true)], None),
-            "measured.x, measured.z: nothing comes back; no state predicts more of the residual than chance gives.",
+            "measured.x, measured.z: nothing comes back; no state predicts more of the residual than chance.",
         ),
         (
             of(vec![nothing("deviation", false)], None),
-            "deviation: what comes back is not known; nothing was driven twice.",
+            "deviation: it is unknown what comes back, because nothing was driven twice.",
         ),
         (
             of(Vec::new(), Some("A clock stands still.")),
-            "It was not looked for: these recordings decide nothing.",
+            "No search was made for it, because these recordings decide nothing.",
         ),
     ];
     for (page, sentence) in cases {
@@ -137,7 +137,9 @@ fn with_several_recordings_a_channel_is_told_with_its_recording() {
     );
     diagnosis.returns =
         (0..20).map(|recording| Returning { recording, ..diagnosis.returns[0].clone() }).collect();
-    assert!(report::html(&diagnosis, &Origin::default()).contains("8 more channels are told in words alone"));
+    assert!(
+        report::html(&diagnosis, &Origin::default()).contains("8 more channels are described only in words")
+    );
 }
 
 /// Pictures with all that can be drawn: numbers as they are, and numbers that no page may show.

@@ -44,9 +44,9 @@ fn the_verdict_stands_in_one_line_of_plain_words() {
     assert!(said(cases::wrong_files()).starts_with(
         "wrong files, and left-out physics: 2 faults and 2 effects explain more than 99 % of what the model missed"
     ));
-    assert!(said(cases::clock_only()).contains("of the instruments and not of the machine (clock)"));
+    assert!(said(cases::clock_only()).contains("of the instruments, not of the machine (clock)"));
     assert!(said(cases::unexplained()).contains("in measured.z, x from 174.7 to 201.0 mm"));
-    assert!(said(cases::not_repeatable()).contains("differ by 7.1 um where the noise gives 0.10 um"));
+    assert!(said(cases::not_repeatable()).contains("differ by 7.1 um, but the noise gives only 0.10 um"));
 }
 
 #[test]
@@ -88,10 +88,10 @@ fn a_wave_is_named_after_what_it_repeats_with() {
             vec![cases::repeats(encoder, 0.02, 4)],
             "Here the period is a quarter of a line of the encoder (18000 a turn, 0.02 deg).",
         ),
-        (vec![cases::repeats(ElementKind::Axis, 360.0, 1)], "Here it comes once a turn of the axis."),
+        (vec![cases::repeats(ElementKind::Axis, 360.0, 1)], "Here it occurs once per turn of the axis."),
         (
             vec![cases::repeats(ElementKind::Axis, 360.0, 4), cases::repeats(ElementKind::Motor, 90.0, 1)],
-            "Here it comes 4 times a turn of the axis, and the period is a turn of the motor (90 deg).",
+            "Here it occurs 4 times per turn of the axis, and the period is a turn of the motor (90 deg).",
         ),
         (
             vec![millimetres(ElementKind::Motor, 5.0, 1), millimetres(ElementKind::Screw, 10.0, 2)],
@@ -115,7 +115,7 @@ fn a_wave_is_named_after_what_it_repeats_with() {
 fn friction_is_not_called_play() {
     assert!(
         flat(&Diagnosis { findings: vec![cases::backlash("drive")], ..cases::two_findings() })
-            .contains("friction in the following error, not play")
+            .contains("friction in the following error and not a gap")
     );
     for side in ["transmission", "structure", "unknown"] {
         let findings = vec![cases::backlash(side)];
@@ -165,7 +165,7 @@ fn numbers_are_rounded_to_their_uncertainty_and_stand_in_units_that_people_use()
 #[test]
 fn a_lopsided_interval_shows_its_ends_and_a_missing_one_is_said() {
     assert!(with("gain", 16.3, (14.1, 21.0), "1/s").contains("gain 16.3 (14.1 to 21.0) 1/s"));
-    assert!(with("gain", 16.3, (16.3, 16.3), "1/s").contains("the recordings say nothing of its interval"));
+    assert!(with("gain", 16.3, (16.3, 16.3), "1/s").contains("the recordings do not determine its interval"));
     assert!(with("gain", f64::NAN, (0.0, 1.0), "1/s").contains("gain not known"));
 }
 

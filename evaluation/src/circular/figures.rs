@@ -43,18 +43,18 @@ pub(super) fn figures(traces: &[Trace], pairs: &[Pair]) -> Vec<Figure> {
         both_ways("G_b_LS", "bidirectional circular deviation by least squares", pairs, traces, |pair| {
             pair.circular_least_squares
         }),
-        one_way("F_max", "greatest radial deviation", &all, "", f64::max, |figures| figures.radial[0]),
-        one_way("F_min", "least radial deviation", &all, "", f64::min, |figures| figures.radial[1]),
+        one_way("F_max", "maximum radial deviation", &all, "", f64::max, |figures| figures.radial[0]),
+        one_way("F_min", "minimum radial deviation", &all, "", f64::min, |figures| figures.radial[1]),
         set_up_figure(
             "F_max_set_up",
-            "greatest radial deviation about the centre as set up",
+            "maximum radial deviation about the centre as set up",
             traces,
             f64::max,
             0,
         ),
         set_up_figure(
             "F_min_set_up",
-            "least radial deviation about the centre as set up",
+            "minimum radial deviation about the centre as set up",
             traces,
             f64::min,
             1,
@@ -124,7 +124,7 @@ fn both_ways(
     let value = if values.is_empty() {
         let only = traces.iter().find(|trace| trace.figures.is_ok());
         Err(match only {
-            Some(trace) => format!("full circles were driven {} only", trace.sense.name()),
+            Some(trace) => format!("full circles were driven only {}", trace.sense.name()),
             None => no_trace(&traces.iter().collect::<Vec<&Trace>>(), ""),
         })
     } else if symbol == "D" {

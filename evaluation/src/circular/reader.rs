@@ -26,7 +26,7 @@ impl<'r> Reader<'r> {
                 if off > BAR * radius {
                     let own = trace.circle.radius;
                     return Err(format!(
-                        "the path has a radius of {own:.3} mm and the bar one of {radius:.3} mm: it does not lie in the plane"
+                        "the path has a radius of {own:.3} mm but the bar a length of {radius:.3} mm, so the bar is not in the plane"
                     ));
                 }
                 let deviation = course.recording.deviation.as_deref();
@@ -37,7 +37,7 @@ impl<'r> Reader<'r> {
                 let (columns, sensor) = course.seen(trace.directions)?;
                 Ok(Self::Tip { columns, sensor })
             }
-            _ => Err("a circle is read by the instruments `ballbar` and `position`".to_owned()),
+            _ => Err("only the instruments `ballbar` and `position` read a circle".to_owned()),
         }
     }
 

@@ -34,7 +34,7 @@ impl<'r> Reader<'r> {
     pub(super) fn of(course: &'r Course<'_>, line: &Line, kind: Kind) -> Result<Self, String> {
         match &course.recording.instrument {
             Instrument::Linear(_) if kind == Kind::Rotary => {
-                Err("the instrument reads a displacement, and the axis turns".to_owned())
+                Err("the instrument reads a displacement, but the axis is rotary".to_owned())
             }
             Instrument::Linear(beam) => {
                 let cosine = dot(&tip_direction(course, line)?, &beam.direction);
@@ -54,12 +54,12 @@ impl<'r> Reader<'r> {
             }
             Instrument::Position if kind == Kind::Rotary => Self::angle(course, line),
             Instrument::Position => Self::tip(course, line),
-            Instrument::Angular { .. } => {
-                Err("the instrument reads a rotation, and positioning of a slide is a displacement along it"
-                    .to_owned())
-            }
+            Instrument::Angular { .. } => Err(
+                "the instrument reads a rotation, but the positioning of a slide is a displacement along it"
+                    .to_owned(),
+            ),
             Instrument::Straightness(_) => {
-                Err("the instrument reads across the axis, and positioning is a displacement along it"
+                Err("the instrument reads across the axis, but positioning is a displacement along it"
                     .to_owned())
             }
             Instrument::Probe => {
@@ -111,8 +111,8 @@ impl<'r> Reader<'r> {
         for axis in &line.axes {
             let letter = course.letter(*axis).to_lowercase();
             let actual = course.actual(*axis);
-            let actual = actual
-                .ok_or_else(|| format!("neither `measured.{letter}` nor `actual.{letter}` is in it"))?;
+            let actual =
+                actual.ok_or_else(|| format!("it has neither `measured.{letter}` nor `actual.{letter}`"))?;
             let command = course.positions.get(*axis).map_or(&[][..], Vec::as_slice);
             columns.push((cell(&line.direction, *axis), Source::Difference(actual, command)));
         }

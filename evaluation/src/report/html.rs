@@ -46,7 +46,7 @@ pub fn html(evaluation: &Evaluation, command: &str) -> String {
         let lines: String = lines
             .map(|one| format!("<li>{}, because {}.</li>\n", escape(&one.what), escape(&one.because)))
             .collect();
-        body += &section("Cannot be given from this recording", &format!("<ul>\n{lines}</ul>\n"));
+        body += &section("Not available from this recording", &format!("<ul>\n{lines}</ul>\n"));
     }
     body += &format!(
         "<section>\n<h2>How this page was made</h2>\n<p class=\"wide made\"><code>{}</code></p>\n</section>\n",

@@ -63,8 +63,8 @@ fn deviations(line: &Positioning) -> Picture {
     plot = add(plot, "mean of both", Look::of(4), Draw::Line, curve(&TargetFigures::mean));
     Picture {
         drawing: plot.draw().inline(),
-        caption: "Up: approached in the positive direction, down: in the negative one. The distance between the means of \
-                  both is the reversal value; A is the height from the lowest to the highest edge of the bands."
+        caption: "Up: approached in the positive direction; down: in the negative direction. The distance between the two means \
+                  is the reversal value. A is the height from the lowest to the highest edge of the bands."
             .to_owned(),
     }
 }
@@ -89,8 +89,8 @@ fn reversals(line: &Positioning) -> Picture {
     plot = add(plot, "repeatability down, 4 s", Look::of(1), Draw::MarkedLine, curve(&down));
     Picture {
         drawing: plot.draw().inline(),
-        caption: "A reversal that is the same everywhere is play or friction; one that changes along the travel comes with \
-                  wear, or with an angle that turns with the direction."
+        caption: "A reversal value that is the same everywhere is backlash or friction. A reversal value that changes along the \
+                  travel comes from wear, or from an angle that changes with the direction."
             .to_owned(),
     }
 }
@@ -109,8 +109,8 @@ pub(super) fn diagonals(lines: &[&Positioning]) -> Option<Picture> {
     }
     Some(Picture {
         drawing: plot.draw().inline(),
-        caption: "Slopes that differ from diagonal to diagonal show angles between the axes; a slope that all have in \
-                  common shows scales."
+        caption: "Slopes that differ from diagonal to diagonal show angles between the axes. A slope common to all diagonals \
+                  shows scales."
             .to_owned(),
     })
 }
@@ -126,14 +126,14 @@ pub(super) fn circle(circle: &Circle) -> Vec<Picture> {
     let [first, second] = words::directions(circle);
     let told = match circle.traces.len() - shown.len() {
         0 => sizes(&circle.figures, &["G_CCW", "G_CW", "G_b", "D"]),
-        _ => format!("the first and the last of each sense are shown, of {} traces", circle.traces.len()),
+        _ => format!("of {} traces, the first and the last of each sense are shown", circle.traces.len()),
     };
     let around = [format!("+{first}"), format!("+{second}")];
     let title = format!("Radial deviation about the {center}");
     let mut polar =
         Polar::new(&title, around.each_ref().map(String::as_str), circle.radius, "mm").subtitle(&told);
     let mut unrolled = Cartesian::new(
-        "The same against the angle",
+        "Radial deviation over the angle",
         Axis::new(&format!("angle from +{first} towards +{second}"), "rad").reaching(0.0).reaching(2.0 * PI),
         deviation("radial deviation", Unit::Length),
     )
@@ -148,14 +148,14 @@ pub(super) fn circle(circle: &Circle) -> Vec<Picture> {
     vec![
         Picture {
             drawing: polar.draw().inline(),
-            caption: "An oval along the axes shows scales. One along a diagonal shows squareness where both senses have it alike, \
-                      and unequal position loops where it turns with the sense. A step where an axis turns, to the other \
-                      side in the other sense, is play or friction."
+            caption: "An ellipse along the axes shows scales. An ellipse along a diagonal shows squareness if it is the same in \
+                      both senses, and unequal position loops if it rotates with the sense. A step where an axis reverses, with \
+                      the opposite sign in the other sense, is backlash or friction."
                 .to_owned(),
         },
         Picture {
             drawing: unrolled.draw().inline(),
-            caption: "At 0\u{b0}, 90\u{b0}, 180\u{b0} and 270\u{b0} one of the axes turns.".to_owned(),
+            caption: "At 0\u{b0}, 90\u{b0}, 180\u{b0} and 270\u{b0} one of the axes reverses.".to_owned(),
         },
     ]
 }

@@ -27,7 +27,7 @@ pub fn text(evaluation: &Evaluation) -> String {
     }
     text += &evaluation.circles.iter().map(circle).collect::<String>();
     if !evaluation.not_given.is_empty() {
-        text += "\nCannot be given from this recording\n";
+        text += "\nNot available from this recording\n";
         for one in &evaluation.not_given {
             text += &wrapped(&format!("{}, because {}.", one.what, one.because), "   ", "      ");
         }

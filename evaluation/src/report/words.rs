@@ -24,22 +24,23 @@ pub(super) fn line(line: &Positioning) -> String {
 pub(super) fn basis(line: &Positioning) -> String {
     let sensor = match line.sensor {
         Sensor::Instrument => "Read by the instrument",
-        Sensor::Feedback => "Read by the drive's own feedback: what comes in after the drive is not seen",
+        Sensor::Feedback => "Read by the drive's own feedback, which does not see errors after the drive",
     };
     let zero = match line.zero {
         Zero::Instrument => "its own zero",
         Zero::Nominal => "the nominal position",
         Zero::Mean => {
-            "the mean of all readings, since without a calibration the machine's constants are not known"
+            "the mean of all readings, because the machine's constants are unknown without a calibration"
         }
     };
-    format!("{sensor}; deviations are actual minus target and count from {zero}.")
+    format!("{sensor}. Deviations are actual minus target, counted from {zero}.")
 }
 
 /// The targets that do not count; nothing where all do.
 pub(super) fn left_out(line: &Positioning) -> Option<String> {
     let places: Vec<String> = line.left_out.iter().map(|place| line.unit.place(*place)).collect();
-    (!places.is_empty()).then(|| format!("Approached from one side only, and left out: {}.", listed(&places)))
+    (!places.is_empty())
+        .then(|| format!("Left out, because they were approached from only one side: {}.", listed(&places)))
 }
 
 /// `Body diagonals together: +X+Y+Z, ...`.
@@ -71,7 +72,7 @@ pub(super) fn directions(circle: &Circle) -> [String; 2] {
 /// What the drives themselves read says less than an instrument does.
 pub(super) fn feedback(circle: &Circle) -> Option<&'static str> {
     (circle.sensor == Sensor::Feedback)
-        .then_some("Read by the drives' own feedback: what comes in after the drives is not seen.")
+        .then_some("Read by the drives' own feedback, which does not see errors after the drives.")
 }
 
 /// What a figure rests on.

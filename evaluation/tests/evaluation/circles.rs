@@ -118,7 +118,7 @@ fn one_sense_arcs_and_gaps_say_what_they_cannot_give() {
     let only = circle(&bench, &one);
     near(value(&only.figures, "G_CCW"), 5.0, 0.004);
     assert_eq!(reason(&only.figures, "G_CW"), "the circle was not driven clockwise");
-    assert_eq!(reason(&only.figures, "G_b"), "full circles were driven CCW only");
+    assert_eq!(reason(&only.figures, "G_b"), "full circles were driven only CCW");
     let gap = |share: f64| {
         let mut lost = as_bar(&one, 0.0);
         let rows = lost.deviation.as_ref().unwrap().len();
@@ -134,7 +134,7 @@ fn one_sense_arcs_and_gaps_say_what_they_cannot_give() {
     };
     near(value(&gap(0.01).figures, "G_CCW"), 5.0, 0.1);
     let lost = gap(0.1);
-    assert!(reason(&lost.figures, "G_CCW").contains("nothing was read over"), "{lost:?}");
+    assert!(reason(&lost.figures, "G_CCW").contains("of the circle have no readings"), "{lost:?}");
     // Half a circle still has its radial deviation about the centre as set up.
     let mut half = as_bar(&one, 0.0);
     let rows = half.time.len() / 2;
@@ -143,7 +143,7 @@ fn one_sense_arcs_and_gaps_say_what_they_cannot_give() {
     half.deviation.as_mut().unwrap().truncate(rows);
     half.axes.iter_mut().for_each(|axis| axis.command.as_mut().unwrap().truncate(rows));
     let half = circle(&bench, &half);
-    assert!(reason(&half.figures, "F_max").contains("no full circle"));
+    assert!(reason(&half.figures, "F_max").contains("not a full circle"));
     near(value(&half.figures, "F_max_set_up"), 2.5, 0.01);
     near(value(&half.figures, "F_min_set_up"), -2.5, 0.01);
 }

@@ -46,7 +46,7 @@ fn scale_and_squareness_show_on_diagonals_as_they_must() {
     near(value(&together.figures, "E_d"), 19.0 / root, 3e-3);
     near(value(&together.figures, "B_d"), 6.0 / root, 2e-3);
     let three = bench.evaluate(&bench.positions(&four(3), 0.0, 1)).diagonals.unwrap();
-    assert_eq!(reason(&three.figures, "E_d"), "it takes all 4 body diagonals, and these are 3");
+    assert_eq!(reason(&three.figures, "E_d"), "it needs all 4 body diagonals, but there are 3");
 }
 
 #[test]

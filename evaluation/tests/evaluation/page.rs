@@ -90,7 +90,7 @@ fn both_senses_and_all_diagonals_are_named_in_their_pictures() {
         "CCW, run 3",
         "CW, run 3",
         "1 division = ",
-        ":1 against the circle",
+        ":1 relative to the circle",
         "of 6 traces",
     ] {
         assert!(polar.contains(name), "{name}");

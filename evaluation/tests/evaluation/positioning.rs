@@ -140,7 +140,7 @@ fn one_way_alone_gives_the_figures_of_one_way() {
     let line = bench.evaluate(&bench.positions(&program, 0.0, 1)).positioning.remove(0);
     near(value(&line.figures, "E_up"), 20.0, 1e-6);
     for symbol in ["B", "B_mean", "R", "E", "M", "A"] {
-        assert_eq!(reason(&line.figures, symbol), "every target was approached upwards only");
+        assert_eq!(reason(&line.figures, symbol), "every target was approached only upwards");
     }
     assert_eq!(reason(&line.figures, "A_down"), "no target was approached downwards");
     assert_eq!(figure(&line.figures, "R_up").rests.targets, Some(5));
@@ -156,7 +156,7 @@ fn a_single_cycle_has_a_reversal_and_no_repeatability() {
     for symbol in ["R_up", "R", "A_up", "A"] {
         assert_eq!(reason(&line.figures, symbol), "the target 0 mm was approached upwards only once");
     }
-    assert!(line.notes[0].contains("asks for 5 approaches"), "{:?}", line.notes);
+    assert!(line.notes[0].contains("requires 5 approaches"), "{:?}", line.notes);
 }
 
 #[test]
@@ -227,7 +227,7 @@ fn what_cannot_be_given_says_why() {
         ("`command.<axis>`", |one| one.axes.iter_mut().for_each(|axis| axis.command = None)),
         ("in motion", |one| one.time.iter_mut().for_each(|time| *time /= 100.0)),
         ("`measured.x` is missing", |one| one.measured[0] = None),
-        ("nothing was read", |one| one.measured[0].as_mut().unwrap().fill(f64::NAN)),
+        ("have no readings", |one| one.measured[0].as_mut().unwrap().fill(f64::NAN)),
         ("points of a surface", |one| one.instrument = Instrument::Probe),
         ("reads across", |one| one.instrument = Instrument::Straightness(Line::default())),
     ];

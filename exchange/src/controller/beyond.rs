@@ -26,7 +26,7 @@ impl Beyond {
         };
         match term {
             CalibratedTerm::Backlash { lost_motion, wind_up, .. } if *wind_up > 0.0 => {
-                lost(*lost_motion, "while the play is taken up after a reversal")
+                lost(*lost_motion, "while the lost motion is taken up after a reversal")
             }
             CalibratedTerm::Polynomial { input: SeriesInput::Sensor(_), .. } => {
                 Some(Self { motion, term: term.name(), size: None, per: "with the temperature", times: None })
@@ -51,14 +51,14 @@ impl Beyond {
                 motion,
                 term: term.name(),
                 size: None,
-                per: "while the play is taken up after a reversal",
+                per: "while the lost motion is taken up after a reversal",
                 times: None,
             }),
             other => other.states().any(|(state, _)| is_beyond(state)).then(|| Self {
                 motion,
                 term: other.name(),
                 size: None,
-                per: "with more than positions",
+                per: "with quantities other than positions",
                 times: None,
             }),
         }

@@ -53,9 +53,10 @@ impl Etalon {
         let name = head.text.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
         let Some(name) = name else { return head.malformed(FORM, diagnostics) };
         let Some(motion) = parameters::motion_of(name.trim()) else {
-            let message = format!("`{name}` is no error motion");
-            return diagnostics
-                .push(Diagnostic::error("E0804", head.span, message).help("name it as EXX or C0Y"));
+            let message = format!("`{name}` is not an error motion");
+            return diagnostics.push(
+                Diagnostic::error("E0804", head.span, message).help("write a name such as EXX or C0Y"),
+            );
         };
         let axis = motion.chars().last();
         let axis = self.0.equations.axes.iter().position(|info| info.letter.chars().next() == axis);
@@ -101,7 +102,7 @@ fn gridpoints(
     }
     let grid = axis.and_then(|axis| Grid::from_records(&[axis], &[places], &values));
     if grid.is_none() {
-        let message = "a position stands twice, or the axis is none of the machine's";
+        let message = "a position occurs twice, or the machine has no such axis";
         diagnostics.push(Diagnostic::error("E0803", head.span, message).help(FORM));
     }
     grid
@@ -120,7 +121,7 @@ pub(super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
         let over = parameter.grid.arguments.first().map(|(axis, _)| *axis);
         let fits = over.is_none() || over == parameter.axis;
         if !fits {
-            left_out.push(format!("{}: it depends on another axis than its own", parameter.name));
+            left_out.push(format!("{}: it depends on an axis other than its own", parameter.name));
         }
         fits
     });
@@ -145,7 +146,7 @@ pub(super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
     let mut loading = parameters::loading(&model, "ETALON_EXCHANGE", "volumetric.txt");
     let tip = model.tip.map(|part| decimal(part, 6)).join(" ");
     loading.push(format!(
-        "the tip of the tool, which this format has no place for: P0X P0Y P0Z = {tip} mm, in an ISG_CSV file"
+        "the tip of the tool, which this format cannot contain: P0X P0Y P0Z = {tip} mm, in an ISG_CSV file"
     ));
     Ok(Written { files: vec![file], loading, left_out })
 }

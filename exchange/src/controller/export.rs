@@ -42,11 +42,11 @@ fn refuse_beam(geometry: &Geometry<'_>) -> Result<(), Refused> {
     let Some(motor) = motors.next() else { return Ok(()) };
     Err(Refused::new(
         format!(
-            "{} corrects the rotation of its beam, and so has a command of its own; tables correct axes",
+            "{} corrects the rotation of its beam and so needs its own command, but tables correct axes",
             motor.letter
         ),
-        "write `corrects: false` beside its `drives` in the machine file: the slides then correct at the tool what both drives do; \
-         `abbe compensate` and the C interface give each drive its command",
+        "write `corrects: false` beside its `drives` in the machine file, so that slides correct the effect of both drives at \
+         the tool; to give each drive its own command, use `abbe compensate` or the C interface",
     ))
 }
 
@@ -75,15 +75,14 @@ pub fn export(
     }?;
     let read = check(geometry, space, format, options, &sources(&files)).map_err(|error| match error {
         Unusable::Refused(refused) => refused,
-        Unusable::File(text) => Refused::new(
-            format!("what was written could not be read again\n{text}"),
-            "this is a fault of Abbe",
-        ),
+        Unusable::File(text) => {
+            Refused::new(format!("the written file could not be read back\n{text}"), "this is a bug in Abbe")
+        }
     })?;
     if let Some(finding) = read.findings.first() {
         return Err(Refused::new(
-            format!("the controller would not take all of it: {finding}"),
-            "this is a fault of Abbe",
+            format!("the controller would ignore a part of it: {finding}"),
+            "this is a bug in Abbe",
         ));
     }
     worth_it(&read.lost)?;
@@ -94,7 +93,7 @@ pub fn export(
 /// What is told where Abbe's own compensation has rotary axes correct the direction of the tool.
 fn direction_lost(geometry: &Geometry<'_>) -> Option<String> {
     (!geometry.equations.aiming().is_empty()).then(|| {
-        "the direction of the tool: rotary axes correct in these files no more than their own angles, and the errors told are those of the tip"
+        "the direction of the tool: in these files, rotary axes correct only their own angles, and the errors below are those of the tip"
             .to_owned()
     })
 }
@@ -159,9 +158,9 @@ fn worth_it(lost: &Lost) -> Result<(), Refused> {
     }
     let [with, without] = [lost.with_files.rms, lost.without.rms].map(|rms| rms * 1000.0);
     let what = format!(
-        "with these files the error at the tool would be {with:.2} um rms, without them {without:.2} um"
+        "the error at the tool would be {with:.2} um rms with these files and {without:.2} um without them"
     );
-    let help = "the format does not carry what this machine needs: choose another, or with --at and --range the poses that matter";
+    let help = "choose another format, or the poses that matter with --at and --range; this format cannot express the errors of this machine";
     Err(Refused::new(what, help))
 }
 
@@ -173,13 +172,10 @@ fn within_limit(job: &Job<'_, '_>, target: &dyn Target) -> Result<(), Refused> {
         let length = correction.iter().map(|part| part * part).sum::<f64>().sqrt();
         if length > limit.value {
             let what = format!(
-                "a correction of {:.4} mm in the workspace is over the calibration's limit of {} mm",
+                "a correction of {:.4} mm in the workspace exceeds the calibration's limit of {} mm",
                 length, limit.value
             );
-            return Err(Refused::new(
-                what,
-                "see that the numbers are right before you raise `limits: compensation`",
-            ));
+            return Err(Refused::new(what, "check the numbers before you raise `limits: compensation`"));
         }
     }
     Ok(())

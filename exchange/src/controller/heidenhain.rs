@@ -67,8 +67,8 @@ pub(super) fn controller(job: &Job<'_, '_>) -> Result<Heidenhain, Refused> {
 fn sense(job: &Job<'_, '_>) -> Result<Sense, Refused> {
     job.options.sense.ok_or_else(|| {
         Refused::new(
-            "no public document says what a positive number of a .COM table does",
-            "find out with an indicator (docs/controllers.md), then say --value error or --value correction",
+            "no public document says what a positive number in a .COM table means",
+            "find out with an indicator (docs/controllers.md), then use --value error or --value correction",
         )
     })
 }
@@ -77,7 +77,7 @@ impl Controller for Heidenhain {
     fn load(&mut self, source: &SourceFile, _axis: Option<usize>, diagnostics: &mut Diagnostics) {
         let all: Vec<Line<'_>> = lines(source, ";").collect();
         let [begin, header, rows @ .., end] = all.as_slice() else {
-            let message = "the table has no header and no end";
+            let message = "the table has no header or no end";
             return diagnostics.push(
                 Diagnostic::error("E0802", all.first().map_or(Default::default(), |line| line.span), message)
                     .help(FORM),
@@ -126,13 +126,13 @@ impl Heidenhain {
         let grid = |number: usize| Grid::from_records(&[0], &[column(1)], &column(number));
         for (number, name) in targets.iter().enumerate() {
             let Some(target) = self.letters.iter().position(|letter| letter == name.text) else {
-                let message = format!("no axis of the machine is called `{}`", name.text);
+                let message = format!("the machine has no axis `{}`", name.text);
                 diagnostics.push(Diagnostic::error("E0804", name.span, message).help(FORM));
                 return;
             };
             let reverse = if target == source { 2 } else { number + 3 };
             let Some((forward, reverse)) = grid(number + 3).zip(grid(reverse)) else {
-                let message = "a position stands twice";
+                let message = "a position occurs twice";
                 diagnostics.push(Diagnostic::error("E0803", header.span, message).help(FORM));
                 return;
             };
@@ -189,9 +189,10 @@ pub(super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
         written.files.push(File { name, axis: None, text, about });
     }
     written.loading = vec![
-        "name each file in the configuration of its axis, and switch the nonlinear compensation on"
+        "name each file in the configuration of its axis, and switch on the nonlinear compensation"
             .to_owned(),
-        "AXISPOS counts from the machine datum: the calibration's zero must be there".to_owned(),
+        "AXISPOS is counted from the machine datum; the zero of the calibration must be at the datum"
+            .to_owned(),
     ];
     Ok(written)
 }

@@ -120,8 +120,8 @@ fn take(model: &mut Volumetric, block: &[Line<'_>], diagnostics: &mut Diagnostic
         }
         let Some(motion) = parameters::motion_of(name.text) else {
             if !parameters::is_description(name.text) {
-                let message = format!("`{}` is no parameter", name.text);
-                let help = "error motions are named as EXX or C0Y, after the arguments X, Y, Z";
+                let message = format!("`{}` is not a parameter", name.text);
+                let help = "write the arguments X, Y, Z, then error motions such as EXX or C0Y";
                 diagnostics.push(Diagnostic::error("E0804", name.span, message).help(help));
             }
             continue;
@@ -130,8 +130,8 @@ fn take(model: &mut Volumetric, block: &[Line<'_>], diagnostics: &mut Diagnostic
         match Grid::from_records(&arguments, &places, &column(number)) {
             Some(grid) => _ = model.parameters.insert(motion, grid),
             None => {
-                let help = "every combination of its arguments stands in one row, and only once";
-                let message = "the rows of this block are no full grid";
+                let help = "write each combination of its arguments in exactly one row";
+                let message = "the rows of this block are not a full grid";
                 diagnostics.push(Diagnostic::error("E0803", header.span, message).help(help));
                 return;
             }

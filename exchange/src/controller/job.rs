@@ -45,7 +45,7 @@ impl Job<'_, '_> {
             if let Some(other) = names.iter().take(number).position(|other| other == name) {
                 let [one, other] = [other, number].map(|axis| axes.get(axis).map_or("", |axis| &axis.letter));
                 let what = format!("{one} and {other} are both called `{name}`");
-                return Err(Refused::new(what, "give each a name of its own with --name"));
+                return Err(Refused::new(what, "give each its own name with --name"));
             }
         }
         Ok(names)

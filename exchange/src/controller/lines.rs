@@ -57,7 +57,7 @@ impl<'s> Line<'s> {
 
     /// A finding: the line has not the form of its file.
     pub(super) fn malformed(self, form: &str, diagnostics: &mut Diagnostics) {
-        let message = format!("`{}` has no place here", self.text);
+        let message = format!("`{}` is not allowed here", self.text);
         diagnostics.push(Diagnostic::error("E0802", self.span, message).help(form));
     }
 }

@@ -65,7 +65,7 @@ pub fn read(text: &str, kind: Kind) -> Table {
         let Some([nominal, forward, reverse]) = triplet(line) else {
             let after = text.lines().count().saturating_sub(number);
             table.findings.push(format!(
-                "line {number} is no triplet: the loader stops there without a word, and leaves out {after} line{} after it",
+                "line {number} is not a triplet: the loader stops there without a message and ignores {after} line{} after it",
                 if after == 1 { "" } else { "s" }
             ));
             break;
@@ -83,10 +83,10 @@ impl Table {
     /// Takes an entry as the motion controller does.
     fn take(&mut self, line: usize, entry: Entry) {
         if self.entries.len() >= MOST {
-            self.findings.push(format!("line {line} is left out: a joint takes {MOST} entries"));
+            self.findings.push(format!("line {line} is ignored: a joint takes {MOST} entries"));
         } else if self.entries.last().is_some_and(|last| entry.nominal <= last.nominal) {
             self.findings
-                .push(format!("line {line} is left out: its nominal position is not above the one before"));
+                .push(format!("line {line} is ignored: its nominal position is not above the one before"));
         } else {
             self.entries.push(entry);
         }
@@ -176,7 +176,7 @@ fn digits(text: &[u8], from: usize) -> usize {
     text.iter().skip(from).take_while(|byte| byte.is_ascii_digit()).count()
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "LinuxCNC keeps trims and slopes in single precision")]
+#[expect(clippy::cast_possible_truncation, reason = "LinuxCNC stores trims and slopes in single precision")]
 fn single(number: f64) -> f32 {
     number as f32
 }
@@ -207,7 +207,7 @@ impl Controller for Joints {
         match axis.and_then(|axis| self.tables.get_mut(axis)) {
             Some(slot) => *slot = Some(read(source.text(), self.kind)),
             None => diagnostics.push(
-                Diagnostic::error("E0804", Span::default(), "the file does not say whose joint it is for")
+                Diagnostic::error("E0804", Span::default(), "the file does not say which joint it is for")
                     .help("name the axis: --check X=x.comp"),
             ),
         }

@@ -108,7 +108,11 @@ impl Nodes {
         let [low, high] = self.range;
         if !self.is_round((high - low) / count(intervals)) {
             let help = "give another number of points with --points, or rounder ends with --range";
-            let what = format!("{} points over {} have no step of six decimals", intervals + 1, self.letter);
+            let what = format!(
+                "{} points over {} give a step with more than six decimals",
+                intervals + 1,
+                self.letter
+            );
             return Err(Refused::new(what, help));
         }
         Ok(self.spread(intervals))
@@ -186,10 +190,10 @@ impl Nodes {
             return Ok(());
         }
         let what = format!(
-            "the table of {} would have {count} points, and the controller takes {}",
+            "the table of {} would have {count} points, but the controller takes {}",
             self.letter, spacing.most
         );
-        let help = format!("ask for fewer points, --points {}, and see what that loses", spacing.most);
+        let help = format!("use fewer points, --points {}, and check the loss in the report", spacing.most);
         Err(Refused::new(what, help))
     }
 }
@@ -198,7 +202,7 @@ fn intervals(points: usize, letter: &str) -> Result<usize, Refused> {
     if points >= 2 {
         return Ok(points - 1);
     }
-    Err(Refused::new(format!("a table of {letter} needs two points"), "give --points 2 or more"))
+    Err(Refused::new(format!("a table of {letter} needs at least two points"), "give --points 2 or more"))
 }
 
 /// A count as a number; exact, since none comes near 2^32.

@@ -54,7 +54,7 @@ pub(super) fn gather(job: &Job<'_, '_>, model: &Volumetric, arguments: usize) ->
             continue;
         };
         if axes.len() > arguments {
-            let what = "it depends on several axes, and the format has tables of one";
+            let what = "it depends on several axes, but the tables of this format have one";
             gathered.left_out.push(format!("{}: {what}", motion.name));
             continue;
         }
@@ -85,7 +85,7 @@ fn grid(job: &Job<'_, '_>, motion: usize, sign: f64, axes: BTreeSet<usize>) -> R
     let Some(records) = records.filter(|records| *records <= MOST_RECORDS) else {
         let name = job.geometry.equations.motions.get(motion).map_or("", |motion| motion.name.as_str());
         let what = format!("the grid of {name} would have more than {MOST_RECORDS} records");
-        return Err(Refused::new(what, "ask for fewer points with --points"));
+        return Err(Refused::new(what, "use fewer points with --points"));
     };
     let mut grid = Grid { arguments, values: vec![0.0; records] };
     let values: Vec<f64> = (0..records).map(|record| sign * mean(job, motion, &grid, record)).collect();
@@ -137,8 +137,8 @@ pub(super) fn is_description(name: &str) -> bool {
 pub(super) fn preamble(job: &Job<'_, '_>, model: &Volumetric) -> String {
     format!(
         "// Error motions of {}, mm and rad, over positions in mm.\n\
-         // Each is that of the tool relative to the part, actual minus commanded, right-handed; in both directions of\n\
-         // motion the mean of the two. The chain from part to tool is {}: {} of its axes carry the part.\n",
+         // Each is that of the tool relative to the part, actual minus commanded, right-handed: the mean of both\n\
+         // directions of motion. The chain from part to tool is {}: {} of its axes carry the part.\n",
         job.geometry.equations.machine, model.word, model.workpiece_axes
     )
 }
@@ -148,8 +148,8 @@ pub(super) fn loading(model: &Volumetric, form: &str, file: &str) -> Vec<String>
     vec![
         format!("workpiece_axes {}, and the logical numbers of the axes x, y, z", model.workpiece_axes),
         format!("file[0] {file} and file_format[0] {form}, Interpolation GRID"),
-        "the numbers are errors, actual minus commanded: if the axis moves the wrong way in the check with an indicator, \
-         the controller's `negate` turns all signs"
+        "the numbers are errors, actual minus commanded. If the axis moves the wrong way in the check with an indicator, the \
+         controller's `negate` reverses all signs"
             .to_owned(),
     ]
 }

@@ -87,14 +87,14 @@ fn axes(job: &Job<'_, '_>) -> Result<[usize; 3], Refused> {
         return Ok(axes);
     }
     let what = format!("{} has more axes than the slides X, Y, Z", geometry.equations.machine);
-    Err(Refused::new(what, "the skew and the mesh of a printer know no others; choose another format"))
+    Err(Refused::new(what, "choose another format; the skew and the mesh of a printer have only these"))
 }
 
 impl Controller for Printer {
     fn load(&mut self, source: &SourceFile, _axis: Option<usize>, diagnostics: &mut Diagnostics) {
         let form = saved_form(source.text()).filter(|form| self.firmware.forms().contains(form));
         let Some(form) = form else {
-            let message = "this file holds neither skew nor mesh of this firmware";
+            let message = "this file has neither a skew nor a mesh of this firmware";
             let help = "see docs/reference/calibrate.md for what each firmware saves";
             return diagnostics.push(Diagnostic::error("E0802", Span::default(), message).help(help));
         };
@@ -102,7 +102,7 @@ impl Controller for Printer {
         {
             return command
                 .line
-                .malformed("this firmware knows no such command, and would pass over it", diagnostics);
+                .malformed("this firmware has no such command and would ignore it", diagnostics);
         }
         let wanted = SavedWanted { reach: self.reach, ..SavedWanted::default() };
         let Saved { skew, mesh, .. } = saved::read(form, source, &wanted, diagnostics);

@@ -37,6 +37,6 @@ impl From<Refusal> for Refused {
 
 impl From<SetupError> for Refused {
     fn from(error: SetupError) -> Self {
-        Self { what: format!("the calibration cannot be run: {error}"), help: None }
+        Self { what: format!("the calibration cannot be used: {error}"), help: None }
     }
 }

@@ -21,7 +21,7 @@ pub fn text(geometry: &Geometry<'_>, space: &Space, lost: &Lost) -> String {
         ("  without compensation", lost.without),
         ("  with these files", lost.with_files),
         ("  with Abbe's own compensation", lost.with_abbe),
-        ("  lost by the files", lost.lost),
+        ("  loss in these files", lost.lost),
     ] {
         let _ = writeln!(text, "{what:<52}{}", size_text(size));
     }
@@ -30,10 +30,10 @@ pub fn text(geometry: &Geometry<'_>, space: &Space, lost: &Lost) -> String {
     }
     if length(lost.shift) >= 1e-4 {
         let shift = lost.shift.map(|part| format!("{:.1}", part * 1000.0)).join(", ");
-        let _ = writeln!(text, "  besides, a constant shift of {shift} um in X, Y, Z is left");
+        let _ = writeln!(text, "  a constant shift of {shift} um in X, Y, Z also remains");
     }
     if !geometry.beyond().is_empty() {
-        let _ = writeln!(text, "not in any table, and so not in these figures:");
+        let _ = writeln!(text, "in no table, and so not included in these figures:");
         for beyond in geometry.beyond() {
             let _ = writeln!(text, "  {}", beyond_text(geometry, space, beyond));
         }
@@ -46,11 +46,12 @@ fn verdict(lost: &Lost) -> Option<String> {
     let (with, without) = (lost.with_files.rms, lost.without.rms);
     if with > without + LEAST {
         return Some(
-            "  WORSE than none: do not load these files. Are the type, the unit, the sign and the axis right?".to_owned(),
+            "  WORSE than none: do not load these files. Check the type, the unit, the sign and the axis."
+                .to_owned(),
         );
     }
     ((with - without).abs() <= without * NOTHING).then(|| {
-        "  these files change nothing at the tool: no table of this format holds what the calibration has"
+        "  these files change nothing at the tool: the tables of this format cannot express the errors of this calibration"
             .to_owned()
     })
 }

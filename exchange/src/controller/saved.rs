@@ -76,15 +76,15 @@ impl Saved {
         let heights = self.mesh.iter().flat_map(Mesh::rows).flatten();
         let trims = self.screw.iter().flat_map(|screw| screw.forward.iter().chain(&screw.reverse));
         for (what, help, largest) in [
-            ("a height", "heights are in mm: see to the unit", largest(heights)),
+            ("a height", "check the unit: heights are in mm", largest(heights)),
             (
                 "a trim",
-                "with type 0 the numbers are positions, with type 1 what is added to the command: see which it is",
+                "check the type: with type 0 the numbers are positions, with type 1 they are added to the command",
                 largest(trims),
             ),
         ] {
             if largest > LARGEST_DISPLACEMENT {
-                let message = format!("{what} of {largest:.1} mm is no small error");
+                let message = format!("{what} of {largest:.1} mm is not a small error");
                 diagnostics.push(Diagnostic::error("E0430", Span::default(), message).help(help));
             }
         }
@@ -123,8 +123,8 @@ pub fn saved_terms(
     diagnostics: &mut Diagnostics,
 ) -> Result<Vec<(usize, CalibratedTerm)>, Refused> {
     let Some(form) = saved_form(source.text()) else {
-        let message = "this is no file of a controller's correction";
-        let help = "the files that are read: Klipper's printer.cfg, RepRapFirmware's heightmap.csv, commands and printed meshes of \
+        let message = "this is not a correction file of a controller";
+        let help = "Abbe reads Klipper's printer.cfg, RepRapFirmware's heightmap.csv, commands and printed meshes of \
                     Marlin and RepRapFirmware, LinuxCNC's COMP_FILE";
         diagnostics.push(Diagnostic::error("E0802", Span::default(), message).help(help));
         return Ok(Vec::new());

@@ -137,14 +137,14 @@ fn range(
         return if ends {
             Ok(*range)
         } else {
-            Err(Refused::new(format!("the range of {letter} is none"), help))
+            Err(Refused::new(format!("the range of {letter} is empty"), help))
         };
     }
     tables(calibration, axis).ok_or_else(|| {
         let example = if rotary { "-90:90" } else { "0:500" };
         Refused::new(
-            format!("no table of the calibration says how far {letter} goes"),
-            format!("write it, in {}: --range {letter}={example}", if rotary { "deg" } else { "mm" }),
+            format!("no table of the calibration gives the travel of {letter}"),
+            format!("give it in {}: --range {letter}={example}", if rotary { "deg" } else { "mm" }),
         )
     })
 }
@@ -165,6 +165,6 @@ fn pose_of(letter: &str, [low, high]: [f64; 2], said: &[(String, f64)]) -> Resul
     if (low..=high).contains(place) {
         return Ok(*place);
     }
-    let help = format!("say with --range {letter}=... how far it goes, or with --at a place within");
+    let help = format!("give its travel with --range {letter}=..., or a place within it with --at");
     Err(Refused::new(format!("the place of --at {letter} is outside the axis's range"), help))
 }

@@ -54,11 +54,10 @@ pub fn volumetric_terms(
             if grid.values.iter().any(|value| *value != 0.0) && unseen {
                 let message = format!("{name} has no effect on {}", equations.machine);
                 let warning = Diagnostic::warning("W0402", Span::default(), message);
-                diagnostics.push(warning.help("it has no lever at the tool tip, and is left out"));
+                diagnostics.push(warning.help("it is left out, because it has no lever arm at the tool tip"));
             } else if grid.values.iter().any(|value| *value != 0.0) {
                 let message = format!("{} has no error motion {name}", equations.machine);
-                let help =
-                    "an alignment error may go by another axis in the machine file: B0X for B0Z turned about";
+                let help = "the machine file may assign an alignment error to the other axis: B0X instead of B0Z with the opposite sign";
                 diagnostics.push(Diagnostic::error("E0804", Span::default(), message).help(help));
             }
             continue;
@@ -68,8 +67,8 @@ pub fn volumetric_terms(
             Some(curves) => terms.extend(curves.into_iter().map(|term| (motion, term))),
             None => {
                 let message =
-                    format!("{name} is no sum of functions of one axis each, and depends on more than two");
-                let help = "terms of a calibration add; measure the axes apart, or keep this motion in the controller";
+                    format!("{name} depends on more than two axes and is not a sum of functions of one axis");
+                let help = "measure the axes separately, or keep this motion in the controller; terms of a calibration add";
                 diagnostics.push(Diagnostic::error("E0803", Span::default(), message).help(help));
             }
         }

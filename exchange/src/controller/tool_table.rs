@@ -40,9 +40,9 @@ pub fn tool_table(
     for line in lines(source, ";") {
         let Some(tool) = read(line, &levers, calibration, unit, diagnostics) else { continue };
         if tools.iter().any(|known| known.name.value == tool.name.value) {
-            let message = format!("the tool {} stands twice", tool.name.value);
+            let message = format!("the tool {} occurs twice", tool.name.value);
             let mistake = Diagnostic::error("E0803", tool.name.span, message);
-            diagnostics.push(mistake.help("LinuxCNC takes one of them: leave the other out"));
+            diagnostics.push(mistake.help("leave one of them out; LinuxCNC uses only one"));
         } else {
             tools.push(tool);
         }
@@ -111,11 +111,10 @@ fn offset_tip(
     match lever.and_then(|lever| Some((constants.get_mut(lever.constant)?, lever.factor))) {
         Some((constant, factor)) => *constant -= offset / factor,
         None => {
-            let message = format!("no constant of the machine takes the offset `{}`", word.text);
+            let message = format!("no constant of the machine corresponds to the offset `{}`", word.text);
             let mistake = Diagnostic::error("E0804", word.span, message);
-            diagnostics.push(
-                mistake.help("give the `offset` of the machine file's `tool` a constant of its own for it"),
-            );
+            diagnostics
+                .push(mistake.help("give it its own constant in the `offset` of the machine file's `tool`"));
         }
     }
 }

@@ -47,7 +47,7 @@ impl Volumetric {
         let word = word(geometry.equations).ok_or_else(|| {
             let help = "export tables of single axes instead: linuxcnc, sinumerik, heidenhain, pmac";
             Refused::new(
-                format!("{} is no machine of three slides X, Y, Z", geometry.equations.machine),
+                format!("{} is not a machine with three slides X, Y, Z", geometry.equations.machine),
                 help,
             )
         })?;
@@ -121,7 +121,7 @@ fn model(word: &str) -> Result<Equations, Refused> {
     let compiled = compile(&SourceFile::new("controller", text), &mut Diagnostics::new());
     compiled
         .map(|compiled| compiled.equations)
-        .ok_or_else(|| Refused::new("the controller's model was not derived", "this is a fault of Abbe"))
+        .ok_or_else(|| Refused::new("the controller's model was not derived", "this is a bug in Abbe"))
 }
 
 fn write_slide(text: &mut String, letter: char, sign: char) {

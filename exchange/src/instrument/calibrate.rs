@@ -241,11 +241,11 @@ impl Source<'_> {
         if places && sides && self.measurement.axis == over.measurement.axis {
             return Some(());
         }
-        let message = "the two set-ups have not the same targets in the same directions";
+        let message = "the two set-ups do not have the same targets in the same directions";
         let mistake = Diagnostic::error("E0918", over.measurement.motion.span, message);
         let mistake = mistake.also(self.measurement.motion.span, "the other set-up");
         diagnostics
-            .push(mistake.help("measure the same targets in both, and tell `origin` and `sign` of both"));
+            .push(mistake.help("measure the same targets in both, and give `origin` and `sign` of both"));
         None
     }
 }
@@ -320,11 +320,11 @@ fn warn_of_rotations(all: &[Source<'_>], sides: &[Side<'_>], view: &View<'_>, di
         let Some(rotation) = lever::turning(one, positions, &angles, view) else { continue };
         let name = |motion: usize| view.equations.motions.get(motion).map_or("", |motion| &motion.name);
         let message = format!(
-            "the zero of {} is in the slope of {}, and so in the squareness",
+            "the slope of {1}, and so the squareness, includes the zero of {0}",
             name(rotation),
             name(one.motion.value)
         );
-        let help = "say with `at` where the other axes stood: then it is taken off";
+        let help = "give the positions of the other axes with `at`, so that it is subtracted";
         diagnostics.push(Diagnostic::warning("W0904", one.motion.span, message).help(help));
     }
 }
@@ -344,7 +344,7 @@ fn is_new(
     }
     let name = view.equations.motions.get(one.motion).map_or("", |motion| &motion.name);
     let span = sides.first().and_then(|side| side.measurement.reference.as_ref()).map(|name| name.span);
-    let message = format!("the square `{}` gives {name}, which is given elsewhere too", one.reference);
+    let message = format!("the square `{}` gives {name}, which is also given elsewhere", one.reference);
     let mistake = Diagnostic::error("E0911", span.unwrap_or_default(), message);
     diagnostics.push(mistake.help("leave one of the two out"));
     false

@@ -64,7 +64,7 @@ fn unreadable(source: &SourceFile) -> Option<Diagnostic> {
     }
     if text.contains('\0') || text.starts_with('\u{fffd}') {
         let message = "this is not a text with targets and deviations";
-        let help = "read are Renishaw's `.rtl` and `.rta`, and tables as CSV in UTF-8";
+        let help = "give a Renishaw `.rtl` or `.rta` file, or a table as CSV in UTF-8";
         return Some(Diagnostic::error("E0921", start, message).help(help));
     }
     None

@@ -68,10 +68,12 @@ impl Placed {
         let apart = self.positions.windows(2).all(|pair| pair.first() < pair.last());
         let mistake = match (finite, apart) {
             (true, true) => return Some(()),
-            (false, _) => Diagnostic::error("E0926", at, "the targets of the file lie beyond all numbers"),
-            _ => Diagnostic::error("E0928", at, "two targets of the file lie at one place of the axis"),
+            (false, _) => {
+                Diagnostic::error("E0926", at, "the targets of the file are out of the range of numbers")
+            }
+            _ => Diagnostic::error("E0928", at, "two targets of the file are at the same place of the axis"),
         };
-        diagnostics.push(mistake.help("is their unit right?"));
+        diagnostics.push(mistake.help("check their unit"));
         None
     }
 }
@@ -102,20 +104,22 @@ fn the_unit(
     let [in_setup, in_file] = [in_setup, in_file].map(|unit| unit.map(|unit| as_dimension(unit, dimension)));
     let mistake = match (in_setup, in_file) {
         (None, None) => {
-            let message = format!("neither the file nor the set-up tells the unit of the {what}");
+            let message = format!("neither the file nor the set-up gives the unit of the {what}");
             Diagnostic::error("E0909", at, message)
-                .help(format!("add `{what}: {{unit: {usual}}}` if that is what it is"))
+                .help(format!("add `{what}: {{unit: {usual}}}` if that is the unit"))
         }
         (Some(own), Some(file)) if own != file => {
-            let message = format!("the set-up gives another unit for the {what} than the file has");
+            let message = format!("the set-up and the file give different units for the {what}");
             Diagnostic::error("E0909", at, message)
-                .help(format!("leave `unit` out of `{what}`, or mend the file"))
+                .help(format!("remove `unit` from `{what}`, or correct the file"))
         }
         (own, file) => match own.or(file).filter(|unit| unit.dimension == dimension) {
             Some(unit) => return Some(unit),
             None => {
                 let message = format!("the {what} of the file are not in a unit of {}", dimension.name());
-                let help = format!("is it the file of another motion? A unit such as `{usual}` is needed");
+                let help = format!(
+                    "use a unit such as `{usual}`, and check whether this is the file of another motion"
+                );
                 Diagnostic::error("E0908", at, message).help(help)
             }
         },

@@ -77,19 +77,17 @@ pub(super) fn is_of_two(curve: &Curve, one: &Measurement) -> bool {
 
 /// Tells that the slope is all that is known (W0905).
 pub(super) fn slope_of_two(one: &Measurement) -> Diagnostic {
-    let message = "two targets give the slope of this edge, and no straightness: the motion gets no table";
-    let help = "measure three targets or more, which show the straightness and how well the slope is known";
+    let message = "two targets give the slope of this edge but no straightness, so the motion gets no table";
+    let help = "measure three or more targets to get the straightness and the uncertainty of the slope";
     Diagnostic::warning("W0905", one.data.span, message).help(help)
 }
 
 fn too_few(found: usize, needed: usize, averaged: &Averaged, span: Span) -> Diagnostic {
     let message =
-        format!("{found} targets have readings from every side that was driven, and {needed} are needed");
+        format!("{found} targets have readings from every side that was driven, but {needed} are needed");
     let help = match averaged.left_out.is_empty() {
-        true => "a curve takes more targets",
-        false => {
-            "readings at one place count together only where their targets are the same number, the nominal position"
-        }
+        true => "measure more targets for a curve",
+        false => "give the readings at one place the same target, the nominal position",
     };
     Diagnostic::error("E0917", span, message).help(help)
 }
@@ -100,8 +98,8 @@ fn zeroed(curve: Curve, one: &Measurement, diagnostics: &mut Diagnostics) -> Opt
     match interpolated(&curve.positions, &curve.centre(), zero) {
         Some(value) => Some(curve.plus(|_| -value)),
         None => {
-            let mistake = Diagnostic::error("E0917", span, "`zero_at` lies outside of what was measured");
-            diagnostics.push(mistake.help("name a position between the first target and the last"));
+            let mistake = Diagnostic::error("E0917", span, "`zero_at` is outside the measured range");
+            diagnostics.push(mistake.help("give a position between the first target and the last"));
             None
         }
     }
@@ -157,7 +155,7 @@ impl Tabulated {
         if let Some(step) = one.resample.filter(|step| (last - first) / step.value > MOST_NODES) {
             let message = format!("the table would have more than {MOST_NODES} nodes");
             let mistake = Diagnostic::error("E0907", step.span, message);
-            diagnostics.push(mistake.help("write a greater step; no machine needs so many"));
+            diagnostics.push(mistake.help("write a larger step; no machine needs so many nodes"));
             return None;
         }
         let reverse = self.reverse.iter().flatten();
@@ -165,9 +163,9 @@ impl Tabulated {
         if values.all(|value| value.is_finite()) {
             return Some(());
         }
-        let message = "what the file shows lies beyond all numbers";
+        let message = "the deviations of the file are out of the range of numbers";
         let mistake = Diagnostic::error("E0926", one.data.span, message);
-        diagnostics.push(mistake.help("are its units right?"));
+        diagnostics.push(mistake.help("check its units"));
         None
     }
 

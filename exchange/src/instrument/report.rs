@@ -94,7 +94,8 @@ impl Names<'_> {
 /// The outcome as text for a terminal. Intervals are those of 95 %.
 pub fn text(outcome: &Outcome, equations: &Equations) -> String {
     let names = Names { equations };
-    let mut text = format!("Calibration of {}; intervals hold the mean with 95 %\n", outcome.machine);
+    let mut text =
+        format!("Calibration of {}; the intervals contain the mean with 95 % confidence\n", outcome.machine);
     for motion in &outcome.motions {
         put(&mut text, "");
         about(&mut text, motion, &names);
@@ -122,7 +123,7 @@ pub fn comments(outcome: &Outcome, equations: &Equations) -> Vec<String> {
         let mut line = format!("{} from {}: {}", names.motion(one.motion), one.files.join(", "), runs(one));
         line += &match widest(one) {
             Some(half) => format!("; means within +- {} at 95 %", shown.with_unit(half)),
-            None => "; uncertainty of a mean unknown where it is of one reading".to_owned(),
+            None => "; the uncertainty of a mean of one reading is unknown".to_owned(),
         };
         for part in one.parts.iter().filter_map(|part| part.line.as_ref()) {
             line += &format!("; line removed, slope {}", slope(part, one, &names));
@@ -180,7 +181,10 @@ fn about(text: &mut String, motion: &MeasuredMotion, names: &Names<'_>) {
         ),
     );
     if motion.against {
-        put(text, "  counted as the machine file counts: the tool moved the other way relative to the part");
+        put(
+            text,
+            "  in the sign convention of the machine file: the tool moved in the opposite direction relative to the part",
+        );
     }
     for part in &motion.parts {
         if !part.left_out.is_empty() {
@@ -188,7 +192,7 @@ fn about(text: &mut String, motion: &MeasuredMotion, names: &Names<'_>) {
             put(
                 text,
                 &format!(
-                    "  left out, since one direction was not read there: {} {}",
+                    "  left out, because one direction was not read there: {} {}",
                     places.join(", "),
                     axis.unit
                 ),
@@ -263,7 +267,7 @@ fn table(text: &mut String, motion: &MeasuredMotion, names: &Names<'_>) {
 fn figures(text: &mut String, motion: &MeasuredMotion, names: &Names<'_>) {
     let (axis, shown) = (names.of_axis(motion.axis), names.of_motion(motion.motion));
     if motion.slope_alone {
-        put(text, "  two targets: the slope alone is known, and the calibration has no table of it");
+        put(text, "  two targets: only the slope is known, so the calibration has no table of it");
     }
     if let Some(reversal) = &motion.reversal {
         put(
@@ -314,11 +318,11 @@ fn leveled(levers: &Levers, names: &Names<'_>) -> String {
     let taken: Vec<String> = taken.collect();
     let remaining: Vec<&str> = levers.remaining.iter().map(|motion| names.motion(*motion)).collect();
     let mut text = match taken.as_slice() {
-        [] => "lever arms: nothing taken off".to_owned(),
-        taken => format!("lever arms taken off: {}", taken.join(", ")),
+        [] => "lever arms: nothing subtracted".to_owned(),
+        taken => format!("lever arms subtracted: {}", taken.join(", ")),
     };
     if !remaining.is_empty() {
-        text += &format!("; not measured, and still in it: {}", remaining.join(", "));
+        text += &format!("; not measured, and still included: {}", remaining.join(", "));
     }
     text
 }
@@ -355,10 +359,12 @@ fn squared(one: &Squareness, names: &Names<'_>) -> Vec<String> {
     let [first, second] = one.from.map(|motion| names.motion(motion));
     let square = match (one.square, one.turned) {
         (Some(square), true) => {
-            format!("the square is off by {}, found by turning it over", MICRORADIANS.with_unit(square))
+            format!("the error of the square is {}, found by turning it over", MICRORADIANS.with_unit(square))
         }
-        (Some(square), false) => format!("the square's own {} is counted in", MICRORADIANS.with_unit(square)),
-        (None, _) => "the square counts as perfect: its own error is in it whole".to_owned(),
+        (Some(square), false) => {
+            format!("the square's own {} is taken into account", MICRORADIANS.with_unit(square))
+        }
+        (None, _) => "the square is assumed to be perfect; its own error is fully included".to_owned(),
     };
     let mut lines = vec![
         format!("{}: {}", names.motion(one.motion), MICRORADIANS.plus_minus(one.angle, one.uncertainty)),

@@ -22,8 +22,8 @@ pub(super) fn senses(
     let told = measured.runs.iter().all(|run| run.told.is_some());
     match (told, order) {
         (true, Some(order)) => {
-            let message = "the file has a column of directions, and the set-up says `runs` too";
-            in_setup.push(Diagnostic::error("E0910", order.span, message).help("leave `runs` out"));
+            let message = "the file has a column of directions, but the set-up also has `runs`";
+            in_setup.push(Diagnostic::error("E0910", order.span, message).help("remove `runs`"));
             None
         }
         (true, None) => Some(measured.runs.iter().map(|run| run.told).collect()),
@@ -47,8 +47,9 @@ fn by_order(
         sense(run) == Sense::Ascending && run.listed(&measured.targets) == Some(Sense::Descending)
     };
     if let Some(run) = measured.runs.iter().find(against) {
-        let message = format!("run {} is listed descending, and `runs` makes it ascend", run.number);
-        let help = "where the targets count against the axis say it under `targets: {sign: -1}`, not here";
+        let message =
+            format!("run {} is listed in descending order, but `runs` says that it ascends", run.number);
+        let help = "if targets and axis have opposite signs, write `targets: {sign: -1}` instead";
         diagnostics.push(Diagnostic::error("E0916", order.span, message).help(help));
         return None;
     }
@@ -72,7 +73,7 @@ fn by_list(
         let kept = one_way(measured, &listed, in_data);
         if kept.is_none() {
             in_setup.push(undecided(
-                "the flags say that all runs go one way, and they are listed both ways",
+                "the flags say that all runs go one way, but runs are listed in both directions",
                 asked,
             ));
         }
@@ -101,19 +102,17 @@ fn in_turns(measured: &Measured, listed: &[Option<Sense>]) -> bool {
 fn doubt(measured: &Measured, listed: &[Option<Sense>], both: bool) -> Option<&'static str> {
     let several = measured.runs.len() > 1;
     match measured.flagged {
-        _ if listed.contains(&None) => {
-            Some("a run is listed in an order that does not tell which way it went")
-        }
+        _ if listed.contains(&None) => Some("the order of the targets in a run does not show its direction"),
         Some(Flagged::BothWays) if !both && several => {
-            Some("the flags say that runs go both ways, and all are listed one way")
+            Some("the flags say that runs go both ways, but all are listed in one direction")
         }
-        None if !both && several => Some("all runs are listed one way: they may have been sorted"),
+        None if !both && several => Some("all runs are listed in one direction; they may have been sorted"),
         _ => None,
     }
 }
 
 fn undecided(doubt: &str, asked: Span) -> Diagnostic {
-    let help = "add `runs: ascending` or `runs: descending` where all went one way, `runs: alternating` where runs 1, 3, 5 ascended and 2, 4, 6 descended";
+    let help = "add `runs: ascending` or `runs: descending` if all went one way, `runs: alternating` if runs 1, 3, 5 ascended and 2, 4, 6 descended";
     Diagnostic::error("E0916", asked, doubt).help(help)
 }
 
@@ -133,8 +132,8 @@ fn one_way(
     }
     for run in measured.runs.iter().filter(|run| empty(run)) {
         let message =
-            format!("run {} holds nothing but zeros, and the flags say that all runs go one way", run.number);
-        let help = "it is left out, as the way back that was not measured; `runs: alternating` takes it for readings";
+            format!("run {} contains only zeros, and the flags say that all runs go one way", run.number);
+        let help = "it is left out as a way back that was not measured; write `runs: alternating` to use it as readings";
         in_data.push(Diagnostic::warning("W0903", run.span, message).help(help));
     }
     Some(kept)

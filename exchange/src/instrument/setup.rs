@@ -67,7 +67,7 @@ pub struct Setup {
 /// Findings: E0901 there is none, E0902 this is another kind of file, E0904 it is not a name, or the file is no mapping.
 pub fn machine_of(root: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned<String>> {
     if root.entries().is_none() {
-        let message = format!("a set-up is a mapping of keys, found {}", root.kind_name());
+        let message = format!("a set-up must be a mapping of keys, found {}", root.kind_name());
         let mistake = Diagnostic::error(FORM, root.span, message);
         diagnostics.push(mistake.help("begin with `setup: 1` and `machine: ...`"));
         return None;
@@ -97,7 +97,7 @@ fn another_kind(root: &Node) -> Option<Diagnostic> {
     ];
     let (_, name) = kinds.iter().find(|(key, _)| root.get(key).is_some())?;
     let mistake = Diagnostic::error("E0902", first_key(root), format!("this is {name}, not a set-up file"));
-    Some(mistake.help("a set-up file begins with `setup: 1`, and names its machine and its measurements"))
+    Some(mistake.help("begin with `setup: 1`, and name the machine and the measurements"))
 }
 
 /// Reads everything that the set-up file says, for a machine whose equations are known.
@@ -157,8 +157,8 @@ fn check_version(node: &Node, diagnostics: &mut Diagnostics) {
         return;
     }
     let message = match node.text() {
-        Some(text) => format!("set-ups of version `{text}` are not read"),
-        None => format!("`setup` is the version of the format, found {}", node.kind_name()),
+        Some(text) => format!("version `{text}` of the set-up format is unknown"),
+        None => format!("`setup` must be the version of the format, found {}", node.kind_name()),
     };
     diagnostics.push(Diagnostic::error("E0902", node.span, message).help("write `setup: 1`"));
 }
@@ -212,12 +212,12 @@ impl Setup {
             if let (true, Some(other)) = (terms.iter().any(|(taken, _)| *taken == number), other) {
                 // What another file gave stands at no place of the set-up.
                 let (here, mistake) = if other == Span::default() {
-                    (place, format!("this gives {}, which another file has given already", motion.name))
+                    (place, format!("this gives {}, which another file already gives", motion.name))
                 } else {
-                    (other, format!("{} is given by a file or by lengths, and stands here too", motion.name))
+                    (other, format!("{} is given here and also by a file or by lengths", motion.name))
                 };
-                let mistake = Diagnostic::error("E0911", here, mistake).also(place, "given by this");
-                diagnostics.push(mistake.help("leave it out here, or take it out of the file"));
+                let mistake = Diagnostic::error("E0911", here, mistake).also(place, "also given by this");
+                diagnostics.push(mistake.help("remove it here or from the file"));
             }
         }
         self.known = self.known.with(terms);
@@ -234,9 +234,9 @@ impl Setup {
             }
             let given = self.known.motions.iter().find(|known| known.motion == one.motion.value);
             if let Some(given) = given {
-                let message = format!("{name} is measured, and given under `errors`");
+                let message = format!("{name} is measured and also given under `errors`");
                 let mistake = Diagnostic::error("E0911", one.motion.span, message);
-                let help = "the measurement is the whole motion: leave one of the two out";
+                let help = "remove one of the two; the measurement is the whole motion";
                 diagnostics.push(mistake.also(given.span, "given here").help(help));
             }
             self.check_turned(one, name, diagnostics);
@@ -248,9 +248,8 @@ impl Setup {
     fn check_turned(&self, one: &Measurement, name: &str, diagnostics: &mut Diagnostics) {
         let upright = |other: &Measurement| other.is_of(one) && !other.turned;
         if one.turned && !self.measurements.iter().any(upright) {
-            let message = format!("{name} is measured with the edge turned over only");
-            let help =
-                "a reversal takes both set-ups; leave `turned` out where the edge was not turned between two";
+            let message = format!("{name} is measured only with the edge turned over");
+            let help = "give both set-ups for a reversal, or remove `turned` if the edge was not turned over between two";
             diagnostics.push(Diagnostic::error("E0912", one.motion.span, message).help(help));
         }
     }
@@ -258,7 +257,7 @@ impl Setup {
 
 fn measured_twice(name: &str, again: Span, first: Span) -> Diagnostic {
     let mistake = Diagnostic::error("E0911", again, format!("{name} is measured twice"));
-    let help = "one file holds all runs of a motion; `turned: true` marks the second set-up of a reversal, `placement: 2` an edge that was \
-                laid on anew";
+    let help = "put all runs of a motion into one file; use `turned: true` for the second set-up of a reversal, and `placement: \
+                2` for an edge that was set up again";
     mistake.also(first, "first measured here").help(help)
 }

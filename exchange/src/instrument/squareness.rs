@@ -125,9 +125,9 @@ fn of(
 
 fn not_a_pair(name: &str, place: Span) -> Diagnostic {
     let message = format!(
-        "the measurements against `{name}` are not the straightnesses of two axes towards each other"
+        "the measurements against `{name}` are not the straightnesses of two axes in each other's direction"
     );
-    let help = "a squareness takes two, such as EYX and EXY; leave `reference` out elsewhere";
+    let help = "measure two straightnesses, such as EYX and EXY, or remove `reference`";
     Diagnostic::error("E0912", place, message).help(help)
 }
 
@@ -135,14 +135,14 @@ fn no_alignment(name: &str, place: Span) -> Diagnostic {
     let message = format!(
         "the machine file has no alignment error between the axes measured against `{name}`, or two of them"
     );
-    let help = "write the angle that was measured under `errors`, in the sense of the machine file";
+    let help = "write the measured angle under `errors`, with the sign convention of the machine file";
     Diagnostic::error("E0912", place, message).help(help)
 }
 
 fn angle_and_turned(name: &str, given: Span, place: Span) -> Diagnostic {
-    let message = format!("the error of `{name}` falls out, since it was turned over, and is given too");
+    let message = format!("the error of `{name}` cancels because it was turned over, but it is also given");
     let mistake = Diagnostic::error("E0912", given, message).also(place, "measured with it turned over");
-    mistake.help("leave `angle` out, and compare it with the one that the report tells")
+    mistake.help("remove `angle`, and compare it with the angle in the report")
 }
 
 /// How much more the second line of motion is turned than the first, and the square's error.

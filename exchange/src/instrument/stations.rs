@@ -36,8 +36,8 @@ pub fn stations(
     let letter = equations.axes.get(one.axis).map_or("", |axis| axis.letter.as_str());
     let name = equations.motions.get(one.motion.value).map_or("", |motion| motion.name.as_str());
     if name != own_motion(letter) {
-        let message = format!("{name} does not tell how {letter} keeps its positions");
-        let help = format!("the figures of positioning are of a file of {}", own_motion(letter));
+        let message = format!("{name} does not show the positioning of {letter}");
+        let help = format!("use a file of {} for the figures of positioning", own_motion(letter));
         in_setup.push(Diagnostic::error("E0905", one.motion.span, message).help(help));
         return None;
     }

@@ -63,7 +63,8 @@ impl<'e> View<'e> {
             let message =
                 format!("no instrument shows {name} by itself on this machine, with all axes at zero");
             let mistake = Diagnostic::error("E0915", one.motion.span, message);
-            diagnostics.push(mistake.help("write it under `errors`, in the sense of the machine file"));
+            diagnostics
+                .push(mistake.help("write it under `errors`, with the sign convention of the machine file"));
             return None;
         };
         let against = |turned: bool| if turned { -1.0 } else { 1.0 };

@@ -144,7 +144,7 @@ fn a_product_of_two_positions_is_carried_by_a_grid() {
     // The other format has tables of one axis, and says so.
     let export = machine.export(Format::Etalon, &options()).unwrap();
     let said: Vec<String> = export.left_out.iter().map(ToString::to_string).collect();
-    assert_eq!(said, ["EYX: it depends on several axes, and the format has tables of one"]);
+    assert_eq!(said, ["EYX: it depends on several axes, but the tables of this format have one"]);
 }
 
 #[test]

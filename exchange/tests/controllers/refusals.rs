@@ -57,7 +57,7 @@ fn a_correction_beyond_the_limit_is_refused() {
     let machine = "abbe: 1\nname: m\ntopology: FXYZ\n";
     let rest = "limits: {compensation: 20 um}\nerrors:\n  EXX: [{polynomial: {axis: X, unit: um, per: mm, coefficients: [0, 0.1]}}]\n";
     let text = refusal(&Machine::new(machine, rest), Format::LinuxCnc, &options());
-    assert!(text.contains("over the calibration's limit of 0.02 mm"), "{text}");
+    assert!(text.contains("exceeds the calibration's limit of 0.02 mm"), "{text}");
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn files_that_would_make_the_machine_worse_are_refused() {
     let space = Space::new(&machine.equations, &machine.calibration, &wanted).unwrap();
     let refused = exchange::controller::export(&machine.geometry(), &space, Format::LinuxCnc, &options());
     let text = refused.unwrap_err().to_string();
-    assert!(text.contains("without them 21.") && text.contains("would be 36."), "{text}");
+    assert!(text.contains("would be 36.") && text.contains("with these files and 21."), "{text}");
 }
 
 #[test]
@@ -99,8 +99,8 @@ fn an_axis_of_which_nothing_is_known_is_asked_for() {
     let all = [("X", [0.0, 500.0]), ("Y", [0.0, 300.0]), ("Z", [-200.0, 0.0])];
     assert!(space(&all, &[]).is_ok());
     for (ranges, reference, says) in [
-        (&all[..1], &[][..], "how far Y goes"),
-        (&[("X", [5.0, 5.0]), all[1], all[2]][..], &[], "the range of X is none"),
+        (&all[..1], &[][..], "gives the travel of Y"),
+        (&[("X", [5.0, 5.0]), all[1], all[2]][..], &[], "the range of X is empty"),
         (&[("Q", [0.0, 5.0])][..], &[], "no axis Q"),
         (&all[..], &[("Z", 5.0)][..], "--at Z is outside"),
     ] {
@@ -121,7 +121,7 @@ fn a_table_that_contradicts_itself_is_shown() {
         ),
         (Format::Sinumerik, "$AA_ENC_COMP[0,0,Q1]=0.1\n", "E0804", "`Q1`"),
         (Format::Sinumerik, "hello\n", "E0802", "hello"),
-        (Format::Isg, "X EXX\n0 0.1\n0 0.2\n", "E0803", "no full grid"),
+        (Format::Isg, "X EXX\n0 0.1\n0 0.2\n", "E0803", "not a full grid"),
         (Format::Isg, "X EXX\n0 nan\n", "E0801", "nan"),
         (Format::Isg, "X EXQ\n0 0.1\n", "E0804", "EXQ"),
         (Format::Etalon, "[EXX]\nGridpoints = {\n0 0.1\n", "E0802", "[EXX]"),
@@ -153,7 +153,7 @@ fn names_are_each_axis_its_own_and_motors_are_numbers() {
         (Format::Heidenhain, &[("X", "Y")][..], "X and Y are both called `Y`"),
         (Format::Sinumerik, &[("X", "Y1")], "X and Y are both called `Y1`"),
         (Format::Pmac, &[("X", "2")], "X and Y are both called `2`"),
-        (Format::Pmac, &[("X", "MX1")], "`MX1` is no motor"),
+        (Format::Pmac, &[("X", "MX1")], "`MX1` is not a motor"),
     ] {
         let text = refusal(&scaled("FXYZ"), format, &named(names));
         assert!(text.contains(says), "{text}");

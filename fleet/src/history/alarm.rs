@@ -47,7 +47,7 @@ pub struct Alarm {
 
 /// What to look at for a term; for the noise, which is none, at the instrument.
 fn look(term: &str) -> String {
-    look_at(term).unwrap_or("the instrument, how it is mounted, and what stands near the machine").to_owned()
+    look_at(term).unwrap_or("the instrument, its mounting, and equipment near the machine").to_owned()
 }
 
 /// A question that was asked: how probable its answer is by chance, the alarm that it would be, and the numbers of machine and series.
@@ -144,7 +144,7 @@ fn of_change(machine: &str, series: &Series, change: &Change) -> Option<Alarm> {
     let interval = |(value, half): (f64, f64)| format!("{} +- {}", number(value, unit), number(half, unit));
     let sizes = format!("from {} to {}", interval(before), interval(after));
     let claimed = series.points.iter().filter(|point| point.claimed).count();
-    let rests = format!("{} recordings tell it, {claimed} of them by themselves", series.points.len());
+    let rests = format!("{} recordings show it, {claimed} of them on their own", series.points.len());
     alarm.reason = match change.kind {
         "trend" => {
             let goes = if change.size * after.0 < 0.0 { "falls" } else { "grows" };

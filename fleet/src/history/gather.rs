@@ -33,7 +33,7 @@ pub(super) fn machines(
     for name in filed_machines(&fleet.results)? {
         if !named.contains(name.as_str()) {
             let text = format!(
-                "warning: there are results of `{name}`, which the fleet file does not name: they are not shown"
+                "warning: results of `{name}` are not shown, because the fleet file does not name this machine"
             );
             listener.hear(&text.into());
         }

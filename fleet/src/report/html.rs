@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use pages::plot::RULES;
-use pages::text::escape;
+use pages::text::{escape, printed};
 
 use super::{age, brief, chart, count, most, worst};
 use crate::history::{Alarm, BOUND, History, Machine};
@@ -72,15 +72,16 @@ fn made(command: &str) -> String {
 
 fn of_fleet(history: &History, links: &Links<'_>) -> String {
     let mut body = format!(
-        "<h1>Fleet of {} machines</h1>\n<p class=\"source\">Until {}. {} series and comparisons were asked; any alarm is chance with at \
-         most {} % for all together.</p>\n",
+        "<h1>Fleet of {} machines</h1>\n<p class=\"source\">Until {}. {} series and comparisons were tested; the chance of any \
+         false alarm among all of them is at most {} %.</p>\n",
         history.machines.len(),
         history.until.day(),
         history.questions,
         BOUND * 100.0
     );
     let alarms: String = history.alarms.iter().map(|alarm| of_alarm(alarm, links)).collect();
-    let none = "<p class=\"none\">No alarm: what changes is chance, or less than one recording tells.</p>\n";
+    let none =
+        "<p class=\"none\">No alarm: all changes are chance, or smaller than one recording can show.</p>\n";
     body += &section("Alarms", if alarms.is_empty() { none } else { &alarms });
     let rows: String = history.machines.iter().map(|machine| row(history, machine, links)).collect();
     let head = "<tr><th>Machine</th><th>Last verdict</th><th>Last test</th><th>Changes most</th><th>Over time</th></tr>";
@@ -100,13 +101,13 @@ fn section(heading: &str, body: &str) -> String {
 fn of_alarm(alarm: &Alarm, links: &Links<'_>) -> String {
     let rests = match alarm.recordings.as_slice() {
         [] => String::new(),
-        recordings => format!("<p class=\"source\">Rests on {}.</p>\n", escape(&recordings.join(", "))),
+        recordings => format!("<p class=\"source\">Based on {}.</p>\n", escape(&recordings.join(", "))),
     };
     format!(
         "<article class=\"alarm\">\n<p><strong><a href=\"{}\">{}</a></strong>: {}</p>\n<p>Look at {}.</p>\n{rests}</article>\n",
         escape(&(links.machine)(&alarm.machine)),
         escape(&alarm.machine),
-        escape(&alarm.reason),
+        printed(&alarm.reason),
         escape(&alarm.look_at)
     )
 }
@@ -123,14 +124,14 @@ fn row(history: &History, machine: &Machine, links: &Links<'_>) -> String {
         escape(&machine.name),
         escape(verdict),
         age(history, machine).unwrap_or_default(),
-        escape(&change),
+        printed(&change),
         worst.and_then(chart::small).unwrap_or_default()
     )
 }
 
 fn ranges(history: &History) -> String {
     let row = |range: &crate::history::Range| {
-        let number = |value: f64| escape(&super::number(value, &range.unit));
+        let number = |value: f64| printed(&super::number(value, &range.unit));
         format!(
             "<tr><td>{}</td><td>{}</td><td>{}</td><td>{} to {}</td></tr>\n",
             escape(&range.kind),
@@ -174,7 +175,7 @@ fn of_machine(history: &History, machine: &Machine, links: &Links<'_>) -> String
             Some(format!(
                 "<figure>{}<figcaption>{}</figcaption></figure>\n",
                 chart::plot(followed)?,
-                escape(&brief(followed))
+                printed(&brief(followed))
             ))
         })
         .collect();
@@ -191,15 +192,15 @@ fn of_machine(history: &History, machine: &Machine, links: &Links<'_>) -> String
                 Some(link) => format!("<a href=\"{}\">{name}</a>", escape(&link)),
                 None => name,
             };
-            let sentence = escape(&entry.sentence);
-            let gone = if entry.listed { "" } else { " <span class=\"source\">(no longer there)</span>" };
+            let sentence = printed(&entry.sentence);
+            let gone = if entry.listed { "" } else { " <span class=\"source\">(missing)</span>" };
             format!(
                 "<tr><td class=\"name\">{}</td><td>{name}{gone}</td><td>{sentence}</td></tr>\n",
                 entry.time.day()
             )
         })
         .collect();
-    let head = "<tr><th>Made</th><th>Recording</th><th>What the diagnosis says</th></tr>";
+    let head = "<tr><th>Made</th><th>Recording</th><th>Diagnosis</th></tr>";
     body += &format!(
         "<h2>Recordings</h2>\n<div class=\"wide\"><table>\n<thead>{head}</thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n</section>\n"
     );

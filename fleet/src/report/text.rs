@@ -18,8 +18,8 @@ pub fn text(history: &History, columns: usize) -> String {
     };
     text += &paragraph(
         &format!(
-            "{} machines until {}: {alarms}. {} series and comparisons were asked; any alarm is chance with at most {} % for all \
-             together.",
+            "{} machines until {}: {alarms}. {} series and comparisons were tested; the chance of any false alarm among all of \
+             them is at most {} %.",
             history.machines.len(),
             history.until.day(),
             history.questions,
@@ -32,7 +32,7 @@ pub fn text(history: &History, columns: usize) -> String {
         text += &paragraph(&format!("{}: {}", alarm.machine, alarm.reason), "  ");
         text += &paragraph(&format!("  look at: {}", alarm.look_at), "    ");
         if !alarm.recordings.is_empty() {
-            text += &paragraph(&format!("  rests on: {}", alarm.recordings.join(", ")), "    ");
+            text += &paragraph(&format!("  based on: {}", alarm.recordings.join(", ")), "    ");
         }
     }
     text += "\n";

@@ -65,7 +65,7 @@ pub fn instrument(recording: &Recording, names: &MachineNames) -> Result<(Instru
         Recorder::Linear(line) => Instrument::linear(line.axis, line.direction),
         Recorder::Straightness(line) => Instrument::straightness(line.axis, line.direction),
         Recorder::Angular { axis, about } => Instrument::Angular { axis: *axis, about: *about },
-        Recorder::Probe => return Err("a probe's readings cannot be made again".to_owned()),
+        Recorder::Probe => return Err("readings of a probe cannot be reproduced".to_owned()),
     };
     Ok((instrument, vec![Outlet::Deviation]))
 }

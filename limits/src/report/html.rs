@@ -2,7 +2,7 @@
 //! fetched.
 
 use pages::plot::{Axis, Cartesian, Draw, Line, Look, Plot, RULES, Series, Tone};
-use pages::text::escape;
+use pages::text::{escape, printed};
 
 use super::words;
 use crate::answer::{Found, Limit, Limits};
@@ -20,19 +20,19 @@ const STYLE: &str = "\
 pub fn html(limits: &Limits, command: &str) -> String {
     let title = limits.title.clone().unwrap_or_else(|| limits.file.clone());
     let mut body = format!(
-        "<h1>What could be found: {}</h1>\n<p class=\"source\">{}: {}, {} rows; as it is {}</p>\n",
+        "<h1>Detection limits: {}</h1>\n<p class=\"source\">{}: {}, {} rows; as it is {}</p>\n",
         escape(&title),
         escape(&limits.file),
         escape(&limits.machine),
         limits.rows,
         escape(limits.verdict)
     );
-    body += &words::already(limits).map(|line| format!("<p>{}</p>\n", escape(&line))).unwrap_or_default();
+    body += &words::already(limits).map(|line| format!("<p>{}</p>\n", printed(&line))).unwrap_or_default();
     body += &table(limits);
     let never: Vec<String> =
         limits.all.iter().filter(|limit| limit.found.is_none()).map(words::never).collect();
-    body += &list("Never found here", &never);
-    body += &list("Never told apart here", &words::pairs(limits));
+    body += &list("Never found in this recording", &never);
+    body += &list("Never separated in this recording", &words::pairs(limits));
     if let Some(advice) = &limits.advice {
         body += &list("Extra passes", &words::passes(advice));
     }
@@ -49,7 +49,7 @@ fn section(heading: &str, body: &str) -> String {
 }
 
 fn list(heading: &str, lines: &[String]) -> String {
-    let lines: String = lines.iter().map(|line| format!("<li>{}</li>\n", escape(line))).collect();
+    let lines: String = lines.iter().map(|line| format!("<li>{}</li>\n", printed(line))).collect();
     if lines.is_empty() { lines } else { section(heading, &format!("<ul>\n{lines}</ul>\n")) }
 }
 
@@ -57,21 +57,21 @@ fn table(limits: &Limits) -> String {
     let row = |limit: &Limit| {
         Some(format!(
             "<tr><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td></tr>\n",
-            escape(&words::name(limit)),
-            escape(&words::size(limit)?),
-            escape(&words::interval(limit)),
-            escape(&words::told(limit))
+            printed(&words::name(limit)),
+            printed(&words::size(limit)?),
+            printed(&words::interval(limit)),
+            printed(&words::told(limit))
         ))
     };
     let rows: String = limits.all.iter().filter_map(row).collect();
     if rows.is_empty() {
-        return section("What would be found", "<p>No effect would be found at any size.</p>\n");
+        return section("Effects that would be found", "<p>No effect would be found at any size.</p>\n");
     }
     section(
-        "What would be found",
+        "Effects that would be found",
         &format!(
             "<div class=\"wide\"><table>\n<thead><tr><th>effect</th><th class=\"number\">found in 9 of 10 from</th>\
-             <th class=\"number\">then known to</th><th>would be told</th></tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n"
+             <th class=\"number\">uncertainty</th><th>reported</th></tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n"
         ),
     )
 }
@@ -86,9 +86,9 @@ fn curves(limits: &Limits) -> String {
     if figures.is_empty() {
         return figures;
     }
-    let caption = "<p>The share of trials that find an effect over its size. Marks: single trials, found (1) or not (0); line: \
-                   the share by all of them; the vertical line: found in nine of ten.</p>\n";
-    section("From which size on", &format!("{caption}<div class=\"plots\">\n{figures}</div>\n"))
+    let caption = "<p>The share of trials that find an effect, over its size. Marks: single trials, found (1) or not (0). Line: \
+                   the share estimated from all trials. Vertical line: found in nine of ten trials.</p>\n";
+    section("Share found over size", &format!("{caption}<div class=\"plots\">\n{figures}</div>\n"))
 }
 
 /// The share found over the size.

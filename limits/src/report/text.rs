@@ -13,18 +13,18 @@ pub fn text(limits: &Limits) -> String {
     text += &words::already(limits).map(|line| wrapped(&line)).unwrap_or_default();
     text += &found(limits);
     text += &list(
-        "\nNever found here\n",
+        "\nNever found in this recording\n",
         limits.all.iter().filter(|limit| limit.found.is_none()).map(words::never),
     );
-    text += &list("\nNever told apart here\n", words::pairs(limits).into_iter());
+    text += &list("\nNever separated in this recording\n", words::pairs(limits).into_iter());
     if let Some(advice) = &limits.advice {
         text += &list("\nExtra passes\n", words::passes(advice).into_iter());
     }
     let trials: usize = limits.all.iter().map(|limit| limit.trials.len()).sum();
     text += "\n";
     text += &wrapped(&format!(
-        "By {trials} diagnoses with a known effect in the readings, seed {}. A limit is known to some 12 % where nothing \
-         else is said.",
+        "From {trials} diagnoses with a known effect in the readings, seed {}. Unless stated otherwise, limits are accurate to \
+         about 12 %.",
         limits.seed
     ));
     text
@@ -42,7 +42,7 @@ fn found(limits: &Limits) -> String {
     if rows.is_empty() {
         return "\nNo effect would be found at any size.\n".to_owned();
     }
-    let head = ["found in 9 of 10 from", "", "then known to", "told"].map(str::to_owned);
+    let head = ["found in 9 of 10 from", "", "uncertainty", "reported"].map(str::to_owned);
     let wide = |column: usize| {
         std::iter::once(&head).chain(&rows).map(|row| row[column].chars().count()).max().unwrap_or(0)
     };
@@ -53,10 +53,10 @@ fn found(limits: &Limits) -> String {
         paragraph(WIDTH, &row[3], &before, &" ".repeat(before.chars().count()))
     };
     let head = format!(
-        "\n{:<first$}  {:<second$}  {:<third$}  would be told\n",
+        "\n{:<first$}  {:<second$}  {:<third$}  reported\n",
         "effect",
         "9 of 10 from",
-        "then known to",
+        "uncertainty",
         first = widths[0],
         second = widths[1],
         third = widths[2]

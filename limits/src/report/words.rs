@@ -42,7 +42,7 @@ pub(super) fn told(limit: &Limit) -> String {
     match (others.as_slice(), found.first) {
         ([], first) if first >= MOSTLY => "by its name".to_owned(),
         ([], first) => {
-            format!("by its name in {} of 10, else under names that change", short((10.0 * first).round()))
+            format!("by its name in {} of 10, otherwise under varying names", short((10.0 * first).round()))
         }
         (others, _) => format!("or else {}", others.join(", ")),
     }
@@ -56,9 +56,9 @@ pub(super) fn never(limit: &Limit) -> String {
     let largest = limit.scale.told(limit.largest);
     let instead = match limit.instead.as_slice() {
         [] if limit.trials.iter().any(|trial| trial.is_unexplained) => "it stays unexplained".to_owned(),
-        [] => "nothing was claimed in its place".to_owned(),
-        [one] => format!("{one} was claimed in its place"),
-        [one, other, ..] => format!("{one} or {other} was claimed in its place"),
+        [] => "nothing was reported instead".to_owned(),
+        [one] => format!("{one} was reported instead"),
+        [one, other, ..] => format!("{one} or {other} was reported instead"),
     };
     let tried = if limit.scale.is_gain { "not found at a gain of" } else { "not found up to" };
     format!("{}: {tried} {} {}; {instead}", name(limit), significant(largest, 2), limit.scale.unit)
@@ -80,7 +80,7 @@ pub(super) fn pairs(limits: &Limits) -> Vec<String> {
     }
     let sentence = |(advice, pairs): &(&str, Vec<Pair>)| {
         let told = told_apart(pairs);
-        if advice.is_empty() { told } else { format!("{told}. To tell them apart: {advice}") }
+        if advice.is_empty() { told } else { format!("{told}. To separate them: {advice}") }
     };
     grouped.iter().map(sentence).collect()
 }
@@ -91,7 +91,7 @@ pub(super) fn already(limits: &Limits) -> Option<String> {
     let names: Vec<String> = names.collect();
     (!names.is_empty()).then(|| {
         format!(
-            "Found in it as it is, and not asked: {}. What more there might be adds to it.",
+            "Found in the recording itself, so not tested: {}. Any further effect adds to it.",
             names.join(", ")
         )
     })
@@ -101,11 +101,11 @@ pub(super) fn already(limits: &Limits) -> Option<String> {
 pub(super) fn passes(advice: &Advice) -> Vec<String> {
     let pass = |(number, pass): (usize, &Pass)| {
         let also = if number == 0 { "" } else { "then also " };
-        format!("{also}{} ({}): tells {}", pass.words, lasting(pass.time), told_apart(&pass.settles))
+        format!("{also}{} ({}): resolves {}", pass.words, lasting(pass.time), told_apart(&pass.settles))
     };
     let mut lines: Vec<String> = advice.passes.iter().enumerate().map(pass).collect();
     if !advice.left.is_empty() {
-        lines.push(format!("no pass that was tried tells {}", told_apart(&advice.left)));
+        lines.push(format!("none of the passes tried resolves {}", told_apart(&advice.left)));
     }
     lines
 }
@@ -121,7 +121,7 @@ fn told_apart(pairs: &[Pair]) -> String {
         }
     }
     let told = grouped.iter().map(|(effect, others)| match others.as_slice() {
-        [] => format!("{effect} at all"),
+        [] => (*effect).to_owned(),
         others => format!("{effect} from {}", others.join(" or ")),
     });
     told.collect::<Vec<_>>().join("; ")

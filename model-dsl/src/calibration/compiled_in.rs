@@ -64,10 +64,11 @@ impl CompiledIn {
         };
         let path = folder.unwrap_or(Path::new("")).join(&name.value);
         if path.is_file() {
-            let equations = equations(&path).map_err(|why| unusable("this file is no machine", why))?;
+            let equations =
+                equations(&path).map_err(|why| unusable("this file is not a machine file", why))?;
             if equations.names() != self.names || Self::of_equations(&equations) != self.equations {
                 return Err(unusable(
-                    "this file has other names or equations than those that were compiled in",
+                    "the names or equations of this file differ from those that were compiled in",
                     format!("compile it with `{} {}`", self.command, name.value),
                 ));
             }
@@ -77,9 +78,8 @@ impl CompiledIn {
         if name.value == *compiled {
             return Ok(());
         }
-        let help = format!(
-            "the compiled machine is `machine: {compiled}`, and there is no such file beside this one"
-        );
+        let help =
+            format!("the compiled machine is `machine: {compiled}`, and no such file is beside this one");
         Err(unusable("this is another machine", help))
     }
 }

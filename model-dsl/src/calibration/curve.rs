@@ -51,7 +51,7 @@ fn repeated(term: &mut Parameters<'_, '_, '_>, axis: usize, curve: Curve) -> Opt
     if period.value <= 0.0 || length > period.value * (1.0 + SAME) {
         let message = format!("{} must not be shorter than the table", term.words("period"));
         let mistake = Diagnostic::error("E0419", period.span, message);
-        term.report(mistake.help("it is the way from the first node to where the table begins again"));
+        term.report(mistake.help("it is the distance from the first node to where the table begins again"));
         return None;
     }
     if is(period.value) && length > 0.0 {
@@ -92,9 +92,10 @@ fn closed(curve: Curve, period: f64) -> Curve {
 /// Warns where the ends of a turn have two values: the correction jumps whenever the axis passes there.
 fn warn_of_a_jump(term: &mut Parameters<'_, '_, '_>, place: Span, curve: &Curve) {
     if !curve.meets() {
-        let message = format!("the ends of {} are one place and have two values", term.what);
-        let warning = Diagnostic::warning("W0403", place, message).label("it repeats after its last node");
-        term.report(warning.help("write the mean of both at both ends: else the correction jumps there"));
+        let message = format!("the ends of {} are the same place but have different values", term.what);
+        let warning =
+            Diagnostic::warning("W0403", place, message).label("the table repeats after its last node");
+        term.report(warning.help("write the mean of both at both ends, or the correction jumps there"));
     }
 }
 
@@ -107,13 +108,13 @@ fn read_nodes(term: &mut Parameters<'_, '_, '_>, axis: Option<usize>) -> Option<
     let stepped = ["start", "step"].into_iter().find(|key| term.fields.get(key).is_some());
     match (term.fields.get("at"), stepped) {
         (Some(_), Some(key)) => {
-            exclusive(term, "at", key, "give the nodes either by `start` and `step` or by `at`");
+            exclusive(term, "at", key, "give the nodes by `start` and `step`, or by `at`");
             None
         }
         (Some(at), None) => read_at(term, at, axis),
         (None, Some(_)) => read_uniform(term, axis),
         (None, None) => {
-            let message = format!("{} does not say where its values lie", term.what);
+            let message = format!("{} does not say where its nodes are", term.what);
             let mistake = Diagnostic::error("E0411", term.key_span("at"), message);
             term.report(mistake.help("add `start` and `step`, or `at: [...]`"));
             None
@@ -124,7 +125,7 @@ fn read_nodes(term: &mut Parameters<'_, '_, '_>, axis: Option<usize>) -> Option<
 fn exclusive(term: &mut Parameters<'_, '_, '_>, key: &str, other: &str, help: &str) {
     let message = format!("{} has `{other}` and `{key}` together", term.what);
     let mistake = Diagnostic::error("E0416", term.key_span(key), message);
-    let mistake = mistake.also(term.key_span(other), format!("`{other}` stands here"));
+    let mistake = mistake.also(term.key_span(other), format!("`{other}` is here"));
     term.report(mistake.help(help));
 }
 
@@ -132,9 +133,7 @@ fn read_uniform(term: &mut Parameters<'_, '_, '_>, axis: Option<usize>) -> Optio
     if term.fields.get("per").is_some() {
         let message = format!("`per` of {} has nothing to scale", term.what);
         let mistake = Diagnostic::error("E0416", term.key_span("per"), message);
-        term.report(
-            mistake.help("it goes with bare numbers in `at`; leave it out beside `start` and `step`"),
-        );
+        term.report(mistake.help("it is for bare numbers in `at`; leave it out with `start` and `step`"));
     }
     let kind = term.position(axis);
     let start = term.quantity("start", kind);
@@ -142,9 +141,9 @@ fn read_uniform(term: &mut Parameters<'_, '_, '_>, axis: Option<usize>) -> Optio
     let step = term.quantity_in(step_node, "step", kind)?;
     // Tables are read by the inverse of their step.
     if !step.value.recip().is_finite() {
-        let message = format!("{} must not be zero, or next to it", term.words("step"));
+        let message = format!("{} must not be zero or close to zero", term.words("step"));
         let mistake = Diagnostic::error("E0419", step.span, message);
-        term.report(mistake.help("write the distance from one value to the next"));
+        term.report(mistake.help("write the distance from one node to the next"));
         return None;
     }
     Some(Nodes::Uniform { start: start?, step: step.value })
@@ -208,9 +207,9 @@ fn check_order(term: &mut Parameters<'_, '_, '_>, at: &[Spanned<f64>]) -> Option
 
 fn out_of_order(before: Span, next: Span, falling: bool) -> Diagnostic {
     let relation = if falling { "below" } else { "above" };
-    let message = format!("this node of `at` does not lie {relation} the one before it");
+    let message = format!("this node of `at` is not {relation} the one before it");
     let mistake = Diagnostic::error("E0418", next, message).also(before, "the one before it");
-    mistake.help("put the nodes in order, each once, and their values with them")
+    mistake.help("sort the nodes together with their values, and list each node once")
 }
 
 /// Reads `values`, or `forward` and `reverse`, and tells how many there are.
@@ -219,7 +218,7 @@ fn read_values(term: &mut Parameters<'_, '_, '_>) -> Option<(CurveValues, usize)
     let directed = ["forward", "reverse"].into_iter().find(|key| term.fields.get(key).is_some());
     match (term.fields.get("values"), directed) {
         (Some(_), Some(key)) => {
-            exclusive(term, "values", key, "give either one curve, `values`, or one for each direction");
+            exclusive(term, "values", key, "give one curve, `values`, or one for each direction");
             None
         }
         (Some(values), None) => {
@@ -253,9 +252,9 @@ fn read_directed(term: &mut Parameters<'_, '_, '_>, unit: Option<f64>) -> Option
 }
 
 fn lengths_differ(term: &mut Parameters<'_, '_, '_>, span: Span, found: usize, expected: usize) {
-    let message = format!("{} has {found} entries here, but {expected} values", term.what);
+    let message = format!("{} has {found} nodes here, but {expected} values", term.what);
     let mistake = Diagnostic::error("E0417", span, message).label(format!("{found} entries"));
-    term.report(mistake.help("one value belongs to each node, in each direction"));
+    term.report(mistake.help("write one value for each node, in each direction"));
 }
 
 fn read_curve(

@@ -30,7 +30,7 @@ pub fn machine_of(root: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned<
         return None;
     }
     if root.entries().is_none() {
-        let message = format!("a calibration is a mapping of keys, found {}", root.kind_name());
+        let message = format!("a calibration must be a mapping of keys, found {}", root.kind_name());
         let mistake = Diagnostic::error("E0404", root.span, message);
         diagnostics.push(mistake.help("begin with `calibration: 1` and `machine: ...`"));
         return None;
@@ -99,8 +99,8 @@ fn check_version(node: &Node, diagnostics: &mut Diagnostics) {
         return;
     }
     let message = match node.text() {
-        Some(text) => format!("calibrations of version `{text}` are not read"),
-        None => format!("`calibration` is the version of the format, found {}", node.kind_name()),
+        Some(text) => format!("version `{text}` of the calibration format is unknown"),
+        None => format!("`calibration` must be the version of the format, found {}", node.kind_name()),
     };
     diagnostics.push(Diagnostic::error("E0402", node.span, message).help("write `calibration: 1`"));
 }
@@ -110,7 +110,8 @@ fn read_constants(fields: &Fields<'_>, names: &MachineNames, diagnostics: &mut D
     let mut given = BTreeMap::new();
     if let Some(node) = present(fields, "constants") {
         let Some(entries) = node.entries() else {
-            let message = format!("`constants` is a mapping of names to lengths, found {}", node.kind_name());
+            let message =
+                format!("`constants` must be a mapping of names to lengths, found {}", node.kind_name());
             diagnostics.push(Diagnostic::error("E0404", node.span, message).help("write `{Xt: 0 mm}`"));
             return Vec::new();
         };
@@ -147,7 +148,7 @@ pub(super) fn check_constant(name: &Spanned<String>, names: &MachineNames, diagn
     let near = nearest(&name.value, known.by_ref());
     diagnostics.push(match (near, names.constants.as_slice()) {
         (Some(near), _) => mistake.suggest(Some(near)),
-        (None, []) => mistake.help("the machine has no constants: leave it out"),
+        (None, []) => mistake.help("leave it out: the machine has no constants"),
         (None, constants) => {
             let listed: Vec<_> = constants.iter().map(|(known, _)| known.as_str()).collect();
             mistake.help(format!("its constants are {}", listed.join(", ")))
@@ -186,19 +187,23 @@ fn read_limits(node: &Node, name: Span, diagnostics: &mut Diagnostics) -> Limits
         rate: read(
             "rate",
             Dimension::LENGTH.per(Dimension::TIME),
-            "the fastest change of a correction that the drives take, such as `2 mm/s`",
+            "the fastest change of a correction that the drives can follow, such as `2 mm/s`",
         ),
         rotation_rate: read(
             "rotation_rate",
             Dimension::ANGLE.per(Dimension::TIME),
-            "the fastest change of a rotary axis's correction that its drive takes, such as `1 mrad/s`",
+            "the fastest change of a rotary axis's correction that its drive can follow, such as `1 mrad/s`",
         ),
         hold: read(
             "hold",
             Dimension::TIME,
-            "how long a silent sensor's last reading is trusted, such as `10 s`",
+            "how long the last reading of a silent sensor stays valid, such as `10 s`",
         ),
-        fade: read("fade", Dimension::TIME, "the time in which a correction goes in or out, such as `1 s`"),
+        fade: read(
+            "fade",
+            Dimension::TIME,
+            "the time over which a correction is blended in or out, such as `1 s`",
+        ),
     }
 }
 
@@ -209,9 +214,12 @@ fn read_motions(
     diagnostics: &mut Diagnostics,
 ) -> [Vec<CalibratedMotion>; 2] {
     let Some(entries) = node.entries() else {
-        let message = format!("`errors` is a mapping of error motions to terms, found {}", node.kind_name());
-        diagnostics
-            .push(Diagnostic::error("E0404", node.span, message).help("write `EXX: [...]`, a line each"));
+        let message =
+            format!("`errors` must be a mapping of error motions to terms, found {}", node.kind_name());
+        diagnostics.push(
+            Diagnostic::error("E0404", node.span, message)
+                .help("write one line `EXX: [...]` for each error motion"),
+        );
         return Default::default();
     };
     let mut places = BTreeMap::new();
@@ -246,8 +254,8 @@ fn read_motions(
 fn without_effect(name: &Spanned<String>, names: &MachineNames) -> Diagnostic {
     let message = format!("{} has no effect on {}", name.value, names.machine);
     Diagnostic::warning("W0402", name.span, message)
-        .label("it has no lever at the tool tip")
-        .help("its numbers are read and written back; a tool or a part elsewhere would need them")
+        .label("it has no lever arm at the tool tip")
+        .help("keep its numbers if a tool or part at another place needs them; Abbe reads them and writes them back")
 }
 
 fn unknown_motion(name: &Spanned<String>, names: &MachineNames) -> Diagnostic {
@@ -256,7 +264,7 @@ fn unknown_motion(name: &Spanned<String>, names: &MachineNames) -> Diagnostic {
     if let Some(reason) = names.miscounted(&name.value) {
         return mistake
             .label(reason)
-            .help("write the alignment error without an axis: it counts from the frame before its link");
+            .help("write the alignment error without an axis; it is counted from the frame before its link");
     }
     // A motion of a link is no suggestion for an alignment error: both may be angles, and mean other things.
     let aligns = |name: &str| name.contains('0');
@@ -265,7 +273,7 @@ fn unknown_motion(name: &Spanned<String>, names: &MachineNames) -> Diagnostic {
     match nearest(&name.value, alike.iter().copied()) {
         Some(near) if !aligns(&name.value) => mistake.suggest(Some(near)),
         _ if aligns(&name.value) => mistake.help(format!(
-            "its alignment errors are {}; another one must stand in the `errors` of the machine file, and counts from another axis",
+            "its alignment errors are {}; list any other one under `errors` in the machine file (it is counted from another axis)",
             if alike.is_empty() { "none".to_owned() } else { alike.join(", ") }
         )),
         _ => mistake.help(format!("its error motions are {}", alike.join(", "))),
@@ -277,7 +285,7 @@ fn repeated_motion(known: &MotionName, name: &Spanned<String>, first: Span) -> D
     let message = format!("{known} is given twice");
     let mistake = Diagnostic::error("E0408", name.span, message).also(first, "first given here");
     mistake.help(format!(
-        "spellings such as C0Y and EC0Y are one motion: put all terms of {known} into one list"
+        "put all terms of {known} into one list; spellings such as C0Y and EC0Y are the same motion"
     ))
 }
 
@@ -301,9 +309,9 @@ fn read_items(node: &Node, context: &mut Context<'_>) -> Vec<Item> {
         NodeKind::Sequence(items) => items.iter().filter_map(|item| read_item(item, context)).collect(),
         NodeKind::Null | NodeKind::Mapping(_) => {
             let message =
-                format!("{} is a quantity or a list of terms, found {}", motion.name, node.kind_name());
+                format!("{} must be a quantity or a list of terms, found {}", motion.name, node.kind_name());
             let help = format!(
-                "write `{}: [{{backlash: {{lost_motion: ...}}}}]`, or each term behind a `-`",
+                "write `{}: [{{backlash: {{lost_motion: ...}}}}]`, or begin each term with `-`",
                 motion.name
             );
             context.diagnostics.push(Diagnostic::error("E0404", node.span, message).help(help));

@@ -155,7 +155,7 @@ mod tests {
         }
         for (name, reason) in [
             ("EA(0Z)C", Some("counted from Z, EA(0Z)C is EA0C - EA0Z")),
-            ("EA(0X)C", Some("X is no axis from which EA0C can be counted")),
+            ("EA(0X)C", Some("EA0C cannot be counted from X")),
             ("EA(0Y)Q", None),
             ("EA(Y)C", None),
             ("EA(0)C", None),

@@ -92,7 +92,7 @@ impl<'n> Parameters<'_, 'n, '_> {
             Bound::PositiveBeside(other) if found.value <= 0.0 && self.fields.get(other).is_some() => {
                 "greater than zero"
             }
-            Bound::NotZero | Bound::PositiveBeside(_) if found.value == 0.0 => "less or greater than zero",
+            Bound::NotZero | Bound::PositiveBeside(_) if found.value == 0.0 => "other than zero",
             _ => return Some(found.value),
         };
         let message = format!("{} must be {must}", self.words(key.name));
@@ -112,14 +112,14 @@ impl<'n> Parameters<'_, 'n, '_> {
         };
         let (scale, unit) = (self.scale(), expected.usual_unit());
         let message = format!(
-            "{} is {} with these factors, `{}` is {}",
+            "{} must be {} with these factors, but `{}` is {}",
             self.words(key),
             expected.name(),
             wrong.written_unit(),
             wrong.kind_name()
         );
         let help = format!(
-            "its factors are in `{}` together and {} is {}: use a unit such as `{unit}`",
+            "use a unit such as `{unit}`: its factors together are in `{}` and {} is {}",
             scale.internal_unit(),
             self.context.motion.name,
             self.context.motion.dimension().name(),
@@ -137,7 +137,7 @@ impl<'n> Parameters<'_, 'n, '_> {
                 return Some(quantity.value);
             }
             let message = format!(
-                "{} is {} per load, `{}` is {}",
+                "{} must be {} per load, but `{}` is {}",
                 self.words(key),
                 motion.name(),
                 quantity.written_unit(),
@@ -161,7 +161,7 @@ impl<'n> Parameters<'_, 'n, '_> {
             Some("false") => false,
             _ => {
                 let message = format!("{} is `true` or `false`", self.words(INSIDE_LOOP));
-                let help = "write `inside_loop: true` where the axis's own position loop answers the term";
+                let help = "write `inside_loop: true` if the axis's own position loop responds to the term";
                 self.report(Diagnostic::error("E0427", node.span, message).help(help));
                 return None;
             }
@@ -170,8 +170,8 @@ impl<'n> Parameters<'_, 'n, '_> {
         if inside && own.is_none() {
             let motion = &self.context.motion.name;
             let message =
-                format!("{motion} is not the motion of an axis along itself, which a position loop holds");
-            let help = "only EXX of X, ECC of C and the like lie inside a loop; take `inside_loop` out";
+                format!("{motion} is not the motion of an axis along itself, so no position loop holds it");
+            let help = "remove `inside_loop`; only motions such as EXX of X and ECC of C are inside a loop";
             self.report(Diagnostic::error("E0427", node.span, message).help(help));
             return None;
         }
@@ -186,7 +186,8 @@ impl<'n> Parameters<'_, 'n, '_> {
         let own = self.context.motion.axis.as_deref();
         let own = own.and_then(|letter| self.context.names.axis(letter));
         if own.is_none() {
-            let message = format!("{} needs the parameter `axis`: its link is no axis", self.what);
+            let message =
+                format!("{} needs the parameter `axis`, because its link is not an axis", self.what);
             let help = format!("add `axis: ...`, one of {}", self.context.names.axis_letters());
             let name = self.fields.key_span("axis");
             self.report(Diagnostic::error("E0415", name, message).help(help));

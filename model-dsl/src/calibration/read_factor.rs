@@ -29,7 +29,7 @@ fn read_factor(item: &Node, of: &str, context: &mut Context<'_>) -> Option<Facto
         (Some(_), Some((second, _))) => {
             let message = format!("an item of `{TIMES}` of {of} holds two factors");
             let mistake = Diagnostic::error("E0428", second.span, message).label("a second factor");
-            context.diagnostics.push(mistake.help("give each factor a `{...}` of its own"));
+            context.diagnostics.push(mistake.help("give each factor its own `{...}`"));
             return None;
         }
         (None, _) => {
@@ -47,7 +47,7 @@ fn no_factor(item: &Node, of: &str) -> Diagnostic {
     let first = item.entries().and_then(|entries| entries.first());
     let help = format!("the factors are {}", FACTOR_NAMES.join(", "));
     let Some((key, _)) = first else {
-        let message = format!("an item of `{TIMES}` of {of} is one factor, found {}", item.kind_name());
+        let message = format!("an item of `{TIMES}` of {of} must be one factor, found {}", item.kind_name());
         return Diagnostic::error("E0428", item.span, message).help("write `{position: X}`");
     };
     let mistake = Diagnostic::error("E0428", key.span, format!("unknown factor `{}`", key.value));
@@ -170,8 +170,8 @@ impl<'n> FactorReader<'_, 'n, '_> {
         let powers = [(1.0, 1), (2.0, 2), (3.0, 3)];
         let found = powers.iter().find(|(number, _)| *number == read.value).map(|(_, power)| *power);
         if found.is_none() {
-            let mistake = Diagnostic::error("E0419", read.span, format!("{words} is 1, 2 or 3"));
-            return self.report(mistake.help("write `power: 2`, or a `curve` for what no such power says"));
+            let mistake = Diagnostic::error("E0419", read.span, format!("{words} must be 1, 2 or 3"));
+            return self.report(mistake.help("write `power: 2`, or a `curve` for any other dependence"));
         }
         found
     }
@@ -179,7 +179,7 @@ impl<'n> FactorReader<'_, 'n, '_> {
     fn range(&mut self, node: &Node, measure: Measure, axis: Option<usize>, words: &str) -> Option<Within> {
         let items = list(node, words, "E0404", self.context.diagnostics)?;
         let [from, to] = items else {
-            let message = format!("{words} has two ends, found {}", items.len());
+            let message = format!("{words} must have two ends, found {}", items.len());
             let mistake = Diagnostic::error("E0417", node.span, message);
             return self.report(mistake.help("write the lower and the upper end: `[0 mm, 350 mm]`"));
         };
@@ -202,11 +202,13 @@ impl<'n> FactorReader<'_, 'n, '_> {
         let at: Vec<Spanned<f64>> = read.into_iter().collect::<Option<_>>()?;
         let mut pairs = at.iter().zip(at.iter().skip(1));
         if let Some((before, next)) = pairs.find(|(before, next)| next.value <= before.value) {
-            let message = format!("this entry of {words} does not lie above the one before it");
+            let message = format!("this entry of {words} is not above the one before it");
             let mistake =
                 Diagnostic::error("E0418", next.span, message).also(before.span, "the one before it");
             return self.report(
-                mistake.help("put the nodes in rising order, each once, and their values with them"),
+                mistake.help(
+                    "sort the nodes in rising order together with their values, and list each node once",
+                ),
             );
         }
         Some(at.into_iter().map(|node| node.value).collect())

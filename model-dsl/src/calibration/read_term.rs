@@ -29,7 +29,7 @@ pub(super) fn read_item(item: &Node, context: &mut Context<'_>) -> Option<Item> 
     let (name, parameters) = match item.entries() {
         Some([(name, parameters)]) => (name, parameters),
         Some([]) | None => {
-            let message = format!("an item of {motion} is one term, found {}", item.kind_name());
+            let message = format!("an item of {motion} must be one term, found {}", item.kind_name());
             let help = "write `- backlash: {lost_motion: 10 um}`";
             context.diagnostics.push(Diagnostic::error("E0410", item.span, message).help(help));
             return None;
@@ -37,7 +37,7 @@ pub(super) fn read_item(item: &Node, context: &mut Context<'_>) -> Option<Item> 
         Some([_, (second, _), ..]) => {
             let message = format!("an item of {motion} holds two terms");
             let mistake = Diagnostic::error("E0410", second.span, message).label("a second term");
-            let help = "begin each term with a `-` of its own, and keep its parameters in its own `{...}`";
+            let help = "begin each term with its own `-`, and put its parameters into its own `{...}`";
             context.diagnostics.push(mistake.help(help));
             return None;
         }
@@ -80,7 +80,7 @@ fn refuse_loop_of_motor(kind: TermKind, name: &Spanned<String>, context: &mut Co
     else {
         return Some(());
     };
-    let message = format!("`{}` of {} is that of no axis", name.value, context.motion.name);
+    let message = format!("`{}` of {} is not that of an axis", name.value, context.motion.name);
     let names = &context.names.axes;
     let axes: Vec<&str> = motor
         .follows
@@ -90,7 +90,7 @@ fn refuse_loop_of_motor(kind: TermKind, name: &Spanned<String>, context: &mut Co
         .collect();
     context.diagnostics.push(
         Diagnostic::error("E0431", name.span, message)
-            .label("how far a motor stays behind its command moves several axes, each of which has one loop here")
+            .label("a motor moves several axes, and each axis has its own position loop here")
             .help(format!("give it to the axes that the motor moves: {}", axes.join(", "))),
     );
     None
@@ -102,10 +102,10 @@ fn refuse_loop_with_factors(kind: TermKind, term: &mut Parameters<'_, '_, '_>) -
     if term.factors.is_empty() || !rings {
         return Some(());
     }
-    let message = format!("{} has a natural frequency and factors", term.what);
+    let message = format!("{} has both a natural frequency and factors", term.what);
     let mistake = Diagnostic::error("E0416", term.key_span(TIMES), message);
-    let mistake = mistake.also(term.key_span(FREQUENCY), "the frequency stands here");
-    term.report(mistake.help("leave one of the two out: factors multiply the steady state -v/K"));
+    let mistake = mistake.also(term.key_span(FREQUENCY), "the frequency is here");
+    term.report(mistake.help("leave one of the two out; factors multiply the steady state -v/K"));
     None
 }
 

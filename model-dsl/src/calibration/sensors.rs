@@ -114,7 +114,7 @@ impl Sensors {
         let unused = self.list.iter().filter(|sensor| !sensor.used && sensor.kind != SensorKind::Input);
         diagnostics.extend(unused.map(|sensor| {
             let message = format!("no term uses the derived sensor `{}`", sensor.name.value);
-            Diagnostic::warning("W0401", sensor.name.span, message).help("name it in a term, or leave it out")
+            Diagnostic::warning("W0401", sensor.name.span, message).help("use it in a term, or leave it out")
         }));
     }
 }
@@ -183,7 +183,7 @@ struct Derived {
 /// Reads the block `sensors`.
 pub(super) fn read_derived(node: &Node, diagnostics: &mut Diagnostics) -> Sensors {
     let Some(entries) = node.entries() else {
-        let message = format!("`sensors` is a mapping of derived sensors, found {}", node.kind_name());
+        let message = format!("`sensors` must be a mapping of derived sensors, found {}", node.kind_name());
         let help = "write `{body: {mean: [T10, T21]}}`; plain sensors need no entry";
         diagnostics.push(Diagnostic::error("E0404", node.span, message).help(help));
         return Sensors::default();
@@ -204,7 +204,7 @@ fn read_one(name: &Spanned<String>, node: &Node, diagnostics: &mut Diagnostics) 
             (vec![word(initial, &of, diagnostics)?], false)
         }
         _ => {
-            let message = format!("{what} is either a `mean` or an `initial`");
+            let message = format!("{what} must be either a `mean` or an `initial`");
             let help = "write `{mean: [T10, T21]}` or `{initial: T19}`";
             diagnostics.push(Diagnostic::error("E0422", name.span, message).help(help));
             return None;
@@ -273,6 +273,6 @@ fn add_derived(one: &Derived, sensors: &mut Sensors) {
 
 fn cycle(name: &Spanned<String>) -> Diagnostic {
     let message = format!("`{}`, or a sensor that it is made of, is derived from itself", name.value);
-    let help = "derive sensors from channels; a channel and a derived sensor need different names";
+    let help = "derive sensors from channels, and give a derived sensor another name than a channel";
     Diagnostic::error("E0423", name.span, message).help(help)
 }

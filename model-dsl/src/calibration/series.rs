@@ -22,9 +22,9 @@ pub(super) fn read_powers(
 fn read_polynomial(first: u8, term: &mut Parameters<'_, '_, '_>) -> Option<CalibratedTerm> {
     let of_sensor = term.fields.get("sensor");
     if of_sensor.is_some() && term.fields.get("axis").is_some() {
-        let message = format!("{} is of an axis or of a sensor, not of both", term.what);
+        let message = format!("{} reads an axis or a sensor, not both", term.what);
         let mistake = Diagnostic::error("E0416", term.key_span("sensor"), message);
-        let mistake = mistake.also(term.key_span("axis"), "the axis stands here");
+        let mistake = mistake.also(term.key_span("axis"), "the axis is here");
         term.report(mistake.help("leave one of the two out, or write two polynomials"));
         return None;
     }
@@ -87,7 +87,7 @@ fn sensor_scale(term: &mut Parameters<'_, '_, '_>) -> Option<f64> {
     }
     if per.value.factor != 1.0 {
         let message = format!("{} cannot be in powers of degF", term.what);
-        let help = "degF and degC have different zeros: convert the coefficients to powers of degC";
+        let help = "convert the coefficients to powers of degC, since degF and degC have different zeros";
         term.report(Diagnostic::error("E0421", node.span, message).help(help));
         return None;
     }
@@ -121,7 +121,7 @@ pub(super) fn wrong_unit(
 ) {
     let written = node.text().unwrap_or("").trim();
     let found = unit.value.dimension.name();
-    let message = format!("{subject} is {}, `{written}` is {found}", expected.name());
+    let message = format!("{subject} must be {}, but `{written}` is {found}", expected.name());
     let mistake = Diagnostic::error("E0413", unit.span, message);
     term.report(mistake.help(format!("use a unit such as `{}`", expected.usual_unit())));
 }

@@ -27,15 +27,15 @@ pub(super) fn refuse_large(term: &Spanned<CalibratedTerm>, context: &mut Context
         return;
     }
     let name = &context.motion.name;
-    let message = format!("{} {unit} is no small error", short(size * per_unit));
+    let message = format!("{} {unit} is not a small error", short(size * per_unit));
     let reason = if context.motion.angular {
-        "the equations are of first order, and leave half of the square of an angle"
+        "the equations are of first order and neglect half the square of an angle"
     } else {
-        "no axis of a machine that works is so far off"
+        "no axis of a working machine is displaced this far"
     };
     let mistake = Diagnostic::error("E0430", term.span, message)
         .label(format!("{name} may be {} {unit} at most", short(largest * per_unit)))
-        .help(format!("see to the unit: {reason}"));
+        .help(format!("check the unit: {reason}"));
     context.diagnostics.push(mistake);
 }
 

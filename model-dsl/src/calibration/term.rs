@@ -77,7 +77,7 @@ pub enum CalibratedTerm {
         axis: usize,
         /// K, 1/s, not zero; greater than zero where there is a natural frequency.
         gain: f64,
-        /// w/(2 pi), Hz, not negative; 0: a loop of first order.
+        /// w/(2 pi), Hz, not negative; 0: a first-order loop.
         frequency: f64,
     },
     /// `-a/K`.

@@ -18,9 +18,9 @@ pub(super) fn read_tools(
     diagnostics: &mut Diagnostics,
 ) -> Vec<Tool> {
     let Some(entries) = node.entries() else {
-        let message = format!("`tools` is a mapping of names to constants, found {}", node.kind_name());
+        let message = format!("`tools` must be a mapping of names to constants, found {}", node.kind_name());
         let mistake = Diagnostic::error("E0404", node.span, message);
-        diagnostics.push(mistake.help("write `T1: {Zt: 120 mm}`, a line each"));
+        diagnostics.push(mistake.help("write one line `T1: {Zt: 120 mm}` for each tool"));
         return Vec::new();
     };
     let read = |(name, value): &(crate::source::Spanned<String>, Node)| Tool {
@@ -40,10 +40,13 @@ fn read_tool(
 ) -> Vec<f64> {
     let mut values = constants.to_vec();
     let Some(entries) = node.entries() else {
-        let message =
-            format!("the tool `{tool}` is a mapping of constants to lengths, found {}", node.kind_name());
+        let message = format!(
+            "the tool `{tool}` must be a mapping of constants to lengths, found {}",
+            node.kind_name()
+        );
         let mistake = Diagnostic::error("E0404", node.span, message);
-        diagnostics.push(mistake.help("write what is different with it, such as `{Zt: 120 mm}`"));
+        diagnostics
+            .push(mistake.help("write the constants that differ with this tool, such as `{Zt: 120 mm}`"));
         return values;
     };
     for (name, value) in entries {

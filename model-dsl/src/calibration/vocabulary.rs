@@ -168,7 +168,7 @@ pub const VOCABULARY: [Entry; 17] = [
             PER.or("each entry of `at` has its own unit"),
             quantity("period", Kind::POSITION)
                 .bound(Bound::Positive)
-                .or("its ends are held; over one turn of a rotary axis it repeats after that")
+                .or("constant beyond its ends; over one turn of a rotary axis it repeats after that")
                 .role(Role::Place),
             UNIT,
             NUMBERS.named("values").role(Role::Value).one_of(),
@@ -208,7 +208,7 @@ pub const VOCABULARY: [Entry; 17] = [
             quantity("decay", Kind::TIME).bound(Bound::Positive),
             OWN_AXIS,
         ],
-        not_compensable: Some("it is over before a correction could reach the slide"),
+        not_compensable: Some("it has passed before a correction can reach the slide"),
     },
     Entry {
         kind: TermKind::Cyclic,
@@ -227,7 +227,7 @@ pub const VOCABULARY: [Entry; 17] = [
     Entry {
         kind: TermKind::Lag,
         name: "lag",
-        physics: "following error of a position loop, which rings where it has a natural frequency",
+        physics: "following error of a position loop, which rings if it has a natural frequency",
         state: State::Velocity,
         form: Form::Plain,
         keys: &[
@@ -236,7 +236,7 @@ pub const VOCABULARY: [Entry; 17] = [
                 .bound(Bound::PositiveBeside(FREQUENCY)),
             quantity(FREQUENCY, Kind::FREQUENCY)
                 .bound(Bound::Positive)
-                .or("a loop of first order")
+                .or("a first-order loop")
                 .role(Role::Transient),
             OWN_AXIS,
         ],
@@ -253,7 +253,7 @@ pub const VOCABULARY: [Entry; 17] = [
                 .bound(Bound::Positive),
             OWN_AXIS,
         ],
-        not_compensable: Some("a correction of the acceleration would itself have to be accelerated"),
+        not_compensable: Some("the correction would itself accelerate the axis"),
     },
     Entry {
         kind: TermKind::Expansion,
@@ -294,7 +294,7 @@ pub const VOCABULARY: [Entry; 17] = [
             quantity("amplitude", Kind::MOTION).role(Role::Linear),
             quantity("time_constant", Kind::TIME).bound(Bound::Positive),
         ],
-        not_compensable: Some("no controller knows when it began"),
+        not_compensable: Some("a controller does not know when it began"),
     },
     Entry {
         kind: TermKind::Vibration,
@@ -307,7 +307,7 @@ pub const VOCABULARY: [Entry; 17] = [
             quantity("amplitude", Kind::MOTION).role(Role::Linear),
             quantity("phase", Kind::ANGLE),
         ],
-        not_compensable: Some("no controller knows its phase"),
+        not_compensable: Some("a controller does not know its phase"),
     },
     Entry {
         kind: TermKind::Coupling,
@@ -329,7 +329,7 @@ pub const VOCABULARY: [Entry; 17] = [
             quantity("coefficient", Kind { of: Base::Motion, per: &[Base::Load] }).role(Role::Linear),
             flag(INSIDE_LOOP).or("no position loop responds to it").role(Role::Setting),
         ],
-        not_compensable: Some("no controller knows the load in time"),
+        not_compensable: Some("a controller does not know the load in time"),
     },
     Entry {
         kind: TermKind::Delay,
@@ -343,16 +343,16 @@ pub const VOCABULARY: [Entry; 17] = [
     Entry {
         kind: TermKind::Step,
         name: "step",
-        physics: "an event: a crash, a slip, a clamp that moved",
+        physics: "an event: a collision, a slip, a clamp that moved",
         state: State::Time,
         form: Form::Plain,
         keys: &[quantity("time", Kind::TIME), quantity("size", Kind::MOTION).role(Role::Linear)],
-        not_compensable: Some("no controller knows when it was"),
+        not_compensable: Some("a controller does not know when it happened"),
     },
     Entry {
         kind: TermKind::Product,
         name: "product",
-        physics: "a form that no other term has: states of the machine multiplied with one another",
+        physics: "a form that no other term has: a product of states of the machine",
         state: State::Factors,
         form: Form::Plain,
         keys: &[quantity("value", Kind::MOTION).role(Role::Value), FACTORS],

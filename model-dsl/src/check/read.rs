@@ -58,8 +58,8 @@ pub(super) fn sections(
 ) -> Option<Vec<Section>> {
     let mut found = Diagnostics::new();
     if file.text().len() > MOST_BYTES {
-        let message = format!("the file is larger than {} KiB", MOST_BYTES / 1024);
-        let help = "write the equations of one machine, and what is compared alone";
+        let message = format!("this file is larger than {} KiB", MOST_BYTES / 1024);
+        let help = "write only the equations of one machine that you want to compare";
         diagnostics.push(Diagnostic::error("E0003", Span::default(), message).help(help));
         return None;
     }
@@ -70,9 +70,9 @@ pub(super) fn sections(
         .collect();
     if !found.has_errors() && read.iter().all(|section| section.equations.is_empty()) {
         found.push(
-            Diagnostic::error("E0507", Span::default(), "the file holds no equation")
+            Diagnostic::error("E0507", Span::default(), "this file has no equations")
                 .label("nothing to compare")
-                .help("write `Px = expression`, one line for each equation"),
+                .help("write one line `Px = expression` for each equation"),
         );
     }
     let good = !found.has_errors();
@@ -116,7 +116,7 @@ fn add(printed: &mut Vec<Printed>, equation: Printed, diagnostics: &mut Diagnost
             )
             .label("again here")
             .also(first.left.span, "first here")
-            .help("take one of them out, or put it under another section"),
+            .help("remove one of them, or move it to another section"),
         ),
         None => printed.push(equation),
     }
@@ -135,7 +135,7 @@ fn kind(name: Option<&Spanned<String>>, machine: &Machine, diagnostics: &mut Dia
         ["carriage", ..] => {
             diagnostics.push(
                 Diagnostic::error("E0508", name.span, "this section names no carriage")
-                    .label("one link is expected after `carriage`")
+                    .label("expected one link after `carriage`")
                     .help("write `[carriage X]` or `[carriage X significant]`"),
             );
             None
@@ -207,12 +207,12 @@ fn target(
             return None;
         }
         (_, Some(_)) => {
-            ("E0510", "is no entry of a matrix", "write `T(2,3) = expression`, with numbers from 1 to 4")
+            ("E0510", "is not an entry of a matrix", "write `T(2,3) = expression`, with numbers from 1 to 4")
         }
         (_, None) => (
             "E0502",
-            "is no left side of an equation",
-            "write `Px` for position and error, `dPx` or `Ex` for the error alone, `I` or `dI` for the direction of the tool; `T(i,j)` belongs under `[carriage X]`",
+            "cannot be the left side of an equation",
+            "write `Px` for position and error, `dPx` or `Ex` for the error alone, `I` or `dI` for the direction of the tool; put `T(i,j)` under `[carriage X]`",
         ),
     };
     let (code, what, help) = problem;
@@ -226,16 +226,16 @@ fn target(
 
 fn insensitive(axis: Axis, left: &Spanned<String>, equations: &Equations) -> Diagnostic {
     let derived: Vec<String> = equations.rows.iter().map(|row| row.direction.to_string()).collect();
-    Diagnostic::error("E0505", left.span, format!("{} derives no equation in {axis}", equations.machine))
+    Diagnostic::error("E0505", left.span, format!("{} has no derived equation in {axis}", equations.machine))
         .label("the machine file does not call this direction sensitive")
         .help(format!("sensitive directions: {}", derived.join(", ")))
 }
 
 fn no_direction(left: &Spanned<String>, equations: &Equations) -> Diagnostic {
-    let message = format!("{} derives no direction of the tool", equations.machine);
+    let message = format!("{} has no derived direction of the tool", equations.machine);
     Diagnostic::error("E0505", left.span, message)
-        .label("the machine file does not ask for it")
-        .help("write `orientation: true` into the machine file, or take the equation out")
+        .label("the machine file does not request it")
+        .help("write `orientation: true` in the machine file, or remove the equation")
 }
 
 /// `Px`, `dPx` or `Ex`, the direction in either case; `I` or `dI`.
@@ -314,7 +314,7 @@ fn value(
                 let settled = vocabulary.settle(&value, work);
                 if settled.is_none() {
                     diagnostics.push(
-                        Diagnostic::error("E0503", right.span, "there is too much to expand")
+                        Diagnostic::error("E0503", right.span, "the expression expands to too many terms")
                             .label("with the letters written out"),
                     );
                 }
@@ -326,19 +326,18 @@ fn value(
         let Some(name) = unknown else {
             if told.is_empty() {
                 diagnostics.push(
-                    Diagnostic::error("E0503", span, error.message)
-                        .label("the expression cannot be read here"),
+                    Diagnostic::error("E0503", span, error.message).label("the expression is not valid here"),
                 );
             }
             return None;
         };
-        let unknown = Diagnostic::error("E0504", span, format!("`{name}` is not known here"));
+        let unknown = Diagnostic::error("E0504", span, format!("`{name}` is unknown here"));
         diagnostics.push(match vocabulary.miscounted(&name) {
             Some(reason) => {
                 unknown.label(reason).help("write the alignment error without an axis, or the sum")
             }
             None => unknown
-                .label("neither an error motion nor a position, constant or travel of the machine")
+                .label("not an error motion, position, constant or travel of the machine")
                 .suggest(vocabulary.nearest(&name)),
         });
         told.push(name);

@@ -78,8 +78,8 @@ fn statements(text: &str, diagnostics: &mut Diagnostics) -> Vec<Span> {
             _ if content.is_empty() => {}
             Some(last) if !begins => last.end = span.end,
             None if !begins => diagnostics.push(
-                Diagnostic::error("E0501", trimmed(text, span).span, "an indented line continues nothing")
-                    .label("no equation stands before it")
+                Diagnostic::error("E0501", trimmed(text, span).span, "this indented line continues nothing")
+                    .label("no equation precedes it")
                     .help("write `Px = expression`"),
             ),
             _ => spans.push(span),
@@ -106,7 +106,7 @@ fn header(part: &Spanned<String>, diagnostics: &mut Diagnostics) -> Option<Spann
         _ => {
             diagnostics.push(
                 Diagnostic::error("E0508", part.span, "this is not a section header")
-                    .label("a header stands alone on its line")
+                    .label("a header must be alone on its line")
                     .help("write `[general]`, `[significant]` or `[carriage X]`"),
             );
             None

@@ -15,7 +15,7 @@ pub(super) fn aims(equations: &Equations, programs: &OrientationPrograms) -> Opt
     let aiming = equations.aiming();
     let letters: Vec<&str> = aiming.iter().map(|axis| equations.axes[*axis].letter.as_str()).collect();
     let about = super::docs::attributes(&format!(
-        "What each axis that corrects the direction of the tool turns it by for each rad, in the order {}: I, J, K in the part's frame, pure numbers.\n\n{}.",
+        "The change of the tool's direction for each rad of the axes that correct it, in the order {}: I, J, K in the part's frame, pure numbers.\n\n{}.",
         letters.join(", "),
         programs.aims.operations()
     ));

@@ -75,7 +75,7 @@ impl Bundle<'_> {
     fn item(&self) -> TokenStream {
         let Self { name, nodes, tables } = self;
         let names: Vec<_> = tables.iter().map(|(motion, _)| motion.name.to_string()).collect();
-        let about = format!(" Side by side, as they are read: the tables of {}.", names.join(", "));
+        let about = format!(" The tables of {}, side by side, as they are read.", names.join(", "));
         let [curves, rows] = [tables.len(), nodes.count].map(Literal::usize_unsuffixed);
         let terms = tables.iter().map(|(motion, place)| {
             let (name, place) = (&motion.name, Literal::usize_unsuffixed(*place));
@@ -85,7 +85,7 @@ impl Bundle<'_> {
             #[doc = #about]
             const #name: ::abbe_runtime::Bundle<#curves, #rows> = match ::abbe_runtime::Bundle::new([#(#terms),*]) {
                 Ok(bundle) => bundle,
-                Err(_) => panic!("tables that do not lie side by side"),
+                Err(_) => panic!("tables that are not side by side"),
             };
         }
     }

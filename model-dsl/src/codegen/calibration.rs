@@ -449,7 +449,7 @@ pub(super) fn repeating(table: &TokenStream) -> TokenStream {
     quote! {
         match #table.repeating() {
             Ok(table) => table,
-            Err(_) => panic!("a table that cannot repeat itself"),
+            Err(_) => panic!("a table that cannot repeat"),
         }
     }
 }

@@ -79,7 +79,7 @@ fn constants(equations: &Equations) -> TokenStream {
     if values.iter().all(Option::is_none) {
         return record("Constants", "The named offsets of the machine.", &fields, true);
     }
-    let about = "The named offsets of the machine. By default each has the value of the machine file, or 0 where that has none.";
+    let about = "The named offsets of the machine. Each defaults to its value in the machine file, or to 0 if the file gives none.";
     let record = record("Constants", about, &fields, false);
     let values = values.into_iter().map(Option::unwrap_or_default).map(number);
     quote! {
@@ -127,11 +127,11 @@ fn travels(equations: &Equations) -> TokenStream {
             (travel.name.to_string(), doc)
         })
         .collect();
-    record("Travels", "Free travels in the levers of alignment errors.", &fields, true)
+    record("Travels", "Free travels in the lever arms of alignment errors.", &fields, true)
 }
 
 fn motions(equations: &Equations) -> TokenStream {
     let fields: Vec<_> =
         equations.motions.iter().map(|motion| (motion.name.clone(), docs::motion(motion))).collect();
-    record("Motions", "The error motions: what each link does beside what it was told.", &fields, true)
+    record("Motions", "The error motions: how each link deviates from its commanded motion.", &fields, true)
 }

@@ -68,7 +68,7 @@ pub(super) fn of(motion: &Motion, link: &Link) -> String {
         MotionKind::Alignment(axis) if slide => {
             format!("alignment: line of motion of {id} turned about {axis}")
         }
-        MotionKind::Alignment(axis) if rotary && axis == along => format!("zero of {id}"),
+        MotionKind::Alignment(axis) if rotary && axis == along => format!("zero position of {id}"),
         MotionKind::Alignment(axis) => format!("tilt of the axis of {id} about {axis}"),
     }
 }

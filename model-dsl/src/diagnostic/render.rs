@@ -42,7 +42,7 @@ pub fn render(source: &SourceFile, diagnostics: &Diagnostics, color: bool) -> St
     let mut texts: Vec<String> = shown.map(|one| render_one(source, one, &renderer)).collect();
     if diagnostics.len() > MAX_SHOWN {
         let rest = diagnostics.len() - MAX_SHOWN;
-        texts.push(format!("and {rest} more findings that are not shown"));
+        texts.push(format!("{rest} more findings are not shown"));
     }
     let mut text = texts.join("\n\n");
     if !text.is_empty() {
@@ -321,7 +321,7 @@ error[E0101]: no
         }
         let start = Instant::now();
         let report = render(&source, &diagnostics, false);
-        assert!(report.ends_with("and 4900 more findings that are not shown\n"));
+        assert!(report.ends_with("4900 more findings are not shown\n"));
         assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
     }
 

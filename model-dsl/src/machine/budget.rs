@@ -74,7 +74,7 @@ fn rotary_axes(links: &[&Link]) -> Result<[usize; 2], String> {
     };
     let slides = directions(false);
     if slides != Axis::ALL {
-        return Err(format!("it is of three slides X, Y, Z, and the chain has {}", slides.len()));
+        return Err(format!("it is for three slides X, Y, Z, but the chain has {}", slides.len()));
     }
     let is_rotary = |link: &Link| matches!(link.kind, LinkKind::Rotary(_));
     let rotary = |(_, link): &(usize, &&Link)| is_rotary(link);
@@ -84,10 +84,10 @@ fn rotary_axes(links: &[&Link]) -> Result<[usize; 2], String> {
         below.filter(|_| matches!(link.kind, LinkKind::Slide(_))).map(|below| (&link.id, &below.id))
     });
     if let Some((slide, below)) = carried {
-        return Err(format!("rotary axes stand on its slides, and slide {slide} stands on {below}"));
+        return Err(format!("it is for rotary axes on the slides, but slide {slide} is carried by {below}"));
     }
     <[usize; 2]>::try_from(numbers)
-        .map_err(|numbers| format!("it is of two rotary axes, and the chain has {}", numbers.len()))
+        .map_err(|numbers| format!("it is for two rotary axes, but the chain has {}", numbers.len()))
 }
 
 /// A link that lists its errors says something else than the budget.
@@ -98,11 +98,11 @@ fn listed(span: Span, links: &[DraftedLink<'_>], diagnostics: &mut Diagnostics) 
             Diagnostic::error(
                 "E0147",
                 errors.span,
-                format!("link {} has errors of its own", drafted.link.id),
+                format!("link {} has its own list of errors", drafted.link.id),
             )
             .label("this list")
-            .also(span, "and the budget of the whole machine")
-            .help("take one of them out"),
+            .also(span, "and the budget of the whole machine is here")
+            .help("remove one of them"),
         );
     }
 }

@@ -34,17 +34,17 @@ pub(super) fn read<'n>(
         (Some((word, _)), Some((chain, _))) => {
             diagnostics.push(
                 Diagnostic::error("E0109", chain.span, "a machine has a `topology` or a `chain`, not both")
-                    .label("the chain is spelled out here")
-                    .also(word.span, "and given by a word here")
-                    .help("take one of them out"),
+                    .label("the chain is written out here")
+                    .also(word.span, "and a word gives it here")
+                    .help("remove one of them"),
             );
             None
         }
         (None, None) => {
             diagnostics.push(
                 Diagnostic::error("E0109", place(root), "a machine needs a `topology` or a `chain`")
-                    .label("neither stands in this file")
-                    .help("write `topology: XYFZ`, or the chain link by link"),
+                    .label("this file has neither")
+                    .help("write `topology: XYFZ`, or write out the chain link by link"),
             );
             None
         }
@@ -79,7 +79,7 @@ fn whole(span: Span, links: &[DraftedLink<'_>], diagnostics: &mut Diagnostics) {
         diagnostics.push(
             Diagnostic::error("E0115", span, message)
                 .label("this chain")
-                .help("join links that do not move against each other into one offset"),
+                .help("combine links that do not move relative to each other into one offset"),
         );
     }
     if !links.iter().any(|drafted| drafted.link.is_axis()) && !diagnostics.has_errors() {
@@ -110,10 +110,10 @@ fn distinct(links: &[DraftedLink<'_>], diagnostics: &mut Diagnostics) {
         {
             let letter = link.kind.letter().unwrap_or_default();
             diagnostics.push(
-                Diagnostic::error("E0123", link.span, format!("axis {letter} stands twice in the chain"))
+                Diagnostic::error("E0123", link.span, format!("axis {letter} occurs twice in the chain"))
                     .label("again here")
                     .also(first.span, "first here")
-                    .help("a second slide in the same direction is U, V or W"),
+                    .help("name a second slide in the same direction U, V or W"),
             );
         } else if let Some(first) = earlier.find(|first| first.id == link.id) {
             diagnostics.push(
@@ -146,13 +146,12 @@ fn misplaced(link: &Link, branch: Branch, again: bool) -> Diagnostic {
     if again && link.kind == LinkKind::Tool {
         let mistake =
             Diagnostic::error("E0126", link.span, "the chain has a second tool").label("not the last link");
-        return mistake
-            .help("a chain has one tool; those that are exchanged stand under `tools:` in the calibration");
+        return mistake.help("keep one tool; list exchangeable tools under `tools:` in the calibration");
     }
     let message = if link.branch == branch {
         format!("the {word} is not at the end of its branch")
     } else {
-        format!("the {word} stands on the wrong branch")
+        format!("the {word} is on the wrong branch")
     };
     Diagnostic::error("E0126", link.span, message)
         .label("not here")

@@ -72,7 +72,7 @@ fn named(name: &Spanned<String>, diagnostics: &mut Diagnostics) -> Option<Consta
     diagnostics.push(
         Diagnostic::error("E0131", name.span, format!("`{}` cannot name a constant", name.value))
             .label("not a name")
-            .help("begin with a letter and go on with letters, digits and `_`"),
+            .help("begin with a letter, followed by letters, digits and `_`"),
     );
     None
 }
@@ -94,7 +94,7 @@ fn entry(key: &Spanned<String>, value: &Node, diagnostics: &mut Diagnostics) -> 
             }
             Ok(_) => diagnostics.push(
                 Diagnostic::error("E0132", value.span, format!("`{}` is not a length", scalar.text))
-                    .label("a constant of a machine is a length")
+                    .label("a constant of a machine must be a length")
                     .help("give it a unit of length, such as `250 mm`"),
             ),
             Err(_) => constant.meaning = Some(scalar.text.clone()),
@@ -135,7 +135,7 @@ pub(super) fn settle(declared: Declared, chain: &Chain, diagnostics: &mut Diagno
                     format!("constant `{}` is never used", constant.name),
                 )
                 .label("no offset of the chain mentions it")
-                .help("take it out, or use it in an `origin` or `offset`"),
+                .help("remove it, or use it in an `origin` or `offset`"),
             );
         }
     }

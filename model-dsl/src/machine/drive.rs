@@ -71,7 +71,7 @@ impl ElementKind {
 pub(super) fn read(node: Option<&Node>, motors: &[Motor], diagnostics: &mut Diagnostics) -> Vec<Drive> {
     let Some(node) = node else { return Vec::new() };
     let Some(entries) = node.entries() else {
-        let message = format!("`drive` is a mapping of axes, found {}", node.kind_name());
+        let message = format!("`drive` must be a mapping of axes, found {}", node.kind_name());
         diagnostics
             .push(Diagnostic::error("E0103", node.span, message).help("write `drive: {X: {pitch: 10 mm}}`"));
         return Vec::new();
@@ -158,23 +158,24 @@ fn length(node: &Node, what: &str, diagnostics: &mut Diagnostics) -> Option<f64>
     let length = quantity::read(node, Dimension::LENGTH, what, diagnostics)?;
     let (least, most) = LENGTHS;
     let sound = (least..=most).contains(&length.value);
-    let must = format!("{what} is a length from 1 nm to 1 km");
-    checked(length, sound, must, "write it as the catalogue has it, such as `10 mm`", diagnostics)
+    let must = format!("{what} must be a length from 1 nm to 1 km");
+    checked(length, sound, must, "write the value from the catalogue, such as `10 mm`", diagnostics)
 }
 
 fn ratio(node: &Node, diagnostics: &mut Diagnostics) -> Option<f64> {
     let ratio = quantity::read_number(node, "the ratio", diagnostics)?;
     let (least, most) = RATIOS;
     let sound = (least..=most).contains(&ratio.value);
-    let must = format!("the ratio is a number from {least} to {most}");
-    checked(ratio, sound, must, "write the turns of the motor for one turn of what it drives", diagnostics)
+    let must = format!("the ratio must be a number from {least} to {most}");
+    checked(ratio, sound, must, "write the turns of the motor per turn of the driven part", diagnostics)
 }
 
 fn count(node: &Node, what: &str, diagnostics: &mut Diagnostics) -> Option<u32> {
     let number = quantity::read_number(node, what, diagnostics)?;
     let sound = number.value.fract() == 0.0 && (1.0..=f64::from(MOST)).contains(&number.value);
-    let must = format!("{what} is a whole number from 1 to {MOST}");
-    let number = checked(number, sound, must, "count them all the way round, such as `180`", diagnostics)?;
+    let must = format!("{what} must be a whole number from 1 to {MOST}");
+    let number =
+        checked(number, sound, must, "write the number in one full turn, such as `180`", diagnostics)?;
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

@@ -56,7 +56,7 @@ pub(super) fn choice<'c>(
         };
         diagnostics.push(
             Diagnostic::error("E0104", node.span, format!("`{written}` is not {what}"))
-                .label("not one of the words possible here")
+                .label("not one of the words allowed here")
                 .help(help),
         );
     }

@@ -57,7 +57,7 @@ pub(super) fn read(fields: Fields<'_>, diagnostics: &mut Diagnostics) -> Header 
         header.reference = reference(node, diagnostics);
     }
     if let Some(node) = fields.get("motions") {
-        let word = choice(node, "a meaning of error motions", &["body", "relative"], diagnostics);
+        let word = choice(node, "a convention for error motions", &["body", "relative"], diagnostics);
         header.relative = word == Some("relative");
     }
     if let Some(node) = fields.get("orientation") {
@@ -77,10 +77,10 @@ pub(super) fn reference(node: &Node, diagnostics: &mut Diagnostics) -> Reference
     }
 }
 
-/// Reads what becomes of the direction of the tool.
+/// Reads a setting for the direction of the tool.
 fn orientation(node: &Node, diagnostics: &mut Diagnostics) -> Orientation {
     let words = ["true", "uncorrected", "false"];
-    match choice(node, "what becomes of the direction of the tool", &words, diagnostics) {
+    match choice(node, "a setting for the direction of the tool", &words, diagnostics) {
         Some("true") => Orientation::Corrected,
         Some("uncorrected") => Orientation::Told,
         _ => Orientation::Left,
@@ -92,7 +92,7 @@ fn version(fields: Fields<'_>, diagnostics: &mut Diagnostics) {
     let Some(version) = text(node, "the version of the format", diagnostics) else { return };
     if version != "1" {
         diagnostics.push(
-            Diagnostic::error("E0105", node.span, format!("version `{version}` of the format is not known"))
+            Diagnostic::error("E0105", node.span, format!("version `{version}` of the format is unknown"))
                 .label("this version")
                 .help("write `abbe: 1`"),
         );
@@ -106,9 +106,9 @@ fn name_of(node: &Node, diagnostics: &mut Diagnostics) -> Option<String> {
         return Some(name.to_owned());
     }
     diagnostics.push(
-        Diagnostic::error("E0106", node.span, format!("`{name}` is not a machine's name"))
+        Diagnostic::error("E0106", node.span, format!("`{name}` is not a valid name for a machine"))
             .label("this becomes the name of a file and of a Rust module")
-            .help("begin with a letter and go on with letters, digits, `-` and `_`"),
+            .help("begin with a letter, followed by letters, digits, `-` and `_`"),
     );
     None
 }

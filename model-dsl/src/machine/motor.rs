@@ -95,21 +95,21 @@ fn check_name(name: &Spanned<String>, chain: &Chain<'_>, before: &[Motor], diagn
     let links = || chain.links.iter().map(|drafted| &drafted.link);
     let is_link = |link: &&Link| link.id == name.value || link.variable().eq_ignore_ascii_case(&name.value);
     let reason = if !is_name(&name.value) {
-        Some("a name begins with a letter and goes on with letters, digits and `_`".to_owned())
+        Some("a name begins with a letter, followed by letters, digits and `_`".to_owned())
     } else if let Some(link) = links().find(is_link) {
-        Some(format!("link {} of the chain has it", link.id))
+        Some(format!("link {} of the chain has this name", link.id))
     } else if let Some(link) = links().find(|link| parse_name(&error, &link.id).is_some()) {
         Some(format!("its error {error} would be an error motion of {}", link.id))
     } else {
         let same = before.iter().find(|motor| motor.name.value.eq_ignore_ascii_case(&name.value));
-        same.map(|motor| format!("motor {} has it already", motor.name.value))
+        same.map(|motor| format!("another motor {} has this name", motor.name.value))
     };
     if let Some(reason) = reason {
         let message = format!("`{}` cannot name a motor", name.value);
         diagnostics.push(
             Diagnostic::error("E0148", name.span, message)
                 .label(reason)
-                .help("choose another name, such as `A` and `B` behind a belt, `Y1` and `Y2` on a beam"),
+                .help("choose another name, such as `A` and `B` for a belt, or `Y1` and `Y2` for a beam"),
         );
     }
 }
@@ -127,7 +127,7 @@ fn slide(letter: &str, span: Span, chain: &Chain<'_>, diagnostics: &mut Diagnost
     let slides = chain.links.iter().filter(|drafted| matches!(drafted.link.kind, LinkKind::Slide(_)));
     let slides: Vec<String> = slides.filter_map(of).collect();
     let (message, label) = match found {
-        Some(_) => (format!("{letter} is a rotary axis"), "a transmission crosses slides"),
+        Some(_) => (format!("{letter} is a rotary axis"), "a transmission combines slides"),
         None => (format!("the chain has no slide {letter}"), "a motor moves slides of the chain"),
     };
     let help = format!("the slides of this machine are {}", slides.join(", "));

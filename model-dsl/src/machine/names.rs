@@ -96,8 +96,8 @@ impl Names<'_> {
         };
         if let Some(printed) = self.printed.meaning(name) {
             diagnostics.push(
-                Diagnostic::error("E0135", span, format!("`{name}` would stand for two things"))
-                    .label(format!("stands for {what} here, and in printed equations for {printed}"))
+                Diagnostic::error("E0135", span, format!("`{name}` would have two meanings"))
+                    .label(format!("means {what} here, and {printed} in printed equations"))
                     .help(format!(
                         "choose another name, such as `{name}_` or `{}`",
                         name.to_ascii_lowercase()
@@ -108,10 +108,10 @@ impl Names<'_> {
             // Two alignment errors may act over the same travel.
             Some((known, What::Travel, _)) if what == What::Travel && known == name => {}
             Some((known, other, first)) => diagnostics.push(
-                Diagnostic::error("E0135", span, format!("`{name}` would stand for two things"))
-                    .label(format!("stands for {what} here"))
-                    .also(*first, format!("`{known}` stands for {other} here"))
-                    .help("choose another name; upper and lower case alone do not tell two of a kind apart"),
+                Diagnostic::error("E0135", span, format!("`{name}` would have two meanings"))
+                    .label(format!("means {what} here"))
+                    .also(*first, format!("`{known}` means {other} here"))
+                    .help("choose another name that differs in more than upper and lower case"),
             ),
             None => self.taken.push((name.to_owned(), what, span)),
         }

@@ -53,7 +53,7 @@ pub(super) fn read_link<'n>(
         diagnostics.push(
             Diagnostic::error("E0124", id_span, format!("`{id}` cannot name a link"))
                 .label("not a name")
-                .help("begin with a letter and go on with letters, digits and `_`"),
+                .help("begin with a letter, followed by letters, digits and `_`"),
         );
         return None;
     }
@@ -96,10 +96,10 @@ fn kind_of<'n>(node: &'n Node, diagnostics: &mut Diagnostics) -> Option<(&'stati
         [(word, _, value)] => Some((*word, *value)),
         [first, second, ..] => {
             diagnostics.push(
-                Diagnostic::error("E0121", second.1.span, "a link is one thing only")
+                Diagnostic::error("E0121", second.1.span, "a link must have exactly one kind")
                     .label(format!("`{}` here", second.0))
                     .also(first.1.span, format!("and `{}` here", first.0))
-                    .help("give each body a link of its own, behind its own `- `"),
+                    .help("write each body as its own link after its own `- `"),
             );
             None
         }
@@ -126,7 +126,7 @@ fn kind(word: &str, name: &str, span: Span, diagnostics: &mut Diagnostics) -> Op
     let help = if upper.chars().count() == 1 && letters.contains(&upper) {
         format!("did you mean `{upper}`?")
     } else {
-        format!("write one of {list}; another name goes into `id`")
+        format!("write one of {list}, and put another name into `id`")
     };
     diagnostics.push(
         Diagnostic::error("E0122", span, format!("`{name}` is not the letter of a `{word}`"))
@@ -156,8 +156,8 @@ fn along(
         if kind.letter().is_some() {
             diagnostics.push(
                 Diagnostic::error("E0102", link_span, "an axis needs the key `along`")
-                    .label("which way does its frame move when it is programmed to move forward?")
-                    .help("write `along: +X`; a table that carries the part runs `-X` for +X"),
+                    .label("the direction in which its frame moves when programmed forwards is missing")
+                    .help("write `along: +X`; a table that carries the part moves along `-X` for +X"),
             );
             return None;
         }
@@ -168,7 +168,7 @@ fn along(
         diagnostics.push(
             Diagnostic::error("E0129", key.span, message)
                 .label("nothing moves along it")
-                .help("take `along` out"),
+                .help("remove `along`"),
         );
         return None;
     }
@@ -180,11 +180,11 @@ fn along(
                 Diagnostic::error(
                     "E0129",
                     node.span,
-                    format!("axis {letter} does not run along {}", along.axis.letter()),
+                    format!("axis {letter} cannot run along {}", along.axis.letter()),
                 )
-                .label("not its own direction")
+                .label("this is not its own direction")
                 .help(format!(
-                    "by ISO 841 it runs along +{own} or -{own}; name the axis after its direction"
+                    "name the axis after its direction; by ISO 841 this axis runs along +{own} or -{own}"
                 )),
             );
             None
@@ -210,7 +210,9 @@ fn direction(node: &Node, diagnostics: &mut Diagnostics) -> Option<Along> {
     diagnostics.push(
         Diagnostic::error(code, node.span, format!("`{word}` is not a direction"))
             .label("a direction is a sign and a letter")
-            .help("write `+X`, `-X`, `+Y`, `-Y`, `+Z` or `-Z`; skew ways are given as alignment errors"),
+            .help(
+                "write `+X`, `-X`, `+Y`, `-Y`, `+Z` or `-Z`; give a small skew angle as an alignment error",
+            ),
     );
     None
 }
@@ -233,7 +235,7 @@ fn unit_vector(node: &Node, entries: &[Node], diagnostics: &mut Diagnostics) -> 
         }
         [_] | [] => {
             diagnostics.push(
-                Diagnostic::error("E0127", node.span, "a direction has length one")
+                Diagnostic::error("E0127", node.span, "a direction must have length one")
                     .label("this vector is not of length one")
                     .help("write `+X` for [1, 0, 0]"),
             );
@@ -244,7 +246,7 @@ fn unit_vector(node: &Node, entries: &[Node], diagnostics: &mut Diagnostics) -> 
                 Diagnostic::error(
                     "E0128",
                     node.span,
-                    "a direction runs along one of the frame's own directions",
+                    "a direction must be one of the frame's own directions",
                 )
                 .label("this direction is skew")
                 .help(straightened(&numbers)),
@@ -261,13 +263,13 @@ fn straightened(direction: &[f64]) -> String {
     let angle = (nearest / length).min(1.0).acos();
     if angle <= LARGEST_ANGLE {
         return format!(
-            "take the nearest of +X -X +Y -Y +Z -Z; the {:.2} mrad that are left are an alignment error",
+            "use the nearest of +X -X +Y -Y +Z -Z; the remaining {:.2} mrad are an alignment error",
             angle * 1e3
         );
     }
     format!(
-        "put a rotary axis with `errors: []` before it that always stands at {:.2} deg, and let this one run along the nearest \
-         of +X -X +Y -Y +Z -Z",
+        "put a rotary axis with `errors: []` before it, keep that axis at {:.2} deg, and use the nearest of +X -X +Y -Y +Z -Z \
+         here",
         angle.to_degrees()
     )
 }
@@ -286,11 +288,11 @@ fn origin(node: Option<&Node>, span: Span, diagnostics: &mut Diagnostics) -> ([P
     let entries = items(node, "a place", diagnostics).unwrap_or_default();
     if entries.len() != 3 {
         if matches!(node.kind, NodeKind::Sequence(_)) {
-            let message = format!("a place has three coordinates, this one has {}", entries.len());
+            let message = format!("a place must have three coordinates, this one has {}", entries.len());
             diagnostics.push(
                 Diagnostic::error("E0117", node.span, message)
                     .label("X, Y and Z are needed")
-                    .help("write all three, 0 where there is no offset: `[X1, 0, Z1]`"),
+                    .help("write all three, with 0 for no offset: `[X1, 0, Z1]`"),
             );
         }
         return (origin, spans);
@@ -319,7 +321,7 @@ fn coordinate(node: &Node, diagnostics: &mut Diagnostics) -> Polynomial {
         Some(length) => Ok(Polynomial::number(length)),
         None => expression::parse(written, &mut constant).map_err(|mistake| {
             let turns = written.contains("sin(") || written.contains("cos(");
-            if turns { "a coordinate does not depend on an axis".to_owned() } else { mistake.message }
+            if turns { "a coordinate cannot depend on an axis".to_owned() } else { mistake.message }
         }),
     };
     let bounded = value.and_then(|value| {
@@ -328,9 +330,9 @@ fn coordinate(node: &Node, diagnostics: &mut Diagnostics) -> Polynomial {
         let product = value.terms().map(|(monomial, _)| monomial).find(|monomial| factors(monomial) > 1);
         if let Some(product) = product {
             let product = Polynomial::monomial(product.clone(), Rational::from_integer(1.into()));
-            Err(format!("`{}` is a product of lengths, and no length", infix(&product)))
+            Err(format!("`{}` is a product of lengths, not a length", infix(&product)))
         } else if too_large {
-            Err(format!("it holds a number beyond {MOST_MM:e} mm"))
+            Err(format!("it contains a number beyond {MOST_MM:e} mm"))
         } else if value.size() > MOST_TERMS {
             Err(format!("it expands to {} terms, more than {MOST_TERMS}", value.size()))
         } else {
@@ -339,9 +341,9 @@ fn coordinate(node: &Node, diagnostics: &mut Diagnostics) -> Polynomial {
     });
     bounded.unwrap_or_else(|mistake| {
         diagnostics.push(
-            Diagnostic::error("E0118", node.span, format!("`{written}` is not a coordinate"))
+            Diagnostic::error("E0118", node.span, format!("`{written}` is not a valid coordinate"))
                 .label(mistake)
-                .help("write a length (bare numbers are mm), the name of a constant, or a sum of such"),
+                .help("write a length (bare numbers are mm), the name of a constant, or a sum of these"),
         );
         Polynomial::zero()
     })

@@ -115,12 +115,12 @@ pub(super) fn check_references(
         if let Some(reason) = reference::difference(&name, &motion.name, from, &counted) {
             let same: Vec<&str> =
                 counted.iter().filter(|one| one.is == motion.name).map(|one| one.from.as_str()).collect();
-            let error =
-                Diagnostic::error("E0146", span, format!("{name} is not {} here", motion.name)).label(reason);
-            let help = format!("write `{}`, which counts from the frame before {}", motion.name, link.id);
+            let error = Diagnostic::error("E0146", span, format!("{name} differs from {} here", motion.name))
+                .label(reason);
+            let help = format!("write `{}`, which is counted from the frame before {}", motion.name, link.id);
             diagnostics.push(match same.as_slice() {
                 [] => error.help(help),
-                axes => error.help(format!("{help}; it is the same counted from {}", axes.join(", "))),
+                axes => error.help(format!("{help}; it is the same if counted from {}", axes.join(", "))),
             });
         }
     }
@@ -135,7 +135,7 @@ fn misaligned(name: &str, span: Span, kind: MotionKind, link: &Link) -> Diagnost
             .label("only the axis of a `rotary` or a `spindle` has a place of its own")
             .help("the place of a slide is its `origin`");
     }
-    error.label(format!("a link of kind `{word}` has no axis that could be out of line")).help(format!(
+    error.label(format!("a link of kind `{word}` has no axis that could be misaligned")).help(format!(
         "did you mean `E{}{}`?",
         kind.letter(),
         link.id
@@ -217,10 +217,10 @@ fn sign_without_symbol(node: &Node, motion: &Motion) -> Diagnostic {
     Diagnostic::error(
         "E0142",
         node.span,
-        format!("`sign: -1` has no symbol that would count against {}", motion.name),
+        format!("`sign: -1` needs a symbol counted against {}", motion.name),
     )
     .label("the sign belongs to the symbol")
-    .help(format!("give it a symbol, `{}: {{symbol: a, sign: -1}}`, or take it out", motion.name))
+    .help(format!("give it a symbol, `{}: {{symbol: a, sign: -1}}`, or remove it", motion.name))
 }
 
 /// `travel` and `rotates` say how an alignment error of a slide acts; elsewhere they mean nothing.
@@ -231,7 +231,7 @@ fn aligned_only(key: &Spanned<String>, motion: &Motion, link: &Link, diagnostics
         diagnostics.push(
             Diagnostic::error("E0142", key.span, message)
                 .label("only an alignment error of a slide has it")
-                .help("take it out"),
+                .help("remove it"),
         );
     }
 }
@@ -251,7 +251,7 @@ fn name(node: &Node, what: &str, diagnostics: &mut Diagnostics) -> Option<Name> 
     diagnostics.push(
         Diagnostic::error("E0142", node.span, format!("`{written}` cannot be {what}"))
             .label("not a name")
-            .help("begin with a letter and go on with letters, digits and `_`"),
+            .help("begin with a letter, followed by letters, digits and `_`"),
     );
     None
 }

@@ -148,7 +148,7 @@ pub(crate) fn difference(name: &str, plain: &str, from: &str, counted: &[Counted
     match counted.iter().find(|one| one.from == from) {
         Some(one) if one.is == plain => None,
         Some(one) => Some(format!("counted from {from}, {name} is {}", one.is)),
-        None => Some(format!("{from} is no axis from which {plain} can be counted")),
+        None => Some(format!("{plain} cannot be counted from {from}")),
     }
 }
 

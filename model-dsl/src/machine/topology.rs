@@ -46,7 +46,7 @@ fn mistakes(word: &str) -> Vec<(&'static str, String, String)> {
         return vec![("E0112", "axes and the bed are upper case".to_owned(), format!("write `{upper}`"))];
     }
     let mut found = Vec::new();
-    let example = "letters run from the part to the tool, F is the bed: XYFZ".to_owned();
+    let example = "write the letters from the part to the tool, with F as the bed: XYFZ".to_owned();
     match word.matches('F').count() {
         0 => found.push(("E0110", "it has no F, the bed".to_owned(), example)),
         1 => {}
@@ -55,15 +55,15 @@ fn mistakes(word: &str) -> Vec<(&'static str, String, String)> {
     let axes: Vec<char> = word.chars().filter(|letter| *letter != 'F').collect();
     let unknown: Vec<char> = axes.iter().copied().filter(|letter| !AXES.contains(*letter)).collect();
     if let Some(letter) = unknown.first() {
-        let help = "axes are X Y Z A B C, in upper case; for U V W write the chain out".to_owned();
+        let help = "use X Y Z A B C, in upper case; for U V W write out the chain".to_owned();
         found.push(("E0112", format!("`{letter}` is not an axis"), help));
     }
     let repeated = axes.iter().enumerate().find(|(at, letter)| axes[..*at].contains(letter));
     if let Some((_, letter)) = repeated {
         found.push((
             "E0113",
-            format!("axis {letter} stands twice"),
-            "each axis stands once; give a second slide a letter U, V or W in a chain".to_owned(),
+            format!("axis {letter} occurs twice"),
+            "use each axis once; in a chain, name a second slide U, V or W".to_owned(),
         ));
     }
     if axes.is_empty() {
@@ -123,14 +123,14 @@ fn drafted(
 pub fn template(word: &str, diagnostics: &mut Diagnostics) -> Option<String> {
     let parsed = TopologyWord::parse(word, Span { start: 0, end: word.len() }, diagnostics)?;
     let mut text = format!(
-        "# A machine file of Abbe: the topology, and no number that a measurement would change.\n\
-         # The numbers of one machine stand in a calibration file.\n\
+        "# A machine file for Abbe: the topology, without numbers that a measurement would change.\n\
+         # The numbers of one machine are in a calibration file.\n\
          abbe: 1\n\
          name: my-{}\n\
          title: A {word} machine\n\n\
-         # `topology: {word}` stands for the chain below; write one or the other.\n\
+         # `topology: {word}` means the chain below. Write one or the other.\n\
          # Letters before F carry the part, letters after F carry the tool.\n\
-         # sensitive: [X, Y, Z]   # directions derived and compensated; all three by default\n\
+         # sensitive: [X, Y, Z]   # the directions to derive and compensate; all three by default\n\
          # reference: carriage    # rotations act about the origin that travels with the carriage; or: bed\n\
          # motions: body          # an error motion moves its own body; or: relative, as an instrument reads it\n\
          chain:\n  workpiece:             # from the bed towards the part\n",

@@ -32,11 +32,12 @@ dt { color: var(--quiet); }
 dd { margin: 0; }
 ";
 
-const SYMBOLS: &str = "A slide is a double arrow, its full head where the programmed position grows; a rotary axis an arc, \
-    its head where the programmed angle grows; a spindle a broken circle, since it turns freely; a weld a body that does not \
-    move against the one before it. Beside each stands its frame: right-handed, parallel to that of the bed while rotary axes \
-    stand at zero; X to the right, Z upwards, Y into the page. The numbers on a connection are the offset of the frame above \
-    it, in the frame below. Error motions stand at the link where they enter: what moves it, what turns it, how it is aligned.";
+const SYMBOLS: &str = "A double arrow is a slide; its solid head shows the direction in which the programmed position grows. An \
+    arc is a rotary axis; its head shows the direction in which the programmed angle grows. A broken circle is a spindle, which \
+    rotates freely. A weld is a body that does not move relative to the one before it. The frame of each link is drawn beside \
+    it: right-handed, parallel to that of the bed while all rotary axes are at zero, with X to the right, Z upwards and Y into \
+    the page. The numbers on a connection are the offset of the frame above it, in the frame below. Error motions are listed at \
+    their links: displacements, rotations and alignment.";
 
 /// The whole page.
 pub(super) fn page(sheet: &Sheet, equations: &Equations, names: Names, published: &[Published]) -> String {
@@ -78,7 +79,7 @@ fn brackets(sheet: &Sheet) -> String {
     }
     let equations: String = sheet.brackets.iter().map(equation).collect();
     format!(
-        "<h2>Brackets with a name</h2>\n<p>Each occurs more than once below.</p>\n<div class=\"wide\">\n{equations}</div>\n"
+        "<h2>Brackets with a name</h2>\n<p>Each of them occurs more than once below.</p>\n<div class=\"wide\">\n{equations}</div>\n"
     )
 }
 
@@ -103,7 +104,7 @@ fn orientation(sheet: &Sheet) -> String {
     let rows = sheet.orientation.iter().flat_map(|row| [&row.position, &row.error]);
     let equations: String = rows.map(equation).collect();
     format!(
-        "<h2>Direction of the tool</h2>\n<p>From its tip towards the spindle, in the part's frame; its error in rad.</p>\n\
+        "<h2>Direction of the tool</h2>\n<p>The direction from the tip towards the spindle, in the part's frame. Its error is in rad.</p>\n\
          <div class=\"wide\">\n{equations}</div>\n"
     )
 }
@@ -125,8 +126,9 @@ fn motions(sheet: &Sheet, equations: &Equations) -> String {
     format!(
         "<div class=\"wide\"><table class=\"motions\">\n<thead><tr><th>Symbol</th><th>ISO 230-1</th><th>Meaning</th>\
          <th>Unit</th><th>Reaches</th><th>Compensable</th>{arms}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n\
-         <p>Compensable is what slides cancel at the tip, and what rotary axes cancel of their own angles and of the direction of the tool; the rest is told and left. This is the geometry: which terms of a motion a controller can know in time is told by the calibration \
-         (E0425).{of_tool}</p>\n"
+         <p>An error motion is compensable if slides can cancel it at the tip, or if rotary axes can cancel it in their own \
+         angles or in the direction of the tool. Abbe reports the others and does not correct them. This column is about \
+         geometry; the calibration determines which terms of a motion a controller knows in time (E0425).{of_tool}</p>\n"
     )
 }
 
@@ -138,8 +140,8 @@ fn direction_of_tool(equations: &Equations) -> String {
     let axes = equations.aiming().into_iter().filter_map(|axis| equations.axes.get(axis));
     let axes: Vec<&str> = axes.map(|axis| axis.letter.as_str()).collect();
     let corrected = match axes.as_slice() {
-        [] => "which all axes leave as it is".to_owned(),
-        [axis] => format!("which {axis} corrects as far as it turns the tool"),
+        [] => "which no axis corrects".to_owned(),
+        [axis] => format!("which {axis} corrects as far as it rotates the tool"),
         axes => format!("which {} correct", axes.join(" and ")),
     };
     format!(" I, J and K are the direction of the tool, {corrected}.")

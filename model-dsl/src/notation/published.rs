@@ -50,7 +50,7 @@ pub(super) fn section(published: &Published) -> String {
     let verdict = if report.agrees() {
         "Every printed term agrees with the derived one."
     } else {
-        "Print and derivation differ where the last column says."
+        "The printed and the derived equations differ in the terms of the last column."
     };
     format!(
         "{}<p>{verdict}</p>\n<div class=\"wide\"><table class=\"published\">\n<thead><tr><th>Section</th>\

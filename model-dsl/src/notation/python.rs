@@ -111,7 +111,7 @@ pub(super) fn module(sheet: &Sheet) -> String {
 fn direction(sheet: &Sheet) -> String {
     let rows = sheet.orientation.iter().map(|row| entry(&row.position.left.plain, &row.whole));
     let about =
-        "The direction of the tool without errors, from its tip towards the spindle, a vector of length 1.";
+        "The direction of the tool without errors, from its tip towards the spindle: a vector of length 1.";
     function("direction(values, functions=math)", about, &values(sheet), rows)
 }
 

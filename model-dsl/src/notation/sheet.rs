@@ -222,12 +222,12 @@ fn quantities(equations: &Equations) -> Vec<QuantityEntry> {
     });
     let travels = equations.travels.iter().map(|travel| {
         let letter = equations.axes.get(travel.axis).map_or("", |axis| &axis.letter);
-        let meaning = format!("travel of {letter} from where its alignment was measured (mm)");
-        entry(&travel.name, meaning, format!("the position of {letter} where no other is given"))
+        let meaning = format!("travel of {letter} from the place where its alignment was measured (mm)");
+        entry(&travel.name, meaning, format!("the position of {letter} unless another is given"))
     });
     let constants = equations.constants.iter().map(|constant| {
         let meaning = constant.meaning.as_deref().unwrap_or("constant of the machine");
-        let value = constant.default.map(|own| format!("{own} mm unless a calibration has another"));
+        let value = constant.default.map(|own| format!("{own} mm unless a calibration gives another value"));
         let value = value.unwrap_or_else(|| "from the calibration".to_owned());
         entry(&constant.name, format!("{meaning} (mm)"), value)
     });
@@ -276,21 +276,22 @@ fn senses(equations: &Equations) -> Vec<String> {
     let mut sentences = Vec::new();
     if equations.relative {
         sentences.push(
-            "Error motions are those of the tool relative to the part: on the part's branch every motion but the link's \
-             own is the opposite of what the body does; the alignment error of a slide turns a line and is the same from either side."
+            "Error motions are those of the tool relative to the part. On the part's branch, every motion except the link's own \
+             is the opposite of the motion of the body. The alignment error of a slide rotates a line and is the same from \
+             either side."
                 .to_owned(),
         );
     } else {
         sentences.push(
-            "An error motion is that of its own body, in directions of the frame before it, on either branch.".to_owned(),
+            "An error motion is that of its own body, in the directions of the frame before it, on either branch.".to_owned(),
         );
     }
     let bed = |link: &&Link| matches!(link.kind, LinkKind::Slide(_)) && link.reference == Reference::Bed;
     let about_bed: Vec<&str> = equations.links.iter().filter(bed).map(|link| link.id.as_str()).collect();
     sentences.push(if about_bed.is_empty() {
-        "Rotations of a slide act about the origin that travels with it.".to_owned()
+        "Rotations of a slide act about its origin, which travels with it.".to_owned()
     } else {
-        format!("Rotations of {} act about the origin that stays with the bed.", about_bed.join(", "))
+        format!("Rotations of {} act about an origin fixed to the bed.", about_bed.join(", "))
     });
     sentences
 }
@@ -306,9 +307,9 @@ fn own_angles(equations: &Equations, names: Names) -> Vec<String> {
     let left = equations.axes.iter().filter(|axis| axis.rotary && !axis.corrects_angle);
     let left: Vec<&str> = left.map(|axis| axis.letter.as_str()).collect();
     let corrected = (!own.is_empty())
-        .then(|| format!("A rotary axis corrects the error of its own angle itself: {}.", own.join(", ")));
-    let left =
-        (!left.is_empty()).then(|| format!("The own angle of {} is left to the slides.", left.join(" and ")));
+        .then(|| format!("A rotary axis corrects the error of its own angle by itself: {}.", own.join(", ")));
+    let left = (!left.is_empty())
+        .then(|| format!("Slides correct the effect of the own angle of {} at the tip.", left.join(" and ")));
     corrected.into_iter().chain(left).chain(aimed(equations)).collect()
 }
 
@@ -318,7 +319,7 @@ fn aimed(equations: &Equations) -> Option<String> {
     let axes: Vec<&str> = axes.map(|axis| axis.letter.as_str()).collect();
     (!axes.is_empty()).then(|| {
         format!(
-            "The direction of the tool is corrected by {}; slides take back what that does to the tip.",
+            "The direction of the tool is corrected by {}. Slides undo the effect of this on the tip.",
             axes.join(" and ")
         )
     })
@@ -327,36 +328,36 @@ fn aimed(equations: &Equations) -> Option<String> {
 fn conventions(equations: &Equations, names: Names, written: &Brackets) -> Vec<String> {
     let mut sentences: Vec<String> = [
         "P is the position of the tool tip relative to the part at the nominal contact point, in the part's frame, in mm.",
-        "Each P is the nominal position, then the offsets, then the error dP; compensation adds -dP.",
-        "The equations are of first order: a product of two error motions is dropped; the nominal part is exact.",
+        "Each P is the sum of the nominal position, the offsets and the error dP. Compensation adds -dP.",
+        "The equations are of first order: products of two error motions are dropped. The nominal part is exact.",
         "Displacements are in mm; rotations are in rad and right-handed.",
         "The error motion of a slide in its own direction is actual minus commanded.",
-        "Error motions are named after ISO 230-1: E, a direction (X Y Z along, A B C about), the body; a zero \
-         before the body marks an alignment error.",
+        "Error motions are named as in ISO 230-1: E, a direction (X Y Z along, A B C about), the body. A zero before the body \
+         marks an alignment error.",
     ]
     .map(str::to_owned)
     .to_vec();
     if !equations.orientation.is_empty() {
         sentences.push(
-            "I, J, K are the direction of the tool from its tip towards the spindle, in the part's frame, a vector of length 1; dI, dJ, dK \
-             are its error in rad, which slides leave as it is."
+            "I, J, K are the direction of the tool from its tip towards the spindle, in the part's frame, a vector of length 1. \
+             dI, dJ, dK are its error in rad, which slides do not change."
                 .to_owned(),
         );
     }
     sentences.extend(senses(equations));
     if equations.axes.iter().any(|axis| axis.rotary) {
-        sentences.push("Rotary axes turn by large angles; their sines and cosines are exact.".to_owned());
+        sentences.push("Rotary axes rotate by large angles. Their sines and cosines are exact.".to_owned());
         sentences.extend(own_angles(equations, names));
     }
     if equations.motions.iter().any(|motion| is_place_of_rotary(equations, motion)) {
         sentences.push(
-            "The place of a rotary axis is EX0C here, XOC in ISO 230-7; EA(0Y)C, as ISO 230-1 writes, counts from Y, and stands \
-             beside EA0C where both are the same."
+            "The place of a rotary axis is EX0C here and XOC in ISO 230-7. EA(0Y)C, in the notation of ISO 230-1, is counted \
+             from Y; it is shown beside EA0C if both are the same."
                 .to_owned(),
         );
     }
     if written.definitions().next().is_some() {
-        sentences.push("A bracket that occurs more than once has a name, which begins with L.".to_owned());
+        sentences.push("A bracket that occurs more than once has a name that begins with L.".to_owned());
     }
     let against: Vec<&str> = equations
         .motions
@@ -369,7 +370,8 @@ fn conventions(equations: &Equations, names: Names, written: &Brackets) -> Vec<S
     }
     if !equations.unseen.is_empty() {
         let unseen: Vec<&str> = equations.unseen.iter().map(|motion| motion.printed(names)).collect();
-        sentences.push(format!("Without effect, since they have no lever here: {}.", unseen.join(", ")));
+        sentences
+            .push(format!("Without effect, because they have no lever arm here: {}.", unseen.join(", ")));
     }
     let absent: Vec<String> = Axis::ALL
         .into_iter()
@@ -378,7 +380,7 @@ fn conventions(equations: &Equations, names: Names, written: &Brackets) -> Vec<S
         .collect();
     if !absent.is_empty() {
         sentences.push(format!(
-            "Not derived, since the machine file does not call it sensitive: {}.",
+            "Not derived, because the machine file does not call it sensitive: {}.",
             absent.join(", ")
         ));
     }

@@ -92,7 +92,7 @@ impl Interpreter {
     }
 
     /// The direction of the tool without errors, from its tip towards the spindle: I, J, K in the part's frame, pure numbers, a vector of
-    /// length 1. None where the machine file does not ask for it (`orientation: true`).
+    /// length 1. None where the machine file does not request it (`orientation: true`).
     pub fn direction(&self, position: &[f64]) -> Option<[f64; 3]> {
         Some(triple(&self.run(&self.orientation.as_ref()?.nominal, position, &[], &[])))
     }

@@ -59,7 +59,7 @@ pub fn read_number(node: &Node, what: &str, diagnostics: &mut Diagnostics) -> Op
     let text = scalar(node, &format!("{what} must be a bare number"), diagnostics)?;
     let value = match parse_quantity(text) {
         Ok(quantity) if !quantity.is_bare() => {
-            let message = format!("{what} is a bare number here, without a unit");
+            let message = format!("{what} takes no unit here");
             let mistake = Diagnostic::error("E0309", node.part(quantity.unit.clone()), message);
             diagnostics.push(mistake.help(format!("write `{}`", quantity.written_number())));
             return None;
@@ -98,14 +98,18 @@ fn wrong_kind(quantity: &Quantity, expected: Dimension, what: &str, node: &Node)
     let unit = expected.usual_unit();
     if quantity.is_bare() {
         let message = format!("{what} needs a unit: it is {}", expected.name());
-        let help = format!("write `{} {unit}` if that is what is meant", quantity.written_number());
+        let help = format!("write `{} {unit}` if that is the unit", quantity.written_number());
         return Some(Diagnostic::error("E0306", node.part(quantity.number.clone()), message).help(help));
     }
     if quantity.dimension == expected {
         return None;
     }
-    let message =
-        format!("{what} is {}, `{}` is {}", expected.name(), quantity.written_unit(), quantity.kind_name());
+    let message = format!(
+        "{what} must be {}, but `{}` is {}",
+        expected.name(),
+        quantity.written_unit(),
+        quantity.kind_name()
+    );
     let mistake = Diagnostic::error("E0307", node.part(quantity.unit.clone()), message);
     Some(mistake.label(format!("expected {}", expected.name())).help(format!("use a unit such as `{unit}`")))
 }

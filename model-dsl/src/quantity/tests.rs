@@ -135,7 +135,7 @@ fn wrong_units_are_located() {
     expect("20 C", "E0304", "C", "`degC`");
     expect("20 degc", "E0304", "degc", "`degC`");
     expect("10 arcsecs", "E0304", "arcsecs", "`arcsec`");
-    expect("10 furlong", "E0304", "furlong", "units are mm");
+    expect("10 furlong", "E0304", "furlong", "use one of the units mm");
     expect("11 um/mtr/K", "E0304", "mtr", "");
     expect("10 1", "E0305", "1", "1/s");
     expect("10 um/", "E0305", "", "1/s");
@@ -162,10 +162,10 @@ fn kinds_are_compared_at_the_unit() {
     let step = |text: &str| {
         findings(text, |node, all| assert_eq!(read(node, Dimension::LENGTH, "the step", all), None))
     };
-    let message = "the step is a length, `arcsec` is an angle";
+    let message = "the step must be a length, but `arcsec` is an angle";
     assert_eq!(step("\u{b5}: \u{b5}\na: 5 arcsec\n"), one("E0307", "arcsec", message));
     assert_eq!(step("a: \"5 arcsec\"\n"), one("E0307", "arcsec", message));
-    assert_eq!(step("a: 5 um/m\n"), one("E0307", "um/m", "the step is a length, `um/m` is a ratio"));
+    assert_eq!(step("a: 5 um/m\n"), one("E0307", "um/m", "the step must be a length, but `um/m` is a ratio"));
     assert_eq!(step("a: 5\n"), one("E0306", "5", "the step needs a unit: it is a length"));
     assert_eq!(step("a: 5 \u{b5}q\n"), one("E0304", "\u{b5}q", "unknown unit `\u{b5}q`"));
     let list = "the step must be a length such as `10 mm`, found a list";
@@ -178,7 +178,7 @@ fn kinds_are_compared_at_the_unit() {
 fn bare_numbers_and_units_are_read_from_nodes() {
     let number =
         |text: &str| findings(text, |node, all| assert_eq!(read_number(node, "an entry", all), None));
-    let message = "an entry is a bare number here, without a unit";
+    let message = "an entry takes no unit here";
     assert_eq!(number("a: 5 mm\n"), one("E0309", "mm", message));
     assert_eq!(number("a: .nan\n")[0].0, "E0302");
     assert_eq!(number("a: 5 oops\n"), one("E0301", "5 oops", "`5 oops` is not a number"));

@@ -204,7 +204,7 @@ fn base_unit(name: &str) -> Option<Unit> {
 }
 
 fn incomplete(range: Range<usize>) -> UnitError {
-    let error = UnitError::new("E0305", range, "a unit is missing here");
+    let error = UnitError::new("E0305", range, "missing unit");
     error.help("write a unit such as `um`, or a ratio such as `1/s` or `um/m/K`")
 }
 
@@ -214,6 +214,6 @@ fn unknown(name: &str, range: Range<usize>) -> UnitError {
     let word = WORDS.iter().find(|(word, _)| *word == lower).map(|(_, unit)| *unit);
     match word.or_else(|| nearest(name, UNITS.iter().map(|(known, ..)| *known))) {
         Some(unit) => error.help(format!("did you mean `{unit}`?")),
-        None => error.help(format!("units are {UNIT_NAMES}")),
+        None => error.help(format!("use one of the units {UNIT_NAMES}")),
     }
 }

@@ -14,9 +14,10 @@ use serde_yaml::{ErrorKind, Event, Parser, ScalarStyle, ScanError, options};
 pub fn read(source: &SourceFile, diagnostics: &mut Diagnostics) -> Option<Node> {
     let length = source.text().len();
     if length > MAX_BYTES {
-        let message = format!("this file is too large: {length} bytes, at most {MAX_BYTES} are read");
+        let message = format!("this file is too large: {length} bytes, the limit is {MAX_BYTES}");
         diagnostics.push(
-            Diagnostic::error("E0003", Span::default(), message).help("split it, or thin out its tables"),
+            Diagnostic::error("E0003", Span::default(), message)
+                .help("split the file, or thin out its tables"),
         );
         return None;
     }
@@ -59,14 +60,14 @@ fn feed(source: &SourceFile, tree: &mut Tree<'_>) {
 fn step(event: Event<'_>, span: Span, tag: Option<Span>, documents: &mut usize, tree: &mut Tree<'_>) {
     if let Some(tag) = tag {
         let refused = Diagnostic::error("E0008", tag, "tags such as `!name` have no meaning here");
-        tree.refuse(refused.help("leave the tag out"));
+        tree.refuse(refused.help("remove the tag"));
     }
     match event {
         Event::DocumentStart(..) => {
             *documents += 1;
             if *documents > 1 {
                 let second = Diagnostic::error("E0007", span, "a second document begins here");
-                tree.refuse(second.help("one file holds one document: put the rest into a file of its own"));
+                tree.refuse(second.help("write one document per file; move the rest to another file"));
             }
         }
         Event::Scalar(text, style, ..) => tree.scalar(&text, style != ScalarStyle::Plain, span),
@@ -74,8 +75,8 @@ fn step(event: Event<'_>, span: Span, tag: Option<Span>, documents: &mut usize, 
         Event::MappingStart(..) => tree.begin_mapping(span),
         Event::SequenceEnd | Event::MappingEnd => tree.end(span),
         Event::Alias(_) | Event::UnresolvedAlias(_) => {
-            let refused = Diagnostic::error("E0004", span, "aliases (`*name`) are not read");
-            tree.refuse(refused.help("write the value out here, or quote it if it is no alias"));
+            let refused = Diagnostic::error("E0004", span, "aliases (`*name`) are not allowed");
+            tree.refuse(refused.help("write the value here, or quote it if it is not an alias"));
             tree.scalar("~", false, span);
         }
         _ => {}
@@ -96,7 +97,7 @@ fn not_yaml(source: &SourceFile, error: &ScanError) -> Diagnostic {
         return too_deep(span);
     }
     let diagnostic = Diagnostic::error("E0001", span, format!("this is not YAML: {}", error.kind()));
-    let otherwise = "look for a bracket, a quote or an indentation that is off here or on the line above";
+    let otherwise = "check brackets, quotes and indentation here and on the line above";
     diagnostic.help(help(error.kind()).unwrap_or_else(|| otherwise.to_owned()))
 }
 
@@ -111,10 +112,10 @@ fn help(kind: &ErrorKind) -> Option<String> {
         ErrorKind::InvalidIndentation
         | ErrorKind::ExpectedBlockMappingKey
         | ErrorKind::ExpectedBlockSequenceEntry => {
-            "the keys of one mapping, and the `-` of one list, begin in the same column"
+            "begin all keys of a mapping, and every `-` of a list, in the same column"
         }
         ErrorKind::InvalidSimpleKey | ErrorKind::SimpleKeyExpected | ErrorKind::MappingValueNotAllowed => {
-            "write `key: value`, each on its own line and in the column of its neighbours; a value that holds `: ` needs quotes"
+            "write each `key: value` on its own line, in the same column; put a value that contains `: ` into quotes"
         }
         ErrorKind::UnclosedQuotedScalar | ErrorKind::InvalidQuotedScalarIndent => "close the quotes",
         ErrorKind::UnexpectedCharacter { .. } => "put the value into quotes",

@@ -139,9 +139,9 @@ impl<'a> Tree<'a> {
     fn count(&mut self, span: Span) -> bool {
         self.nodes += 1;
         if self.nodes > MAX_NODES {
-            let message = format!("this file holds more than {MAX_NODES} values");
+            let message = format!("this file has more than {MAX_NODES} values");
             self.stop(
-                Diagnostic::error("E0004", span, message).help("split the file or thin out its tables"),
+                Diagnostic::error("E0004", span, message).help("split the file, or thin out its tables"),
             );
         }
         !self.stopped()
@@ -207,6 +207,7 @@ impl OpenMapping {
 
 /// Values stand too deep in one another.
 pub(super) fn too_deep(span: Span) -> Diagnostic {
-    let message = format!("values stand more than {MAX_DEPTH} deep in one another here");
-    Diagnostic::error("E0004", span, message).help("no file of this kind needs more than a few levels")
+    let message = format!("values are nested more than {MAX_DEPTH} levels deep here");
+    Diagnostic::error("E0004", span, message)
+        .help("reduce the nesting; no file of this kind needs more than a few levels")
 }

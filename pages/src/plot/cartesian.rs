@@ -115,8 +115,8 @@ impl Cartesian {
         let beyond = points.filter(|point| x.beyond(point.0) || y.beyond(point.1)).count();
         let told = match beyond {
             0 => return self.subtitle.clone(),
-            1 => "1 point lies beyond the axes".to_owned(),
-            more => format!("{more} points lie beyond the axes"),
+            1 => "1 point is outside the axes".to_owned(),
+            more => format!("{more} points are outside the axes"),
         };
         if self.subtitle.is_empty() { told } else { format!("{}; {told}", self.subtitle) }
     }

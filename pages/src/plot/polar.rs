@@ -195,10 +195,10 @@ impl Polar {
         let radius = whole(Unit::of(&self.unit, self.radius).given(self.radius));
         match rings.magnification {
             Some(magnification) => format!(
-                "{division}, drawn {}:1 against the circle of radius {radius}; heavy ring: nominal, outward: longer",
+                "{division}, drawn {}:1 relative to the circle of radius {radius}; heavy ring: nominal; outward: longer",
                 ticks::text(magnification, 0.0)
             ),
-            None => format!("{division}; heavy ring: nominal, outward: longer"),
+            None => format!("{division}; heavy ring: nominal; outward: longer"),
         }
     }
 }

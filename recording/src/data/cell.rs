@@ -31,8 +31,8 @@ pub(super) fn number(cell: &[u8], decimal_comma: bool) -> Result<f64, BadCell> {
 fn with_comma(cell: &[u8], text: &str) -> Result<f64, BadCell> {
     if text.contains('.') {
         return Err(BadCell {
-            message: format!("`{}` has a point, and the decimal sign is a comma", shown(cell)),
-            help: "write a comma and no point in every number, or leave `decimal` out of the recording file"
+            message: format!("`{}` has a point, but the decimal sign is a comma", shown(cell)),
+            help: "write a comma instead of a point in every number, or remove `decimal` from the recording file"
                 .to_owned(),
         });
     }
@@ -82,7 +82,7 @@ pub(super) fn is_date(what: &str) -> BadCell {
 pub(super) fn is_no_date(what: &str) -> BadCell {
     BadCell {
         message: format!("{what} is a number, not a date"),
-        help: "write the unit of the times, `unit: s`, in place of `unit: date` in the recording file"
+        help: "write the unit of the times, `unit: s`, instead of `unit: date` in the recording file"
             .to_owned(),
     }
 }
@@ -90,7 +90,7 @@ pub(super) fn is_no_date(what: &str) -> BadCell {
 fn not_finite(cell: &[u8]) -> BadCell {
     BadCell {
         message: format!("`{}` is not a finite number", shown(cell)),
-        help: "leave the cell empty where nothing was measured".to_owned(),
+        help: "leave the cell empty if nothing was measured".to_owned(),
     }
 }
 
@@ -107,7 +107,7 @@ fn not_a_number(cell: &[u8], text: &str) -> BadCell {
     let help = if text.starts_with(['\u{2212}', '\u{2013}']) {
         "write the minus sign as `-`"
     } else {
-        "write a number such as `-0.5` or `1e-3`; leave the cell empty where nothing was measured"
+        "write a number such as `-0.5` or `1e-3`; leave the cell empty if nothing was measured"
     };
     BadCell { message: format!("`{}` is not a number", shown(cell)), help: help.to_owned() }
 }
@@ -123,9 +123,9 @@ pub(super) fn run(cell: &[u8]) -> Result<i64, BadCell> {
     let whole = || text.parse::<f64>().ok().filter(|number| number.fract() == 0.0 && number.abs() < 1e15);
     text.parse().ok().or_else(|| whole().map(whole_of)).ok_or_else(|| BadCell {
         message: match text {
-            "" => "the row does not tell its run".to_owned(),
+            "" => "the row has no run".to_owned(),
             _ => format!("`{}` is not a whole number", shown(cell)),
         },
-        help: "number the repeats 1, 2, 3, one number in every row".to_owned(),
+        help: "number the repeats 1, 2, 3, with one number in every row".to_owned(),
     })
 }

@@ -131,8 +131,8 @@ impl<'h> Columns<'h> {
             let value = column.channel.to_internal(number);
             if value.abs() > LARGEST {
                 let bad = BadCell {
-                    message: format!("`{}` is too large a number", row.text(column.cell)),
-                    help: "look at the unit of the channel".to_owned(),
+                    message: format!("`{}` is too large", row.text(column.cell)),
+                    help: "check the unit of the channel".to_owned(),
                 };
                 return Err(at_cell(row, &[column.cell], column.channel, bad));
             }
@@ -158,7 +158,7 @@ impl<'h> Columns<'h> {
         if stamp.is_missing() {
             let bad = BadCell {
                 message: "the row has no time".to_owned(),
-                help: "every row needs its time; leave out rows at which nothing was measured".to_owned(),
+                help: "give every row its time; leave out rows without a measurement".to_owned(),
             };
             return Err(at_cell(row, cells, channel, bad));
         }
@@ -166,7 +166,7 @@ impl<'h> Columns<'h> {
         let time =
             taken.map_err(|bad| at_cell(row, cells, channel, not_later(&bad, &row.text(first), run)))?;
         if (rows + 1).saturating_mul(self.numbers) > self.most {
-            let message = format!("the file holds more than {} numbers", self.most);
+            let message = format!("the file has more than {} numbers", self.most);
             return Err(row.error(first, message).help("split the recording, or take fewer samples"));
         }
         self.time_so_far.push(time);
@@ -177,7 +177,7 @@ impl<'h> Columns<'h> {
     /// All rows; there must be one, and something in every channel.
     pub(super) fn finish(self) -> Result<Table<'h>, DataError> {
         if self.time_so_far.is_empty() {
-            return Err(DataError::new(self.name, "there is no row under the header"));
+            return Err(DataError::new(self.name, "there is no row below the header"));
         }
         let mut seen: Vec<(&Channel, bool)> = Vec::new();
         for column in &self.others {
@@ -189,7 +189,7 @@ impl<'h> Columns<'h> {
         }
         if let Some((channel, _)) = seen.iter().find(|(_, something)| !something) {
             let message = format!("{} is empty", named(channel));
-            let help = "leave the channel out of the recording file";
+            let help = "remove the channel from the recording file";
             return Err(DataError::new(self.name, message).help(help));
         }
         let mut values: Vec<(&Channel, Vec<Vec<f64>>)> = Vec::new();
@@ -227,18 +227,16 @@ fn at_cell(row: &impl Cells, cells: &[usize], channel: &Channel, bad: BadCell) -
 fn not_later(bad: &NotLater, stamp: &str, run: i64) -> BadCell {
     let before = bad.before;
     if bad.other_clock {
-        let message = format!(
-            "`{stamp}` comes after `{before}`, and one of them has a time zone and the other has none"
-        );
-        return BadCell { message, help: "write all times with their zone, or all without".to_owned() };
+        let message = format!("`{stamp}` follows `{before}`, but only one of them has a time zone");
+        return BadCell { message, help: "write all times with a time zone, or all without".to_owned() };
     }
-    let message = format!("`{stamp}` comes after `{before}`, and time must increase");
+    let message = format!("`{stamp}` follows `{before}`, but time must increase");
     let help = if bad.returned {
-        format!("run {run} has rows further up: give each repeat its own number")
+        format!("run {run} also has rows further up; give each repeat its own number")
     } else if bad.same {
-        "write the time stamps with more decimal places, one for each row".to_owned()
+        "write the time stamps with more decimal places, so that each row has its own".to_owned()
     } else {
-        "sort the rows by time; where repeats have clocks of their own, number them in a channel `run`"
+        "sort the rows by time; if each repeat has its own clock, number the repeats in a channel `run`"
             .to_owned()
     };
     BadCell { message, help }

@@ -36,8 +36,8 @@ pub(super) fn contained<T>(name: &str, read: impl FnOnce() -> Result<T, DataErro
     let read = panic::catch_unwind(AssertUnwindSafe(read));
     READS.set(false);
     read.unwrap_or_else(|_| {
-        let error = DataError::new(name, "it cannot be read: what it says of itself does not hold");
-        Err(error.help("write the file anew, or save the table as CSV"))
+        let error = DataError::new(name, "it cannot be read: its description of itself is wrong");
+        Err(error.help("write the file again, or save the table as CSV"))
     })
 }
 

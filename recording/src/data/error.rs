@@ -44,7 +44,7 @@ impl DataError {
     pub(super) fn unreadable(file: &str, line: Option<u64>, error: &std::io::Error) -> Self {
         match line {
             None => Self::new(file, format!("it cannot be read: {error}")),
-            Some(line) => Self::new(file, format!("it cannot be read behind line {line}: {error}")),
+            Some(line) => Self::new(file, format!("it cannot be read after line {line}: {error}")),
         }
     }
 

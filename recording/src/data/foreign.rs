@@ -8,18 +8,18 @@ struct Kind {
 }
 
 /// Lines of Python; `x.parquet` is what the recording file then names.
-const HDF5: &str = "make a table of it, in Python: `pandas.read_hdf(\"x.h5\").to_parquet(\"x.parquet\")`, or, where h5py wrote it, `f = h5py.File(\"x.h5\"); pandas.DataFrame({k: f[k][:] for k in [\"t\", \"x\"]}).to_parquet(\"x.parquet\")`";
-const MAT: &str = "make a table of it, in Python: `m = scipy.io.loadmat(\"x.mat\"); pandas.DataFrame({k: m[k].ravel() for k in [\"t\", \"x\"]}).to_parquet(\"x.parquet\")`";
-const MAT_73: &str = "make a table of it, in Python: `f = h5py.File(\"x.mat\"); pandas.DataFrame({k: f[k][()].ravel() for k in [\"t\", \"x\"]}).to_parquet(\"x.parquet\")`";
-const TDMS: &str = "make a table of it, in Python: `nptdms.TdmsFile.read(\"x.tdms\").as_dataframe(time_index=True).reset_index().to_parquet(\"x.parquet\")`";
-const MDF: &str = "make a table of it, in Python: `asammdf.MDF(\"x.mf4\").to_dataframe().reset_index().to_parquet(\"x.parquet\")`";
+const HDF5: &str = "convert it to a table, in Python: `pandas.read_hdf(\"x.h5\").to_parquet(\"x.parquet\")`, or, if h5py wrote it, `f = h5py.File(\"x.h5\"); pandas.DataFrame({k: f[k][:] for k in [\"t\", \"x\"]}).to_parquet(\"x.parquet\")`";
+const MAT: &str = "convert it to a table, in Python: `m = scipy.io.loadmat(\"x.mat\"); pandas.DataFrame({k: m[k].ravel() for k in [\"t\", \"x\"]}).to_parquet(\"x.parquet\")`";
+const MAT_73: &str = "convert it to a table, in Python: `f = h5py.File(\"x.mat\"); pandas.DataFrame({k: f[k][()].ravel() for k in [\"t\", \"x\"]}).to_parquet(\"x.parquet\")`";
+const TDMS: &str = "convert it to a table, in Python: `nptdms.TdmsFile.read(\"x.tdms\").as_dataframe(time_index=True).reset_index().to_parquet(\"x.parquet\")`";
+const MDF: &str = "convert it to a table, in Python: `asammdf.MDF(\"x.mf4\").to_dataframe().reset_index().to_parquet(\"x.parquet\")`";
 const OLD_EXCEL: &str =
     "save it as `.xlsx`, or, in Python: `pandas.read_excel(\"x.xls\").to_parquet(\"x.parquet\")`";
 const FEATHER: &str =
-    "make Parquet of it, in Python: `pandas.read_feather(\"x.feather\").to_parquet(\"x.parquet\")`";
-const NUMPY: &str = "make a table of it, in Python: `pandas.DataFrame(numpy.load(\"x.npy\"), columns=[\"t\", \"x\"]).to_parquet(\"x.parquet\")`";
-const SQLITE: &str = "make a table of it, in Python: `pandas.read_sql(\"select * from name\", sqlite3.connect(\"x.db\")).to_parquet(\"x.parquet\")`";
-const PACKED: &str = "unpack it, or pack it with gzip";
+    "convert it to Parquet, in Python: `pandas.read_feather(\"x.feather\").to_parquet(\"x.parquet\")`";
+const NUMPY: &str = "convert it to a table, in Python: `pandas.DataFrame(numpy.load(\"x.npy\"), columns=[\"t\", \"x\"]).to_parquet(\"x.parquet\")`";
+const SQLITE: &str = "convert it to a table, in Python: `pandas.read_sql(\"select * from name\", sqlite3.connect(\"x.db\")).to_parquet(\"x.parquet\")`";
+const PACKED: &str = "unpack it, or compress it with gzip";
 
 /// The kinds that people have been given.
 const KINDS: [Kind; 14] = [
@@ -28,19 +28,19 @@ const KINDS: [Kind; 14] = [
     Kind { begins: b"MATLAB 5.0 MAT-file", what: "a MAT file", help: MAT },
     Kind { begins: b"TDSm", what: "a TDMS file", help: TDMS },
     Kind { begins: b"MDF     ", what: "an MDF file", help: MDF },
-    Kind { begins: b"UnFinMF ", what: "an MDF file that was not finished", help: MDF },
+    Kind { begins: b"UnFinMF ", what: "an unfinished MDF file", help: MDF },
     Kind {
         begins: b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1",
-        what: "a workbook of the old kind, or a locked one",
+        what: "a workbook in the old format, or a locked one",
         help: OLD_EXCEL,
     },
     Kind { begins: b"ARROW1", what: "an Arrow file (Feather)", help: FEATHER },
     Kind { begins: b"\x93NUMPY", what: "a NumPy file", help: NUMPY },
     Kind { begins: b"SQLite format 3\0", what: "an SQLite database", help: SQLITE },
-    Kind { begins: b"\x28\xb5\x2f\xfd", what: "packed by zstd", help: PACKED },
-    Kind { begins: b"\xfd7zXZ\0", what: "packed by xz", help: PACKED },
-    Kind { begins: b"BZh", what: "packed by bzip2", help: PACKED },
-    Kind { begins: b"7z\xbc\xaf\x27\x1c", what: "packed by 7-Zip", help: PACKED },
+    Kind { begins: b"\x28\xb5\x2f\xfd", what: "compressed with zstd", help: PACKED },
+    Kind { begins: b"\xfd7zXZ\0", what: "compressed with xz", help: PACKED },
+    Kind { begins: b"BZh", what: "compressed with bzip2", help: PACKED },
+    Kind { begins: b"7z\xbc\xaf\x27\x1c", what: "compressed with 7-Zip", help: PACKED },
 ];
 
 /// What a file is that is not read, and how to make a table of it, from its first bytes; nothing where it may be a table.

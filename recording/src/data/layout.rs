@@ -42,9 +42,12 @@ impl Layout {
         let wanted: Vec<&str> =
             header.channels.iter().flat_map(Channel::columns).map(|column| column.value.as_str()).collect();
         let separator = separator_of(&line, &wanted, &header.form).map_err(|possible| {
-            let message =
-                format!("{} stand between the names: what separates the columns?", possible.join(" and "));
-            at_header(message).help("separate the columns with commas, and take the others out of the names")
+            let message = format!(
+                "the names are separated by {}, so the separator is ambiguous",
+                possible.join(" and ")
+            );
+            at_header(message)
+                .help("separate the columns with commas, and remove the other characters from the names")
         })?;
         let names = match header.form.names {
             Names::Nowhere => (1..=names(&line, separator).len()).map(|number| number.to_string()).collect(),
@@ -92,7 +95,7 @@ impl Layout {
                 row.width().saturating_sub(1),
                 self.names.len()
             );
-            let help = "write `#unit` and then one unit for each column, empty where it has none";
+            let help = "write `#unit` and then one unit for each column, empty if it has none";
             return Err(row.error(0, message).help(help));
         }
         let text = |cell: usize| String::from_utf8_lossy(row.cell(cell)).into_owned();
@@ -113,9 +116,9 @@ fn first_line(
         if !found || lines.number() != number {
             let error = DataError::new(
                 name,
-                format!("line {number} is to be the header row, and is not there or empty"),
+                format!("line {number} should be the header row, but it is missing or empty"),
             );
-            return Err(error.help("count all lines, also those that are empty"));
+            return Err(error.help("count all lines, including empty ones"));
         }
         lines.put_back();
         return Ok((lines.next_line()?.unwrap_or_default().to_vec(), None));
@@ -163,7 +166,7 @@ fn agrees(channel: &Channel, found: Unit) -> bool {
 }
 
 /// What to do about two units.
-pub(super) const ONE_UNIT: &str = "let both say the same";
+pub(super) const ONE_UNIT: &str = "use the same unit in both";
 
 fn two_units(channel: &Channel, column: Option<&String>, found: &str) -> String {
     format!(
@@ -179,7 +182,7 @@ pub(super) fn notes_of_extra(header: &Header, name: &str, names: &[String]) -> V
     let lacking = header.extra.iter().filter(|extra| places(names, &extra.column.value).is_empty());
     let notes = lacking.map(|extra| {
         let (column, kept) = (&extra.column.value, &extra.name.value);
-        format!("{name} has no column `{column}`, which the recording keeps as `{kept}`")
+        format!("{name} has no column `{column}`, which the recording lists as `{kept}`")
     });
     notes.collect()
 }
@@ -204,7 +207,7 @@ pub(super) fn find_columns(header: &Header, names: &[String]) -> Result<Vec<Vec<
     for (channel, column) in wanted {
         let found = places(names, column);
         if found.len() > 1 {
-            let message = format!("column `{column}` stands twice");
+            let message = format!("column `{column}` occurs twice");
             return Err((message, "give each column its own name".to_owned()));
         }
         let name = found.first().and_then(|place| names.get(*place));
@@ -254,13 +257,13 @@ fn is_numbers(names: &[String]) -> bool {
 }
 
 fn no_header(error: DataError, comment: Option<&[u8]>, wanted: &[&str]) -> DataError {
-    let message = "the first row is a row of numbers, not of column names".to_owned();
+    let message = "the first row has numbers, not column names".to_owned();
     let text = comment.map(String::from_utf8_lossy).unwrap_or_default();
     let help = if wanted.iter().any(|name| text.contains(name)) {
-        "take away the `#` before the names of the columns".to_owned()
+        "remove the `#` before the names of the columns".to_owned()
     } else {
         format!(
-            "write the names of the columns above it, `{}`, or `data: {{file: ..., header: none}}` and the numbers of the columns in the recording file",
+            "write the names of the columns above it, `{}`, or write `data: {{file: ..., header: none}}` and the numbers of the columns in the recording file",
             wanted.join(",")
         )
     };

@@ -118,7 +118,7 @@ impl<'n, R: BufRead> Lines<'n, R> {
         self.number += 1;
         if length == LONGEST_LINE {
             let error = DataError::new(self.name, "the line is longer than 1 MiB");
-            let help = "write a header row, then one row of numbers a line";
+            let help = "write a header row, then one row of numbers per line";
             return Err(error.at(Place::Character { line: self.number, column: 1 }).help(help));
         }
         for end in *b"\n\r" {
@@ -206,22 +206,23 @@ impl Cells for Row<'_> {
             Width::AtLeast(width) if found > width => return None,
             Width::AtLeast(width) => {
                 let message =
-                    format!("the row has {found} cells, and {width} are read: `{}`", shown(self.line));
-                let help = "each row must have all columns that the recording file names";
+                    format!("the row has {found} cells, but {width} are needed: `{}`", shown(self.line));
+                let help = "give each row all columns that the recording file names";
                 return Some(self.error(found, message).help(help));
             }
             Width::Exactly(width) => width,
         };
-        let message = format!("the row has {found} cells, the header {width}: `{}`", shown(self.line));
+        let message =
+            format!("the row has {found} cells, but the header has {width}: `{}`", shown(self.line));
         let commas = found > width && self.line.contains(&b',') && !self.decimal_comma;
         let error = self.error(found.min(width), message);
         Some(error.help(match commas {
             // With a comma in most numbers there are nearly two cells for each.
             true if found > width + width / 2 => {
-                "are there decimal commas? Write points in numbers, and commas between them; or separate the columns with semicolons and write `decimal: \",\"` in the recording file"
+                "if the numbers have decimal commas, write points and separate the numbers with commas, or separate the columns with semicolons and write `decimal: \",\"` in the recording file"
             }
-            true => "write one cell for each column, empty where nothing was measured; a decimal comma makes two of one",
-            false => "write one cell for each column, empty where nothing was measured",
+            true => "write one cell for each column, empty if nothing was measured; a decimal comma splits a number into two cells",
+            false => "write one cell for each column, empty if nothing was measured",
         }))
     }
 

@@ -30,7 +30,7 @@ impl Header {
             self.channels.iter().find(|channel| matches!(channel.place, ChannelPlace::Dates(_)))
         {
             let message =
-                format!("channel `{}` is in dates, and columns in memory are numbers", dates.name.value);
+                format!("channel `{}` is in dates, but columns in memory must be numbers", dates.name.value);
             return Err(DataError::new(name, message).help("give seconds, and write `unit: s`"));
         }
         let mut columns: Vec<Values> = names.iter().map(|_| Values::Numbers(Vec::new())).collect();
@@ -40,7 +40,8 @@ impl Header {
             let length = *rows.get_or_insert(numbers.len());
             if numbers.len() != length {
                 let column = names.get(index).map_or("", String::as_str);
-                let message = format!("column `{column}` has {} rows, others have {length}", numbers.len());
+                let message =
+                    format!("column `{column}` has {} rows, but others have {length}", numbers.len());
                 return Err(
                     DataError::new(name, message).help("give one number in every row of every column")
                 );
@@ -110,8 +111,8 @@ impl Cells for Row<'_> {
         let value = value.unwrap_or(f64::NAN);
         if value.is_infinite() {
             return Err(BadCell {
-                message: "infinity is not a number that was measured".to_owned(),
-                help: "leave the cell empty where nothing was measured".to_owned(),
+                message: "infinity cannot be a measured number".to_owned(),
+                help: "leave the cell empty if nothing was measured".to_owned(),
             });
         }
         Ok(value)

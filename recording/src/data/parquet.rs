@@ -61,7 +61,7 @@ impl Header {
                 let form = if dates { date_of(column) } else { number_of(column) };
                 let form = form.map_err(|bad| {
                     let column = names.get(index).map_or("", String::as_str);
-                    DataError::new(name, format!("column `{column}` holds {}", bad.message)).help(bad.help)
+                    DataError::new(name, format!("column `{column}` contains {}", bad.message)).help(bad.help)
                 })?;
                 wanted.push(Wanted { index, form, time: channel.kind == ChannelKind::Time });
             }
@@ -85,8 +85,8 @@ impl Header {
         let header = (self.form.names != Names::FirstRow).then_some("header");
         let sheet = self.form.sheet.is_some().then_some("sheet");
         let Some(key) = self.form.of_text().or(header).or(sheet) else { return Ok(()) };
-        let error = DataError::new(name, format!("it is a Parquet file, which has no `{key}`"));
-        Err(error.help(format!("leave `{key}` out of the recording file")))
+        let error = DataError::new(name, format!("it is a Parquet file, for which `{key}` has no meaning"));
+        Err(error.help(format!("remove `{key}` from the recording file")))
     }
 }
 
@@ -115,7 +115,7 @@ fn number_of(column: &ColumnDescriptor) -> Result<Form, BadCell> {
     if date_of(column).is_ok() {
         return Err(BadCell {
             message: "dates".to_owned(),
-            help: "write `unit: date` for this channel in the recording file; only times may be dates"
+            help: "write `unit: date` for this channel in the recording file; only times can be dates"
                 .to_owned(),
         });
     }
@@ -163,7 +163,7 @@ fn date_of(column: &ColumnDescriptor) -> Result<Form, BadCell> {
         (None, _, Type::INT96) => ticks(1_000_000_000, false),
         _ => Err(BadCell {
             message: "no dates".to_owned(),
-            help: "write the unit of the times, `unit: s`, in place of `unit: date` in the recording file; dates that are text are made dates by `pandas.to_datetime`".to_owned(),
+            help: "write the unit of the times, `unit: s`, instead of `unit: date` in the recording file; convert text to dates with `pandas.to_datetime`".to_owned(),
         }),
     }
 }
@@ -175,7 +175,8 @@ fn read_group<R: ChunkReader + 'static>(
     width: usize,
 ) -> Result<Vec<Values>, ParquetError> {
     let mut columns: Vec<Values> = (0..width).map(|_| Values::Numbers(Vec::new())).collect();
-    let rows = usize::try_from(group.num_rows()).map_err(|_| general("a group has less than no rows"))?;
+    let rows =
+        usize::try_from(group.num_rows()).map_err(|_| general("a group has a negative number of rows"))?;
     for one in wanted {
         let Some(slot) = columns.get_mut(one.index) else { continue };
         let found = group.columns().get(one.index);
@@ -186,7 +187,9 @@ fn read_group<R: ChunkReader + 'static>(
             *slot = read_column(reader, one, chunk.column_descr().max_def_level())?;
         }
         if slot.len() != rows {
-            return Err(general("a column has not as many values as its group has rows"));
+            return Err(general(
+                "the number of values of a column differs from the number of rows of its group",
+            ));
         }
     }
     Ok(columns)
@@ -238,7 +241,7 @@ fn read_numbers(reader: ColumnReader, unsigned: bool, present: i16) -> Result<Ve
             values(reader, present, f64::NAN, |value| f64::from(*value))
         }
         ColumnReader::DoubleColumnReader(reader) => values(reader, present, f64::NAN, |value| *value),
-        _ => Err(general("a column does not hold numbers")),
+        _ => Err(general("a column does not contain numbers")),
     }
 }
 

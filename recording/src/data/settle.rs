@@ -114,9 +114,8 @@ fn unit_normals(
         let length = found.iter().map(|component| component * component).sum::<f64>().sqrt();
         let settled = if length.is_nan() { Some([f64::NAN; 3]) } else { unit(found) };
         let Some(settled) = settled else {
-            let message = format!("the normal of row {} under the header has the length zero", row + 1);
-            let help =
-                "a normal is a direction, such as 0, 0, 1; leave its cells empty where nothing was measured";
+            let message = format!("the normal of row {} below the header has length zero", row + 1);
+            let help = "write a direction, such as 0, 0, 1, or leave the cells empty if nothing was measured";
             return Err(DataError::new(name, message).help(help));
         };
         off += usize::from((length - 1.0).abs() > LENGTH_OFF);
@@ -127,7 +126,7 @@ fn unit_normals(
         }
     }
     if off > 0 {
-        notes.push(format!("{name}: {off} normals were not of length one and count as directions alone"));
+        notes.push(format!("{name}: {off} normals do not have length one; only their directions are used"));
     }
     Ok(Some(normals))
 }
@@ -135,7 +134,7 @@ fn unit_normals(
 fn restarted(name: &str, run: i64, count: usize) -> String {
     let more = if count > 1 { format!(", and {} later ones,", count - 1) } else { String::new() };
     format!(
-        "{name}: run {run}{more} begins at a time before the end of the run before it; the runs are laid one after another, and the pauses between them are not known"
+        "{name}: run {run}{more} begins before the end of the run before it; the runs are placed one after another, with unknown pauses between them"
     )
 }
 
@@ -145,12 +144,12 @@ fn check_holdout(header: &Header, table: &Table<'_>, name: &str) -> Result<(), D
     let runs: BTreeSet<i64> = table.run.iter().copied().collect();
     let listed = || runs.iter().take(24).map(i64::to_string).collect::<Vec<_>>().join(", ");
     if let Some(absent) = held.iter().find(|run| !runs.contains(run)) {
-        let message = format!("run {absent} is to be held out, and there is no such run");
+        let message = format!("run {absent} is to be held out, but does not exist");
         return Err(DataError::new(name, message).help(format!("the runs are {}", listed())));
     }
     if runs.iter().all(|run| held.contains(run)) {
-        let error = DataError::new(name, "all runs are held out, and none is left to learn from");
-        return Err(error.help(format!("the runs are {}: hold out one of several", listed())));
+        let error = DataError::new(name, "all runs are held out, so none is left to fit");
+        return Err(error.help(format!("hold out only some of the runs {}", listed())));
     }
     Ok(())
 }

@@ -103,7 +103,8 @@ impl Stamp {
         }
         let found = zoned().ok_or_else(|| BadCell {
             message: format!("`{}` is not a date with a time of day", shown(text.as_bytes())),
-            help: "write `2026-07-30T23:15:17.123`, with a zone such as `+02:00` or without".to_owned(),
+            help: "write a time such as `2026-07-30T23:15:17.123`, optionally with a zone such as `+02:00`"
+                .to_owned(),
         })?;
         Ok(Self::at(found.timestamp(), found.timestamp_subsec_nanos(), Kind::Universal))
     }

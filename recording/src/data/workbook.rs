@@ -40,8 +40,8 @@ impl Header {
         mut file: impl Read + Seek,
     ) -> Result<Recording, DataError> {
         if self.form.separator.is_some() {
-            let error = DataError::new(name, "it is a workbook, which has no `separator`");
-            return Err(error.help("leave `separator` out of the recording file"));
+            let error = DataError::new(name, "it is a workbook, for which `separator` has no meaning");
+            return Err(error.help("remove `separator` from the recording file"));
         }
         check_size(name, &mut file)?;
         let broken = |error: XlsxError| broken(name, &error);
@@ -89,7 +89,7 @@ fn check_size(name: &str, file: impl Read + Seek) -> Result<(), DataError> {
         let read = io::copy(&mut packed.take(left.saturating_add(1)), &mut io::sink());
         size = size.saturating_add(read.map_err(|error| broken(error.to_string()))?);
         if size > LARGEST {
-            let error = DataError::new(name, "it holds more than 256 MiB unpacked");
+            let error = DataError::new(name, "it has more than 256 MiB when unpacked");
             return Err(error.help("save the table as CSV or Parquet"));
         }
     }

@@ -66,8 +66,8 @@ impl<'n, 'b, R: Read + Seek> Rows<'n, 'b, R> {
                 Names::Line(line) if u64::from(row.row) + 1 < line => {}
                 Names::Line(line) if u64::from(row.row) + 1 > line => {
                     let error =
-                        DataError::new(name, format!("row {line} is to be the header row, and is empty"));
-                    return Err(error.help("count all rows, also those that are empty"));
+                        DataError::new(name, format!("row {line} should be the header row, but it is empty"));
+                    return Err(error.help("count all rows, including empty ones"));
                 }
                 _ => break row,
             }
@@ -135,7 +135,7 @@ impl<'n, 'b, R: Read + Seek> Rows<'n, 'b, R> {
     }
 
     fn disordered(&self, row: u32) -> DataError {
-        let error = DataError::new(self.name, "it cannot be read: its cells do not stand in order");
+        let error = DataError::new(self.name, "it cannot be read: its cells are out of order");
         error.at(Place::Row(u64::from(row) + 1))
     }
 
@@ -207,8 +207,8 @@ impl Row<'_> {
 
 fn no_value(error: &str) -> BadCell {
     BadCell {
-        message: format!("the cell holds `{}`", shown(error.as_bytes())),
-        help: "leave the cell empty where nothing was measured".to_owned(),
+        message: format!("the cell contains `{}`", shown(error.as_bytes())),
+        help: "leave the cell empty if nothing was measured".to_owned(),
     }
 }
 
@@ -256,8 +256,8 @@ impl Cells for Row<'_> {
         match sum {
             Some(sum) if texts.is_empty() => Ok(sum),
             Some(_) => Err(BadCell {
-                message: "one cell is a date and the other is text".to_owned(),
-                help: "give both the form of a date or a time in the sheet".to_owned(),
+                message: "one cell is a date, the other text".to_owned(),
+                help: "format both as a date or a time in the sheet".to_owned(),
             }),
             None => cell::date(&texts),
         }

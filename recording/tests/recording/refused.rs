@@ -71,8 +71,8 @@ fn keys() {
     refused(POSITION, "{column: xm, unit: mm}", "{unit: mm}", "E0601", "measured.x", "add `column: ...`");
     refused(POSITION, "{runs: [3]}", "{}", "E0601", "holdout", "add `runs: ...`");
     refused(POSITION, "recording: 1", "recording: 2", "E0602", "2", "write `recording: 1`");
-    refused(POSITION, "recording: 1", "calibration: 1", "E0602", "calibration", "begins with `recording: 1`");
-    refused(POSITION, "recording: 1", "abbe: 1", "E0602", "abbe", "begins with `recording: 1`");
+    refused(POSITION, "recording: 1", "calibration: 1", "E0602", "calibration", "begin with `recording: 1`");
+    refused(POSITION, "recording: 1", "abbe: 1", "E0602", "abbe", "begin with `recording: 1`");
     refused(POSITION, "data:", "titel: x\ndata:", "E0603", "titel", "did you mean `title`?");
     refused(
         POSITION,
@@ -95,7 +95,7 @@ fn keys() {
 
 #[test]
 fn forms() {
-    refused(POSITION, "data: data.csv", "data: [a, b]", "E0604", "[a, b]", "in one piece");
+    refused(POSITION, "data: data.csv", "data: [a, b]", "E0604", "[a, b]", "single word or number");
     refused(POSITION, "{column: xm, unit: mm}", "xm", "E0604", "xm", "column: ...");
     refused(POSITION, "{runs: [3]}", "{runs: 3}", "E0604", "3", "[a, b, c]");
     refused(BALLBAR, "[1 mm, 2 mm, 3 mm]", "[1 mm, 2 mm]", "E0604", "[1 mm, 2 mm]", "not sensitive");
@@ -128,7 +128,7 @@ fn instruments_and_channels() {
         "normal.y: {column: yc}",
         "E0612",
         "normal.y",
-        "only `probe`",
+        "only with `probe`",
     );
     refused(POSITION, "command.x", "deviation", "E0612", "deviation", "`measured.x`");
     refused(POSITION, "  measured.x: {column: xm, unit: mm}\n", "", "E0613", "channels", "`actual.x`");
@@ -267,13 +267,13 @@ fn datums() {
 fn straightness_and_angles() {
     let straight = LATHE.replace("linear", "straightness").replace("axis: X", "axis: X, direction: Z");
     refused(&straight, ", direction: Z", "", "E0615", "setup", "add `direction: Y`");
-    refused(&straight, "direction: Z", "direction: -X", "E0618", "-X", "take the instrument `linear`");
+    refused(&straight, "direction: Z", "direction: -X", "E0618", "-X", "use the instrument `linear`");
     refused(&straight, "direction: Z", "direction: [1, 0, 3]", "E0618", "[1, 0, 3]", "at right angles");
     let angular = LATHE
         .replace("linear", "angular")
         .replace("unit: um", "unit: urad")
         .replace("axis: X", "axis: X, direction: B");
-    refused(&angular, ", direction: B", "", "E0615", "setup", "add `direction: B`");
+    refused(&angular, ", direction: B", "", "E0615", "setup", "such as `direction: B`");
     refused(&angular, "unit: urad", "unit: um", "E0609", "um", "such as `deg`");
     refused(&angular, "direction: B", "direction: D", "E0617", "D", "write A, B or C");
     let rotary =

@@ -48,19 +48,19 @@ fn headers() {
     );
     refused(
         "# made by hand\nt_s,run,x_cmd,x_meas,x_cmd\n",
-        "data.csv:2:1: column `x_cmd` stands twice",
+        "data.csv:2:1: column `x_cmd` occurs twice",
         &["its own name"],
     );
-    refused("0,1,2,3\n", "data.csv:1:1: the first row is a row of numbers", &["`t_s,run,x_cmd,x_meas`"]);
+    refused("0,1,2,3\n", "data.csv:1:1: the first row has numbers", &["`t_s,run,x_cmd,x_meas`"]);
     refused(
         "# t_s,run,x_cmd,x_meas\n0,1,2,3\n",
-        "data.csv:2:1: the first row is a row of numbers",
-        &["take away the `#`"],
+        "data.csv:2:1: the first row has numbers",
+        &["remove the `#`"],
     );
     refused("\u{0}t_s,run\n", "data.csv:1:1: the file is not plain text", &["UTF-8"]);
     refused(
         "t_s;run,x_cmd\n",
-        "data.csv:1:1: commas and semicolons stand between the names",
+        "data.csv:1:1: the names are separated by commas and semicolons",
         &["with commas"],
     );
 }
@@ -70,7 +70,7 @@ fn units_that_disagree() {
     row(
         "#unit,s,,mm,um\n0,1,2,3\n",
         "data.csv:2:13: column `x_meas` is in `um` here and in `mm`",
-        &["both say the same"],
+        &["same unit in both"],
     );
     row(
         "#unit,s,,mm\n0,1,2,3\n",
@@ -107,22 +107,22 @@ fn cells() {
 
 #[test]
 fn rows() {
-    row("", "data.csv: there is no row under the header", &[]);
+    row("", "data.csv: there is no row below the header", &[]);
     row(
         "0,1,2,3\n1,1,2\n",
-        "data.csv:3:6: the row has 3 cells, the header 4: `1,1,2`",
-        &["empty where nothing"],
+        "data.csv:3:6: the row has 3 cells, but the header has 4: `1,1,2`",
+        &["empty if nothing"],
     );
     row(
         "0,1,2,3,4\n",
-        "data.csv:2:9: the row has 5 cells, the header 4",
-        &["one cell for each column", "a decimal comma makes two of one"],
+        "data.csv:2:9: the row has 5 cells, but the header has 4",
+        &["one cell for each column", "a decimal comma splits a number"],
     );
     row("0,1,1,2,5,3,5\n", "data.csv:2:9: the row has 7 cells", &["decimal commas"]);
     row(
         "0,1,2,\n1,1,2,nan\n",
         "data.csv: column `x_meas` (channel `measured.x`) is empty",
-        &["leave the channel out"],
+        &["remove the channel"],
     );
 }
 
@@ -133,14 +133,10 @@ fn times() {
         "data.csv:3:1: column `t_s` (channel `time`): the row has no time",
         &["every row"],
     );
-    row("0,1,2,3\n0,1,2,3\n", "data.csv:3:1: column `t_s`", &["`0` comes after `0`", "more decimal places"]);
-    row(
-        "0,1,2,3\n5,1,2,3\n4,1,2,3\n",
-        "data.csv:4:1: column `t_s`",
-        &["`4` comes after `5`", "channel `run`"],
-    );
-    row("0,1,2,3\n1,2,2,3\n0.5,1,2,3\n", "data.csv:4:1", &["run 1 has rows further up"]);
-    row("0,1,2,3\n1,2,2,3\n0.5,2,2,3\n", "data.csv:4:1", &["`0.5` comes after `1`"]);
+    row("0,1,2,3\n0,1,2,3\n", "data.csv:3:1: column `t_s`", &["`0` follows `0`", "more decimal places"]);
+    row("0,1,2,3\n5,1,2,3\n4,1,2,3\n", "data.csv:4:1: column `t_s`", &["`4` follows `5`", "channel `run`"]);
+    row("0,1,2,3\n1,2,2,3\n0.5,1,2,3\n", "data.csv:4:1", &["run 1 also has rows further up"]);
+    row("0,1,2,3\n1,2,2,3\n0.5,2,2,3\n", "data.csv:4:1", &["`0.5` follows `1`"]);
     row("-1e308,1,2,3\n1e308,1,2,3\n", "data.csv:3:1", &[]);
 }
 
@@ -152,7 +148,7 @@ fn runs() {
         &["1, 2, 3"],
     );
     row("0,one,2,3\n", "data.csv:2:3: column `run`", &["`one` is not a whole number"]);
-    row("0,,2,3\n", "data.csv:2:3: column `run`", &["does not tell its run"]);
+    row("0,,2,3\n", "data.csv:2:3: column `run`", &["the row has no run"]);
     let held = format!("{TEXT}holdout: {{runs: [3]}}\n");
     let error = recording(&held, &format!("{HEADER}0,1,2,3\n1,2,2,3\n")).unwrap_err();
     assert_eq!(error.place, None);
@@ -175,7 +171,7 @@ fn broken_files() {
     let error = header(TEXT).read_csv("data.csv.gz", cut).unwrap_err();
     assert!(error.to_string().contains("cannot be read"), "{error}");
     let error = header(TEXT).read_csv("data", &b"PAR1\x15\x04"[..]).unwrap_err();
-    assert!(error.to_string().contains("give the file itself"), "{error}");
+    assert!(error.to_string().contains("give the name of the file"), "{error}");
     // A line without an end costs a bounded amount of memory.
     let error = header(TEXT).read_csv("zeros", std::io::repeat(b'0')).unwrap_err();
     assert!(error.to_string().starts_with("error: zeros:1:1: the line is longer than 1 MiB"), "{error}");

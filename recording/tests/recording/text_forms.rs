@@ -92,7 +92,7 @@ fn dates() {
     refused(
         &dated,
         "t,x\n2026-07-30T23:15:17Z,1\n2026-07-30T23:15:16.5Z,2\n",
-        &["comes after `2026-07-30T23:15:17`"],
+        &["follows `2026-07-30T23:15:17`"],
     );
     refused(
         &text("d", SECONDS, X),
@@ -109,7 +109,7 @@ fn spaces_without_a_header() {
     let read = recording(&sampled, "100 0.5 1.0 \n101 0.5  -2.0\t\n  103 0.5 4\n").unwrap();
     assert_eq!(read.time, [0.0, 0.25e-3, 0.75e-3]);
     assert_eq!(read.measured[0].as_deref().unwrap(), [25.4, -50.8, 101.6]);
-    refused(&sampled, "100 0.5 1.0\noverrun\n", &["data.csv:2:8", "the row has 1 cells, and 3 are read"]);
+    refused(&sampled, "100 0.5 1.0\noverrun\n", &["data.csv:2:8", "the row has 1 cells, but 3 are needed"]);
     refused(
         &sampled,
         "100 0.5\n",
@@ -141,8 +141,8 @@ fn headers_further_down() {
     let down = text("{file: d, header: 4}", SECONDS, X);
     let read = recording(&down, "Name;Scope\n\nt,x,t,x\nt;x;z\n0;1;2\n1;2;2\n").unwrap();
     assert_eq!(read.time, [0.0, 1.0]);
-    refused(&down, "a\nb\n\n\nt,x\n0,1\n", &["line 4 is to be the header row"]);
-    refused(&down, "a\nb\n", &["line 4 is to be the header row"]);
+    refused(&down, "a\nb\n\n\nt,x\n0,1\n", &["line 4 should be the header row"]);
+    refused(&down, "a\nb\n", &["line 4 should be the header row"]);
     let first = text("{file: d, header: 1}", SECONDS, X);
     assert_eq!(recording(&first, "t,x\n0,1\n2,1\n").unwrap().time, [0.0, 2.0]);
 }
@@ -156,7 +156,7 @@ fn units_in_the_names() {
     // A name that is there as it is comes first; brackets without a unit are a part of the name.
     assert!(recording(&text("d", SECONDS, X), "t,x,x [um]\n0,1,2\n").is_ok());
     refused(&text("d", SECONDS, X), "t,x [left]\n0,1\n", &["no column `x`"]);
-    refused(&text("d", SECONDS, X), "t,x [mm],x (mm)\n0,1,2\n", &["column `x` stands twice"]);
+    refused(&text("d", SECONDS, X), "t,x [mm],x (mm)\n0,1,2\n", &["column `x` occurs twice"]);
     refused(
         &text("d", SECONDS, X),
         "t,x [um]\n0,1\n",
@@ -176,7 +176,7 @@ fn decimal_commas() {
         assert_eq!(read.time, [0.0, 0.5]);
         assert_eq!(read.measured[0].as_deref().unwrap(), [-1.25, 0.2]);
     }
-    refused(&comma, "t;x\n0,5;1.250\n", &["data.csv:2:5", "`1.250` has a point", "leave `decimal` out"]);
+    refused(&comma, "t;x\n0,5;1.250\n", &["data.csv:2:5", "`1.250` has a point", "remove `decimal`"]);
     refused(&comma, "t;x\n0,5;1,2,3\n", &["data.csv:2:5", "`1,2,3` is not a number"]);
     refused(&text("d", SECONDS, X), "t;x\n0;1,5\n", &["`1,5` has a decimal comma", "decimal: \",\""]);
 }

@@ -75,13 +75,13 @@ fn parquet_of_other_writers() {
 #[test]
 fn parquet_that_is_told_wrongly() {
     for (data, time, x, parts) in [
-        ("x", "{column: when, unit: s}", X, ["column `when` holds dates", "`unit: date`"]),
-        ("x", "{column: t, unit: date}", X, ["column `t` holds no dates", "`unit: s`"]),
+        ("x", "{column: when, unit: s}", X, ["column `when` contains dates", "`unit: date`"]),
+        ("x", "{column: t, unit: date}", X, ["column `t` contains no dates", "`unit: s`"]),
         (
             "x",
             "{column: t, unit: s}",
             "measured.x: {column: when, unit: mm}",
-            ["`when` holds dates", "only times"],
+            ["`when` contains dates", "only times"],
         ),
         (
             "x",
@@ -89,9 +89,19 @@ fn parquet_that_is_told_wrongly() {
             "measured.x: {column: y, unit: mm}",
             ["no column `y`", "when, t, n, x"],
         ),
-        ("{file: x, sheet: a}", "{column: t, unit: s}", X, ["no `sheet`", "leave `sheet` out"]),
-        ("{file: x, decimal: \",\"}", "{column: t, unit: s}", X, ["no `decimal`", "leave `decimal` out"]),
-        ("{file: x, header: none}", "{column: t, unit: s}", X, ["no `header`", "leave `header` out"]),
+        ("{file: x, sheet: a}", "{column: t, unit: s}", X, ["`sheet` has no meaning", "remove `sheet`"]),
+        (
+            "{file: x, decimal: \",\"}",
+            "{column: t, unit: s}",
+            X,
+            ["`decimal` has no meaning", "remove `decimal`"],
+        ),
+        (
+            "{file: x, header: none}",
+            "{column: t, unit: s}",
+            X,
+            ["`header` has no meaning", "remove `header`"],
+        ),
     ] {
         let error = read("polars-zstd.parquet", data, &format!("time: {time}, {x}")).unwrap_err().to_string();
         assert!(parts.iter().all(|part| error.contains(part)), "{error}");
@@ -122,7 +132,7 @@ fn workbooks_that_are_told_wrongly() {
         (
             "{file: x, sheet: run}",
             format!("{time}, measured.x: {{column: x, unit: um}}"),
-            ["is in `mm` here and in `um`", "say the same"],
+            ["is in `mm` here and in `um`", "the same unit in both"],
         ),
         ("{file: x, sheet: run}", with_x("{column: when, unit: s}"), ["cell A2", "is a date, not a number"]),
         (
@@ -130,7 +140,11 @@ fn workbooks_that_are_told_wrongly() {
             with_x("{column: t, unit: date}"),
             ["cell B2", "`0` is a number, not a date"],
         ),
-        ("{file: x, sheet: run, separator: tab}", format!("{time}, {X}"), ["no `separator`", "leave"]),
+        (
+            "{file: x, sheet: run, separator: tab}",
+            format!("{time}, {X}"),
+            ["`separator` has no meaning", "remove"],
+        ),
         ("{file: x, sheet: run, header: 99}", format!("{time}, {X}"), ["no row of column names", "sheet"]),
     ] {
         let error = read("openpyxl.xlsx", data, &channels).unwrap_err().to_string();
@@ -173,7 +187,7 @@ fn other_formats_are_named() {
     ] {
         let error = read(name, "x", &with_x("{column: t, unit: s}")).unwrap_err();
         let shown = error.to_string();
-        assert!(shown.contains(&format!("{name}: it is {what}, which is not read")), "{shown}");
+        assert!(shown.contains(&format!("{name}: it is {what}, which Abbe does not read")), "{shown}");
         assert!(error.help.unwrap().contains(way) && shown.contains("to_parquet"), "{shown}");
         assert!(shown.chars().all(|letter| letter == '\n' || !letter.is_control()), "{shown:?}");
     }

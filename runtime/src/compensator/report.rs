@@ -193,27 +193,27 @@ impl fmt::Display for Refusal {
             Self::Motor { axis, expected, found } => {
                 write!(
                     f,
-                    "axis {axis} is a motor: its axes put it at {expected} mm, the sample has it at {found} mm"
+                    "axis {axis} is a motor: its axes require {expected} mm, but the sample has {found} mm"
                 )
             }
             Self::NotConverging { iterations, distance } => write!(
                 f,
-                "the compensated position is not found: step {iterations} still moves by {distance:.6} mm"
+                "the compensated position was not found: step {iterations} still moves by {distance:.6} mm"
             ),
             Self::AngleNotConverging { iterations, angle } => write!(
                 f,
-                "the compensated angle is not found: step {iterations} still turns by {angle:.9} rad"
+                "the compensated angle was not found: step {iterations} still rotates by {angle:.9} rad"
             ),
             Self::NearSingular { amplification } => write!(
                 f,
-                "axes would move {amplification:.0} times as far as the tip is to move: here two of them move it in nearly the same direction"
+                "axes would have to move {amplification:.0} times as far as the tip: here two of them move it in nearly the same direction"
             ),
             Self::OverLimit { correction, limit } => {
-                write!(f, "the correction of {correction:.6} mm is over the limit of {limit} mm")
+                write!(f, "the correction of {correction:.6} mm exceeds the limit of {limit} mm")
             }
             Self::OverRotationLimit { correction, limit } => write!(
                 f,
-                "the correction of {correction:.9} rad of the rotary axes is over the limit of {limit} rad"
+                "the correction of {correction:.9} rad of the rotary axes exceeds the limit of {limit} rad"
             ),
         }
     }
@@ -306,10 +306,10 @@ impl fmt::Display for SetupError {
                 write!(f, "term {term} of error motion {motion} names axis {axis}, which the machine lacks")
             }
             Self::Parameter { motion, term, parameter } => {
-                write!(f, "term {term} of error motion {motion}: {parameter} is out of its range")
+                write!(f, "term {term} of error motion {motion}: {parameter} is out of range")
             }
             Self::LoneFactor { motion, term } => {
-                write!(f, "term {term} of error motion {motion} is a factor without a term behind it")
+                write!(f, "term {term} of error motion {motion} is a factor without a term after it")
             }
         }
     }

@@ -20,7 +20,7 @@ pub(super) fn read(node: &Node, name: Span, context: &mut Context<'_>) -> Option
     match node.entries() {
         Some([(kind, inside)]) => of_kind(&kind.value, kind.span, inside, context),
         Some([_, (second, _), ..]) => {
-            let mistake = Diagnostic::error("E0707", second.span, "a path has one instrument");
+            let mistake = Diagnostic::error("E0707", second.span, "a path must have one instrument");
             context.report(mistake.help("write one path file for each instrument"));
             None
         }
@@ -42,7 +42,7 @@ fn of_kind(kind: &str, span: Span, node: &Node, context: &mut Context<'_>) -> Op
         "angular" => angular(node, span, context),
         "probe" => probe(node, span, context),
         _ => {
-            let mistake = Diagnostic::error("E0707", span, format!("`{kind}` is no instrument"));
+            let mistake = Diagnostic::error("E0707", span, format!("unknown instrument `{kind}`"));
             let help = format!("write one of {}", INSTRUMENTS.join(", "));
             context.report(match nearest(kind, INSTRUMENTS) {
                 Some(near) => mistake.suggest(Some(near)),
@@ -76,7 +76,7 @@ fn position(node: &Node, context: &mut Context<'_>) -> Option<Instrument> {
         }
         let axis = context.axis(&upper, letter.span)?;
         if !context.rotary(axis) {
-            let message = format!("`{}` is no direction and does not turn", letter.value);
+            let message = format!("`{}` is neither a direction nor a rotary axis", letter.value);
             context.report(
                 Diagnostic::error("E0711", letter.span, message).help("write x, y, z or a rotary axis"),
             );
@@ -85,7 +85,7 @@ fn position(node: &Node, context: &mut Context<'_>) -> Option<Instrument> {
         angles.push(axis);
     }
     if angles.is_empty() == (directions == [false; 3]) {
-        let message = "`position` reads directions or angles, one of the two";
+        let message = "`position` must read either directions or angles";
         context.report(
             Diagnostic::error(FORM, node.span, message).help("write `[x, y]`, or a rotary axis: `[c]`"),
         );
@@ -208,7 +208,7 @@ fn vector(node: &Node, items: &[Node], what: &str, context: &mut Context<'_>) ->
         Ok(entries) if length > 0.0 && length.is_finite() => Some(entries.map(|entry| entry / length)),
         _ => {
             let mistake =
-                Diagnostic::error("E0709", node.span, format!("{what} is a vector of three numbers"));
+                Diagnostic::error("E0709", node.span, format!("{what} must be a vector of three numbers"));
             context.report(mistake.help("write three numbers, not all zero: `[0, 0.6, 0.8]`"));
             None
         }
@@ -224,7 +224,7 @@ fn place(node: &Node, what: &str, context: &mut Context<'_>) -> Option<[f64; 3]>
     match <[f64; 3]>::try_from(lengths) {
         Ok(place) => Some(place),
         Err(_) => {
-            let mistake = Diagnostic::error(FORM, node.span, format!("{what} has three lengths"));
+            let mistake = Diagnostic::error(FORM, node.span, format!("{what} must have three lengths"));
             context.report(mistake.help("write `[275 mm, 140 mm, 70 mm]`"));
             None
         }

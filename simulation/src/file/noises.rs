@@ -61,9 +61,8 @@ pub(super) fn missing(node: &Node, name: Span, context: &mut Context<'_>) -> Opt
     };
     let blocks = section.whole_or("blocks", 0, 0, context);
     if let (Some(MOST_BLOCKS..), Some(node)) = (blocks, section.get("blocks")) {
-        let message = format!("`blocks` of `missing` is less than {MOST_BLOCKS}");
-        context
-            .report(Diagnostic::error("E0708", node.span, message).help("lose fewer and longer stretches"));
+        let message = format!("`blocks` of `missing` must be less than {MOST_BLOCKS}");
+        context.report(Diagnostic::error("E0708", node.span, message).help("use fewer and longer stretches"));
     }
     let length = match blocks {
         Some(1..) => section.positive("length", Dimension::TIME, context),
@@ -113,7 +112,7 @@ fn steps(node: &Node, what: &str, context: &mut Context<'_>) -> Option<Vec<(f64,
         let late = read.zip(steps.last()).is_some_and(|((at, _), (before, _))| at <= *before);
         if late {
             let mistake = Diagnostic::error("E0708", item.span, format!("{words} are not in order of time"));
-            context.report(mistake.help("begin every step after the one before"));
+            context.report(mistake.help("begin each step after the one before"));
         }
         whole &= read.is_some() && !late;
         steps.extend(read);
@@ -158,7 +157,8 @@ fn load(name: &Spanned<String>, node: &Node, context: &mut Context<'_>) -> Optio
     let section = Section::open(node, name.span, &what, &known, context)?;
     let unit = word(section.need("unit", context)?, &section.words("unit"), context)?;
     let Some((unit, kind)) = LOADS.iter().find(|(known, _)| *known == unit.value) else {
-        let mistake = Diagnostic::error("E0716", unit.span, format!("`{}` is no unit of loads", unit.value));
+        let mistake =
+            Diagnostic::error("E0716", unit.span, format!("`{}` is not a unit of a load", unit.value));
         context.report(mistake.help("write one of N, V, A, %, count"));
         return None;
     };

@@ -71,7 +71,7 @@ impl Context<'_> {
         let found = node.text().and_then(|text| text.trim().parse::<u32>().ok());
         let found = found.filter(|found| *found >= least);
         if found.is_none() {
-            let message = format!("{what} is a whole number from {least} on");
+            let message = format!("{what} must be a whole number, at least {least}");
             self.report(
                 Diagnostic::error("E0708", number.span, message).help(format!("write `{least}` or more")),
             );
@@ -90,7 +90,7 @@ impl Context<'_> {
         if (0.0..=1.0).contains(&share) {
             return Some(share);
         }
-        let message = format!("{what} is a share: between 0 % and 100 %");
+        let message = format!("{what} must be a share from 0 % to 100 %");
         self.report(Diagnostic::error("E0708", node.span, message).help("write a share such as `0.5 %`"));
         None
     }
@@ -114,7 +114,7 @@ impl Context<'_> {
         }
         let bound = if zero { "must not be negative" } else { "must be greater than zero" };
         let mistake = Diagnostic::error("E0708", span, format!("{what} {bound}"));
-        self.report(mistake.help("write a larger value, or leave it out if it may be left out"));
+        self.report(mistake.help("write a larger value, or leave the key out if it is optional"));
         None
     }
 }
@@ -252,7 +252,7 @@ pub(super) fn named<'n>(
 ) -> Option<&'n [(Spanned<String>, Node)]> {
     let entries = node.entries();
     if entries.is_none() {
-        let message = format!("{what} is a mapping, found {}", node.kind_name());
+        let message = format!("{what} must be a mapping, found {}", node.kind_name());
         context.report(Diagnostic::error(FORM, node.span, message).help(format!("write `{example}`")));
     }
     entries

@@ -75,7 +75,7 @@ fn strokes(section: &Section<'_, '_>, context: &mut Context<'_>) -> Option<Vec<S
 
 fn one_ended(span: Span) -> Diagnostic {
     Diagnostic::error("E0710", span, "this axis has only one end of the line")
-        .help("name it in `from` and in `to`; where it only stands, name it in `at`")
+        .help("name it in both `from` and `to`; if it only stands still, name it in `at`")
 }
 
 /// A mapping of axes to positions.
@@ -126,7 +126,7 @@ fn circle(node: &Node, name: Span, context: &mut Context<'_>) -> Option<Shape> {
 fn directions(node: &Node, context: &mut Context<'_>) -> Option<Vec<bool>> {
     let items = list(node, "`directions` of `circle`", context)?;
     if items.is_empty() {
-        let mistake = Diagnostic::error("E0704", node.span, "`directions` of `circle` names none");
+        let mistake = Diagnostic::error("E0704", node.span, "`directions` of `circle` is empty");
         context.report(mistake.help("write `[ccw, cw]`, or one of them"));
         return None;
     }
@@ -154,7 +154,7 @@ fn pair(node: &Node, key: &str, context: &mut Context<'_>) -> Option<[f64; 2]> {
     let words = format!("`{key}` of `grid`");
     let items = list(node, &words, context)?;
     let [first, second] = items else {
-        let mistake = Diagnostic::error("E0704", node.span, format!("{words} has two positions"));
+        let mistake = Diagnostic::error("E0704", node.span, format!("{words} must have two positions"));
         context.report(mistake.help("write one for each axis of the plane: `[0 mm, 0 mm]`"));
         return None;
     };

@@ -22,13 +22,13 @@ pub enum PlantError {
 impl fmt::Display for PlantError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::OtherMachine(what) => write!(formatter, "the calibration is of another machine: {what}"),
-            Self::Table => formatter.write_str("a table's positions and values do not fit together"),
+            Self::OtherMachine(what) => write!(formatter, "the calibration is for another machine: {what}"),
+            Self::Table => formatter.write_str("the positions and values of a table do not match"),
             Self::NoTemperature(name) => {
                 write!(formatter, "the calibration needs the temperature of `{name}`")
             }
             Self::NoLoad(name) => write!(formatter, "the calibration needs the load `{name}`"),
-            Self::Length(what) => write!(formatter, "{what} is not as long as the time"),
+            Self::Length(what) => write!(formatter, "{what} does not have the length of the time"),
             Self::NoDriveTerm(what) => write!(formatter, "no drive sees {what}"),
         }
     }

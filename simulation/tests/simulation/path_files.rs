@@ -136,14 +136,14 @@ fn mistakes_are_told_where_they_are() {
     let cases = [
         (format!("path: 1\n{shape}{position}rate: 5 Hz\n"), "E0701", "path", "add `feed: ...`"),
         (both("").replace("path: 1", "path: 2"), "E0702", "2", "write `path: 1`"),
-        ("recording: 1\n".to_owned(), "E0702", "recording", "a path file begins with `path: 1`"),
-        ("calibration: 1\n".to_owned(), "E0702", "calibration", "a path file begins with `path: 1`"),
+        ("recording: 1\n".to_owned(), "E0702", "recording", "begin a path file with `path: 1`"),
+        ("calibration: 1\n".to_owned(), "E0702", "calibration", "begin a path file with `path: 1`"),
         (both("sede: 3\n"), "E0703", "sede", "did you mean `seed`?"),
         (
             with(&format!("{shape}instrument: {{linear: {{axis: X}}}}\ndatum: {{c: 1 deg}}\n")),
             "E0703",
             "datum",
-            "leave `datum` out, or take `position` along x, y or z, or `probe`",
+            "leave `datum` out, or use `position` along x, y or z, or `probe`",
         ),
         (both("noise: {whyte: 1 um}\n"), "E0703", "whyte", "did you mean `white`?"),
         (both("missing: {blocks: 1}\n"), "E0701", "missing", "add `length: ...`"),
@@ -165,7 +165,7 @@ fn mistakes_are_told_where_they_are() {
             both("fixture: -1 um\n"),
             "E0708",
             "-1 um",
-            "write a larger value, or leave it out if it may be left out",
+            "write a larger value, or leave the key out if it is optional",
         ),
         (
             with(&format!("{position}circle: {{plane: XX, radius: 1 mm}}\n")),
@@ -183,7 +183,7 @@ fn mistakes_are_told_where_they_are() {
             with(&format!("{position}line: {{from: {{X: 0 mm, Y: 0 mm}}, to: {{X: 1 mm}}}}\n")),
             "E0710",
             "Y",
-            "name it in `from` and in `to`; where it only stands, name it in `at`",
+            "name it in both `from` and `to`; if it only stands still, name it in `at`",
         ),
         (with(&format!("{shape}instrument: {{position: [u]}}\n")), "E0705", "u", "its axes are X, Y, Z"),
         (
@@ -210,16 +210,16 @@ fn mistakes_are_told_where_they_are() {
             with(&format!("{shape}instrument: ballbar\n")),
             "E0717",
             "line",
-            "change the path, or tell the instrument its centre and radius",
+            "change the path, or give the instrument its centre and radius",
         ),
         (
             both("").replace("9 mm", "0 mm"),
             "E0717",
             "line",
-            "change the path, or tell the instrument its centre and radius",
+            "change the path, or give the instrument its centre and radius",
         ),
         (both("noise: 1 s\n"), "E0307", "s", "use a unit such as `mm`"),
-        (both("clock: 3\n"), "E0306", "3", "write `3 s` if that is what is meant"),
+        (both("clock: 3\n"), "E0306", "3", "write `3 s` if that is the unit"),
     ];
     for (text, code, place, help) in cases {
         let (_, findings) = read("XYFZ", &text);

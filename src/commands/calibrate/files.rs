@@ -19,7 +19,7 @@ pub(super) fn setup_among(files: &[PathBuf]) -> Result<&Path, Failure> {
     match (files, data.as_slice()) {
         ([setup], []) => Ok(setup),
         (_, []) => Err(Failure::wrong(
-            "error: one set-up makes one calibration\nhelp: name all files under its `measurements`"
+            "error: give one set-up for one calibration\nhelp: list all files under its `measurements`"
                 .to_owned(),
         )),
         (_, data) => Err(Failure::wrong(format!("{WHY}\n\n{}", indented(&beside(data))))),
@@ -37,7 +37,7 @@ fn is_of_an_instrument(path: &Path) -> Result<bool, Failure> {
 }
 
 /// Why the file of an instrument alone makes no calibration.
-const WHY: &str = "error: the file of an instrument or a controller does not say which motion of which machine it shows, from where and in which sense\nhelp: write a set-up file and give that (`abbe new setup` writes it); for example";
+const WHY: &str = "error: the file of an instrument or a controller does not name its machine, its error motion, its origin or its sign\nhelp: write a set-up file and give that instead (`abbe new setup` writes one), for example";
 
 fn indented(text: &str) -> String {
     text.lines().map(|line| format!("    {line}\n")).collect()

@@ -102,6 +102,6 @@ pub(super) fn bad(row: &ByteRecord, number: u64, mistake: &str) -> Failure {
     let cells: Vec<_> = row.iter().take(12).map(|cell| quoted(&String::from_utf8_lossy(cell))).collect();
     let cells = cells.join(",");
     Failure::no(format!(
-        "error: standard input, row {number} under the header (`{cells}`): {mistake}\nhelp: --skip-bad leaves such rows out and counts them"
+        "error: standard input, row {number} under the header (`{cells}`): {mistake}\nhelp: use --skip-bad to leave out such rows and count them"
     ))
 }

@@ -24,7 +24,8 @@ pub(super) fn evaluated(path: &Path) -> Result<Option<(Evaluation, Vec<PathBuf>)
     if file::is_sectioned(&head) {
         let setup = SetUp::read(alone(path), path, &Person::default())?;
         let mut evaluation = of_setup(&setup, path)?;
-        let note = "The file does not name its axis, which is called X here, nor its sense: a set-up file says both.";
+        let note =
+            "The file names neither its axis, called X here, nor its sign. Use a set-up file to give both.";
         evaluation.positioning.iter_mut().for_each(|line| line.notes.push(note.to_owned()));
         return Ok(Some((evaluation, setup.files())));
     }
@@ -49,7 +50,7 @@ fn alone(path: &Path) -> SourceFile {
 fn of_setup(read: &SetUp, path: &Path) -> Result<Evaluation, Failure> {
     let (SetUp { source, equations, setup, .. }, [measured]) = (read, read.data.as_slice()) else {
         return Err(Failure::wrong(format!(
-            "error: {} has {} measurements\nhelp: a set-up of one file, of an axis's own motion such as EXX, is evaluated",
+            "error: {} has {} measurements\nhelp: give a set-up with one file, of an axis's own motion such as EXX",
             path.display(),
             read.data.len()
         )));

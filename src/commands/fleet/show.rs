@@ -21,7 +21,7 @@ pub(super) fn run(arguments: &FleetShow) -> Result<(), Failure> {
     let known = history(&fleet, arguments.until.unwrap_or_else(now), &Person::default())?;
     if known.machines.iter().all(|machine| machine.recordings.is_empty()) {
         let help = "help: `abbe fleet run` diagnoses the recordings first";
-        return Err(Failure::no(format!("error: {} holds no result\n{help}", fleet.results.display())));
+        return Err(Failure::no(format!("error: {} contains no result\n{help}", fleet.results.display())));
     }
     let command = command(arguments);
     if let Some(folder) = &arguments.output {

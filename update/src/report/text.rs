@@ -21,8 +21,8 @@ pub fn text(update: &Update) -> String {
     text += &rotations(update);
     text += &update.hints.iter().map(|hint| wrapped(hint, "", "   ")).collect::<String>();
     text += &wrapped(&system(update), "", "");
-    text += &figures("What is left, um (absolute values)", &update.residuals);
-    text += &figures("What is left at the held-out points, um", &update.held_out);
+    text += &figures("Residuals, um (absolute values)", &update.residuals);
+    text += &figures("Residuals at the held-out points, um", &update.held_out);
     text += &wrapped(&unseen(update), "", "");
     text += &changes(update);
     text += &relations(&update.relations);
@@ -36,22 +36,20 @@ fn part(part: &Part) -> String {
         facts.push(format!("{} held out", part.held_out));
     }
     if part.left_out > 0 {
-        facts.push(format!("{} left out, since their rows lack a position or a normal", part.left_out));
+        facts.push(format!("{} left out, because their rows lack a position or a normal", part.left_out));
     }
     if !part.standing.is_empty() {
-        facts.push(format!("{} taken to stand at zero", part.standing.join(", ")));
+        facts.push(format!("{} assumed to be at zero", part.standing.join(", ")));
     }
     wrapped(&format!("{}: {}.", part.file, facts.join("; ")), "", "   ")
 }
 
 fn datum(update: &Update) -> String {
     let zero = match update.datum.as_slice() {
-        [] => "The zero of no part is free: its place is taken for the machine's.".to_owned(),
-        free => format!(
-            "The zero of every setting-up is free in {} ({} zeros).",
-            free.join(" and "),
-            update.zeros
-        ),
+        [] => "No zero is free: the places of the parts are taken as known.".to_owned(),
+        free => {
+            format!("The zero of every set-up is free in {} ({} zeros).", free.join(" and "), update.zeros)
+        }
     };
     let compensated = match update.options.compensated {
         true => " The parts were made with this calibration's compensation.",
@@ -75,7 +73,7 @@ fn rotations(update: &Update) -> String {
         wrapped(&format!("{}{run}: {} about {}", one.file, angle(one), one.about), "   ", "      ")
     };
     let lines: String = update.rotations.iter().map(line).collect();
-    format!("The datum of these parts is free, and they lie turned by\n{lines}")
+    format!("The datum of these parts is free. They are rotated by\n{lines}")
 }
 
 /// An angle with its standard uncertainty, in urad and in degrees.
@@ -126,19 +124,19 @@ fn unseen(update: &Update) -> String {
     let [before, after] = update.leave_one_out;
     let one_out = match (before, after) {
         (Some(before), Some(after)) => format!(
-            "A reading that the model has not seen (leave one out): {:.2} um rms before, {:.2} um after.",
+            "Readings not used in the fit (leave-one-out): {:.2} um rms before, {:.2} um after.",
             before * 1e3,
             after * 1e3
         ),
-        _ => "Some readings stand alone for a part of the model: nothing tests it there.".to_owned(),
+        _ => "Some readings alone determine a part of the model, so nothing tests it there.".to_owned(),
     };
     let noise = match update.noise {
-        Some(noise) => format!(" Noise of a reading, from what is left: {:.2} um.", noise * 1e3),
-        None => " No reading is left over: the noise is not known, and nothing tells how good the fit is."
+        Some(noise) => format!(" Noise of a reading, from the residuals: {:.2} um.", noise * 1e3),
+        None => " There are no redundant readings, so the noise is unknown and the fit cannot be tested."
             .to_owned(),
     };
     let expected = update.expected_change.map_or(String::new(), |expected| {
-        format!(" The readings let expect relative changes of {:.3} (standard deviation).", expected)
+        format!(" The readings suggest relative changes of {:.3} (standard deviation).", expected)
     });
     one_out + &noise + &expected
 }
@@ -146,7 +144,7 @@ fn unseen(update: &Update) -> String {
 fn changes(update: &Update) -> String {
     let stand = update.unknowns - update.changes.len();
     if update.changes.is_empty() {
-        return "\nNo change pays: every coefficient stands.\n".to_owned();
+        return "\nNo change is worth its penalty: all coefficients stay the same.\n".to_owned();
     }
     let longest = update.changes.iter().map(|change| change.name.chars().count()).max().unwrap_or(0).max(11);
     let title = format!(
@@ -160,12 +158,12 @@ fn changes(update: &Update) -> String {
         text += &format!("{more} smaller changes: --format json lists them.\n");
     }
     if stand > 0 {
-        text += &format!("The other {stand} coefficients stand as they were.\n");
+        text += &format!("The other {stand} coefficients stay the same.\n");
     }
     if update.changes.iter().any(|change| !change.determined) && update.options.method != Method::Select {
         text += &wrapped(
-            "* not determined by itself: see below. Its uncertainty is that of the part that the points show, or, of \
-             ridge, also of what they do not.",
+            "* not determined by itself: see below. Its uncertainty covers the part that the points show; with ridge, it also \
+             covers the part that they do not show.",
             "",
             "  ",
         );
@@ -187,7 +185,7 @@ fn row(change: &Change, longest: usize) -> String {
     );
     match change.alternatives.as_slice() {
         [] => row,
-        others => row + &wrapped(&format!("would do as well: {}", named(others)), "    ", "      "),
+        others => row + &wrapped(&format!("equally good: {}", named(others)), "    ", "      "),
     }
 }
 
@@ -196,7 +194,7 @@ fn relations(relations: &[Relation]) -> String {
         relations.iter().partition(|relation| relation.others.is_empty());
     let mut text = String::new();
     if !alike.is_empty() {
-        text += "\nCannot be told apart from these points\n";
+        text += "\nCollinear at these points\n";
         for relation in alike {
             let with = if relation.others.len() > 1 { "a sum of " } else { "" };
             let line = format!("{} and {with}{}", relation.name, named(&relation.others));
@@ -205,7 +203,7 @@ fn relations(relations: &[Relation]) -> String {
     }
     if !unseen.is_empty() {
         let names: Vec<String> = unseen.iter().map(|relation| relation.name.clone()).collect();
-        text += "\nNot seen from these points at all\n";
+        text += "\nNot visible at these points\n";
         text += &wrapped(&names.join(", "), "   ", "   ");
     }
     text
@@ -236,7 +234,7 @@ fn fixed(update: &Update) -> String {
         let names: Vec<String> = all.map(|fixed| fixed.name.clone()).collect();
         wrapped(&format!("{}: {reason}", names.join(", ")), "   ", "      ")
     };
-    format!("\nNot moved\n{}", reasons.iter().map(line).collect::<String>())
+    format!("\nNot changed\n{}", reasons.iter().map(line).collect::<String>())
 }
 
 fn wrapped(text: &str, first: &str, others: &str) -> String {

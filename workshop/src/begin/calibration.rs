@@ -7,16 +7,16 @@ use model_dsl::equations::{ConstantInfo, Equations, Motion};
 #[must_use]
 pub fn calibration(machine: &str, equations: &Equations) -> String {
     let mut text = format!(
-        "# A calibration file of Abbe: the numbers of one machine. Every number has its unit.\n\
+        "# A calibration file for Abbe: the numbers of one machine. Every number has its unit.\n\
          calibration: 1\n\
          machine: {machine}\n\
-         # source: who measured what, with which instrument, when, at how many degC\n"
+         # source: who measured what, with which instrument, when, and at which temperature\n"
     );
     text += &constants(&equations.constants);
     text += "# limits: {compensation: 0.1 mm}   # a larger correction is refused\n\n";
-    text += "# An error is actual minus commanded. A number alone is a constant; most error motions are tables:\n\
+    text += "# An error is actual minus commanded. A bare quantity is a constant. Most error motions are tables:\n\
              #   EXX: [{table: {start: 0 mm, step: 50 mm, unit: um, values: [0, 1.2, 0.8]}}, {backlash: {lost_motion: 6 um}}]\n\
-             # `abbe explain EXX` tells what an error motion is, `abbe explain table` what a term is.\n\
+             # `abbe explain EXX` describes an error motion, `abbe explain table` a term.\n\
              errors:\n";
     let width = equations.motions.iter().map(|motion| motion.name.len()).max().unwrap_or_default();
     text += &equations.motions.iter().map(|motion| error_motion(motion, width)).collect::<String>();
@@ -34,7 +34,7 @@ fn constants(constants: &[ConstantInfo]) -> String {
     };
     let lines: String = constants.iter().map(line).collect();
     format!(
-        "# Offsets of this machine: put in your own, the length of the tool above all.\nconstants:\n{lines}"
+        "# Offsets of this machine. Put in your own values, above all the length of the tool.\nconstants:\n{lines}"
     )
 }
 

@@ -12,8 +12,8 @@ pub fn path(equations: &Equations) -> String {
         slides => slides.first().copied().or(equations.axes.first()).map(line).unwrap_or_default(),
     };
     format!(
-        "# A path file of Abbe: what is driven, and what reads it. `abbe simulate CALIBRATION PATH` drives it,\n\
-         # `abbe plan PATH` tells what its recording would show.\n\
+        "# A path file for Abbe: the trajectory and the instrument. `abbe simulate CALIBRATION PATH` drives it,\n\
+         # `abbe plan PATH` says what its recording would show.\n\
          path: 1\n\
          # title: a line for people\n\
          {shape}\
@@ -25,7 +25,7 @@ pub fn path(equations: &Equations) -> String {
 fn circle(one: &AxisInfo, other: &AxisInfo) -> String {
     let (one, other) = (&one.letter, &other.letter);
     format!(
-        "at: {{{one}: 150 mm, {other}: 150 mm}}   # the centre, and where each other axis stands\n\
+        "at: {{{one}: 150 mm, {other}: 150 mm}}   # the centre, and the position of each other axis\n\
          circle: {{plane: {one}{other}, radius: 100 mm, directions: [ccw, cw]}}\n\
          feed: 1000 mm/min\n\
          rate: 50 Hz\n\

@@ -82,8 +82,8 @@ pub fn columns(data: &Path) -> Result<Columns, Failure> {
     let text = String::from_utf8_lossy(&head);
     of_text(&text).ok_or_else(|| {
         Failure::no(format!(
-            "error: {} has no names of columns above its numbers, separated by commas, semicolons or tabs\n\
-             help: write them above the first row of numbers, such as `t,x_cmd,y_cmd`, without a `#`",
+            "error: {} has no row of column names, separated by commas, semicolons or tabs, above its numbers\n\
+             help: write the names above the first row of numbers, such as `t,x_cmd,y_cmd`, without a `#`",
             data.display()
         ))
     })
@@ -123,8 +123,8 @@ pub fn table_alone(data: &Path) -> Option<Failure> {
     let text = recording(&name, &columns(data).ok()?, None);
     let text: String = text.lines().map(|line| format!("    {line}\n")).collect();
     Some(Failure::wrong(format!(
-        "error: {} is a table, and does not say what its columns mean\n\
-         help: write a recording file and give that (`abbe new recording` writes it); for example\n\n{text}",
+        "error: {} is a table, which does not say what its columns mean\n\
+         help: write a recording file and give that instead (`abbe new recording` writes one), for example\n\n{text}",
         data.display()
     )))
 }
@@ -140,11 +140,11 @@ pub fn recording(data: &str, columns: &Columns, machine: Option<&str>) -> String
     let has = |kind: &str| guesses.iter().flatten().any(|guess| guess.channel.starts_with(kind));
     let instrument = if has("deviation") { "ballbar" } else { "position" };
     let mut text = format!(
-        "# A recording file of Abbe: what the columns of a table mean. Check each line: names are a guess.\n\
+        "# A recording file for Abbe: what the columns of a table mean. Check each line: the channels are guessed from the names.\n\
          recording: 1\n\
          # title: a line for people\n\
          machine: {}\n\
-         # calibration: mill.yaml   # what is known of the machine already\n\
+         # calibration: mill.yaml   # what is already known of the machine\n\
          instrument: {instrument}   # position, ballbar, linear, straightness, angular or probe\n\
          data: {data}\n\
          channels:\n",
@@ -170,7 +170,7 @@ fn channel(column: &str, guess: Option<&Guess>) -> String {
             format!("  {channel}: {{column: {}, unit: {unit}}}\n", quoted(column))
         }
         None => format!(
-            "  # {}: no channel by its name; a channel is command.x, measured.x, ...\n",
+            "  # {}: the name suggests no channel; channels are command.x, measured.x, ...\n",
             quoted(column)
         ),
     }

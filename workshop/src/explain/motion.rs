@@ -34,8 +34,9 @@ fn of_motor(name: &str) -> Option<String> {
     let number = motor.strip_prefix(|first: char| first.is_ascii_uppercase())?;
     number.bytes().all(|digit| digit.is_ascii_digit()).then(|| {
         let words = format!(
-            "An error motion, a length, mm of the motor's own travel: what motor {motor} does beside what it was told, where the machine file has such \
-             a motor in `transmission` or among the `drives` of a slide. It moves every slide that the motor moves."
+            "An error motion, a length, mm of the motor's own travel: how motor {motor} deviates from its command. The machine \
+             file must have such a motor in `transmission` or under the `drives` of a slide. The error moves every slide that \
+             the motor moves."
         );
         format!("{name}: error of motor {motor}\n\n{}\n", fill(&words, WIDTH))
     })
@@ -46,13 +47,13 @@ fn what(motion: &NamedMotion) -> String {
     let unit = if motion.kind.angular() { "an angle, rad" } else { "a length, mm" };
     match motion.kind {
         MotionKind::Alignment(_) if !motion.rotary => format!(
-            "An alignment error, {unit}: the line of motion of {axis} is turned, and its carriage is not. It counts from the frame before {axis}."
+            "An alignment error, {unit}: the line of motion of {axis} is rotated, but its carriage is not. It is counted from the frame before {axis}."
         ),
         MotionKind::Alignment(_) | MotionKind::Offset(_) => format!(
-            "A location error, {unit}: where the axis of {axis} stands, whatever its position. It counts from the frame before {axis} on the chain."
+            "A location error, {unit}: where the axis of {axis} lies, at every position of {axis}. It is counted from the frame before {axis} in the chain."
         ),
         _ => format!(
-            "An error motion, {unit}: what {axis} does beside what it was told, at each of its positions. ISO 230-1 and ISO 230-7 call it the same."
+            "An error motion, {unit}: how {axis} deviates from its command, at each of its positions. ISO 230-1 and ISO 230-7 use the same name."
         ),
     }
 }
@@ -61,7 +62,7 @@ fn spellings(motion: &NamedMotion) -> String {
     let (letter, axis) = (motion.kind.letter(), motion.axis);
     let standard = if motion.rotary { ", the name in ISO 230-7 and the literature" } else { "" };
     format!(
-        "Also read as {letter}0{axis}, and with the letter O as E{letter}O{axis} and {letter}O{axis}{standard}."
+        "Other spellings are {letter}0{axis} and, with the letter O, E{letter}O{axis} and {letter}O{axis}{standard}."
     )
 }
 
@@ -74,21 +75,20 @@ fn counted(motion: &NamedMotion) -> String {
     let from = motion.counted_from.clone().or_else(|| example.map(String::from)).unwrap_or_default();
     let counted = format!("E{letter}(0{from}){axis}");
     if own.contains(&from) {
-        return format!(
-            "{from} does not show it, since it runs in that direction: {counted} is refused (E0146)."
-        );
+        return format!("{counted} is refused (E0146): {from} runs in that direction and cannot show it.");
     }
     if motion.kind.angular() {
         return format!(
-            "{counted}, as ISO 230-1 writes, is the same error counted from {from}. It is read for {name} on a machine where both are \
-             equal, since nothing else lies between {from} and {axis}; elsewhere it is refused, with what it is (E0146)."
+            "{counted}, in the notation of ISO 230-1, is the same error counted from {from}. It is accepted for {name} on a \
+             machine on which both are equal, because nothing else lies between {from} and {axis}. Otherwise it is refused with \
+             its meaning (E0146)."
         );
     }
     if "XYZUVW".contains(&from) {
-        return format!("{from} is a slide and has no place of its own: {counted} is refused (E0146).");
+        return format!("{counted} is refused (E0146): {from} is a slide and has no place of its own.");
     }
     format!(
-        "{counted} is the same place counted from {from}, where {axis} stands on that; elsewhere it is refused (E0146)."
+        "{counted} is the same place counted from {from}, if {from} carries {axis}. Otherwise it is refused (E0146)."
     )
 }
 

@@ -47,10 +47,10 @@ pub(super) fn code(entry: &Entry<'_>) -> String {
     let mut text = format!("{}: {}\n\n", entry.name, entry.title);
     put(&mut text, &fill(entry.part("").unwrap_or_default(), WIDTH));
     if let Some(kind) = entry.part("example").and_then(example) {
-        section(&mut text, &format!("This gives it, {kind}"));
+        section(&mut text, &format!("Example, {kind}"));
         block(&mut text, &entry.example('+'));
     }
-    section(&mut text, "Mended");
+    section(&mut text, "Corrected");
     put(&mut text, &fill(entry.part("mend").unwrap_or_default(), WIDTH));
     let mended = entry.example('-');
     if !mended.is_empty() {
@@ -99,7 +99,7 @@ pub(super) fn term(entry: &Entry<'_>) -> String {
     let parts = [
         ("Its value", "value"),
         ("In a recording", "shows"),
-        ("What else looks so", "also"),
+        ("What looks the same", "also"),
         ("How to measure it", "measure"),
         ("How to remove it", "remove"),
     ];
@@ -119,21 +119,18 @@ pub(super) fn factor(known: &FactorEntry, entry: &Entry<'_>) -> String {
     let mut text = format!("{}: a factor of a term\n\n", known.name);
     put(
         &mut text,
-        &fill(
-            &format!("A term is multiplied with it under `times`. Machines have it: {}.", known.physics),
-            WIDTH,
-        ),
+        &fill(&format!("It multiplies a term under `times`. Examples: {}.", known.physics), WIDTH),
     );
     section(&mut text, "Its value");
     put(&mut text, &fill(known.value, WIDTH));
     section(&mut text, "Its keys");
     for key in known.keys {
-        let absent = key.or.map_or_else(String::new, |absent| format!("; left out: {absent}"));
+        let absent = key.or.map_or_else(String::new, |absent| format!("; if left out: {absent}"));
         line(&mut text, key.name, 16, &format!("{}{absent}", holds(key.holds)));
     }
     section(&mut text, "In real time");
     let compensated = known.not_compensable.map_or_else(
-        || "A controller knows it in time: it can compensate a term with this factor.".to_owned(),
+        || "A controller knows it in time, so it can compensate a term with this factor.".to_owned(),
         |reason| format!("No controller compensates a term with this factor: {reason}."),
     );
     put(&mut text, &fill(&compensated, WIDTH));
@@ -150,7 +147,7 @@ fn holds(holds: FactorHolds) -> &'static str {
         FactorHolds::Load => "the name of a load",
         FactorHolds::Power => "1, 2 or 3",
         FactorHolds::Range(_) => {
-            "two values of the state, the lower first: outside, the factor holds its value there"
+            "two values of the state, the lower first; beyond them the factor is constant"
         }
         FactorHolds::Nodes(_) => "positions in rising order",
         FactorHolds::Ratios => "bare numbers, one for each node",
@@ -159,12 +156,12 @@ fn holds(holds: FactorHolds) -> &'static str {
             Measure::Speed => "a speed, `mm/s`",
             Measure::Acceleration => "an acceleration, `mm/s^2`",
             Measure::Temperature => "a temperature, `degC`",
-            Measure::Step => "a difference of temperatures, `K`",
-            Measure::Rise => "a difference of temperatures for each unit of speed, `mK.s/mm`",
+            Measure::Step => "a temperature difference, `K`",
+            Measure::Rise => "a temperature difference per unit of speed, `mK.s/mm`",
             Measure::Time => "a time, `s`",
             Measure::Angle => "an angle, `deg`",
             Measure::Load => "a load, `N`",
-            Measure::Rate => "turns in a second for each unit of the load, `Hz/%`",
+            Measure::Rate => "turns per second for each unit of the load, `Hz/%`",
         },
     }
 }

@@ -25,7 +25,7 @@ pub(super) fn page(name: &str) -> Option<String> {
         // A page is text: writing to it cannot fail.
         let _ = writeln!(text, "{}", fill(words, WIDTH));
     };
-    paragraph("It names the axes in the order from the part to the tool, F being the bed.");
+    paragraph("It names the axes in order from the part to the tool. F is the bed.");
     paragraph(&format!("{} {}", carried(&part, Branch::Workpiece), carried(&tool, Branch::Tool)));
     paragraph("");
     paragraph(&format!("    {}", chain(&part, &tool)));
@@ -50,12 +50,12 @@ fn carried(axes: &[String], branch: Branch) -> String {
         outwards.reverse();
     }
     let pairs = outwards.iter().zip(outwards.iter().skip(1));
-    let stands: String = pairs.map(|(upper, lower)| format!(", {upper} stands on {lower}")).collect();
+    let stands: String = pairs.map(|(upper, lower)| format!(", {lower} carries {upper}")).collect();
     match outwards.as_slice() {
         [] => format!("No axis carries the {carried}: it is fixed to the bed."),
         [first, ..] => {
             let last = outwards.last().unwrap_or(first);
-            format!("{first} carries the {carried}{stands}, {last} stands on the bed.")
+            format!("{first} carries the {carried}{stands}, the bed carries {last}.")
         }
     }
 }

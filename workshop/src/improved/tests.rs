@@ -219,10 +219,10 @@ fn nothing_that_is_read_is_written_over() {
     let inputs = [(files, &recorded)];
     for name in ["r.yaml", "d.csv", "known.yaml", "stage.yaml", "kept/../known.yaml"] {
         let refused = check_target(&folder.join(name), &inputs).err().unwrap_or_else(|| panic!("{name}"));
-        assert!(words(&refused).contains("one of the files that the diagnosis is read from"), "{name}");
+        assert!(words(&refused).contains("one of the files that the diagnosis reads"), "{name}");
         assert!(matches!(refused, Failure::Wrong(_)));
     }
-    for (name, why) in [("kept", "is a folder"), ("none/new.yaml", "no such folder")] {
+    for (name, why) in [("kept", "is a folder"), ("none/new.yaml", "its folder does not exist")] {
         let refused = check_target(&folder.join(name), &inputs).err().unwrap_or_else(|| panic!("{name}"));
         assert!(words(&refused).contains(why), "{name}");
     }

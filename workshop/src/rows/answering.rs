@@ -154,6 +154,6 @@ impl Room {
         let Self { directions, values, travel } = self;
         let work = Work { directions, motions: values, travel };
         Compensator::new(machine, motions, states, work)
-            .map_err(|error| Failure::wrong(format!("error: the calibration cannot be run: {error}")))
+            .map_err(|error| Failure::wrong(format!("error: the calibration cannot be used: {error}")))
     }
 }

@@ -19,7 +19,7 @@ impl Timed {
     pub fn standing(&self) -> Option<String> {
         let Self::Velocity(why) = self else { return None };
         Some(format!(
-            "warning: there are no times, so that all rows are taken as of a machine that stands: {why} reads a velocity, which is zero then"
+            "warning: there are no times, so all rows are taken as static positions: {why} reads a velocity, which is then zero"
         ))
     }
 

@@ -101,11 +101,11 @@ impl<'s> State<'s> {
         let (Some(now), Some((before, from))) = (row.time, &self.previous) else { return Ok(()) };
         let step = now - before;
         if step < 0.0 {
-            return Err(format!("the time goes back by {} s", -step));
+            return Err(format!("the time decreases by {} s", -step));
         }
         let moves = row.position.iter().zip(from).any(|(to, from)| to != from);
         if step == 0.0 && moves && self.timed {
-            return Err("the axes move while the time stands still".to_owned());
+            return Err("the axes move while the time does not advance".to_owned());
         }
         Ok(())
     }

@@ -253,7 +253,7 @@ errors:
         };
         let mut back = table(axes, 10);
         back.time = Some((0..10).map(|row| if row == 4 { 0.0 } else { f64::from(row) }).collect());
-        assert_eq!(told(&back), "error: row 4, counted from 0: the time goes back by 3 s");
+        assert_eq!(told(&back), "error: row 4, counted from 0: the time decreases by 3 s");
         let mut lost = table(axes, 10);
         lost.position[1][6] = f64::NAN;
         assert!(told(&lost).starts_with("error: row 6, counted from 0: "), "{}", told(&lost));

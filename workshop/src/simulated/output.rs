@@ -47,7 +47,7 @@ impl Output {
         let there = [self.recording.clone(), self.data_path()].into_iter().find(|path| path.exists());
         match there.filter(|_| !force) {
             Some(path) => Err(Failure::wrong(format!(
-                "error: {} is there already\nhelp: --output takes another place, --force replaces it",
+                "error: {} already exists\nhelp: give another path with --output, or replace it with --force",
                 path.display()
             ))),
             None => Ok(()),
@@ -78,7 +78,7 @@ impl Output {
             _ => PathBuf::from("."),
         };
         std::fs::create_dir_all(&folder)
-            .map_err(|error| Failure::io(&format!("cannot make {}", folder.display()), &error))?;
+            .map_err(|error| Failure::io(&format!("cannot create {}", folder.display()), &error))?;
         Ok(folder)
     }
 

@@ -73,5 +73,5 @@ fn one_normal(recording: &Recording) -> Result<[f64; 3], String> {
     if rows.all(same) {
         return Ok(first);
     }
-    Err("a probe whose normal changes from row to row cannot be replayed".to_owned())
+    Err("a probe with a different normal in each row cannot be replayed".to_owned())
 }

@@ -79,7 +79,7 @@ fn behind_links(name: &Path) -> io::Result<PathBuf> {
             Err(_) => return Ok(place),
         }
     }
-    Err(io::Error::other("too many links lead on to other links"))
+    Err(io::Error::other("too many links lead to other links"))
 }
 
 /// A new file in the folder of another one, with a name that is short whatever the other is called.
@@ -93,5 +93,5 @@ fn create_beside(target: &Path) -> io::Result<(File, PathBuf)> {
             Err(error) => return Err(error),
         }
     }
-    Err(io::Error::new(io::ErrorKind::AlreadyExists, "files of unfinished attempts are in the way"))
+    Err(io::Error::new(io::ErrorKind::AlreadyExists, "files from unfinished attempts are in the way"))
 }

@@ -5,14 +5,13 @@ use pages::plot::{Draw, Look, Polar, Trace};
 use super::{Captions, Figure, LEFT};
 use crate::pictures::{Circle, Pass, Picture};
 
-const CAPTION: &str = "Deviations from the nominal circle as measured, as the known calibration has them (before) and with the findings (after), \
-     magnified as the plot states; the instrument's zero and the centre \
-     of the circle are taken out. Of many passes the first and the last of each sense are drawn at most. Steps at the axes are play or friction, an ellipse along the axes \
-     different scales. An ellipse at 45 degrees is a squareness where it lies alike in both senses, and different gains of the position loops where it \
-     turns by 90 degrees with the sense.";
+const CAPTION: &str = "Deviations from the nominal circle: measured, predicted by the known calibration (before) and predicted \
+     with the findings (after). The plot states the magnification. The instrument's zero and the centre of the circle are \
+     removed. Of many passes, at most the first and the last of each sense are drawn. Steps at the axes are backlash or \
+     friction; an ellipse along the axes means different scales. An ellipse at 45 degrees is a squareness if it is the same in \
+     both senses, and a mismatch of the position loops' gains if it rotates by 90 degrees with the sense.";
 
-const RESIDUAL: &str =
-    "What the known calibration leaves, and what the findings leave where there are any, magnified more.";
+const RESIDUAL: &str = "The residuals of the known calibration and, if there are findings, the residuals with them, at a larger magnification.";
 
 pub(super) fn figures(picture: &Picture, captions: &mut Captions) -> Vec<Figure> {
     let Some(circle) = &picture.circle else { return Vec::new() };

@@ -6,11 +6,11 @@ use super::{Captions, Figure, marked, outlying, residual, sides};
 use crate::diagnosis::{Diagnosis, IntervalOf};
 use crate::pictures::{AxisTrack, ChannelPicture, RunMean, Track};
 
-const TIME: &str = "Over time: what creeps is heat, a fixture that settles or a sensor that wanders; what \
-     jumps is an event.";
-const RUNS: &str = "The mean of each run: runs under the same state should agree.";
-const SPEED: &str = "Against speed: a slope is a position loop that follows late, or a clock that is off.";
-const TEMPERATURE: &str = "Against temperature: what follows a sensor can be compensated by it.";
+const TIME: &str =
+    "Over time: a slow change is heat, a settling fixture or a wandering sensor; a jump is an event.";
+const RUNS: &str = "The mean of each run: runs in the same state should agree.";
+const SPEED: &str = "Against speed: a slope is a following error or a clock offset.";
+const TEMPERATURE: &str = "Against temperature: an error that follows a sensor can be compensated with it.";
 const LOAD: &str = "Against load: a slope is compliance.";
 
 pub(super) fn figures(

@@ -10,9 +10,9 @@ use crate::pictures::{AxisTrack, ChannelPicture, Samples};
 /// The most axes that are drawn of a channel.
 const AXES: usize = 3;
 
-const BEFORE: &str = "What the known calibration leaves, its zeros fitted. A distance between the two directions is play, \
-     friction or following error; a slope is a scale or an angle, a wave a screw or an encoder.";
-const AFTER: &str = "What the findings leave, on a scale of its own. What is left should show no form.";
+const BEFORE: &str = "The residuals of the known calibration, with its zeros fitted. A distance between the two directions is \
+     backlash, friction or following error. A slope is a scale error or an angle; a wave comes from a screw or an encoder.";
+const AFTER: &str = "What the findings leave, on a scale of its own. Residuals should show no form.";
 
 pub(super) fn figures(
     diagnosis: &Diagnosis,

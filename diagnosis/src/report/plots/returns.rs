@@ -13,9 +13,9 @@ const CHANNELS: usize = 12;
 /// The colours of states, in order.
 const TONES: [Tone; 4] = [Tone::One, Tone::Two, Tone::Three, Tone::Four];
 
-const CAPTION: &str = "Of what the known calibration leaves: the share that any function of a state predicts in passes, runs or \
-     reversals to which it was not fitted, before anything has a name; each state beside those above it. What does not come back \
-     no model of these states can explain.";
+const CAPTION: &str = "The share of the residuals of the known calibration that a function of a state predicts in passes, runs \
+     or reversals to which it was not fitted. No term has been chosen yet. Each state is added to those above it. No model of \
+     these states can explain the part that does not come back.";
 
 pub(super) fn figures(diagnosis: &Diagnosis) -> Vec<Figure> {
     let wholes: Vec<Whole> =
@@ -25,7 +25,7 @@ pub(super) fn figures(diagnosis: &Diagnosis) -> Vec<Figure> {
     }
     let caption = match data::by_channel(diagnosis).count() - wholes.len() {
         0 => CAPTION.to_owned(),
-        more => format!("{CAPTION} {more} more channels are told in words alone."),
+        more => format!("{CAPTION} {more} more channels are described only in words."),
     };
     vec![Figure::new(Shares::new("What comes back", "the residual's variance", wholes), caption)]
 }

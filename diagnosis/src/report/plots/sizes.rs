@@ -26,9 +26,9 @@ fn contributions(diagnosis: &Diagnosis, pictures: &Pictures) -> Figure {
     let bars = diagnosis.findings.iter().zip(&pictures.contributions).map(bar).collect();
     let axis = Axis::new("contribution", diagnosis.after.unit);
     Figure::new(
-        Bars::new("Contributions", "bar: root mean square; stroke: greatest", axis, bars),
-        "What each finding adds to the readings, over all samples; the mean of each channel is taken out, since its zero is \
-         free. They need not add up: where two findings look alike here, one takes from the other.",
+        Bars::new("Contributions", "bar: root mean square; line: largest", axis, bars),
+        "The contribution of each finding to the readings, over all samples. The mean of each channel is subtracted, because its \
+         zero is free. The contributions need not add up: if two findings look alike here, they share an effect.",
     )
 }
 
@@ -46,7 +46,7 @@ fn distributions(diagnosis: &Diagnosis, pictures: &Pictures) -> Figure {
     };
     Figure::new(
         plot,
-        "All samples, outliers left out. Noise alone is even on both sides of zero, and as wide where held out as elsewhere.",
+        "All samples except outliers. Pure noise is symmetric about zero and as wide in the held-out data as elsewhere.",
     )
 }
 

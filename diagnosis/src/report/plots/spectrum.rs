@@ -7,9 +7,9 @@ use crate::diagnosis::{Diagnosis, IntervalOf};
 use crate::pictures::{ChannelPicture, Spectrum};
 
 const TIME: &str =
-    "The amplitude of each wave in time, of close ones the highest. A steady vibration is one line.";
-const POSITION: &str = "The amplitude of each wave along the axis. The pitch of a screw and its parts are lines; play and what repeats with \
-     the whole travel stand at the right.";
+    "The amplitude of each wave in time; of close waves, the largest. A steady vibration is one line.";
+const POSITION: &str = "The amplitude of each wave along the axis. The pitch of a screw and its fractions are lines; backlash \
+     and errors that repeat with the whole travel are at the right.";
 
 pub(super) fn figures(
     diagnosis: &Diagnosis,

@@ -75,7 +75,7 @@ fn write_table(text: &mut String, motor: &str, head: &str, entries: &[i64]) {
 /// one place, and need no spacing between them.
 fn entries(pmac: &Pmac, effect: &Effect, values: &[f64]) -> Result<(Vec<i64>, i64), Refused> {
     let (Some(from), Some(to)) = (counts(pmac, effect.source), counts(pmac, effect.target)) else {
-        let help = "give the counts for a degree: --counts C=10000";
+        let help = "give the counts per degree: --counts C=10000";
         return Err(Refused::new("a rotary axis without counts has no table", help));
     };
     let below = effect.nodes.iter().filter(|place| **place < 0.0).count();
@@ -91,8 +91,11 @@ fn entries(pmac: &Pmac, effect: &Effect, values: &[f64]) -> Result<(Vec<i64>, i6
     let step = effect.nodes.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
     let length = step * from * number(i64::try_from(all.len()).unwrap_or(i64::MAX));
     if (length - length.round()).abs() > 1e-6 {
-        let what = "a table's length is no whole number of counts";
-        return Err(Refused::new(what, "choose a step that is, with --points or --range"));
+        let what = "the length of a table is not a whole number of counts";
+        return Err(Refused::new(
+            what,
+            "choose a step with a whole number of counts, with --points or --range",
+        ));
     }
     Ok((all, index_signed(length.round())))
 }
@@ -118,13 +121,13 @@ pub(super) fn load(pmac: &mut Pmac, source: &SourceFile, diagnostics: &mut Diagn
                 line.malformed(FORM, diagnostics);
             }
         } else if assign(pmac, line.text).is_none() {
-            line.malformed("besides tables only I51=1 and Ixx86= are followed", diagnostics);
+            line.malformed("besides tables, only I51=1 and Ixx86= are read", diagnostics);
         }
     }
     if pmac.screws.len() > TABLES {
         let message = format!("{} leadscrew tables; a controller has {TABLES}", pmac.screws.len());
         let place = all.first().map_or_else(Default::default, |line| line.span);
-        diagnostics.push(Diagnostic::error("E0803", place, message).help("one table belongs to each motor"));
+        diagnostics.push(Diagnostic::error("E0803", place, message).help("use one table for each motor"));
     }
 }
 

@@ -64,12 +64,12 @@ pub(in super::super) fn controller(job: &Job<'_, '_>) -> Result<Pmac, Refused> {
         let counts =
             job.options.counts.iter().find(|(letter, _)| *letter == axis.letter).map(|(_, counts)| *counts);
         if !axis.rotary && counts.is_none() {
-            let help = format!("give the counts for a mm: --counts {}=10000", axis.letter);
-            return Err(Refused::new(format!("how many counts {} has is not known", axis.letter), help));
+            let help = format!("give the counts per mm: --counts {}=10000", axis.letter);
+            return Err(Refused::new(format!("the number of counts of {} is unknown", axis.letter), help));
         }
         if !number.parse::<u8>().is_ok_and(|number| number > 0) {
-            let help = format!("a motor goes by its number: --name {}=1", axis.letter);
-            return Err(Refused::new(format!("`{number}` is no motor"), help));
+            let help = format!("give the number of the motor: --name {}=1", axis.letter);
+            return Err(Refused::new(format!("`{number}` is not a motor"), help));
         }
         let unit = if axis.rotary { 1_f64.to_degrees() } else { 1.0 };
         let (counts, turns) = (counts.map(|counts| counts * unit), axis.rotary);

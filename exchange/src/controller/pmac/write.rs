@@ -48,8 +48,8 @@ pub(in super::super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
     let about = format!("{} leadscrew and {} backlash tables", kept.len(), backlash.len());
     written.files.push(File { name: "compensation.pmc".to_owned(), axis: None, text, about });
     written.loading = vec![
-        "a motor's zero is the calibration's: home it there, or set its home offset so".to_owned(),
-        "Ixx85 = 0 and no other buffers (I6, GATHER, ROTARY) while the tables are defined; I51 = 1 switches them on".to_owned(),
+        "the zero of each motor must be that of the calibration: home the motor there, or set its home offset".to_owned(),
+        "set Ixx85 = 0 and use no other buffers (I6, GATHER, ROTARY) while the tables are defined; I51 = 1 switches them on".to_owned(),
     ];
     Ok(written)
 }
@@ -60,7 +60,7 @@ fn left_out(job: &Job<'_, '_>, axis: usize) -> Option<String> {
     let own = geometry.equations.turning().into_iter().filter(|own| own.axis == axis);
     let letter = &geometry.equations.axes.get(axis)?.letter;
     own.into_iter().any(|own| !geometry.terms(own.motion).is_empty()).then(|| {
-        format!("the angle of {letter}: give the counts of its motor for a degree, --counts {letter}=10000")
+        format!("the angle of {letter}: give the counts of its motor per degree, --counts {letter}=10000")
     })
 }
 
@@ -76,7 +76,7 @@ fn rolling_nodes(
         let help =
             format!("extend it with --range {letter}=..., or move the calibration's zero to the motor's");
         return Err(Refused::new(
-            format!("the range of {letter} leaves out zero, where a table begins"),
+            format!("the range of {letter} does not contain zero, where a table begins"),
             help,
         ));
     }

@@ -30,7 +30,7 @@ pub(super) fn skew(job: &Job<'_, '_>, axes: [usize; 3]) -> Result<Skew, Refused>
     let inverse = normal.try_inverse().ok_or_else(|| {
         Refused::new(
             "the workspace has no extent in one of the axes",
-            "say with --range how far each axis goes",
+            "give the travel of each axis with --range",
         )
     })?;
     let [of_x, of_y] = right.map(|sum| inverse * sum);

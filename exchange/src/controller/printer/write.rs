@@ -21,7 +21,7 @@ pub(super) fn marlin(skew: &Skew, mesh: Option<&Mesh>) -> Written {
     let [xy, xz, yz] = skew.factors().map(|factor| decimal(factor, 9));
     let mut text = format!("M852 I{xy} J{xz} K{yz}\n");
     let mut loading = vec![
-        "SKEW_CORRECTION, SKEW_CORRECTION_FOR_Z and SKEW_CORRECTION_GCODE must be compiled in; send the file, then M500"
+        "the firmware must be built with SKEW_CORRECTION, SKEW_CORRECTION_FOR_Z and SKEW_CORRECTION_GCODE; send the file, then M500"
             .to_owned(),
     ];
     if let Some(mesh) = mesh {
@@ -32,11 +32,11 @@ pub(super) fn marlin(skew: &Skew, mesh: Option<&Mesh>) -> Written {
         }
         let [x, y] = mesh.nodes();
         loading.push(format!(
-            "the mesh of the firmware must be this one: GRID_MAX_POINTS_X {} from {} to {} mm, GRID_MAX_POINTS_Y {} from {} to {} mm",
+            "the firmware must have the same mesh: GRID_MAX_POINTS_X {} from {} to {} mm, GRID_MAX_POINTS_Y {} from {} to {} mm",
             x.len(), end(x.first()), end(x.last()), y.len(), end(y.first()), end(y.last())
         ));
         loading.push(
-            "M421 writes into a mesh that is there (G29 first); M420 S1 Z0 switches it on without fading"
+            "M421 writes into an existing mesh (run G29 first); M420 S1 Z0 switches it on without fading"
                 .to_owned(),
         );
     }
@@ -48,8 +48,8 @@ pub(super) fn klipper(skew: &Skew, mesh: Option<&Mesh>) -> Written {
     let [xy, xz, yz] = skew.factors().map(|factor| decimal(factor, 9));
     let mut text = format!("[skew_correction {PROFILE}]\nxy_skew = {xy}\nxz_skew = {xz}\nyz_skew = {yz}\n");
     let mut loading = vec![
-        "include the file in printer.cfg, which has [skew_correction] too, and restart".to_owned(),
-        format!("SKEW_PROFILE LOAD={PROFILE} in the start of a print"),
+        "include the file in printer.cfg, which must also have [skew_correction], and restart".to_owned(),
+        format!("run SKEW_PROFILE LOAD={PROFILE} at the start of a print"),
     ];
     if let Some(mesh) = mesh {
         let [x, y] = mesh.nodes();
@@ -70,7 +70,7 @@ pub(super) fn klipper(skew: &Skew, mesh: Option<&Mesh>) -> Written {
             let _ = writeln!(text, "{name} = {}", end(place));
         }
         loading.push(format!(
-            "BED_MESH_PROFILE LOAD={PROFILE}; [bed_mesh] must be there too, without fade_end: a mesh that fades out corrects a part at its foot alone"
+            "run BED_MESH_PROFILE LOAD={PROFILE}; printer.cfg must also have [bed_mesh], without fade_end, since a mesh that fades out corrects only the foot of a part"
         ));
     }
     Written { files: vec![file("abbe.cfg", text, about(mesh))], loading, left_out: Vec::new() }
@@ -81,8 +81,7 @@ pub(super) fn reprap(skew: &Skew, mesh: Option<&Mesh>) -> Written {
     let [x, y, z] = skew.tangents().map(|tangent| decimal(tangent * HEIGHT, 7));
     let text = format!("M556 S{HEIGHT} X{x} Y{y} Z{z} P0\n");
     let mut files = vec![file("abbe.g", text, "the skew (M556)".to_owned())];
-    let mut loading =
-        vec!["copy the line of abbe.g into config.g, in place of any M556 that is there".to_owned()];
+    let mut loading = vec!["copy the line of abbe.g into config.g, and replace any M556 there".to_owned()];
     if let Some(mesh) = mesh {
         let [along, across] = mesh.nodes();
         let step = |nodes: &[f64]| match nodes {
@@ -107,8 +106,10 @@ pub(super) fn reprap(skew: &Skew, mesh: Option<&Mesh>) -> Written {
         }
         let count = format!("the mesh of {} x {} points", along.len(), across.len());
         files.push(file("heightmap.csv", text, count));
-        loading
-            .push("heightmap.csv into /sys, then G29 S1; M376 H0, so that it does not fade out".to_owned());
+        loading.push(
+            "copy heightmap.csv to /sys, then run G29 S1, and M376 H0 so that the mesh does not fade out"
+                .to_owned(),
+        );
     }
     Written { files, loading, left_out: Vec::new() }
 }

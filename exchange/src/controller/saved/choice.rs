@@ -20,7 +20,7 @@ pub(super) fn one_of<'a, T>(
             if found.is_none() {
                 let message = format!("the file has no {what} `{wanted}`");
                 let help = match names.as_slice() {
-                    [] => format!("it has no {what} at all: leave `{key}` out"),
+                    [] => format!("leave `{key}` out: the file has no {what} at all"),
                     names => format!("it has {}", names.join(", ")),
                 };
                 diagnostics.push(Diagnostic::error("E0804", Default::default(), message).help(help));
@@ -31,7 +31,7 @@ pub(super) fn one_of<'a, T>(
         (None, [(_, only)]) => Some(only),
         (None, [_, (second, _), ..]) => {
             let message = format!("the file has {} of the kind {what}: {}", all.len(), names.join(", "));
-            let help = format!("say which: `{key}: {}`", names.first().unwrap_or(&"default"));
+            let help = format!("choose one: `{key}: {}`", names.first().unwrap_or(&"default"));
             diagnostics.push(Diagnostic::error("E0804", second.span, message).help(help));
             None
         }

@@ -17,7 +17,7 @@ use crate::controller::lines::{Line, lines};
 pub(in crate::controller) const BEGIN: &str = "RepRapFirmware height map file";
 
 /// The form of a file, for findings.
-const FORM: &str = "a height map has a line of its name, a line of labels, a line of the grid, and a row of heights for each place of the second axis";
+const FORM: &str = "write a height map as a line with its name, a line of labels, a line with the grid, and a row of heights for each position of the second axis";
 
 /// Whether a text is such a file.
 pub(super) fn is_here(text: &str) -> bool {
@@ -41,7 +41,7 @@ fn mesh(source: &SourceFile, diagnostics: &mut Diagnostics) -> Option<Mesh> {
         let before = points.len();
         points.extend(row.cells(',').map(|cell| (cell.text != "0").then(|| cell.number(diagnostics))));
         if points.len() - before != grid.counts[0] {
-            malformed(Some(row), &format!("this row has not {} heights", grid.counts[0]), diagnostics);
+            malformed(Some(row), &format!("this row does not have {} heights", grid.counts[0]), diagnostics);
             return None;
         }
     }
@@ -61,7 +61,7 @@ fn mesh(source: &SourceFile, diagnostics: &mut Diagnostics) -> Option<Mesh> {
         );
     } else if unprobed > 0 {
         let message = format!("{unprobed} of {} points were not probed", heights.len());
-        let help = "the plane through the others stands there, as RepRapFirmware has it";
+        let help = "the plane through the other points is used there, as in RepRapFirmware";
         diagnostics.push(Diagnostic::warning("W0801", numbers.span, message).help(help));
     }
     mesh
@@ -93,7 +93,7 @@ impl HeightGrid {
             if found.is_none() {
                 malformed(
                     Some(&labels),
-                    &format!("the labels have no `{}`, or nothing stands under it", known[0]),
+                    &format!("the labels have no `{}`, or there is nothing below it", known[0]),
                     diagnostics,
                 );
             }

@@ -119,7 +119,8 @@ fn mesh_of(section: &Section<'_>, diagnostics: &mut Diagnostics) -> Option<Mesh>
         let cells = row.cells(',').filter(|cell| !cell.text.is_empty());
         let numbers = cells.map(|cell| cell.number(diagnostics)).collect::<Option<Vec<f64>>>()?;
         if Some(numbers.len()) != x_count.and_then(whole) {
-            let message = format!("this row has {} heights, and `x_count` is another number", numbers.len());
+            let message =
+                format!("this row has {} heights, but `x_count` is a different number", numbers.len());
             diagnostics.push(Diagnostic::error("E0803", row.span, message).help(FORM));
             return None;
         }
@@ -131,7 +132,7 @@ fn mesh_of(section: &Section<'_>, diagnostics: &mut Diagnostics) -> Option<Mesh>
     let mesh = (rows.len() == count).then(|| Mesh::new(['X', 'Y'], [along, across], heights)).flatten();
     if mesh.is_none() {
         let message = format!(
-            "the {} rows of [{}] do not fit `y_count`, or its ends do not rise",
+            "the {} rows of [{}] do not match `y_count`, or its ends do not rise",
             rows.len(),
             section.name.text
         );

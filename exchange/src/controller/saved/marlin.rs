@@ -40,7 +40,7 @@ pub(super) fn read(source: &SourceFile, wanted: &SavedWanted, diagnostics: &mut 
         (Some(one), Some(other)) => {
             let message = "M852 and M556 are commands of two firmwares";
             let mistake = Diagnostic::error("E0803", other, message).also(one, "the other is here");
-            diagnostics.push(mistake.help("leave those of one printer in the file"));
+            diagnostics.push(mistake.help("keep only those of one printer"));
             None
         }
         (Some(_), None) => Some(Skew::of_factors(factors.values)),
@@ -84,7 +84,7 @@ impl Tangents {
         let (height, to_y) = (number('S'), number('P'));
         if deviations.iter().any(Option::is_some) && height.is_none_or(|height| height < LEAST_HEIGHT) {
             let message = "`M556` takes X, Y and Z over a height S of 10 mm or more";
-            let help = "write the height that was measured, such as `M556 S100 X0.12`";
+            let help = "write the height of the measurement, such as `M556 S100 X0.12`";
             diagnostics.push(Diagnostic::error("E0803", command.line.span, message).help(help));
             return;
         }
@@ -145,8 +145,8 @@ fn mesh(
             return refuse(
                 "E0803",
                 span,
-                "a mesh stands here by points, and is printed too",
-                "leave one of the two in the file",
+                "the file has a mesh both as points and as a printed table",
+                "keep one of the two",
             );
         }
         (Some(span), None) => match points.rows() {
@@ -157,8 +157,9 @@ fn mesh(
         (None, None) => return None,
     };
     let [Some(x), Some(y)] = wanted.reach else {
-        let message = "the file does not say from where to where the mesh reaches";
-        let help = "say it as the firmware was built: `x: [10 mm, 210 mm]` and `y: [10 mm, 210 mm]`";
+        let message = "the file does not give the ends of the mesh";
+        let help =
+            "give the ends for which the firmware was built: `x: [10 mm, 210 mm]` and `y: [10 mm, 210 mm]`";
         return refuse("E0804", points.first.unwrap_or_default(), message, help);
     };
     let columns = rows.first().map_or(0, Vec::len);
@@ -167,7 +168,7 @@ fn mesh(
     let mesh = even.then(|| Mesh::new(['X', 'Y'], places, rows.concat())).flatten();
     mesh.or_else(|| {
         let message =
-            "rows of the mesh differ in length, or the mesh has less than two points in one direction";
+            "rows of the mesh differ in length, or the mesh has fewer than two points in one direction";
         refuse("E0803", points.first.unwrap_or_default(), message, FORM)
     })
 }

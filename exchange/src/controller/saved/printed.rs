@@ -14,7 +14,8 @@ const HEADS: [&str; 4] =
     ["Bilinear Leveling Grid", "Bed Topography Report", "Mesh Bed Level data", "Measured points"];
 
 /// The form of a mesh, for findings.
-const FORM: &str = "a printed mesh has rows such as ` 0 +0.080 -0.040 -0.115`, the number of the row first";
+const FORM: &str =
+    "write the rows of a printed mesh such as ` 0 +0.080 -0.040 -0.115`, with the number of the row first";
 
 /// Whether a text has such a mesh.
 pub(super) fn is_here(text: &str) -> bool {
@@ -33,8 +34,7 @@ pub(super) fn rows(source: &SourceFile, diagnostics: &mut Diagnostics) -> Option
     let (first, more) = heads.split_first()?;
     if let Some(second) = more.first().and_then(|second| all.get(*second)) {
         let message = "a second mesh begins here";
-        diagnostics
-            .push(Diagnostic::error("E0803", second.span, message).help("leave one of the two in the file"));
+        diagnostics.push(Diagnostic::error("E0803", second.span, message).help("keep one of the two"));
         return None;
     }
     let mut rows: Vec<Row<'_>> = Vec::new();
@@ -108,7 +108,7 @@ fn ordered(
             None => return refuse(Some(row.line), "E0802", "this row has no number", FORM),
         };
         if let Some(missing) = row.heights.iter().find(|height| is_missing(height.text)) {
-            let help = "fill the mesh on the printer first: G29 P3, or probe again";
+            let help = "fill the mesh on the printer first with G29 P3, or probe again";
             return refuse(Some(*missing), "E0801", "this point was not probed", help);
         }
         let heights = row.heights.iter().map(|height| height.text.parse().ok()).collect::<Option<Vec<f64>>>();
@@ -118,7 +118,7 @@ fn ordered(
                 return refuse(
                     Some(row.line),
                     "E0803",
-                    "this row stands twice, or rows before it are missing",
+                    "this row occurs twice, or rows before it are missing",
                     FORM,
                 );
             }
@@ -126,6 +126,6 @@ fn ordered(
     }
     match slots.into_iter().collect::<Option<Vec<_>>>().filter(|rows| rows.len() > 1) {
         Some(rows) => Some(rows),
-        None => refuse(head, "E0802", "no two rows of heights follow", FORM),
+        None => refuse(head, "E0802", "fewer than two rows of heights follow", FORM),
     }
 }

@@ -43,23 +43,23 @@ pub(super) fn read(source: &SourceFile, wanted: &SavedWanted, diagnostics: &mut 
     };
     let Some(axis) = wanted.axis else {
         let help = "name the axis: `axis: X`";
-        return refuse("E0804", "a screw table does not say whose joint it is for", help);
+        return refuse("E0804", "a screw table does not say which joint it is for", help);
     };
     let Some(kind) = wanted.kind else {
-        let help = "say what COMP_FILE_TYPE is in the machine's INI file: `type: 0` or `type: 1`; the same row means the opposite in the other";
-        return refuse("E0804", "a screw table does not say of which type it is", help);
+        let help = "give COMP_FILE_TYPE from the machine's INI file: `type: 0` or `type: 1`; the same row has the opposite meaning in the two types";
+        return refuse("E0804", "a screw table does not say which type it has", help);
     };
     let table = linuxcnc::read(source.text(), kind);
     if table.len() < 2 {
-        let message = "the loader takes less than two triplets of this table";
+        let message = "the loader takes fewer than two triplets of this table";
         return refuse(
             "E0803",
             message,
-            "a table is lines of three numbers from the first on: nominal, forward, reverse",
+            "write lines of three numbers, beginning with the first line: nominal, forward, reverse",
         );
     }
     for finding in &table.findings {
-        let help = "LinuxCNC works with the rest, and so does this calibration: mend the file";
+        let help = "correct the file; LinuxCNC uses only the rest, and so does this calibration";
         diagnostics.push(Diagnostic::warning("W0802", Span::default(), finding.clone()).help(help));
     }
     let Unit(unit) = wanted.unit.unwrap_or(Unit::MM);

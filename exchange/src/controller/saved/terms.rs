@@ -39,9 +39,9 @@ pub(super) fn of(geometry: &Geometry<'_>, saved: &Saved) -> Result<Vec<(usize, C
 /// For each skew the alignment error of its axis; where the machine file has none, or where the angle is larger than an alignment error may
 /// be, the slope of its straightness. That is the same error: neither turns the carriage.
 fn of_skew(geometry: &Geometry<'_>, skew: &Skew) -> Result<Vec<(usize, CalibratedTerm)>, Refused> {
-    let errors = skew.errors().ok_or_else(|| {
-        Refused::new("these skew factors have no inverse", "look at the numbers of the file")
-    })?;
+    let errors = skew
+        .errors()
+        .ok_or_else(|| Refused::new("these skew factors have no inverse", "check the numbers of the file"))?;
     let mut terms = Vec::new();
     for (across, row) in errors.iter().enumerate() {
         for (along, slope) in row.iter().enumerate() {
@@ -70,12 +70,13 @@ fn of_slope(
         return Ok((motion, CalibratedTerm::Polynomial { input: SeriesInput::Axis(axis), coefficients }));
     }
     let what = format!(
-        "{} has no error motion that leans {} towards {}",
+        "{} has no error motion that tilts {} towards {}",
         geometry.equations.machine,
         letter(along),
         letter(across)
     );
-    let help = format!("give the machine file an alignment error of {}, or its straightness", letter(along));
+    let help =
+        format!("add an alignment error of {}, or its straightness, to the machine file", letter(along));
     Err(Refused::new(what, help))
 }
 
@@ -88,7 +89,7 @@ fn of_mesh(geometry: &Geometry<'_>, mesh: &Mesh) -> Result<Vec<(usize, Calibrate
         let what = format!("{} has no straightness EZ{}", geometry.equations.machine, mesh.axes[0]);
         Refused::new(
             what,
-            format!("give the machine file EZ{}, which the heights of a bed become", mesh.axes[0]),
+            format!("add EZ{}, which takes the heights of a bed, to the machine file", mesh.axes[0]),
         )
     })?;
     Ok(mesh.terms(axes, -1.0 / lever).into_iter().map(|term| (motion, term)).collect())
@@ -100,7 +101,7 @@ fn of_screw(geometry: &Geometry<'_>, screw: &Screw) -> Result<(usize, Calibrated
         let what = format!("{} has no positioning error of that axis", geometry.equations.machine);
         Refused::new(
             what,
-            "a screw table is for a slide, whose machine file has its positioning error: EXX of X",
+            "use a screw table for a slide, and list its positioning error in the machine file: EXX of X",
         )
     };
     let across = own_direction(geometry, screw.axis).ok_or_else(refused)?;
@@ -130,7 +131,7 @@ pub(in crate::controller) fn slide(geometry: &Geometry<'_>, direction: usize) ->
         letter(direction),
         geometry.equations.machine
     );
-    Err(Refused::new(what, "such files are for machines of three slides X, Y, Z"))
+    Err(Refused::new(what, "use such files for machines with three slides X, Y, Z"))
 }
 
 /// The axis of a letter.
@@ -142,7 +143,7 @@ fn named(geometry: &Geometry<'_>, letter: char) -> Result<usize, Refused> {
         Refused::new(
             what,
             format!(
-                "its axes are {}; such files are for machines of three slides X, Y, Z",
+                "its axes are {}; use such files for machines with three slides X, Y, Z",
                 letters.join(", ")
             ),
         )

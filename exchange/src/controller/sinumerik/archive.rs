@@ -113,12 +113,10 @@ impl Raw<'_> {
         let what = if turns {
             format!("{points} points at steps of {step} do not reach from {first} to {last}")
         } else {
-            format!(
-                "a table that repeats itself (IS_MODULO) goes over {TURN} deg, not from {first} to {last}"
-            )
+            format!("a table that repeats (IS_MODULO) covers {TURN} deg, not from {first} to {last}")
         };
         let help =
-            "points are counted from 0 without a gap, and STEP times their number less one is MAX - MIN";
+            "number the points from 0 without gaps; STEP times their number minus one must be MAX - MIN";
         diagnostics.push(Diagnostic::error("E0803", self.place.unwrap_or_default(), what).help(help));
         None
     }
@@ -169,8 +167,11 @@ fn axis(
 ) -> Option<usize> {
     let axis = control.names.iter().position(|known| known == name);
     if axis.is_none() {
-        let message = format!("no axis of the machine is called `{name}`");
-        let help = format!("they are {}; --name X={name} says otherwise", control.names.join(", "));
+        let message = format!("the machine has no axis `{name}`");
+        let help = format!(
+            "its axes are {}; to give an axis this name, use --name X={name}",
+            control.names.join(", ")
+        );
         diagnostics.push(Diagnostic::error("E0804", place.unwrap_or_default(), message).help(help));
     }
     axis

@@ -115,11 +115,11 @@ impl Sinumerik {
     /// Cross tables that add nothing, and why.
     pub(super) fn idle(&self) -> Vec<String> {
         if self.sense.is_none() && !self.crosses.is_empty() {
-            return vec!["its cross tables (CEC): say with --value what a positive number does".to_owned()];
+            return vec!["its cross tables (CEC): say with --value what a positive number means".to_owned()];
         }
         let missing = |(index, cross): (&usize, &Cross)| {
             let by = cross.by.filter(|by| !self.crosses.contains_key(by))?;
-            Some(format!("table {index}: it is multiplied by table number {}, which is not there", by + 1))
+            Some(format!("table {index}: it is multiplied by table number {}, which does not exist", by + 1))
         };
         self.crosses.iter().filter_map(missing).collect()
     }

@@ -65,7 +65,7 @@ fn loading(nodes: &[Vec<f64>]) -> Vec<String> {
         format!(
             "MD38000 $MA_MM_ENC_COMP_MAX_POINTS at least {most}; then run eec.ini, MD32700 $MA_ENC_COMP_ENABLE = 1"
         ),
-        "a value of ENC_COMP moves its axis the other way: these are errors, actual minus commanded"
+        "a value of ENC_COMP moves its axis the opposite way: the values are errors, actual minus commanded"
             .to_owned(),
     ]
 }
@@ -76,8 +76,8 @@ fn cross(job: &Job<'_, '_>, control: &Sinumerik, mut pieces: Vec<Piece>, written
     let Some(sense) = job.options.sense else {
         if !pieces.is_empty() {
             written.left_out.push(format!(
-                "{} pieces of cross compensation (CEC), the largest of {:.1} um: no public document says what a positive \
-                 value does; find out with an indicator, then say --value error or --value correction",
+                "{} pieces of cross compensation (CEC), the largest of {:.1} um: no public document says what a positive value \
+                 means; find out with an indicator, then use --value error or --value correction",
                 pieces.len(),
                 pieces.first().map_or(0.0, Piece::size) * 1000.0
             ));

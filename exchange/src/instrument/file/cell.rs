@@ -53,7 +53,7 @@ impl<'t> Piece<'t> {
         match parse_number(self.text) {
             Ok(number) => Some(number),
             Err(error) => {
-                let message = format!("{what} is a finite number, found `{}`", shown(self.text));
+                let message = format!("{what} must be a finite number, found `{}`", shown(self.text));
                 let help = error
                     .help
                     .unwrap_or_else(|| "write a number such as `-0.5` or `1e-3`, with a point".to_owned());
@@ -69,7 +69,7 @@ impl<'t> Piece<'t> {
         let whole = self.text.strip_suffix(".0").unwrap_or(self.text);
         let number = whole.parse::<u32>().ok().filter(|number| *number >= 1);
         if number.is_none() {
-            let message = format!("{what} is a whole number from 1, found `{}`", shown(self.text));
+            let message = format!("{what} must be a whole number from 1, found `{}`", shown(self.text));
             let mistake = Diagnostic::error("E0926", self.span, message);
             diagnostics.push(mistake.help("number runs and targets 1, 2, 3"));
         }

@@ -32,6 +32,6 @@ pub(super) fn refusal(text: &str) -> Option<Diagnostic> {
         said("Sample no"),
         said("Actual sample rate")
     );
-    let help = "a calibration needs a measurement at targets; what moves is a recording: write time, command and sample as CSV, and `abbe diagnose` reads it";
+    let help = "use a measurement at targets; for a moving axis, write time, command and sample as CSV, and run `abbe diagnose`";
     Some(Diagnostic::error("E0922", header.span, message).help(help))
 }

@@ -49,14 +49,13 @@ fn last(sections: &[Section<'_>]) -> Span {
 
 fn missing(name: &str, span: Span) -> Diagnostic {
     let message = format!("the file has no section `{name}::`");
-    let help =
-        "a measurement at targets has `TARGET DATA::`, `RUNS::` and `DEVIATIONS::`; was the file cut off?";
+    let help = "check whether the file was cut off; a measurement at targets has `TARGET DATA::`, `RUNS::` and `DEVIATIONS::`";
     Diagnostic::error("E0923", span, message).help(help)
 }
 
 fn without_end(span: Span) -> Diagnostic {
     let message = "the file ends without `EOF::`";
-    let help = "it may have been cut off: compare it with the instrument's";
+    let help = "compare it with the file on the instrument; it may have been cut off";
     Diagnostic::warning("W0902", span, message).help(help)
 }
 
@@ -93,7 +92,7 @@ fn read_targets(section: &Section<'_>, diagnostics: &mut Diagnostics) -> Option<
     let pieces = target_pieces(section);
     let Some(pieces) = pieces.filter(|pieces| !pieces.is_empty()) else {
         let mistake = Diagnostic::error("E0923", section.span, "the file lists no targets");
-        diagnostics.push(mistake.help("behind `Targets :` stands one position for each target"));
+        diagnostics.push(mistake.help("write one position for each target after `Targets :`"));
         return None;
     };
     let numbers: Vec<Option<f64>> =
@@ -102,8 +101,10 @@ fn read_targets(section: &Section<'_>, diagnostics: &mut Diagnostics) -> Option<
     if let Some((count, span)) = read_count(section, "Target-count", diagnostics)
         && usize::try_from(count).is_ok_and(|count| count != numbers.len())
     {
-        let message = format!("the file counts {count} targets and lists {}", numbers.len());
-        diagnostics.push(Diagnostic::error("E0924", span, message).help("was the file changed or cut off?"));
+        let message = format!("the file gives {count} as the number of targets but lists {}", numbers.len());
+        diagnostics.push(
+            Diagnostic::error("E0924", span, message).help("check whether the file was changed or cut off"),
+        );
         return None;
     }
     refuse_equal(&numbers, &pieces, diagnostics)?;
@@ -132,9 +133,9 @@ fn refuse_equal(numbers: &[f64], pieces: &[Piece<'_>], diagnostics: &mut Diagnos
         (at(one) == at(other)).then_some((pieces.get(one)?.span, pieces.get(other)?))
     });
     let Some((first, again)) = equal else { return Some(()) };
-    let message = format!("two targets stand at `{}`", shown(again.text));
+    let message = format!("two targets are at `{}`", shown(again.text));
     let mistake = Diagnostic::error("E0928", again.span, message).also(first, "the first of them");
-    diagnostics.push(mistake.help("each target is a place of its own"));
+    diagnostics.push(mistake.help("give each target its own place"));
     None
 }
 
@@ -155,8 +156,11 @@ fn read_runs(
             let message =
                 format!("run {} has a second reading at target {}", row.run, row.reading.target + 1);
             let mistake = Diagnostic::error("E0927", line.span, message);
-            diagnostics
-                .push(mistake.help("a run reads each target once: was a part of the file copied in twice?"));
+            diagnostics.push(
+                mistake.help(
+                    "check whether a part of the file was copied in twice; a run reads each target once",
+                ),
+            );
             return None;
         }
         let place = *places.entry(row.run).or_insert(runs.len());
@@ -169,7 +173,9 @@ fn read_runs(
     }
     if runs.is_empty() {
         let mistake = Diagnostic::error("E0923", section.span, "the file has no deviations");
-        diagnostics.push(mistake.help("a row is `run target deviation`; was the file cut off?"));
+        diagnostics.push(
+            mistake.help("check whether the file was cut off; each row must be `run target deviation`"),
+        );
         return None;
     }
     Some(runs)
@@ -188,9 +194,11 @@ fn read_row(
 ) -> Option<Row> {
     let words: Vec<Piece<'_>> = line.words().collect();
     let [run, target, deviation] = words.as_slice() else {
-        let message = format!("a row is `run target deviation`, found `{}`", shown(line.text));
-        diagnostics
-            .push(Diagnostic::error("E0923", line.span, message).help("was the file changed or cut off?"));
+        let message = format!("a row must be `run target deviation`, found `{}`", shown(line.text));
+        diagnostics.push(
+            Diagnostic::error("E0923", line.span, message)
+                .help("check whether the file was changed or cut off"),
+        );
         return None;
     };
     let number = run.ordinal("the run", diagnostics)?;
@@ -209,22 +217,23 @@ fn read_row(
 }
 
 fn out_of_range(piece: &Piece<'_>, what: &str, most: u64) -> Diagnostic {
-    let message = format!("there is no {what} {}: the file counts {most}", shown(piece.text));
-    Diagnostic::error("E0926", piece.span, message).help("was the file changed, or put together from two?")
+    let message = format!("there is no {what} {}: the file gives {most} as their number", shown(piece.text));
+    Diagnostic::error("E0926", piece.span, message)
+        .help("check whether the file was changed, or put together from two files")
 }
 
 /// Tells runs that lack readings, or are not there at all (W0901).
 fn tell_broken_off(runs: &[Run], targets: usize, count: Option<(u32, Span)>, diagnostics: &mut Diagnostics) {
     for run in runs.iter().filter(|run| run.readings.len() < targets) {
         let message = format!("run {} has {} of {targets} readings", run.number, run.readings.len());
-        let help = "targets that it lacks have fewer readings; measure it again where that matters";
+        let help = "measure the run again if it matters; its missing targets have fewer readings";
         diagnostics.push(Diagnostic::warning("W0901", run.span, message).help(help));
     }
     if let Some((count, span)) = count
         && usize::try_from(count).is_ok_and(|count| runs.len() < count)
     {
-        let message = format!("the file counts {count} runs and has {}", runs.len());
-        let help = "the measurement was broken off; what is there is used";
+        let message = format!("the file gives {count} as the number of runs but has {}", runs.len());
+        let help = "the measurement was broken off; the existing readings are used";
         diagnostics.push(Diagnostic::warning("W0901", span, message).help(help));
     }
 }

@@ -99,7 +99,7 @@ fn place(cells: &[Piece<'_>], wanted: &[&str], diagnostics: &mut Diagnostics) ->
         let mut alike = cells.iter().enumerate().filter(|(_, cell)| cell.text.eq_ignore_ascii_case(name));
         let first = alike.next();
         if let (Some((_, first)), Some((_, again))) = (first, alike.next()) {
-            let message = format!("column `{}` stands twice", shown(again.text));
+            let message = format!("column `{}` occurs twice", shown(again.text));
             let mistake =
                 Diagnostic::error("E0929", again.span, message).also(first.span, "the first of them");
             diagnostics.push(mistake.help("give each column its own name"));
@@ -112,7 +112,7 @@ fn place(cells: &[Piece<'_>], wanted: &[&str], diagnostics: &mut Diagnostics) ->
 
 fn no_readings(span: Span) -> Diagnostic {
     let mistake = Diagnostic::error("E0923", span, "the table has no readings");
-    mistake.help("write a row of names, and below it one row for each reading")
+    mistake.help("write a row of names, then one row for each reading")
 }
 
 fn no_column(header: Piece<'_>, cells: &[Piece<'_>], wanted: &[&str], what: &str) -> Diagnostic {
@@ -121,7 +121,7 @@ fn no_column(header: Piece<'_>, cells: &[Piece<'_>], wanted: &[&str], what: &str
     let near = wanted.iter().find_map(|name| nearest(name, cells.iter().map(|cell| cell.text)));
     match near {
         Some(near) => {
-            mistake.help(format!("is it `{}`? Name it so, or name the column in the set-up", shown(near)))
+            mistake.help(format!("if it is `{}`, rename that column, or name it in the set-up", shown(near)))
         }
         None => mistake.help(format!(
             "begin with a row of names, or name the column in the set-up: `{what}: {{column: ...}}`"
@@ -149,7 +149,7 @@ fn read_units(
             cells.len().saturating_sub(1),
             layout.width
         );
-        let help = "write `#unit` and then one unit for each column, empty where it has none";
+        let help = "write `#unit` and then one unit for each column, empty if it has none";
         diagnostics.push(Diagnostic::error("E0924", line.trimmed().span, message).help(help));
         return None;
     }
@@ -182,8 +182,8 @@ impl Gathered {
     fn take(&mut self, line: Piece<'_>, layout: &Layout, diagnostics: &mut Diagnostics) -> Option<()> {
         let cells: Vec<Piece<'_>> = line.split(layout.separator).map(cell).collect();
         if cells.len() != layout.width {
-            let message = format!("the row has {} cells, the header {}", cells.len(), layout.width);
-            let help = "write one cell for each column, empty where nothing was measured; a decimal comma makes two of one";
+            let message = format!("the row has {} cells, but the header has {}", cells.len(), layout.width);
+            let help = "write one cell for each column, empty if nothing was measured; a decimal comma splits a number into two cells";
             diagnostics.push(Diagnostic::error("E0924", line.trimmed().span, message).help(help));
             return None;
         }
@@ -237,7 +237,7 @@ impl Gathered {
         if let Some(first) = self.seen.insert((place, reading.target), span) {
             let message = format!("run {number} has a second reading at this target");
             let mistake = Diagnostic::error("E0927", span, message).also(first, "the first of them");
-            let help = "number the repeats in a column `run`, and tell the way through the targets in a column `direction` where one run goes both ways";
+            let help = "number the repeats in a column `run`; if one run goes both ways, give the direction in a column `direction`";
             diagnostics.push(mistake.help(help));
             return None;
         }
@@ -253,7 +253,7 @@ impl Gathered {
         for run in self.runs.iter().filter(|run| run.readings.len() < self.targets.len()) {
             let message =
                 format!("run {} has {} of {} readings", run.number, run.readings.len(), self.targets.len());
-            let help = "targets that it lacks have fewer readings; measure it again where that matters";
+            let help = "measure the run again if it matters; its missing targets have fewer readings";
             diagnostics.push(Diagnostic::warning("W0901", run.span, message).help(help));
         }
         Some((self.targets, self.runs))
@@ -266,8 +266,8 @@ fn read_sense(cell: Piece<'_>, diagnostics: &mut Diagnostics) -> Option<Sense> {
         "1" | "+1" | "+" | "1.0" => Some(Sense::Ascending),
         "-1" | "-" | "-1.0" => Some(Sense::Descending),
         other => {
-            let message = format!("a direction is +1 or -1, found `{}`", shown(other));
-            let help = "write +1 where the targets ascend, -1 where they descend";
+            let message = format!("a direction must be +1 or -1, found `{}`", shown(other));
+            let help = "write +1 if the targets ascend, -1 if they descend";
             diagnostics.push(Diagnostic::error("E0926", cell.span, message).help(help));
             None
         }

@@ -86,7 +86,7 @@ fn reach(node: &Node, key: &str, diagnostics: &mut Diagnostics) -> Option<[f64; 
     };
     let rising = ends.filter(|[from, to]| from < to);
     if rising.is_none() {
-        let message = format!("`{key}` is from where to where the mesh reaches, the lower end first");
+        let message = format!("`{key}` must be the two ends of the mesh, the lower end first");
         let help = format!("write `{key}: [10 mm, 210 mm]`");
         diagnostics.push(Diagnostic::error(FORM, node.span, message).help(help));
     }

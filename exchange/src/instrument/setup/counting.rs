@@ -95,9 +95,9 @@ pub(super) fn targets(
 }
 
 fn both_begins(fields: &Fields<'_>) -> Diagnostic {
-    let message = "`origin` and `most_negative` both tell where the targets lie";
+    let message = "`origin` and `most_negative` both give the place of the targets";
     let mistake = Diagnostic::error("E0910", fields.key_span("most_negative"), message);
-    mistake.also(fields.key_span("origin"), "told here too").help("keep one of the two")
+    mistake.also(fields.key_span("origin"), "also given here").help("keep one of the two")
 }
 
 /// Reads `deviations`, with the name of the column beside it.

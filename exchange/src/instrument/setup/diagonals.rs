@@ -50,8 +50,8 @@ fn lean(node: &Node, name: Span, diagnostics: &mut Diagnostics) -> Option<f64> {
     let [ac, bd, ad] = LENGTHS.map(&mut length);
     let lean = parallelogram([ac?, bd?, ad?]);
     if lean.is_none() {
-        let message = "these lengths are not those of a square that leans by less than one in ten";
-        let help = "AC and BD are its diagonals, AD its side along the first axis, all longer than zero";
+        let message = "these lengths are not those of a square with a lean of less than one in ten";
+        let help = "give the diagonals AC and BD and the side AD along the first axis, all greater than zero";
         diagnostics.push(Diagnostic::error("E0926", node.span, message).help(help));
     }
     lean

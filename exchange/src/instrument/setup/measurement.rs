@@ -180,9 +180,9 @@ fn read_remove(fields: &Fields<'_>, straightness: bool, diagnostics: &mut Diagno
 /// The slope of a line that stays in a straightness must not make a squareness too (E0910).
 fn no_line(reference: Span, motion: &str, fields: &Fields<'_>) -> Diagnostic {
     let message =
-        format!("a squareness is taken from the least-squares line of {motion}, which is not removed");
+        format!("a squareness needs the least-squares line of {motion}, so the line is not removed");
     let mistake = Diagnostic::error("E0910", fields.key_span("remove"), message);
-    mistake.also(reference, "measured against a square").help("leave `remove` out, or `reference`")
+    mistake.also(reference, "measured against a square").help("remove `remove` or `reference`")
 }
 
 /// Reads where a displacement was measured; a rotation is the same everywhere (E0910).
@@ -194,9 +194,9 @@ fn read_at(
     diagnostics: &mut Diagnostics,
 ) -> Option<Place> {
     if known.angular {
-        let message = format!("{} is a rotation, the same wherever it is measured", known.name);
+        let message = format!("{} is a rotation, which is the same wherever it is measured", known.name);
         let mistake = Diagnostic::error("E0910", fields.key_span("at"), message);
-        diagnostics.push(mistake.help("leave `at` out: it serves to take lever arms off displacements"));
+        diagnostics.push(mistake.help("remove `at`; it is for subtracting lever arms from displacements"));
     }
     place::read(node, axis, equations, diagnostics)
 }
@@ -217,8 +217,8 @@ fn edge_of(fields: &Fields<'_>) -> Option<&'static str> {
 }
 
 fn no_edge(key: &'static str, motion: &str, fields: &Fields<'_>) -> Diagnostic {
-    let message = format!("{motion} is not measured against an edge, and has no `{key}`");
-    let help = "an edge shows the straightness of a slide, such as EYX";
+    let message = format!("{motion} is not measured against an edge, so `{key}` has no meaning");
+    let help = "use an edge for the straightness of a slide, such as EYX";
     Diagnostic::error("E0912", fields.key_span(key), message).help(help)
 }
 
@@ -237,7 +237,7 @@ fn read_motion(node: &Node, equations: &Equations, diagnostics: &mut Diagnostics
         return None;
     };
     if equations.motions.get(number).is_some_and(|motion| motion.alignment) {
-        let message = format!("{} is an alignment error: no file shows it by itself", name.value);
+        let message = format!("{} is an alignment error, which no single file shows", name.value);
         let help = "measure two straightnesses against one `reference`, or write the angle under `errors`";
         diagnostics.push(Diagnostic::error("E0905", name.span, message).help(help));
         return None;
@@ -256,7 +256,8 @@ fn read_axis(
     let letters: Vec<&str> = equations.axes.iter().map(|axis| axis.letter.as_str()).collect();
     let Some(node) = fields.get("axis") else {
         if known.axis.is_none() {
-            let message = format!("{} belongs to no axis: which one moves while it is measured?", known.name);
+            let message =
+                format!("{} does not belong to an axis, so the moving axis must be named", known.name);
             let help = format!("add `axis:` with one of {}", letters.join(", "));
             diagnostics.push(Diagnostic::error("E0906", motion.span, message).help(help));
         }
@@ -285,8 +286,8 @@ fn read_placement(fields: &Fields<'_>, diagnostics: &mut Diagnostics) -> Option<
     let number = quantity::read_number(node, "`placement`", diagnostics)?;
     let found = (1..=99).find(|placement: &u8| f64::from(*placement) == number.value);
     if found.is_none() {
-        let message = "`placement` counts the set-ups of one edge or square: 1, 2, 3, up to 99";
-        let help = "write `placement: 2` at what was measured after it was laid on anew";
+        let message = "`placement` must be the number of a set-up of one edge or square: 1, 2, 3, up to 99";
+        let help = "write `placement: 2` for the measurements after the second set-up";
         diagnostics.push(Diagnostic::error("E0907", number.span, message).help(help));
     }
     found
@@ -297,7 +298,7 @@ fn read_smooth(fields: &Fields<'_>, diagnostics: &mut Diagnostics) -> Option<usi
     let odd = (3..=101).step_by(2).find(|odd| f64::from(*odd) == width.value);
     let found = odd.and_then(|odd: u8| (width.value <= WIDEST).then_some(usize::from(odd)));
     if found.is_none() {
-        let message = "`smooth` is how many targets a moving mean takes: 3, 5, 7, up to 101";
+        let message = "`smooth` must be the number of targets in a moving mean: 3, 5, 7, up to 101";
         diagnostics
             .push(Diagnostic::error("E0907", width.span, message).help("write `smooth: 3`, or leave it out"));
     }
@@ -313,8 +314,8 @@ fn read_resample(
     if step.value > 0.0 {
         return Some(step);
     }
-    let mistake = Diagnostic::error("E0907", step.span, "`resample` is a step greater than zero");
+    let mistake = Diagnostic::error("E0907", step.span, "`resample` must be a step greater than zero");
     diagnostics
-        .push(mistake.help("write the step of the table, or leave it out: then its nodes are the targets"));
+        .push(mistake.help("write the step of the table, or leave it out to use the targets as nodes"));
     None
 }

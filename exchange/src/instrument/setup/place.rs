@@ -34,7 +34,7 @@ pub(super) fn read(
 ) -> Option<Place> {
     let Some(entries) = node.entries() else {
         let message =
-            format!("`at` is a mapping of axes and constants to positions, found {}", node.kind_name());
+            format!("`at` must be a mapping of axes and constants to positions, found {}", node.kind_name());
         let help = "write `at: {Y: 140 mm, Z: -50 mm, Zt: 80 mm}`";
         diagnostics.push(Diagnostic::error(FORM, node.span, message).help(help));
         return None;
@@ -63,8 +63,8 @@ fn read_one(
         let position = quantity(if rotary { Dimension::ANGLE } else { Dimension::LENGTH });
         place.axes.extend(position.map(|position| (axis, position)));
         if axis == moving {
-            let message = format!("{} moves in this measurement, and stands nowhere", name.value);
-            let help = "its targets say where it was read: leave it out";
+            let message = format!("{} moves in this measurement, so it has no fixed position", name.value);
+            let help = "remove it; the targets give its positions";
             diagnostics.push(Diagnostic::error("E0906", name.span, message).help(help));
         }
         return;
@@ -77,7 +77,7 @@ fn read_one(
 }
 
 fn unknown(name: &Spanned<String>, equations: &Equations) -> Diagnostic {
-    let message = format!("{} has no axis and no constant `{}`", equations.machine, name.value);
+    let message = format!("{} has no axis or constant `{}`", equations.machine, name.value);
     let letters = equations.axes.iter().map(|axis| axis.letter.clone());
     let known: Vec<String> =
         letters.chain(equations.constants.iter().map(|constant| constant.name.to_string())).collect();

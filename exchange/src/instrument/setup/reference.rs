@@ -25,7 +25,8 @@ pub struct Reference {
 /// Reads `references`.
 pub(super) fn read(node: &Node, diagnostics: &mut Diagnostics) -> Vec<Reference> {
     let Some(entries) = node.entries() else {
-        let message = format!("`references` is a mapping of names to angles, found {}", node.kind_name());
+        let message =
+            format!("`references` must be a mapping of names to angles, found {}", node.kind_name());
         let help = "write `square: {angle: 2 urad, uncertainty: 0.5 urad}`";
         diagnostics.push(Diagnostic::error(FORM, node.span, message).help(help));
         return Vec::new();
@@ -43,7 +44,7 @@ fn read_one(name: &Spanned<String>, node: &Node, diagnostics: &mut Diagnostics) 
     };
     let (angle, uncertainty) = (read("angle"), read("uncertainty"));
     if let Some(wrong) = uncertainty.filter(|uncertainty| uncertainty.value < 0.0) {
-        let mistake = Diagnostic::error("E0907", wrong.span, "an uncertainty is not below zero");
+        let mistake = Diagnostic::error("E0907", wrong.span, "an uncertainty cannot be below zero");
         diagnostics.push(mistake.help("write the standard uncertainty, such as `0.5 urad`"));
     }
     let (angle, uncertainty) = (angle.map(|angle| angle.value), uncertainty.map(|one| one.value));
@@ -59,7 +60,8 @@ pub(super) fn check(setup: &Setup, diagnostics: &mut Diagnostics) {
     for reference in setup.references.iter().filter(|one| upright(&one.name.value) == 0) {
         let name = &reference.name.value;
         let message = format!("no measurement was made against `{name}`");
-        let help = format!("add `reference: {name}` to the two straightness measurements, or leave it out");
+        let help =
+            format!("add `reference: {name}` to the two straightness measurements, or remove the reference");
         diagnostics.push(Diagnostic::error("E0912", reference.name.span, message).help(help));
     }
     for one in setup.measurements.iter().filter(|one| !one.turned).filter_map(|one| one.reference.as_ref()) {
@@ -71,7 +73,6 @@ pub(super) fn check(setup: &Setup, diagnostics: &mut Diagnostics) {
 
 fn alone(name: &str, span: Span) -> Diagnostic {
     let message = format!("only one measurement was made against `{name}`");
-    let help =
-        "a reference joins the straightness of two axes to a squareness; leave it out where there is none";
+    let help = "add the second measurement, or remove the reference; a squareness needs the straightnesses of two axes";
     Diagnostic::error("E0912", span, message).help(help)
 }

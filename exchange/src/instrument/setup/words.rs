@@ -34,7 +34,7 @@ pub(super) fn choice<T: Copy>(
     let found = known.iter().find(|(name, _)| *name == written.value);
     if found.is_none() {
         let names: Vec<String> = known.iter().map(|(name, _)| format!("`{name}`")).collect();
-        let message = format!("{what} is {}, found `{}`", names.join(" or "), written.value);
+        let message = format!("{what} must be {}, found `{}`", names.join(" or "), written.value);
         let help = "write one of these, or leave the key out";
         diagnostics.push(Diagnostic::error("E0907", written.span, message).help(help));
     }
@@ -53,7 +53,7 @@ pub(super) fn unit(
     if read.dimension == dimension {
         return Some(read);
     }
-    let message = format!("{what} is that of {}", dimension.name());
+    let message = format!("{what} must be that of {}", dimension.name());
     let help = format!("write a unit such as `{}`", dimension.usual_unit());
     diagnostics.push(Diagnostic::error("E0908", unit.span, message).help(help));
     None

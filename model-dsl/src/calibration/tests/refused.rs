@@ -66,7 +66,7 @@ fn an_error_that_is_not_small_is_refused_where_it_stands() {
     assert_eq!(
         words("{EC0Y: 45 deg}"),
         [
-            "E0430 785 mrad is no small error | see to the unit: the equations are of first order, and leave half of the square of an angle"
+            "E0430 785 mrad is not a small error | check the unit: the equations are of first order and neglect half the square of an angle"
         ]
     );
 }
@@ -118,7 +118,7 @@ fn the_value_of_a_motion_is_checked() {
     refused(two, &[("E0410", "lag")]);
     assert_eq!(
         words("EXX: 1 arcsec"),
-        ["E0307 EXX is a length, `arcsec` is an angle | use a unit such as `mm`"]
+        ["E0307 EXX must be a length, but `arcsec` is an angle | use a unit such as `mm`"]
     );
 }
 
@@ -223,7 +223,7 @@ fn polynomials_are_checked() {
     refused(&several, &[("E0309", "um"), ("E0302", ".nan"), ("E0301", "x"), ("E0308", "~")]);
     let huge = format!("per: nm, unit: m, coefficients: [{}1]", "0, ".repeat(60));
     refused(&polynomial(&huge), &[("E0302", "1")]);
-    let message = "E0413 EXX is a length, `arcsec` is an angle | use a unit such as `mm`";
+    let message = "E0413 EXX must be a length, but `arcsec` is an angle | use a unit such as `mm`";
     assert_eq!(words(&polynomial("per: mm, unit: arcsec, coefficients: [1]")), [message]);
 }
 
@@ -333,7 +333,7 @@ fn a_mistake_looks_like_this() {
     let text = with_errors("EBX: [{polynomial: {per: mm, unit: um, coefficients: [1, 2]}}]");
     let (_, diagnostics, source) = read_with_diagnostics(&text);
     let expected = "\
-error[E0413]: EBX is an angle, `um` is a length
+error[E0413]: EBX must be an angle, but `um` is a length
  --> calibrations/test.yaml:5:38
   |
 5 |   EBX: [{polynomial: {per: mm, unit: um, coefficients: [1, 2]}}]
@@ -384,8 +384,8 @@ fn the_units_of_factors_are_checked() {
     refused(&times("20 nm/mm/K", "[{position: X}, {temperature: T, reference: 20 degC}]"), &[]);
     refused(&times("5", "[{position: X}]"), &[("E0306", "5")]);
     let told = words(&times("20 nm", "[{position: X}]"));
-    let expected = "E0429 `lost_motion` of EXX is a plain number with these factors, `nm` is a length | its factors are in \
-                    `mm` together and EXX is a length: use a unit such as `um/m`";
+    let expected = "E0429 `lost_motion` of EXX must be a plain number with these factors, but `nm` is a length | use a unit such as \
+                    `um/m`: its factors together are in `mm` and EXX is a length";
     assert_eq!(told, [expected]);
     // Of a list the unit is that of all its numbers, and what is not of the motion keeps its own.
     let table = |unit: &str| {

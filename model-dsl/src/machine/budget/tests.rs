@@ -153,11 +153,11 @@ fn five_belong_to_the_rotary_axes() {
 #[test]
 fn a_machine_that_does_not_fit_is_told() {
     for (word, reason) in [
-        ("XYFZ", "it is of two rotary axes, and the chain has 0"),
-        ("CXYFZ", "it is of two rotary axes, and the chain has 1"),
-        ("ABXFYZC", "it is of two rotary axes, and the chain has 3"),
-        ("XYZBCF", "rotary axes stand on its slides, and slide Z stands on B"),
-        ("CAFXZ", "it is of three slides X, Y, Z, and the chain has 2"),
+        ("XYFZ", "it is for two rotary axes, but the chain has 0"),
+        ("CXYFZ", "it is for two rotary axes, but the chain has 1"),
+        ("ABXFYZC", "it is for two rotary axes, but the chain has 3"),
+        ("XYZBCF", "it is for rotary axes on the slides, but slide Z is carried by B"),
+        ("CAFXZ", "it is for three slides X, Y, Z, but the chain has 2"),
     ] {
         let (machine, diagnostics) =
             compiled(&format!("abbe: 1\nname: mill\nbudget: eight\ntopology: {word}\n"));

@@ -22,18 +22,18 @@ pub(super) fn read(chain: &Chain<'_>, crossed: &[Motor], diagnostics: &mut Diagn
         let Some((key, node)) = drafted.drives else { continue };
         let follows = |motor: &Motor| motor.follows.iter().any(|(link, _)| *link == number);
         if let Some(motor) = crossed.iter().find(|motor| follows(motor)) {
-            let message = format!("slide {} has its motors twice", drafted.link.id);
+            let message = format!("slide {} has its motors in two places", drafted.link.id);
             diagnostics.push(
                 Diagnostic::error("E0150", key.span, message)
-                    .label("the motors of a beam")
-                    .also(motor.name.span, "and a motor of `transmission`")
-                    .help("take one of them out"),
+                    .label("as the motors of a beam here")
+                    .also(motor.name.span, "and as a motor of `transmission` here")
+                    .help("remove one of them"),
             );
         } else if drafted.link.reference == Reference::Bed {
             diagnostics.push(
-                Diagnostic::error("E0150", key.span, "the motors of a beam go with its carriage")
-                    .label("`reference: bed` counts its rotation about a point that stays")
-                    .help("give this slide `reference: carriage`"),
+                Diagnostic::error("E0150", key.span, "the motors of a beam move with its carriage")
+                    .label("`reference: bed` makes it rotate about a fixed point")
+                    .help("write `reference: carriage` for this slide"),
             );
         } else {
             motors.extend(of_slide(number, node, chain, diagnostics).into_iter().flatten());
@@ -55,11 +55,11 @@ fn of_slide(
     let wrong = |message: String, label: &str| {
         Diagnostic::error("E0150", node.span, message)
             .label(label)
-            .help("write two of them with their places along the beam: `drives: {Y1: {x: -400 mm}, Y2: {x: 400 mm}}`")
+            .help("write two motors with their places along the beam: `drives: {Y1: {x: -400 mm}, Y2: {x: 400 mm}}`")
     };
     let Some(entries) = node.entries() else {
-        let message = format!("`drives` is a mapping of motors, found {}", node.kind_name());
-        diagnostics.push(wrong(message, "no mapping"));
+        let message = format!("`drives` must be a mapping of motors, found {}", node.kind_name());
+        diagnostics.push(wrong(message, "not a mapping"));
         return None;
     };
     let placed: Vec<Placed> =
@@ -69,12 +69,11 @@ fn of_slide(
     }
     let Ok([first, second]) = <[Placed; 2]>::try_from(placed) else {
         let message = format!("slide {} has {} drives", link.id, entries.len());
-        diagnostics
-            .push(wrong(message, "two motors set the place and the angle of a beam, no more and no fewer"));
+        diagnostics.push(wrong(message, "exactly two motors determine the position and the angle of a beam"));
         return None;
     };
     if first.1 != second.1 || first.2 == second.2 {
-        let message = format!("the drives of slide {} do not lie along a beam", link.id);
+        let message = format!("the drives of slide {} are not along a beam", link.id);
         diagnostics.push(wrong(message, "they need two places in one direction"));
         return None;
     }
@@ -97,7 +96,7 @@ fn placed(
         across.into_iter().zip(&known).filter_map(|(axis, key)| fields.get(key).map(|node| (axis, node)));
     let (Some((axis, place)), None) = (given.next(), given.next()) else {
         diagnostics.push(
-            Diagnostic::error("E0150", name.span, format!("{what} needs one place along its beam"))
+            Diagnostic::error("E0150", name.span, format!("{what} needs a place along its beam"))
                 .label(format!("`{}` in the frame of the slide", known.join("` or `")))
                 .help(format!("write `{}: {{{}: -400 mm}}`", name.value, known.first().unwrap_or(&"x"))),
         );
@@ -106,9 +105,9 @@ fn placed(
     let written = text(place, "a place", diagnostics)?;
     let Some(length) = exact_length(written) else {
         diagnostics.push(
-            Diagnostic::error("E0150", place.span, format!("`{written}` is not the place of a drive"))
-                .label("no length")
-                .help("write a number with its unit, such as `-400 mm`: lever arms are divided by the span, and so it is no constant"),
+            Diagnostic::error("E0150", place.span, format!("`{written}` is not a valid place of a drive"))
+                .label("not a length")
+                .help("write a number with its unit, such as `-400 mm`; a constant is not allowed, because lever arms are divided by the span"),
         );
         return None;
     };

@@ -17,7 +17,7 @@ use crate::yaml::Node;
 pub(super) fn read(node: Option<&Node>, chain: &Chain<'_>, diagnostics: &mut Diagnostics) -> Vec<Motor> {
     let Some(node) = node else { return Vec::new() };
     let Some(entries) = node.entries() else {
-        let message = format!("`transmission` is a mapping of motors, found {}", node.kind_name());
+        let message = format!("`transmission` must be a mapping of motors, found {}", node.kind_name());
         diagnostics.push(
             Diagnostic::error("E0103", node.span, message).help("write `transmission: {A: X + Y, B: X - Y}`"),
         );
@@ -39,9 +39,13 @@ type Sum = Vec<(usize, Rational)>;
 fn sum(motor: &str, node: &Node, chain: &Chain<'_>, diagnostics: &mut Diagnostics) -> Option<Sum> {
     let written = text(node, "a sum of slides", diagnostics)?;
     let refused = |reason: String| {
-        Diagnostic::error("E0149", node.span, format!("`{written}` does not say where motor {motor} stands"))
-            .label(reason)
-            .help("write a sum of slides with numbers before them, such as `X + Y` or `2*X - Y`")
+        Diagnostic::error(
+            "E0149",
+            node.span,
+            format!("`{written}` does not give the position of motor {motor}"),
+        )
+        .label(reason)
+        .help("write a sum of slides with optional factors, such as `X + Y` or `2*X - Y`")
     };
     let mut named = |name: &str| Some(Symbol::Position(name.into()));
     let polynomial = match expression::parse(written, &mut named) {
@@ -54,14 +58,15 @@ fn sum(motor: &str, node: &Node, chain: &Chain<'_>, diagnostics: &mut Diagnostic
     let mut sum = Sum::new();
     for (monomial, weight) in polynomial.terms() {
         let [(Symbol::Position(name), 1)] = monomial.factors() else {
-            let reason = if monomial.is_one() { "an offset is no travel" } else { "it is no sum of slides" };
+            let reason =
+                if monomial.is_one() { "an offset is not a travel" } else { "this is not a sum of slides" };
             diagnostics.push(refused(reason.to_owned()));
             return None;
         };
         sum.push((slide(name, node.span, chain, diagnostics)?, weight.clone()));
     }
     if sum.is_empty() {
-        diagnostics.push(refused("it moves no slide".to_owned()));
+        diagnostics.push(refused("it does not move any slide".to_owned()));
         return None;
     }
     Some(sum)
@@ -84,13 +89,13 @@ fn inverted(
     let inverse = (rows.len() == slides.len()).then(|| inverse(matrix)).flatten();
     let Some(inverse) = inverse else {
         let letters: Vec<&str> = slides.iter().map(|link| chain.links[*link].link.id.as_str()).collect();
-        let message = format!("{} motors do not make the motion of {}", rows.len(), letters.join(", "));
+        let message = format!("{} motors do not determine the motion of {}", rows.len(), letters.join(", "));
         diagnostics.push(
             Diagnostic::error("E0149", span, message)
-                .label("where the motors stand must tell where these slides stand, and the other way round")
+                .label("the positions of the motors must determine those of the slides, and vice versa")
                 .help(
-                    "give as many motors as slides that they move, none of them a sum of the others; two motors of one slide are \
-                     its `drives`",
+                    "give as many motors as slides that they move, and none that is a sum of the others; list two motors of one \
+                     slide under `drives`",
                 ),
         );
         return None;

@@ -67,9 +67,9 @@ fn a_file_may_count_from_another_axis_where_that_is_the_same() {
     }
     for (name, reason) in [
         ("EA(0Z)C", "counted from Z, EA(0Z)C is EA0C - EA0Z"),
-        ("EA(0X)C", "X is no axis from which EA0C can be counted"),
-        ("EA(0C)C", "C is no axis from which EA0C can be counted"),
-        ("EX(0Y)C", "Y is no axis from which EX0C can be counted"),
+        ("EA(0X)C", "EA0C cannot be counted from X"),
+        ("EA(0C)C", "EA0C cannot be counted from C"),
+        ("EX(0Y)C", "EX0C cannot be counted from Y"),
     ] {
         let (machine, diagnostics) = with(name);
         assert!(machine.is_none(), "{name}");

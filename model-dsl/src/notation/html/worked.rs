@@ -40,8 +40,8 @@ pub(super) fn section(sheet: &Sheet, equations: &Equations, example: &Example) -
         meanings.push(meaning(direction, &size));
     }
     format!(
-        "<h3>A worked example</h3>\n<p>Let {}. These numbers are chosen; those of a machine stand in its calibration. \
-         One error motion is not zero: {}, that is {}{}, {}, is +{micro} \u{b5}rad. {}</p>\n<div class=\"wide\">\n{formulas}</div>\n\
+        "<h3>A worked example</h3>\n<p>Let {}. These numbers are an example; the calibration of a machine has the real ones. One \
+         error motion is not zero: {}, that is {}{}, {}, is +{micro} \u{b5}rad. {}</p>\n<div class=\"wide\">\n{formulas}</div>\n\
          <p>{}</p>\n",
         state(equations, example),
         letter(&entry.letter),
@@ -66,12 +66,12 @@ fn sense(equations: &Equations, motion: &crate::equations::Motion, against_iso: 
     } else {
         format!("The body {}", escape(&motion.link))
     };
-    format!("{what} turns by the {hand} hand about {about}: {from} towards {to}.")
+    format!("{what} rotates by the {hand}-hand rule about {about}: {from} towards {to}.")
 }
 
 fn meaning(direction: Axis, size: &str) -> String {
     if size == "0" {
-        return format!("In {direction} it stands where it should.");
+        return format!("In {direction} its position is correct.");
     }
     let (sign, digits) = match size.strip_prefix('-') {
         Some(digits) => ('\u{2212}', digits),
@@ -79,8 +79,8 @@ fn meaning(direction: Axis, size: &str) -> String {
     };
     let back = if sign == '+' { '\u{2212}' } else { '+' };
     format!(
-        "The tip stands {digits} \u{b5}m too far towards {sign}{direction} of the part; compensation moves the tip by \
-         {back}{digits} \u{b5}m in {direction}."
+        "The tip is {digits} \u{b5}m too far towards {sign}{direction} of the part. Compensation moves the tip by {back}{digits} \
+         \u{b5}m in {direction}."
     )
 }
 

@@ -96,6 +96,7 @@ fn link(kind: Kind, id: &str, along: &str, origin: [&str; 3]) -> Link {
         along: along_number,
         backwards: along.starts_with('-'),
         origin,
+        turned: [0; 3],
         bed: None,
         errors: None,
     }

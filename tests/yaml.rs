@@ -51,6 +51,13 @@ fn written(link: &Link) -> String {
     if matches!(link.kind, Kind::Slide(_) | Kind::Rotary(_) | Kind::Spindle) {
         writeln!(text, "      along: {}", direction(link)).unwrap();
     }
+    if link.turned != [0; 3] {
+        let key = if link.kind == Kind::Fixed { "turned" } else { "leans" };
+        let angles = ["A", "B", "C"].into_iter().zip(link.turned).filter(|(_, tenths)| *tenths != 0);
+        let angles: Vec<String> =
+            angles.map(|(letter, tenths)| format!("{letter}: {} deg", f64::from(tenths) / 10.0)).collect();
+        writeln!(text, "      {key}: {{{}}}", angles.join(", ")).unwrap();
+    }
     if link.origin.iter().any(|sum| !sum.is_empty()) {
         let key = if matches!(link.kind, Kind::Tool | Kind::Part) { "offset" } else { "origin" };
         let coordinates: Vec<String> = link.origin.iter().map(|sum| coordinate(sum)).collect();

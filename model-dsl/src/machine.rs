@@ -16,10 +16,12 @@ mod motion;
 mod motor;
 mod names;
 mod orientation;
+mod read_along;
 mod read_link;
 mod read_motion;
 pub(crate) mod reference;
 mod topology;
+mod turned;
 mod usual_motions;
 mod words;
 
@@ -34,6 +36,7 @@ pub(crate) use read_link::own_direction;
 pub(crate) use read_motion::kind_of;
 pub use reference::Counted;
 pub use topology::{TopologyWord, template};
+pub use turned::Turned;
 
 use crate::algebra::Axis;
 use crate::diagnostic::{Diagnostic, Diagnostics};
@@ -78,11 +81,13 @@ impl Machine {
     }
 
     /// The direction of the tool from its tip towards the spindle, in the tool's frame: along the spindle that carries it, +Z where
-    /// none does. A rotary axis between both carries the tool, and no spindle then.
+    /// none does. A rotary axis between both carries the tool, and no spindle then; nor where a body between both is turned, as the
+    /// angle head in a spindle is.
     pub fn tool_axis(&self) -> Along {
         let branch: Vec<&Link> = self.branch(Branch::Tool).map(|(_, link)| link).collect();
         let outwards = branch.into_iter().rev();
-        let mut behind = outwards.take_while(|link| !matches!(link.kind, LinkKind::Rotary(_)));
+        let mut behind =
+            outwards.take_while(|link| !matches!(link.kind, LinkKind::Rotary(_)) && link.turned.is_none());
         let spindle = behind.find(|link| link.kind == LinkKind::Spindle);
         spindle.map_or(Along { axis: Axis::Z, sign: 1 }, |spindle| spindle.along)
     }

@@ -9,6 +9,9 @@ pub(crate) mod exact;
 
 use std::collections::BTreeMap;
 
+/// The constants that are the direction of a tool.
+pub(crate) const POINTING: [&str; 3] = ["It", "Jt", "Kt"];
+
 /// A machine as its file describes it.
 #[derive(Clone, Debug)]
 pub(crate) struct Machine {
@@ -16,6 +19,8 @@ pub(crate) struct Machine {
     pub(crate) sensitive: [bool; 3],
     /// `motions: relative`.
     pub(crate) relative: bool,
+    /// Whether the file names the parts of the tool's direction, and asks for it.
+    pub(crate) pointing: bool,
     /// The default of `reference`: whether rotations act about the origin that stays.
     pub(crate) bed: bool,
     /// From the bed to the part.
@@ -190,11 +195,17 @@ impl Machine {
             .collect();
         names.sort();
         names.dedup();
+        if self.pointing {
+            names.extend(POINTING.map(str::to_owned));
+        }
         names
     }
 
-    /// The direction of the tool in its own frame: along the last spindle before it that no rotary axis and no turned body follows, else Z.
-    pub(crate) fn tool_axis(&self) -> [f64; 3] {
+    /// The direction of the tool in its own frame: what constants say, or along the last spindle before it that no rotary axis and no turned body follows, else Z.
+    pub(crate) fn tool_axis(&self, state: &State) -> [f64; 3] {
+        if self.pointing {
+            return POINTING.map(|name| state.constants[name]);
+        }
         let mut axis = [0.0, 0.0, 1.0];
         for link in &self.tool {
             match link.kind {

@@ -4,7 +4,7 @@
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-use crate::oracle::{ErrorMotion, Kind, Link, Machine, Shape, State, Sum, draw};
+use crate::oracle::{ErrorMotion, Kind, Link, Machine, POINTING, Shape, State, Sum, draw};
 
 /// Names of constants that a chain may mention.
 const CONSTANTS: [&str; 5] = ["K1", "K2", "Lz", "Q", "offset_a"];
@@ -43,7 +43,9 @@ pub(crate) fn machines() -> impl Strategy<Value = Machine> {
         |(plans, (tool, part, with_part), sensitive, relative, bed)| {
             let sensitive = if sensitive == [false; 3] { [true; 3] } else { sensitive };
             let mut builder = Builder::default();
-            let mut machine = Machine { sensitive, relative, bed, workpiece: Vec::new(), tool: Vec::new() };
+            let (workpiece, tool_links) = (Vec::new(), Vec::new());
+            let mut machine =
+                Machine { sensitive, relative, pointing: false, bed, workpiece, tool: tool_links };
             for plan in &plans {
                 let link = builder.link(plan);
                 if plan.on_tool { machine.tool.push(link) } else { machine.workpiece.push(link) }
@@ -102,6 +104,7 @@ pub(crate) fn of_word(word: &str) -> Machine {
     Machine {
         sensitive: [true; 3],
         relative: false,
+        pointing: false,
         bed: false,
         workpiece: part.chars().rev().map(|letter| axis(letter, true)).collect(),
         tool: tool.chars().map(|letter| axis(letter, false)).chain([tip]).collect(),
@@ -123,6 +126,10 @@ pub(crate) fn state(machine: &Machine, seed: u64) -> State {
     }
     state.constants =
         machine.constants().into_iter().map(|name| (name.clone(), 300.0 * draw(seed, &name))).collect();
+    if machine.pointing {
+        let direction = nalgebra::Vector3::from(POINTING.map(|name| draw(seed, name))).normalize();
+        state.constants.extend(POINTING.map(str::to_owned).into_iter().zip(direction.iter().copied()));
+    }
     state
 }
 

@@ -150,6 +150,7 @@ fn excello() -> Machine {
     Machine {
         sensitive: [true, false, true],
         relative: false,
+        pointing: false,
         bed: false,
         workpiece: vec![z],
         tool: vec![x, tip("tip", ["Xt", "0", "Zt"])],
@@ -178,6 +179,7 @@ fn nist() -> Machine {
     Machine {
         sensitive: [true; 3],
         relative: false,
+        pointing: false,
         bed: false,
         workpiece: vec![spindle, part],
         tool: vec![z, x, turret, cutter],
@@ -197,6 +199,7 @@ fn postech() -> Machine {
     Machine {
         sensitive: [true; 3],
         relative: true,
+        pointing: false,
         bed: false,
         workpiece: vec![
             listed(axis('Y', "-Y", ["0", "0", "0"]), &["EC0Y", "EA0Y"]),

@@ -13,7 +13,7 @@ pub(crate) fn tip(machine: &Machine, state: &State) -> [f64; 3] {
 
 /// The direction of the tool from its tip towards the spindle, in the part's frame.
 pub(crate) fn direction(machine: &Machine, state: &State) -> [f64; 3] {
-    (pose(machine, state).rotation * Vector3::from(machine.tool_axis())).into()
+    (pose(machine, state).rotation * Vector3::from(machine.tool_axis(state))).into()
 }
 
 /// By what the tool is turned away from where it stands without errors: a rotation vector in the part's frame, rad.

@@ -149,6 +149,7 @@ fn offset(machine: &mut Machine, name: String) -> Polynomial {
         name: name.clone(),
         meaning: None,
         default: None,
+        direction: None,
         span: Span::new(0, 0),
     });
     Polynomial::symbol(Symbol::Constant(name))

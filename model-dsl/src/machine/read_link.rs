@@ -4,6 +4,7 @@ use super::draft::DraftedLink;
 use super::fields::{self, items, text, truth};
 use super::header::reference;
 use super::link::{Branch, Link, LinkKind, Reference};
+use super::pointing;
 use super::read_along::{Direction, along};
 use super::words::{exact_length, is_name};
 use crate::algebra::{Axis, Monomial, Polynomial, Rational, Symbol, to_f64};
@@ -31,6 +32,7 @@ pub(super) fn read_link<'n>(
     match word {
         "rotary" => known.extend(["corrects", "leans"]),
         "fixed" => known.push("turned"),
+        "tool" => known.push("direction"),
         "slide" if node.get("drives").is_some() => known.extend(["drives", "corrects"]),
         "slide" => known.push("drives"),
         _ => {}
@@ -72,7 +74,11 @@ pub(super) fn read_link<'n>(
         corrects,
         span: name_node.span,
     };
-    Some(DraftedLink { link, origin_spans, errors, drives: fields.entry("drives") })
+    let direction = match fields.get("direction") {
+        Some(node) => Some(pointing::read(node, diagnostics)?),
+        None => None,
+    };
+    Some(DraftedLink { link, origin_spans, errors, direction, drives: fields.entry("drives") })
 }
 
 fn kind_of<'n>(node: &'n Node, diagnostics: &mut Diagnostics) -> Option<(&'static str, &'n Node)> {

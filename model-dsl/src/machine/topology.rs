@@ -118,7 +118,7 @@ fn drafted(
 ) -> DraftedLink<'static> {
     let (turned, reference) = (Turned::default(), Reference::Carriage);
     let link = Link { id, kind, branch, along, origin, turned, reference, corrects: true, span };
-    DraftedLink { link, origin_spans: [span; 3], errors: None, drives: None }
+    DraftedLink { link, origin_spans: [span; 3], errors: None, direction: None, drives: None }
 }
 
 /// A commented machine file to start from; every mistake in the word is reported.

@@ -149,7 +149,7 @@ mod tests {
     #[test]
     fn usual_heads_lean_by_the_angles_of_their_prospectus() {
         assert_eq!(towards(Axis::Y, [0.0, 1.0, 1.0]).words(), "{A: 45 deg}");
-        assert_eq!(towards(Axis::Y, [0.0, 0.7071, 0.7071]).words(), "{A: 45 deg}");
+        assert_eq!(towards(Axis::Y, [0.0, 0.707, 0.707]).words(), "{A: 45 deg}");
         assert_eq!(towards(Axis::Z, [0.0, -1.0, 1.0]).words(), "{A: 45 deg}");
         assert_eq!(towards(Axis::X, [3.0, 0.0, -3.0]).words(), "{B: 45 deg}");
         assert_eq!(towards(Axis::Z, [1.0, 0.0, 1.0]).words(), "{B: 45 deg}");

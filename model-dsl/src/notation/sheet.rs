@@ -229,6 +229,11 @@ fn quantities(equations: &Equations) -> Vec<QuantityEntry> {
         entry(&travel.name, meaning, format!("the position of {letter} where no other is given"))
     });
     let constants = equations.constants.iter().map(|constant| {
+        if constant.direction.is_some() {
+            let meaning = constant.meaning.as_deref().unwrap_or("part of the direction of the tool");
+            let value = "from the calibration's tools".to_owned();
+            return entry(&constant.name, format!("{meaning} (a pure number, in the tool's frame)"), value);
+        }
         let meaning = constant.meaning.as_deref().unwrap_or("constant of the machine");
         let value = constant.default.map(|own| format!("{own} mm unless a calibration has another"));
         let value = value.unwrap_or_else(|| "from the calibration".to_owned());

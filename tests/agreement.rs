@@ -322,7 +322,8 @@ fn laws_of_the_direction(machine: &Machine, text: &str, seed: u64) -> Result<(),
 
 /// A machine file that asks for the direction of the tool.
 pub(crate) fn asking(text: &str) -> String {
-    format!("{text}orientation: true\n")
+    let asks = text.lines().any(|line| line.starts_with("orientation:"));
+    if asks { text.to_owned() } else { format!("{text}orientation: true\n") }
 }
 
 proptest! {
@@ -332,6 +333,15 @@ proptest! {
     fn random_chains(machine in machines(), declare in any::<bool>(), seed in any::<u64>()) {
         let text = yaml::text(&machine, declare);
         all_laws(&machine, &text, seed).map_err(|error| TestCaseError::fail(format!("{error}\n{text}")))?;
+    }
+
+    /// The tool points in any direction, as the constants of a tool have it.
+    #[test]
+    fn random_tools_that_point_elsewhere(machine in machines(), declare in any::<bool>(), seed in any::<u64>()) {
+        let machine = Machine { pointing: true, ..machine };
+        let text = yaml::text(&machine, declare);
+        laws_of_the_direction(&machine, &text, seed)
+            .map_err(|error| TestCaseError::fail(format!("{error}\n{text}")))?;
     }
 
     #[test]

@@ -169,6 +169,13 @@ proptest! {
     }
 
     #[test]
+    fn random_tools_that_point_elsewhere(machine in machines(), seed in any::<u64>()) {
+        let machine = Machine { pointing: true, ..machine };
+        let text = yaml::text(&machine, true);
+        on_file(&machine, &text, |equations| waves(equations, seed), state(&machine, seed), judged)?;
+    }
+
+    #[test]
     fn random_five_axis_machines(word in five_axes(), seed in any::<u64>()) {
         let machine = of_word(&word);
         on_file(&machine, &file(&word), |equations| waves(equations, seed), state(&machine, seed), judged)?;

@@ -45,6 +45,8 @@ fn drawn() -> Vec<Drawn> {
         } else {
             turned_further()
         };
+        // Some name the direction of their tool, which is a constant then.
+        let machine = Machine { pointing: number % 6 == 3, ..machine };
         let text = yaml::text(&machine, number.is_multiple_of(2));
         // Every third derives the direction of its tool.
         let text = if number.is_multiple_of(3) { asking(&text) } else { text };

@@ -322,7 +322,7 @@ fn code_is_the_same_on_every_run() {
 }
 
 /// Machines whose names and shapes are hard on generated code.
-const HARD: [(&str, &str); 9] = [
+const HARD: [(&str, &str); 10] = [
     (
         "keywords",
         "{slide: X, along: +X, origin: [self, as, fn]}, {fixed: Self, origin: [type, match, crate]}, {tool: super, offset: [0, gen, async]}",
@@ -345,6 +345,10 @@ const HARD: [(&str, &str); 9] = [
     (
         "small-letters",
         "{slide: X, id: x1, along: +X}, {rotary: C, id: c2, along: +C}, {tool: tip, offset: [0, 0, l_1]}",
+    ),
+    (
+        "leaning",
+        "{slide: X, along: +X}, {rotary: B, along: [0, 1, 1]}, {fixed: head, turned: {A: 20 deg}}, {slide: Z, along: +Z}, {tool: tip, offset: [Xt, 0, Zt]}",
     ),
     (
         "everything",

@@ -296,3 +296,71 @@ fn line_ends_and_byte_order_marks() {
         }
     }
 }
+
+/// A head whose axis leans by 45 degrees between Y and Z, on a slide, with a tool of 120 mm below it.
+const NUTATOR: &str = "{tool: [{slide: X, along: +X, errors: [EXX]}, {rotary: B, along: [0, 1, 1]}, {tool: tip, offset: [0, 0, -120]}]}";
+
+/// Half a turn about (0, 1, 1)/sqrt(2) exchanges Y and Z and turns X over. The tool, which hung down, then lies: its tip is at
+/// (0, -120, 0), seen from the axis. All by hand: with n = (0, 1, 1)/sqrt(2) and m = (0, -1, 1)/sqrt(2), the directions of B's own frame are
+/// X, n and m, and an angle e about one of them moves the tip by e times its cross product with (0, -120, 0).
+#[test]
+fn a_nutating_head_after_half_a_turn() {
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let arms = levers(&stage(NUTATOR), &[("b", std::f64::consts::PI)]);
+    let expected = [
+        ("EXB", [1.0, 0.0, 0.0]),
+        ("EYB", [0.0, half, half]),
+        ("EZB", [0.0, -half, half]),
+        ("EAB", [0.0, 0.0, -120.0]),
+        ("EBB", [120.0 * half, 0.0, 0.0]),
+        ("ECB", [120.0 * half, 0.0, 0.0]),
+        ("EX0B", [1.0, 0.0, 0.0]),
+        ("EZ0B", [0.0, -half, half]),
+        ("EA0B", [0.0, 0.0, -120.0]),
+        ("EB0B", [120.0 * half, 0.0, 0.0]),
+        ("EC0B", [120.0 * half, 0.0, 0.0]),
+    ];
+    for (name, arm) in expected {
+        for (found, wanted) in arms[name].into_iter().zip(arm) {
+            assert!((found - wanted).abs() < 1e-12, "{name}: {:?}", arms[name]);
+        }
+    }
+    assert_eq!(arms.len(), expected.len() + 1);
+}
+
+/// The same head, written as a vector of any length, as angles, and as an upright axis between two bodies that are turned: one set of
+/// equations. A rotary axis that always stands at 45 degrees says the same in numbers.
+#[test]
+fn one_lean_in_four_ways() {
+    let chain = |before: &str, along: &str, behind: &str| {
+        stage(&format!(
+            "{{workpiece: [{{rotary: C, along: -C}}], tool: [{{slide: X, along: +X}}, {before}{{rotary: B, {along}}}, {behind}{{tool: tip, offset: [Xt, 0, Zt]}}]}}"
+        ))
+    };
+    let vector = chain("", "along: [0, 0.3, 0.3]", "");
+    let angles = chain("", "along: +B, leans: {A: 45 deg}", "");
+    let bodies =
+        chain("{fixed: lean, turned: {A: 45 deg}}, ", "along: +B", "{fixed: back, turned: {A: -45 deg}}, ");
+    let rows = |text: &str| {
+        let equations = compiled(text);
+        let terms = equations.rows.iter().flat_map(|row| row.terms.iter());
+        let named = terms.map(|term| (equations.motions[term.motion].name.clone(), term.arm.clone()));
+        (equations.rows.iter().map(|row| row.nominal.clone()).collect::<Vec<_>>(), named.collect::<Vec<_>>())
+    };
+    assert_eq!(rows(&vector), rows(&angles));
+    assert_eq!(rows(&vector), rows(&bodies));
+    let quarter = std::f64::consts::FRAC_PI_4;
+    let clamped = chain("{rotary: A, along: +A, errors: []}, ", "along: +B", "");
+    let mut point = vec![("x", 12.0), ("b", 0.7), ("c", -1.9), ("a", quarter), ("Xt", 5.0), ("Zt", -80.0)];
+    let leaning = levers(&vector, &point);
+    // Behind it the tool is turned: its offset is that of the upright one, seen from the turned frame.
+    let (sine, cosine) = quarter.sin_cos();
+    let clamped = clamped.replace("offset: [Xt, 0, Zt]", "offset: [Xt, Yt, Zt]");
+    point.extend([("Yt", -80.0 * sine)]);
+    point.iter_mut().filter(|(name, _)| *name == "Zt").for_each(|(_, value)| *value = -80.0 * cosine);
+    for (name, arm) in levers(&clamped, &point) {
+        for (found, wanted) in leaning[&name].into_iter().zip(arm) {
+            assert!((found - wanted).abs() < 1e-11, "{name}: {:?} {arm:?}", leaning[&name]);
+        }
+    }
+}

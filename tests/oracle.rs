@@ -9,6 +9,9 @@ pub(crate) mod exact;
 
 use std::collections::BTreeMap;
 
+/// The constants that are the direction of a tool.
+pub(crate) const POINTING: [&str; 3] = ["It", "Jt", "Kt"];
+
 /// A machine as its file describes it.
 #[derive(Clone, Debug)]
 pub(crate) struct Machine {
@@ -16,6 +19,8 @@ pub(crate) struct Machine {
     pub(crate) sensitive: [bool; 3],
     /// `motions: relative`.
     pub(crate) relative: bool,
+    /// Whether the file names the parts of the tool's direction, and asks for it.
+    pub(crate) pointing: bool,
     /// The default of `reference`: whether rotations act about the origin that stays.
     pub(crate) bed: bool,
     /// From the bed to the part.
@@ -46,6 +51,9 @@ pub(crate) struct Link {
     pub(crate) backwards: bool,
     /// The place of the frame at zero: sums of numbers and of multiples of constants.
     pub(crate) origin: [Sum; 3],
+    /// By how many tenths of a degree the frame is turned for good about X, then Y, then Z of the frame before it. Behind a rotary axis
+    /// that is turned back.
+    pub(crate) turned: [i32; 3],
     /// The link's own `reference`, where it has one.
     pub(crate) bed: Option<bool>,
     /// The error motions that the file lists; none where it lists none and means the usual ones.
@@ -100,6 +108,8 @@ pub(crate) struct State {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Body {
     pub(crate) origin: [f64; 3],
+    /// The angles of the frame against the one before it, rad.
+    pub(crate) turned: [f64; 3],
     /// The direction of motion, or the axis of rotation; zero for a body that no program moves.
     pub(crate) direction: [f64; 3],
     pub(crate) turns: bool,
@@ -185,15 +195,22 @@ impl Machine {
             .collect();
         names.sort();
         names.dedup();
+        if self.pointing {
+            names.extend(POINTING.map(str::to_owned));
+        }
         names
     }
 
-    /// The direction of the tool in its own frame: along the last spindle before it that no rotary axis follows, else Z.
-    pub(crate) fn tool_axis(&self) -> [f64; 3] {
+    /// The direction of the tool in its own frame: what constants say, or along the last spindle before it that no rotary axis and no turned body follows, else Z.
+    pub(crate) fn tool_axis(&self, state: &State) -> [f64; 3] {
+        if self.pointing {
+            return POINTING.map(|name| state.constants[name]);
+        }
         let mut axis = [0.0, 0.0, 1.0];
         for link in &self.tool {
             match link.kind {
                 Kind::Rotary(_) => axis = [0.0, 0.0, 1.0],
+                Kind::Fixed if link.turned != [0; 3] => axis = [0.0, 0.0, 1.0],
                 Kind::Spindle => {
                     axis = [0.0; 3];
                     axis[link.along] = if link.backwards { -1.0 } else { 1.0 };
@@ -224,6 +241,7 @@ impl Machine {
                 .map(|(factor, name)| factor * name.as_ref().map_or(1.0, |name| state.constants[name]))
                 .sum()
         });
+        body.turned = link.turned.map(|tenths| (f64::from(tenths) / 10.0).to_radians());
         if let Some(variable) = link.variable() {
             body.direction[link.along] = if link.backwards { -1.0 } else { 1.0 };
             body.turns = matches!(link.kind, Kind::Rotary(_));

@@ -138,3 +138,40 @@ fn tools_and_travels_leave_the_direction_as_it_is() {
     close(&column(&run.out, "error_i"), &[40e-6, 40e-6]);
     close(&column(&run.out, "error_x"), &[-4e-3, -12e-3]);
 }
+
+/// The same head, whose tools point in several ways.
+fn with_tools(name: &str, tools: &str, rows: &str) -> Run {
+    let machine = HEAD.replace("offset: [0, 0, -100]", "offset: [Xt, Yt, Zt], direction: [It, Jt, Kt]");
+    let known =
+        format!("constants: {{Xt: 0 mm, Yt: 0 mm, Zt: -100 mm}}\ntools: {tools}\nerrors: {{EBX: 40 urad}}\n");
+    compensated(name, &machine, &known, rows, &[])
+}
+
+/// Turned about Y by e, a tool along X leans by -e in Z and its tip at (-100, 0, 0) goes up by 100 e; a tool along Y does not lean. B turns
+/// the direction of the one back and has nothing to do for the other.
+#[test]
+fn each_tool_leans_as_it_points() {
+    let tools =
+        "{T1: {}, T2: {direction: [1, 0, 0]}, T3: {direction: [0, -2, 0]}, T4: {turned: {B: 90 deg}}}";
+    let run =
+        with_tools("tools-that-point", tools, "x,z,b,tool\n0,0,0,\n0,0,0,T1\n0,0,0,T2\n0,0,0,T3\n0,0,0,T4\n");
+    assert_eq!(run.status, 0, "{}", run.err);
+    let e = 40e-6;
+    close(&column(&run.out, "error_i"), &[e, e, 0.0, 0.0, 0.0]);
+    close(&column(&run.out, "error_j"), &[0.0; 5]);
+    close(&column(&run.out, "error_k"), &[0.0, 0.0, -e, 0.0, -e]);
+    close(&column(&run.out, "error_x"), &[-100.0 * e, -100.0 * e, -100.0 * e, -100.0 * e, 0.0]);
+    close(&column(&run.out, "error_z"), &[0.0, 0.0, 0.0, 0.0, 100.0 * e]);
+    let back = -e.to_degrees();
+    close(&column(&run.out, "b_comp"), &[back, back, back, 0.0, back]);
+}
+
+/// Without names for the direction a tool that says where it points is refused where it says so.
+#[test]
+fn a_tool_that_points_needs_a_machine_that_lets_it() {
+    let known = "tools: {T5: {direction: [0, 1, 0]}}\nerrors: {EBX: 40 urad}\n";
+    let run = compensated("tools-that-cannot", HEAD, known, "x,z,b\n0,0,0\n", &[]);
+    assert_eq!(run.status, 2, "{}", run.err);
+    assert!(run.err.contains("error[E0432]") && run.err.contains("direction: [It, Jt, Kt]"), "{}", run.err);
+    assert_eq!(run.out, "");
+}

@@ -4,10 +4,13 @@
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-use crate::oracle::{ErrorMotion, Kind, Link, Machine, Shape, State, Sum, draw};
+use crate::oracle::{ErrorMotion, Kind, Link, Machine, POINTING, Shape, State, Sum, draw};
 
 /// Names of constants that a chain may mention.
 const CONSTANTS: [&str; 5] = ["K1", "K2", "Lz", "Q", "offset_a"];
+
+/// Angles by which a link leans, tenths of a degree: mostly none; those whose sines or squares are fractions, right angles, and others.
+const ANGLES: [i32; 12] = [0, 0, 0, 0, 450, -300, 600, 900, -1350, 1800, 175, -1234];
 
 /// One link before it is known which letters are still free.
 #[derive(Clone, Debug)]
@@ -18,6 +21,7 @@ struct Plan {
     backwards: bool,
     own_id: bool,
     origin: [Vec<(i16, u8)>; 3],
+    turned: Option<[u8; 3]>,
     bed: Option<bool>,
     errors: Option<Vec<ErrorPlan>>,
 }
@@ -39,7 +43,9 @@ pub(crate) fn machines() -> impl Strategy<Value = Machine> {
         |(plans, (tool, part, with_part), sensitive, relative, bed)| {
             let sensitive = if sensitive == [false; 3] { [true; 3] } else { sensitive };
             let mut builder = Builder::default();
-            let mut machine = Machine { sensitive, relative, bed, workpiece: Vec::new(), tool: Vec::new() };
+            let (workpiece, tool_links) = (Vec::new(), Vec::new());
+            let mut machine =
+                Machine { sensitive, relative, pointing: false, bed, workpiece, tool: tool_links };
             for plan in &plans {
                 let link = builder.link(plan);
                 if plan.on_tool { machine.tool.push(link) } else { machine.workpiece.push(link) }
@@ -74,7 +80,16 @@ pub(crate) fn of_word(word: &str) -> Machine {
         };
         let kind = if "ABC".contains(letter) { Kind::Rotary(letter) } else { Kind::Slide(letter) };
         let origin = [Sum::new(), Sum::new(), Sum::new()];
-        Link { kind, id: letter.to_string(), along, backwards, origin, bed: None, errors: None }
+        Link {
+            kind,
+            id: letter.to_string(),
+            along,
+            backwards,
+            origin,
+            turned: [0; 3],
+            bed: None,
+            errors: None,
+        }
     };
     let tip = Link {
         kind: Kind::Tool,
@@ -82,12 +97,14 @@ pub(crate) fn of_word(word: &str) -> Machine {
         along: 2,
         backwards: false,
         origin: ["Xt", "Yt", "Zt"].map(|name| vec![(1.0, Some(name.to_owned()))]),
+        turned: [0; 3],
         bed: None,
         errors: None,
     };
     Machine {
         sensitive: [true; 3],
         relative: false,
+        pointing: false,
         bed: false,
         workpiece: part.chars().rev().map(|letter| axis(letter, true)).collect(),
         tool: tool.chars().map(|letter| axis(letter, false)).chain([tip]).collect(),
@@ -109,6 +126,10 @@ pub(crate) fn state(machine: &Machine, seed: u64) -> State {
     }
     state.constants =
         machine.constants().into_iter().map(|name| (name.clone(), 300.0 * draw(seed, &name))).collect();
+    if machine.pointing {
+        let direction = nalgebra::Vector3::from(POINTING.map(|name| draw(seed, name))).normalize();
+        state.constants.extend(POINTING.map(str::to_owned).into_iter().zip(direction.iter().copied()));
+    }
     state
 }
 
@@ -117,14 +138,16 @@ fn plan() -> impl Strategy<Value = Plan> {
     let errors = prop_oneof![2 => Just(None), 3 => vec(error_plan(), 0..=7).prop_map(Some)];
     let origin = [coordinate(), coordinate(), coordinate()];
     let bed = prop_oneof![3 => Just(None), 2 => any::<bool>().prop_map(Some)];
-    (any::<u8>(), any::<u8>(), any::<[bool; 3]>(), origin, bed, errors).prop_map(
-        |(pick, kind, [on_tool, backwards, own_id], origin, bed, errors)| Plan {
+    let turned = prop_oneof![2 => Just(None), 1 => any::<[u8; 3]>().prop_map(Some)];
+    (any::<u8>(), any::<u8>(), any::<[bool; 3]>(), origin, turned, bed, errors).prop_map(
+        |(pick, kind, [on_tool, backwards, own_id], origin, turned, bed, errors)| Plan {
             pick,
             kind,
             on_tool,
             backwards,
             own_id,
             origin,
+            turned,
             bed,
             errors,
         },
@@ -180,11 +203,16 @@ impl Builder {
             along,
             backwards: plan.backwards,
             origin: plan.origin.each_ref().map(|sum| coordinate(sum)),
+            turned: [0; 3],
             bed: None,
             errors: None,
         };
         if matches!(kind, Kind::Slide(_) | Kind::Rotary(_)) {
             link.bed = plan.bed;
+        }
+        if matches!(kind, Kind::Fixed | Kind::Rotary(_)) {
+            let angle = |pick: u8| ANGLES[usize::from(pick) % ANGLES.len()];
+            link.turned = plan.turned.map(|picks| picks.map(angle)).unwrap_or_default();
         }
         link.errors = plan.errors.as_ref().map(|plans| self.errors(plans, &link));
         link

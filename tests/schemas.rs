@@ -32,13 +32,13 @@ const FORMS: [(&str, &str); 6] = [
 
 /// Codes of mistakes in the form of a file, which a schema sees too. All others depend on more than the form: on the
 /// machine, on another value, on the file as a whole.
-const OF_FORM: [&str; 61] = [
+const OF_FORM: [&str; 62] = [
     "E0101", "E0102", "E0103", "E0104", "E0105", "E0106", "E0107", "E0108", "E0109", "E0110", "E0111",
     "E0112", "E0114", "E0117", "E0119", "E0120", "E0121", "E0122", "E0127", "E0128", "E0130", "E0131",
-    "E0132", "E0145", "E0301", "E0302", "E0303", "E0304", "E0306", "E0307", "E0308", "E0309", "E0401",
-    "E0402", "E0403", "E0404", "E0409", "E0410", "E0411", "E0412", "E0414", "E0416", "E0422", "E0601",
-    "E0602", "E0603", "E0604", "E0605", "E0606", "E0609", "E0610", "E0611", "E0612", "E0615", "E0616",
-    "E0617", "E0620", "E0630", "E0631", "E0701", "E0702",
+    "E0132", "E0145", "E0151", "E0301", "E0302", "E0303", "E0304", "E0306", "E0307", "E0308", "E0309",
+    "E0401", "E0402", "E0403", "E0404", "E0409", "E0410", "E0411", "E0412", "E0414", "E0416", "E0422",
+    "E0601", "E0602", "E0603", "E0604", "E0605", "E0606", "E0609", "E0610", "E0611", "E0612", "E0615",
+    "E0616", "E0617", "E0620", "E0630", "E0631", "E0701", "E0702",
 ];
 
 /// More of them: of path files.
@@ -304,6 +304,8 @@ fn mappings() -> Vec<(&'static str, String, String)> {
     }
     let motion = "chain: {tool: [{slide: X, along: +X, errors: {EXX: {unheardof: 1}}}, {tool: tip}]}";
     add("machine", motion, "/definitions/motion/anyOf/2");
+    let leaning = "chain: {tool: [{rotary: B, along: +B, leans: {unheardof: 1}}]}";
+    add("machine", leaning, "/definitions/angles");
     add("machine", "drive: {X: {unheardof: 1}}", "/definitions/slideDrive");
     add("machine", "topology: XYFZC\ndrive: {C: {unheardof: 1}}", "/definitions/rotaryDrive");
     // A set-up has the head of a calibration.

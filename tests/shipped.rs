@@ -96,6 +96,7 @@ fn link(kind: Kind, id: &str, along: &str, origin: [&str; 3]) -> Link {
         along: along_number,
         backwards: along.starts_with('-'),
         origin,
+        turned: [0; 3],
         bed: None,
         errors: None,
     }
@@ -149,6 +150,7 @@ fn excello() -> Machine {
     Machine {
         sensitive: [true, false, true],
         relative: false,
+        pointing: false,
         bed: false,
         workpiece: vec![z],
         tool: vec![x, tip("tip", ["Xt", "0", "Zt"])],
@@ -177,6 +179,7 @@ fn nist() -> Machine {
     Machine {
         sensitive: [true; 3],
         relative: false,
+        pointing: false,
         bed: false,
         workpiece: vec![spindle, part],
         tool: vec![z, x, turret, cutter],
@@ -196,6 +199,7 @@ fn postech() -> Machine {
     Machine {
         sensitive: [true; 3],
         relative: true,
+        pointing: false,
         bed: false,
         workpiece: vec![
             listed(axis('Y', "-Y", ["0", "0", "0"]), &["EC0Y", "EA0Y"]),

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::oracle::{ErrorMotion, Kind, Link, Machine, Shape};
+use crate::oracle::{ErrorMotion, Kind, Link, Machine, POINTING, Shape};
 
 /// The whole file. Constants are declared where `declare` says so, and simply used otherwise.
 pub(crate) fn text(machine: &Machine, declare: bool) -> String {
@@ -22,6 +22,9 @@ pub(crate) fn text(machine: &Machine, declare: bool) -> String {
     if machine.bed {
         text.push_str("reference: bed\n");
     }
+    if machine.pointing {
+        text.push_str("orientation: true\n");
+    }
     if declare && !machine.constants().is_empty() {
         writeln!(text, "constants: [{}]", machine.constants().join(", ")).unwrap();
     }
@@ -29,13 +32,13 @@ pub(crate) fn text(machine: &Machine, declare: bool) -> String {
     for (name, links) in [("workpiece", &machine.workpiece), ("tool", &machine.tool)] {
         if !links.is_empty() {
             writeln!(text, "  {name}:").unwrap();
-            links.iter().for_each(|link| text.push_str(&written(link)));
+            links.iter().for_each(|link| text.push_str(&written(link, machine.pointing)));
         }
     }
     text
 }
 
-fn written(link: &Link) -> String {
+fn written(link: &Link, pointing: bool) -> String {
     let (word, name) = match link.kind {
         Kind::Slide(letter) => ("slide", letter.to_string()),
         Kind::Rotary(letter) => ("rotary", letter.to_string()),
@@ -50,6 +53,16 @@ fn written(link: &Link) -> String {
     }
     if matches!(link.kind, Kind::Slide(_) | Kind::Rotary(_) | Kind::Spindle) {
         writeln!(text, "      along: {}", direction(link)).unwrap();
+    }
+    if pointing && link.kind == Kind::Tool {
+        writeln!(text, "      direction: [{}]", POINTING.join(", ")).unwrap();
+    }
+    if link.turned != [0; 3] {
+        let key = if link.kind == Kind::Fixed { "turned" } else { "leans" };
+        let angles = ["A", "B", "C"].into_iter().zip(link.turned).filter(|(_, tenths)| *tenths != 0);
+        let angles: Vec<String> =
+            angles.map(|(letter, tenths)| format!("{letter}: {} deg", f64::from(tenths) / 10.0)).collect();
+        writeln!(text, "      {key}: {{{}}}", angles.join(", ")).unwrap();
     }
     if link.origin.iter().any(|sum| !sum.is_empty()) {
         let key = if matches!(link.kind, Kind::Tool | Kind::Part) { "offset" } else { "origin" };

@@ -154,6 +154,9 @@ fn one(
     if matches!(link.kind, LinkKind::Slide(_)) && link.reference != Reference::Carriage {
         return Err(format!("link {}: errors that act at the bed are not described here", link.id));
     }
+    if !link.turned.is_none() {
+        return Err(format!("link {}: a frame that is turned for good is not described here", link.id));
+    }
     let mut described = Link {
         tool: link.branch == Branch::Tool,
         origin: link.origin.clone(),

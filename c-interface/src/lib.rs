@@ -38,5 +38,6 @@ pub use controller::{Controller, Inputs, SetupFailure};
 pub use load::{Loaded, load};
 pub use machine::{
     AxisOfMachine, CompiledMachine, ConstantOfMachine, CountedOfMachine, ForC, MotionOfMachine,
+    TurningToolOfMachine,
 };
 pub use status::{Cycle, Refused, Status};

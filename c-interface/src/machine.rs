@@ -6,7 +6,7 @@
 use std::ffi::CString;
 
 use abbe_runtime::{Exchanged, Kinematics};
-use model_dsl::calibration::{AxisName, Calibration, MachineNames, MotionName};
+use model_dsl::calibration::{AxisName, Calibration, MachineNames, MotionName, TurningTool};
 use model_dsl::machine::Counted;
 
 /// A constant of a machine by its name, with its value in mm where the machine file gives one.
@@ -22,6 +22,10 @@ pub type MotionOfMachine = (&'static str, bool, Option<&'static str>, bool);
 /// An alignment error by its name, the id of another axis, and what it is counted from that one, in names of the machine.
 pub type CountedOfMachine = (&'static str, &'static str, &'static str);
 
+/// The numbers of the constants that are the direction of the tool, and of those that are the coordinates of its tip, none for one
+/// that is zero; nothing where those are something else.
+pub type TurningToolOfMachine = ([usize; 3], Option<[Option<usize>; 3]>);
+
 /// A machine compiled to Rust. `abbe expand --c-abi` writes the implementation; nobody else needs one.
 pub trait CompiledMachine: Kinematics + Copy + Send + 'static {
     /// The machine's name, by which calibrations refer to it.
@@ -32,6 +36,8 @@ pub trait CompiledMachine: Kinematics + Copy + Send + 'static {
     const AXES: &'static [AxisOfMachine];
     /// Its motors, which are axes that follow others: the number of the motor, that of an axis, and how far the motor goes for each mm of it.
     const FOLLOWS: &'static [(usize, usize, f64)] = &[];
+    /// What each tool of a calibration turns, where it has a direction of its own.
+    const TURNING: Option<TurningToolOfMachine> = None;
     /// Its error motions, in the order of the equations.
     const MOTIONS: &'static [MotionOfMachine];
     /// Those without a lever at the tool tip, which a calibration may list.
@@ -64,6 +70,7 @@ pub(crate) fn names<M: CompiledMachine>() -> MachineNames {
     MachineNames {
         machine: M::NAME.to_owned(),
         constants: M::CONSTANTS.iter().map(|&(name, default)| (name.to_owned(), default)).collect(),
+        turning: M::TURNING.map(|(direction, offset)| TurningTool { direction, offset }),
         axes: M::AXES.iter().enumerate().map(axis_name::<M>).collect(),
         motions: M::MOTIONS.iter().map(|motion| motion_name::<M>(*motion)).collect(),
         unseen: M::UNSEEN.iter().map(|motion| motion_name::<M>(*motion)).collect(),

@@ -6,6 +6,7 @@
 //! type [`FirstOrder`] has no place for it, so it is dropped while multiplying, never after.
 
 mod first_order;
+mod fixed_angle;
 mod htm;
 mod monomial;
 mod polynomial;
@@ -13,6 +14,7 @@ mod rational;
 mod symbol;
 
 pub use first_order::FirstOrder;
+pub use fixed_angle::{FixedAngle, sine_and_cosine};
 pub use htm::{Axis, Htm};
 pub use monomial::Monomial;
 pub use polynomial::Polynomial;

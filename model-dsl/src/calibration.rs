@@ -29,6 +29,7 @@
 //! | E0425 | a term that cannot be compensated, from [`Calibration::refuse_uncompensable`] |
 //! | E0428, E0429 | an item of `times` that is not exactly one factor; a unit that the factors do not make the motion's |
 //! | E0431 | a position loop of a motor |
+//! | E0432 | a direction of a tool that it cannot have |
 //! | W0401 | a derived sensor that no term uses |
 //! | W0403 | a table that repeats and whose ends have two values |
 //!
@@ -49,6 +50,7 @@ mod series;
 mod small;
 mod spelling;
 mod term;
+mod tool_direction;
 mod tools;
 pub mod vocabulary;
 mod write;
@@ -57,7 +59,7 @@ mod write_term;
 pub use compiled_in::CompiledIn;
 pub use document::{machine_of, read};
 pub use factor::{Factor, FactorKind, Within};
-pub use names::{AxisName, MachineNames, MotionName};
+pub use names::{AxisName, MachineNames, MotionName, TurningTool};
 pub use sensors::{Sensor, SensorKind, SensorReadings, Sensors};
 pub use small::{LARGEST_ANGLE, LARGEST_DISPLACEMENT};
 pub use term::{CalibratedTerm, Curve, CurveNodes, CurveValues, NotCompensable, Part, SeriesInput};

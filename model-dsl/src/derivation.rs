@@ -60,9 +60,14 @@ pub fn relative_position(machine: &Machine) -> [FirstOrder; 3] {
 
 /// The direction of the tool in the part's frame, a vector of length 1 to first order in the machine's motions by their numbers.
 pub fn relative_direction(machine: &Machine) -> [FirstOrder; 3] {
-    let along = machine.tool_axis();
-    let mut direction = <[FirstOrder; 3]>::default();
-    direction[along.axis.index()] = FirstOrder::nominal(Polynomial::integer(along.sign));
+    let direction = match machine.tool_direction() {
+        Some(parts) => parts.map(|name| Polynomial::symbol(Symbol::Constant(name.clone()))),
+        None => {
+            let along = machine.tool_axis();
+            Axis::ALL.map(|axis| Polynomial::integer(if axis == along.axis { along.sign } else { 0 }))
+        }
+    };
+    let direction = direction.map(FirstOrder::nominal);
     inwards(machine).fold(direction, |direction, link| link.carry(&direction))
 }
 
@@ -176,6 +181,7 @@ fn constants(machine: &Machine) -> Vec<ConstantInfo> {
         name: constant.name.clone(),
         meaning: constant.meaning.clone(),
         default: constant.default,
+        direction: constant.direction,
     };
     machine.constants.iter().map(constant).collect()
 }

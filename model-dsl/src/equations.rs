@@ -15,7 +15,7 @@ use std::fmt;
 use abbe_runtime::{Share, Turning};
 
 use crate::algebra::{Axis, Name, Polynomial, Rational, to_f64};
-use crate::calibration::{AxisName, MachineNames, MotionName};
+use crate::calibration::{AxisName, MachineNames, MotionName, TurningTool};
 use crate::machine::reference::{Placed, counted};
 use crate::machine::{Branch, Element, Link, MotionKind, Moved};
 
@@ -104,8 +104,10 @@ pub struct ConstantInfo {
     pub name: Name,
     /// What it means.
     pub meaning: Option<String>,
-    /// The value that a calibration may leave out: mm.
+    /// The value that a calibration may leave out: mm, or the part of a direction.
     pub default: Option<f64>,
+    /// Of a part of the tool's direction, a pure number, which part it is; none of an offset.
+    pub direction: Option<Axis>,
 }
 
 /// An error motion of the machine.
@@ -338,6 +340,11 @@ impl Equations {
         self.axes.iter().filter(|axis| !axis.is_motor()).count()
     }
 
+    /// The constants that are offsets, with their numbers: all but the parts of the tool's direction.
+    pub fn offsets(&self) -> impl Iterator<Item = (usize, &ConstantInfo)> {
+        self.constants.iter().enumerate().filter(|(_, constant)| constant.direction.is_none())
+    }
+
     /// The names that a calibration of the machine may use.
     pub fn names(&self) -> MachineNames {
         let axis_letter = |axis: usize| self.axes.get(axis).map(|axis| axis.letter.clone());
@@ -353,6 +360,10 @@ impl Equations {
         MachineNames {
             machine: self.machine.clone(),
             constants: self.constants.iter().map(|known| (known.name.to_string(), known.default)).collect(),
+            turning: TurningTool::new(
+                &self.links,
+                self.constants.iter().map(|constant| (&constant.name, constant.direction)),
+            ),
             axes: self
                 .axes
                 .iter()

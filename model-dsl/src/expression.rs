@@ -4,7 +4,7 @@
 //! Out: a canonical [`Polynomial`], or the first mistake with its place in the text.
 //! Size is bounded, so that no text can make the reader run away.
 
-use crate::algebra::{Polynomial, Symbol, decimal};
+use crate::algebra::{Polynomial, Symbol, decimal, sine_and_cosine};
 use num_traits::{One, Zero};
 
 /// The most monomials that an expression may expand to.
@@ -233,6 +233,11 @@ impl<'a> Parser<'a, '_> {
     fn trigonometric(&mut self, function: &Token<'a>) -> Result<Polynomial, ExpressionError> {
         let open = self.next()?;
         let argument = self.next()?;
+        if let Some(degrees) = decimal(argument.text).filter(|_| self.take("deg").is_some()) {
+            self.close(&open)?;
+            let (sine, cosine) = sine_and_cosine(&degrees);
+            return Ok(if function.text == "sin" { sine } else { cosine });
+        }
         self.close(&open)?;
         let axis = match (self.resolve)(argument.text) {
             Some(Symbol::Position(axis)) => axis,
@@ -330,6 +335,8 @@ mod tests {
             ("(x + Z1)/2", "0.5*x + 0.5*Z1"),
             ("sin(c)^2 + cos(c)^2", "1"),
             ("sin(c)*sin(c)*cos(c)", "cos(c) - cos(c)^3"),
+            ("sin(20 deg)^2*x + x*sin(70deg)^2", "x"),
+            ("2*cos(45 deg)^2 - cos(60 deg)", "1/2"),
         ];
         for (left, right) in cases {
             assert_eq!(read(left), read(right), "{left}");

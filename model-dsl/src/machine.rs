@@ -16,10 +16,13 @@ mod motion;
 mod motor;
 mod names;
 mod orientation;
+mod pointing;
+mod read_along;
 mod read_link;
 mod read_motion;
 pub(crate) mod reference;
 mod topology;
+mod turned;
 mod usual_motions;
 mod words;
 
@@ -34,8 +37,9 @@ pub(crate) use read_link::own_direction;
 pub(crate) use read_motion::kind_of;
 pub use reference::Counted;
 pub use topology::{TopologyWord, template};
+pub use turned::Turned;
 
-use crate::algebra::Axis;
+use crate::algebra::{Axis, Name};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::{SourceFile, Span};
 use crate::yaml::Node;
@@ -78,13 +82,17 @@ impl Machine {
     }
 
     /// The direction of the tool from its tip towards the spindle, in the tool's frame: along the spindle that carries it, +Z where
-    /// none does. A rotary axis between both carries the tool, and no spindle then.
+    /// none does. A rotary axis between both carries the tool, and no spindle then; nor where a body between both is turned, as the
+    /// angle head in a spindle is.
     pub fn tool_axis(&self) -> Along {
-        let branch: Vec<&Link> = self.branch(Branch::Tool).map(|(_, link)| link).collect();
-        let outwards = branch.into_iter().rev();
-        let mut behind = outwards.take_while(|link| !matches!(link.kind, LinkKind::Rotary(_)));
-        let spindle = behind.find(|link| link.kind == LinkKind::Spindle);
-        spindle.map_or(Along { axis: Axis::Z, sign: 1 }, |spindle| spindle.along)
+        tool_axis(self.links.iter())
+    }
+
+    /// The names of the parts of the tool's direction in its frame, where each tool of a calibration has one.
+    pub fn tool_direction(&self) -> Option<[&Name; 3]> {
+        let part = |axis| self.constants.iter().find(|constant| constant.direction == Some(axis));
+        let [x, y, z] = Axis::ALL.map(|axis| part(axis).map(|constant| &constant.name));
+        Some([x?, y?, z?])
     }
 
     /// What an alignment error is, counted from each other axis that shows it, by its number in [`Machine::motions`]; none for any
@@ -100,6 +108,15 @@ impl Machine {
         axes.sort_by_key(|(_, link)| link.kind.axis_rank());
         axes
     }
+}
+
+/// The direction of a tool without one of its own.
+fn tool_axis<'l>(links: impl DoubleEndedIterator<Item = &'l Link>) -> Along {
+    let outwards = links.rev().filter(|link| link.branch == Branch::Tool);
+    let mut behind =
+        outwards.take_while(|link| !matches!(link.kind, LinkKind::Rotary(_)) && link.turned.is_none());
+    let spindle = behind.find(|link| link.kind == LinkKind::Spindle);
+    spindle.map(|spindle| spindle.along).unwrap_or_default()
 }
 
 /// Reads a bare topology word (`XYFZ`, `FX`) as a machine of that name. The tip of a single stage is its
@@ -169,7 +186,10 @@ fn build(
     let motions = budget::kept(header.budget, &chain, motions, diagnostics);
     read_motion::check_references(&motions, &chain, header.relative, diagnostics);
     let motions = [motions, motor::motions(&motors, &chain)].concat();
+    let tool_axis = tool_axis(chain.links.iter().map(|drafted| &drafted.link));
     let constants = constants::settle(declared, &chain, diagnostics);
+    let pointing = (tool_axis, header.orientation.is_derived());
+    let constants = pointing::settle(constants, &chain, pointing, diagnostics);
     drive::settle(&drives, &chain, &motors, diagnostics);
     let links_are_distinct = !diagnostics.iter().any(|known| matches!(known.code, "E0123" | "E0124"));
     if links_are_distinct {

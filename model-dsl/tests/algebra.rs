@@ -2,12 +2,12 @@
 //! evaluating respects it, that a squared sine is rewritten without changing a value, and that a
 //! program lowered from a polynomial computes that polynomial.
 
-use model_dsl::algebra::{Axis, FirstOrder, Htm, Polynomial, Rational, Symbol};
+use model_dsl::algebra::{Axis, FirstOrder, Htm, Polynomial, Rational, Symbol, sine_and_cosine};
 use model_dsl::program::{Builder, Input, Value};
 use proptest::prelude::*;
 
 fn letters() -> Vec<Symbol> {
-    vec![
+    let mut letters = vec![
         Symbol::Position("x".into()),
         Symbol::Travel("dz".into()),
         Symbol::Constant("X1".into()),
@@ -15,11 +15,19 @@ fn letters() -> Vec<Symbol> {
         Symbol::Sin("c".into()),
         Symbol::Sin("a".into()),
         Symbol::Cos("a".into()),
-    ]
+    ];
+    letters.extend([20, 45].into_iter().flat_map(of_constant_angle));
+    letters
+}
+
+/// The symbols of an angle in degrees that never changes: two of 20 degrees, one of 45.
+fn of_constant_angle(degrees: i64) -> Vec<Symbol> {
+    let (sine, cosine) = sine_and_cosine(&Rational::from_integer(degrees.into()));
+    (&sine + &cosine).symbols().into_iter().collect()
 }
 
 fn polynomial() -> impl Strategy<Value = Polynomial> {
-    let term = (-4_i64..=4, 1_i64..=3, prop::collection::vec(0_usize..7, 0..4));
+    let term = (-4_i64..=4, 1_i64..=3, prop::collection::vec(0_usize..10, 0..4));
     prop::collection::vec(term, 0..5).prop_map(|terms| {
         terms
             .into_iter()
@@ -38,7 +46,8 @@ fn value_of(symbol: &Symbol) -> f64 {
         Symbol::Position(_) => 1.75,
         Symbol::Travel(_) => -0.5,
         Symbol::Constant(_) => 2.25,
-        Symbol::Motion(_) => f64::NAN,
+        // A constant angle brings its numbers along.
+        Symbol::Motion(_) | Symbol::FixedCos(_) | Symbol::FixedSin(_) => f64::NAN,
         Symbol::Cos(name) => angle(name).cos(),
         Symbol::Sin(name) => angle(name).sin(),
     }
@@ -87,7 +96,12 @@ proptest! {
         let product = &a * &b;
         for (monomial, _) in product.terms() {
             for (symbol, power) in monomial.factors() {
-                prop_assert!(*power == 1 || !matches!(symbol, Symbol::Sin(_)), "{:?}", monomial);
+                let reduced = match symbol {
+                    Symbol::Sin(_) | Symbol::FixedSin(_) => true,
+                    Symbol::FixedCos(angle) => *angle.degrees() == Rational::from_integer(45.into()),
+                    _ => false,
+                };
+                prop_assert!(*power == 1 || !reduced, "{:?}", monomial);
             }
         }
     }

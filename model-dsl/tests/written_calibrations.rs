@@ -32,6 +32,7 @@ fn names() -> MachineNames {
     MachineNames {
         machine: "mill".to_owned(),
         constants: vec![("Xt".to_owned(), None), ("Zt".to_owned(), Some(120.0))],
+        turning: None,
         axes: vec![axis("X", false), axis("Y", false), axis("C", true)],
         motions: vec![
             motion("EXX", false, Some("X")),

@@ -2,7 +2,7 @@
 
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
-use model_dsl::machine::Branch;
+use model_dsl::machine::{Branch, Link};
 use model_dsl::quantity;
 use model_dsl::source::Spanned;
 use model_dsl::yaml::Node;
@@ -82,5 +82,12 @@ pub fn own_direction(equations: &Equations, axis: usize) -> Option<[f64; 3]> {
     if let Some(component) = direction.get_mut(link.along.axis.index()) {
         *component = sign;
     }
-    Some(direction)
+    // Bodies that are turned for good carry what stands on them: the axis, and the part.
+    let carrying = |body: &&Link, branch| body.branch == branch && !body.turns_back();
+    let before = equations.links.iter().take_while(|body| body.id != link.id);
+    let before: Vec<&Link> = before.filter(|body| carrying(body, link.branch)).collect();
+    let in_bed =
+        before.into_iter().rev().fold(link.turned.carry(direction), |found, body| body.turned.carry(found));
+    let to_part = equations.links.iter().filter(|body| carrying(body, Branch::Workpiece));
+    Some(to_part.fold(in_bed, |found, body| body.turned.carry_back(found)))
 }

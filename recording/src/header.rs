@@ -201,7 +201,8 @@ fn read_constants(node: &Node, equations: &Equations, diagnostics: &mut Diagnost
         diagnostics.push(Diagnostic::error(FORM, node.span, message).help("write `{Zt: 150 mm}`"));
         return Vec::new();
     };
-    let known: Vec<&str> = equations.constants.iter().map(|constant| &*constant.name).collect();
+    // Offsets stand before the parts of the tool's direction, which a recording does not change.
+    let known: Vec<&str> = equations.offsets().map(|(_, constant)| &*constant.name).collect();
     let mut constants = Vec::new();
     for (name, node) in entries {
         let Some(number) = known.iter().position(|known| *known == name.value) else {

@@ -24,7 +24,7 @@ use std::sync::Arc;
 
 use model_dsl::algebra::to_f64;
 use model_dsl::calibration::{
-    AxisName, Calibration, Factor, MachineNames, MotionName, SensorKind, SensorReadings, Sensors,
+    AxisName, Calibration, Factor, MachineNames, MotionName, SensorKind, SensorReadings, Sensors, TurningTool,
 };
 use model_dsl::machine::{Branch, Link, LinkKind, Machine, MotionKind, Motor};
 use nalgebra::{Rotation3, Vector3};
@@ -132,6 +132,10 @@ pub fn names_of(machine: &Machine) -> MachineNames {
     MachineNames {
         machine: machine.name.clone(),
         constants: constants.map(|constant| (constant.name.to_string(), constant.default)).collect(),
+        turning: TurningTool::new(
+            &machine.links,
+            machine.constants.iter().map(|constant| (&constant.name, constant.direction)),
+        ),
         axes: axes
             .iter()
             .map(|(_, link)| AxisName {

@@ -193,7 +193,7 @@ fn way(reversed: bool) -> Direction {
 /// A calibration without terms, of two sensors and two that are derived from them.
 fn with_sensors(equations: &Equations) -> Calibration {
     let mut text = format!("calibration: 1\nmachine: {}\nconstants:\n", equations.machine);
-    for constant in &equations.constants {
+    for (_, constant) in equations.offsets() {
         let _ = writeln!(text, "  {}: 1 mm", constant.name);
     }
     text.push_str("sensors: {both: {mean: [T1, T2]}, start: {initial: T2}}\n");

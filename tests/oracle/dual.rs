@@ -38,11 +38,14 @@ fn frame(body: &Body) -> Frame {
     let position = Dual { value: body.position, change: body.rate };
     let way = body.direction.map(|part| plain(part) * position);
     let place = Frame::shift(origin)
+        .then(&lean(body.turned))
         .then(&Frame::shift(body.offset.map(small)))
         .then(&Frame::turns(body.tilt.map(small)));
     let error = Frame::shift(body.linear.map(small)).then(&Frame::turns(body.angular.map(small)));
     if body.turns {
-        return place.then(&error).then(&Frame::turns(way));
+        let [a, b, c] = body.turned.map(|angle| -angle);
+        let back = lean([a, 0.0, 0.0]).then(&lean([0.0, b, 0.0])).then(&lean([0.0, 0.0, c]));
+        return place.then(&error).then(&Frame::turns(way)).then(&back);
     }
     let mut carriage = Frame::shift(way);
     for line in &body.lines {
@@ -53,6 +56,12 @@ fn frame(body: &Body) -> Frame {
         }
     }
     if body.bed { place.then(&error).then(&carriage) } else { place.then(&carriage).then(&error) }
+}
+
+/// Turned for good: about X, then Y, then Z of the outer frame, so that the last of these stands first in the product.
+fn lean([a, b, c]: [f64; 3]) -> Frame {
+    let one = |angles: [f64; 3]| Frame::turns(angles.map(plain));
+    one([0.0, 0.0, c]).then(&one([0.0, b, 0.0])).then(&one([a, 0.0, 0.0]))
 }
 
 fn plain(value: f64) -> Dual {

@@ -13,7 +13,7 @@ pub(crate) fn tip(machine: &Machine, state: &State) -> [f64; 3] {
 
 /// The direction of the tool from its tip towards the spindle, in the part's frame.
 pub(crate) fn direction(machine: &Machine, state: &State) -> [f64; 3] {
-    (pose(machine, state).rotation * Vector3::from(machine.tool_axis())).into()
+    (pose(machine, state).rotation * Vector3::from(machine.tool_axis(state))).into()
 }
 
 /// By what the tool is turned away from where it stands without errors: a rotation vector in the part's frame, rad.
@@ -41,11 +41,13 @@ fn pose(machine: &Machine, state: &State) -> IsometryMatrix3<f64> {
 
 /// The displacement from the frame before a body to its own.
 fn displacement(body: &Body) -> IsometryMatrix3<f64> {
-    let place = shift(body.origin) * shift(body.offset) * turn(body.tilt);
+    let [a, b, c] = body.turned;
+    let lean = Rotation3::from_euler_angles(a, b, c);
+    let place = shift(body.origin) * lean * shift(body.offset) * turn(body.tilt);
     let error = shift(body.linear) * turn(body.angular);
     let direction = Vector3::from(body.direction);
     if body.turns {
-        return place * error * turn((direction * body.position).into());
+        return place * error * turn((direction * body.position).into()) * lean.inverse();
     }
     let travel = shift((direction * body.position).into());
     let (line, carriage) = line(body);

@@ -17,7 +17,7 @@ use model_dsl::derivation;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::Equations;
 use model_dsl::machine::{
-    Along, Branch, Constant, Link, LinkKind, Machine, Motion, MotionKind, Orientation, Reference,
+    Along, Branch, Constant, Link, LinkKind, Machine, Motion, MotionKind, Orientation, Reference, Turned,
 };
 use model_dsl::source::{SourceFile, Span};
 
@@ -87,7 +87,8 @@ fn at_the_point(equations: &Equations, machine: &Machine) -> [f64; 3] {
             1.1 + 0.2 * place(&mut machine.constants.iter().map(|constant| constant.name == *name))
         }
         Symbol::Travel(_) => 0.7,
-        Symbol::Motion(_) => f64::NAN,
+        // Numbers in themselves are asked of nobody.
+        Symbol::Motion(_) | Symbol::FixedCos(_) | Symbol::FixedSin(_) => f64::NAN,
     };
     Axis::ALL.map(|direction| {
         let terms = equations.row(direction).map(|row| row.terms.as_slice()).unwrap_or_default();
@@ -148,6 +149,7 @@ fn offset(machine: &mut Machine, name: String) -> Polynomial {
         name: name.clone(),
         meaning: None,
         default: None,
+        direction: None,
         span: Span::new(0, 0),
     });
     Polynomial::symbol(Symbol::Constant(name))
@@ -172,5 +174,6 @@ fn join(machine: &mut Machine, id: String, kind: LinkKind, along: Axis, origin: 
     }
     let along = Along { axis: along, sign: 1 };
     let (branch, reference, span) = (Branch::Tool, Reference::Carriage, Span::new(0, 0));
-    machine.links.push(Link { id, kind, branch, along, origin, reference, corrects: true, span });
+    let turned = Turned::default();
+    machine.links.push(Link { id, kind, branch, along, origin, turned, reference, corrects: true, span });
 }

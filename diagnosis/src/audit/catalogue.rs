@@ -19,7 +19,7 @@ pub(super) fn faults(inputs: &Inputs<'_>) -> Vec<Fault> {
     faults.extend(sizes(known, equations));
     faults.extend(terms(known).flat_map(|(at, term)| of_term(at, term, equations)));
     faults.extend(places(known, equations));
-    faults.extend((0..equations.constants.len()).map(Fault::Constant));
+    faults.extend(equations.offsets().map(|(number, _)| Fault::Constant(number)));
     faults.extend(orders(inputs).into_iter().map(Fault::Order));
     faults.extend(sensors(known));
     faults

@@ -4,7 +4,7 @@
 //! products and inverses to first order. `a.then(&b)` is the matrix product `A B`: the frame
 //! of `b` seen from the frame that `a` is seen from, read as `T_0b = T_0a T_ab`.
 
-use super::{FirstOrder, Name, Polynomial, Symbol};
+use super::{FirstOrder, Name, Polynomial, Rational, Symbol, sine_and_cosine};
 
 /// A coordinate direction of a frame, or the rotation about it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -91,9 +91,19 @@ impl Htm {
     /// A large rotation about one direction by the position `name` of a rotary axis,
     /// counted with `sign` (+1 right-handed, -1 left-handed); sine and cosine stay exact.
     pub fn rotation(axis: Axis, name: &Name, sign: i64) -> Self {
-        let cosine = FirstOrder::nominal(Polynomial::symbol(Symbol::Cos(name.clone())));
-        let sine = Polynomial::symbol(Symbol::Sin(name.clone()));
-        let sine = FirstOrder::nominal(&sine * &Polynomial::integer(sign));
+        let cosine = Polynomial::symbol(Symbol::Cos(name.clone()));
+        let sine = &Polynomial::symbol(Symbol::Sin(name.clone())) * &Polynomial::integer(sign);
+        Self::turned_by(axis, sine, cosine)
+    }
+
+    /// A rotation about one direction by an angle that never changes: deg, right-handed.
+    pub fn fixed_rotation(axis: Axis, degrees: &Rational) -> Self {
+        let (sine, cosine) = sine_and_cosine(degrees);
+        Self::turned_by(axis, sine, cosine)
+    }
+
+    fn turned_by(axis: Axis, sine: Polynomial, cosine: Polynomial) -> Self {
+        let (sine, cosine) = (FirstOrder::nominal(sine), FirstOrder::nominal(cosine));
         let (u, v) = (axis.next().index(), axis.next().next().index());
         let mut rotation = identity();
         rotation[u][u] = cosine.clone();

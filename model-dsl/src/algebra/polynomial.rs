@@ -2,7 +2,8 @@
 //!
 //! In: symbols and fractions. Out: a canonical form, so that equality of expressions is
 //! equality of values. The one relation among symbols, sin(q)^2 + cos(q)^2 = 1, is kept by
-//! rewriting every squared sine as 1 - cos(q)^2 when a product is formed.
+//! rewriting every squared sine as 1 - cos(q)^2 when a product is formed, and the squared cosine of
+//! an angle that never changes as its value where that is a fraction.
 
 use std::collections::BTreeMap;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub};
@@ -101,13 +102,14 @@ impl Polynomial {
         sum
     }
 
-    /// The value with every symbol replaced by a number.
+    /// The value with every symbol replaced by a number; sines and cosines of angles that never change are numbers already.
     pub fn evaluate(&self, mut value_of: impl FnMut(&Symbol) -> f64) -> f64 {
         let mut sum = 0.0;
         for (monomial, coefficient) in &self.0 {
             let mut product = to_f64(coefficient);
             for (symbol, power) in monomial.factors() {
-                product *= value_of(symbol).powi(i32::try_from(*power).unwrap_or(i32::MAX));
+                let value = symbol.fixed_value().unwrap_or_else(|| value_of(symbol));
+                product *= value.powi(i32::try_from(*power).unwrap_or(i32::MAX));
             }
             sum += product;
         }
@@ -123,8 +125,8 @@ impl Polynomial {
         if coefficient.is_zero() {
             return;
         }
-        if let Some(sine) = squared_sine(&monomial) {
-            return self.accumulate_reduced(monomial, &sine, coefficient);
+        if let Some((symbol, square)) = reducible(&monomial) {
+            return self.accumulate_reduced(&monomial, &symbol, square, &coefficient);
         }
         let slot = self.0.entry(monomial.clone()).or_insert_with(Rational::zero);
         *slot += coefficient;
@@ -133,22 +135,49 @@ impl Polynomial {
         }
     }
 
-    /// Adds `monomial * coefficient` with one sin(q)^2 of it rewritten as 1 - cos(q)^2.
-    fn accumulate_reduced(&mut self, monomial: Monomial, sine: &Symbol, coefficient: Rational) {
-        let Some(rest) = monomial.without_one(sine).and_then(|once| once.without_one(sine)) else {
+    /// Adds `monomial * coefficient` with one square of a symbol of it rewritten.
+    fn accumulate_reduced(
+        &mut self,
+        monomial: &Monomial,
+        symbol: &Symbol,
+        square: Square,
+        coefficient: &Rational,
+    ) {
+        let Some(rest) = monomial.without_one(symbol).and_then(|once| once.without_one(symbol)) else {
             return;
         };
-        let cosine = Monomial::power(Symbol::Cos(sine.name().clone()), 2);
-        self.accumulate(rest.times(&cosine), -coefficient.clone());
-        self.accumulate(rest, coefficient);
+        match square {
+            Square::OneMinus(cosine) => {
+                let cosine = Monomial::power(cosine, 2);
+                self.accumulate(rest.times(&cosine), -coefficient.clone());
+                self.accumulate(rest, coefficient.clone());
+            }
+            Square::Number(value) => self.accumulate(rest, coefficient * value),
+        }
     }
 }
 
-fn squared_sine(monomial: &Monomial) -> Option<Symbol> {
-    let mut factors = monomial.factors().iter();
-    factors
-        .find(|(symbol, power)| *power >= 2 && matches!(symbol, Symbol::Sin(_)))
-        .map(|(symbol, _)| symbol.clone())
+/// What the square of a symbol is written as.
+enum Square {
+    /// That of a sine: one minus the square of this cosine.
+    OneMinus(Symbol),
+    /// A fraction.
+    Number(Rational),
+}
+
+/// A symbol whose square is in a monomial, and is written in another way.
+fn reducible(monomial: &Monomial) -> Option<(Symbol, Square)> {
+    let squared = monomial.factors().iter().filter(|(_, power)| *power >= 2);
+    squared.filter_map(|(symbol, _)| Some((symbol.clone(), square(symbol)?))).next()
+}
+
+fn square(symbol: &Symbol) -> Option<Square> {
+    match symbol {
+        Symbol::Sin(name) => Some(Square::OneMinus(Symbol::Cos(name.clone()))),
+        Symbol::FixedSin(angle) => Some(Square::OneMinus(Symbol::FixedCos(angle.clone()))),
+        Symbol::FixedCos(angle) => angle.squared_cosine().map(Square::Number),
+        _ => None,
+    }
 }
 
 impl AddAssign<&Polynomial> for Polynomial {

@@ -6,6 +6,8 @@
 use std::fmt;
 use std::sync::Arc;
 
+use super::FixedAngle;
+
 /// A shared name; cloning it is cheap.
 pub type Name = Arc<str>;
 
@@ -21,6 +23,10 @@ pub enum Symbol {
     /// An error motion by symbol. It stands in published equations while they are read;
     /// derived equations hold error motions apart, in [`super::FirstOrder`].
     Motion(Name),
+    /// The cosine of an angle that never changes.
+    FixedCos(FixedAngle),
+    /// The sine of an angle that never changes.
+    FixedSin(FixedAngle),
     /// The cosine of a rotary axis's position.
     Cos(Name),
     /// The sine of a rotary axis's position.
@@ -28,7 +34,7 @@ pub enum Symbol {
 }
 
 impl Symbol {
-    /// The name that the symbol carries: `c` for `cos(c)`.
+    /// The name that the symbol carries: `c` for `cos(c)`, `45 deg` for `cos(45 deg)`.
     pub fn name(&self) -> &Name {
         match self {
             Self::Position(name)
@@ -37,6 +43,16 @@ impl Symbol {
             | Self::Motion(name)
             | Self::Cos(name)
             | Self::Sin(name) => name,
+            Self::FixedCos(angle) | Self::FixedSin(angle) => angle.name(),
+        }
+    }
+
+    /// The value of a symbol that has one in itself: a pure number.
+    pub fn fixed_value(&self) -> Option<f64> {
+        match self {
+            Self::FixedCos(angle) => Some(angle.cosine()),
+            Self::FixedSin(angle) => Some(angle.sine()),
+            _ => None,
         }
     }
 }
@@ -46,6 +62,8 @@ impl fmt::Display for Symbol {
         match self {
             Self::Cos(name) => write!(f, "cos({name})"),
             Self::Sin(name) => write!(f, "sin({name})"),
+            Self::FixedCos(angle) => write!(f, "cos({angle})"),
+            Self::FixedSin(angle) => write!(f, "sin({angle})"),
             other => f.write_str(other.name()),
         }
     }

@@ -139,20 +139,22 @@ fn missing_constant(name: &str, names: &MachineNames, span: Span) -> Diagnostic 
 }
 
 pub(super) fn check_constant(name: &Spanned<String>, names: &MachineNames, diagnostics: &mut Diagnostics) {
-    let mut known = names.constants.iter().map(|(known, _)| known.as_str());
+    let mut known = names.offsets().map(|(known, _)| known.as_str());
     if known.clone().any(|known| known == name.value) {
         return;
     }
     let message = format!("{} has no constant `{}`", names.machine, name.value);
     let mistake = Diagnostic::error("E0405", name.span, message);
     let near = nearest(&name.value, known.by_ref());
-    diagnostics.push(match (near, names.constants.as_slice()) {
+    let listed: Vec<_> = names.offsets().map(|(known, _)| known.as_str()).collect();
+    let is_part = names.constants.iter().any(|(part, _)| *part == name.value);
+    diagnostics.push(match (near, listed.as_slice()) {
+        _ if is_part => mistake.help(
+            "it is a part of the tool's direction: write `direction: [0, 1, 0]` for a tool under `tools`",
+        ),
         (Some(near), _) => mistake.suggest(Some(near)),
         (None, []) => mistake.help("leave it out: the machine has no constants"),
-        (None, constants) => {
-            let listed: Vec<_> = constants.iter().map(|(known, _)| known.as_str()).collect();
-            mistake.help(format!("its constants are {}", listed.join(", ")))
-        }
+        (None, listed) => mistake.help(format!("its constants are {}", listed.join(", "))),
     });
 }
 

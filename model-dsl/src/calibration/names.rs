@@ -1,7 +1,8 @@
 //! The names of a machine that its calibration may use, and how they are looked up.
 
+use crate::algebra::{Axis, Name, Polynomial, Symbol};
 use crate::machine::reference::difference;
-use crate::machine::{Counted, without_reference};
+use crate::machine::{Counted, Link, LinkKind, without_reference};
 use crate::quantity::Dimension;
 
 /// The names of one machine: what a calibration of it can speak of.
@@ -11,12 +12,59 @@ pub struct MachineNames {
     pub machine: String,
     /// Constants with their values in mm where the machine file gives one itself, in the machine's order.
     pub constants: Vec<(String, Option<f64>)>,
+    /// Where each tool has a direction of its own, what that is made of; its parts are the last of the constants.
+    pub turning: Option<TurningTool>,
     /// Axes in the machine's order.
     pub axes: Vec<AxisName>,
     /// Error motions in the machine's order.
     pub motions: Vec<MotionName>,
     /// Error motions of the machine without a lever at the tool tip: a calibration may have numbers of them, which have no effect.
     pub unseen: Vec<MotionName>,
+}
+
+/// A tool whose direction is another one with each tool of a calibration.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct TurningTool {
+    /// The constants, by their numbers, that are the parts of its direction.
+    pub direction: [usize; 3],
+    /// The constants that are the coordinates of its tip, none for a coordinate that is zero; nothing at all where a coordinate is
+    /// something else, or its constant stands in another one too.
+    pub offset: Option<[Option<usize>; 3]>,
+}
+
+impl TurningTool {
+    /// Of the links of a machine and its constants, each with the part of a direction that it is; none where there is no such part.
+    pub fn new<'m>(
+        links: &[Link],
+        constants: impl Iterator<Item = (&'m Name, Option<Axis>)> + Clone,
+    ) -> Option<Self> {
+        let part = |wanted| constants.clone().position(|(_, part)| part == Some(wanted));
+        let [x, y, z] = Axis::ALL.map(part);
+        Some(Self { direction: [x?, y?, z?], offset: offset(links, constants.map(|(name, _)| name)) })
+    }
+}
+
+/// The constants of the tool's coordinates: see [`TurningTool::offset`].
+fn offset<'m>(
+    links: &[Link],
+    constants: impl Iterator<Item = &'m Name> + Clone,
+) -> Option<[Option<usize>; 3]> {
+    let tool = links.iter().find(|link| link.kind == LinkKind::Tool)?;
+    let used = |name: &Name| {
+        let places = links.iter().flat_map(|link| &link.origin);
+        places.filter(|place| place.symbols().contains(&Symbol::Constant(name.clone()))).count()
+    };
+    let alone = |place: &Polynomial| -> Option<Option<usize>> {
+        if place.is_zero() {
+            return Some(None);
+        }
+        let symbols = place.symbols();
+        let name = symbols.first().filter(|symbol| *place == Polynomial::symbol((*symbol).clone()))?.name();
+        let number = constants.clone().position(|known| known == name)?;
+        (used(name) == 1).then_some(Some(number))
+    };
+    let [x, y, z] = tool.origin.each_ref().map(alone);
+    Some([x?, y?, z?])
 }
 
 /// An axis by its letter.
@@ -60,6 +108,13 @@ pub struct MotionName {
 }
 
 impl MachineNames {
+    /// The constants that are offsets: all but the parts of the tool's direction.
+    pub fn offsets(&self) -> impl Iterator<Item = &(String, Option<f64>)> + Clone {
+        let parts = self.turning.map(|turning| turning.direction);
+        let is_part = move |number: &usize| parts.is_some_and(|parts| parts.contains(number));
+        self.constants.iter().enumerate().filter(move |(number, _)| !is_part(number)).map(|(_, known)| known)
+    }
+
     /// The index of the axis with this letter.
     pub fn axis(&self, letter: &str) -> Option<usize> {
         self.axes.iter().position(|axis| axis.letter == letter)

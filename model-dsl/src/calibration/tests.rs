@@ -22,6 +22,7 @@ pub(super) fn names() -> MachineNames {
     MachineNames {
         machine: "test-mill".to_owned(),
         constants: vec![("Xt".to_owned(), None), ("Zt".to_owned(), Some(120.0))],
+        turning: None,
         axes: vec![axis("X", false), axis("Y", false), axis("C", true)],
         motions: vec![
             motion("EXX", false, Some("X")),

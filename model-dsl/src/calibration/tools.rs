@@ -6,8 +6,10 @@
 use super::Tool;
 use super::document::check_constant;
 use super::names::MachineNames;
+use super::tool_direction;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::quantity::{self, Dimension};
+use crate::source::Spanned;
 use crate::yaml::Node;
 
 /// Reads all tools; every mistake is told.
@@ -23,7 +25,7 @@ pub(super) fn read_tools(
         diagnostics.push(mistake.help("write one line `T1: {Zt: 120 mm}` for each tool"));
         return Vec::new();
     };
-    let read = |(name, value): &(crate::source::Spanned<String>, Node)| Tool {
+    let read = |(name, value): &(Spanned<String>, Node)| Tool {
         name: name.clone(),
         constants: read_tool(&name.value, value, names, constants, diagnostics),
     };
@@ -49,7 +51,11 @@ fn read_tool(
             .push(mistake.help("write the constants that differ with this tool, such as `{Zt: 120 mm}`"));
         return values;
     };
-    for (name, value) in entries {
+    let is_constant = |(key, _): &&(Spanned<String>, Node)| {
+        let known = names.offsets().any(|(known, _)| *known == key.value);
+        known || !tool_direction::KEYS.contains(&key.value.as_str())
+    };
+    for (name, value) in entries.iter().filter(is_constant) {
         check_constant(name, names, diagnostics);
         let words = format!("`{}` of the tool `{tool}`", name.value);
         let length = quantity::read(value, Dimension::LENGTH, &words, diagnostics);
@@ -58,5 +64,10 @@ fn read_tool(
             *place = length.value;
         }
     }
+    // Behind all lengths, which the holder turns.
+    for entry in entries.iter().filter(|entry| !is_constant(entry)) {
+        tool_direction::take(entry, tool, names, &mut values, diagnostics);
+    }
+    tool_direction::check(entries, diagnostics);
     values
 }

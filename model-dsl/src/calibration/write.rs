@@ -2,7 +2,7 @@
 
 use super::names::{MachineNames, MotionName};
 use super::sensors::{SensorKind, Sensors};
-use super::spelling::{Item, braces, brackets, quantity, sentence, term, word};
+use super::spelling::{Item, braces, brackets, number, quantity, sentence, term, word};
 use super::term::CalibratedTerm;
 use super::vocabulary::{INSIDE_LOOP, RAMP};
 use super::write_term::{Context, UNKNOWN, parameters};
@@ -37,7 +37,7 @@ pub fn write(calibration: &Calibration, names: &MachineNames) -> String {
 }
 
 fn constants(calibration: &Calibration, names: &MachineNames) -> String {
-    let given = names.constants.iter().zip(&calibration.constants);
+    let given = names.offsets().zip(&calibration.constants);
     let given: Vec<_> = given.map(|((name, _), value)| (word(name), quantity(*value, "mm"))).collect();
     if given.is_empty() { String::new() } else { format!("constants: {}\n", braces(given)) }
 }
@@ -45,13 +45,22 @@ fn constants(calibration: &Calibration, names: &MachineNames) -> String {
 /// The tools, each with the constants that are different with it.
 fn tools(calibration: &Calibration, names: &MachineNames) -> String {
     let line = |tool: &Tool| {
-        let differs = names.constants.iter().zip(tool.constants.iter().zip(&calibration.constants));
+        let differs = names.offsets().zip(tool.constants.iter().zip(&calibration.constants));
         let differs = differs.filter(|(_, (with, without))| with.to_bits() != without.to_bits());
         let given = differs.map(|((name, _), (value, _))| (word(name), quantity(*value, "mm")));
+        let given: Vec<_> = given.chain(direction(tool, calibration, names)).collect();
         format!("  {}: {}\n", word(&tool.name.value), braces(given))
     };
     let lines: String = calibration.tools.iter().map(line).collect();
     if lines.is_empty() { lines } else { format!("tools:\n{lines}") }
+}
+
+/// The direction of a tool that has one of its own.
+fn direction(tool: &Tool, calibration: &Calibration, names: &MachineNames) -> Option<(String, String)> {
+    let parts = names.turning?.direction;
+    let of = |constants: &[f64]| parts.map(|part| constants.get(part).copied().unwrap_or(f64::NAN));
+    let (own, without) = (of(&tool.constants), of(&calibration.constants));
+    (own != without).then(|| ("direction".to_owned(), brackets(&own.map(number))))
 }
 
 fn limits(limits: &Limits) -> String {

@@ -5,7 +5,7 @@ use abbe_runtime::Share;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::calibration::{CompiledIn, MachineNames, MotionName};
+use crate::calibration::{CompiledIn, MachineNames, MotionName, TurningTool};
 use crate::equations::Equations;
 use crate::machine::Counted;
 
@@ -36,7 +36,8 @@ pub(super) fn all(equations: &Equations) -> TokenStream {
 }
 
 fn compiled_machine(equations: &Equations) -> TokenStream {
-    let MachineNames { machine, constants, axes, motions, unseen } = equations.names();
+    let MachineNames { machine, constants, turning, axes, motions, unseen } = equations.names();
+    let turning = turning.map(turning_tool);
     let constants = constants.iter().map(|(name, default)| {
         let default = optional(default.as_ref());
         quote! { (#name, #default) }
@@ -67,6 +68,7 @@ fn compiled_machine(equations: &Equations) -> TokenStream {
             const CONSTANTS: &'static [::abbe_c::ConstantOfMachine] = &[#(#constants),*];
             const AXES: &'static [::abbe_c::AxisOfMachine] = &[#(#axes),*];
             #follows
+            #turning
             const MOTIONS: &'static [::abbe_c::MotionOfMachine] = &[#(#motions),*];
             const UNSEEN: &'static [::abbe_c::MotionOfMachine] = &[#(#unseen),*];
             const COUNTED: &'static [::abbe_c::CountedOfMachine] = &[#(#counted),*];
@@ -77,6 +79,16 @@ fn compiled_machine(equations: &Equations) -> TokenStream {
             }
         }
     }
+}
+
+/// Which constants each tool of a calibration gives as its direction, and which as its tip.
+fn turning_tool(TurningTool { direction: [x, y, z], offset }: TurningTool) -> TokenStream {
+    let offset = offset.map(|offset| {
+        let offset = offset.map(|number| optional(number.as_ref()));
+        quote! { [#(#offset),*] }
+    });
+    let offset = optional(offset.as_ref());
+    quote! { const TURNING: Option<::abbe_c::TurningToolOfMachine> = Some(([#x, #y, #z], #offset)); }
 }
 
 /// An error motion by its name.

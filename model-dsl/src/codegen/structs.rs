@@ -71,6 +71,10 @@ fn constants(equations: &Equations) -> TokenStream {
         .constants
         .iter()
         .map(|constant| {
+            if constant.direction.is_some() {
+                let meaning = constant.meaning.as_deref().unwrap_or("a part of the direction of the tool");
+                return (constant.name.to_string(), format!("{}: {meaning} \\[1\\].", constant.name));
+            }
             let meaning = constant.meaning.as_deref().unwrap_or("a named offset of the chain");
             (constant.name.to_string(), format!("{}: {meaning} \\[mm\\].", constant.name))
         })

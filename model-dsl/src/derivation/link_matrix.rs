@@ -2,9 +2,11 @@
 //!
 //! A slide is its origin, its travel and its small errors; the errors act at the origin that
 //! travels (`reference: carriage`) or at the one that stays (`bed`). A rotary axis is its
-//! origin, its errors in the directions of the frame before it, then its large rotation.
+//! origin, its errors in the directions of the frame before it, then its large rotation. The axis of one that leans
+//! stands in a frame that constant angles turn, errors included, and these are turned back behind it; a fixed link
+//! that is turned leaves everything that stands on it so.
 
-use crate::algebra::{Axis, FirstOrder, Htm, Polynomial, Symbol};
+use crate::algebra::{Axis, FirstOrder, Htm, Polynomial, Rational, Symbol};
 use crate::machine::{Link, LinkKind, Machine, Motion, MotionKind, Reference, body_sign};
 
 /// The matrix of a link, by its number in [`Machine::links`]; the errors are numbered as in [`Machine::motions`].
@@ -16,7 +18,8 @@ pub fn matrix(machine: &Machine, number: usize) -> Htm {
         .enumerate()
         .filter(|(_, motion)| motion.link == number && motion.motor.is_none())
         .collect();
-    let origin = Htm::translation(link.origin.clone().map(FirstOrder::nominal));
+    let place = Htm::translation(link.origin.clone().map(FirstOrder::nominal));
+    let origin = link.turned.rotations().fold(place, |frame, (axis, degrees)| turned(&frame, axis, degrees));
     let (aligned, displaced): (Vec<_>, Vec<_>) =
         own.into_iter().partition(|(_, motion)| motion.kind.alignment());
     let displaced = by_motors(machine, number).then(&small(machine, link, displaced.into_iter()));
@@ -24,7 +27,8 @@ pub fn matrix(machine: &Machine, number: usize) -> Htm {
     match (link.kind, link.reference) {
         (LinkKind::Rotary(_), _) => {
             let turn = Htm::rotation(link.along.axis, &link.variable(), link.along.sign);
-            origin.then(&aligned).then(&displaced).then(&turn)
+            let body = origin.then(&aligned).then(&displaced).then(&turn);
+            link.turned.back().fold(body, |frame, (axis, degrees)| turned(&frame, axis, &degrees))
         }
         (LinkKind::Slide(_), Reference::Carriage) => {
             origin.then(&travel(link)).then(&aligned).then(&displaced)
@@ -32,6 +36,11 @@ pub fn matrix(machine: &Machine, number: usize) -> Htm {
         (LinkKind::Slide(_), Reference::Bed) => origin.then(&displaced).then(&travel(link)).then(&aligned),
         _ => origin.then(&aligned).then(&displaced),
     }
+}
+
+/// A frame that goes on by a constant angle.
+fn turned(frame: &Htm, axis: Axis, degrees: &Rational) -> Htm {
+    frame.then(&Htm::fixed_rotation(axis, degrees))
 }
 
 /// The programmed travel of a slide.

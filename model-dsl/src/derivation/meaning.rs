@@ -2,7 +2,7 @@
 
 use crate::algebra::Polynomial;
 use crate::machine::{
-    Along, Branch, Link, LinkKind, Motion, MotionKind, Reference, kind_of, own_direction, parse_name,
+    Along, Branch, Link, LinkKind, Motion, MotionKind, Reference, Turned, kind_of, own_direction, parse_name,
 };
 use crate::source::Span;
 
@@ -39,6 +39,7 @@ pub fn named(name: &str) -> Option<NamedMotion> {
         branch: Branch::Tool,
         along: Along { axis: own_direction(axis), sign: 1 },
         origin: std::array::from_fn(|_| Polynomial::zero()),
+        turned: Turned::default(),
         reference: Reference::Carriage,
         corrects: true,
         span: Span::default(),

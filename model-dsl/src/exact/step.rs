@@ -3,7 +3,7 @@
 //! In: a link with the numbers of its constants. Out: its steps in order, and each taken by the stands of many rows. The
 //! order, and the point about which a rotation acts, are those of [`crate::derivation::link_matrix`].
 
-use crate::algebra::{Axis, Symbol, to_f64};
+use crate::algebra::{Axis, Rational, Symbol, to_f64};
 use crate::equations::{Equations, Motion};
 use crate::machine::{Link, LinkKind, MotionKind, Moved, Reference};
 
@@ -17,6 +17,8 @@ pub(super) enum Step {
     Place([f64; 3]),
     /// The travel of a slide.
     Travel { axis: usize, direction: usize, sign: f64 },
+    /// A rotation by an angle that never changes, rad.
+    Fixed { about: Axis, angle: f64 },
     /// The rotation of a rotary axis.
     Rotary { axis: usize, about: Axis, sign: f64 },
     /// A displacement by an error motion.
@@ -65,7 +67,9 @@ pub(super) fn of_link(equations: &Equations, number: usize, link: &Link, constan
     let offsets = parts(&|motion| matches!(motion.kind, MotionKind::Offset(_)));
     let tilts = parts(&|motion| !slide && aligned(motion));
 
+    let fixed = |about: Axis, degrees: &Rational| Step::Fixed { about, angle: to_f64(degrees).to_radians() };
     let mut steps = vec![Step::Place(place(equations, link, constants))];
+    steps.extend(link.turned.rotations().map(|(about, degrees)| fixed(about, degrees)));
     steps.extend(offsets.into_iter().map(Step::Shift));
     steps.push(Step::Turn(tilts));
     let variable = link.variable();
@@ -86,6 +90,7 @@ pub(super) fn of_link(equations: &Equations, number: usize, link: &Link, constan
         }
         (LinkKind::Rotary(_), Some(axis)) => {
             steps.extend(error().chain([Step::Rotary { axis, about: link.along.axis, sign }]));
+            steps.extend(link.turned.back().map(|(about, degrees)| fixed(about, &degrees)));
         }
         _ => steps.extend(error()),
     }
@@ -133,6 +138,7 @@ impl Step {
         match self {
             Self::Place(place) => Self::Place(place.map(|part| -part)),
             Self::Travel { axis, direction, sign } => Self::Travel { axis, direction, sign: -sign },
+            Self::Fixed { about, angle } => Self::Fixed { about, angle: -angle },
             Self::Rotary { axis, about, sign } => Self::Rotary { axis, about, sign: -sign },
             Self::Shift(part) => Self::Shift(part.opposite()),
             Self::Turn(parts) => Self::Turn(parts.into_iter().map(Part::opposite).collect()),
@@ -151,6 +157,7 @@ impl Step {
                     stand.place[*direction] += sign * position;
                 }
             }
+            Self::Fixed { about, angle } => stands.iter_mut().for_each(|stand| stand.carry(*about, *angle)),
             Self::Rotary { axis, about, sign } => {
                 for (stand, position) in stands.iter_mut().zip(columns.position(*axis)) {
                     stand.carry(*about, sign * position);

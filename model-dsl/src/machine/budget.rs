@@ -72,6 +72,10 @@ fn rotary_axes(links: &[&Link]) -> Result<[usize; 2], String> {
         found.sort_unstable();
         found
     };
+    if let Some(link) = links.iter().find(|link| !link.turned.is_none()) {
+        let leans = if link.turns_back() { "leans" } else { "is turned" };
+        return Err(format!("its axes run along X, Y and Z, and {} {leans}", link.id));
+    }
     let slides = directions(false);
     if slides != Axis::ALL {
         return Err(format!("it is for three slides X, Y, Z, but the chain has {}", slides.len()));

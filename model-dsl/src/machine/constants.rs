@@ -4,7 +4,7 @@
 use super::draft::Chain;
 use super::fields::items;
 use super::words::is_name;
-use crate::algebra::{Name, Symbol, decimal};
+use crate::algebra::{Axis, Name, Symbol, decimal};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::quantity::{Dimension, parse_quantity};
 use crate::source::{Span, Spanned};
@@ -18,8 +18,10 @@ pub struct Constant {
     pub name: Name,
     /// What it means, where the file says so.
     pub meaning: Option<String>,
-    /// The value that a calibration may leave out, where the file gives one: mm.
+    /// The value that a calibration may leave out, where the file gives one: mm, or the part of a direction.
     pub default: Option<f64>,
+    /// Of a part of the tool's direction, a pure number, which part it is; none of an offset.
+    pub direction: Option<Axis>,
     /// Where it was declared or first used.
     pub span: Span,
 }
@@ -66,6 +68,7 @@ fn named(name: &Spanned<String>, diagnostics: &mut Diagnostics) -> Option<Consta
             name: name.value.as_str().into(),
             meaning: None,
             default: None,
+            direction: None,
             span: name.span,
         });
     }
@@ -108,13 +111,15 @@ fn entry(key: &Spanned<String>, value: &Node, diagnostics: &mut Diagnostics) -> 
 
 /// Joins what is declared and what is used; reports what is only one of the two.
 pub(super) fn settle(declared: Declared, chain: &Chain, diagnostics: &mut Diagnostics) -> Vec<Constant> {
-    let used = used_names(chain);
+    let mut used = used_names(chain);
     let Declared::Listed(listed) = declared else {
         return used
             .into_iter()
-            .map(|(name, span)| Constant { name, meaning: None, default: None, span })
+            .map(|(name, span)| Constant { name, meaning: None, default: None, direction: None, span })
             .collect();
     };
+    let parts = chain.links.iter().filter_map(|drafted| drafted.direction.as_ref()).flatten();
+    used.extend(parts.map(|part| (part.value.clone(), part.span)));
     // An offset that could not be read hides the names in it; a misspelt name hides the right one.
     let unreadable = diagnostics.iter().any(|known| matches!(known.code, "E0117" | "E0118"));
     let mut meant: Vec<Name> = Vec::new();

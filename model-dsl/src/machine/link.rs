@@ -1,5 +1,6 @@
 //! The links of a chain: what moves, along what, seen from where.
 
+use super::turned::Turned;
 use crate::algebra::{Axis, Name, Polynomial};
 use crate::source::Span;
 
@@ -66,6 +67,13 @@ pub struct Along {
     pub sign: i64,
 }
 
+impl Default for Along {
+    /// Along +Z.
+    fn default() -> Self {
+        Self { axis: Axis::Z, sign: 1 }
+    }
+}
+
 /// The point about which a link's rotations act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reference {
@@ -88,6 +96,9 @@ pub struct Link {
     pub along: Along,
     /// The place of its frame at zero, in the frame before it: mm.
     pub origin: [Polynomial; 3],
+    /// By which constant angles its frame is turned against the frame before it. A rotary axis turns that back behind itself: its axis
+    /// leans, and its body at zero does not.
+    pub turned: Turned,
     /// About which point its rotations act.
     pub reference: Reference,
     /// Whether a rotary axis corrects the error of its own angle itself, and the motors of a beam the rotation of that; else it is left
@@ -101,6 +112,11 @@ impl Link {
     /// Whether a program moves it.
     pub fn is_axis(&self) -> bool {
         self.kind.letter().is_some()
+    }
+
+    /// Whether what stands on it is turned with its frame: the body of a rotary axis that leans is not.
+    pub fn turns_back(&self) -> bool {
+        matches!(self.kind, LinkKind::Rotary(_))
     }
 
     /// The name of its programmed position, `x` for axis X; empty for a link that no program moves.

@@ -3,10 +3,11 @@
 use super::draft::DraftedLink;
 use super::fields::{self, items, text, truth};
 use super::header::reference;
-use super::link::{Along, Branch, Link, LinkKind, Reference};
+use super::link::{Branch, Link, LinkKind, Reference};
+use super::pointing;
+use super::read_along::{Direction, along};
 use super::words::{exact_length, is_name};
 use crate::algebra::{Axis, Monomial, Polynomial, Rational, Symbol, to_f64};
-use crate::calibration::LARGEST_ANGLE;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::expression;
 use crate::notation::infix;
@@ -26,9 +27,12 @@ pub(super) fn read_link<'n>(
     let (word, name_node) = kind_of(node, diagnostics)?;
     let place = if matches!(word, "tool" | "part") { "offset" } else { "origin" };
     let mut known = vec![word, "id", "along", place, "errors", "reference"];
-    // Only a rotary axis, and the motors of a beam, can be told that they do not correct.
+    // Only a rotary axis, and the motors of a beam, can be told that they do not correct. A lean is that of an axis, whose body stays
+    // upright; a fixed body is turned with all that stands on it.
     match word {
-        "rotary" => known.push("corrects"),
+        "rotary" => known.extend(["corrects", "leans"]),
+        "fixed" => known.push("turned"),
+        "tool" => known.push("direction"),
         "slide" if node.get("drives").is_some() => known.extend(["drives", "corrects"]),
         "slide" => known.push("drives"),
         _ => {}
@@ -45,7 +49,8 @@ pub(super) fn read_link<'n>(
         None => default_reference,
     };
     let corrects = fields.get("corrects").is_none_or(|node| truth(node, diagnostics) != Some(false));
-    let along = along(fields.entry("along"), kind, name_node.span, diagnostics);
+    let turned = fields.entry("leans").or_else(|| fields.entry("turned"));
+    let direction = along(fields.entry("along"), turned, kind, name_node.span, diagnostics);
     let (origin, origin_spans) = origin(fields.get(place), node.span, diagnostics);
     let errors = fields.get("errors");
     let (id, id_span) = id?;
@@ -57,17 +62,23 @@ pub(super) fn read_link<'n>(
         );
         return None;
     }
+    let Direction { along, turned } = direction?;
     let link = Link {
         id: id.to_owned(),
         kind: kind?,
         branch,
-        along: along?,
+        along,
         origin,
+        turned,
         reference,
         corrects,
         span: name_node.span,
     };
-    Some(DraftedLink { link, origin_spans, errors, drives: fields.entry("drives") })
+    let direction = match fields.get("direction") {
+        Some(node) => Some(pointing::read(node, diagnostics)?),
+        None => None,
+    };
+    Some(DraftedLink { link, origin_spans, errors, direction, drives: fields.entry("drives") })
 }
 
 fn kind_of<'n>(node: &'n Node, diagnostics: &mut Diagnostics) -> Option<(&'static str, &'n Node)> {
@@ -145,142 +156,6 @@ pub(crate) fn own_direction(letter: char) -> Axis {
     }
 }
 
-fn along(
-    entry: Option<(&Spanned<String>, &Node)>,
-    kind: Option<LinkKind>,
-    link_span: Span,
-    diagnostics: &mut Diagnostics,
-) -> Option<Along> {
-    let kind = kind?;
-    let Some((key, node)) = entry else {
-        if kind.letter().is_some() {
-            diagnostics.push(
-                Diagnostic::error("E0102", link_span, "an axis needs the key `along`")
-                    .label("the direction in which its frame moves when programmed forwards is missing")
-                    .help("write `along: +X`; a table that carries the part moves along `-X` for +X"),
-            );
-            return None;
-        }
-        return Some(Along { axis: Axis::Z, sign: 1 });
-    };
-    if matches!(kind, LinkKind::Fixed | LinkKind::Tool | LinkKind::Part) {
-        let message = format!("a link of kind `{}` has no direction of motion", kind.word());
-        diagnostics.push(
-            Diagnostic::error("E0129", key.span, message)
-                .label("nothing moves along it")
-                .help("remove `along`"),
-        );
-        return None;
-    }
-    let along = direction(node, diagnostics)?;
-    match kind.letter() {
-        Some(letter) if own_direction(letter) != along.axis => {
-            let own = own_direction(letter).letter();
-            diagnostics.push(
-                Diagnostic::error(
-                    "E0129",
-                    node.span,
-                    format!("axis {letter} cannot run along {}", along.axis.letter()),
-                )
-                .label("this is not its own direction")
-                .help(format!(
-                    "name the axis after its direction; by ISO 841 this axis runs along +{own} or -{own}"
-                )),
-            );
-            None
-        }
-        _ => Some(along),
-    }
-}
-
-fn direction(node: &Node, diagnostics: &mut Diagnostics) -> Option<Along> {
-    if let NodeKind::Sequence(entries) = &node.kind {
-        return unit_vector(node, entries, diagnostics);
-    }
-    let word = text(node, "a direction", diagnostics)?;
-    let (sign, letter) = match word.as_bytes() {
-        [b'+', letter] | [letter] => (1, *letter as char),
-        [b'-', letter] => (-1, *letter as char),
-        _ => (0, ' '),
-    };
-    if sign != 0 && "XYZUVWABC".contains(letter) {
-        return Some(Along { axis: own_direction(letter), sign });
-    }
-    let code = if word.chars().count() > 2 { "E0128" } else { "E0127" };
-    diagnostics.push(
-        Diagnostic::error(code, node.span, format!("`{word}` is not a direction"))
-            .label("a direction is a sign and a letter")
-            .help(
-                "write `+X`, `-X`, `+Y`, `-Y`, `+Z` or `-Z`; give a small skew angle as an alignment error",
-            ),
-    );
-    None
-}
-
-fn unit_vector(node: &Node, entries: &[Node], diagnostics: &mut Diagnostics) -> Option<Along> {
-    let numbers: Option<Vec<f64>> = entries.iter().map(number).collect();
-    let numbers = numbers.filter(|numbers| numbers.len() == 3);
-    let Some(numbers) = numbers else {
-        diagnostics.push(
-            Diagnostic::error("E0127", node.span, "a direction vector has three numbers")
-                .label("this list")
-                .help("write `+X`, `-X`, `+Y`, `-Y`, `+Z` or `-Z`"),
-        );
-        return None;
-    };
-    let along: Vec<_> = Axis::ALL.into_iter().zip(&numbers).filter(|(_, value)| **value != 0.0).collect();
-    match along.as_slice() {
-        [(axis, value)] if value.abs() == 1.0 => {
-            Some(Along { axis: *axis, sign: if **value > 0.0 { 1 } else { -1 } })
-        }
-        [_] | [] => {
-            diagnostics.push(
-                Diagnostic::error("E0127", node.span, "a direction must have length one")
-                    .label("this vector is not of length one")
-                    .help("write `+X` for [1, 0, 0]"),
-            );
-            None
-        }
-        _ => {
-            diagnostics.push(
-                Diagnostic::error(
-                    "E0128",
-                    node.span,
-                    "a direction must be one of the frame's own directions",
-                )
-                .label("this direction is skew")
-                .help(straightened(&numbers)),
-            );
-            None
-        }
-    }
-}
-
-/// What to write for a skew direction: an alignment error is a small angle, and any other one is that of a rotary axis.
-fn straightened(direction: &[f64]) -> String {
-    let length = direction.iter().map(|part| part * part).sum::<f64>().sqrt();
-    let nearest = direction.iter().map(|part| part.abs()).fold(0.0, f64::max);
-    let angle = (nearest / length).min(1.0).acos();
-    if angle <= LARGEST_ANGLE {
-        return format!(
-            "use the nearest of +X -X +Y -Y +Z -Z; the remaining {:.2} mrad are an alignment error",
-            angle * 1e3
-        );
-    }
-    format!(
-        "put a rotary axis with `errors: []` before it, keep that axis at {:.2} deg, and use the nearest of +X -X +Y -Y +Z -Z \
-         here",
-        angle.to_degrees()
-    )
-}
-
-fn number(node: &Node) -> Option<f64> {
-    match &node.kind {
-        NodeKind::Scalar(scalar) => scalar.text.parse().ok(),
-        _ => None,
-    }
-}
-
 fn origin(node: Option<&Node>, span: Span, diagnostics: &mut Diagnostics) -> ([Polynomial; 3], [Span; 3]) {
     let mut origin = [Polynomial::zero(), Polynomial::zero(), Polynomial::zero()];
     let mut spans = [span; 3];
@@ -326,8 +201,12 @@ fn coordinate(node: &Node, diagnostics: &mut Diagnostics) -> Polynomial {
     };
     let bounded = value.and_then(|value| {
         let too_large = value.terms().any(|(_, number)| to_f64(number).abs() > MOST_MM);
-        let factors = |monomial: &Monomial| monomial.factors().iter().map(|(_, power)| power).sum::<u32>();
-        let product = value.terms().map(|(monomial, _)| monomial).find(|monomial| factors(monomial) > 1);
+        // The cosine of a constant angle is a number.
+        let lengths = |monomial: &Monomial| -> u32 {
+            let lengths = monomial.factors().iter().filter(|(symbol, _)| symbol.fixed_value().is_none());
+            lengths.map(|(_, power)| power).sum()
+        };
+        let product = value.terms().map(|(monomial, _)| monomial).find(|monomial| lengths(monomial) > 1);
         if let Some(product) = product {
             let product = Polynomial::monomial(product.clone(), Rational::from_integer(1.into()));
             Err(format!("`{}` is a product of lengths, not a length", infix(&product)))

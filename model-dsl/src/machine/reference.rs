@@ -7,6 +7,7 @@
 
 use super::link::{Link, LinkKind};
 use super::motion::{Motion, MotionKind, body_sign};
+use super::turned::Turned;
 
 /// An error motion as far as it places or turns what stands on its link for good.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +45,7 @@ pub(crate) fn placed<'m>(links: &[Link], motions: &'m [Motion], relative: bool) 
 /// What an alignment error is, counted from each axis that shows it; none for any other error motion.
 pub(crate) fn counted(links: &[Link], placed: &[Placed<'_>], motion: &Placed<'_>) -> Vec<Counted> {
     let others = links.iter().enumerate().filter(|(number, _)| *number != motion.link);
+    let others = others.filter(|(number, _)| are_parallel(links, motion.link, *number));
     let from = |(number, link): (usize, &Link)| {
         let parts = match motion.kind {
             MotionKind::Alignment(_) => turned_between(links, placed, motion, number)?,
@@ -53,6 +55,23 @@ pub(crate) fn counted(links: &[Link], placed: &[Placed<'_>], motion: &Placed<'_>
         Some(Counted { from: link.id.clone(), is: sum(&parts, motion) })
     };
     others.filter_map(from).collect()
+}
+
+/// Whether all that two links stand on has its error motions in the same directions, with rotary axes at zero. Where a body is turned for
+/// good, or an axis leans, what is about X here is about something else there, and no name of ISO 230-1 counts from one to the other.
+fn are_parallel(links: &[Link], one: usize, other: usize) -> bool {
+    let carrying = |number: &usize| stands_on(links, one, *number) || stands_on(links, other, *number);
+    let mut attitudes = (0..links.len()).filter(carrying).map(|number| attitude(links, number));
+    let first = attitudes.next();
+    attitudes.all(|attitude| Some(attitude) == first)
+}
+
+/// By what the frame in which a link moves is turned against the bed, with rotary axes at zero.
+fn attitude(links: &[Link], number: usize) -> Vec<&Turned> {
+    let before =
+        |(at, link): &(usize, &Link)| *at == number || stands_on(links, number, *at) && !link.turns_back();
+    let turned = links.iter().enumerate().filter(before).map(|(_, link)| &link.turned);
+    turned.filter(|turned| !turned.is_none()).collect()
 }
 
 /// What turns a link about a direction, and what turns another: the difference, each with its sign. None where the other one's

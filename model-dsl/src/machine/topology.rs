@@ -5,6 +5,7 @@
 
 use super::draft::{Chain, DraftedLink};
 use super::link::{Along, Branch, Link, LinkKind, Reference};
+use super::turned::Turned;
 use crate::algebra::{Axis, Polynomial, Symbol};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::Span;
@@ -115,8 +116,9 @@ fn drafted(
     origin: [Polynomial; 3],
     span: Span,
 ) -> DraftedLink<'static> {
-    let link = Link { id, kind, branch, along, origin, reference: Reference::Carriage, corrects: true, span };
-    DraftedLink { link, origin_spans: [span; 3], errors: None, drives: None }
+    let (turned, reference) = (Turned::default(), Reference::Carriage);
+    let link = Link { id, kind, branch, along, origin, turned, reference, corrects: true, span };
+    DraftedLink { link, origin_spans: [span; 3], errors: None, direction: None, drives: None }
 }
 
 /// A commented machine file to start from; every mistake in the word is reported.

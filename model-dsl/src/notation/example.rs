@@ -2,7 +2,7 @@
 //! error that the equations give, so that a reader can try every sign with a pencil.
 
 use crate::algebra::Axis;
-use crate::equations::{Equations, Motion};
+use crate::equations::{ConstantInfo, Equations, Motion};
 use crate::machine::LinkKind;
 use crate::program::Interpreter;
 
@@ -69,8 +69,11 @@ fn positions(equations: &Equations) -> Vec<f64> {
 
 fn constants(equations: &Equations) -> Vec<f64> {
     let chosen = std::iter::successors(Some(40.0), |value| Some(value + 10.0));
-    let defaults = equations.constants.iter().map(|constant| constant.default);
-    defaults.zip(chosen).map(|(own, chosen)| own.filter(|own| *own != 0.0).unwrap_or(chosen)).collect()
+    let value = |(constant, chosen): (&ConstantInfo, f64)| {
+        let fits = |own: &f64| *own != 0.0 || constant.direction.is_some();
+        constant.default.filter(fits).unwrap_or(chosen)
+    };
+    equations.constants.iter().zip(chosen).map(value).collect()
 }
 
 /// Whether a motion turns a body about a direction, in the sense of the hand that the page names: not an alignment, and

@@ -3,7 +3,7 @@
 use super::letter::{Base, Letter};
 use super::number::Number;
 use super::sheet::{Sheet, Statement};
-use super::tree::Function;
+use super::tree::{Angle, Function};
 use super::writer::{Signs, Writer, pieces};
 use super::{text::Plain, wrap};
 
@@ -44,6 +44,10 @@ impl Writer for Latex {
 
     fn function(&self, function: Function, argument: &str) -> String {
         format!("\\{}({argument})", function.word())
+    }
+
+    fn angle(&self, angle: &Angle) -> String {
+        format!("{}^{{\\circ}}", self.number(&angle.degrees))
     }
 }
 

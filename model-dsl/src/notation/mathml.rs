@@ -10,7 +10,7 @@ use super::letter::{Base, Letter};
 use super::number::Number;
 use super::sheet::Statement;
 use super::text::Plain;
-use super::tree::{Expression, Function};
+use super::tree::{Angle, Expression, Function};
 use super::wrap;
 use super::writer::{Signs, Writer, line, pieces};
 
@@ -67,6 +67,10 @@ impl Writer for MathMl {
         let Signs { open, close, .. } = self.signs();
         format!("<mi>{}</mi><mo>&#x2061;</mo>{open}{argument}{close}", function.word())
     }
+
+    fn angle(&self, angle: &Angle) -> String {
+        format!("{}<mi mathvariant=\"normal\">°</mi>", self.number(&angle.degrees))
+    }
 }
 
 /// The same with numbers in the place of names.
@@ -104,6 +108,10 @@ impl Writer for Filled<'_> {
 
     fn function(&self, function: Function, argument: &str) -> String {
         MathMl.function(function, argument)
+    }
+
+    fn angle(&self, angle: &Angle) -> String {
+        MathMl.angle(angle)
     }
 }
 

@@ -6,7 +6,7 @@
 use super::letter::Letter;
 use super::number::Number;
 use super::sheet::{Sheet, Statement};
-use super::tree::Function;
+use super::tree::{Angle, Function};
 use super::wrap;
 use super::writer::{Signs, Writer, pieces};
 
@@ -83,6 +83,10 @@ impl Writer for Maxima {
 
     fn function(&self, function: Function, argument: &str) -> String {
         format!("{}({argument})", function.word())
+    }
+
+    fn angle(&self, angle: &Angle) -> String {
+        format!("{}*%pi", self.number(&angle.half_turns))
     }
 }
 

@@ -4,7 +4,7 @@
 use super::letter::Letter;
 use super::number::Number;
 use super::sheet::{Sheet, Statement};
-use super::tree::{Expression, Function};
+use super::tree::{Angle, Expression, Function};
 use super::wrap;
 use super::writer::{Signs, Writer, pieces};
 
@@ -78,6 +78,10 @@ impl Writer for Python {
 
     fn function(&self, function: Function, argument: &str) -> String {
         format!("functions.{}({argument})", function.word())
+    }
+
+    fn angle(&self, angle: &Angle) -> String {
+        format!("{}*functions.pi", self.number(&angle.half_turns))
     }
 }
 

@@ -162,7 +162,10 @@ fn row(
 
 /// Whether a monomial changes as the axes move.
 fn moves(monomial: &Monomial) -> bool {
-    monomial.factors().iter().any(|(symbol, _)| !matches!(symbol, Symbol::Constant(_)))
+    monomial
+        .factors()
+        .iter()
+        .any(|(symbol, _)| !matches!(symbol, Symbol::Constant(_) | Symbol::FixedCos(_) | Symbol::FixedSin(_)))
 }
 
 fn motions(equations: &Equations, names: Names, written: &Brackets) -> Vec<MotionEntry> {
@@ -226,6 +229,11 @@ fn quantities(equations: &Equations) -> Vec<QuantityEntry> {
         entry(&travel.name, meaning, format!("the position of {letter} unless another is given"))
     });
     let constants = equations.constants.iter().map(|constant| {
+        if constant.direction.is_some() {
+            let meaning = constant.meaning.as_deref().unwrap_or("part of the direction of the tool");
+            let value = "from the calibration's tools".to_owned();
+            return entry(&constant.name, format!("{meaning} (a pure number, in the tool's frame)"), value);
+        }
         let meaning = constant.meaning.as_deref().unwrap_or("constant of the machine");
         let value = constant.default.map(|own| format!("{own} mm unless a calibration gives another value"));
         let value = value.unwrap_or_else(|| "from the calibration".to_owned());
@@ -260,15 +268,38 @@ fn link_in_words(link: &Link) -> String {
     let id = &link.id;
     let what = match link.kind {
         LinkKind::Slide(_) => format!("{id} (slides along {sign}{along})"),
-        LinkKind::Rotary(_) => format!("{id} (turns about {sign}{along})"),
+        LinkKind::Rotary(_) => format!("{id} (turns about {sign}{along}{})", leaning(link)),
         LinkKind::Spindle => format!("spindle {id} (about {along})"),
-        kind => format!("{} {id}", kind.word()),
+        kind => format!("{} {id}{}", kind.word(), turned(link)),
     };
     if link.origin.iter().all(crate::algebra::Polynomial::is_zero) {
         return what;
     }
     let [x, y, z] = link.origin.each_ref().map(super::infix);
     format!("{what} at [{x}, {y}, {z}]")
+}
+
+/// By what the axis of a rotary axis leans.
+fn leaning(link: &Link) -> String {
+    if link.turned.is_none() { String::new() } else { format!(", leaning by {}", link.turned.words()) }
+}
+
+/// By what a body that is at rest is turned.
+fn turned(link: &Link) -> String {
+    if link.turned.is_none() { String::new() } else { format!(" (turned by {})", link.turned.words()) }
+}
+
+/// In which directions the error motions of links count whose frames are turned for good.
+fn turned_frames(equations: &Equations) -> Option<String> {
+    let turned = equations.links.iter().filter(|link| !link.turned.is_none());
+    let ids: Vec<&str> = turned.map(|link| link.id.as_str()).collect();
+    (!ids.is_empty()).then(|| {
+        format!(
+            "Error motions of {} are along and about the directions of its own frame, which constant angles turn about X, then Y, then Z; \
+             the name of an axis that leans is that of its direction there.",
+            ids.join(" and of ")
+        )
+    })
 }
 
 /// In which sense a motion of the part's branch is counted, and about which points bodies turn.
@@ -345,6 +376,7 @@ fn conventions(equations: &Equations, names: Names, written: &Brackets) -> Vec<S
         );
     }
     sentences.extend(senses(equations));
+    sentences.extend(turned_frames(equations));
     if equations.axes.iter().any(|axis| axis.rotary) {
         sentences.push("Rotary axes rotate by large angles. Their sines and cosines are exact.".to_owned());
         sentences.extend(own_angles(equations, names));

@@ -71,6 +71,9 @@ fn symbols() -> impl Strategy<Value = Symbol> {
             .prop_map(|name| named(name).expect("one of the known names")),
         Just(Symbol::Cos("c".into())),
         Just(Symbol::Sin("c".into())),
+        prop::sample::select(vec!["cos(17.5 deg)", "sin(17.5 deg)", "cos(45 deg)", "cos(30 deg)"])
+            .prop_map(|text| crate::expression::parse(text, &mut named).expect("a number in itself"))
+            .prop_map(|value| value.symbols().into_iter().next().expect("one symbol")),
     ]
 }
 

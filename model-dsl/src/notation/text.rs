@@ -3,7 +3,7 @@
 use super::letter::Letter;
 use super::number::Number;
 use super::sheet::{Sheet, Statement};
-use super::tree::Function;
+use super::tree::{Angle, Function};
 use super::wrap;
 use super::writer::{Signs, Writer, pieces};
 
@@ -33,6 +33,10 @@ impl Writer for Plain {
 
     fn function(&self, function: Function, argument: &str) -> String {
         format!("{}({argument})", function.word())
+    }
+
+    fn angle(&self, angle: &Angle) -> String {
+        format!("{} deg", self.number(&angle.degrees))
     }
 }
 

@@ -7,7 +7,7 @@ use num_traits::{One, Signed as _};
 
 use super::letter::Letter;
 use super::number::Number;
-use crate::algebra::{Monomial, Polynomial, Rational, Symbol};
+use crate::algebra::{FixedAngle, Monomial, Polynomial, Rational, Symbol};
 
 /// A sine or cosine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +24,25 @@ impl Function {
         match self {
             Self::Cos => "cos",
             Self::Sin => "sin",
+        }
+    }
+}
+
+/// An angle that never changes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Angle {
+    /// In degrees.
+    pub(super) degrees: Number,
+    /// As a multiple of pi.
+    pub(super) half_turns: Number,
+}
+
+impl Angle {
+    fn new(angle: &FixedAngle) -> Self {
+        let half_turn = Rational::from_integer(180.into());
+        Self {
+            degrees: Number::new(angle.degrees()),
+            half_turns: Number::new(&(angle.degrees() / half_turn)),
         }
     }
 }
@@ -48,6 +67,8 @@ pub(super) enum Expression {
     Power(Box<Expression>, u32),
     /// A sine or cosine of a position.
     Function(Function, Letter),
+    /// A sine or cosine of an angle that never changes.
+    Fixed(Function, Angle),
     /// A name.
     Letter(Letter),
     /// A number, not negative.
@@ -136,6 +157,8 @@ fn power(symbol: &Symbol, exponent: u32) -> Expression {
     let base = match symbol {
         Symbol::Cos(_) => Expression::Function(Function::Cos, letter),
         Symbol::Sin(_) => Expression::Function(Function::Sin, letter),
+        Symbol::FixedCos(angle) => Expression::Fixed(Function::Cos, Angle::new(angle)),
+        Symbol::FixedSin(angle) => Expression::Fixed(Function::Sin, Angle::new(angle)),
         _ => Expression::Letter(letter),
     };
     if exponent == 1 { base } else { Expression::Power(Box::new(base), exponent) }

@@ -3,7 +3,7 @@
 
 use super::letter::Letter;
 use super::number::Number;
-use super::tree::{Expression, Function};
+use super::tree::{Angle, Expression, Function};
 
 /// The signs of a language.
 pub(super) struct Signs {
@@ -33,6 +33,8 @@ pub(super) trait Writer {
     fn power(&self, base: &str, exponent: u32) -> String;
     /// A sine or cosine of something already written.
     fn function(&self, function: Function, argument: &str) -> String;
+    /// An angle that never changes, as the argument of a sine or cosine.
+    fn angle(&self, angle: &Angle) -> String;
 }
 
 /// Text before which a line may be broken.
@@ -89,6 +91,9 @@ fn write(writer: &impl Writer, expression: &Expression, depth: usize, pieces: &m
         }
         Expression::Function(function, argument) => {
             append(pieces, &writer.function(*function, &writer.letter(argument)));
+        }
+        Expression::Fixed(function, angle) => {
+            append(pieces, &writer.function(*function, &writer.angle(angle)));
         }
         Expression::Letter(letter) => append(pieces, &writer.letter(letter)),
         Expression::Number(number) => append(pieces, &writer.number(number)),

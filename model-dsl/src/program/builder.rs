@@ -120,8 +120,12 @@ impl<'r> Builder<'r> {
     fn term(&mut self, monomial: &Monomial, coefficient: &Rational) -> Signed {
         let negative = coefficient < &Rational::from_integer(0.into());
         let size = if negative { -coefficient } else { coefficient.clone() };
-        let mut product = (!size.is_one() || monomial.is_one()).then(|| self.number(&size));
-        for (symbol, power) in monomial.factors() {
+        let fixed = |factor: &&(Symbol, u32)| factor.0.fixed_value().is_some();
+        let mut product = match fixed_product(monomial) {
+            Some(value) => Some(self.float(to_f64(&size) * value)),
+            None => (!size.is_one() || monomial.is_one()).then(|| self.number(&size)),
+        };
+        for (symbol, power) in monomial.factors().iter().filter(|factor| !fixed(factor)) {
             let factor = self.symbol(symbol);
             for _ in 0..*power {
                 product = Some(match product {
@@ -147,6 +151,9 @@ impl<'r> Builder<'r> {
     }
 
     fn symbol(&mut self, symbol: &Symbol) -> Value {
+        if let Some(value) = symbol.fixed_value() {
+            return self.float(value);
+        }
         let defined = self.defined.get(symbol).copied();
         let known = defined.or_else(|| (self.resolve)(symbol).map(Value::Input));
         // A symbol that nobody gives has no value, and must not look as if it had one.
@@ -200,6 +207,14 @@ impl<'r> Builder<'r> {
         }
         Value::Step(number)
     }
+}
+
+/// The product of the symbols of a monomial that are numbers in themselves; none where it has no such symbol.
+fn fixed_product(monomial: &Monomial) -> Option<f64> {
+    let fixed = |(symbol, power): &(Symbol, u32)| {
+        Some(symbol.fixed_value()?.powi(i32::try_from(*power).unwrap_or(i32::MAX)))
+    };
+    monomial.factors().iter().filter_map(fixed).reduce(|product, factor| product * factor)
 }
 
 /// The symbol to factor out: one that two monomials or more share; sines and cosines before

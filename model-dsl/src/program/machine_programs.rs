@@ -122,5 +122,7 @@ fn input(equations: &Equations, symbol: &Symbol) -> Option<Input> {
         Symbol::Motion(name) => {
             equations.motions.iter().position(|motion| *motion.name == **name).map(Input::Motion)
         }
+        // These are numbers, and nobody gives them.
+        Symbol::FixedCos(_) | Symbol::FixedSin(_) => None,
     }
 }

@@ -46,6 +46,8 @@ pub(super) struct Body {
     /// The axis that moves it.
     axis: Option<usize>,
     turns: bool,
+    /// How the body's frame is turned for good against the frame before it; a rotary axis turns that back behind itself.
+    turned: Rotation3<f64>,
     /// Whether rotations act about the origin that stays with the bed.
     bed: bool,
     errors: Vec<BodyError>,
@@ -93,7 +95,9 @@ impl Body {
         let position = self.axis.and_then(|axis| positions.get(axis)).copied().unwrap_or(0.0);
         let along = self.direction * position;
         let errors = self.errors(along, motions);
-        frame.shift(self.origin + errors.offset);
+        frame.shift(self.origin);
+        frame.rotation *= self.turned;
+        frame.shift(errors.offset);
         frame.turn(errors.tilt);
         if self.turns || self.bed {
             frame.shift(errors.shift);
@@ -101,6 +105,7 @@ impl Body {
         }
         if self.turns {
             frame.turn(along);
+            frame.rotation *= self.turned.inverse();
             return;
         }
         frame.shift(along + errors.aside);
@@ -164,7 +169,7 @@ pub(super) fn direction_of(bodies: &[Body], axis: usize, positions: &[f64]) -> O
     let mut frame = Frame::identity();
     for body in bodies {
         if body.axis == Some(axis) {
-            return Some(frame.rotation * body.direction);
+            return Some(frame.rotation * (body.turned * body.direction));
         }
         body.step(&mut frame, positions, &[]);
     }
@@ -213,8 +218,18 @@ fn body(
         direction,
         axis,
         turns: matches!(link.kind, LinkKind::Rotary(_)),
+        turned: turned(link),
         bed: link.reference == Reference::Bed && matches!(link.kind, LinkKind::Slide(_)),
         errors: errors.chain(of_motors).collect(),
+    })
+}
+
+/// Each rotation in turn is about a direction of the frame before the link: X, then Y, then Z.
+fn turned(link: &Link) -> Rotation3<f64> {
+    link.turned.rotations().fold(Rotation3::identity(), |turned, (axis, degrees)| {
+        let mut vector = Vector3::zeros();
+        add(&mut vector, axis.index(), to_f64(degrees).to_radians());
+        turned * Rotation3::from_scaled_axis(vector)
     })
 }
 

@@ -24,10 +24,11 @@ pub fn calibration(machine: &str, equations: &Equations) -> String {
 }
 
 fn constants(constants: &[ConstantInfo]) -> String {
+    let constants: Vec<_> = constants.iter().filter(|constant| constant.direction.is_none()).collect();
     if constants.is_empty() {
         return String::new();
     }
-    let line = |constant: &ConstantInfo| {
+    let line = |constant: &&ConstantInfo| {
         let value = constant.default.unwrap_or_default();
         let meaning = constant.meaning.as_ref().map(|meaning| format!("   # {meaning}")).unwrap_or_default();
         format!("  {}: {value} mm{meaning}\n", constant.name)

@@ -102,14 +102,15 @@ impl<'c> Answering<'c> {
         let mut compensator = room.compensator(&machine, self.motions, &mut states)?;
         compensator.limits = self.calibrated.calibration.limits.of_compensator();
         compensator.enabled = self.compensated;
-        let leaning = Leaning::new(self.equations(), &self.without_tool, self.motions);
+        let leaning = Leaning::new(self.equations(), self.motions);
         let mut leaning = leaning.map(|leaning| leaning.remembering(start));
         let mut command = vec![0.0; self.equations().axes.len()];
         for row in rows {
-            machine.exchange(self.machine(samples.tool(row)));
+            let with_tool = self.machine(samples.tool(row));
+            machine.exchange(with_tool);
             let sample = samples.sample(row);
             let outcome = compensator.compensate(&sample, &mut command);
-            let mut lean = leaning.as_mut().map(|leaning| leaning.take(&sample));
+            let mut lean = leaning.as_mut().map(|leaning| leaning.take(with_tool, &sample));
             if let (Some(lean), Some(direction)) = (&mut lean, compensator.direction()) {
                 lean.with = direction.remaining;
             }

@@ -100,8 +100,8 @@ pub fn errors(
     let at = |moved: &[(usize, f64); 2]| {
         let error = field.at(moved).unwrap_or([f64::NAN; 3]);
         let tip = equations.rows.iter().filter_map(|row| error.get(row.direction.index()).copied());
-        let leaning = Leaning::new(equations, machine, &motions);
-        let lean = leaning.map(|mut leaning| leaning.take(&field.sample()).without);
+        let leaning = Leaning::new(equations, &motions);
+        let lean = leaning.map(|mut leaning| leaning.take(machine, &field.sample()).without);
         tip.chain(lean.into_iter().flatten()).collect()
     };
     Ok(places.iter().map(at).collect())

@@ -17,8 +17,6 @@ pub struct Lean {
 
 /// Follows the error motions of a machine that derives the direction of its tool.
 pub(super) struct Leaning<'c> {
-    /// With any tool: no constant of a machine turns one.
-    machine: &'c Interpreter,
     motions: &'c [ErrorMotion<'c>],
     /// What each term remembers, motion by motion: the same as the compensator's.
     states: Vec<TermState>,
@@ -30,13 +28,8 @@ pub(super) struct Leaning<'c> {
 
 impl<'c> Leaning<'c> {
     /// Before the first row; none for a machine that does not derive the direction of its tool.
-    pub(super) fn new(
-        equations: &Equations,
-        machine: &'c Interpreter,
-        motions: &'c [ErrorMotion<'c>],
-    ) -> Option<Self> {
+    pub(super) fn new(equations: &Equations, motions: &'c [ErrorMotion<'c>]) -> Option<Self> {
         (!equations.orientation.is_empty()).then(|| Self {
-            machine,
             motions,
             states: vec![TermState::default(); states_needed(motions)],
             values: vec![0.0; motions.len()],
@@ -51,18 +44,19 @@ impl<'c> Leaning<'c> {
         Self { states: states.to_vec(), ..self }
     }
 
-    /// Takes the memories over to the next row, and gives what the direction of the tool is wrong by at its position.
-    pub(super) fn take(&mut self, sample: &Sample<'_>) -> Lean {
+    /// Takes the memories over to the next row, and gives what the direction of the tool is wrong by at its position; `machine` is the
+    /// machine with the tool of the row.
+    pub(super) fn take(&mut self, machine: &Interpreter, sample: &Sample<'_>) -> Lean {
         // The compensator refuses such a row, and remembers nothing of it.
         if !sample.is_finite() {
             return Lean { without: [f64::NAN; 3], with: [f64::NAN; 3] };
         }
-        let without = self.read(sample);
-        let with = if self.turning.is_empty() { without } else { self.read_turned(sample) };
+        let without = self.read(machine, sample);
+        let with = if self.turning.is_empty() { without } else { self.read_turned(machine, sample) };
         Lean { without, with }
     }
 
-    fn read(&mut self, sample: &Sample<'_>) -> [f64; 3] {
+    fn read(&mut self, machine: &Interpreter, sample: &Sample<'_>) -> [f64; 3] {
         let mut rest = self.states.as_mut_slice();
         for (motion, value) in self.motions.iter().zip(&mut self.values) {
             let (own, others) = rest.split_at_mut_checked(motion.terms.len()).unwrap_or_default();
@@ -70,11 +64,11 @@ impl<'c> Leaning<'c> {
             *value = motion.value(sample, own);
             rest = others;
         }
-        self.error(sample)
+        self.error(machine, sample)
     }
 
     /// The same without what rotary axes correct of their own angles in this row.
-    fn read_turned(&mut self, sample: &Sample<'_>) -> [f64; 3] {
+    fn read_turned(&mut self, machine: &Interpreter, sample: &Sample<'_>) -> [f64; 3] {
         let mut rest = self.states.as_slice();
         for (number, (motion, value)) in self.motions.iter().zip(&mut self.values).enumerate() {
             let (own, others) = rest.split_at_checked(motion.terms.len()).unwrap_or_default();
@@ -83,11 +77,11 @@ impl<'c> Leaning<'c> {
             }
             rest = others;
         }
-        self.error(sample)
+        self.error(machine, sample)
     }
 
-    fn error(&self, sample: &Sample<'_>) -> [f64; 3] {
-        let error = self.machine.direction_error(sample.position, &self.travel, &self.values);
+    fn error(&self, machine: &Interpreter, sample: &Sample<'_>) -> [f64; 3] {
+        let error = machine.direction_error(sample.position, &self.travel, &self.values);
         error.unwrap_or([f64::NAN; 3])
     }
 }

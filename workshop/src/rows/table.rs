@@ -225,7 +225,7 @@ errors:
         let (mut directions, mut values) = (vec![[0.0; 3]; axes], vec![0.0; motions.len()]);
         let work = Work { directions: &mut directions, motions: &mut values, travel: &mut [] };
         let mut compensator = Compensator::new(&machine, &motions, &mut states, work).unwrap();
-        let mut leaning = Leaning::new(&calibrated.equations, &machine, &motions);
+        let mut leaning = Leaning::new(&calibrated.equations, &motions);
         let mut state =
             State::new(&calibrated.calibration, calibrated.equations.following(), true, &hysteresis);
         let (mut out, mut row) = (vec![0.0; axes], Buffers::default());
@@ -237,7 +237,11 @@ errors:
             let commands: Vec<f64> = answers.commands.iter().map(|column| column[number]).collect();
             assert_eq!(out, commands, "row {number}");
             if let Some(leaning) = &mut leaning {
-                assert_eq!(leaning.take(&state.sample()).without, answers.leans[number], "row {number}");
+                assert_eq!(
+                    leaning.take(&machine, &state.sample()).without,
+                    answers.leans[number],
+                    "row {number}"
+                );
             }
         }
     }

@@ -69,7 +69,8 @@ fn read_one(
         }
         return;
     }
-    let constant = equations.constants.iter().position(|constant| constant.name.to_string() == name.value);
+    let constant = equations.offsets().find(|(_, constant)| *constant.name == *name.value);
+    let constant = constant.map(|(number, _)| number);
     match constant {
         Some(constant) => place.constants.extend(quantity(Dimension::LENGTH).map(|value| (constant, value))),
         None => diagnostics.push(unknown(name, equations)),
@@ -80,7 +81,7 @@ fn unknown(name: &Spanned<String>, equations: &Equations) -> Diagnostic {
     let message = format!("{} has no axis or constant `{}`", equations.machine, name.value);
     let letters = equations.axes.iter().map(|axis| axis.letter.clone());
     let known: Vec<String> =
-        letters.chain(equations.constants.iter().map(|constant| constant.name.to_string())).collect();
+        letters.chain(equations.offsets().map(|(_, constant)| constant.name.to_string())).collect();
     let help = format!("there are {}", known.join(", "));
     Diagnostic::error("E0906", name.span, message).help(help)
 }

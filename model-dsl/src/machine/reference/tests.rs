@@ -163,3 +163,19 @@ proptest! {
         }
     }
 }
+
+/// Across a lean no name of ISO 230-1 counts; between axes that stand on the same turned body it does.
+#[test]
+fn no_name_counts_across_a_lean() {
+    let from_y = |before: &str, direction: &str| {
+        let text = format!(
+            "abbe: 1\nname: head\nchain:\n  tool:\n{before}    - {{slide: Y, along: +Y}}\n    \
+             - {{rotary: B, along: {direction}, errors: [EA0B]}}\n    - {{tool: tip, offset: [Xt, Yt, Zt]}}\n"
+        );
+        counted(&file(&text).0.expect("a valid machine"), "EA0B", "Y")
+    };
+    let on_a_turned_body = "    - {fixed: lean, turned: {A: 20 deg}}\n";
+    assert_eq!(from_y("", "+B").as_deref(), Some("EA0B"));
+    assert_eq!(from_y("", "[0, 1, 1]"), None);
+    assert_eq!(from_y(on_a_turned_body, "+B").as_deref(), Some("EA0B"));
+}

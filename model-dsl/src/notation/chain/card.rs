@@ -88,10 +88,17 @@ fn heading(link: &Link) -> String {
     let other = |letter: char| if *id == letter.to_string() { String::new() } else { format!(" ({id})") };
     match link.kind {
         LinkKind::Slide(letter) => format!("slide {letter}{} along {sign}{along}", other(letter)),
-        LinkKind::Rotary(letter) => format!("rotary {letter}{} about {sign}{along}", other(letter)),
+        LinkKind::Rotary(letter) => {
+            format!("rotary {letter}{} about {sign}{along}{}", other(letter), turned(link, "leaning by"))
+        }
         LinkKind::Spindle => format!("spindle {id} about {along}"),
-        kind => format!("{} {id}", kind.word()),
+        kind => format!("{} {id}{}", kind.word(), turned(link, "turned by")),
     }
+}
+
+/// The constant angles of a link, where it has such.
+fn turned(link: &Link, how: &str) -> String {
+    if link.turned.is_none() { String::new() } else { format!(" {how} {}", link.turned.words()) }
 }
 
 /// Motions of one kind in lines that fit; the kind stands before the first.

@@ -15,6 +15,7 @@ fn names() -> MachineNames {
     MachineNames {
         machine: "mill".to_owned(),
         constants: Vec::new(),
+        turning: None,
         axes: vec![axis("X", false), axis("Y", false), axis("C", true)],
         motions: vec![motion("EXX", false), motion("EBX", true)],
         unseen: Vec::new(),

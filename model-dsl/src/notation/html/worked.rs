@@ -111,7 +111,9 @@ fn quantities(equations: &Equations, example: &Example) -> Vec<(String, String, 
     });
     let length = |name: &str, value: &f64| (name.to_owned(), short(*value), " mm");
     let travels = equations.travels.iter().zip(&example.travels);
+    // The direction of the tool has no part in an error of its tip.
     let constants = equations.constants.iter().zip(&example.constants);
+    let constants = constants.filter(|(own, _)| own.direction.is_none());
     axes.chain(travels.map(|(own, value)| length(&own.name, value)))
         .chain(constants.map(|(own, value)| length(&own.name, value)))
         .collect()

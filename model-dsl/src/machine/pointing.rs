@@ -1,0 +1,106 @@
+//! The direction of a tool by name. In: `direction` of the `tool`, three names, and the constants of the machine. Out: three constants more,
+//! pure numbers, which each tool of a calibration gives; or what is wrong with the names.
+//!
+//! It exists since the tools of a turret point in several ways, and a machine is compiled once: what is another one with each tool is a
+//! constant, as the length of the tool is.
+
+use super::constants::Constant;
+use super::draft::Chain;
+use super::fields::items;
+use super::link::Along;
+use super::words::is_name;
+use crate::algebra::{Axis, Name};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::source::{Span, Spanned};
+use crate::yaml::Node;
+
+/// The names of the three parts of a direction.
+pub(super) type Parts = [Spanned<Name>; 3];
+
+/// Reads the three names.
+pub(super) fn read(node: &Node, diagnostics: &mut Diagnostics) -> Option<Parts> {
+    let parts = items(node, "the direction of the tool", diagnostics)?.iter();
+    let named = |part: &Node| {
+        let name = part.text().map(str::trim).filter(|text| is_name(text))?;
+        Some(Spanned::new(Name::from(name), part.span))
+    };
+    let found = parts.map(named).collect::<Option<Vec<_>>>().and_then(|parts| parts.try_into().ok());
+    if found.is_none() {
+        diagnostics.push(
+            Diagnostic::error("E0152", node.span, "the direction of the tool is three names")
+                .label("what each tool of a calibration gives")
+                .help("write `direction: [It, Jt, Kt]`; a tool that always has one direction stands on a `fixed` link that is `turned`"),
+        );
+    }
+    found
+}
+
+/// Adds the parts behind the constants that are offsets. Without a tool of the calibration they are those of `tool_axis`.
+pub(super) fn settle(
+    mut constants: Vec<Constant>,
+    chain: &Chain<'_>,
+    (tool_axis, is_derived): (Along, bool),
+    diagnostics: &mut Diagnostics,
+) -> Vec<Constant> {
+    let parts = chain.links.iter().find_map(|drafted| drafted.direction.as_ref());
+    let Some(parts) = parts else { return constants };
+    if !is_derived {
+        diagnostics.push(nobody_asks(parts));
+    }
+    let mut found: Vec<Constant> = Vec::new();
+    for (part, axis) in parts.iter().zip(Axis::ALL) {
+        let earlier = found.iter().find(|known| known.name == part.value).map(|known| known.span);
+        if let Some(other) = used_in_an_offset(&part.value, chain).or(earlier) {
+            diagnostics.push(two_things(part, other));
+            continue;
+        }
+        let declared = constants.iter().position(|known| known.name == part.value);
+        let declared = declared.map(|place| constants.remove(place));
+        if let Some(length) = declared.as_ref().filter(|known| known.default.is_some()) {
+            diagnostics.push(no_length(length, part));
+        }
+        let sign = if axis == tool_axis.axis { tool_axis.sign } else { 0 };
+        found.push(Constant {
+            name: part.value.clone(),
+            meaning: declared.and_then(|known| known.meaning),
+            default: Some(match sign {
+                0 => 0.0,
+                1.. => 1.0,
+                _ => -1.0,
+            }),
+            direction: Some(axis),
+            span: part.span,
+        });
+    }
+    constants.extend(found);
+    constants
+}
+
+/// Where an offset of the chain mentions a name.
+fn used_in_an_offset(name: &Name, chain: &Chain<'_>) -> Option<Span> {
+    let offsets =
+        chain.links.iter().flat_map(|drafted| drafted.link.origin.iter().zip(&drafted.origin_spans));
+    let mut mentioning =
+        offsets.filter(|(offset, _)| offset.symbols().iter().any(|symbol| symbol.name() == name));
+    mentioning.next().map(|(_, span)| *span)
+}
+
+fn nobody_asks([first, ..]: &Parts) -> Diagnostic {
+    Diagnostic::error("E0152", first.span, "nothing asks for the direction of the tool")
+        .label("it would stand in no equation")
+        .help("add `orientation: true` to the machine file, or take the direction out")
+}
+
+fn two_things(part: &Spanned<Name>, other: Span) -> Diagnostic {
+    Diagnostic::error("E0152", part.span, format!("`{}` would stand for two things", part.value))
+        .label("a part of the tool's direction here")
+        .also(other, "and something else here")
+        .help("give each part a name of its own: `direction: [It, Jt, Kt]`")
+}
+
+fn no_length(length: &Constant, part: &Spanned<Name>) -> Diagnostic {
+    Diagnostic::error("E0152", length.span, format!("`{}` is no length", part.value))
+        .label("a length here")
+        .also(part.span, "a part of the tool's direction here")
+        .help("take the value out: the tools of a calibration have directions")
+}

@@ -9,6 +9,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (machine, calibration) = ("../../machines/head-table-5axis.yaml", "numbers.yaml");
     println!("cargo::rerun-if-changed={machine}");
     println!("cargo::rerun-if-changed={calibration}");
-    let code = model_dsl::calibrated_rust_for(machine, calibration)?;
+    let code = abbe_model_dsl::calibrated_rust_for(machine, calibration)?;
     Ok(fs::write(Path::new(&env::var("OUT_DIR")?).join("machine.rs"), code)?)
 }

@@ -1,6 +1,11 @@
 //! Compensation tables of controllers. In: a calibrated machine. Out: files in the controller's own form, and what of the model
 //! they cannot carry, as a length at the tool.
 //!
+//! ```text
+//! calibration -> geometry: what a table can hold -> effects, parameters -> linuxcnc, isg, sinumerik, ...: files -> lost: read again, compared
+//! saved, tool_table, volumetric files -> terms and constants of a calibration (taken)
+//! ```
+//!
 //! A file is believed only when it has been read again: every format has a reader that does what the controller's maker
 //! documents of his own, and what is lost is measured with what that reader made of the file.
 //!

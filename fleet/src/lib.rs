@@ -5,6 +5,12 @@
 //! One job is one recording. Its result is named by what it was made from (recording, data, machine, calibration, version of Abbe), is
 //! written whole or not at all, and is the same bytes whoever makes it. So a run that was killed goes on where it was, two runs at once do
 //! not harm each other, and another engine may hand out the same jobs.
+//!
+//! ```text
+//! fleet file -> file, time -> jobs (key) -> diagnosed: rows of each recording -> results, shelf: tables of each month (table)
+//!      -> effects: each once for a machine (name) -> followed: how large it is in every recording of it
+//! results -> history (series) -> change, student: trends and steps; between: machines against each other -> alarms -> report
+//! ```
 
 pub mod add;
 mod between;

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use fleet::{file, run};
+use abbe_fleet::{file, run};
 use recording::Moment;
 
 #[test]
@@ -24,7 +24,7 @@ fn a_mount_whose_worm_stays_raises_no_alarm() {
     fs::write(folder.join("fleet.yaml"), text).unwrap();
     let fleet = file::read(&folder.join("fleet.yaml"), &()).ok().unwrap();
     assert_eq!(run::all(&fleet, (None, false), &(), &|_| {}).ok().unwrap().followed, 23);
-    let history = fleet::history(&fleet, Moment::read("2026-09-01").unwrap(), &()).ok().unwrap();
+    let history = abbe_fleet::history(&fleet, Moment::read("2026-09-01").unwrap(), &()).ok().unwrap();
     fs::remove_dir_all(&folder).unwrap();
     assert!(history.alarms.is_empty(), "{:#?}", history.alarms);
     let is_worm = |effect: &str| {

@@ -11,8 +11,8 @@ mod shop;
 
 use std::fs;
 
-use fleet::run::{self, Shard};
-use fleet::{file, report};
+use abbe_fleet::run::{self, Shard};
+use abbe_fleet::{file, report};
 
 #[test]
 fn planted_changes_are_raised_and_nothing_else_is() {
@@ -54,7 +54,7 @@ fn planted_changes_are_raised_and_nothing_else_is() {
     let cases = u32::try_from(all).unwrap();
     let (least, most) = (chance::bounds(cases, 0.93).0, chance::bounds(cases, 0.97).1);
     assert!(all > 200 && (least..=most).contains(&held), "{held} of {all}, from {least} to {most}");
-    let history = fleet::history(&fleet, shop.time(20), &()).ok().unwrap();
+    let history = abbe_fleet::history(&fleet, shop.time(20), &()).ok().unwrap();
     let text = report::text(&history, 100);
     assert!(text.contains("mill-06: ") && report::json(&history).contains("no machine `nothing`"), "{text}");
     fs::remove_dir_all(&folder).unwrap();

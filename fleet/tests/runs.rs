@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, SystemTime};
 
-use fleet::file::Fleet;
-use fleet::{add, file, run};
+use abbe_fleet::file::Fleet;
+use abbe_fleet::{add, file, run};
 use recording::Moment;
 use workshop::told::{Listener, Words};
 
@@ -177,7 +177,7 @@ fn left_behind(fleet: &Fleet, before: &BTreeMap<PathBuf, Vec<u8>>) {
 
 /// The lost motions of the stage over time, in um.
 fn backlash(fleet: &Fleet) -> Vec<f64> {
-    let history = fleet::history(fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
+    let history = abbe_fleet::history(fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
     let backlash = history.machines[0].series.iter().find(|known| known.series.term == "backlash").unwrap();
     backlash.series.points.iter().map(|point| (point.value * 1e3).round()).collect()
 }
@@ -192,7 +192,7 @@ fn a_kill_between_the_new_result_and_the_end_of_the_old_one_doubles_nothing() {
     let after = files(&fleet.results);
     left_behind(&fleet, &before);
     assert_eq!(backlash(&fleet), [4.0, 9.0, 4.0], "readers take the newer one of each recording");
-    let history = fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
+    let history = abbe_fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
     assert_eq!(history.machines[0].recordings.len(), 3);
     let done = all(&fleet);
     assert_eq!((done.diagnosed, done.followed), (0, 0));
@@ -205,8 +205,8 @@ fn a_recording_that_is_gone_stays_in_the_history_and_one_that_was_moved_counts_o
     all(&fleet);
     let stage = folder.0.join("a stage");
     let machine = |fleet: &Fleet| {
-        let history = fleet::history(fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
-        let text = fleet::report::text(&history, 200);
+        let history = abbe_fleet::history(fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
+        let text = abbe_fleet::report::text(&history, 200);
         let listed: Vec<bool> = history.machines[0].recordings.iter().map(|entry| entry.listed).collect();
         (listed, text)
     };
@@ -229,7 +229,7 @@ fn a_recording_that_is_gone_stays_in_the_history_and_one_that_was_moved_counts_o
     fs::write(folder.0.join("fleet.yaml"), text).unwrap();
     let heard = Heard::default();
     let other = file::read(&folder.0.join("fleet.yaml"), &()).ok().unwrap();
-    fleet::history(&other, Moment::read("2026-03-01").unwrap(), &heard).ok().unwrap();
+    abbe_fleet::history(&other, Moment::read("2026-03-01").unwrap(), &heard).ok().unwrap();
     assert!(heard.0.borrow().iter().any(|text| text.contains("results of `stage 1/b`")), "{:?}", heard.0);
 }
 
@@ -293,7 +293,7 @@ fn the_history_of_a_day_knows_nothing_of_what_was_found_later() {
     }
     all(&fleet);
     let on = |moment: &str| {
-        let history = fleet::history(&fleet, Moment::read(moment).unwrap(), &()).ok().unwrap();
+        let history = abbe_fleet::history(&fleet, Moment::read(moment).unwrap(), &()).ok().unwrap();
         let [machine] = history.machines.try_into().ok().unwrap();
         let followed = machine.series.iter().filter(|known| known.series.term == "backlash");
         (machine.recordings.len(), followed.map(|known| known.series.points.len()).collect::<Vec<_>>())
@@ -322,8 +322,8 @@ fn what_is_not_told_says_why() {
     let (folder, fleet) = fleet("why");
     let text = || {
         all(&fleet);
-        let history = fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
-        fleet::report::text(&history, 200)
+        let history = abbe_fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
+        abbe_fleet::report::text(&history, 200)
     };
     let few = text();
     assert!(
@@ -348,7 +348,8 @@ fn a_broken_result_is_told_and_nothing_panics() {
         {
             fs::write(path, broken).unwrap();
             let heard = Heard::default();
-            let history = fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &heard).ok().unwrap();
+            let history =
+                abbe_fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &heard).ok().unwrap();
             let heard = heard.0.into_inner();
             // A history reads no tables of parameters: `run` does, when it follows effects.
             let is_read = !path.to_string_lossy().contains("/parameters/");

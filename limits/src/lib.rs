@@ -4,6 +4,12 @@
 //! see, from which size on it would be found in nine of ten cases and with which interval; and what can never be told apart.
 //!
 //! Nothing is assumed of the diagnosis: known effects are injected into the recording itself, at sizes near the limit, and diagnosed.
+//!
+//! ```text
+//! recording -> subject: kinds in motions -> injection: the recording with one of them -> trial: what a diagnosis says
+//!      -> search (posterior): the size that nine of ten find -> limits -> answer: plain data -> report: text, JSON, a page
+//! a path -> plan, made: recordings of a machine as it is known; moves, passes: short paths that tell names apart
+//! ```
 
 pub mod answer;
 pub mod injection;

@@ -54,7 +54,7 @@ pub struct Compiled {
 /// Compiles a machine file. Mistakes and warnings go to `diagnostics`; `None` after an error.
 ///
 /// ```
-/// use model_dsl::{compile, diagnostic::Diagnostics, notation::infix, source::SourceFile};
+/// use abbe_model_dsl::{compile, diagnostic::Diagnostics, notation::infix, source::SourceFile};
 /// let file = SourceFile::new("stage.yaml", "abbe: 1\nname: stage\ntopology: FX\n");
 /// let mut diagnostics = Diagnostics::new();
 /// let stage = compile(&file, &mut diagnostics).expect("a valid machine");

@@ -9,18 +9,16 @@
 /// abbreviation: the first candidate that it begins, from three letters on. Of equally near ones the first counts.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word = letters(word);
-    let allowed = allowed_edits(word.len());
+    let length = word.chars().count();
+    let allowed = allowed_edits(length);
     let mut best: Option<(usize, &str)> = None;
     let mut abbreviated = None;
     for candidate in candidates {
         let name = letters(candidate);
-        if word.len() >= 3 && name.starts_with(&word) {
+        if length >= 3 && name.starts_with(&word) {
             abbreviated = abbreviated.or(Some(candidate));
         }
-        if word.len().abs_diff(name.len()) > allowed {
-            continue;
-        }
-        let distance = edit_distance(&word, &name);
+        let distance = strsim::osa_distance(&word, &name);
         if distance <= allowed && best.is_none_or(|(least, _)| distance < least) {
             best = Some((distance, candidate));
         }
@@ -28,7 +26,8 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     best.map(|(_, name)| name).or(abbreviated)
 }
 
-fn letters(word: &str) -> Vec<char> {
+/// Small letters, and no more of them than a name has.
+fn letters(word: &str) -> String {
     word.chars().flat_map(char::to_lowercase).take(64).collect()
 }
 
@@ -38,47 +37,6 @@ fn allowed_edits(length: usize) -> usize {
         2..=5 => 1,
         longer => longer / 3,
     }
-}
-
-/// Optimal string alignment distance, three rows at a time.
-fn edit_distance(left: &[char], right: &[char]) -> usize {
-    let mut before = vec![0; right.len() + 1];
-    let mut above: Vec<usize> = (0..=right.len()).collect();
-    let mut previous = None;
-    for (row, &letter) in left.iter().enumerate() {
-        let current = next_row(row + 1, previous, letter, right, &before, &above);
-        before = std::mem::replace(&mut above, current);
-        previous = Some(letter);
-    }
-    above.last().copied().unwrap_or(0)
-}
-
-fn next_row(
-    row: usize,
-    previous: Option<char>,
-    letter: char,
-    right: &[char],
-    before: &[usize],
-    above: &[usize],
-) -> Vec<usize> {
-    let mut current = Vec::with_capacity(above.len());
-    let mut left_cell = row;
-    current.push(row);
-    for (column, &other) in right.iter().enumerate() {
-        let at = |cells: &[usize], index: usize| cells.get(index).copied().unwrap_or(usize::MAX / 2);
-        let replaced = at(above, column) + usize::from(letter != other);
-        let mut least = replaced.min(left_cell + 1).min(at(above, column + 1) + 1);
-        let one_back = column.checked_sub(1).and_then(|index| right.get(index).map(|&found| (index, found)));
-        if let (Some(earlier), Some((index, found))) = (previous, one_back)
-            && earlier == other
-            && letter == found
-        {
-            least = least.min(at(before, index) + 1);
-        }
-        current.push(least);
-        left_cell = least;
-    }
-    current
 }
 
 #[cfg(test)]
@@ -109,16 +67,6 @@ mod tests {
     fn the_first_of_equals_counts() {
         assert_eq!(nearest("EXW", ["EXX", "EXY"]), Some("EXX"));
         assert_eq!(nearest("MM", ["mm", "nm"]), Some("mm"));
-    }
-
-    #[test]
-    fn counts_edits() {
-        let count = |left: &str, right: &str| edit_distance(&letters(left), &letters(right));
-        assert_eq!(count("", "abc"), 3);
-        assert_eq!(count("abc", ""), 3);
-        assert_eq!(count("abc", "acb"), 1);
-        assert_eq!(count("kitten", "sitting"), 3);
-        assert_eq!(count("same", "same"), 0);
     }
 
     #[test]

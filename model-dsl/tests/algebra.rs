@@ -2,8 +2,8 @@
 //! evaluating respects it, that a squared sine is rewritten without changing a value, and that a
 //! program lowered from a polynomial computes that polynomial.
 
-use model_dsl::algebra::{Axis, FirstOrder, Htm, Polynomial, Rational, Symbol, sine_and_cosine};
-use model_dsl::program::{Builder, Input, Value};
+use abbe_model_dsl::algebra::{Axis, FirstOrder, Htm, Polynomial, Rational, Symbol, sine_and_cosine};
+use abbe_model_dsl::program::{Builder, Input, Value};
 use proptest::prelude::*;
 
 fn letters() -> Vec<Symbol> {

@@ -8,11 +8,11 @@
 
 use std::path::Path;
 
-use model_dsl::diagnostic::Diagnostics;
-use model_dsl::equations::Equations;
-use model_dsl::program::Interpreter;
-use model_dsl::source::SourceFile;
-use model_dsl::{compile, compile_word};
+use abbe_model_dsl::diagnostic::Diagnostics;
+use abbe_model_dsl::equations::Equations;
+use abbe_model_dsl::program::Interpreter;
+use abbe_model_dsl::source::SourceFile;
+use abbe_model_dsl::{compile, compile_word};
 use proptest::prelude::*;
 
 /// The shipped machines, and words in which rotary axes stand on either side.

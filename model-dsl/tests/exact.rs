@@ -7,13 +7,13 @@
     reason = "a panic is the report of a test, also from a function that tests share"
 )]
 
+use abbe_model_dsl::diagnostic::Diagnostics;
+use abbe_model_dsl::equations::Equations;
+use abbe_model_dsl::exact::{Columns, Displaced, ExactProduct};
+use abbe_model_dsl::program::Interpreter;
+use abbe_model_dsl::source::SourceFile;
+use abbe_model_dsl::{compile, compile_word};
 use abbe_runtime::Kinematics;
-use model_dsl::diagnostic::Diagnostics;
-use model_dsl::equations::Equations;
-use model_dsl::exact::{Columns, Displaced, ExactProduct};
-use model_dsl::program::Interpreter;
-use model_dsl::source::SourceFile;
-use model_dsl::{compile, compile_word};
 use proptest::prelude::*;
 
 fn word(word: &str) -> Equations {

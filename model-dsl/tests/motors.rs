@@ -6,14 +6,14 @@
     reason = "a panic is the report of a test, also from a function that tests share"
 )]
 
+use abbe_model_dsl::algebra::Axis;
+use abbe_model_dsl::compile;
+use abbe_model_dsl::diagnostic::{Diagnostics, render};
+use abbe_model_dsl::equations::Equations;
+use abbe_model_dsl::notation::infix;
+use abbe_model_dsl::program::Interpreter;
+use abbe_model_dsl::source::SourceFile;
 use abbe_runtime::Kinematics;
-use model_dsl::algebra::Axis;
-use model_dsl::compile;
-use model_dsl::diagnostic::{Diagnostics, render};
-use model_dsl::equations::Equations;
-use model_dsl::notation::infix;
-use model_dsl::program::Interpreter;
-use model_dsl::source::SourceFile;
 
 fn source(rest: &str) -> SourceFile {
     SourceFile::new("machine.yaml", format!("abbe: 1\nname: machine\n{rest}"))
@@ -38,7 +38,7 @@ fn refused(rest: &str) -> Vec<(&'static str, String)> {
     let source = source(rest);
     let mut diagnostics = Diagnostics::new();
     assert!(compile(&source, &mut diagnostics).is_none(), "{rest}");
-    let marked = |span: model_dsl::source::Span| source.text()[span.start..span.end].trim().to_owned();
+    let marked = |span: abbe_model_dsl::source::Span| source.text()[span.start..span.end].trim().to_owned();
     diagnostics.iter().map(|found| (found.code, marked(found.span))).collect()
 }
 

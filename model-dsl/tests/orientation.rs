@@ -6,14 +6,14 @@
     reason = "a panic is the report of a test, also from a function that tests share"
 )]
 
-use model_dsl::algebra::{Axis, Polynomial};
-use model_dsl::check;
-use model_dsl::diagnostic::{Diagnostics, render};
-use model_dsl::equations::{Equations, Names};
-use model_dsl::notation::{Format, direction_error_lines, error_lines, infix, print};
-use model_dsl::program::Interpreter;
-use model_dsl::source::SourceFile;
-use model_dsl::{Compiled, compile, compile_word};
+use abbe_model_dsl::algebra::{Axis, Polynomial};
+use abbe_model_dsl::check;
+use abbe_model_dsl::diagnostic::{Diagnostics, render};
+use abbe_model_dsl::equations::{Equations, Names};
+use abbe_model_dsl::notation::{Format, direction_error_lines, error_lines, infix, print};
+use abbe_model_dsl::program::Interpreter;
+use abbe_model_dsl::source::SourceFile;
+use abbe_model_dsl::{Compiled, compile, compile_word};
 
 fn source(rest: &str) -> SourceFile {
     SourceFile::new("machine.yaml", format!("abbe: 1\nname: machine\norientation: true\n{rest}"))
@@ -45,7 +45,7 @@ fn tilts(equations: &Equations, name: &str) -> [String; 3] {
     Axis::ALL.map(|direction| infix(&equations.tilt(direction, motion)))
 }
 
-fn names(motions: &[model_dsl::equations::Motion]) -> Vec<&str> {
+fn names(motions: &[abbe_model_dsl::equations::Motion]) -> Vec<&str> {
     motions.iter().map(|motion| motion.name.as_str()).collect()
 }
 

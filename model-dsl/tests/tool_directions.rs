@@ -7,11 +7,11 @@
     reason = "a panic is the report of a test, also from a function that tests share"
 )]
 
-use model_dsl::calibration::{Calibration, MachineNames, read, write};
-use model_dsl::compile;
-use model_dsl::diagnostic::Diagnostics;
-use model_dsl::source::SourceFile;
-use model_dsl::yaml;
+use abbe_model_dsl::calibration::{Calibration, MachineNames, read, write};
+use abbe_model_dsl::compile;
+use abbe_model_dsl::diagnostic::Diagnostics;
+use abbe_model_dsl::source::SourceFile;
+use abbe_model_dsl::yaml;
 
 /// A head on B with tools that point anywhere; `offset` and the keys of the file differ.
 fn names(offset: &str, keys: &str, direction: &str) -> MachineNames {

@@ -6,14 +6,14 @@
     reason = "a panic is the report of a test, also from a function that tests share"
 )]
 
-use model_dsl::algebra::{Axis, Htm};
-use model_dsl::derivation::{link_matrix, relative_position};
-use model_dsl::diagnostic::{Diagnostics, render};
-use model_dsl::equations::Equations;
-use model_dsl::machine::Branch;
-use model_dsl::notation::infix;
-use model_dsl::source::SourceFile;
-use model_dsl::{compile, compile_word};
+use abbe_model_dsl::algebra::{Axis, Htm};
+use abbe_model_dsl::derivation::{link_matrix, relative_position};
+use abbe_model_dsl::diagnostic::{Diagnostics, render};
+use abbe_model_dsl::equations::Equations;
+use abbe_model_dsl::machine::Branch;
+use abbe_model_dsl::notation::infix;
+use abbe_model_dsl::source::SourceFile;
+use abbe_model_dsl::{compile, compile_word};
 
 fn word(word: &str) -> Equations {
     compile_word(word, &mut Diagnostics::new()).unwrap().equations

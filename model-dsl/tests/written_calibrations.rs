@@ -9,13 +9,13 @@
 
 use std::path::Path;
 
-use model_dsl::calibration::{
+use abbe_model_dsl::calibration::{
     AxisName, CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Factor, LARGEST_ANGLE, Limits,
     MachineNames, MotionName, SensorKind, SeriesInput, Tool, Within, machine_of, read, write,
 };
-use model_dsl::diagnostic::{Diagnostics, render};
-use model_dsl::source::{SourceFile, Span, Spanned};
-use model_dsl::{compile, yaml};
+use abbe_model_dsl::diagnostic::{Diagnostics, render};
+use abbe_model_dsl::source::{SourceFile, Span, Spanned};
+use abbe_model_dsl::{compile, yaml};
 use proptest::prelude::*;
 use proptest::sample::Index;
 

@@ -7,6 +7,11 @@
 //! machine's name alone, the caller finds the machine; [`read_header`] reads the rest of the file against its equations;
 //! and [`Header::read_data`] reads the data.
 //!
+//! ```text
+//! file -> header: machine, calibration, instrument (setup, suited), channels (channel, place) -> data: text, Parquet or a worksheet (form)
+//!      -> columns -> position, runs: the same for whoever asks; lie: how a part lay where it was measured
+//! ```
+//!
 //! Whoever takes a recording asks it where an axis is ([`AxisChannels::position`]) and which rows belong together
 //! ([`Recording::runs`]), so that all of Abbe has one answer.
 //!

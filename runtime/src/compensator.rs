@@ -5,7 +5,9 @@
 //! asked to be: subtracting the error at the target leaves the difference of the two.
 
 mod aim;
+mod fixed_point;
 mod inverse;
+mod known;
 mod motors;
 mod prediction;
 mod report;
@@ -14,11 +16,12 @@ mod setup;
 mod tilts;
 mod turns;
 
-use self::inverse::{Columns, Reach};
+use self::fixed_point::{Search, Settled};
+use self::inverse::Reach;
+use self::known::Known;
 use self::motors::Corrected;
-use self::prediction::Prediction;
+use self::prediction::{FIRST, Prediction};
 use self::setup::Needs;
-use self::turns::Turned;
 use crate::math::{add_scaled, all_finite, sqrt};
 use crate::{ErrorMotion, ErrorMotions, Kinematics, Sample, Share, Sines, TermState};
 
@@ -174,8 +177,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     #[inline]
     fn cycle(&mut self, sample: &Sample<'_>, out: &mut [f64]) -> Result<Outcome, Refusal> {
         let error = self.prediction.begin(sample)?;
-        // Asked of the machine: where it is known when the code is compiled that none does, nothing is left of all this.
-        if !self.prediction.kinematics.aiming().is_empty() {
+        if self.prediction.kinematics.axes_aim() {
             return self.cycle_aimed(sample, error, out);
         }
         if self.enabled {
@@ -198,38 +200,36 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     fn search(&mut self, sample: &Sample<'_>, error: [f64; 3], out: &mut [f64]) -> Result<Outcome, Refusal> {
         let reach = self.reach_at(sample.position)?;
         let Self { prediction, convergence, limits, directions, .. } = self;
-        // They always are so many: said once more, and the compiler of Rust knows how often each loop below goes round.
-        let directions = &**directions;
-        same_length("work.directions", prediction.kinematics.axes(), directions.len())?;
-        let columns = prediction.columns(directions);
-        let ramp = prediction.needs.ramp;
+        let (kinematics, ramp) = (prediction.kinematics, prediction.needs.ramp);
+        same_length("work.directions", kinematics.axes(), directions.len())?;
+        let columns = kinematics.columns(directions);
         let turned = prediction.turn(sample, convergence, out)?;
         let start = match &turned {
             Some(turned) => {
                 limits.check_rotation(turned.correction(sample.position))?;
-                prediction.left_to_slides(sample, turned, out)?
+                prediction.left_to_slides::<FIRST>(sample, turned, out)?
             }
-            None if ramp || prediction.motors_correct() => prediction.corrected(sample, sample.position)?,
+            None if ramp || kinematics.motors_correct() => prediction.corrected_at_target(sample)?,
             None => error,
         };
         if reach.may_amplify() {
             report::check_amplification(reach.moved_and_corrected(columns, start))?;
         }
-        let Pulled { pull, mut here, iterations } =
-            convergence.iterate(prediction, sample, start, (columns, &reach), turned.as_ref(), out)?;
-        limits.check(|| sqrt(reach.distance_squared(here) + prediction.by_motors_squared()))?;
+        let turned = turned.as_ref();
+        let search = Search { prediction, convergence, sample, columns, reach, turned };
+        let Settled { pull, error: mut left, iterations } = search.run(start, out)?;
+        limits.check(|| sqrt(reach.distance_squared(left) + prediction.by_motors_squared()))?;
         if ramp {
-            here = prediction.error_behind_ramp(sample, turned.as_ref(), out)?;
-            if !all_finite(&here) {
+            left = prediction.error_behind_ramp(sample, turned, out)?;
+            if !all_finite(&left) {
                 return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
             }
         }
-        let remaining = add_scaled(here, -1.0, reach.tip(columns, pull));
+        let remaining = add_scaled(left, -1.0, reach.tip(columns, pull));
         Ok(Outcome { error, remaining, iterations })
     }
 
     /// What the axes reach; finds in which directions they move the tip, but where that is known.
-    // Always: what is known when the code is compiled is not looked up, and nothing is left of it, mostly, but signs.
     #[inline(always)]
     fn reach_at(&mut self, position: &[f64]) -> Result<Reach, Refusal> {
         let kinematics = self.prediction.kinematics;
@@ -237,7 +237,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
             self.find_directions(position)?;
             return Ok(Reach::straight(squares));
         }
-        match kinematics.fixed_directions().and_then(Reach::at_right_angles).or(self.reach) {
+        match kinematics.reach().or(self.reach) {
             Some(reach) => Ok(reach),
             None => self.find_reach(position),
         }
@@ -257,59 +257,6 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
         self.prediction.kinematics.directions_with(&self.prediction.sines, position, self.directions);
         if all_finite(self.directions.as_flattened()) { Ok(()) } else { Err(Refusal::NotFinite) }
     }
-}
-
-impl Convergence {
-    /// The fixed point, from the corrected error at the target on.
-    #[inline]
-    fn iterate<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized>(
-        &self,
-        prediction: &mut Prediction<'_, K, M>,
-        sample: &Sample<'_>,
-        [x, y, z]: [f64; 3],
-        (columns, reach): (Columns<'_>, &Reach),
-        turned: Option<&Turned>,
-        out: &mut [f64],
-    ) -> Result<Pulled, Refusal> {
-        let bound = self.tolerance_squared();
-        let mut square = f64::INFINITY;
-        // Part by part here and below: copied as a whole, the error would go through memory at every step.
-        let mut here = [x, y, z];
-        let mut corrected = [0.0; 3];
-        for before in 0..self.iterations {
-            let iterations = before.saturating_add(1);
-            let pull = reach.apply(here);
-            // Not from the commands, which far from the origin are too coarse to tell when it ends.
-            square = reach.distance_squared(add_scaled(here, -1.0, corrected)) + prediction.motors_moved();
-            columns.correct(sample.position, pull, out);
-            if let Some(turned) = turned {
-                turned.write(out);
-            }
-            prediction.let_motors_follow(sample.position, out);
-            if square <= bound {
-                return Ok(Pulled { pull, here, iterations });
-            }
-            let finite = square < f64::INFINITY;
-            if !finite {
-                return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
-            }
-            let [x, y, z] = match turned {
-                None => prediction.corrected_again(sample, out)?,
-                Some(turned) => prediction.left_to_slides_again(sample, turned, out)?,
-            };
-            (corrected, here) = (here, [x, y, z]);
-        }
-        Err(Refusal::NotConverging { iterations: self.iterations, distance: sqrt(square) })
-    }
-}
-
-/// Where a search has ended.
-struct Pulled {
-    /// `A^+ E`, of which each axis has its share.
-    pull: [f64; 3],
-    /// The error that was corrected with it.
-    here: [f64; 3],
-    iterations: u32,
 }
 
 /// Copies as many numbers as both hold; unlike `copy_from_slice` it has no way to panic.

@@ -134,7 +134,6 @@ pub enum Factor<'a> {
 
 impl Factor<'_> {
     /// The value in what is read; `memory` is what the factor remembers, none before its first cycle.
-    // Always: see `MotionReader::term`.
     #[inline(always)]
     pub(crate) fn read(&self, from: &mut OneSample<'_>, memory: Option<&f64>) -> f64 {
         match *self {

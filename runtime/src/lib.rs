@@ -33,6 +33,19 @@
 //! the angle wanted, in front of the search for the slides, which correct the rest. Where rotary axes correct the direction of the tool as
 //! well ([`Kinematics::aiming`]), one search finds the commands of all axes, in the pose in which the rotary axes then stand.
 //!
+//! ```text
+//! Sample -> motion (reader): each error motion, a sum of term, table, factor -> Kinematics: the error -> Compensator: the command
+//! compensator: prediction: the error at any command; fixed_point: the search; inverse: what the slides reach; report: limits, refusals
+//!   turns: rotary axes that correct their own angles; motors: motors of several axes, or of one beam
+//!   aim, tilts, seen: rotary axes that correct the direction of the tool
+//! Supervisor: servo cycles one after another: fades, silent sensors, the limit of the rate; Exchanged: another tool
+//! ```
+//!
+//! # Hints for the compiler
+//!
+//! Code says what is worked out; attributes (`inline`, `cold`), sizes that are told once more and questions that a machine answers when it
+//! is compiled say how fast. None of them changes a number. `docs/performance.md` says what each kind is for, and how to measure it.
+//!
 //! # A single slide
 //!
 //! A slide X whose scale grows by 70 um/m and whose screw has 10 um of lost motion:

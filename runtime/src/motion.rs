@@ -82,7 +82,6 @@ impl ErrorMotion<'_> {
     #[inline]
     pub(crate) fn read(&self, from: &mut OneSample<'_>, states: &[TermState], corrected: bool) -> f64 {
         match (self.terms, states) {
-            // Most motions have one term, for which setting up a loop would cost more than the sum.
             ([term], [state]) => term.read_one(from, state, corrected),
             (terms, states) if terms.len() == states.len() => {
                 let (mut sum, mut factors) = (0.0, None);

@@ -126,7 +126,6 @@ impl Term<'_> {
     }
 
     /// The value in what is read; `memory` is what the term remembers, none before its first cycle.
-    // Always: see `MotionReader::term`.
     #[inline(always)]
     pub(crate) fn read(&self, from: &mut OneSample<'_>, memory: Option<&f64>) -> f64 {
         match *self {
@@ -175,7 +174,6 @@ impl Term<'_> {
     }
 
     /// [`value`](Self::value) in what is read of one sample, or [`corrected`](Self::corrected).
-    // Always: see `MotionReader::term`.
     #[inline(always)]
     pub(crate) fn read_one(&self, from: &mut OneSample<'_>, state: &TermState, corrected: bool) -> f64 {
         match *self {

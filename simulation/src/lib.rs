@@ -14,7 +14,7 @@
 //!
 //! ```
 //! use model_dsl::{calibration, diagnostic::Diagnostics, machine, source::{SourceFile, Span}, yaml};
-//! use simulation::{Instrument, Measurement, Plant, names_of};
+//! use abbe_simulation::{Instrument, Measurement, Plant, names_of};
 //!
 //! let mut findings = Diagnostics::new();
 //! let stage = machine::from_word("FX", Span::default(), &mut findings).ok_or("no machine")?;
@@ -24,14 +24,14 @@
 //! let numbers = calibration::read(&tree, &names, &mut findings).ok_or("no calibration")?;
 //! let plant = Plant::new(&stage, &names, &numbers)?;
 //!
-//! let commands = simulation::Commands {
+//! let commands = abbe_simulation::Commands {
 //!     time: vec![0.0, 1.0, 2.0],
 //!     run: vec![1; 3],
 //!     positions: vec![vec![0.0, 50.0, 40.0]],
 //!     ..Default::default()
 //! };
 //! let measurement = Measurement::perfect(Instrument::position());
-//! let recording = simulation::replay(&plant, &commands, &measurement)?;
+//! let recording = abbe_simulation::replay(&plant, &commands, &measurement)?;
 //! // Forwards it lags by half the lost motion, backwards it stays ahead by the other half.
 //! assert!((recording.readings[0].values[1] - 49.995).abs() < 1e-12);
 //! assert!((recording.readings[0].values[2] - 40.005).abs() < 1e-12);

@@ -11,6 +11,11 @@
 //! characterised machine drifts away from its calibration, and a part on a measuring machine is cheaper than a week of
 //! interferometry; what a part cannot show is said beside what it does.
 //!
+//! ```text
+//! calibration -> coefficient: numbers in which the error is linear; recordings -> setting, datum -> points: what each displaces a reading by
+//!      -> solution: the linear system -> singular, ridge or select -> nullspace: what cannot be told apart -> residuals -> Update -> report
+//! ```
+//!
 //! Everything is in mm, rad, s and degC.
 
 mod coefficient;

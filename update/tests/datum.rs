@@ -6,6 +6,7 @@
     reason = "a panic is the report of a test, also from a function that tests share"
 )]
 
+use abbe_update::{Inputs, Method, Options, Rotation, Update, report, update};
 use model_dsl::calibration::{self, Calibration};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
@@ -14,7 +15,6 @@ use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
 use recording::{AxisChannels, Instrument, Recording};
 use simulation::noise::Source;
 use simulation::{Commands, Plant};
-use update::{Inputs, Method, Options, Rotation, Update, report, update};
 
 const NOISE: f64 = 0.005;
 

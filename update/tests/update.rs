@@ -6,6 +6,7 @@
     reason = "a panic is the report of a test, also from a function that tests share"
 )]
 
+use abbe_update::{Inputs, Method, Options, Update, UpdateError, update};
 use model_dsl::calibration::{self, CalibratedTerm, Calibration};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
@@ -14,7 +15,6 @@ use nalgebra::{DMatrix, DVector};
 use recording::{AxisChannels, Instrument, Named, Recording};
 use simulation::noise::Source;
 use simulation::{Column, Commands, Plant};
-use update::{Inputs, Method, Options, Update, UpdateError, update};
 
 /// All terms that a point can show, with directions, memories and derived sensors.
 const EVERYTHING: &str = "calibration: 1

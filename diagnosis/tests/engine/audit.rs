@@ -3,8 +3,8 @@
 //! In: the right files of a mill, and the same with a fault. Out: what to change, with the right value; nothing where the files are
 //! right, and nothing beside it.
 
-use diagnosis::diagnose;
-use diagnosis::diagnosis::{Change, Diagnosis, Estimate, ParameterValue, Verdict};
+use abbe_diagnosis::diagnose;
+use abbe_diagnosis::diagnosis::{Change, Diagnosis, Estimate, ParameterValue, Verdict};
 use model_dsl::calibration::Calibration;
 use simulation::noise::Walk;
 use simulation::path::Shape;

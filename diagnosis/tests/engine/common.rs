@@ -1,7 +1,7 @@
 //! What the tests of the whole share: known errors, a diagnosis, and what it says of a parameter.
 
-use diagnosis::diagnosis::{Diagnosis, Estimate, Finding, ParameterValue, SettingFinding};
-use diagnosis::{Inputs, diagnose};
+use abbe_diagnosis::diagnosis::{Diagnosis, Estimate, Finding, ParameterValue, SettingFinding};
+use abbe_diagnosis::{Inputs, diagnose};
 use model_dsl::calibration::Calibration;
 
 use crate::recording::Recording;

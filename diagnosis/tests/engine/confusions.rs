@@ -1,6 +1,6 @@
 //! What one recording cannot tell apart is told together; what two can, is not.
 
-use diagnosis::diagnosis::Verdict;
+use abbe_diagnosis::diagnosis::Verdict;
 use model_dsl::calibration::Calibration;
 use simulation::{Instrument, Path};
 
@@ -299,7 +299,7 @@ fn slowly(seed: u64) -> simulation::Scenario {
 }
 
 /// The sentence about an axis that crosses its play.
-fn crosses(diagnosis: &diagnosis::diagnosis::Diagnosis, letter: &str) -> bool {
+fn crosses(diagnosis: &abbe_diagnosis::diagnosis::Diagnosis, letter: &str) -> bool {
     let begins = format!("This recording cannot show whether friction also holds {letter} for a moment");
     diagnosis.undecided.iter().any(|sentence| sentence.starts_with(&begins))
 }

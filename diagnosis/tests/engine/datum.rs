@@ -1,8 +1,8 @@
 //! Parts that were clamped anew where they were measured. In: parts that the simulation makes on a machine and turns by known angles.
 //! Out: the angles, told of each recording, and of the machine what it is, whatever the angles are.
 
-use diagnosis::diagnosis::ParameterValue::{Fitted, List};
-use diagnosis::diagnosis::{Diagnosis, Estimate, Parameter, Verdict};
+use abbe_diagnosis::diagnosis::ParameterValue::{Fitted, List};
+use abbe_diagnosis::diagnosis::{Diagnosis, Estimate, Parameter, Verdict};
 use nalgebra::{Rotation3, Vector3};
 use simulation::noise::{Noise, Source};
 use simulation::{Commands, Datum, Instrument as Reads, Measurement, Normal, replay};

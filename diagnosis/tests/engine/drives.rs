@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use diagnosis::diagnosis::Repeats;
+use abbe_diagnosis::diagnosis::Repeats;
 use model_dsl::machine::ElementKind;
 use simulation::{Instrument, Path};
 

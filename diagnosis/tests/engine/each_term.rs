@@ -1,7 +1,7 @@
 //! Every term alone, as large as a few standard deviations of the noise, in a recording that can show it: found by name,
 //! with intervals that hold the truth.
 
-use diagnosis::diagnosis::Verdict;
+use abbe_diagnosis::diagnosis::Verdict;
 use simulation::path::Shape;
 use simulation::{Load, Path, Pulses, Scenario};
 

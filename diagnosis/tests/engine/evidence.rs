@@ -2,7 +2,7 @@
 //!
 //! In: recordings made here, by the exact machine or by hand. Out: what is claimed of them, and what is not.
 
-use diagnosis::diagnosis::{Diagnosis, Verdict};
+use abbe_diagnosis::diagnosis::{Diagnosis, Verdict};
 use simulation::Path;
 
 use crate::common::*;

@@ -3,7 +3,7 @@
 //! In: recordings in which a term is multiplied with states of the machine, or in which something happened once. Out: the form, its
 //! interval, and what is said of it.
 
-use diagnosis::diagnosis::{Diagnosis, Estimate, Finding, Verdict};
+use abbe_diagnosis::diagnosis::{Diagnosis, Estimate, Finding, Verdict};
 use model_dsl::calibration::Factor;
 use simulation::path::Shape;
 use simulation::{Load, Path, Swing};

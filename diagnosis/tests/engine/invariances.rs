@@ -5,7 +5,7 @@
 use std::fs;
 use std::path::Path as FilePath;
 
-use diagnosis::diagnosis::{Diagnosis, Estimate, Finding, ParameterValue};
+use abbe_diagnosis::diagnosis::{Diagnosis, Estimate, Finding, ParameterValue};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
 use model_dsl::yaml;

@@ -1,7 +1,7 @@
 //! Known errors that are so large that their products with one another and their own squares stand above the noise: they are
 //! no physics that was left out.
 
-use diagnosis::diagnosis::Verdict;
+use abbe_diagnosis::diagnosis::Verdict;
 use simulation::Path;
 
 use crate::common::*;

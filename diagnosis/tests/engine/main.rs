@@ -29,4 +29,4 @@ mod ways;
 
 // What the machines and recordings of the tests are made for, under the name that they know it by.
 use ::recording;
-use diagnosis::{Chains, Inputs};
+use abbe_diagnosis::{Chains, Inputs};

@@ -36,7 +36,7 @@ fn searched(crossed: bool, concealed: &str, seed: u64) -> Vec<(String, f64, f64)
     let truth = together(&known, &bench.calibration(&format!("{{{concealed}}}")));
     let recording = bench.record(&truth, &noisy(path, position("xyz"), SIGMA, seed));
     let diagnosis = diagnosed(&bench, &known, &[&recording]);
-    let sizes = |finding: &diagnosis::diagnosis::Finding| {
+    let sizes = |finding: &abbe_diagnosis::diagnosis::Finding| {
         let name = if finding.term == "cyclic" { "amplitude" } else { "lost_motion" };
         numbers(finding, name).first().map(|size| (size.value, size.ci95)).unwrap()
     };

@@ -2,9 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use diagnosis::diagnose_with_pictures;
-use diagnosis::diagnosis::Diagnosis;
-use diagnosis::pictures::{ChannelPicture, Pictures};
+use abbe_diagnosis::diagnose_with_pictures;
+use abbe_diagnosis::diagnosis::Diagnosis;
+use abbe_diagnosis::pictures::{ChannelPicture, Pictures};
 use model_dsl::calibration::Calibration;
 use simulation::Path;
 

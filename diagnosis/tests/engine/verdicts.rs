@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use diagnosis::diagnosis::{Diagnosis, IntervalOf, Verdict};
+use abbe_diagnosis::diagnosis::{Diagnosis, IntervalOf, Verdict};
 use simulation::noise::{Correlated, Missing, Noise, Outliers, Walk};
 use simulation::path::Shape;
 use simulation::{Path, Scenario};

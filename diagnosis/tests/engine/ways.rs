@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use diagnosis::diagnosis::Diagnosis;
+use abbe_diagnosis::diagnosis::Diagnosis;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
 use model_dsl::yaml;

@@ -1,6 +1,6 @@
 //! Diagnoses by hand: one for each verdict, and the kinds of parameters.
 
-use diagnosis::diagnosis::{
+use abbe_diagnosis::diagnosis::{
     Alternative, Change, Diagnosis, Estimate, Evidence, Finding, Interval, IntervalOf, Location,
     NoiseSummary, Parameter, ParameterValue, Repeatability, Repeats, Residual, Returning, SettingFinding,
     Summary, Unexplained, Verdict, WrongFile,
@@ -143,7 +143,7 @@ pub(crate) fn wave(repeats_with: Vec<Repeats>) -> Diagnosis {
             detail: "repeats every 2.0001 deg of c".to_owned(),
             ..Location::default()
         },
-        explanation: diagnosis::meaning("cyclic").unwrap().to_owned(),
+        explanation: abbe_diagnosis::meaning("cyclic").unwrap().to_owned(),
         calibrated: CalibratedTerm::Cyclic { axis: 3, period: 0.0349, amplitude: 36.7e-6, phase: 1.02 },
         repeats_with,
         ..backlash("transmission")

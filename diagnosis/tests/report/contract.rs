@@ -1,7 +1,7 @@
 //! The object `abbe-diagnosis/1`, read back and held against its contract.
 
-use diagnosis::diagnosis::{Diagnosis, Interval, IntervalOf, Parameter, ParameterValue};
-use diagnosis::report;
+use abbe_diagnosis::diagnosis::{Diagnosis, Interval, IntervalOf, Parameter, ParameterValue};
+use abbe_diagnosis::report;
 use serde_json::{Value, json};
 
 use crate::cases;

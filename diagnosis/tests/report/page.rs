@@ -1,9 +1,9 @@
 //! The page: what the text says, in well-formed HTML that fetches nothing; it begins as the text begins, and its first plot is of
 //! what comes back.
 
-use diagnosis::diagnosis::{Diagnosis, NothingReturns, Returning, Summary};
-use diagnosis::pictures::*;
-use diagnosis::report::{self, Origin};
+use abbe_diagnosis::diagnosis::{Diagnosis, NothingReturns, Returning, Summary};
+use abbe_diagnosis::pictures::*;
+use abbe_diagnosis::report::{self, Origin};
 
 use crate::cases;
 

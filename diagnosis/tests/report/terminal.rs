@@ -1,7 +1,7 @@
 //! The text on a terminal: a table of the findings that fits, and colour that changes no word.
 
-use diagnosis::diagnosis::{Diagnosis, ParameterValue};
-use diagnosis::report::{self, Terminal};
+use abbe_diagnosis::diagnosis::{Diagnosis, ParameterValue};
+use abbe_diagnosis::report::{self, Terminal};
 
 use crate::cases;
 
@@ -44,8 +44,10 @@ fn every_width_is_kept_and_the_last_columns_give_way_first() {
     let long = diagnosis.findings[0].parameters[0].value.clone();
     let ParameterValue::Fitted(one) = long else { panic!("a fitted number") };
     diagnosis.findings[0].term = "table";
-    diagnosis.findings[0].parameters =
-        vec![diagnosis::diagnosis::Parameter { name: "values", value: ParameterValue::List(vec![one; 30]) }];
+    diagnosis.findings[0].parameters = vec![abbe_diagnosis::diagnosis::Parameter {
+        name: "values",
+        value: ParameterValue::List(vec![one; 30]),
+    }];
     let mut heads = Vec::new();
     for columns in [100, 80, 60, 50, 40] {
         let lines = table(&diagnosis, columns);

@@ -1,7 +1,7 @@
 //! The text for a terminal: what must stand in it, and the whole of each case, pinned after it was read.
 
-use diagnosis::diagnosis::{Diagnosis, Estimate, Parameter, ParameterValue, Repeats};
-use diagnosis::report;
+use abbe_diagnosis::diagnosis::{Diagnosis, Estimate, Parameter, ParameterValue, Repeats};
+use abbe_diagnosis::report;
 use model_dsl::calibration::{CalibratedTerm, SeriesInput};
 use model_dsl::machine::ElementKind;
 

@@ -1,6 +1,6 @@
 //! Machines that are driven and read. In: a topology, its true errors, a program. Out: recordings.
 
-use evaluation::{Evaluation, Figure, Inputs, evaluate};
+use abbe_evaluation::{Evaluation, Figure, Inputs, evaluate};
 use model_dsl::calibration::{self, Calibration};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;

@@ -1,6 +1,6 @@
 //! Circles of machines with known errors.
 
-use evaluation::{Sense, Sensor};
+use abbe_evaluation::{Sense, Sensor};
 use recording::{Instrument, Recording};
 
 use crate::bench::{Bench, Program, near, reason, value};
@@ -20,7 +20,7 @@ fn as_bar(recording: &Recording, off: f64) -> Recording {
     }
 }
 
-fn circle(bench: &Bench, recording: &Recording) -> evaluation::Circle {
+fn circle(bench: &Bench, recording: &Recording) -> abbe_evaluation::Circle {
     let evaluation = bench.evaluate(recording);
     let [circle] = evaluation.circles.as_slice() else { panic!("{:?}", evaluation.not_given) };
     circle.clone()

@@ -1,6 +1,6 @@
 //! Diagonals of a machine with known errors.
 
-use evaluation::Kind;
+use abbe_evaluation::Kind;
 use recording::{Instrument, Line};
 
 use crate::bench::{Bench, Program, near, reason, value};

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use evaluation::fit::{Place, least_squares, minimum_zone};
+use abbe_evaluation::fit::{Place, least_squares, minimum_zone};
 use simulation::noise::Source;
 
 use crate::bench::near;

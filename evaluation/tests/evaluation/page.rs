@@ -1,6 +1,6 @@
 //! The page: every figure stands in it, what is drawn lies where its numbers say, and it is well-formed and fetches nothing.
 
-use evaluation::{Evaluation, report};
+use abbe_evaluation::{Evaluation, report};
 
 use crate::bench::{Bench, Program, near};
 use crate::diagonals::four;

@@ -1,6 +1,6 @@
 //! Positioning of machines with known errors.
 
-use evaluation::{Kind, Unit, Zero};
+use abbe_evaluation::{Kind, Unit, Zero};
 use recording::{Instrument, Line, Recording};
 
 use crate::bench::{Bench, Program, figure, near, reason, value};
@@ -86,7 +86,7 @@ fn noise_comes_back_as_s_and_the_zero_does_not_matter() {
     // B_mean is the mean of 41 differences of means of nine.
     near(value(&line.figures, "B_mean"), -8.0, 3.0 * 2.0 * (2.0_f64 / 9.0 / 41.0).sqrt());
     // Without a calibration the zero is the mean of all readings, and nothing else changes.
-    let shifted = evaluation::evaluate(&evaluation::Inputs {
+    let shifted = abbe_evaluation::evaluate(&abbe_evaluation::Inputs {
         equations: &bench.compiled.equations,
         calibration: None,
         recording: &{

@@ -2,8 +2,8 @@
 //! against laser triangulation), five targets in five cycles both ways, with all its figures. Two of them contradict the
 //! definitions: the report takes the greater of R up and R down for R, and the range of one direction for E.
 
-use evaluation::iso230_2::{Target, TargetFigures, of_axis};
-use evaluation::{Evaluation, Figure, Unit};
+use abbe_evaluation::iso230_2::{Target, TargetFigures, of_axis};
+use abbe_evaluation::{Evaluation, Figure, Unit};
 use recording::{AxisChannels, Instrument, Recording};
 
 use crate::bench::{Bench, Program, figure, near, value};

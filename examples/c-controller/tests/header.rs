@@ -9,7 +9,7 @@ use std::{env, fs};
 fn the_header_is_that_of_the_sources() -> Result<(), Box<dyn Error>> {
     let interface = Path::new("../../c-interface");
     let opening = Path::new(env!("CARGO_TARGET_TMPDIR")).join("opening.rs");
-    fs::write(&opening, model_dsl::c_library_for("mill.yaml")?)?;
+    fs::write(&opening, abbe_model_dsl::c_library_for("mill.yaml")?)?;
     let config = cbindgen::Config::from_file(interface.join("cbindgen.toml"))?;
     let mut builder = cbindgen::Builder::new().with_config(config);
     for source in ["src/status.rs", "src/abi.rs"] {

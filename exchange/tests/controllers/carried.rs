@@ -1,7 +1,7 @@
 //! What formats carry. Random machines whose errors a format holds in full lose nothing; what a format has no place for is lost,
 //! and is as large as a calculation beside it says.
 
-use exchange::controller::{Format, Geometry, Lost, Options, Sense, VolumetricForm, volumetric_terms};
+use abbe_exchange::controller::{Format, Geometry, Lost, Options, Sense, VolumetricForm, volumetric_terms};
 use model_dsl::calibration::Calibration;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
@@ -173,7 +173,7 @@ fn terms_of_temperature_and_time_are_named_with_their_size() {
     let machine = Machine::of("FXYZ", &errors);
     let (geometry, space) = (machine.geometry(), machine.space());
     let export = machine.export(Format::LinuxCnc, &options()).unwrap();
-    let text = exchange::controller::text(&geometry, &space, &export.lost);
+    let text = abbe_exchange::controller::text(&geometry, &space, &export.lost);
     assert!(text.contains("EXX expansion: up to 4.00 um for each degC from its reference"), "{text}");
     assert!(text.contains("EXX lag: up to 833.33 um at a feed of 1000 mm/min"), "{text}");
 }

@@ -1,8 +1,8 @@
 //! LinuxCNC's loader, as its source has it: what ends a table, what is left out, and what a trim is.
 
+use abbe_exchange::controller::Kind;
+use abbe_exchange::controller::linuxcnc::read;
 use abbe_runtime::Direction;
-use exchange::controller::Kind;
-use exchange::controller::linuxcnc::read;
 
 fn trims(text: &str, kind: Kind, position: f64) -> [f64; 2] {
     let table = read(text, kind);

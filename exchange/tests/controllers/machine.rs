@@ -1,7 +1,7 @@
 //! Machines for the tests. In: a topology word and errors as a calibration file has them. Out: what an export begins with.
 
-use exchange::controller::{Export, Format, Geometry, Options, Refused, Space, Wanted, export};
-use exchange::controller::{Kind, Unit};
+use abbe_exchange::controller::{Export, Format, Geometry, Options, Refused, Space, Wanted, export};
+use abbe_exchange::controller::{Kind, Unit};
 use model_dsl::calibration::{self, Calibration};
 use model_dsl::diagnostic::{Diagnostics, render};
 use model_dsl::equations::Equations;

@@ -1,8 +1,8 @@
 //! What printers' firmware is told: the numbers of the files, read here by themselves, in the firmware's own formulas, against Abbe's
 //! compensation; and signs by hand.
 
+use abbe_exchange::controller::{Export, Format, Options, Pose, Space, Unusable, Wanted, check};
 use abbe_runtime::Direction;
-use exchange::controller::{Export, Format, Options, Pose, Space, Unusable, Wanted, check};
 use model_dsl::source::SourceFile;
 
 use crate::machine::{Machine, bilinear, options, text};
@@ -211,7 +211,7 @@ fn other_machines_and_other_files_are_refused() {
     let machine = Machine::of("CFXYZ", &["EC0Y: 1 mrad".to_owned()]);
     let ranges = [("X", [0.0, 100.0]), ("Y", [0.0, 100.0]), ("Z", [0.0, 100.0]), ("C", [-1.0, 1.0])];
     let space = machine.space_with(&ranges);
-    let refused = exchange::controller::export(&machine.geometry(), &space, Format::Marlin, &options());
+    let refused = abbe_exchange::controller::export(&machine.geometry(), &space, Format::Marlin, &options());
     assert!(refused.unwrap_err().to_string().contains("more axes than the slides"));
     let machine = printer("XYFZ");
     let file = |text: &str| [(SourceFile::new("file", text), None)];

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use exchange::controller::{Format, Options, Sense, Space, Unusable, Wanted, check};
+use abbe_exchange::controller::{Format, Options, Sense, Space, Unusable, Wanted, check};
 use model_dsl::source::SourceFile;
 use proptest::prelude::*;
 
@@ -75,7 +75,8 @@ fn files_that_would_make_the_machine_worse_are_refused() {
         reference: vec![("C".to_owned(), 0.0)],
     };
     let space = Space::new(&machine.equations, &machine.calibration, &wanted).unwrap();
-    let refused = exchange::controller::export(&machine.geometry(), &space, Format::LinuxCnc, &options());
+    let refused =
+        abbe_exchange::controller::export(&machine.geometry(), &space, Format::LinuxCnc, &options());
     let text = refused.unwrap_err().to_string();
     assert!(text.contains("would be 36.") && text.contains("with these files and 21."), "{text}");
 }

@@ -1,8 +1,8 @@
 //! What firmware has saved, taken over: the firmware's transform, written here from its source, against Abbe's compensation with the
 //! calibration. Both must send the tool to the same place but for what is of second order.
 
+use abbe_exchange::controller::{Geometry, Kind, Pose, SavedWanted, Unit, saved_terms};
 use abbe_runtime::Direction;
-use exchange::controller::{Geometry, Kind, Pose, SavedWanted, Unit, saved_terms};
 use model_dsl::calibration::{self, Calibration};
 use model_dsl::diagnostic::{Diagnostics, render};
 use model_dsl::source::SourceFile;

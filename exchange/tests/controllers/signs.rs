@@ -1,7 +1,7 @@
 //! Signs, worked out by hand. X runs 100 um/m too far: at 100 mm it is 10 um beyond, so that its command must be 10 um less.
 //! Every format says that in its own way; a wrong sign would double the error.
 
-use exchange::controller::{Format, Kind, Options, Sense, Unit, VolumetricForm, volumetric_terms};
+use abbe_exchange::controller::{Format, Kind, Options, Sense, Unit, VolumetricForm, volumetric_terms};
 use model_dsl::calibration::CalibratedTerm;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;

@@ -1,7 +1,7 @@
 //! Rotary axes in controllers' tables: a table C that stands 10 arcsec too far at 90 deg. Its command must be 10 arcsec less there,
 //! which is 1/360 deg, whatever it does to the tip; a wrong sign, or a value in rad, would show.
 
-use exchange::controller::{Format, Options, Sense};
+use abbe_exchange::controller::{Format, Options, Sense};
 
 use crate::machine::{Machine, options, text};
 

@@ -1,8 +1,8 @@
 //! What a history makes of a simulated shop. In: a shop with its results. Out: when each planted change was raised, every other alarm, and
 //! how many intervals hold the truth.
 
-use fleet::file::Fleet;
-use fleet::history;
+use abbe_fleet::file::Fleet;
+use abbe_fleet::history;
 
 use crate::shop::{PLANTED, Shop};
 
@@ -73,7 +73,7 @@ pub(crate) fn judged(shop: Shop, fleet: &Fleet) -> Judged {
     judged
 }
 
-fn count(shop: Shop, history: &fleet::History, judged: &mut Judged) {
+fn count(shop: Shop, history: &abbe_fleet::History, judged: &mut Judged) {
     for (number, machine) in history.machines.iter().enumerate() {
         for followed in &machine.series {
             let series = &followed.series;
@@ -95,11 +95,11 @@ fn count(shop: Shop, history: &fleet::History, judged: &mut Judged) {
     }
 }
 
-fn tell(shop: Shop, followed: &fleet::history::Followed, raised: &mut Raised) {
+fn tell(shop: Shop, followed: &abbe_fleet::history::Followed, raised: &mut Raised) {
     if let Some(change) = &followed.change {
         (raised.kind, raised.size, raised.from) = (change.kind, (change.size, change.half), change.from);
     }
-    let claimed = |point: &&fleet::history::Point| point.claimed;
+    let claimed = |point: &&abbe_fleet::history::Point| point.claimed;
     let (before, after) = followed.series.points.split_at(shop.step().min(followed.series.points.len()));
     raised.claimed = (before.iter().filter(claimed).count(), after.iter().filter(claimed).count());
 }

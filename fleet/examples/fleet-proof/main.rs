@@ -19,7 +19,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use fleet::{file, run};
+use abbe_fleet::{file, run};
 
 fn main() {
     let mut words = std::env::args().skip(1);

@@ -4,7 +4,7 @@ use super::tree::{Tree, too_deep};
 use super::{MAX_BYTES, Node};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::{SourceFile, Span};
-use serde_yaml::{ErrorKind, Event, Parser, ScalarStyle, ScanError, options};
+use granit_parser::{ErrorKind, Event, Parser, ScalarStyle, ScanError, options};
 
 /// Reads a file's text into a tree.
 ///
@@ -83,7 +83,7 @@ fn step(event: Event<'_>, span: Span, tag: Option<Span>, documents: &mut usize, 
     }
 }
 
-fn place_of(span: serde_yaml::Span) -> Span {
+fn place_of(span: granit_parser::Span) -> Span {
     let range = span.byte_range().unwrap_or_default();
     Span::new(range.start, range.end)
 }

@@ -1,7 +1,7 @@
 //! Whatever the files hold, they are read or refused, and what is read keeps the promises of its type.
 
+use abbe_recording::Recording;
 use proptest::prelude::*;
-use recording::Recording;
 
 use crate::common::{header, packed, read};
 

@@ -2,11 +2,11 @@
 
 use std::io::Write;
 
+use abbe_recording::{DataError, Header, Recording, calibration_of, machine_of, read_header};
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
 use model_dsl::{compile, compile_word, yaml};
-use recording::{DataError, Header, Recording, calibration_of, machine_of, read_header};
 
 /// A lathe without Y, its Z slide on the part's branch.
 const LATHE: &str = "abbe: 1

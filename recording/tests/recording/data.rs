@@ -1,6 +1,6 @@
 //! Tables of data that are read, however they are written.
 
-use recording::AngleUnit;
+use abbe_recording::AngleUnit;
 
 use crate::common::{header, packed, recording};
 

@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use abbe_recording::{ChannelKind, Header, Recording, machine_of, read_header};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
 use model_dsl::{Compiled, compile, compile_word, yaml};
-use recording::{ChannelKind, Header, Recording, machine_of, read_header};
 
 use crate::beside::listed;
 
@@ -91,7 +91,7 @@ fn every_number_is_that_of_the_table() {
         let (header, recording) = read(&path);
         for channel in &header.channels {
             let expected = as_the_library_reads(&path, &channel.columns()[0].value, &channel.written_unit);
-            let named = |list: &[recording::Named], name: &str| {
+            let named = |list: &[abbe_recording::Named], name: &str| {
                 list.iter().find(|one| one.name == name).unwrap().values.clone()
             };
             let found = match &channel.kind {

@@ -1,6 +1,6 @@
 //! What a recording file that is right says.
 
-use recording::{ChannelKind, Instrument};
+use abbe_recording::{ChannelKind, Instrument};
 
 use crate::common::{header, read};
 

@@ -1,6 +1,6 @@
 //! Tables of data that are not read: where, why, and what to write instead.
 
-use recording::Place;
+use abbe_recording::Place;
 
 use crate::common::{header, packed, recording};
 

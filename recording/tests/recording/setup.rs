@@ -1,6 +1,6 @@
 //! Instruments as they were set up, and what is derived where it is evident.
 
-use recording::{Header, Instrument, Line};
+use abbe_recording::{Header, Instrument, Line};
 
 use crate::common::{header, recording};
 

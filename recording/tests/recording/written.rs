@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use recording::{DataError, Place, Recording};
+use abbe_recording::{DataError, Place, Recording};
 
 use crate::common::header;
 

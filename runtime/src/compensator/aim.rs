@@ -5,6 +5,7 @@
 //! a rotary axis stands elsewhere than it was asked to, and takes the tip along.
 
 use super::inverse::{Columns, Reach};
+use super::known::Known;
 use super::prediction::Prediction;
 use super::report::{self, DirectionOutcome};
 use super::seen::{Part, Posed};
@@ -59,7 +60,6 @@ struct Gone {
 
 impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
     /// The rest of a cycle that has begun with this error of the tip, on a machine whose rotary axes correct the direction of the tool.
-    // Apart: the calls of all other machines stay as small as they were.
     #[inline(never)]
     pub(super) fn cycle_aimed(
         &mut self,
@@ -92,7 +92,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         while iterations < most {
             iterations = iterations.saturating_add(1);
             let pose = self.pose(sample, &target, &step, out)?;
-            let columns = self.prediction.columns(&*self.directions);
+            let columns = self.prediction.kinematics.columns(self.directions);
             let from = (sample, &target, &self.convergence, &self.limits);
             let next = pose.next(&mut self.prediction, from, columns, &step, out)?;
             gone = step.until(&next, &pose.reach, self.prediction.motors_moved(), out);
@@ -114,7 +114,6 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
     }
 
     /// What the slides reach where the rotary axes are turned to.
-    // Not by what other machines call: what has one caller is compiled into it.
     fn reach_turned(&mut self, position: &[f64]) -> Result<Reach, Refusal> {
         let Prediction { kinematics, sines, .. } = &self.prediction;
         kinematics.directions_with(sines, position, self.directions);
@@ -140,7 +139,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         let reach = self.reach_turned(out)?;
         let tip = add_scaled(kinematics.nominal(out), -1.0, target.tip);
         let direction = add_scaled(kinematics.direction(out), -1.0, target.direction);
-        self.prediction.columns(&*self.directions).correct(sample.position, step.pull, out);
+        kinematics.columns(self.directions).correct(sample.position, step.pull, out);
         step.posed.commands.write(out);
         self.prediction.let_motors_follow(sample.position, out);
         Ok(Pose { tip, direction, reach })

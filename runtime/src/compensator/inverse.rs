@@ -43,7 +43,6 @@ impl Reach {
     }
 
     /// [`new`](Self::new) where A is diagonal; none where it is not.
-    // Always: of columns that are known when the code is compiled, nothing is left to work out.
     #[inline(always)]
     pub(super) fn at_right_angles(columns: &[[f64; 3]]) -> Option<Self> {
         let (squares, skew) = squares(columns);
@@ -66,7 +65,6 @@ impl Reach {
 
     /// Whether the axes may have to move more than [`GREATEST_AMPLIFICATION`] times as far as the tip. Slides at right angles that
     /// move the tip as far as themselves never have to.
-    // Always: of what is known when the code is compiled, nothing is left to ask.
     #[inline(always)]
     pub(super) fn may_amplify(&self) -> bool {
         let bound = GREATEST_AMPLIFICATION * GREATEST_AMPLIFICATION;
@@ -80,7 +78,6 @@ impl Reach {
     }
 
     /// `A v = J J^T v`: what the tip does when each axis moves along these columns by its share of v.
-    // Always: see `at_right_angles`.
     #[inline(always)]
     pub(super) fn tip(&self, columns: Columns<'_>, v: [f64; 3]) -> [f64; 3] {
         match self.squares {
@@ -108,7 +105,6 @@ impl Reach {
     }
 
     /// [`apply`](Self::apply) where A is not diagonal.
-    // Always: what is passed to a function lies in memory, and then also for machines that never come here.
     #[inline(always)]
     fn apply_vectors(&self, error: [f64; 3]) -> [f64; 3] {
         self.vectors.iter().fold(ZERO, |sum, &vector| add_scaled(sum, dot(vector, error), vector))

@@ -3,7 +3,7 @@
 //! In: the state of the machine in one cycle, and what the terms remember. Out: the error at the tool tip there, or at other
 //! positions in the same state. It exists beside the search for the command, which asks it again and again.
 
-use super::inverse::Columns;
+use super::known::Known;
 use super::motors::{self, Corrected};
 use super::turns::{Turned, Turns};
 use super::{Convergence, Needs, Refusal, copy, same_length};
@@ -34,7 +34,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
     #[inline]
     pub(super) fn begin(&mut self, sample: &Sample<'_>) -> Result<[f64; 3], Refusal> {
         self.check(sample)?;
-        if self.motors_correct() {
+        if self.kinematics.motors_correct() {
             self.by_motors = Corrected::NONE;
         }
         self.advance(sample);
@@ -61,8 +61,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
         if !sample.is_finite() {
             return Err(Refusal::NotFinite);
         }
-        // Asked of the machine first: where it is known when the code is compiled that there is no motor, nothing is left of it.
-        if !self.kinematics.following().is_empty() {
+        if self.kinematics.has_motors() {
             motors::check_positions(self.kinematics.following(), sample.position)?;
         }
         if sample.time_step < 0.0 {
@@ -89,7 +88,6 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
     }
 
     /// The error at a position in the state of the sample, the rotary axes where they are there; memories are read only.
-    // Always, as all on the way from positions to an error: between two functions, numbers would go through memory.
     #[inline(always)]
     pub(super) fn error(&mut self, sample: &Sample<'_>, position: &[f64]) -> Result<[f64; 3], Refusal> {
         let from = MotionReader::new(sample, position, self.states);
@@ -97,8 +95,8 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
         sum(self.kinematics, &self.sines, sample, position, self.travel, values)
     }
 
-    /// [`error`](Self::error) where a part of it is corrected in later cycles, without what rotary axes have corrected in this one.
-    // Apart, as `corrected`: few machines have a ramp.
+    /// [`error`](Self::error) where a part of it is corrected in later cycles, without what rotary axes and motors have corrected in this
+    /// one.
     #[cold]
     #[inline(never)]
     pub(super) fn error_behind_ramp(
@@ -107,10 +105,12 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
         turned: Option<&Turned>,
         out: &mut [f64],
     ) -> Result<[f64; 3], Refusal> {
-        let Some(turned) = turned else { return self.error_behind_motors(sample, out) };
         let from = MotionReader::new(sample, out, self.states);
         let mut values = self.motions.read(from, self.values).ok_or(Refusal::NotFinite)?;
         motors::subtract(self.kinematics.squaring(), values.as_mut(), &self.by_motors);
+        let Some(turned) = turned else {
+            return sum(self.kinematics, &self.sines, sample, out, self.travel, Some(values));
+        };
         let (turns, motions) = (&self.needs.turns, self.motions.motions());
         for (motion, value) in values.as_mut().iter_mut().enumerate() {
             *value -= turns.corrected(motion, motions, self.states, sample, out);
@@ -120,24 +120,10 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
         error
     }
 
-    /// The error at a position, without what motors have corrected in this cycle.
-    fn error_behind_motors(&mut self, sample: &Sample<'_>, position: &[f64]) -> Result<[f64; 3], Refusal> {
-        let from = MotionReader::new(sample, position, self.states);
-        let mut values = self.motions.read(from, self.values).ok_or(Refusal::NotFinite)?;
-        motors::subtract(self.kinematics.squaring(), values.as_mut(), &self.by_motors);
-        sum(self.kinematics, &self.sines, sample, position, self.travel, Some(values))
-    }
-
-    /// Whether motors correct error motions by themselves.
-    #[inline]
-    pub(super) fn motors_correct(&self) -> bool {
-        !self.kinematics.squaring().is_empty()
-    }
-
     /// Writes the commands of the motors behind those of the axes that they follow.
     #[inline]
     pub(super) fn let_motors_follow(&self, target: &[f64], out: &mut [f64]) {
-        if !self.kinematics.following().is_empty() {
+        if self.kinematics.has_motors() {
             motors::follow(self.kinematics, target, &self.by_motors, out);
         }
     }
@@ -145,13 +131,13 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
     /// The square of how far motors went with the last reading by what they correct themselves: mm^2.
     #[inline]
     pub(super) fn motors_moved(&self) -> f64 {
-        if self.motors_correct() { self.by_motors.moved() } else { 0.0 }
+        if self.kinematics.motors_correct() { self.by_motors.moved() } else { 0.0 }
     }
 
     /// The square of what motors correct by themselves: mm^2.
     #[inline]
     pub(super) fn by_motors_squared(&self) -> f64 {
-        if self.motors_correct() { self.by_motors.square(self.kinematics.squaring()) } else { 0.0 }
+        if self.kinematics.motors_correct() { self.by_motors.square(self.kinematics.squaring()) } else { 0.0 }
     }
 
     /// Searches for the commands of the rotary axes that correct their own angles, and writes them to `out`, with the position of the
@@ -163,81 +149,65 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
         convergence: &Convergence,
         out: &mut [f64],
     ) -> Result<Option<Turned>, Refusal> {
-        // Asked of the machine first: where it is known when the code is compiled that none does, nothing is left of all this.
-        if self.kinematics.turning().is_empty() || self.needs.turns.is_empty() {
+        let turns = &self.needs.turns;
+        if !self.kinematics.axes_turn() || turns.is_empty() {
             return Ok(None);
         }
         copy(sample.position, out);
-        let turns = &self.needs.turns;
         turns.search(self.motions.motions(), self.states, sample, convergence, out).map(Some)
     }
 
     /// The part of the error that is left to slides in this cycle, where rotary axes have their commands; leaves in `out` the angles
     /// wanted in their place.
-    // Apart, as what follows: few machines have such axes, and the others' calls stay as small as they were.
     #[inline(never)]
-    pub(super) fn left_to_slides(
+    pub(super) fn left_to_slides<const READING: bool>(
         &mut self,
         sample: &Sample<'_>,
         turned: &Turned,
         out: &mut [f64],
     ) -> Result<[f64; 3], Refusal> {
         let from = MotionReader::of_corrected(sample, out, self.states);
-        let values = without(&self.needs.turns, self.motions.read(from, self.values));
+        let values = without(&self.needs.turns, values::<READING, _>(self.motions, from, self.values));
         let values = left_by_motors(self.kinematics, values, &mut self.by_motors);
         standing(self.kinematics, &self.sines, (sample, turned), out, self.travel, values)
     }
 
-    /// [`left_to_slides`](Self::left_to_slides) at a position that differs from that of the last reading for slides alone.
+    /// The part of the error at the target that is corrected in this cycle.
+    #[cold]
     #[inline(never)]
-    pub(super) fn left_to_slides_again(
-        &mut self,
-        sample: &Sample<'_>,
-        turned: &Turned,
-        out: &mut [f64],
-    ) -> Result<[f64; 3], Refusal> {
-        let from = MotionReader::of_corrected(sample, out, self.states);
-        let values = without(&self.needs.turns, self.motions.read_moved(from, self.values));
-        let values = left_by_motors(self.kinematics, values, &mut self.by_motors);
-        standing(self.kinematics, &self.sines, (sample, turned), out, self.travel, values)
+    pub(super) fn corrected_at_target(&mut self, sample: &Sample<'_>) -> Result<[f64; 3], Refusal> {
+        self.corrected::<FIRST>(sample, sample.position)
     }
 
     /// The part of the error that is corrected in this cycle; memories are read only.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn corrected(&mut self, sample: &Sample<'_>, position: &[f64]) -> Result<[f64; 3], Refusal> {
-        let from = MotionReader::of_corrected(sample, position, self.states);
-        let values = self.motions.read(from, self.values);
-        let values = left_by_motors(self.kinematics, values, &mut self.by_motors);
-        sum(self.kinematics, &self.sines, sample, position, self.travel, values)
-    }
-
-    /// [`corrected`](Self::corrected) at a position that differs from that of the last reading for axes that correct; where
-    /// nothing is ramped, that reading may have been of the whole error.
     #[inline(always)]
-    pub(super) fn corrected_again(
+    pub(super) fn corrected<const READING: bool>(
         &mut self,
         sample: &Sample<'_>,
         position: &[f64],
     ) -> Result<[f64; 3], Refusal> {
         let from = MotionReader::of_corrected(sample, position, self.states);
-        let values = self.motions.read_moved(from, self.values);
+        let values = values::<READING, _>(self.motions, from, self.values);
         let values = left_by_motors(self.kinematics, values, &mut self.by_motors);
         sum(self.kinematics, &self.sines, sample, position, self.travel, values)
     }
+}
 
-    /// The directions of the axes: those that are known when the code is compiled, or else these.
-    #[inline]
-    pub(super) fn columns<'c>(&self, found: &'c [[f64; 3]]) -> Columns<'c>
-    where
-        'a: 'c,
-    {
-        let kinematics = self.kinematics;
-        match kinematics.fixed_directions() {
-            Some(known) => Columns::Known(known),
-            None => Columns::Found { columns: found, resting: kinematics.resting() },
-        }
-    }
+/// A reading of the error motions that is the first one in a cycle of the part that is corrected.
+pub(super) const FIRST: bool = false;
+
+/// A reading at a position that differs from that of the one before for axes that correct; where nothing is ramped, that one may have been of
+/// the whole error.
+pub(super) const AGAIN: bool = true;
+
+/// The values of the error motions.
+#[inline(always)]
+fn values<'k, const READING: bool, M: ErrorMotions + ?Sized>(
+    motions: &M,
+    from: MotionReader<'_>,
+    kept: &'k mut [f64],
+) -> Option<M::Values<'k>> {
+    if READING == AGAIN { motions.read_moved(from, kept) } else { motions.read(from, kept) }
 }
 
 /// The values of the error motions without those of own angles, which rotary axes correct.
@@ -259,9 +229,8 @@ fn left_by_motors<K: Kinematics + ?Sized, V: AsMut<[f64]>>(
     mut values: Option<V>,
     kept: &mut Corrected,
 ) -> Option<V> {
-    let squaring = kinematics.squaring();
-    if !squaring.is_empty() {
-        motors::take(squaring, values.as_mut()?.as_mut(), kept);
+    if kinematics.motors_correct() {
+        motors::take(kinematics.squaring(), values.as_mut()?.as_mut(), kept);
     }
     values
 }
@@ -312,7 +281,6 @@ pub(super) fn travels<'t, K: Kinematics + ?Sized>(
     for (travel, &axis) in travel.iter_mut().zip(kinematics.travels()) {
         *travel = number(position, axis);
     }
-    // It always is as long: said once more, and the compiler of Rust need not ask in the equations.
     same_length("work.travel", kinematics.travels().len(), travel.len())?;
     Ok(travel)
 }

@@ -32,8 +32,6 @@ pub fn sin_cos(angle: f64) -> (f64, f64) {
 }
 
 /// The sines and the cosines of several angles, bit for bit those of [`sin_cos`], in less time than one after the other.
-// Always, as what it gives would otherwise be copied in parts that the processor has to wait for. Where it goes to memory, the
-// compiler puts angles side by side.
 #[inline(always)]
 #[must_use]
 pub fn sin_cos_each<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {

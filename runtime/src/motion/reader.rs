@@ -47,7 +47,6 @@ impl<'a> MotionReader<'a> {
     }
 
     /// The value of the next term, in mm or rad; NaN where it has no memory left.
-    // Always: where the term is a constant, next to nothing is left of all that a term can be.
     #[inline(always)]
     #[must_use]
     pub fn term(&mut self, term: &Term<'_>) -> f64 {
@@ -57,7 +56,6 @@ impl<'a> MotionReader<'a> {
     }
 
     /// The values of tables that lie side by side, in mm or rad; none where there is no such axis.
-    // Always: see `term`.
     #[inline(always)]
     #[must_use]
     pub fn bundle<const CURVES: usize, const ROWS: usize>(

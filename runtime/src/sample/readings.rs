@@ -40,7 +40,6 @@ impl<'a> OneSample<'a> {
     }
 
     /// The values of tables that lie side by side; none where there is no such axis.
-    // Always: see `MotionReader::term`.
     #[inline(always)]
     pub(crate) fn bundle<const CURVES: usize, const ROWS: usize>(
         &self,
@@ -74,7 +73,6 @@ impl<'a> OneSample<'a> {
     }
 
     /// A table at the position of an axis, on the curve of its direction.
-    // Always: see `MotionReader::term`.
     #[inline(always)]
     pub(crate) fn table(&mut self, table: &Table<'_>, axis: usize) -> f64 {
         table.read(axis, self.position, self.direction, &mut self.place)

@@ -15,7 +15,6 @@ pub(super) struct Even {
 }
 
 /// The index of the last node, and whether what lies beyond it is read from the first one on.
-// In one number, so that tables are told apart by as many comparisons as if none repeated.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Last(usize);
 
@@ -53,7 +52,6 @@ impl Table<'_> {
     /// The value where an axis is, on the curve of its direction; NaN where there is no such axis.
     ///
     /// `known` is the place that another table found at the same position, if any, and is then this table's.
-    // Always, as what it calls: a place that is found for one constant table is then known to the compiler for the next.
     #[inline(always)]
     pub(crate) fn read(
         &self,
@@ -116,8 +114,6 @@ impl Even {
     }
 
     /// The index of the node below a position, not above the last one, and what is left of a step from there; NaN is left of NaN.
-    // Most positions lie within the table. What lies beyond its ends stays out of their way: they need no limits, for which a
-    // search would wait at every step.
     #[inline(always)]
     pub(super) fn place(self, position: f64) -> (usize, f64) {
         let count = self.count(position);
@@ -156,8 +152,6 @@ const FRACTION: u64 = (1 << 28) - 1;
 
 /// The greatest whole number that is not above a number of steps, and what is left of it. What is no more than 2^-29 below a whole number
 /// is that number. What is further below zero, too large or NaN gives a whole number from [`MOST`] on.
-// No comparison of one node with the next, which could become a branch: no processor foresees between which two a table is read.
-// Nor a conversion to an integer and back, which takes longer than all of this.
 #[inline]
 fn split(number: f64) -> (usize, f64) {
     let bits = (number + FIXED).to_bits();

@@ -1,12 +1,12 @@
 //! What the tests share: machines and calibrations from text, and paths.
 
+use abbe_simulation::path::{Shape, Stroke};
+use abbe_simulation::{Instrument, Measurement, Path, Plant, Scenario, names_of};
 use model_dsl::calibration::{self, Calibration, MachineNames};
 use model_dsl::diagnostic::{Diagnostics, render};
 use model_dsl::machine::{self, Machine};
 use model_dsl::source::{SourceFile, Span};
 use model_dsl::yaml;
-use simulation::path::{Shape, Stroke};
-use simulation::{Instrument, Measurement, Path, Plant, Scenario, names_of};
 
 /// A machine with its numbers.
 pub(crate) struct Built {

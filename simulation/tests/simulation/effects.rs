@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use simulation::path::Shape;
-use simulation::{Instrument, Load, Plant, Pulses, Servo, Simulated, Temperature, simulate};
+use abbe_simulation::path::Shape;
+use abbe_simulation::{Instrument, Load, Plant, Pulses, Servo, Simulated, Temperature, simulate};
 
 use crate::common::{Built, circle, line, path, plant, scenario};
 

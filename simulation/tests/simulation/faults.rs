@@ -1,7 +1,7 @@
 //! Noise and other faults as they reach a recording.
 
-use simulation::noise::{Missing, Noise};
-use simulation::{Instrument, Scenario, Simulated, Temperature, simulate};
+use abbe_simulation::noise::{Missing, Noise};
+use abbe_simulation::{Instrument, Scenario, Simulated, Temperature, simulate};
 
 use crate::common::{line, path, plant, scenario};
 

@@ -1,11 +1,11 @@
 //! Recordings as files: what is written can be read again.
 
+use abbe_simulation::noise::Missing;
+use abbe_simulation::write::{Head, recording, table};
+use abbe_simulation::{Instrument, Load, Simulated, Temperature, simulate};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
 use model_dsl::yaml;
-use simulation::noise::Missing;
-use simulation::write::{Head, recording, table};
-use simulation::{Instrument, Load, Simulated, Temperature, simulate};
 
 use crate::common::{circle, line, path, plant, scenario};
 

@@ -1,7 +1,7 @@
 //! Instruments, each against its own short formula.
 
-use simulation::path::{Path, Shape, Stations, Stroke};
-use simulation::{Commands, Datum, Instrument, Measurement, Normal, replay, simulate, write};
+use abbe_simulation::path::{Path, Shape, Stations, Stroke};
+use abbe_simulation::{Commands, Datum, Instrument, Measurement, Normal, replay, simulate, write};
 
 use crate::common::{Built, circle, line, path, plant, scenario};
 
@@ -145,7 +145,7 @@ fn a_clock_that_is_late_shows_the_past() {
     assert!((1..recorded.time.len()).all(|row| (radius(row) - 100.0).abs() < 1e-9));
 }
 
-fn plant_xy() -> simulation::Plant {
+fn plant_xy() -> abbe_simulation::Plant {
     plant("XYFZ", "{}")
 }
 

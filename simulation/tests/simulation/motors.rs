@@ -7,13 +7,13 @@ use abbe_runtime::{
     Compensator, Direction, ErrorMotion, Kinematics, Limits, Refusal, Sample, Term, TermState, Work,
     states_needed,
 };
+use abbe_simulation::Commands;
 use model_dsl::compile;
 use model_dsl::diagnostic::{Diagnostics, render};
 use model_dsl::equations::Equations;
 use model_dsl::machine::Machine;
 use model_dsl::program::Interpreter;
 use model_dsl::source::SourceFile;
-use simulation::Commands;
 
 use crate::common::Built;
 

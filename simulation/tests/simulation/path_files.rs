@@ -1,12 +1,12 @@
 //! Path files: what they mean, and what their mistakes are told as.
 
+use abbe_simulation::file::{self, PathFile};
+use abbe_simulation::noise::{Correlated, Noise};
+use abbe_simulation::path::{Shape, Stations, Stroke};
+use abbe_simulation::{Datum, Instrument, Normal};
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
 use model_dsl::yaml;
-use simulation::file::{self, PathFile};
-use simulation::noise::{Correlated, Noise};
-use simulation::path::{Shape, Stations, Stroke};
-use simulation::{Datum, Instrument, Normal};
 
 use crate::common::Built;
 

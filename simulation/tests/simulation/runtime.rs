@@ -1,7 +1,7 @@
 //! The terms against the runtime's: two readings of the same page, which must agree where both know the term.
 
 use abbe_runtime::{Direction, ErrorMotion, Sample, TermState};
-use simulation::Commands;
+use abbe_simulation::Commands;
 
 use crate::common::Built;
 
@@ -31,7 +31,7 @@ fn agree(errors: &str) {
     let number = |row: usize| f64::from(u32::try_from(row).unwrap());
     let x: Vec<f64> = (0..rows).map(|row| 60.0 * (number(row) * 0.07).sin() + 20.0).collect();
     let y: Vec<f64> = (0..rows).map(|row| 90.0 * (number(row) * 0.03).cos()).collect();
-    let column = |name: &str, start: f64| simulation::Column {
+    let column = |name: &str, start: f64| abbe_simulation::Column {
         name: name.to_owned(),
         unit: "degC".to_owned(),
         values: (0..rows).map(|row| start + 0.01 * number(row)).collect(),

@@ -38,8 +38,8 @@ pub(super) fn along(
         if kind.letter().is_some() {
             diagnostics.push(
                 Diagnostic::error("E0102", link_span, "an axis needs the key `along`")
-                    .label("which way does its frame move when it is programmed to move forward?")
-                    .help("write `along: +X`; a table that carries the part runs `-X` for +X"),
+                    .label("the direction in which its frame moves when programmed forwards is missing")
+                    .help("write `along: +X`; a table that carries the part moves along `-X` for +X"),
             );
             return None;
         }
@@ -50,7 +50,7 @@ pub(super) fn along(
         diagnostics.push(
             Diagnostic::error("E0129", key.span, message)
                 .label("nothing moves along it")
-                .help("take `along` out"),
+                .help("remove `along`"),
         );
         return None;
     }
@@ -74,9 +74,9 @@ pub(super) fn along(
 
 fn other_direction(span: Span, letter: char, along: Along) -> Diagnostic {
     let own = own_direction(letter).letter();
-    Diagnostic::error("E0129", span, format!("axis {letter} does not run along {}", along.axis.letter()))
-        .label("not its own direction")
-        .help(format!("by ISO 841 it runs along +{own} or -{own}; name the axis after its direction"))
+    Diagnostic::error("E0129", span, format!("axis {letter} cannot run along {}", along.axis.letter()))
+        .label("this is not its own direction")
+        .help(format!("name the axis after its direction; by ISO 841 this axis runs along +{own} or -{own}"))
 }
 
 fn leans_twice(key: Span, vector: Span, turned: &Turned) -> Diagnostic {
@@ -127,7 +127,7 @@ fn vector(node: &Node, entries: &[Node], kind: LinkKind, diagnostics: &mut Diagn
         }
         [_] | [] => {
             diagnostics.push(
-                Diagnostic::error("E0127", node.span, "a direction has length one")
+                Diagnostic::error("E0127", node.span, "a direction must have length one")
                     .label("this vector is not of length one")
                     .help("write `+X` for [1, 0, 0]"),
             );

@@ -199,7 +199,7 @@ def test_functions_take_the_names_of_files(root: pathlib.Path) -> None:
 
 MISTAKES: dict[str, tuple[Callable[[], object], str]] = {
     "unit": (lambda: record(units=UNITS | {"command.x": "furlong"}), "unknown unit `furlong`"),
-    "unit of another kind": (lambda: record(units=UNITS | {"command.x": "deg"}), "`command.x` is a length"),
+    "unit of another kind": (lambda: record(units=UNITS | {"command.x": "deg"}), "`command.x` must be a length"),
     "no column": (lambda: record({"time": T, "measured.x": T}), "no column `command.x`"),
     "no columns": (lambda: record({}), "no columns"),
     "no rows": (lambda: record({name: values[:0] for name, values in TABLE.items()}), "no row"),
@@ -239,7 +239,7 @@ def test_a_mistake_is_told(name: str, root: pathlib.Path) -> None:
 def test_options_are_told_as_arguments(tmp_path: pathlib.Path) -> None:
     stage = scaled(1)
     stage.write(tmp_path / "stage.yaml")
-    with pytest.raises(abbe.Error, match="force=True replaces it"):
+    with pytest.raises(abbe.Error, match="replace it with force=True"):
         stage.write(tmp_path / "stage.yaml")
     with pytest.raises(abbe.Error, match="say with ranges Z"):
         abbe.Calibration(MILL).map("XY", at={"Z": 1e6})

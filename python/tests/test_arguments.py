@@ -241,5 +241,5 @@ def test_options_are_told_as_arguments(tmp_path: pathlib.Path) -> None:
     stage.write(tmp_path / "stage.yaml")
     with pytest.raises(abbe.Error, match="replace it with force=True"):
         stage.write(tmp_path / "stage.yaml")
-    with pytest.raises(abbe.Error, match="say with ranges Z"):
+    with pytest.raises(abbe.Error, match="give its travel with ranges Z"):
         abbe.Calibration(MILL).map("XY", at={"Z": 1e6})

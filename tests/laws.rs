@@ -349,6 +349,8 @@ fn one_lean_in_four_ways() {
     };
     assert_eq!(rows(&vector), rows(&angles));
     assert_eq!(rows(&vector), rows(&bodies));
+    // A vector of any length along a straight direction is that direction.
+    assert_eq!(rows(&chain("", "along: [0, -2.5, 0]", "")), rows(&chain("", "along: -B", "")));
     let quarter = std::f64::consts::FRAC_PI_4;
     let clamped = chain("{rotary: A, along: +A, errors: []}, ", "along: +B", "");
     let mut point = vec![("x", 12.0), ("b", 0.7), ("c", -1.9), ("a", quarter), ("Xt", 5.0), ("Zt", -80.0)];

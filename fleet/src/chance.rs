@@ -11,8 +11,8 @@ pub(crate) fn normals(seed: u64, count: usize) -> Vec<f64> {
     (0..count).map(|_| (0..12).map(|_| next()).sum::<f64>() - 6.0).collect()
 }
 
-/// The least and the greatest count of an event with this probability in so many independent cases. Chance gives fewer once in a thousand
-/// times, and more once in a thousand times: the binomial distribution, summed term by term.
+/// The range of counts that chance gives for an event of this probability in `cases` independent cases. A count below the range has a
+/// probability of 0.001, and so has one above it. The binomial distribution is summed term by term.
 pub(crate) fn bounds(cases: u32, probability: f64) -> (usize, usize) {
     let odds = probability / (1.0 - probability);
     let mut log = f64::from(cases) * (1.0 - probability).ln();

@@ -1,8 +1,7 @@
-//! Examples of the commands, which stand at the end of their help. In: nothing. Out: for each command its examples, two at least,
-//! each with what it is for.
+//! Examples for the end of each command's help. In: nothing. Out: at least two examples for each command, each with its purpose.
 //!
-//! All of them run in the folder of the repository, one after the other: `tests/examples.rs`. A file in a folder is the repository's. A
-//! bare name is a file that an example has written, or a file of the user's, for which the test has one of its own.
+//! `tests/examples.rs` runs all of them, one after the other, in the folder of the repository. A path with a folder is a file of the
+//! repository. A bare name is a file that an earlier example wrote, or a file of the user, for which the test provides one.
 
 /// The text of examples: a command line, then what it gives.
 macro_rules! examples {
@@ -26,37 +25,37 @@ pub(crate) const DERIVE: &str = examples! {
 
 pub(crate) const CHECK: &str = examples! {
     "abbe check excello-921 published/excello-921.eqs"
-        => "A published set of equations of a lathe against the derived ones; status 1 where they disagree.",
-    "abbe check machines/printer-skew.yaml published/printer-skew.eqs" => "The skew of a printer's firmware.",
+        => "Compare published equations of a lathe with the derived ones; the status is 1 if they disagree.",
+    "abbe check machines/printer-skew.yaml published/printer-skew.eqs" => "Compare the skew correction of a printer's firmware.",
 };
 
 pub(crate) const EXPAND: &str = examples! {
-    "abbe expand XYFZ" => "The Rust code of a mill, as `machine!` and a build script get it.",
+    "abbe expand XYFZ" => "The Rust code of a mill, the same as from `machine!` or a build script.",
     "abbe expand postech-mill --calibration calibrations/postech-mill.yaml --output mill.rs"
         => "The same with the numbers of one specimen compiled in.",
 };
 
 pub(crate) const COMPENSATE: &str = examples! {
     "abbe compensate calibrations/postech-mill.yaml --summary < calibrations/postech-points.csv"
-        => "The errors at seven points, what to command instead, and how much that takes away.",
+        => "The errors at seven points, the positions to command instead, and the error that remains.",
     "echo x,y,z | abbe compensate calibrations/postech-mill.yaml --map map.svg"
-        => "A picture of the errors over the workspace; of points it needs the header alone.",
+        => "A picture of the errors over the workspace; the header is enough as a table of points.",
 };
 
 pub(crate) const DIAGNOSE: &str = examples! {
-    "abbe diagnose recordings/servo-rest/recording.yaml" => "What a recording shows, for a person.",
+    "abbe diagnose recordings/servo-rest/recording.yaml" => "The findings of a recording, as text.",
     "abbe diagnose recordings/postech-ballbar/recording.yaml --write-calibration improved.yaml"
-        => "The known calibration with what was found, to compensate with.",
+        => "A calibration with the findings, ready for compensation.",
 };
 
 pub(crate) const LIMITS: &str = examples! {
-    "abbe limits recording.yaml" => "From which size on each effect would be found in a recording of yours.",
+    "abbe limits recording.yaml" => "The size from which each effect would be found in your recording.",
     "abbe limits recording.yaml --only backlash --trials 10 --format html --output limits.html"
         => "A quick look at one kind, as a page with curves.",
 };
 
 pub(crate) const PLAN: &str = examples! {
-    "abbe plan path.yaml --machine FX" => "What a path would show that was not driven yet, and what to drive besides.",
+    "abbe plan path.yaml --machine FX" => "The detection limits of a planned path, and suggested extra passes.",
     "abbe plan path.yaml --machine FX --only EXX --trials 10" => "A quick look at one error motion.",
 };
 
@@ -64,53 +63,53 @@ pub(crate) const SIMULATE: &str = examples! {
     "abbe simulate calibrations/postech-mill.yaml recordings/postech-ballbar/path.yaml --output ballbar"
         => "The recording of a ballbar test of a mill, in the folder `ballbar`.",
     "abbe simulate stage.yaml path.yaml --output stage --plot stage.svg"
-        => "That of a path of yours, and a picture of it and of the readings.",
+        => "The recording of your own path, with a picture of path and readings.",
 };
 
 pub(crate) const CALIBRATE: &str = examples! {
-    "abbe calibrate recordings/xyfz-mill-laser/setup.yaml" => "The report: what the files of a laser and of an indicator give.",
-    "abbe calibrate recordings/xyfz-mill-laser/setup.yaml --output mill.yaml" => "The calibration as well.",
+    "abbe calibrate recordings/xyfz-mill-laser/setup.yaml" => "The report on the files of a laser and an indicator.",
+    "abbe calibrate recordings/xyfz-mill-laser/setup.yaml --output mill.yaml" => "The report and the calibration.",
 };
 
 pub(crate) const UPDATE: &str = examples! {
     "abbe update calibrations/postech-mill.yaml part.yaml --output new.yaml"
-        => "A calibration whose coefficients fit the part that part.yaml measures.",
+        => "A calibration whose coefficients fit the part measured in part.yaml.",
     "abbe update calibrations/postech-mill.yaml part.yaml --method ridge --datum turned"
-        => "The report alone, of another method, for a part that was measured on another machine.",
+        => "Only the report, by ridge regression, for a part that was measured on another machine.",
 };
 
 pub(crate) const EVALUATE: &str = examples! {
-    "abbe evaluate recordings/xyfz-mill-laser/x-linear.rtl" => "Positioning after ISO 230-2, from a laser's file.",
+    "abbe evaluate recordings/xyfz-mill-laser/x-linear.rtl" => "Positioning by ISO 230-2, from the file of a laser.",
     "abbe evaluate recordings/postech-ballbar/recording.yaml --format html --output circles.html"
-        => "Circles after ISO 230-4, as a page with diagrams.",
+        => "Circles by ISO 230-4, as a page with diagrams.",
 };
 
 pub(crate) const FLEET: &str = examples! {
-    "abbe fleet run" => "Diagnoses the recordings that `fleet.yaml` names and that have no result yet.",
-    "abbe fleet show" => "How each machine is, and what changed.",
+    "abbe fleet run" => "Diagnose the recordings in `fleet.yaml` that have no result yet.",
+    "abbe fleet show" => "The state of each machine, and what changed.",
 };
 
 pub(crate) const FLEET_RUN: &str = examples! {
-    "abbe fleet run fleet.yaml --pages" => "Every recording that has no result yet, and the page of each diagnosis.",
+    "abbe fleet run fleet.yaml --pages" => "Diagnose all recordings without a result, and write a page for each.",
     "abbe fleet run fleet.yaml --shard 3/16" => "The third of sixteen parts, for computers that share the folder.",
-    "abbe fleet run fleet.yaml --list" => "What is still to be done, for a scheduler.",
+    "abbe fleet run fleet.yaml --list" => "The remaining jobs, for a scheduler.",
 };
 
 pub(crate) const FLEET_ADD: &str = examples! {
-    "abbe fleet add results-2" => "Results of the same recordings, made on another computer.",
-    "abbe fleet add results-2 results-3 --fleet fleet.yaml" => "Those of two computers.",
+    "abbe fleet add results-2" => "Add results of the same recordings from another computer.",
+    "abbe fleet add results-2 results-3 --fleet fleet.yaml" => "Add the results of two computers.",
 };
 
 pub(crate) const FLEET_SHOW: &str = examples! {
-    "abbe fleet show fleet.yaml" => "Alarms, then a line a machine.",
-    "abbe fleet show fleet.yaml --output pages" => "The page of the fleet, and one of each machine.",
+    "abbe fleet show fleet.yaml" => "The alarms, then one line per machine.",
+    "abbe fleet show fleet.yaml --output pages" => "A page of the fleet, and one for each machine.",
 };
 
 pub(crate) const EXPORT: &str = examples! {
     "abbe export linuxcnc calibrations/postech-mill.yaml"
         => "The screw tables of LinuxCNC, and how much error they leave at the tool.",
     "abbe export isg calibrations/postech-mill.yaml --output ." => "All error motions, for TwinCAT.",
-    "abbe export linuxcnc calibrations/postech-mill.yaml --check X=x.comp" => "What the controller makes of a file.",
+    "abbe export linuxcnc calibrations/postech-mill.yaml --check X=x.comp" => "Check how the controller reads an existing file.",
 };
 
 pub(crate) const NEW: &str = examples! {
@@ -129,9 +128,9 @@ pub(crate) const NEW_CALIBRATION: &str = examples! {
 };
 
 pub(crate) const NEW_RECORDING: &str = examples! {
-    "abbe new recording recordings/postech-ballbar/data.csv" => "What the names of the columns tell; check each line.",
+    "abbe new recording recordings/postech-ballbar/data.csv" => "A recording file derived from the column names; check each line.",
     "abbe new recording recordings/servo-rest/data.csv --machine FC --output servo.yaml"
-        => "A recording of a machine that is known.",
+        => "The same for a known machine.",
 };
 
 pub(crate) const NEW_SETUP: &str = examples! {
@@ -145,7 +144,7 @@ pub(crate) const NEW_PATH: &str = examples! {
 };
 
 pub(crate) const EXPLAIN: &str = examples! {
-    "abbe explain E0307" => "A code: what is wrong, a file that gives it, and that file mended.",
+    "abbe explain E0307" => "A code: what is wrong, a file that causes it, and the corrected file.",
     "abbe explain backlash" => "A term: what it is, how a recording shows it, how to measure and remove it.",
     "abbe explain EX0C" => "An error motion, in any spelling.",
     "abbe explain gantry" => "A word of the guide's glossary.",

@@ -16,7 +16,8 @@ use crate::yaml::Node;
 /// The keys of a tool that are no constants.
 pub(super) const KEYS: [&str; 2] = ["direction", "turned"];
 
-/// What rounding may leave of a coordinate that a machine does not have: mm.
+/// What rounding may leave of a coordinate that a machine does not have: mm. A tool of 1000 mm that is turned by angles in doubles leaves
+/// some 1e-13 mm, and 1e-9 mm is a picometre, which no machine shows.
 const ROUNDING: f64 = 1e-9;
 
 /// Takes a key of a tool into its constants.
@@ -30,9 +31,9 @@ pub(super) fn take(
     let Some(turning) = names.turning else {
         diagnostics.push(
             Diagnostic::error("E0432", key.span, format!("tools of {} have no directions of their own", names.machine))
-                .label("the machine file does not speak of them")
+                .label("the machine file does not name the components of a direction")
                 .help(
-                    "add `direction: [It, Jt, Kt]` to its `tool`, and `orientation: true`; where only the tip counts, give its place in the \
+                    "add `direction: [It, Jt, Kt]` to its `tool`, and `orientation: true`; if only the tip matters, give its position in the \
                      frame of the chain's last link",
                 ),
         );
@@ -48,21 +49,21 @@ pub(super) fn take(
         if let Err(reason) = turn_tip(turning, rotation, values) {
             let message = format!("the tip of the tool `{tool}` cannot be turned with its holder");
             diagnostics.push(Diagnostic::error("E0432", key.span, message).label(reason).help(
-                "give its `direction`, and the place of its tip in the frame of the chain's last link",
+                "give its `direction`, and the position of its tip in the frame of the chain's last link",
             ));
         }
     }
 }
 
-/// Tells a tool that says twice where it points.
+/// Reports a tool whose direction is given twice.
 pub(super) fn check(entries: &[(Spanned<String>, Node)], diagnostics: &mut Diagnostics) {
     let mut own = entries.iter().map(|(key, _)| key).filter(|key| KEYS.contains(&key.value.as_str()));
     if let (Some(first), Some(second)) = (own.next(), own.next()) {
         diagnostics.push(
-            Diagnostic::error("E0432", second.span, "this tool says twice where it points")
+            Diagnostic::error("E0432", second.span, "the direction of this tool is given twice")
                 .label("again here")
                 .also(first.span, "first here")
-                .help("keep `direction` where the tip is measured on the machine, `turned` where it is measured in the holder"),
+                .help("keep `direction` if the tip was measured on the machine, `turned` if it was measured in the holder"),
         );
     }
 }
@@ -89,8 +90,8 @@ fn direction(node: &Node, tool: &str, diagnostics: &mut Diagnostics) -> Option<[
     let unit = <[f64; 3]>::try_from(parts).ok().and_then(unit);
     if unit.is_none() {
         diagnostics.push(
-            Diagnostic::error("E0432", node.span, format!("this is no direction of the tool `{tool}`"))
-                .label("a direction has three numbers, and not only zeros")
+            Diagnostic::error("E0432", node.span, format!("this is not a direction of the tool `{tool}`"))
+                .label("a direction is three numbers that are not all zero")
                 .help("write `direction: [0, 1, 0]`, from the tip towards the holder"),
         );
     }
@@ -159,13 +160,13 @@ fn rotated(rotation: Rotation, [x, y, z]: [f64; 3]) -> [f64; 3] {
 
 /// Turns the tip, where its coordinates are constants of its own; or says why it cannot be turned.
 fn turn_tip(turning: TurningTool, rotation: Rotation, values: &mut [f64]) -> Result<(), &'static str> {
-    let offset = turning.offset.ok_or("a coordinate of the machine's tool is no constant of its own")?;
+    let offset = turning.offset.ok_or("a coordinate of the machine's tool is not a constant of its own")?;
     let upright = offset.map(|number| number.and_then(|number| values.get(number)).copied().unwrap_or(0.0));
     for (number, value) in offset.into_iter().zip(rotated(rotation, upright)) {
         match number.and_then(|number| values.get_mut(number)) {
             Some(slot) => *slot = value,
             None if value.abs() <= ROUNDING => {}
-            None => return Err("it would leave the plane in which the machine's tool is"),
+            None => return Err("it would leave the plane of the machine's tool"),
         }
     }
     Ok(())

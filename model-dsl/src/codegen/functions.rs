@@ -363,7 +363,7 @@ fn error_from(equations: &Equations, held: Option<&Held>) -> TokenStream {
     }
 }
 
-/// Code that checks the length of a slice, and code that makes a record of it. The record has so many fields.
+/// Code that checks that a slice has `fields` elements, and code that makes a record with these fields from it.
 pub(super) fn record(slice: &str, record: &str, fields: usize) -> (TokenStream, TokenStream) {
     let (slice, record) = (quote::format_ident!("{slice}"), quote::format_ident!("{record}"));
     let otherwise = quote! { else { return [f64::NAN; 3] }; };

@@ -27,9 +27,9 @@ pub(super) fn read(node: &Node, diagnostics: &mut Diagnostics) -> Option<Parts> 
     let found = parts.map(named).collect::<Option<Vec<_>>>().and_then(|parts| parts.try_into().ok());
     if found.is_none() {
         diagnostics.push(
-            Diagnostic::error("E0152", node.span, "the direction of the tool is three names")
-                .label("what each tool of a calibration gives")
-                .help("write `direction: [It, Jt, Kt]`; a tool that always has one direction stands on a `fixed` link that is `turned`"),
+            Diagnostic::error("E0152", node.span, "the direction of the tool must be three names")
+                .label("each tool of a calibration gives their values")
+                .help("write `direction: [It, Jt, Kt]`; put a tool that always has one direction on a `fixed` link that is `turned`"),
         );
     }
     found
@@ -86,21 +86,21 @@ fn used_in_an_offset(name: &Name, chain: &Chain<'_>) -> Option<Span> {
 }
 
 fn nobody_asks([first, ..]: &Parts) -> Diagnostic {
-    Diagnostic::error("E0152", first.span, "nothing asks for the direction of the tool")
-        .label("it would stand in no equation")
-        .help("add `orientation: true` to the machine file, or take the direction out")
+    Diagnostic::error("E0152", first.span, "the machine does not derive the direction of the tool")
+        .label("no equation would contain it")
+        .help("add `orientation: true` to the machine file, or remove the direction")
 }
 
 fn two_things(part: &Spanned<Name>, other: Span) -> Diagnostic {
-    Diagnostic::error("E0152", part.span, format!("`{}` would stand for two things", part.value))
-        .label("a part of the tool's direction here")
+    Diagnostic::error("E0152", part.span, format!("`{}` has two meanings", part.value))
+        .label("a component of the tool's direction here")
         .also(other, "and something else here")
-        .help("give each part a name of its own: `direction: [It, Jt, Kt]`")
+        .help("give each component a name of its own: `direction: [It, Jt, Kt]`")
 }
 
 fn no_length(length: &Constant, part: &Spanned<Name>) -> Diagnostic {
-    Diagnostic::error("E0152", length.span, format!("`{}` is no length", part.value))
+    Diagnostic::error("E0152", length.span, format!("`{}` is not a length", part.value))
         .label("a length here")
-        .also(part.span, "a part of the tool's direction here")
-        .help("take the value out: the tools of a calibration have directions")
+        .also(part.span, "a component of the tool's direction here")
+        .help("remove the value: the tools of a calibration give the direction")
 }

@@ -104,7 +104,7 @@ fn direction(node: &Node, kind: LinkKind, diagnostics: &mut Diagnostics) -> Opti
     diagnostics.push(
         Diagnostic::error(code, node.span, format!("`{word}` is not a direction"))
             .label("a direction is a sign and a letter")
-            .help("write `+X`, `-X`, `+Y`, `-Y`, `+Z` or `-Z`; a rotary axis that leans has a vector, `[0, 1, 1]`"),
+            .help("write `+X`, `-X`, `+Y`, `-Y`, `+Z` or `-Z`; give a rotary axis that leans a vector, `[0, 1, 1]`"),
     );
     None
 }
@@ -121,7 +121,7 @@ fn vector(node: &Node, entries: &[Node], kind: LinkKind, diagnostics: &mut Diagn
     };
     let along: Vec<_> = Axis::ALL.into_iter().zip(numbers).filter(|(_, value)| *value != 0.0).collect();
     match along.as_slice() {
-        [(axis, value)] if value.abs() == 1.0 => {
+        [(axis, value)] if value.abs() == 1.0 || matches!(kind, LinkKind::Rotary(_)) => {
             let along = Along { axis: *axis, sign: if *value > 0.0 { 1 } else { -1 } };
             Some(Direction { along, turned: Turned::default() })
         }
@@ -149,17 +149,17 @@ fn skew(span: Span, vector: [f64; 3], kind: LinkKind, diagnostics: &mut Diagnost
     }
     let help = if from_straight <= LARGEST_ANGLE {
         format!(
-            "take the nearest of +X -X +Y -Y +Z -Z; the {:.2} mrad that are left are an alignment error",
+            "use the nearest of +X -X +Y -Y +Z -Z; the remaining {:.2} mrad are an alignment error",
             from_straight * 1e3
         )
     } else if matches!(kind, LinkKind::Rotary(_)) {
-        "give the axis the letter of a direction along which the vector has a part: A of X, B of Y, C of Z"
+        "give the axis the letter of a direction along which the vector has a component: A for X, B for Y, C for Z"
             .to_owned()
     } else {
         turned_before(kind, leaning)
     };
     diagnostics.push(
-        Diagnostic::error("E0128", span, "a direction runs along one of the frame's own directions")
+        Diagnostic::error("E0128", span, "a direction must be one of the frame's own directions")
             .label("this direction is skew")
             .help(help),
     );
@@ -187,7 +187,7 @@ fn turned_before(kind: LinkKind, leaning: Option<Direction>) -> String {
     let angles = leaning.map_or_else(|| "{A: 45 deg}".to_owned(), |direction| direction.turned.words());
     let along = kind.letter().map_or('Z', |letter| own_direction(letter).letter());
     format!(
-        "put `- {{fixed: lean, turned: {angles}}}` before it, write `along: +{along}` or `-{along}`, and turn what stands on it back \
+        "put `- {{fixed: lean, turned: {angles}}}` before it, write `along: +{along}` or `-{along}`, and turn the links on it back \
          with another fixed link"
     )
 }

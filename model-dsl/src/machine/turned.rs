@@ -13,7 +13,8 @@ use crate::algebra::{Axis, Rational, decimal, sine_and_cosine};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::yaml::Node;
 
-/// The most decimal places of an angle in degrees: 1e-12 deg is below what a direction in floating point tells.
+/// The most decimal places of an angle in degrees: doubles near 100 deg are 1e-14 deg apart, and a few roundings on the way from a vector to
+/// its angles leave less than 1e-12 deg.
 const MOST_PLACES: usize = 12;
 
 /// Constant angles about X, then about Y, then about Z of the frame before: right-handed.
@@ -85,7 +86,7 @@ fn rotated(vector: [f64; 3], axis: Axis, degrees: &Rational) -> [f64; 3] {
 
 /// Reads the angles of a link.
 pub(super) fn read(node: &Node, diagnostics: &mut Diagnostics) -> Option<Turned> {
-    let fields = fields::open(node, "the lean of a link", &["A", "B", "C"], diagnostics)?;
+    let fields = fields::open(node, "the angles of a link", &["A", "B", "C"], diagnostics)?;
     let mut read = |axis: Axis| match fields.get(&axis.rotation_letter().to_string()) {
         Some(node) => angle(node, diagnostics),
         None => Some(Rational::zero()),
@@ -113,7 +114,7 @@ fn angle(node: &Node, diagnostics: &mut Diagnostics) -> Option<Rational> {
     None
 }
 
-/// Whether a number ends after so many decimal places as an angle may have.
+/// Whether an angle has at most [`MOST_PLACES`] decimal places.
 fn is_short(degrees: &Rational) -> bool {
     (degrees * scale()).is_integer()
 }

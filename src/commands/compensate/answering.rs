@@ -18,7 +18,8 @@ use super::separator::Separator;
 use crate::map::Map;
 use crate::positions::{Column, Layout, Reach, Summary};
 
-/// So many rows are answered at once: 32 pieces, so that 16 processors have two each and seldom wait for the last one; and some MB.
+/// The number of rows that are computed at once. They are 32 pieces, so that each of 16 processors has two and seldom waits for the last
+/// one, and they take a few MB.
 const MOST_PENDING: usize = 1 << 13;
 
 /// Rows that wait for their answers.

@@ -16,7 +16,7 @@ use super::answering::Answering;
 /// The longest row, in bytes; what is longer is no table, and would have to be kept as a whole.
 const LONGEST_ROW: u64 = 1 << 20;
 
-/// So many chunks are read ahead: the next one is there while one is taken, and another is on its way.
+/// The number of chunks that are read ahead. One is ready while the current one is processed, and one is being read.
 const AHEAD: usize = 2;
 
 /// What was read of standard input, by a thread of its own.

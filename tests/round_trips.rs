@@ -32,8 +32,12 @@ fn polynomials(equations: &Equations) -> impl Iterator<Item = &Polynomial> {
     rows.flat_map(|row| std::iter::once(&row.nominal).chain(row.terms.iter().map(|term| &term.arm)))
 }
 
+/// The reader bounds its work, and a monomial takes up to some ten products: what has more terms than this may be refused.
+/// Axes that lean one behind the other come to thousands; no machine that is shipped comes to a tenth of this.
+const SURELY_READ: usize = 1000;
+
 fn survives(equations: &Equations) {
-    for polynomial in polynomials(equations) {
+    for polynomial in polynomials(equations).filter(|polynomial| polynomial.size() <= SURELY_READ) {
         let text = infix(polynomial);
         assert_eq!(&read(&text, equations), polynomial, "{text}");
     }
@@ -41,7 +45,11 @@ fn survives(equations: &Equations) {
 
 #[test]
 fn shipped_equations_survive_their_print() {
-    SHIPPED.iter().for_each(|shipped| survives(&compiled(&shipped.text())));
+    for shipped in SHIPPED {
+        let equations = compiled(&shipped.text());
+        assert!(polynomials(&equations).all(|polynomial| polynomial.size() <= SURELY_READ / 10));
+        survives(&equations);
+    }
 }
 
 proptest! {

@@ -16,7 +16,7 @@ use crate::noise::{self, Noise};
 use crate::observations;
 use crate::outliers;
 use crate::parallel;
-use crate::study::{Scene, Study};
+use crate::study::{ChannelAt, Scene, Study};
 use crate::unsteady;
 
 /// How often a likelihood is worked out until the noise of a channel is known, at least.
@@ -162,7 +162,7 @@ fn share_weights(study: &Study<'_>, residuals: &[Vec<Vec<f64>>], estimates: &mut
     let known = estimates.to_vec();
     for (scene, channels) in estimates.iter_mut().enumerate() {
         for (channel, estimate) in channels.iter_mut().enumerate() {
-            let same = like(study, &known, (scene, channel));
+            let same = like(study, &known, ChannelAt { scene, channel });
             if same.len() < 2 || !same.iter().any(|estimate| estimate.lacks()) {
                 continue;
             }
@@ -175,13 +175,10 @@ fn share_weights(study: &Study<'_>, residuals: &[Vec<Vec<f64>>], estimates: &mut
 }
 
 /// The estimates of a channel in all recordings that read it.
-fn like<'e>(study: &Study<'_>, estimates: &'e [Vec<Estimate>], channel: (usize, usize)) -> Vec<&'e Estimate> {
-    let kind = |(scene, channel): (usize, usize)| study.scenes[scene].channels[channel].kind;
-    let all = estimates.iter().enumerate();
-    let all = all.flat_map(|(scene, channels)| (0..channels.len()).map(move |number| (scene, number)));
-    all.filter(|one| *one == channel || one.0 != channel.0 && kind(*one).reads_as(kind(channel)))
-        .map(|(scene, number)| &estimates[scene][number])
-        .collect()
+fn like<'e>(study: &Study<'_>, estimates: &'e [Vec<Estimate>], at: ChannelAt) -> Vec<&'e Estimate> {
+    let kind = |at| study.channel(at).kind;
+    let same = |one: &ChannelAt| *one == at || one.scene != at.scene && kind(*one).reads_as(kind(at));
+    study.channels().filter(same).map(|one| &estimates[one.scene][one.channel]).collect()
 }
 
 impl Estimate {

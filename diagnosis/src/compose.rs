@@ -25,7 +25,7 @@ use crate::engine::{self, Found};
 use crate::fit::Fit;
 use crate::model::{Fitted, Model};
 use crate::noise::{self, Noise};
-use crate::study::Study;
+use crate::study::{ChannelAt, Study};
 use crate::terms::Shape;
 use crate::unsteady;
 use delays::Late;
@@ -107,17 +107,15 @@ const MANY: usize = 2;
 
 /// Whether what is left of a channel is larger than its differences from row to row say of noise: what changes slowly is left.
 fn is_rough(study: &Study<'_>, appraisal: &Appraisal) -> bool {
-    study.scenes.iter().enumerate().any(|(scene, known)| {
-        (0..known.channels.len()).any(|channel| {
-            let left = left(study, appraisal, scene, channel);
-            let scatter = (3.0 / crate::number(left.len())).sqrt();
-            square(&left) > white(study, &left, scene, channel).powi(2) * (1.0 + ROUGH * scatter)
-        })
+    study.channels().any(|at| {
+        let left = left(study, appraisal, at);
+        let scatter = (3.0 / crate::number(left.len())).sqrt();
+        square(&left) > white(study, &left, at).powi(2) * (1.0 + ROUGH * scatter)
     })
 }
 
 /// What is left of a channel in the rows that are fitted and count.
-fn left(study: &Study<'_>, appraisal: &Appraisal, scene: usize, channel: usize) -> Vec<f64> {
+fn left(study: &Study<'_>, appraisal: &Appraisal, ChannelAt { scene, channel }: ChannelAt) -> Vec<f64> {
     let fitted = study.scenes[scene].fitted_rows();
     let (marks, residual) = (&appraisal.outliers[scene][channel], &appraisal.residuals[scene][channel]);
     let counts = |row: &usize| fitted[*row] && !marks[*row] && residual[*row].is_finite();
@@ -125,9 +123,8 @@ fn left(study: &Study<'_>, appraisal: &Appraisal, scene: usize, channel: usize) 
 }
 
 /// The white noise of a channel by the differences from row to row.
-fn white(study: &Study<'_>, left: &[f64], scene: usize, channel: usize) -> f64 {
-    let rounding = study.scenes[scene].channels[channel].rounding;
-    noise::from_differences(left).max(rounding).max(f64::MIN_POSITIVE)
+fn white(study: &Study<'_>, left: &[f64], at: ChannelAt) -> f64 {
+    noise::from_differences(left).max(study.channel(at).rounding).max(f64::MIN_POSITIVE)
 }
 
 /// The mean square.
@@ -223,13 +220,11 @@ const MOST_OF_IT: f64 = 0.5;
 /// Whether a model takes most of what another one leaves above white noise.
 fn takes_most(study: &Study<'_>, before: &Appraisal, after: &Appraisal) -> bool {
     let (mut taken, mut excess) = (0.0, 0.0);
-    for (scene, known) in study.scenes.iter().enumerate() {
-        for channel in 0..known.channels.len() {
-            let (old, new) = (left(study, before, scene, channel), left(study, after, scene, channel));
-            let white = white(study, &new, scene, channel).powi(2);
-            taken += (square(&old) - square(&new)) / white;
-            excess += square(&old) / white - 1.0;
-        }
+    for at in study.channels() {
+        let (old, new) = (left(study, before, at), left(study, after, at));
+        let white = white(study, &new, at).powi(2);
+        taken += (square(&old) - square(&new)) / white;
+        excess += square(&old) / white - 1.0;
     }
     taken > MOST_OF_IT * excess
 }
@@ -273,16 +268,14 @@ fn more_likely(
 
 /// Minus twice the log-likelihood of what is left, beside the noise that suits each channel best.
 fn deviance(study: &Study<'_>, appraisal: &Appraisal) -> f64 {
-    let of_channel = |scene: usize, channel: usize| {
+    let of_channel = |ChannelAt { scene, channel }| {
         let (known, residual) = (&study.scenes[scene], &appraisal.residuals[scene][channel]);
         let (fitted, outliers) = (known.fitted_rows(), &appraisal.outliers[scene][channel]);
         let counts = |row: usize| fitted[row] && residual[row].is_finite() && !outliers[row];
         let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
         noise::estimate(&known.recording.time, residual, &valid, known.channels[channel].rounding).1
     };
-    let channels =
-        |scene: usize| (0..study.scenes[scene].channels.len()).map(move |channel| (scene, channel));
-    (0..study.scenes.len()).flat_map(channels).map(|(scene, channel)| of_channel(scene, channel)).sum()
+    study.channels().map(of_channel).sum()
 }
 
 /// By how much a model costs less than what was found, both fitted under a noise.

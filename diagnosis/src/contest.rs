@@ -14,7 +14,7 @@ use crate::model::{Effect, Model};
 use crate::noise::{Noise, Step, Whitening, whiten};
 use crate::parallel;
 use crate::search::untold_price;
-use crate::study::Study;
+use crate::study::{ChannelAt, Study};
 use crate::sweep::Swept;
 use crate::terms::Shape;
 
@@ -54,8 +54,8 @@ pub(crate) struct Outcome {
 /// Effects of a model, and the products with their columns swept in.
 type Set<'m> = (Swept, Vec<&'m Member>);
 
-/// The columns of some candidates in the rows of a channel, by the numbers of scene and channel.
-pub(crate) type Columns<'c> = dyn Fn(Range<usize>, (usize, usize)) -> Vec<Vec<f64>> + Sync + 'c;
+/// The columns of some candidates in the rows of a channel.
+pub(crate) type Columns<'c> = dyn Fn(Range<usize>, ChannelAt) -> Vec<Vec<f64>> + Sync + 'c;
 
 impl Contest {
     /// Works out the products over all recordings, in the given rows of each, as samples weigh under these noises. The model is what was
@@ -78,11 +78,12 @@ impl Contest {
         };
         for (scene, (rows, noises)) in rows.iter().zip(noises).enumerate() {
             for (channel, noise) in noises.iter().enumerate() {
-                let mut columns = Design::columns_in(study, (scene, channel), model, &regressors, rows);
+                let at = ChannelAt { scene, channel };
+                let mut columns = Design::columns_in(study, at, model, &regressors, rows);
                 let coefficients: Vec<f64> =
                     model.iter().flat_map(|fitted| &fitted.coefficients).copied().collect();
                 add_back(&mut columns, &coefficients);
-                contest.add(study, (scene, channel), (*noise, rows), columns, of_candidates);
+                contest.add(study, at, (*noise, rows), columns, of_candidates);
             }
         }
         let conditions = found.conditions();
@@ -104,13 +105,13 @@ impl Contest {
     fn add(
         &mut self,
         study: &Study<'_>,
-        (scene, channel): (usize, usize),
+        at: ChannelAt,
         (noise, rows): (Noise, &[usize]),
         mut columns: DMatrix<f64>,
         of_candidates: &Columns<'_>,
     ) {
-        let (known, fitted) = (&study.scenes[scene], study.scenes[scene].fitted_rows());
-        let outliers = &known.channels[channel].outliers;
+        let (known, outliers) = (&study.scenes[at.scene], &study.channel(at).outliers);
+        let fitted = known.fitted_rows();
         let valid: Vec<bool> = rows
             .iter()
             .enumerate()
@@ -128,7 +129,7 @@ impl Contest {
         let width = columns.ncols() - 1;
         for first in (0..self.products.len()).step_by(CHUNK) {
             let chunk = first..(first + CHUNK).min(self.products.len());
-            let raw = of_candidates(chunk.clone(), (scene, channel));
+            let raw = of_candidates(chunk.clone(), at);
             let products = parallel::counted(raw.len(), raw.len() * rows.len(), |number| {
                 let mut column = raw[number].clone();
                 column.iter_mut().filter(|value| !value.is_finite()).for_each(|value| *value = 0.0);

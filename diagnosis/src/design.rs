@@ -17,7 +17,7 @@ use crate::model::{Effect, Model};
 use crate::noise::Noise;
 use crate::observations::{Frame, Passage};
 use crate::parallel;
-use crate::study::Study;
+use crate::study::{ChannelAt, Study};
 
 pub(crate) use run::ChannelRun;
 
@@ -86,22 +86,23 @@ impl Design {
     /// The columns of a channel before whitening, in some rows; the residual is the column after the last.
     pub(crate) fn columns_in(
         study: &Study<'_>,
-        (scene, channel): (usize, usize),
+        at: ChannelAt,
         model: &Model,
         regressors: &[Regressor],
         rows: &[usize],
     ) -> DMatrix<f64> {
         let width = regressors.iter().map(Regressor::columns).sum();
         let noise = Noise::white(1.0);
+        let scene = at.scene;
         let course = Course::new(study, scene, model);
-        let mut run = ChannelRun::new(study, scene, channel, model, noise, regressors, width);
+        let mut run = ChannelRun::new(study, at, model, noise, regressors, width);
         let mut passage = Passage::new(study, scene, model);
         let mut chosen = DMatrix::zeros(rows.len(), width + 1);
         let mut next = 0;
         for stretch in pieces(0..study.scenes[scene].rows(), STRETCH) {
             let moved = passage.moved(study, &course, stretch.clone());
             let frame = Frame::new(study, &course, &moved, stretch.clone());
-            let view = course.states(study.scenes[scene].channels[channel].kind).rows(stretch.clone());
+            let view = course.states(study.channel(at).kind).rows(stretch.clone());
             let columns = run.raw_columns(&[frame], &view);
             while let Some(row) = rows.get(next).filter(|row| stretch.contains(row)) {
                 chosen.row_mut(next).copy_from(&columns.row(row - stretch.start));
@@ -179,8 +180,9 @@ fn scene_products(
 ) -> Vec<Products> {
     let known = &study.scenes[scene];
     let course = Course::new(study, scene, model);
-    let of =
-        |channel: usize| ChannelRun::new(study, scene, channel, model, noises[channel], regressors, width);
+    let of = |channel: usize| {
+        ChannelRun::new(study, ChannelAt { scene, channel }, model, noises[channel], regressors, width)
+    };
     let mut runs: Vec<ChannelRun<'_>> = (0..known.channels.len()).map(of).collect();
     let mut passage = Passage::new(study, scene, model);
     let batch = run::batch(width);

@@ -14,7 +14,7 @@ use crate::design::{ChannelRun, Regressor};
 use crate::model::{Effect, Model};
 use crate::noise::Noise;
 use crate::parallel;
-use crate::study::Study;
+use crate::study::{ChannelAt, Study};
 
 /// An effect, and others that the recordings show alike.
 #[derive(Clone, Debug)]
@@ -79,18 +79,13 @@ fn column_sums(
 ) -> Vec<Option<[f64; SUMS]>> {
     let regressors: Vec<Regressor> = effects.iter().cloned().map(Regressor::of).collect();
     let width = regressors.iter().map(Regressor::columns).sum();
-    let jobs: Vec<(usize, usize)> = study
-        .scenes
-        .iter()
-        .enumerate()
-        .flat_map(|(scene, known)| (0..known.channels.len()).map(move |channel| (scene, channel)))
-        .collect();
+    let jobs: Vec<ChannelAt> = study.channels().collect();
     let model = Model::new();
     let results = parallel::counted(jobs.len(), study.rows() * width, |job| {
-        let (scene, channel) = jobs[job];
-        let noise = noises[scene][channel];
-        let mut run = ChannelRun::new(study, scene, channel, &model, noise, &regressors, width);
-        run.random_sums(&courses[scene], SUMS)
+        let at = jobs[job];
+        let noise = noises[at.scene][at.channel];
+        let mut run = ChannelRun::new(study, at, &model, noise, &regressors, width);
+        run.random_sums(&courses[at.scene], SUMS)
     });
     let total = results.into_iter().fold(DMatrix::zeros(SUMS + 2, width), |sum, matrix| sum + matrix);
     total.column_iter().map(|column| normalised(&column.iter().copied().collect::<Vec<f64>>())).collect()

@@ -11,7 +11,7 @@ use crate::appraisal::Appraisal;
 use crate::course::Course;
 use crate::model::Model;
 use crate::rounded;
-use crate::study::Study;
+use crate::study::{ChannelAt, Study};
 use crate::travel::Travel;
 use crate::unsteady;
 
@@ -68,7 +68,7 @@ pub(crate) fn strongest(
         let angular = |channel: usize| known.channels[channel].kind.angular(study.equations);
         for (channel, observed) in known.channels.iter().enumerate() {
             // What a loop answers to strokes has the sign of their direction: only what is alike in both may be a place.
-            let answers = unsteady::answers_motion(study, appraisal, model, scene, channel);
+            let answers = unsteady::answers_motion(study, appraisal, model, ChannelAt { scene, channel });
             let directions: &[f64] = if answers { &[0.0] } else { &[0.0, 1.0, -1.0] };
             let alike = (0..known.channels.len()).filter(|other| angular(*other) == angular(channel));
             let loudest = alike.map(|other| appraisal.noises[scene][other].size()).fold(0.0, f64::max);

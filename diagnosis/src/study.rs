@@ -55,6 +55,13 @@ pub(crate) struct Study<'a> {
     pub(crate) crossings: Vec<f64>,
 }
 
+/// A channel of a recording, by the numbers of both.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) struct ChannelAt {
+    pub(crate) scene: usize,
+    pub(crate) channel: usize,
+}
+
 /// One recording in the study.
 pub(crate) struct Scene<'a> {
     pub(crate) recording: &'a Recording,
@@ -164,6 +171,19 @@ pub(crate) struct Block {
 }
 
 impl<'a> Study<'a> {
+    /// The channels of all recordings, in their order.
+    pub(crate) fn channels(&self) -> impl Iterator<Item = ChannelAt> {
+        let of_scene = |(scene, known): (usize, &Scene<'a>)| {
+            (0..known.channels.len()).map(move |channel| ChannelAt { scene, channel })
+        };
+        self.scenes.iter().enumerate().flat_map(of_scene)
+    }
+
+    /// One of them.
+    pub(crate) fn channel(&self, at: ChannelAt) -> &Channel<'a> {
+        &self.scenes[at.scene].channels[at.channel]
+    }
+
     /// Brings recordings of one machine together.
     pub(crate) fn new(
         equations: &'a Equations,

@@ -9,7 +9,7 @@ use crate::candidates::simplicity;
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::study::{Kind, Study};
+use crate::study::{ChannelAt, Kind, Study};
 use crate::sweep::Swept;
 use crate::terms::Shape;
 
@@ -85,8 +85,7 @@ fn with_neighbours(model: &Model, always: usize, mut members: Vec<usize>) -> Vec
 /// A channel that moves smoothly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moving {
-    pub(crate) scene: usize,
-    pub(crate) channel: usize,
+    pub(crate) at: ChannelAt,
     /// mm or rad.
     pub(crate) rms: f64,
     /// The time over which it keeps its direction, s.
@@ -106,15 +105,12 @@ const KEEPS: f64 = 0.8;
 /// The channel whose residual moves smoothly, the largest of them.
 pub(crate) fn moving(study: &Study<'_>, appraisal: &Appraisal) -> Option<Moving> {
     let mut found: Option<Moving> = None;
-    for (scene, known) in study.scenes.iter().enumerate() {
-        let step = known.given.step;
-        for channel in 0..known.channels.len() {
-            let residual = accepted(appraisal, scene, channel);
-            if let Some((lag, rms)) = keeps_on(&known.recording.time, &residual, step)
-                && found.is_none_or(|found| found.rms < rms)
-            {
-                found = Some(Moving { scene, channel, rms, time: lag });
-            }
+    for at in study.channels() {
+        let known = &study.scenes[at.scene];
+        if let Some((lag, rms)) = keeps_on(&known.recording.time, &accepted(appraisal, at), known.given.step)
+            && found.is_none_or(|found| found.rms < rms)
+        {
+            found = Some(Moving { at, rms, time: lag });
         }
     }
     found
@@ -123,34 +119,26 @@ pub(crate) fn moving(study: &Study<'_>, appraisal: &Appraisal) -> Option<Moving>
 /// The channel of which more comes back than does not, although nothing in it moves smoothly: stations far apart, say. The largest of
 /// them.
 pub(crate) fn returning(study: &Study<'_>, appraisal: &Appraisal) -> Option<Moving> {
-    let scenes = study.scenes.iter().enumerate();
-    let channels =
-        scenes.flat_map(|(scene, known)| (0..known.channels.len()).map(move |channel| (scene, channel)));
-    let rest = channels.filter_map(|(scene, channel)| {
-        let residual = accepted(appraisal, scene, channel);
+    let rest = study.channels().filter_map(|at| {
+        let (ChannelAt { scene, channel }, residual) = (at, accepted(appraisal, at));
         let fitted = study.scenes[scene].fitted_rows();
         let counts = |row: &usize| fitted[*row] && residual[*row].is_finite();
         let count = crate::number((0..residual.len()).filter(counts).count());
         let alone = count * appraisal.leftover[scene][channel].powi(2);
         let returning = appraisal.returning[scene][channel];
         let time = study.scenes[scene].given.step;
-        (returning > alone).then(|| Moving { scene, channel, rms: (returning / count).sqrt(), time })
+        (returning > alone).then(|| Moving { at, rms: (returning / count).sqrt(), time })
     });
     rest.max_by(|one, other| one.rms.total_cmp(&other.rms))
 }
 
 /// Whether what is left of a channel is the drive's own feedback behind a loop that was found, and moves smoothly: that is the
 /// loop's answer to something. Strokes that are all alike bring it back at the same places, and no place has made it.
-pub(crate) fn answers_motion(
-    study: &Study<'_>,
-    appraisal: &Appraisal,
-    model: &Model,
-    scene: usize,
-    channel: usize,
-) -> bool {
-    let Kind::Drive(axis) = study.scenes[scene].channels[channel].kind else { return false };
-    let (time, step) = (&study.scenes[scene].recording.time, study.scenes[scene].given.step);
-    looped(model, axis) && keeps_on(time, &accepted(appraisal, scene, channel), step).is_some()
+pub(crate) fn answers_motion(study: &Study<'_>, appraisal: &Appraisal, model: &Model, at: ChannelAt) -> bool {
+    let Kind::Drive(axis) = study.channel(at).kind else { return false };
+    let known = &study.scenes[at.scene];
+    let residual = accepted(appraisal, at);
+    looped(model, axis) && keeps_on(&known.recording.time, &residual, known.given.step).is_some()
 }
 
 fn looped(model: &Model, axis: usize) -> bool {
@@ -158,7 +146,7 @@ fn looped(model: &Model, axis: usize) -> bool {
 }
 
 /// What is left of a channel, without its outliers.
-fn accepted(appraisal: &Appraisal, scene: usize, channel: usize) -> Vec<f64> {
+fn accepted(appraisal: &Appraisal, ChannelAt { scene, channel }: ChannelAt) -> Vec<f64> {
     let residual = appraisal.residuals[scene][channel].iter().zip(&appraisal.outliers[scene][channel]);
     residual.map(|(value, outlier)| if *outlier { f64::NAN } else { *value }).collect()
 }

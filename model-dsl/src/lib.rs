@@ -27,6 +27,7 @@ pub mod machine;
 pub mod notation;
 pub mod program;
 pub mod quantity;
+mod quoted;
 pub mod source;
 pub mod suggest;
 pub mod yaml;
@@ -41,6 +42,8 @@ use diagnostic::{Diagnostics, render};
 use equations::Equations;
 use machine::Machine;
 use source::{SourceFile, Span};
+
+pub use quoted::quoted;
 
 /// A compiled machine.
 #[derive(Clone, Debug)]

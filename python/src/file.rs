@@ -7,6 +7,7 @@
 use std::fmt::{self, Display, Formatter, Write as _};
 use std::path::{Path, PathBuf};
 
+use model_dsl::quoted;
 use model_dsl::source::SourceFile;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PySequence, PyString};
@@ -206,20 +207,5 @@ fn spelled(text: &str) -> String {
     if (is_name || is_quantity) && text.chars().all(plain) && text.trim() == text {
         return text.to_owned();
     }
-    let mut quoted = String::from('"');
-    for letter in text.chars() {
-        match letter {
-            '"' | '\\' => quoted.extend(['\\', letter]),
-            // What ends a line, or may not stand in a file: all of it fits four digits.
-            letter
-                if letter.is_control()
-                    || matches!(letter, '\u{2028}' | '\u{2029}' | '\u{feff}' | '\u{fffe}' | '\u{ffff}') =>
-            {
-                let _ = write!(quoted, "\\u{:04x}", u32::from(letter));
-            }
-            letter => quoted.push(letter),
-        }
-    }
-    quoted.push('"');
-    quoted
+    quoted(text)
 }

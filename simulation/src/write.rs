@@ -8,6 +8,7 @@ use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write};
 
 use model_dsl::calibration::AxisName;
+use model_dsl::quoted;
 
 use crate::instrument::{Channel, Instrument};
 use crate::simulate::{Simulated, channel_name};
@@ -223,17 +224,7 @@ fn scalar(text: &str) -> String {
     if word && text.starts_with(starts) && text.chars().all(safe) && !text.ends_with(' ') {
         return text.to_owned();
     }
-    let mut quoted = String::from("\"");
-    for letter in text.chars() {
-        match letter {
-            '"' | '\\' => quoted.extend(['\\', letter]),
-            letter if letter.is_control() => {
-                let _ = write!(quoted, "\\u{:04X}", u32::from(letter));
-            }
-            letter => quoted.push(letter),
-        }
-    }
-    quoted + "\""
+    quoted(text)
 }
 
 #[cfg(test)]

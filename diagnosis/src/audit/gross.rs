@@ -4,7 +4,7 @@
 //! It is off by millimetres then, and no model is needed to tell.
 
 use crate::diagnosis::{Change, Evidence, WrongFile};
-use crate::study::{Channel, Kind, Scene, Study};
+use crate::study::{Channel, ChannelAt, Kind, Scene, Study};
 
 /// Factors to try: metres, micrometres and inches for millimetres and the other way round, and the wrong sign.
 const FACTORS: [(f64, &str); 5] = [
@@ -29,9 +29,8 @@ struct Way {
 
 /// The one thing that would make a channel of a position follow its path. `None` if it follows (half of its samples are off by less than
 /// `slack`, mm), if nothing would make it follow, or if more than one thing would.
-pub(crate) fn change(study: &Study<'_>, (scene, channel): (usize, usize), slack: f64) -> Option<Change> {
-    let known = &study.scenes[scene];
-    let observed = &known.channels[channel];
+pub(crate) fn change(study: &Study<'_>, at: ChannelAt, slack: f64) -> Option<Change> {
+    let (known, observed) = (&study.scenes[at.scene], study.channel(at));
     let Kind::Tip(direction) = observed.kind else { return None };
     let positions: Vec<&[f64]> = known.given.programmed.iter().map(|position| &position[..]).collect();
     let nominal = &known.built.interpreter.nominal_columns(&positions)[direction];
@@ -42,7 +41,7 @@ pub(crate) fn change(study: &Study<'_>, (scene, channel): (usize, usize), slack:
     let mut fitting = ways(known, observed).into_iter().filter_map(off).filter(|(off, _)| *off < slack);
     let (after, way) = fitting.next()?;
     fitting.next().is_none().then(|| Change {
-        file: WrongFile::Recording(scene),
+        file: WrongFile::Recording(at.scene),
         name: known.recording.file.clone(),
         line: None,
         path: format!("channels.{}", observed.name),

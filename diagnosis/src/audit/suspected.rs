@@ -11,7 +11,7 @@ use super::verdict::Rest;
 use crate::certainty::WIDTH_95;
 use crate::contest::{Contest, DECISIVE, Outcome};
 use crate::engine::Found;
-use crate::study::Study;
+use crate::study::{ChannelAt, Study};
 
 /// An amount has a name if it differs from that of the name by no more than this share, or if its interval holds it. Effects that were
 /// found with the wrong files bias the amount. Once the files are changed, the interval must be no wider than this on either side. The
@@ -30,8 +30,8 @@ impl<'v> FaultContest<'v> {
     /// Lets the faults compete over all recordings.
     pub(super) fn new(study: &Study<'_>, found: &Found, versions: &'v Versions) -> Self {
         let suspected = versions.suspected.as_slice();
-        let columns = |chunk: std::ops::Range<usize>, (scene, channel): (usize, usize)| {
-            suspected[chunk].iter().map(|one| one.columns[scene][channel].clone()).collect::<Vec<_>>()
+        let columns = |chunk: std::ops::Range<usize>, at: ChannelAt| {
+            suspected[chunk].iter().map(|one| one.columns[at.scene][at.channel].clone()).collect::<Vec<_>>()
         };
         let contest = Contest::new(
             study,

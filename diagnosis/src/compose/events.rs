@@ -13,7 +13,7 @@ use crate::fit;
 use crate::model::{Effect, Model, Place};
 use crate::ranges::Resolution;
 use crate::search::Choice;
-use crate::study::Study;
+use crate::study::{ChannelAt, Study};
 use crate::sweep::Swept;
 use crate::terms::Shape;
 
@@ -97,8 +97,9 @@ fn ranked(study: &Study<'_>, found: &Found, places: &[Place], times: &[f64]) -> 
     for (scene, known) in study.scenes.iter().enumerate() {
         let rows = spread(known.rows());
         for channel in 0..known.channels.len() {
-            let matrix = Design::columns_in(study, (scene, channel), model, &regressors, &rows);
-            let response = restored(study, found, &matrix, (scene, channel), &rows);
+            let at = ChannelAt { scene, channel };
+            let matrix = Design::columns_in(study, at, model, &regressors, &rows);
+            let response = restored(study, found, &matrix, at, &rows);
             let weight = 1.0 / found.appraisal.noises[scene][channel].size();
             let mut row_of = vec![0.0; always + places.len() + 1];
             for (place, row) in rows.iter().enumerate() {
@@ -177,7 +178,7 @@ fn restored(
     study: &Study<'_>,
     found: &Found,
     matrix: &DMatrix<f64>,
-    (scene, channel): (usize, usize),
+    at: ChannelAt,
     rows: &[usize],
 ) -> nalgebra::DVector<f64> {
     let mut response = matrix.column(matrix.ncols() - 1).into_owned();
@@ -185,7 +186,7 @@ fn restored(
     for (column, coefficient) in coefficients.enumerate() {
         response += matrix.column(column) * *coefficient;
     }
-    let outliers = &study.scenes[scene].channels[channel].outliers;
+    let outliers = &study.channel(at).outliers;
     response.iter_mut().zip(rows).filter(|(_, row)| outliers[**row]).for_each(|(value, _)| *value = f64::NAN);
     response
 }

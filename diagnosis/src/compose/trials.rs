@@ -10,7 +10,7 @@ use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::model::{Effect, Fitted, Model};
 use crate::noise::Noise;
-use crate::study::Study;
+use crate::study::{ChannelAt, Study};
 use crate::terms::Shape;
 
 use super::forms::{self, Form};
@@ -158,8 +158,8 @@ impl Ring<'_> {
     /// The contest of forms with the effects of a model.
     fn contest(&self, model: &Model, forms: &[Form]) -> Contest {
         let rows: Vec<Vec<usize>> = self.study.scenes.iter().map(|scene| spread(scene.rows())).collect();
-        let columns = |chunk: std::ops::Range<usize>, (scene, channel): (usize, usize)| {
-            columns(self.study, model, &forms[chunk], (scene, channel), &rows[scene])
+        let columns = |chunk: std::ops::Range<usize>, at: ChannelAt| {
+            columns(self.study, model, &forms[chunk], at, &rows[at.scene])
         };
         Contest::new(self.study, (self.found, model, self.noises), &rows, forms.len(), &columns)
     }
@@ -216,15 +216,9 @@ fn neighbours(form: &Form) -> Vec<Form> {
 }
 
 /// The column of each form in some rows of a channel.
-fn columns(
-    study: &Study<'_>,
-    model: &Model,
-    forms: &[Form],
-    channel: (usize, usize),
-    rows: &[usize],
-) -> Vec<Vec<f64>> {
+fn columns(study: &Study<'_>, model: &Model, forms: &[Form], at: ChannelAt, rows: &[usize]) -> Vec<Vec<f64>> {
     let regressors: Vec<Regressor> = forms.iter().map(|form| Regressor::of(form.effect.clone())).collect();
-    let matrix = Design::columns_in(study, channel, model, &regressors, rows);
+    let matrix = Design::columns_in(study, at, model, &regressors, rows);
     let mut first = 0;
     forms
         .iter()

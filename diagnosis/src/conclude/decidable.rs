@@ -193,13 +193,10 @@ pub(super) struct Misread {
 /// A channel that lies far off its path and would follow it if one thing of its set-up were changed. This is asked first: an axis that
 /// seems to move while its command stands may be another axis.
 pub(super) fn misread(study: &Study<'_>) -> Option<Misread> {
-    let scenes = study.scenes.iter().enumerate();
-    let mut channels =
-        scenes.flat_map(|(scene, known)| (0..known.channels.len()).map(move |number| (scene, number)));
-    channels.find_map(|(scene, number)| {
-        let channel = &study.scenes[scene].channels[number];
-        let change = gross::change(study, (scene, number), far_off(study, scene, channel))?;
-        let file = &study.scenes[scene].recording.file;
+    study.channels().find_map(|at| {
+        let channel = study.channel(at);
+        let change = gross::change(study, at, far_off(study, at.scene, channel))?;
+        let file = &study.scenes[at.scene].recording.file;
         let reason = format!(
             "`{}` of {file} does not follow the programmed path, and it seems that {}",
             channel.name, change.fault

@@ -55,7 +55,7 @@ pub(super) fn unsteady(
     units: &Units,
 ) -> Option<Unexplained> {
     let counted = |moving: &Moving| {
-        let channel = &study.scenes[moving.scene].channels[moving.channel];
+        let channel = study.channel(moving.at);
         units.counts(study, channel.kind) && above_display(study, moving)
     };
     match moving.filter(counted) {
@@ -103,13 +103,13 @@ pub(super) fn on_the_way(study: &Study<'_>) -> Option<Unexplained> {
 /// The state of which a function predicts most of what is left of a channel in units to which it was not fitted, in words, and its
 /// share.
 fn state_of_what_is_left(study: &Study<'_>, found: &Found, moving: &Moving) -> Option<(Quantity, f64)> {
-    let scene = &study.scenes[moving.scene];
-    let residual = &found.appraisal.residuals[moving.scene][moving.channel];
-    let outliers = &found.appraisal.outliers[moving.scene][moving.channel];
+    let scene = &study.scenes[moving.at.scene];
+    let residual = &found.appraisal.residuals[moving.at.scene][moving.at.channel];
+    let outliers = &found.appraisal.outliers[moving.at.scene][moving.at.channel];
     let valid: Vec<bool> =
         residual.iter().zip(outliers).map(|(value, outlier)| value.is_finite() && !outlier).collect();
-    let noise =
-        noise::estimate(&scene.recording.time, residual, &valid, scene.channels[moving.channel].rounding).0;
+    let rounding = study.channel(moving.at).rounding;
+    let noise = noise::estimate(&scene.recording.time, residual, &valid, rounding).0;
     let first = scene.returns.of(residual, &valid, noise).into_iter().next()?;
     Some((scene.returns.quantity(first), first.share))
 }
@@ -122,7 +122,7 @@ pub(super) fn returning(study: &Study<'_>, found: &Found, units: &Units) -> Opti
 
 /// Whether more is left than rounding leaves, which comes back wherever an axis passes the steps of a display alike.
 fn above_display(study: &Study<'_>, moving: &Moving) -> bool {
-    moving.rms > study.scenes[moving.scene].channels[moving.channel].rounding
+    moving.rms > study.channel(moving.at).rounding
 }
 
 /// What is left, with the state that takes most of it; `None` where no state does.
@@ -131,7 +131,7 @@ fn by_state(study: &Study<'_>, found: &Found, moving: &Moving, units: &Units) ->
     let state = ceiling::words(study, quantity);
     Some(Unexplained {
         link: quantity.axis().map(|axis| study.equations.axes[axis].letter.clone()),
-        direction: study.scenes[moving.scene].channels[moving.channel].name.clone(),
+        direction: study.channel(moving.at).name.clone(),
         state: quantity.state(),
         interval: None,
         rms: moving.rms * units.unit.0,
@@ -149,7 +149,7 @@ fn smoothly(study: &Study<'_>, found: &Found, moving: Moving, units: &Units) -> 
     if let Some(by_state) = by_state(study, found, &moving, units) {
         return by_state;
     }
-    let channel = &study.scenes[moving.scene].channels[moving.channel];
+    let channel = study.channel(moving.at);
     let nearest = unsteady::suspect(study, found);
     let link = nearest.as_ref().and_then(|suspect| suspect.fitted.effect.motion());
     let near = nearest.as_ref().map_or_else(String::new, |suspect| near(study, suspect));

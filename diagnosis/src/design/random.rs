@@ -1,11 +1,13 @@
 //! Random weights. In: the number of a recording and of a channel. Out: weights for its rows, the same in every run.
 
+use crate::study::ChannelAt;
+
 /// Weights between -1 and 1 that are the same in every run of the program.
 pub(super) struct Random(u64);
 
 impl Random {
     /// The weights of a channel of a recording.
-    pub(super) fn new(scene: usize, channel: usize) -> Self {
+    pub(super) fn new(ChannelAt { scene, channel }: ChannelAt) -> Self {
         Self(0x9E37_79B9_7F4A_7C15 ^ ((scene as u64) << 32) ^ (channel as u64))
     }
 

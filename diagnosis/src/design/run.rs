@@ -16,7 +16,7 @@ use crate::observations::{Frame, Passage, acts};
 use crate::parallel;
 use crate::side::Side;
 use crate::states::Rows;
-use crate::study::{Channel, Kind, Study};
+use crate::study::{Channel, ChannelAt, Kind, Study};
 use crate::terms::{Setting, Shape};
 
 /// How many rows of so many columns are worked on at a time: as many as stay in a cache, in whole stretches.
@@ -30,8 +30,7 @@ const CACHED: usize = 1 << 15;
 /// One channel on its way through a recording.
 pub(crate) struct ChannelRun<'r> {
     study: &'r Study<'r>,
-    scene: usize,
-    number: usize,
+    at: ChannelAt,
     model: &'r Model,
     regressors: &'r [Regressor],
     width: usize,
@@ -75,8 +74,7 @@ impl<'r> ChannelRun<'r> {
     /// The run at the beginning of the recording.
     pub(crate) fn new(
         study: &'r Study<'r>,
-        scene: usize,
-        number: usize,
+        at: ChannelAt,
         model: &'r Model,
         noise: Noise,
         regressors: &'r [Regressor],
@@ -84,8 +82,7 @@ impl<'r> ChannelRun<'r> {
     ) -> Self {
         Self {
             study,
-            scene,
-            number,
+            at,
             model,
             regressors,
             width,
@@ -100,7 +97,7 @@ impl<'r> ChannelRun<'r> {
     }
 
     fn channel(&self) -> &'r Channel<'r> {
-        &self.study.scenes[self.scene].channels[self.number]
+        self.study.channel(self.at)
     }
 
     /// Adds the products of the next rows, which these frames hold.
@@ -133,12 +130,12 @@ impl<'r> ChannelRun<'r> {
     pub(crate) fn random_sums(&mut self, course: &Course, count: usize) -> DMatrix<f64> {
         let study = self.study;
         let weight = 1.0 / self.noise.white;
-        let mut passage = Passage::new(study, self.scene, self.model);
+        let mut passage = Passage::new(study, self.at.scene, self.model);
         let mut sums = DMatrix::zeros(count + 2, self.width);
         let (mut plain, mut weights) = (vec![0.0; self.width], vec![0.0; count]);
         let mut samples = 0.0;
-        let mut random = Random::new(self.scene, self.number);
-        for stretch in pieces(0..study.scenes[self.scene].rows(), STRETCH) {
+        let mut random = Random::new(self.at);
+        for stretch in pieces(0..study.scenes[self.at.scene].rows(), STRETCH) {
             let rows = stretch.len();
             let moved = passage.moved(study, course, stretch.clone());
             let frame = Frame::new(study, course, &moved, stretch.clone());
@@ -247,20 +244,22 @@ impl<'r> ChannelRun<'r> {
         let drive = matches!(channel.kind, Kind::Drive(_));
         let settings = self.regressors.iter().enumerate().filter_map(|(number, regressor)| {
             let setting = self.setting(regressor)?;
-            Some((number, frame.setting(study, self.scene, self.number, setting, self.model)?))
+            Some((number, frame.setting(study, self.at.scene, self.at.channel, setting, self.model)?))
         });
         Sight {
-            after: frame.gains(study, self.scene, channel, self.model, Side::After),
-            drive: drive.then(|| frame.gains(study, self.scene, channel, self.model, Side::Drive)),
+            after: frame.gains(study, self.at.scene, channel, self.model, Side::After),
+            drive: drive.then(|| frame.gains(study, self.at.scene, channel, self.model, Side::Drive)),
             settings: settings.collect(),
-            residual: frame.left(study, self.scene, (self.number, channel), self.model),
+            residual: frame.left(study, self.at.scene, (self.at.channel, channel), self.model),
         }
     }
 
     /// The setting of this recording's instrument that a regressor is.
     fn setting(&self, regressor: &Regressor) -> Option<Setting> {
         match (regressor.effect.place, &regressor.effect.shape) {
-            (Place::Instrument { .. }, Shape::Instrument(setting)) if acts(&regressor.effect, self.scene) => {
+            (Place::Instrument { .. }, Shape::Instrument(setting))
+                if acts(&regressor.effect, self.at.scene) =>
+            {
                 Some(*setting)
             }
             _ => None,

@@ -27,7 +27,7 @@ fn columns(study: &Study<'_>, channel: usize, model: &Model, regressors: &[Regre
     let width = regressors.iter().map(Regressor::columns).sum();
     let noise = Noise { white: 1.0, wander: 0.0, time_constant: 1.0, alike: 1.0 };
     let course = Course::new(study, 0, model);
-    let mut run = ChannelRun::new(study, 0, channel, model, noise, regressors, width);
+    let mut run = ChannelRun::new(study, ChannelAt { scene: 0, channel }, model, noise, regressors, width);
     let rows = study.scenes[0].rows();
     let moved = Passage::new(study, 0, model).moved(study, &course, 0..rows);
     let frame = Frame::new(study, &course, &moved, 0..rows);

@@ -371,16 +371,16 @@ fn the_largest_channel_that_moves_is_named_and_outliers_do_not_hide_it() {
         wandering: 0.0,
     };
     // The larger channel is white.
-    assert_eq!(moving(&study, &appraisal).unwrap().channel, 0);
+    assert_eq!(moving(&study, &appraisal).unwrap().at.channel, 0);
     appraisal.residuals[0][1] = smooth.clone();
     for row in (7..rows).step_by(31) {
         appraisal.residuals[0][1][row] += 40.0;
     }
-    assert_eq!(moving(&study, &appraisal).unwrap().channel, 0, "what jumps does not move smoothly");
+    assert_eq!(moving(&study, &appraisal).unwrap().at.channel, 0, "what jumps does not move smoothly");
     for row in (7..rows).step_by(31) {
         appraisal.outliers[0][1][row] = true;
     }
     let found = moving(&study, &appraisal).unwrap();
-    assert_eq!((found.scene, found.channel), (0, 1));
+    assert_eq!(found.at, ChannelAt { scene: 0, channel: 1 });
     keeps_on_for(Some((found.time, found.rms)), &sines, "channel 1");
 }

@@ -1,5 +1,7 @@
 //! How calibration files are spelled. In: numbers, words and parameters. Out: YAML that reads back to the same.
 
+use crate::quoted;
+
 /// The longest line that a term alone takes, in characters.
 const LONG: usize = 160;
 
@@ -52,27 +54,6 @@ fn spelled(text: &str, marks: &str) -> String {
     let begins = text.starts_with(char::is_alphanumeric);
     let plain = begins && text.chars().all(harmless) && text.trim() == text && text != "null";
     if plain { text.to_owned() } else { quoted(text) }
-}
-
-fn quoted(text: &str) -> String {
-    let mut written = String::from("\"");
-    for character in text.chars() {
-        match character {
-            '"' | '\\' => written.extend(['\\', character]),
-            '\n' => written.push_str("\\n"),
-            hidden if hidden.is_control() || is_unprintable(hidden) => {
-                written.push_str(&format!("\\u{:04x}", u32::from(hidden)));
-            }
-            plain => written.push(plain),
-        }
-    }
-    written.push('"');
-    written
-}
-
-/// What YAML does not take as it stands, control characters aside; all of it fits four digits.
-fn is_unprintable(character: char) -> bool {
-    matches!(character, '\u{2028}' | '\u{2029}' | '\u{feff}' | '\u{fffe}' | '\u{ffff}')
 }
 
 /// A mapping in braces.

@@ -14,6 +14,7 @@ use super::tree::Expression;
 use super::{infix, sheet, writer};
 use crate::algebra::Axis;
 use crate::equations::{Equations, Names, Row, Term};
+use crate::quoted;
 
 /// The whole object, with a line end after it.
 pub(super) fn object(equations: &Equations) -> String {
@@ -28,7 +29,7 @@ pub(super) fn object(equations: &Equations) -> String {
     };
     format!(
         "{{\n  \"schema\": \"abbe-equations/1\",\n  \"machine\": {},\n{}  \"directions\": [{}]{orientation}\n}}\n",
-        string(&equations.machine),
+        quoted(&equations.machine),
         brackets(&written),
         rows(&equations.rows, Axis::letter)
     )
@@ -37,8 +38,8 @@ pub(super) fn object(equations: &Equations) -> String {
 /// The named brackets, each before those in which it stands; no line where there are none.
 fn brackets(written: &Brackets) -> String {
     let bracket = |(letter, value): (&super::letter::Letter, Expression)| {
-        let value = string(&writer::line(&Plain, &value));
-        format!("\n    {{\"name\": {}, \"value\": {value}}}", string(&letter.plain))
+        let value = quoted(&writer::line(&Plain, &value));
+        format!("\n    {{\"name\": {}, \"value\": {value}}}", quoted(&letter.plain))
     };
     let brackets: Vec<String> = written.definitions().map(bracket).collect();
     if brackets.is_empty() {
@@ -54,8 +55,8 @@ fn row(row: &Row, letter: char, equations: &Equations, written: &Brackets) -> St
     let factored = factored("\n    \"nominal_factored\"", &nominal, &written.sum(&row.nominal));
     format!(
         "{{\n    \"direction\": {},\n    \"nominal\": {}{factored},\n    \"terms\": [{}]\n  }}",
-        string(&letter.to_string()),
-        string(&nominal),
+        quoted(&letter.to_string()),
+        quoted(&nominal),
         terms.join(",")
     )
 }
@@ -67,41 +68,14 @@ fn term(term: &Term, equations: &Equations, written: &Brackets) -> Option<String
     let factored = factored(" \"factored\"", &arm, &written.expression(&term.arm));
     Some(format!(
         "\n      {{\"motion\": {}, \"symbol\": {}, \"arm\": {}{factored}{sign}}}",
-        string(&motion.name),
-        string(&motion.symbol),
-        string(&arm)
+        quoted(&motion.name),
+        quoted(&motion.symbol),
+        quoted(&arm)
     ))
 }
 
 /// A key with the factored form of an expression, where that differs from the expanded one.
 fn factored(key: &str, expanded: &str, factored: &Expression) -> String {
     let factored = writer::line(&Plain, factored);
-    if factored == expanded { String::new() } else { format!(",{key}: {}", string(&factored)) }
-}
-
-/// A JSON string with its quotation marks.
-fn string(text: &str) -> String {
-    let mut quoted = String::from("\"");
-    for character in text.chars() {
-        match character {
-            '"' => quoted.push_str("\\\""),
-            '\\' => quoted.push_str("\\\\"),
-            control if u32::from(control) < 0x20 => {
-                quoted.push_str(&format!("\\u{:04x}", u32::from(control)))
-            }
-            other => quoted.push(other),
-        }
-    }
-    quoted.push('"');
-    quoted
-}
-
-#[cfg(test)]
-mod tests {
-    use super::string;
-
-    #[test]
-    fn strings_are_escaped() {
-        assert_eq!(string("a\"b\\c\nµ"), "\"a\\\"b\\\\c\\u000aµ\"");
-    }
+    if factored == expanded { String::new() } else { format!(",{key}: {}", quoted(&factored)) }
 }

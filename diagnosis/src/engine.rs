@@ -12,6 +12,7 @@ use crate::conditions::{Conditions, Tries};
 use crate::course::Course;
 use crate::crossing;
 use crate::curves;
+use crate::dents;
 use crate::design::{Design, Regressor};
 use crate::dynamics;
 use crate::fit::{self, Fit};
@@ -73,7 +74,11 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     search.cross_plays(study, progress);
     let mut fit = search.fit(study);
     if let Some(loops) = dynamics::loops_alone(study, &fit.model, &search.conditions()) {
-        (search, fit) = from_loops(study, (search, fit), loops, progress);
+        let held = search.always;
+        (search, fit) = begun_anew(study, (search, fit), (loops, held), progress);
+    }
+    if let Some(dent) = dents::alone(study, &fit.model, &search.conditions()) {
+        (search, fit) = beside_a_dent(study, (search, fit), dent, progress);
     }
     let curved = curves::try_tables(study, fit.clone(), &search.conditions());
     if same_effects(&curved.model, &fit.model) {
@@ -108,24 +113,53 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     Found { fit, appraisal, pool, travels, bands, always, tries, plain_zeros: false }
 }
 
-/// A search that begins with loops alone, where it comes to a better end than the one that did not.
-fn from_loops(
+/// A search that begins with another model, where it comes to a better end than the one that did not. The first `held` effects of the
+/// model stay in it while the search goes on; at its end they are priced like all others.
+fn begun_anew(
     study: &mut Study<'_>,
     (search, fit): (Search, Fit),
-    loops: Model,
+    (model, held): (Model, usize),
     progress: &mut dyn FnMut(f64),
 ) -> (Search, Fit) {
     let crossings = study.crossings.clone();
     let known = search.worth(study, &fit);
     let mut other = search.clone();
-    other.begin(study, loops);
+    other.always = held;
+    other.begin(study, model);
     other.go_round(study, progress);
     other.cross_plays(study, progress);
+    other.always = search.always;
     let better = other.fit(study);
     if other.worth(study, &better) < known {
         return (other, better);
     }
     study.crossings = crossings;
+    Appraisal::new(study, &fit.model).mark(study);
+    (search, fit)
+}
+
+/// A search beside a dent, which is the last effect of `begun`, where it comes to a better end and the judge upholds the dent in it.
+fn beside_a_dent(
+    study: &mut Study<'_>,
+    (search, fit): (Search, Fit),
+    begun: Model,
+    progress: &mut dyn FnMut(f64),
+) -> (Search, Fit) {
+    let Some(dent) = begun.last().map(|fitted| fitted.effect.clone()) else { return (search, fit) };
+    let holds = |model: &Model| model.iter().any(|fitted| fitted.effect == dent);
+    let before = study.crossings.clone();
+    let held = begun.len();
+    let other = begun_anew(study, (search.clone(), fit.clone()), (begun, held), progress);
+    if holds(&other.1.model) {
+        let crossings = study.crossings.clone();
+        let (kept, _) = upheld(study, other.1.clone(), &other.0.conditions());
+        if holds(&kept.model) {
+            study.crossings = crossings;
+            Appraisal::new(study, &other.1.model).mark(study);
+            return other;
+        }
+    }
+    study.crossings = before;
     Appraisal::new(study, &fit.model).mark(study);
     (search, fit)
 }

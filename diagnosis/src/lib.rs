@@ -26,6 +26,7 @@ mod contest;
 mod course;
 mod crossing;
 mod curves;
+mod dents;
 mod design;
 pub mod diagnosis;
 mod dynamics;

@@ -25,30 +25,42 @@ const FLANKS: [usize; 4] = [1, 2, 4, 8];
 /// How many standard deviations its height must stand above nothing in each direction: at 160 places and widths, chance gives one of
 /// them so much in both directions with one sign once in 10 000 times.
 const SURE: f64 = 4.0;
-/// The share of what settings alone leave that a dent must take, for it to hide all else. Beside a smaller one the search sees nine
-/// tenths of what is there.
+/// The share of what is left that a dent must take, for it to hide what else is left. Beside a smaller one the search sees nine
+/// tenths of that.
 const HIDES: f64 = 0.1;
 /// How much the heights of both directions may differ, as a share of the larger: what has a direction is no place.
 const ALIKE: f64 = 0.5;
 
-/// The settings and the dent that takes most beside them, where it takes much.
-pub(crate) fn alone(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Option<Model> {
-    let settings = model.get(..conditions.always)?.to_vec();
-    let appraisal = Appraisal::new(study, &settings);
+/// What a search may begin anew with: the settings, and the dent that takes most beside them alone; the settings, and the one that
+/// takes most beside all of the model. The last effect of each is the table over the dent.
+pub(crate) fn hidden(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Vec<Model> {
+    let Some(settings) = model.get(..conditions.always) else { return Vec::new() };
+    let mut begun: Vec<Model> = Vec::new();
+    for known in [settings, &model[..]] {
+        let Some(dent) = largest(study, &known.to_vec(), conditions) else { continue };
+        let effect = Effect { place: dent.place, shape: dent.table(conditions.travels) };
+        let is_there = |model: &Model| model.iter().any(|fitted| is_table_of(fitted, dent.place));
+        if is_there(model) || begun.iter().any(is_there) {
+            continue;
+        }
+        let mut start = settings.to_vec();
+        start.push(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
+        begun.push(conditions.refine(study, start).model);
+    }
+    begun
+}
+
+fn is_table_of(fitted: &Fitted, place: Place) -> bool {
+    fitted.effect.place == place && matches!(fitted.effect.shape, Shape::Table { .. })
+}
+
+/// The dent that takes most beside a model, where it takes much.
+fn largest(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Option<Dent> {
+    let appraisal = Appraisal::new(study, model);
     let under = conditions.under(&appraisal.floors);
     let axes = (0..study.own.len()).filter(|axis| conditions.travels[*axis].moves);
-    let dents = axes.filter_map(|axis| Looked::new(study, &settings, axis, &under)?.dent());
-    let dent = dents.reduce(|most, next| if next.takes > most.takes { next } else { most })?;
-    let place = dent.place;
-    let told =
-        |fitted: &Fitted| fitted.effect.place == place && matches!(fitted.effect.shape, Shape::Table { .. });
-    if model.iter().any(told) {
-        return None;
-    }
-    let effect = Effect { place, shape: dent.table(conditions.travels) };
-    let mut begun = settings;
-    begun.push(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
-    Some(under.refine(study, begun).model)
+    let dents = axes.filter_map(|axis| Looked::new(study, model, axis, &under)?.dent());
+    dents.reduce(|most, next| if next.takes > most.takes { next } else { most })
 }
 
 /// How high a dent is in one direction of motion, and its standard deviation.
@@ -98,19 +110,20 @@ impl Dent {
 /// A bell falls to a hundredth within three standard deviations; the triangle that takes most of it has a flank of two and a quarter.
 const WIDER: f64 = 1.4;
 
-/// The products of hats at the places of an axis, on the way up and on the way down, beside the settings.
+/// The products of hats at the places of an axis, on the way up and on the way down, beside a model.
 struct Looked {
     place: Place,
     axis: usize,
     low: f64,
     step: f64,
-    settings: usize,
+    /// How many columns the model has.
+    beside: usize,
     products: DMatrix<f64>,
     samples: f64,
 }
 
 impl Looked {
-    fn new(study: &Study<'_>, settings: &Model, axis: usize, conditions: &Conditions<'_>) -> Option<Self> {
+    fn new(study: &Study<'_>, model: &Model, axis: usize, conditions: &Conditions<'_>) -> Option<Self> {
         let motion = study.own[axis]?;
         let mut kinds = study.scenes.iter().flat_map(|scene| &scene.channels).map(|channel| channel.kind);
         let side = if kinds.any(Kind::outside) { Side::After } else { Side::Drive };
@@ -119,19 +132,19 @@ impl Looked {
         let nodes = even(travel.low, travel.high, PLACES);
         let shape = Shape::Table { axis, nodes, directed: true, repeats: false };
         let mut regressors: Vec<Regressor> =
-            settings.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+            model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
         regressors.push(Regressor::of(Effect { place, shape }));
-        let mut design = Design::new(study, settings, conditions.noises, regressors);
-        design.rebase(settings);
+        let mut design = Design::new(study, model, conditions.noises, regressors);
+        design.rebase(model);
         let (products, samples) = design.sum(|_| true);
         let step = travel.range() / crate::number(PLACES - 1);
-        Some(Self { place, axis, low: travel.low, step, settings: *design.first.last()?, products, samples })
+        Some(Self { place, axis, low: travel.low, step, beside: *design.first.last()?, products, samples })
     }
 
     /// The dent that takes most.
     fn dent(&self) -> Option<Dent> {
         let mut beside = Swept::new(&self.products);
-        for column in 0..self.settings {
+        for column in 0..self.beside {
             beside.take(column);
         }
         let left = beside.remaining();
@@ -154,10 +167,10 @@ impl Looked {
         let joined = self.joined(middle, flank);
         let products = joined.tr_mul(&self.products) * &joined;
         let mut swept = Swept::new(&products);
-        for column in 0..self.settings {
+        for column in 0..self.beside {
             swept.take(column);
         }
-        let (up, down) = (self.settings, self.settings + 1);
+        let (up, down) = (self.beside, self.beside + 1);
         let before = swept.remaining();
         if !swept.take(up) || !swept.take(down) {
             return None;
@@ -170,18 +183,18 @@ impl Looked {
         height(up).agrees(&height(down)).then(|| before - swept.remaining())
     }
 
-    /// The columns of the settings, of a hat on the way up and on the way down, and of the response.
+    /// The columns of the model, of a hat on the way up and on the way down, and of the response.
     fn joined(&self, middle: usize, flank: usize) -> DMatrix<f64> {
         let size = self.products.nrows();
-        let mut joined = DMatrix::zeros(size, self.settings + 3);
-        for column in 0..self.settings {
+        let mut joined = DMatrix::zeros(size, self.beside + 3);
+        for column in 0..self.beside {
             joined[(column, column)] = 1.0;
         }
         let hat = self.hat(middle, flank);
-        for (direction, first) in [self.settings, self.settings + PLACES].into_iter().enumerate() {
-            joined.view_mut((first, self.settings + direction), (PLACES, 1)).copy_from(&hat);
+        for (direction, first) in [self.beside, self.beside + PLACES].into_iter().enumerate() {
+            joined.view_mut((first, self.beside + direction), (PLACES, 1)).copy_from(&hat);
         }
-        joined[(size - 1, self.settings + 2)] = 1.0;
+        joined[(size - 1, self.beside + 2)] = 1.0;
         joined
     }
 

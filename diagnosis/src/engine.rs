@@ -77,7 +77,7 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
         let held = search.always;
         (search, fit) = begun_anew(study, (search, fit), (loops, held), progress);
     }
-    if let Some(dent) = dents::alone(study, &fit.model, &search.conditions()) {
+    for dent in dents::hidden(study, &fit.model, &search.conditions()) {
         (search, fit) = beside_a_dent(study, (search, fit), dent, progress);
     }
     let curved = curves::try_tables(study, fit.clone(), &search.conditions());

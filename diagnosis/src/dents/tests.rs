@@ -21,7 +21,7 @@ fn begun(errors: &str) -> Option<Vec<f64>> {
     let noises = vec![vec![Noise::white(0.000_3)]];
     let tries = Tries { candidates: 40.0, waves: 300.0 };
     let conditions = Conditions { always: 1, noises: &noises, travels: &travels, tries };
-    match alone(&study, &model, &conditions)?.pop()?.effect.shape {
+    match hidden(&study, &model, &conditions).pop()?.pop()?.effect.shape {
         Shape::Table { nodes, .. } => Some(nodes),
         _ => None,
     }

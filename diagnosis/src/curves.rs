@@ -3,7 +3,7 @@
 //! In: a fitted model. Out: the same, or one in which a `table` of an error motion stands for the polynomial and the long
 //! waves of that motion, where it says the same with less.
 
-mod nodes;
+pub(crate) mod nodes;
 
 use crate::conditions::Conditions;
 use crate::fit::Fit;
@@ -14,10 +14,13 @@ use crate::travel::Travel;
 
 /// How many nodes are tried.
 const NODES: [usize; 3] = [8, 12, 20];
+/// Of how many even nodes those are taken that a curve needs: what has a place of its own there is a fortieth of the travel long.
+pub(crate) const FINE: usize = 40;
 /// A wave of more than this share of the travel may be part of a curve.
 pub(crate) const LONG: f64 = 0.12;
 
-/// Tries tables for every motion of which two or more smooth terms are in the model, or a polynomial of a high power.
+/// Tries tables for every motion of which two or more smooth terms are in the model, or a polynomial of a high power. A table over one
+/// place stays: smooth terms beside it are others.
 pub(crate) fn try_tables(study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> Fit {
     let Conditions { always, travels, .. } = *conditions;
     let mut places: Vec<(Place, usize)> = Vec::new();
@@ -28,6 +31,7 @@ pub(crate) fn try_tables(study: &Study<'_>, mut fit: Fit, conditions: &Condition
             places.push((fitted.effect.place, axis));
         }
     }
+    places.retain(|(place, axis)| !fit.model.iter().any(|fitted| is_dent(fitted, *place, &travels[*axis])));
     for (place, axis) in places {
         let imitations = [false, true].map(|waving| Imitation { place, axis, waving });
         for imitation in imitations {
@@ -69,7 +73,8 @@ impl Imitation {
         let kept: Model = fit.model.iter().filter(|fitted| !self.holds(fitted, travels)).cloned().collect();
         let mut shapes = tables(study, self.axis, travel);
         if self.waving {
-            shapes.extend(nodes::thinned(study, &kept, self.place, self.axis, travel, noises));
+            let fine = even(travel.low, travel.high, FINE);
+            shapes.extend(nodes::thinned(study, &kept, (self.place, self.axis), &fine, noises));
         }
         for shape in shapes {
             let mut trial = kept.clone();
@@ -80,8 +85,7 @@ impl Imitation {
                 continue;
             }
             // A curve that is flat but for one place is a place; that is looked for elsewhere, without imitations.
-            let stretch = trial.model.last().and_then(active);
-            if stretch.is_some_and(|(from, to)| to - from < BROAD * travel.range()) {
+            if trial.model.last().is_some_and(|table| is_dent(table, self.place, travel)) {
                 return conditions.refine(study, kept);
             }
             fit = trial;
@@ -132,6 +136,12 @@ fn energy(fitted: &Fitted) -> f64 {
 fn one_stands_out(energies: &[f64]) -> bool {
     let largest = energies.iter().fold(0.0, |most: f64, energy| most.max(*energy));
     largest >= STANDS_OUT * energies.iter().sum::<f64>()
+}
+
+/// Whether an effect is a table of this motion that is flat but for one place.
+fn is_dent(fitted: &Fitted, place: Place, travel: &Travel) -> bool {
+    fitted.effect.place == place
+        && active(fitted).is_some_and(|(from, to)| to - from < BROAD * travel.range())
 }
 
 /// The share of the travel from which on a feature is a curve, and below which it is a place.

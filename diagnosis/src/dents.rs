@@ -8,10 +8,12 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::appraisal::Appraisal;
 use crate::conditions::Conditions;
-use crate::curves::even;
+use crate::curves::nodes::thinned;
+use crate::curves::{FINE, even};
 use crate::design::{Design, Regressor};
+use crate::fit::Fit;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::places::OF_A_PLACE;
+use crate::noise::Noise;
 use crate::side::Side;
 use crate::study::{Kind, Study};
 use crate::sweep::Swept;
@@ -21,8 +23,8 @@ use crate::travel::Travel;
 /// How many even places of an axis are looked at. A dent is at least as wide as from one to the next on both sides.
 const PLACES: usize = 40;
 /// How many of these steps a dent falls over on each side. At eight it covers two fifths of the travel, and is a curve.
-const FLANKS: [usize; 4] = [1, 2, 4, 8];
-/// How many standard deviations its height must stand above nothing in each direction: at 160 places and widths, chance gives one of
+const FLANKS: [usize; 6] = [1, 2, 3, 4, 6, 8];
+/// How many standard deviations its height must stand above nothing in each direction: at 200 places and widths, chance gives one of
 /// them so much in both directions with one sign once in 10 000 times.
 const SURE: f64 = 4.0;
 /// The share of what is left that a dent must take, for it to hide what else is left. Beside a smaller one the search sees nine
@@ -31,35 +33,25 @@ const HIDES: f64 = 0.1;
 /// How much the heights of both directions may differ, as a share of the larger: what has a direction is no place.
 const ALIKE: f64 = 0.5;
 
-/// What a search may begin anew with: the settings, and the dent that takes most beside them alone; the settings, and the one that
-/// takes most beside all of the model. The last effect of each is the table over the dent.
-pub(crate) fn hidden(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Vec<Model> {
+/// Dents that may hide what else there is: the one that takes most beside the settings alone, and the one that takes most beside all of
+/// the model.
+pub(crate) fn hidden(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Vec<Dent> {
     let Some(settings) = model.get(..conditions.always) else { return Vec::new() };
-    let mut begun: Vec<Model> = Vec::new();
+    let mut dents: Vec<Dent> = Vec::new();
     for known in [settings, &model[..]] {
         let Some(dent) = largest(study, &known.to_vec(), conditions) else { continue };
-        let effect = Effect { place: dent.place, shape: dent.table(conditions.travels) };
-        let is_there = |model: &Model| model.iter().any(|fitted| is_table_of(fitted, dent.place));
-        if is_there(model) || begun.iter().any(is_there) {
-            continue;
+        if !dent.is_in(model) && !dents.contains(&dent) {
+            dents.push(dent);
         }
-        let mut start = settings.to_vec();
-        start.push(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
-        begun.push(conditions.refine(study, start).model);
     }
-    begun
-}
-
-fn is_table_of(fitted: &Fitted, place: Place) -> bool {
-    fitted.effect.place == place && matches!(fitted.effect.shape, Shape::Table { .. })
+    dents
 }
 
 /// The dent that takes most beside a model, where it takes much.
 fn largest(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Option<Dent> {
     let appraisal = Appraisal::new(study, model);
-    let under = conditions.under(&appraisal.floors);
     let axes = (0..study.own.len()).filter(|axis| conditions.travels[*axis].moves);
-    let dents = axes.filter_map(|axis| Looked::new(study, model, axis, &under)?.dent());
+    let dents = axes.filter_map(|axis| Looked::new(study, model, axis, (&appraisal, conditions))?.dent());
     dents.reduce(|most, next| if next.takes > most.takes { next } else { most })
 }
 
@@ -83,32 +75,66 @@ impl Height {
 }
 
 /// A dent of an axis: its middle and its flank, mm or rad.
-struct Dent {
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Dent {
     place: Place,
     axis: usize,
     middle: f64,
     flank: f64,
-    /// What it takes from the weighted sum of squares.
+    /// What it takes from the sum of squares.
     takes: f64,
 }
 
 impl Dent {
-    /// The table over it: straight to the ends of the travel beside it.
-    fn table(&self, travels: &[Travel]) -> Shape {
-        let travel = &travels[self.axis];
+    /// The settings of a model and a fine table over the dent.
+    pub(crate) fn beside_settings(&self, study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Model {
+        let mut begun = model[..conditions.always].to_vec();
+        let nodes = self.nodes(&conditions.travels[self.axis]);
+        begun.push(self.table(Shape::Table { axis: self.axis, nodes, directed: false, repeats: false }));
+        conditions.refine(study, begun).model
+    }
+
+    /// Whether a model has a table of the dent's motion.
+    pub(crate) fn is_in(&self, model: &Model) -> bool {
+        model.iter().any(|fitted| self.is_table(fitted))
+    }
+
+    /// A fit in which the table over the dent keeps those of its nodes that it needs.
+    pub(crate) fn drawn(&self, study: &Study<'_>, fit: Fit, conditions: &Conditions<'_>) -> Fit {
+        let kept: Model = fit.model.iter().filter(|fitted| !self.is_table(fitted)).cloned().collect();
+        let nodes = self.nodes(&conditions.travels[self.axis]);
+        let thinned = thinned(study, &kept, (self.place, self.axis), &nodes, conditions.noises);
+        let Some(shape) = thinned else { return fit };
+        let mut model = kept;
+        model.insert(conditions.always, self.table(shape));
+        conditions.refine(study, model)
+    }
+
+    /// Close nodes over the dent, and the ends of the travel: the table is straight beside it.
+    fn nodes(&self, travel: &Travel) -> Vec<f64> {
         let reach = WIDER * self.flank;
         let from = (self.middle - reach).max(travel.low);
         let to = (self.middle + reach).min(travel.high);
-        let mut nodes = even(from, to, OF_A_PLACE);
+        let mut nodes = even(from, to, FINE);
         nodes.insert(0, travel.low);
         nodes.push(travel.high);
         nodes.dedup();
-        Shape::Table { axis: self.axis, nodes, directed: false, repeats: false }
+        nodes
+    }
+
+    fn table(&self, shape: Shape) -> Fitted {
+        let effect = Effect { place: self.place, shape };
+        Fitted { coefficients: vec![0.0; effect.shape.columns()], effect }
+    }
+
+    fn is_table(&self, fitted: &Fitted) -> bool {
+        fitted.effect.place == self.place && matches!(fitted.effect.shape, Shape::Table { .. })
     }
 }
 
 /// A bell falls to a hundredth within three standard deviations; the triangle that takes most of it has a flank of two and a quarter.
-const WIDER: f64 = 1.4;
+/// What stands beside a dent may let it look half as wide.
+const WIDER: f64 = 2.0 * 1.4;
 
 /// The products of hats at the places of an axis, on the way up and on the way down, beside a model.
 struct Looked {
@@ -118,39 +144,60 @@ struct Looked {
     step: f64,
     /// How many columns the model has.
     beside: usize,
+    /// Beside the floor: it tells whether a dent is sure.
+    weighed: Sums,
+    /// Each sample for itself: it tells how much a dent takes of what is left.
+    plain: Sums,
+}
+
+/// Products of columns and response, and how many samples are in them.
+struct Sums {
     products: DMatrix<f64>,
     samples: f64,
 }
 
 impl Looked {
-    fn new(study: &Study<'_>, model: &Model, axis: usize, conditions: &Conditions<'_>) -> Option<Self> {
+    fn new(
+        study: &Study<'_>,
+        model: &Model,
+        axis: usize,
+        (appraisal, conditions): (&Appraisal, &Conditions<'_>),
+    ) -> Option<Self> {
         let motion = study.own[axis]?;
         let mut kinds = study.scenes.iter().flat_map(|scene| &scene.channels).map(|channel| channel.kind);
         let side = if kinds.any(Kind::outside) { Side::After } else { Side::Drive };
         let place = Place::Motion { motion, side };
         let travel = &conditions.travels[axis];
         let nodes = even(travel.low, travel.high, PLACES);
-        let shape = Shape::Table { axis, nodes, directed: true, repeats: false };
-        let mut regressors: Vec<Regressor> =
-            model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
-        regressors.push(Regressor::of(Effect { place, shape }));
-        let mut design = Design::new(study, model, conditions.noises, regressors);
-        design.rebase(model);
-        let (products, samples) = design.sum(|_| true);
+        let hats = Effect { place, shape: Shape::Table { axis, nodes, directed: true, repeats: false } };
+        let sums = |noises: &[Vec<Noise>]| {
+            let effects = model.iter().map(|fitted| &fitted.effect).chain([&hats]);
+            let regressors = effects.cloned().map(Regressor::of).collect();
+            let mut design = Design::new(study, model, noises, regressors);
+            design.rebase(model);
+            let (products, samples) = design.sum(|_| true);
+            (design.columns(model.len()).start, Sums { products, samples })
+        };
+        let (beside, weighed) = sums(&appraisal.floors);
+        let (_, plain) = sums(&appraisal.as_white());
         let step = travel.range() / crate::number(PLACES - 1);
-        Some(Self { place, axis, low: travel.low, step, beside: *design.first.last()?, products, samples })
+        Some(Self { place, axis, low: travel.low, step, beside, weighed, plain })
     }
 
     /// The dent that takes most.
     fn dent(&self) -> Option<Dent> {
-        let mut beside = Swept::new(&self.products);
+        let mut beside = Swept::new(&self.plain.products);
         for column in 0..self.beside {
             beside.take(column);
         }
         let left = beside.remaining();
         let tried =
             FLANKS.into_iter().flat_map(|flank| (flank..PLACES - flank).map(move |middle| (middle, flank)));
-        let taken = tried.filter_map(|(middle, flank)| Some((self.takes(middle, flank)?, middle, flank)));
+        let sure = tried.filter(|(middle, flank)| self.is_sure(*middle, *flank));
+        let taken = sure.filter_map(|(middle, flank)| {
+            let swept = self.swept(&self.plain, middle, flank)?;
+            Some((left - swept.remaining(), middle, flank))
+        });
         let (takes, middle, flank) = taken.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let dent = Dent {
             place: self.place,
@@ -159,33 +206,35 @@ impl Looked {
             flank: crate::number(flank) * self.step,
             takes,
         };
+        if std::env::var("DBG").is_ok() { eprintln!("looked {} {} {} takes {takes} left {left}", self.axis, dent.middle, dent.flank); }
+        if std::env::var("DBG").is_ok() { eprintln!("looked {} {} {} takes {takes} left {left}", self.axis, dent.middle, dent.flank); }
         (takes > HIDES * left).then_some(dent)
     }
 
-    /// What a hat takes from the sum of squares where it stands out alike in both directions.
-    fn takes(&self, middle: usize, flank: usize) -> Option<f64> {
-        let joined = self.joined(middle, flank);
-        let products = joined.tr_mul(&self.products) * &joined;
-        let mut swept = Swept::new(&products);
-        for column in 0..self.beside {
-            swept.take(column);
-        }
-        let (up, down) = (self.beside, self.beside + 1);
-        let before = swept.remaining();
-        if !swept.take(up) || !swept.take(down) {
-            return None;
-        }
-        let scale = swept.remaining() / self.samples.max(1.0);
+    /// Whether a hat stands out alike in both directions.
+    fn is_sure(&self, middle: usize, flank: usize) -> bool {
+        let Some(swept) = self.swept(&self.weighed, middle, flank) else { return false };
+        let scale = swept.remaining() / self.weighed.samples.max(1.0);
         let height = |column: usize| Height {
             value: swept.coefficient(column),
             deviation: (scale * swept.covariance(column, column)).max(0.0).sqrt(),
         };
-        height(up).agrees(&height(down)).then(|| before - swept.remaining())
+        height(self.beside).agrees(&height(self.beside + 1))
+    }
+
+    /// The columns of the model and of a hat in both directions, all taken; nothing where the model has a direction of the hat already.
+    fn swept(&self, sums: &Sums, middle: usize, flank: usize) -> Option<Swept> {
+        let joined = self.joined(middle, flank);
+        let mut swept = Swept::new(&(joined.tr_mul(&sums.products) * &joined));
+        for column in 0..self.beside {
+            swept.take(column);
+        }
+        (swept.take(self.beside) && swept.take(self.beside + 1)).then_some(swept)
     }
 
     /// The columns of the model, of a hat on the way up and on the way down, and of the response.
     fn joined(&self, middle: usize, flank: usize) -> DMatrix<f64> {
-        let size = self.products.nrows();
+        let size = self.weighed.products.nrows();
         let mut joined = DMatrix::zeros(size, self.beside + 3);
         for column in 0..self.beside {
             joined[(column, column)] = 1.0;

@@ -12,7 +12,7 @@ use crate::conditions::{Conditions, Tries};
 use crate::course::Course;
 use crate::crossing;
 use crate::curves;
-use crate::dents;
+use crate::dents::{self, Dent};
 use crate::design::{Design, Regressor};
 use crate::dynamics;
 use crate::fit::{self, Fit};
@@ -74,11 +74,10 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     search.cross_plays(study, progress);
     let mut fit = search.fit(study);
     if let Some(loops) = dynamics::loops_alone(study, &fit.model, &search.conditions()) {
-        let held = search.always;
-        (search, fit) = begun_anew(study, (search, fit), (loops, held), progress);
+        (search, fit) = begun_anew(study, (search, fit), Start { model: loops, dent: None }, progress);
     }
     for dent in dents::hidden(study, &fit.model, &search.conditions()) {
-        (search, fit) = beside_a_dent(study, (search, fit), dent, progress);
+        (search, fit) = beside_a_dent(study, (search, fit), &dent, progress);
     }
     let curved = curves::try_tables(study, fit.clone(), &search.conditions());
     if same_effects(&curved.model, &fit.model) {
@@ -113,24 +112,34 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     Found { fit, appraisal, pool, travels, bands, always, tries, plain_zeros: false }
 }
 
-/// A search that begins with another model, where it comes to a better end than the one that did not. The first `held` effects of the
-/// model stay in it while the search goes on; at its end they are priced like all others.
+/// What a search begins anew with: settings and loops, or settings and the table over a dent.
+struct Start {
+    model: Model,
+    dent: Option<Dent>,
+}
+
+/// A search that begins with another model, where it comes to a better end than the one that did not. A dent stays in the model while
+/// the search goes on; at its end it is priced like all others.
 fn begun_anew(
     study: &mut Study<'_>,
     (search, fit): (Search, Fit),
-    (model, held): (Model, usize),
+    Start { model, dent }: Start,
     progress: &mut dyn FnMut(f64),
 ) -> (Search, Fit) {
     let crossings = study.crossings.clone();
-    let known = search.worth(study, &fit);
     let mut other = search.clone();
-    other.always = held;
+    if dent.is_some() {
+        other.always = model.len();
+    }
     other.begin(study, model);
     other.go_round(study, progress);
     other.cross_plays(study, progress);
     other.always = search.always;
-    let better = other.fit(study);
-    if other.worth(study, &better) < known {
+    let mut better = other.fit(study);
+    if let Some(dent) = dent {
+        better = dent.drawn(study, better, &other.conditions());
+    }
+    if other.ends_better(study, &better, (&search, &fit)) {
         return (other, better);
     }
     study.crossings = crossings;
@@ -138,22 +147,21 @@ fn begun_anew(
     (search, fit)
 }
 
-/// A search beside a dent, which is the last effect of `begun`, where it comes to a better end and the judge upholds the dent in it.
+/// A search beside a dent, where it comes to a better end and the judge upholds the dent in it.
 fn beside_a_dent(
     study: &mut Study<'_>,
     (search, fit): (Search, Fit),
-    begun: Model,
+    dent: &Dent,
     progress: &mut dyn FnMut(f64),
 ) -> (Search, Fit) {
-    let Some(dent) = begun.last().map(|fitted| fitted.effect.clone()) else { return (search, fit) };
-    let holds = |model: &Model| model.iter().any(|fitted| fitted.effect == dent);
     let before = study.crossings.clone();
-    let held = begun.len();
-    let other = begun_anew(study, (search.clone(), fit.clone()), (begun, held), progress);
-    if holds(&other.1.model) {
+    let model = dent.beside_settings(study, &fit.model, &search.conditions());
+    let start = Start { model, dent: Some(dent.clone()) };
+    let other = begun_anew(study, (search.clone(), fit.clone()), start, progress);
+    if dent.is_in(&other.1.model) {
         let crossings = study.crossings.clone();
         let (kept, _) = upheld(study, other.1.clone(), &other.0.conditions());
-        if holds(&kept.model) {
+        if dent.is_in(&kept.model) {
             study.crossings = crossings;
             Appraisal::new(study, &other.1.model).mark(study);
             return other;
@@ -261,14 +269,21 @@ impl Search {
         self.model = model;
     }
 
-    /// What its end costs beside that of another search: minus twice the likelihood, each with the noise that suits it best, and its
-    /// prices.
-    fn worth(&self, study: &Study<'_>, fit: &Fit) -> f64 {
-        let appraisal = Appraisal::new(study, &fit.model);
+    /// Whether its end costs less than that of another search: minus twice the likelihood, and the prices. It must under the weights that
+    /// either end gives to the samples: under those of an end that lacks something fewer samples count.
+    fn ends_better(&self, study: &Study<'_>, end: &Fit, (other, of_other): (&Self, &Fit)) -> bool {
+        let [ours, theirs] = [end, of_other].map(|fit| Appraisal::new(study, &fit.model));
+        let price = self.paid(study, end, &ours) - other.paid(study, of_other, &theirs);
+        let under_theirs = Appraisal::beside(study, &end.model, &theirs).deviance - theirs.deviance;
+        let under_ours = ours.deviance - Appraisal::beside(study, &of_other.model, &ours).deviance;
+        under_theirs + price < 0.0 && under_ours + price < 0.0
+    }
+
+    /// The prices of all effects of its end.
+    fn paid(&self, study: &Study<'_>, end: &Fit, appraisal: &Appraisal) -> f64 {
         let conditions = self.conditions();
         let conditions = conditions.under(&appraisal.noises);
-        let paid = conditions.cost(study, fit) - conditions.cost_at(study, fit, &vec![0.0; fit.model.len()]);
-        appraisal.deviance + paid
+        conditions.cost(study, end) - conditions.cost_at(study, end, &vec![0.0; end.model.len()])
     }
 
     /// The conditions of the present round.

@@ -99,7 +99,7 @@ fn nearest(read: &[f64], node: f64) -> f64 {
 }
 
 /// How many nodes a place gets: straight lines between them leave a thirtieth of the height of a bell, by its curvature at the top.
-pub(crate) const OF_A_PLACE: usize = 13;
+const OF_A_PLACE: usize = 13;
 /// A feature is told down to a quarter of its height. A bell falls to a hundredth of it this share of that width farther on.
 const FOOT: f64 = 0.4;
 

@@ -1,42 +1,35 @@
 //! Nodes where a curve bends: those of a table that says most with fewest.
 //!
-//! In: a model without what imitates a curve. Out: a table of the motion along the axis, with even nodes of which all were taken
-//! out that the curve does not need. A table on some of the nodes is a sum of hats on all of them, so that one design tells what
+//! In: a model without what imitates a curve, and nodes. Out: a table of the motion along the axis, with those of the nodes that the
+//! curve needs. A table on some of the nodes is a sum of hats on all of them, so that one design tells what
 //! each of these tables leaves.
 
 use nalgebra::DMatrix;
 
-use super::even;
 use crate::design::{Design, Regressor};
 use crate::model::{Effect, Model, Place};
 use crate::noise::Noise;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
-use crate::travel::Travel;
 
-/// How many even nodes there are at first: a place that a table tells is a fortieth of the travel.
-const NODES: usize = 40;
-
-/// A table with as few nodes as Schwarz's criterion leaves.
-pub(super) fn thinned(
+/// A table with as few of these nodes as Schwarz's criterion leaves.
+pub(crate) fn thinned(
     study: &Study<'_>,
     kept: &Model,
-    place: Place,
-    axis: usize,
-    travel: &Travel,
+    (place, axis): (Place, usize),
+    all: &[f64],
     noises: &[Vec<Noise>],
 ) -> Option<Shape> {
-    let all = even(travel.low, travel.high, NODES);
     let shape = |nodes: Vec<f64>| Shape::Table { axis, nodes, directed: false, repeats: false };
     let mut regressors: Vec<Regressor> =
         kept.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
-    regressors.push(Regressor::of(Effect { place, shape: shape(all.clone()) }));
+    regressors.push(Regressor::of(Effect { place, shape: shape(all.to_vec()) }));
     let mut design = Design::new(study, kept, noises, regressors);
     design.rebase(kept);
     let (products, samples) = design.fitted();
     let curve = Curve { first: *design.first.last()?, products, samples };
-    let mut nodes: Vec<usize> = (0..NODES).collect();
+    let mut nodes: Vec<usize> = (0..all.len()).collect();
     let mut cost = curve.cost(&nodes);
     while nodes.len() > FEWEST {
         let (least, without) = (1..nodes.len() - 1)

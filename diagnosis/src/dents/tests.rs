@@ -3,7 +3,6 @@
 use super::*;
 use crate::conditions::Tries;
 use crate::engine::courses;
-use crate::noise::Noise;
 use crate::terms::Setting;
 use crate::testing::{Bench, line, noisy, path, position};
 use crate::travel::travels;
@@ -21,7 +20,8 @@ fn begun(errors: &str) -> Option<Vec<f64>> {
     let noises = vec![vec![Noise::white(0.000_3)]];
     let tries = Tries { candidates: 40.0, waves: 300.0 };
     let conditions = Conditions { always: 1, noises: &noises, travels: &travels, tries };
-    match hidden(&study, &model, &conditions).pop()?.pop()?.effect.shape {
+    let dent = hidden(&study, &model, &conditions).pop()?;
+    match dent.beside_settings(&study, &model, &conditions).pop()?.effect.shape {
         Shape::Table { nodes, .. } => Some(nodes),
         _ => None,
     }

@@ -139,7 +139,7 @@ fn one_stands_out(energies: &[f64]) -> bool {
 }
 
 /// Whether an effect is a table of this motion that is flat but for one place.
-fn is_dent(fitted: &Fitted, place: Place, travel: &Travel) -> bool {
+pub(crate) fn is_dent(fitted: &Fitted, place: Place, travel: &Travel) -> bool {
     fitted.effect.place == place
         && active(fitted).is_some_and(|(from, to)| to - from < BROAD * travel.range())
 }

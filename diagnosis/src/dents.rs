@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::appraisal::Appraisal;
 use crate::conditions::Conditions;
 use crate::curves::nodes::thinned;
-use crate::curves::{FINE, even};
+use crate::curves::{FINE, even, is_dent};
 use crate::design::{Design, Regressor};
 use crate::fit::Fit;
 use crate::model::{Effect, Fitted, Model, Place};
@@ -33,18 +33,12 @@ const HIDES: f64 = 0.1;
 /// How much the heights of both directions may differ, as a share of the larger: what has a direction is no place.
 const ALIKE: f64 = 0.5;
 
-/// Dents that may hide what else there is: the one that takes most beside the settings alone, and the one that takes most beside all of
-/// the model.
-pub(crate) fn hidden(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Vec<Dent> {
+/// Dents that may hide what else there is, each with the model beside which it takes most: the settings alone, and all that was found.
+pub(crate) fn hidden(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Vec<(Dent, Model)> {
     let Some(settings) = model.get(..conditions.always) else { return Vec::new() };
-    let mut dents: Vec<Dent> = Vec::new();
-    for known in [settings, &model[..]] {
-        let Some(dent) = largest(study, &known.to_vec(), conditions) else { continue };
-        if !dent.is_in(model) && !dents.contains(&dent) {
-            dents.push(dent);
-        }
-    }
-    dents
+    let beside = [settings.to_vec(), model.clone()].into_iter();
+    let dents = beside.filter_map(|known| Some((largest(study, &known, conditions)?, known)));
+    dents.filter(|(dent, _)| !model.iter().any(|fitted| dent.is_table(fitted))).collect()
 }
 
 /// The dent that takes most beside a model, where it takes much.
@@ -86,17 +80,17 @@ pub(crate) struct Dent {
 }
 
 impl Dent {
-    /// The settings of a model and a fine table over the dent.
-    pub(crate) fn beside_settings(&self, study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Model {
-        let mut begun = model[..conditions.always].to_vec();
+    /// A model with a fine table over the dent, behind its settings.
+    pub(crate) fn added(&self, study: &Study<'_>, mut model: Model, conditions: &Conditions<'_>) -> Model {
         let nodes = self.nodes(&conditions.travels[self.axis]);
-        begun.push(self.table(Shape::Table { axis: self.axis, nodes, directed: false, repeats: false }));
-        conditions.refine(study, begun).model
+        let shape = Shape::Table { axis: self.axis, nodes, directed: false, repeats: false };
+        model.insert(conditions.always, self.table(shape));
+        conditions.refine(study, model).model
     }
 
-    /// Whether a model has a table of the dent's motion.
-    pub(crate) fn is_in(&self, model: &Model) -> bool {
-        model.iter().any(|fitted| self.is_table(fitted))
+    /// Whether a model has a table of the dent's motion that is flat but for one place.
+    pub(crate) fn is_in(&self, model: &Model, travels: &[Travel]) -> bool {
+        model.iter().any(|fitted| is_dent(fitted, self.place, &travels[self.axis]))
     }
 
     /// A fit in which the table over the dent keeps those of its nodes that it needs.

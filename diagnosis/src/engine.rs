@@ -77,7 +77,7 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
         (search, fit) = begun_anew(study, (search, fit), Start { model: loops, dent: None }, progress);
     }
     for dent in dents::hidden(study, &fit.model, &search.conditions()) {
-        (search, fit) = beside_a_dent(study, (search, fit), &dent, progress);
+        (search, fit) = with_dent(study, (search, fit), dent, progress);
     }
     let curved = curves::try_tables(study, fit.clone(), &search.conditions());
     if same_effects(&curved.model, &fit.model) {
@@ -112,7 +112,7 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     Found { fit, appraisal, pool, travels, bands, always, tries, plain_zeros: false }
 }
 
-/// What a search begins anew with: settings and loops, or settings and the table over a dent.
+/// What a search begins anew with: settings and loops; or a table over a dent behind the settings, and what stood beside it.
 struct Start {
     model: Model,
     dent: Option<Dent>,
@@ -129,7 +129,7 @@ fn begun_anew(
     let crossings = study.crossings.clone();
     let mut other = search.clone();
     if dent.is_some() {
-        other.always = model.len();
+        other.always += 1;
     }
     other.begin(study, model);
     other.go_round(study, progress);
@@ -147,21 +147,21 @@ fn begun_anew(
     (search, fit)
 }
 
-/// A search beside a dent, where it comes to a better end and the judge upholds the dent in it.
-fn beside_a_dent(
+/// A search that begins with a dent and what it was seen beside, where it comes to a better end and the judge upholds the dent in it.
+fn with_dent(
     study: &mut Study<'_>,
     (search, fit): (Search, Fit),
-    dent: &Dent,
+    (dent, beside): (Dent, Model),
     progress: &mut dyn FnMut(f64),
 ) -> (Search, Fit) {
     let before = study.crossings.clone();
-    let model = dent.beside_settings(study, &fit.model, &search.conditions());
+    let model = dent.added(study, beside, &search.conditions());
     let start = Start { model, dent: Some(dent.clone()) };
     let other = begun_anew(study, (search.clone(), fit.clone()), start, progress);
-    if dent.is_in(&other.1.model) {
+    if dent.is_in(&other.1.model, &search.travels) {
         let crossings = study.crossings.clone();
         let (kept, _) = upheld(study, other.1.clone(), &other.0.conditions());
-        if dent.is_in(&kept.model) {
+        if dent.is_in(&kept.model, &search.travels) {
             study.crossings = crossings;
             Appraisal::new(study, &other.1.model).mark(study);
             return other;

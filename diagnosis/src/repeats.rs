@@ -87,7 +87,7 @@ pub(crate) fn scatter(study: &mut Study<'_>, model: &Model) -> Vec<Scatter> {
 }
 
 fn of_scene(study: &Study<'_>, scene: usize, model: &Model) -> Option<Scatter> {
-    let runs = study.scenes[scene].run_numbers();
+    let runs = at_same_places(&study.scenes[scene]);
     if runs.len() < 2 {
         return None;
     }
@@ -111,9 +111,58 @@ fn of_scene(study: &Study<'_>, scene: usize, model: &Model) -> Option<Scatter> {
     let samples: usize = study.scenes[scene].channels.iter().map(|channel| channel.values.len()).sum();
     let price = crate::number(zeros.len()) * crate::number(samples).ln() + 20.0;
     let scatter = measure(study, scene, &free, &after, runs);
-    let significant = before.deviance - after.deviance > price;
+    // Under the weights of either: where a model lacks something, fewer samples count.
+    let gains = [
+        before.deviance - Appraisal::beside(study, &free, &before).deviance,
+        Appraisal::beside(study, model, &after).deviance - after.deviance,
+    ];
+    let significant = gains.iter().all(|gain| *gain > price);
     (significant && scatter.between > WIDE * scatter.within).then_some(scatter)
 }
+
+/// The first run, and those that went where it did: between runs at different places an error that depends on the place tells as
+/// well what they differ by.
+fn at_same_places(scene: &Scene<'_>) -> Vec<i64> {
+    let ranges = |run: i64| -> Vec<Range> {
+        let positions = scene.given.programmed.iter();
+        positions.map(|position| Range::of(position, &scene.recording.run, run)).collect()
+    };
+    let mut runs = scene.run_numbers();
+    let Some(first) = runs.first().map(|run| ranges(*run)) else { return runs };
+    runs.retain(|run| ranges(*run).iter().zip(&first).all(|(range, first)| range.shares(first)));
+    runs
+}
+
+/// Where an axis was in a run, mm or rad; from infinity to minus infinity where that is not known.
+struct Range {
+    low: f64,
+    high: f64,
+}
+
+impl Range {
+    fn of(position: &[f64], runs: &[i64], run: i64) -> Self {
+        let rows = position.iter().zip(runs).filter(|(value, of)| **of == run && value.is_finite());
+        let nowhere = Self { low: f64::INFINITY, high: f64::NEG_INFINITY };
+        rows.fold(nowhere, |range, (value, _)| Self {
+            low: range.low.min(*value),
+            high: range.high.max(*value),
+        })
+    }
+
+    /// Whether most of the shorter of two ranges lies in the other; an axis that stands in one run need only be within the other.
+    fn shares(&self, other: &Self) -> bool {
+        let shorter = (self.high - self.low).min(other.high - other.low);
+        let longer = (self.high - self.low).max(other.high - other.low);
+        let common = self.high.min(other.high) - self.low.max(other.low);
+        let unknown = self.low > self.high || other.low > other.high;
+        unknown || common >= SHARED * shorter - SAME_PLACE * longer
+    }
+}
+
+/// Most of the shorter range.
+const SHARED: f64 = 0.5;
+/// Ends of strokes of a servo differ by less than this share of the stroke.
+const SAME_PLACE: f64 = 1e-3;
 
 /// A linear fit of loops and clocks holds only nearby: they stay as they were.
 fn keep_loops(model: &Model, mut free: Model) -> Model {

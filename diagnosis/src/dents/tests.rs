@@ -20,8 +20,8 @@ fn begun(errors: &str) -> Option<Vec<f64>> {
     let noises = vec![vec![Noise::white(0.000_3)]];
     let tries = Tries { candidates: 40.0, waves: 300.0 };
     let conditions = Conditions { always: 1, noises: &noises, travels: &travels, tries };
-    let dent = hidden(&study, &model, &conditions).pop()?;
-    match dent.beside_settings(&study, &model, &conditions).pop()?.effect.shape {
+    let (dent, beside) = hidden(&study, &model, &conditions).pop()?;
+    match dent.added(&study, beside, &conditions).pop()?.effect.shape {
         Shape::Table { nodes, .. } => Some(nodes),
         _ => None,
     }

@@ -19,7 +19,8 @@ pub(crate) const FINE: usize = 40;
 /// A wave of more than this share of the travel may be part of a curve.
 pub(crate) const LONG: f64 = 0.12;
 
-/// Tries tables for every motion of which two or more smooth terms are in the model, or a polynomial of a high power. A table over one
+/// Tries tables for every motion of which two or more smooth terms are in the model, or a polynomial of a high power, or
+/// that is known at stations alone. A table over one
 /// place stays: smooth terms beside it are others.
 pub(crate) fn try_tables(study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> Fit {
     let Conditions { always, travels, .. } = *conditions;
@@ -31,6 +32,11 @@ pub(crate) fn try_tables(study: &Study<'_>, mut fit: Fit, conditions: &Condition
             places.push((fitted.effect.place, axis));
         }
     }
+    for at_stations in known_at_stations(study, travels) {
+        if !places.contains(&at_stations) {
+            places.push(at_stations);
+        }
+    }
     places.retain(|(place, axis)| !fit.model.iter().any(|fitted| is_dent(fitted, *place, &travels[*axis])));
     for (place, axis) in places {
         let imitations = [false, true].map(|waving| Imitation { place, axis, waving });
@@ -39,6 +45,12 @@ pub(crate) fn try_tables(study: &Study<'_>, mut fit: Fit, conditions: &Condition
         }
     }
     fit
+}
+
+/// The own motions of axes that are known at stations alone: a table of what was read there is the first thing to try.
+fn known_at_stations(study: &Study<'_>, travels: &[Travel]) -> Vec<(Place, usize)> {
+    let axes = (0..travels.len()).filter(|axis| travels[*axis].is_known_at_stations_alone());
+    axes.filter_map(|axis| Some((study.own_place(axis)?, axis))).collect()
 }
 
 /// What may imitate a curve of a motion along an axis.
@@ -60,7 +72,8 @@ impl Imitation {
         let parts: Vec<&Fitted> = model.iter().filter(|fitted| self.holds(fitted, travels)).collect();
         let winding =
             |fitted: &&Fitted| matches!(fitted.effect.shape, Shape::Polynomial { degree, .. } if degree > 2);
-        if self.waving { parts.len() >= MANY } else { parts.len() > 1 || parts.iter().any(winding) }
+        let unnamed = parts.is_empty() && travels[self.axis].is_known_at_stations_alone();
+        if self.waving { parts.len() >= MANY } else { unnamed || parts.len() > 1 || parts.iter().any(winding) }
     }
 
     /// The fit with a table in the place of it, where that says the same with less.

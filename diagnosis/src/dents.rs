@@ -14,8 +14,7 @@ use crate::design::{Design, Regressor};
 use crate::fit::Fit;
 use crate::model::{Effect, Fitted, Model, Place};
 use crate::noise::Noise;
-use crate::side::Side;
-use crate::study::{Kind, Study};
+use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 use crate::travel::Travel;
@@ -157,10 +156,7 @@ impl Looked {
         axis: usize,
         (appraisal, conditions): (&Appraisal, &Conditions<'_>),
     ) -> Option<Self> {
-        let motion = study.own[axis]?;
-        let mut kinds = study.scenes.iter().flat_map(|scene| &scene.channels).map(|channel| channel.kind);
-        let side = if kinds.any(Kind::outside) { Side::After } else { Side::Drive };
-        let place = Place::Motion { motion, side };
+        let place = study.own_place(axis)?;
         let travel = &conditions.travels[axis];
         let nodes = even(travel.low, travel.high, PLACES);
         let hats = Effect { place, shape: Shape::Table { axis, nodes, directed: true, repeats: false } };

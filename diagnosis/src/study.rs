@@ -184,6 +184,13 @@ impl<'a> Study<'a> {
         &self.scenes[at.scene].channels[at.channel]
     }
 
+    /// The own motion of an axis, behind its drive where an instrument outside reads anything.
+    pub(crate) fn own_place(&self, axis: usize) -> Option<Place> {
+        let mut kinds = self.channels().map(|at| self.channel(at).kind);
+        let side = if kinds.any(Kind::outside) { Side::After } else { Side::Drive };
+        Some(Place::Motion { motion: self.own[axis]?, side })
+    }
+
     /// Brings recordings of one machine together.
     pub(crate) fn new(
         equations: &'a Equations,

@@ -15,7 +15,7 @@ use crate::study::Study;
 pub(crate) struct Travel {
     pub(crate) low: f64,
     pub(crate) high: f64,
-    /// The typical step between rows while it moves.
+    /// The typical step between rows while it moves; 0 where it is known at stations alone.
     pub(crate) step: f64,
     pub(crate) moves: bool,
     /// The mean time from reversal to reversal, s; 0 where there is none.
@@ -29,6 +29,12 @@ impl Travel {
     /// The middle of its positions.
     pub(crate) fn center(&self) -> f64 {
         (self.low + self.high) / 2.0
+    }
+
+    /// Whether it moves, but is known nowhere on its way: not in two rows, one behind the other, between which it moved. Stations tell no
+    /// waves: of stations at equal steps any period has others that look alike.
+    pub(crate) fn is_known_at_stations_alone(&self) -> bool {
+        self.moves && self.step == 0.0
     }
 
     /// The range of positions.

@@ -76,7 +76,7 @@ pub(crate) fn places(
         for side in sides.into_iter().filter(|(_, possible)| *possible).map(|(side, _)| side) {
             let place = Place::Motion { motion, side };
             let along = known.axis.filter(|axis| travels[*axis].moves);
-            if let Some(axis) = along {
+            if let Some(axis) = along.filter(|axis| !travels[*axis].is_known_at_stations_alone()) {
                 // Any period and any frequency tell which places are alike.
                 let period = travels[axis].range() / 3.7;
                 samples.push(Effect {
@@ -127,11 +127,12 @@ fn speeds(scene: &Scene<'_>, axis: usize) -> Vec<f64> {
     runs.flat_map(|(rows, _)| of_run(rows)).filter(|speed| speed.is_finite()).collect()
 }
 
-/// Whether rows are stations: between two of them an axis goes a good part of its travel, and rows are far apart. Such a table
-/// shows no vibration, whatever its times say.
+/// Whether rows are stations: between two of them an axis goes a good part of its travel, and rows are far apart; or where it is
+/// between stations is not known. Such a table shows no vibration, whatever its times say.
 fn in_steps(study: &Study<'_>, travels: &[Travel]) -> bool {
-    let steps = |travel: &Travel| travel.moves && travel.step > STATION * travel.range();
-    study.scenes.iter().all(Scene::sparse) && travels.iter().any(steps)
+    let sparse = study.scenes.iter().all(Scene::sparse);
+    let steps = |travel: &Travel| travel.moves && sparse && travel.step > STATION * travel.range();
+    travels.iter().any(|travel| steps(travel) || travel.is_known_at_stations_alone())
 }
 
 /// The share of the travel from station to station: with fifty and more, rows are a slow log.

@@ -73,7 +73,11 @@ impl Imitation {
         let winding =
             |fitted: &&Fitted| matches!(fitted.effect.shape, Shape::Polynomial { degree, .. } if degree > 2);
         let unnamed = parts.is_empty() && travels[self.axis].is_known_at_stations_alone();
-        if self.waving { parts.len() >= MANY } else { unnamed || parts.len() > 1 || parts.iter().any(winding) }
+        if self.waving {
+            parts.len() >= MANY
+        } else {
+            unnamed || parts.len() > 1 || parts.iter().any(winding)
+        }
     }
 
     /// The fit with a table in the place of it, where that says the same with less.
@@ -228,7 +232,7 @@ const STANDS_OUT: f64 = 0.5;
 /// at every node.
 fn tables(study: &Study<'_>, axis: usize, travel: &Travel) -> Vec<Shape> {
     let places = places(study, axis);
-    let nodes = match stations(&places, travel) {
+    let nodes = match at_few(&places, travel) {
         Some(stations) => vec![stations],
         None => NODES
             .map(|count| even(travel.low, travel.high, count))
@@ -257,8 +261,13 @@ fn places(study: &Study<'_>, axis: usize) -> Vec<f64> {
     places
 }
 
-/// The places at which an axis was observed, where they are few: within a thousandth of the travel a place is the same.
-fn stations(places: &[f64], travel: &Travel) -> Option<Vec<f64>> {
+/// The stations of an axis, where it was observed at a few places.
+pub(crate) fn stations(study: &Study<'_>, axis: usize, travel: &Travel) -> Option<Vec<f64>> {
+    at_few(&places(study, axis), travel)
+}
+
+/// These places, where they are few: within a thousandth of the travel a place is the same.
+fn at_few(places: &[f64], travel: &Travel) -> Option<Vec<f64>> {
     let mut stations: Vec<f64> = Vec::new();
     for place in places {
         if stations.last().is_none_or(|last| place - last > 1e-3 * travel.range()) {

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::appraisal::Appraisal;
 use crate::conditions::Conditions;
 use crate::curves::nodes::thinned;
-use crate::curves::{FINE, even, is_dent};
+use crate::curves::{FINE, even, is_dent, stations};
 use crate::design::{Design, Regressor};
 use crate::fit::Fit;
 use crate::model::{Effect, Fitted, Model, Place};
@@ -79,12 +79,18 @@ pub(crate) struct Dent {
 }
 
 impl Dent {
-    /// A model with a fine table over the dent, behind its settings.
-    pub(crate) fn added(&self, study: &Study<'_>, mut model: Model, conditions: &Conditions<'_>) -> Model {
-        let nodes = self.nodes(&conditions.travels[self.axis]);
-        let shape = Shape::Table { axis: self.axis, nodes, directed: false, repeats: false };
-        model.insert(conditions.always, self.table(shape));
-        conditions.refine(study, model).model
+    /// A model with a table over the dent, behind its settings.
+    pub(crate) fn added(
+        &self,
+        study: &Study<'_>,
+        model: &Model,
+        conditions: &Conditions<'_>,
+    ) -> Option<Model> {
+        let appraisal = Appraisal::new(study, model);
+        let under = conditions.under(&appraisal.floors);
+        let mut added = model.clone();
+        added.insert(conditions.always, self.table(study, model, &under)?);
+        Some(conditions.refine(study, added).model)
     }
 
     /// Whether a model has a table of the dent's motion that is flat but for one place.
@@ -92,19 +98,28 @@ impl Dent {
         model.iter().any(|fitted| is_dent(fitted, self.place, &travels[self.axis]))
     }
 
-    /// A fit in which the table over the dent keeps those of its nodes that it needs.
+    /// A fit with another table over the dent, as it shows beside all the others.
     pub(crate) fn drawn(&self, study: &Study<'_>, fit: Fit, conditions: &Conditions<'_>) -> Fit {
-        let kept: Model = fit.model.iter().filter(|fitted| !self.is_table(fitted)).cloned().collect();
-        let nodes = self.nodes(&conditions.travels[self.axis]);
-        let thinned = thinned(study, &kept, (self.place, self.axis), &nodes, conditions.noises);
-        let Some(shape) = thinned else { return fit };
-        let mut model = kept;
-        model.insert(conditions.always, self.table(shape));
-        conditions.refine(study, model)
+        let mut others: Model = fit.model.iter().filter(|fitted| !self.is_table(fitted)).cloned().collect();
+        let Some(table) = self.table(study, &others, conditions) else { return fit };
+        others.insert(conditions.always, table);
+        conditions.refine(study, others)
     }
 
-    /// Close nodes over the dent, and the ends of the travel: the table is straight beside it.
-    fn nodes(&self, travel: &Travel) -> Vec<f64> {
+    /// A table over the dent beside a model: of close nodes those that it needs.
+    fn table(&self, study: &Study<'_>, others: &Model, conditions: &Conditions<'_>) -> Option<Fitted> {
+        let nodes = self.nodes(study, &conditions.travels[self.axis]);
+        let shape = thinned(study, others, (self.place, self.axis), &nodes, conditions.noises)?;
+        let effect = Effect { place: self.place, shape };
+        Some(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect })
+    }
+
+    /// Close nodes over the dent, and the ends of the travel: the table is straight beside it. Of an axis that was observed at stations,
+    /// these: nothing tells of a curve between them.
+    fn nodes(&self, study: &Study<'_>, travel: &Travel) -> Vec<f64> {
+        if let Some(stations) = stations(study, self.axis, travel) {
+            return stations;
+        }
         let reach = WIDER * self.flank;
         let from = (self.middle - reach).max(travel.low);
         let to = (self.middle + reach).min(travel.high);
@@ -113,11 +128,6 @@ impl Dent {
         nodes.push(travel.high);
         nodes.dedup();
         nodes
-    }
-
-    fn table(&self, shape: Shape) -> Fitted {
-        let effect = Effect { place: self.place, shape };
-        Fitted { coefficients: vec![0.0; effect.shape.columns()], effect }
     }
 
     fn is_table(&self, fitted: &Fitted) -> bool {
@@ -196,8 +206,12 @@ impl Looked {
             flank: crate::number(flank) * self.step,
             takes,
         };
-        if std::env::var("DBG").is_ok() { eprintln!("looked {} {} {} takes {takes} left {left}", self.axis, dent.middle, dent.flank); }
-        if std::env::var("DBG").is_ok() { eprintln!("looked {} {} {} takes {takes} left {left}", self.axis, dent.middle, dent.flank); }
+        if std::env::var("DBG").is_ok() {
+            eprintln!("looked {} {} {} takes {takes} left {left}", self.axis, dent.middle, dent.flank);
+        }
+        if std::env::var("DBG").is_ok() {
+            eprintln!("looked {} {} {} takes {takes} left {left}", self.axis, dent.middle, dent.flank);
+        }
         (takes > HIDES * left).then_some(dent)
     }
 

@@ -76,21 +76,15 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     if let Some(loops) = dynamics::loops_alone(study, &fit.model, &search.conditions()) {
         (search, fit) = begun_anew(study, (search, fit), Start { model: loops, dent: None }, progress);
     }
-    for dent in dents::hidden(study, &fit.model, &search.conditions()) {
-        (search, fit) = with_dent(study, (search, fit), dent, progress);
+    let plain = (search, fit);
+    let crossings = study.crossings.clone();
+    let (other, dent) = beside_dents(study, plain.clone(), progress);
+    let (mut search, mut fit, mut appraisal) = judged(study, other, progress);
+    if dent.is_some_and(|dent| !dent.is_in(&fit.model, &search.travels)) {
+        study.crossings = crossings;
+        Appraisal::new(study, &plain.1.model).mark(study);
+        (search, fit, appraisal) = judged(study, plain, progress);
     }
-    let curved = curves::try_tables(study, fit.clone(), &search.conditions());
-    if same_effects(&curved.model, &fit.model) {
-        fit = curved;
-    } else {
-        // Beside a curve, what stood in for its bends may look different. What it leaves at its corners is no new wave.
-        search.model = curved.model;
-        search.places.clear();
-        search.go_round(study, progress);
-        search.cross_plays(study, progress);
-        fit = search.fit(study);
-    }
-    let (mut fit, mut appraisal) = upheld(study, fit, &search.conditions());
     let Search { pool, travels, always, tries, richer, noises, .. } = search;
     let conditions = Conditions { always, noises: &noises, travels: &travels, tries };
     let revision = Revision { pool: &pool, places: &places, conditions };
@@ -110,6 +104,27 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
         (fit, appraisal) = upheld(study, steady, &conditions);
     }
     Found { fit, appraisal, pool, travels, bands, always, tries, plain_zeros: false }
+}
+
+/// What of the end of a search is upheld, tables in the place of what imitates them.
+fn judged(
+    study: &mut Study<'_>,
+    (mut search, mut fit): (Search, Fit),
+    progress: &mut dyn FnMut(f64),
+) -> (Search, Fit, Appraisal) {
+    let curved = curves::try_tables(study, fit.clone(), &search.conditions());
+    if same_effects(&curved.model, &fit.model) {
+        fit = curved;
+    } else {
+        // Beside a curve, what stood in for its bends may look different. What it leaves at its corners is no new wave.
+        search.model = curved.model;
+        search.places.clear();
+        search.go_round(study, progress);
+        search.cross_plays(study, progress);
+        fit = search.fit(study);
+    }
+    let (fit, appraisal) = upheld(study, fit, &search.conditions());
+    (search, fit, appraisal)
 }
 
 /// What a search begins anew with: settings and loops; or a table over a dent behind the settings, and what stood beside it.
@@ -147,29 +162,26 @@ fn begun_anew(
     (search, fit)
 }
 
-/// A search that begins with a dent and what it was seen beside, where it comes to a better end and the judge upholds the dent in it.
-fn with_dent(
+/// A search that began with a dent and what it was seen beside, where it came to a better end and the dent is in it.
+fn beside_dents(
     study: &mut Study<'_>,
-    (search, fit): (Search, Fit),
-    (dent, beside): (Dent, Model),
+    (mut search, mut fit): (Search, Fit),
     progress: &mut dyn FnMut(f64),
-) -> (Search, Fit) {
-    let before = study.crossings.clone();
-    let model = dent.added(study, beside, &search.conditions());
-    let start = Start { model, dent: Some(dent.clone()) };
-    let other = begun_anew(study, (search.clone(), fit.clone()), start, progress);
-    if dent.is_in(&other.1.model, &search.travels) {
-        let crossings = study.crossings.clone();
-        let (kept, _) = upheld(study, other.1.clone(), &other.0.conditions());
-        if dent.is_in(&kept.model, &search.travels) {
-            study.crossings = crossings;
-            Appraisal::new(study, &other.1.model).mark(study);
-            return other;
+) -> ((Search, Fit), Option<Dent>) {
+    let mut taken = None;
+    for (dent, beside) in dents::hidden(study, &fit.model, &search.conditions()) {
+        let Some(model) = dent.added(study, &beside, &search.conditions()) else { continue };
+        let known = (study.crossings.clone(), search.clone(), fit.clone());
+        let start = Start { model, dent: Some(dent.clone()) };
+        (search, fit) = begun_anew(study, (search, fit), start, progress);
+        if dent.is_in(&fit.model, &search.travels) {
+            taken = Some(dent);
+        } else {
+            (study.crossings, search, fit) = known;
+            Appraisal::new(study, &fit.model).mark(study);
         }
     }
-    study.crossings = before;
-    Appraisal::new(study, &fit.model).mark(study);
-    (search, fit)
+    ((search, fit), taken)
 }
 
 /// What the judge upholds. A play that it drops is no longer crossed, and one that the rest is fitted to anew is crossed over

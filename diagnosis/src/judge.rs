@@ -3,6 +3,8 @@
 //! In: a fitted model. Out: the same without every effect that does not stand up: whose likelihood the noise alone could
 //! give, that does not come back in the held-out data as it was fitted, or that rests on a few stretches only.
 
+use nalgebra::DMatrix;
+
 use crate::appraisal::Appraisal;
 use crate::conditions::Conditions;
 use crate::design::{Design, Products, Regressor};
@@ -57,6 +59,7 @@ fn weakest(
         swept.take(column);
     }
     let scale = (swept.remaining() / samples.max(1.0)).max(f64::MIN_POSITIVE);
+    let beside_settings = beside_settings(&design, &products, always);
     let whole = zeros::residuals(study, &fit.model);
     let judged = |number: usize| {
         let columns: Vec<usize> = design.columns(number).collect();
@@ -68,6 +71,7 @@ fn weakest(
         let fails = weak && !conditions.stands_out(study, &fit.model, number, price)
             || !returns(&design, &swept, number, scale)
             || !steady(&design, &swept, number)
+            || is_made_up_for(&design, &beside_settings, &fit.model, number)
             || imitates_a_state(study, &fit.model, (appraisal, &whole), number)
             || !pays(study, &design, &swept, fit, (appraisal, &whole), number, conditions);
         fails.then_some((worth, number))
@@ -78,6 +82,36 @@ fn weakest(
         failing.into_iter().flatten().reduce(|least, next| if next.0 < least.0 { next } else { least });
     weakest.map(|(_, number)| number)
 }
+
+/// The products as the settings leave them.
+fn beside_settings(design: &Design, products: &DMatrix<f64>, always: usize) -> Swept {
+    let mut swept = Swept::new(products);
+    for column in (0..always).flat_map(|setting| design.columns(setting)) {
+        swept.take(column);
+    }
+    swept
+}
+
+/// Whether an effect is the smaller of two of one motion that leave next to nothing of each other: neither is there as it was fitted.
+fn is_made_up_for(design: &Design, beside_settings: &Swept, model: &Model, number: usize) -> bool {
+    let energy = |effects: &[usize]| {
+        let columns: Vec<usize> = effects.iter().flat_map(|effect| design.columns(*effect)).collect();
+        let coefficients: Vec<f64> =
+            effects.iter().flat_map(|effect| model[*effect].coefficients.clone()).collect();
+        beside_settings.energy(&columns, &coefficients)
+    };
+    let own = energy(&[number]);
+    let same = |other: &usize| {
+        *other != number
+            && model[*other].effect.motion().is_some()
+            && model[*other].effect.motion() == model[number].effect.motion()
+    };
+    let mut others = (0..model.len()).filter(same);
+    others.any(|other| own <= energy(&[other]) && energy(&[number, other]) < LEAST * LEAST * own)
+}
+
+/// The share of the smaller of two effects of one motion that must be left of both together.
+const LEAST: f64 = 1.0 / 3.0;
 
 /// Whether the held-out samples, taken as they are, come nearer to the model through the effect than to the others fitted
 /// without it, and whether the effect is large enough anywhere to matter beside the noise of a sample. `left` is what the whole

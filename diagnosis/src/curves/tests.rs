@@ -19,22 +19,22 @@ fn stations_are_the_few_places_at_which_an_axis_stood() {
     // Five places, read three times each with 10 um between readings: a ten-thousandth of the travel.
     let places: Vec<f64> =
         (0..5).flat_map(|n| [0.0, 0.01, 0.02].map(|off| 25.0 * f64::from(n) + off)).collect();
-    let found = stations(&places, &travel(0.0, 100.02)).unwrap();
+    let found = at_few(&places, &travel(0.0, 100.02)).unwrap();
     assert_eq!(found, [0.0, 25.0, 50.0, 75.0, 100.0]);
     // Half a millimetre is another place.
     let mut more = places.clone();
     more.insert(3, 0.5);
-    assert_eq!(stations(&more, &travel(0.0, 100.02)).unwrap()[..3], [0.0, 0.5, 25.0]);
+    assert_eq!(at_few(&more, &travel(0.0, 100.02)).unwrap()[..3], [0.0, 0.5, 25.0]);
 }
 
 #[test]
 fn too_few_places_and_too_many_are_no_stations() {
     let even = |count: usize| -> Vec<f64> { (0..count).map(crate::number).collect() };
-    assert_eq!(stations(&[], &travel(0.0, 1.0)), None);
-    assert_eq!(stations(&even(FEWEST_STATIONS - 1), &travel(0.0, 2.0)), None);
-    assert_eq!(stations(&even(FEWEST_STATIONS), &travel(0.0, 3.0)).unwrap(), even(FEWEST_STATIONS));
-    assert_eq!(stations(&even(MOST_STATIONS), &travel(0.0, 39.0)).unwrap(), even(MOST_STATIONS));
-    assert_eq!(stations(&even(MOST_STATIONS + 1), &travel(0.0, 40.0)), None);
+    assert_eq!(at_few(&[], &travel(0.0, 1.0)), None);
+    assert_eq!(at_few(&even(FEWEST_STATIONS - 1), &travel(0.0, 2.0)), None);
+    assert_eq!(at_few(&even(FEWEST_STATIONS), &travel(0.0, 3.0)).unwrap(), even(FEWEST_STATIONS));
+    assert_eq!(at_few(&even(MOST_STATIONS), &travel(0.0, 39.0)).unwrap(), even(MOST_STATIONS));
+    assert_eq!(at_few(&even(MOST_STATIONS + 1), &travel(0.0, 40.0)), None);
 }
 
 #[test]

@@ -3,12 +3,13 @@
 use super::*;
 use crate::conditions::Tries;
 use crate::engine::courses;
+use crate::noise::Noise;
 use crate::terms::Setting;
 use crate::testing::{Bench, line, noisy, path, position};
 use crate::travel::travels;
 
-/// The nodes of the table with which a search of a machine with these errors of X would begin anew. X goes 200 mm there and back, once.
-fn begun(errors: &str) -> Option<Vec<f64>> {
+/// What `asked` tells of the dents that a recording of a machine with these errors of X shows. X goes 200 mm there and back, once.
+fn with<T>(errors: &str, asked: impl Fn(&Study<'_>, &Model, &Conditions<'_>) -> T) -> T {
     let bench = Bench::of("FX");
     let there_and_back = path(line(0, 0.0, 200.0), 20.0, 50.0);
     let truth = bench.calibration(errors);
@@ -19,12 +20,32 @@ fn begun(errors: &str) -> Option<Vec<f64>> {
     let travels = travels(&study, &courses(&study, &model));
     let noises = vec![vec![Noise::white(0.000_3)]];
     let tries = Tries { candidates: 40.0, waves: 300.0 };
-    let conditions = Conditions { always: 1, noises: &noises, travels: &travels, tries };
-    let (dent, beside) = hidden(&study, &model, &conditions).pop()?;
-    match dent.added(&study, beside, &conditions).pop()?.effect.shape {
-        Shape::Table { nodes, .. } => Some(nodes),
-        _ => None,
-    }
+    asked(&study, &model, &Conditions { always: 1, noises: &noises, travels: &travels, tries })
+}
+
+/// Middle and flank of the dent that is seen, mm.
+fn seen(errors: &str) -> Option<(f64, f64)> {
+    with(errors, |study, model, conditions| {
+        let (dent, _) = hidden(study, model, conditions).pop()?;
+        Some((dent.middle, dent.flank))
+    })
+}
+
+/// The nodes of a table that is drawn over the dent, mm, and its values there, mm.
+fn drawn(errors: &str) -> Option<Vec<(f64, f64)>> {
+    with(errors, |study, model, conditions| {
+        let (dent, beside) = hidden(study, model, conditions).pop()?;
+        let begun = dent.added(study, &beside, conditions)?;
+        let fit = dent.drawn(study, conditions.refine(study, begun), conditions);
+        assert!(dent.is_in(&fit.model, conditions.travels));
+        let table = fit.model.iter().find(|fitted| dent.is_table(fitted))?;
+        match &table.effect.shape {
+            Shape::Table { nodes, .. } => {
+                Some(nodes.iter().copied().zip(table.coefficients.iter().copied()).collect())
+            }
+            _ => None,
+        }
+    })
 }
 
 /// A play that is taken up over 80 mm hides most of what else there is.
@@ -33,22 +54,36 @@ const PLAY: &str = "{backlash: {lost_motion: 30 um, wind_up: 80 mm}}";
 #[test]
 fn a_dent_is_seen_beside_a_play_that_hides_it() {
     let dent = "{table: {start: 105 mm, step: 15 mm, unit: um, values: [0, 40, 0]}}";
-    let nodes = begun(&format!("{{EXX: [{dent}, {PLAY}]}}")).unwrap();
-    let (from, to) = (nodes[1], nodes[nodes.len() - 2]);
-    assert!((80.0..110.0).contains(&from) && (130.0..160.0).contains(&to), "{nodes:?}");
-    // Beside it, to both ends of the travel, the table is straight.
-    assert!(nodes[0] < 1.0 && nodes[nodes.len() - 1] > 199.0, "{nodes:?}");
+    let (middle, flank) = seen(&format!("{{EXX: [{dent}, {PLAY}]}}")).unwrap();
+    assert!((middle - 120.0).abs() < 8.0 && flank < 45.0, "{middle} {flank}");
 }
 
 #[test]
 fn what_stands_out_on_one_way_alone_is_no_dent() {
     let one_way = "{table: {start: 105 mm, step: 15 mm, unit: um, forward: [0, 40, 0], reverse: [0, 0, 0]}}";
-    assert_eq!(begun(&format!("{{EXX: [{one_way}, {PLAY}]}}")), None);
+    assert_eq!(seen(&format!("{{EXX: [{one_way}, {PLAY}]}}")), None);
     let turned = "{table: {start: 105 mm, step: 15 mm, unit: um, forward: [0, 40, 0], reverse: [0, -40, 0]}}";
-    assert_eq!(begun(&format!("{{EXX: [{turned}, {PLAY}]}}")), None);
+    assert_eq!(seen(&format!("{{EXX: [{turned}, {PLAY}]}}")), None);
+}
+
+#[test]
+fn a_dent_is_drawn_with_the_nodes_that_it_needs() {
+    let nodes =
+        drawn("{EXX: [{table: {start: 105 mm, step: 15 mm, unit: um, values: [0, 40, 0]}}]}").unwrap();
+    assert!(nodes.len() < 15, "{nodes:?}");
+    // Straight to both ends of the travel beside it, and 40 um high in its middle.
+    assert!(nodes[0].0 < 1.0 && nodes[nodes.len() - 1].0 > 199.0, "{nodes:?}");
+    let at = |place: f64| {
+        let behind = nodes.iter().position(|(node, _)| *node >= place).unwrap();
+        let ((a, low), (b, high)) = (nodes[behind - 1], nodes[behind]);
+        low + (high - low) * (place - a) / (b - a)
+    };
+    assert!((at(120.0) - at(60.0) - 0.04).abs() < 0.001, "{nodes:?}");
+    assert!((at(112.5) - at(60.0) - 0.02).abs() < 0.001, "{nodes:?}");
+    assert!((at(180.0) - at(60.0)).abs() < 0.001, "{nodes:?}");
 }
 
 #[test]
 fn a_play_alone_hides_no_dent() {
-    assert_eq!(begun(&format!("{{EXX: [{PLAY}]}}")), None);
+    assert_eq!(seen(&format!("{{EXX: [{PLAY}]}}")), None);
 }

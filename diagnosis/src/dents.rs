@@ -12,6 +12,7 @@ use crate::curves::nodes::thinned;
 use crate::curves::{FINE, even, is_dent, stations};
 use crate::design::{Design, Regressor};
 use crate::fit::Fit;
+use crate::judge;
 use crate::model::{Effect, Fitted, Model, Place};
 use crate::noise::Noise;
 use crate::study::Study;
@@ -96,6 +97,27 @@ impl Dent {
     /// Whether a model has a table of the dent's motion that is flat but for one place.
     pub(crate) fn is_in(&self, model: &Model, travels: &[Travel]) -> bool {
         model.iter().any(|fitted| is_dent(fitted, self.place, &travels[self.axis]))
+    }
+
+    /// Whether a model has it, and it takes much of what all others leave.
+    pub(crate) fn takes_much(&self, study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> bool {
+        if !self.is_in(model, conditions.travels) {
+            return false;
+        }
+        let noises = Appraisal::new(study, model).as_white();
+        let design = judge::design(study, model, &noises);
+        let (products, _) = design.sum(|_| true);
+        let mut swept = Swept::new(&products);
+        let (tables, others): (Vec<usize>, Vec<usize>) =
+            (0..model.len()).partition(|number| self.is_table(&model[*number]));
+        let mut left_by = |effects: Vec<usize>| {
+            for column in effects.into_iter().flat_map(|number| design.columns(number)) {
+                swept.take(column);
+            }
+            swept.remaining()
+        };
+        let without = left_by(others);
+        without - left_by(tables) > HIDES * without
     }
 
     /// A fit with another table over the dent, as it shows beside all the others.

@@ -174,7 +174,7 @@ fn beside_dents(
         let known = (study.crossings.clone(), search.clone(), fit.clone());
         let start = Start { model, dent: Some(dent.clone()) };
         (search, fit) = begun_anew(study, (search, fit), start, progress);
-        if dent.is_in(&fit.model, &search.travels) {
+        if dent.takes_much(study, &fit.model, &search.conditions()) {
             taken = Some(dent);
         } else {
             (study.crossings, search, fit) = known;

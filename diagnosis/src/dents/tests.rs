@@ -78,7 +78,8 @@ fn a_dent_is_drawn_with_the_nodes_that_it_needs() {
         let ((a, low), (b, high)) = (nodes[behind - 1], nodes[behind]);
         low + (high - low) * (place - a) / (b - a)
     };
-    assert!((at(120.0) - at(60.0) - 0.04).abs() < 0.001, "{nodes:?}");
+    // A corner between two nodes, which are 2.2 mm apart where it falls by 2.7 um/mm, is cut by half a step at most.
+    assert!((at(120.0) - at(60.0) - 0.04).abs() < 0.003, "{nodes:?}");
     assert!((at(112.5) - at(60.0) - 0.02).abs() < 0.001, "{nodes:?}");
     assert!((at(180.0) - at(60.0)).abs() < 0.001, "{nodes:?}");
 }

@@ -136,7 +136,8 @@ fn concluded(
             .or_else(|| unexplained::returning(&study, &found, &units)),
     };
     diagnosis.unexplained = diagnosis.unexplained.or_else(|| unexplained::on_the_way(&study));
-    diagnosis.repeatability = scattered.first().map(|scatter| repeats::describe(&study, scatter, units.unit));
+    let told = scattered.iter().find(|scatter| scatter.is_told);
+    diagnosis.repeatability = told.map(|scatter| repeats::describe(&study, scatter, units.unit));
     diagnosis.verdict = verdict(&diagnosis);
     if diagnosis.verdict == Verdict::Adequate {
         diagnosis.denied = denied::denied(&study, &found);

@@ -22,6 +22,9 @@ pub(crate) struct Scatter {
     /// For each zero, for each run: its value against the first run's.
     pub(crate) zeros: Vec<Vec<f64>>,
     pub(crate) runs: Vec<i64>,
+    /// Whether runs went to the same places. Of others an error that depends on the place may be what they differ by: they have zeros
+    /// of their own in the fit, and nothing is said of it.
+    pub(crate) is_told: bool,
     pub(crate) between: f64,
     pub(crate) within: f64,
 }
@@ -87,7 +90,7 @@ pub(crate) fn scatter(study: &mut Study<'_>, model: &Model) -> Vec<Scatter> {
 }
 
 fn of_scene(study: &Study<'_>, scene: usize, model: &Model) -> Option<Scatter> {
-    let runs = at_same_places(&study.scenes[scene]);
+    let runs = study.scenes[scene].run_numbers();
     if runs.len() < 2 {
         return None;
     }
@@ -120,17 +123,15 @@ fn of_scene(study: &Study<'_>, scene: usize, model: &Model) -> Option<Scatter> {
     (significant && scatter.between > WIDE * scatter.within).then_some(scatter)
 }
 
-/// The first run, and those that went where it did: between runs at different places an error that depends on the place tells as
-/// well what they differ by.
-fn at_same_places(scene: &Scene<'_>) -> Vec<i64> {
+/// Whether a run went where the first one did.
+fn at_same_places(scene: &Scene<'_>) -> bool {
     let ranges = |run: i64| -> Vec<Range> {
         let positions = scene.given.programmed.iter();
         positions.map(|position| Range::of(position, &scene.recording.run, run)).collect()
     };
-    let mut runs = scene.run_numbers();
-    let Some(first) = runs.first().map(|run| ranges(*run)) else { return runs };
-    runs.retain(|run| ranges(*run).iter().zip(&first).all(|(range, first)| range.shares(first)));
-    runs
+    let mut runs = scene.run_numbers().into_iter().map(ranges);
+    let Some(first) = runs.next() else { return false };
+    runs.any(|run| run.iter().zip(&first).all(|(range, first)| range.shares(first)))
 }
 
 /// Where an axis was in a run, mm or rad; from infinity to minus infinity where that is not known.
@@ -194,7 +195,8 @@ fn measure(study: &Study<'_>, scene: usize, free: &Model, after: &Appraisal, run
         }
         zeros.push(of_runs);
     }
-    Scatter { scene, zeros, runs, between, within }
+    let is_told = at_same_places(&study.scenes[scene]);
+    Scatter { scene, zeros, runs, is_told, between, within }
 }
 
 /// The standard deviation of a few numbers.

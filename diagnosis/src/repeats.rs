@@ -258,3 +258,6 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
     });
     sums.1 / (sums.0 * sums.2).sqrt()
 }
+
+#[cfg(test)]
+mod tests;

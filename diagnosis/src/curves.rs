@@ -19,9 +19,8 @@ pub(crate) const FINE: usize = 40;
 /// A wave of more than this share of the travel may be part of a curve.
 pub(crate) const LONG: f64 = 0.12;
 
-/// Tries tables for every motion of which two or more smooth terms are in the model, or a polynomial of a high power, or
-/// that is known at stations alone. A table over one
-/// place stays: smooth terms beside it are others.
+/// Tries tables for every motion of which two or more smooth terms are in the model, or a polynomial of a high power, and of
+/// every axis that is known at stations alone. A table over one place stays: smooth terms beside it are others.
 pub(crate) fn try_tables(study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> Fit {
     let Conditions { always, travels, .. } = *conditions;
     let mut places: Vec<(Place, usize)> = Vec::new();

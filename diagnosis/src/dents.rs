@@ -1,8 +1,8 @@
 //! Dents: one place of an axis at which something stands out on the way there and on the way back.
 //!
-//! In: a study, and the conditions under which its models are fitted. Out: the settings and a table over that place. A dent that is
-//! larger than all else hides it: a search that begins without it explains it by waves and powers, which no unit upholds, and ends
-//! with nothing. One that begins with it sees what is beside it.
+//! In: a study, and a model that a search came to. Out: dents that may hide what else there is, and models with a table over one of
+//! them. A search that begins without a dent that is larger than all else explains it by waves and powers, which no unit upholds, and
+//! ends with nothing. One that begins with it sees what is beside it.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -228,12 +228,6 @@ impl Looked {
             flank: crate::number(flank) * self.step,
             takes,
         };
-        if std::env::var("DBG").is_ok() {
-            eprintln!("looked {} {} {} takes {takes} left {left}", self.axis, dent.middle, dent.flank);
-        }
-        if std::env::var("DBG").is_ok() {
-            eprintln!("looked {} {} {} takes {takes} left {left}", self.axis, dent.middle, dent.flank);
-        }
         (takes > HIDES * left).then_some(dent)
     }
 

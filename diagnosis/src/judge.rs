@@ -110,7 +110,8 @@ fn is_made_up_for(design: &Design, beside_settings: &Swept, model: &Model, numbe
     others.any(|other| own <= energy(&[other]) && energy(&[number, other]) < LEAST * LEAST * own)
 }
 
-/// The share of the smaller of two effects of one motion that must be left of both together.
+/// The share of the smaller of two effects of one motion that must be left of both together. Two of equal size leave a third where they
+/// are alike to 0.94: a recording that tells them apart no better says nothing of either.
 const LEAST: f64 = 1.0 / 3.0;
 
 /// Whether the held-out samples, taken as they are, come nearer to the model through the effect than to the others fitted

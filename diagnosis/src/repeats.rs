@@ -160,7 +160,7 @@ impl Range {
     }
 }
 
-/// Most of the shorter range.
+/// Most of the shorter range: beside less, what differs may lie where only one of the runs went.
 const SHARED: f64 = 0.5;
 /// Ends of strokes of a servo differ by less than this share of the stroke.
 const SAME_PLACE: f64 = 1e-3;

@@ -241,3 +241,31 @@ fn what_is_worth_least_falls_first() {
     let zero = 0;
     assert_eq!(falls(&case, zero, 1.001), Some(zero));
 }
+
+/// Whether each of two plays of X, taken up over 3 and over 4 mm, is made up for by the other, with these lost motions, mm.
+fn made_up_for(lost_motions: [f64; 2]) -> [bool; 2] {
+    let bench = Bench::of("XFY");
+    let recording = recorded(&bench, held(1.0), QUIET);
+    let study = Study::new(bench.equations(), None, &[&recording]);
+    let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
+    let play = |(wind_up, lost_motion): (f64, f64)| Fitted {
+        effect: Effect { place, shape: Shape::Backlash { axis: 0, wind_up } },
+        coefficients: vec![lost_motion],
+    };
+    let zero = Effect::setting(0, Setting::Offset { channel: 0 });
+    let mut model = vec![Fitted { effect: zero, coefficients: vec![0.0] }];
+    model.extend([3.0, 4.0].into_iter().zip(lost_motions).map(play));
+    let design = design(&study, &model, &[vec![Noise::white(QUIET)]]);
+    let beside_settings = beside_settings(&design, &design.fitted().0, 1);
+    [1, 2].map(|number| is_made_up_for(&design, &beside_settings, &model, number))
+}
+
+#[test]
+fn the_smaller_of_two_plays_that_leave_next_to_nothing_of_each_other_is_none() {
+    // On circles of 40 mm both are alike to one part in a hundred: of 18 and -15 mm a fifth of the smaller is left.
+    assert_eq!(made_up_for([18.0, -15.0]), [false, true]);
+    assert_eq!(made_up_for([-15.0, 18.0]), [true, false]);
+    // Of 18 and -9 mm as much is left as the smaller is; and plays of one sign add up.
+    assert_eq!(made_up_for([18.0, -9.0]), [false, false]);
+    assert_eq!(made_up_for([18.0, 15.0]), [false, false]);
+}

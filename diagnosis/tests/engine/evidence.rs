@@ -111,6 +111,44 @@ fn a_station_that_is_off_in_every_approach_is_a_place() {
     }
 }
 
+/// X goes five times to nine stations and back, and is read at each of them for 2 s, and 2 s on the way, on which its command is not
+/// known; what is off follows a wave of 3.3 mm.
+fn stations_with_an_unknown_way(seed: u64) -> Recording {
+    let stations: Vec<f64> = (0..9_i32).map(|station| 5.0 * f64::from(station)).collect();
+    let once: Vec<f64> = stations.iter().chain(stations.iter().rev()).copied().collect();
+    let off = |x: f64| 0.01 * (std::f64::consts::TAU * x / 3.3 + 0.4).sin();
+    let (mut x, mut read, mut run) = (Vec::new(), Vec::new(), Vec::new());
+    for cycle in 1..=5 {
+        for (number, station) in once.iter().enumerate() {
+            let next = once.get(number + 1).unwrap_or(station);
+            for row in 0..40_i32 {
+                let way = f64::from((row - 19).max(0)) / 20.0;
+                let at = station + way * (next - station);
+                x.push(if row < 20 { at } else { f64::NAN });
+                read.push(at + off(at));
+                run.push(cycle);
+            }
+        }
+    }
+    let noise = normals(seed, x.len());
+    read.iter_mut().zip(noise).for_each(|(read, noise)| *read += 2e-4 * noise);
+    let time: Vec<f64> = (0..x.len()).map(|row| 0.1 * f64::from(u32::try_from(row).unwrap())).collect();
+    let mut recording = programmed(&time, &[x]);
+    recording.measured[0] = Some(read);
+    recording.run = run;
+    recording
+}
+
+#[test]
+fn an_axis_that_is_known_at_stations_alone_has_a_table_and_no_waves() {
+    let bench = Bench::of("FX");
+    for seed in 1..=3 {
+        let diagnosis = alone(&bench, &[&stations_with_an_unknown_way(seed)]);
+        assert_eq!(found(&diagnosis), ["EXX table"], "{seed}");
+        assert!(diagnosis.after.rms < 2.2e-4, "{:?}", diagnosis.after);
+    }
+}
+
 #[test]
 fn equal_loops_are_told_from_the_length_of_the_bar_by_how_a_circle_starts() {
     let bench = Bench::of("XFY");

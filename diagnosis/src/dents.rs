@@ -14,7 +14,7 @@ use crate::design::{Design, Regressor};
 use crate::fit::Fit;
 use crate::judge;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::noise::Noise;
+use crate::noise::{self, Noise};
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
@@ -35,20 +35,49 @@ const HIDES: f64 = 0.1;
 /// sure are known to a quarter each; two that are equal differ by more than half once in six times.
 const ALIKE: f64 = 0.5;
 
+/// How many times the usual height of hats elsewhere a dent must be in each direction to stand out among them. Of the 192 hats some 90 are
+/// independent; chance gives one of them so much in both directions with one sign once in 30 times.
+const OUTSTANDING: f64 = 2.2;
+/// The median of the size of a normal variable, in standard deviations.
+const NORMAL_MEDIAN: f64 = 0.6745;
+/// The fewest heights that tell what is usual: half of all hats of the widest kind, in both directions.
+const FEWEST: usize = 24;
+
 /// Dents that may hide what else there is, each with the model beside which it takes most: the settings alone, and all that was found.
 pub(crate) fn hidden(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Vec<(Dent, Model)> {
     let Some(settings) = model.get(..conditions.always) else { return Vec::new() };
     let beside = [settings.to_vec(), model.clone()].into_iter();
-    let dents = beside.filter_map(|known| Some((largest(study, &known, conditions)?, known)));
+    let largest =
+        |known: &Model| largest(study, known, &Appraisal::new(study, known), conditions, Looked::is_sure);
+    let dents = beside.filter_map(|known| Some((largest(&known)?, known)));
     dents.filter(|(dent, _)| !model.iter().any(|fitted| dent.is_table(fitted))).collect()
 }
 
-/// The dent that takes most beside a model, where it takes much.
-fn largest(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Option<Dent> {
-    let appraisal = Appraisal::new(study, model);
+/// The dent that takes most beside a model that leaves what the appraisal says, where it takes much and stands out among what is left
+/// elsewhere.
+pub(crate) fn outstanding(
+    study: &Study<'_>,
+    model: &Model,
+    appraisal: &Appraisal,
+    conditions: &Conditions<'_>,
+) -> Option<Dent> {
+    let counts =
+        |looked: &Looked, middle, flank| looked.is_sure(middle, flank) && looked.stands_out(middle, flank);
+    largest(study, model, appraisal, conditions, counts)
+}
+
+/// Of the dents that count, the one that takes most beside a model, where it takes much.
+fn largest(
+    study: &Study<'_>,
+    model: &Model,
+    appraisal: &Appraisal,
+    conditions: &Conditions<'_>,
+    counts: impl Fn(&Looked, usize, usize) -> bool,
+) -> Option<Dent> {
     let axes = (0..study.own.len()).filter(|axis| conditions.travels[*axis].moves);
-    let dents = axes.filter_map(|axis| Looked::new(study, model, axis, (&appraisal, conditions))?.dent());
-    dents.reduce(|most, next| if next.takes > most.takes { next } else { most })
+    let dents =
+        axes.filter_map(|axis| Looked::new(study, model, axis, (appraisal, conditions))?.dent(&counts));
+    dents.reduce(|most, next| if next.share > most.share { next } else { most })
 }
 
 /// How high a dent is in one direction of motion, and its standard deviation.
@@ -74,11 +103,11 @@ impl Height {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Dent {
     place: Place,
-    axis: usize,
-    middle: f64,
-    flank: f64,
-    /// What it takes from the sum of squares.
-    takes: f64,
+    pub(crate) axis: usize,
+    pub(crate) middle: f64,
+    pub(crate) flank: f64,
+    /// The share of what is left that it takes.
+    pub(crate) share: f64,
 }
 
 impl Dent {
@@ -208,8 +237,8 @@ impl Looked {
         Some(Self { place, axis, low: travel.low, step, beside, weighed, plain })
     }
 
-    /// The dent that takes most.
-    fn dent(&self) -> Option<Dent> {
+    /// The dent that takes most, of those that count.
+    fn dent(&self, counts: impl Fn(&Self, usize, usize) -> bool) -> Option<Dent> {
         let mut beside = Swept::new(&self.plain.products);
         for column in 0..self.beside {
             beside.take(column);
@@ -217,8 +246,8 @@ impl Looked {
         let left = beside.remaining();
         let tried =
             FLANKS.into_iter().flat_map(|flank| (flank..PLACES - flank).map(move |middle| (middle, flank)));
-        let sure = tried.filter(|(middle, flank)| self.is_sure(*middle, *flank));
-        let taken = sure.filter_map(|(middle, flank)| {
+        let counted = tried.filter(|(middle, flank)| counts(self, *middle, *flank));
+        let taken = counted.filter_map(|(middle, flank)| {
             let swept = self.swept(&self.plain, middle, flank)?;
             Some((left - swept.remaining(), middle, flank))
         });
@@ -228,20 +257,37 @@ impl Looked {
             axis: self.axis,
             middle: self.low + crate::number(middle) * self.step,
             flank: crate::number(flank) * self.step,
-            takes,
+            share: takes / left,
         };
-        (takes > HIDES * left).then_some(dent)
+        (dent.share > HIDES).then_some(dent)
     }
 
-    /// Whether a hat stands out alike in both directions.
+    /// Whether a hat is sure in both directions, and as high.
     fn is_sure(&self, middle: usize, flank: usize) -> bool {
-        let Some(swept) = self.swept(&self.weighed, middle, flank) else { return false };
+        self.heights(middle, flank).is_some_and(|[up, down]| up.agrees(&down))
+    }
+
+    /// Whether a hat is higher in both directions than hats elsewhere on the axis are: what is left has its own bumps, which differ from
+    /// pass to pass and by chance agree somewhere.
+    fn stands_out(&self, middle: usize, flank: usize) -> bool {
+        let all = (flank..PLACES - flank).filter_map(|middle| self.heights(middle, flank));
+        let mut sizes: Vec<f64> = all.flatten().map(|height| height.value.abs()).collect();
+        let Some(usual) = noise::middle(&mut sizes).map(|median| median / NORMAL_MEDIAN) else {
+            return false;
+        };
+        let heights = self.heights(middle, flank).into_iter().flatten();
+        sizes.len() >= FEWEST && heights.into_iter().all(|height| height.value.abs() > OUTSTANDING * usual)
+    }
+
+    /// How high a hat is on the way up and on the way down.
+    fn heights(&self, middle: usize, flank: usize) -> Option<[Height; 2]> {
+        let swept = self.swept(&self.weighed, middle, flank)?;
         let scale = swept.remaining() / self.weighed.samples.max(1.0);
         let height = |column: usize| Height {
             value: swept.coefficient(column),
             deviation: (scale * swept.covariance(column, column)).max(0.0).sqrt(),
         };
-        height(self.beside).agrees(&height(self.beside + 1))
+        Some([height(self.beside), height(self.beside + 1)])
     }
 
     /// The columns of the model and of a hat in both directions, all taken; nothing where the model has a direction of the hat already.

@@ -4,7 +4,6 @@
 //! A form is not a cause: the vocabulary alone has names of causes.
 
 use model_dsl::calibration::{CalibratedTerm, Factor, Sensors, TermKind, Within};
-use model_dsl::notation;
 
 use crate::alternatives::{factor_state, listed};
 use crate::diagnosis::Form;

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use model_dsl::equations::{Equations, Names};
-use model_dsl::notation::{self, Format};
+use notation::Format;
 use model_dsl::program::Interpreter;
 use numpy::IntoPyArray;
 use numpy::ndarray::Array3;

@@ -52,10 +52,10 @@ pub(crate) fn certainties(
     noises: &[Vec<Noise>],
     travels: &[Travel],
 ) -> Vec<Certainty> {
-    parallel::counted(fit.model.len(), study.rows() * fit.model.len(), |number| {
+    parallel::counted(fit.model.effects.len(), study.rows() * fit.model.effects.len(), |number| {
         let mut certainty = Certainty::linear(fit.covariances[number].clone());
         if let Some(interval) = interval(study, fit, noises, number) {
-            widen(&mut certainty.covariance, &fit.model[number].effect.shape, interval);
+            widen(&mut certainty.covariance, &fit.model.effects[number].effect.shape, interval);
             certainty.nonlinear = Some(interval);
         }
         certainty.richer = richer(study, fit, noises, travels, number).map(Box::new);
@@ -73,7 +73,7 @@ const FALL_95: f64 = WIDTH_95 * WIDTH_95;
 
 /// The interval of the nonlinear parameter of an effect.
 fn interval(study: &Study<'_>, fit: &Fit, noises: &[Vec<Noise>], number: usize) -> Option<(f64, f64)> {
-    let shape = &fit.model[number].effect.shape;
+    let shape = &fit.model.effects[number].effect.shape;
     // The inertia of a loop acts on the states, not on columns of its own.
     if shape.nonlinear_in_coefficient() {
         return None;
@@ -173,7 +173,7 @@ fn teeth(study: &Study<'_>, shape: &Shape) -> Vec<f64> {
 /// How far twice the log-likelihood falls when the nonlinear parameter of an effect stands at each of these places, everything
 /// else fitted again.
 fn falls(study: &Study<'_>, fit: &Fit, noises: &[Vec<Noise>], number: usize, places: &[f64]) -> Vec<f64> {
-    let own = &fit.model[number].effect;
+    let own = &fit.model.effects[number].effect;
     let forms =
         places.iter().map(|place| Effect { place: own.place, shape: own.shape.with_nonlinear(*place) });
     let beside = Beside::new(study, fit, noises, number, forms.collect());
@@ -190,7 +190,7 @@ fn richer(
     travels: &[Travel],
     number: usize,
 ) -> Option<Richer> {
-    let own = &fit.model[number].effect;
+    let own = &fit.model.effects[number].effect;
     let forms = candidates::richer(&own.shape, travels);
     if own.motion().is_none() || forms.is_empty() {
         return None;
@@ -230,10 +230,10 @@ struct Beside {
 
 impl Beside {
     fn new(study: &Study<'_>, fit: &Fit, noises: &[Vec<Noise>], number: usize, forms: Vec<Effect>) -> Self {
-        let mut regressors: Vec<Regressor> =
-            fit.model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+        let mut regressors = Regressor::all(&fit.model.effects);
         let bent = fit
             .model
+            .effects
             .iter()
             .enumerate()
             .filter(|(other, fitted)| *other != number && fitted.effect.shape.nonlinear().is_some());
@@ -244,7 +244,7 @@ impl Beside {
         let first_form = regressors.len();
         regressors.extend(forms.into_iter().map(Regressor::of));
         let mut design = Design::new(study, &fit.model, noises, regressors);
-        design.rebase(&fit.model);
+        design.rebase(&fit.model.effects);
         let (products, samples) = design.fitted();
         let mut others = Swept::new(&products);
         for other in (0..first_form).filter(|other| *other != number) {

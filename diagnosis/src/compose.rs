@@ -84,7 +84,7 @@ fn take_event(study: &mut Study<'_>, found: &mut Found, (price, lacks): (&FormPr
         let shape = fitted.effect.shape.core();
         matches!(shape, Shape::Drift { .. } | Shape::Growth { .. } | Shape::SensorPolynomial { .. })
     };
-    if !lacks && !found.fit.model.iter().any(is_course) {
+    if !lacks && !found.fit.model.effects.iter().any(is_course) {
         return false;
     }
     let happened = events::events(study, found);
@@ -93,7 +93,7 @@ fn take_event(study: &mut Study<'_>, found: &mut Found, (price, lacks): (&FormPr
 
 /// Whether there is anything for a form to explain: more than noise is left, or one form may be behind several names.
 fn is_open(study: &Study<'_>, found: &Found) -> bool {
-    found.fit.model.len() >= found.always + MANY || is_something_left(study, &found.appraisal)
+    found.fit.model.effects.len() >= found.always + MANY || is_something_left(study, &found.appraisal)
 }
 
 /// Whether more is left of some channel than noise.
@@ -147,14 +147,12 @@ fn each_for_itself(noises: &[Vec<Noise>]) -> Vec<Vec<Noise>> {
 /// under the noise that it leaves, and held-out samples lie nearer.
 fn take(study: &mut Study<'_>, found: &mut Found, trial: &Trial, price: &FormPrice) -> bool {
     let Trial { form, beside, kept } = trial;
-    let mut model: Model = found.fit.model[..found.always].to_vec();
-    model.extend(kept.iter().cloned());
-    model.push(form.clone());
-    model.extend(
-        beside
-            .iter()
-            .map(|effect| Fitted { effect: effect.clone(), coefficients: vec![0.0; effect.shape.columns()] }),
-    );
+    let settings = found.fit.model.effects[..found.always].iter();
+    let beside = beside
+        .iter()
+        .map(|effect| Fitted { effect: effect.clone(), coefficients: vec![0.0; effect.shape.columns()] });
+    let effects = settings.chain(kept).chain([form]).cloned().chain(beside);
+    let model = found.fit.model.with_effects(effects);
     let is_form = |fitted: &Fitted| {
         fitted.effect.place == form.effect.place
             && fitted.effect.shape.factors() == form.effect.shape.factors()
@@ -185,17 +183,16 @@ fn take_model(
     (is_wanted, is_composed): (&dyn Fn(&Fitted) -> bool, bool),
     price: &FormPrice,
 ) -> bool {
-    let crossings = study.crossings.clone();
     let conditions = found.conditions();
     let fit = conditions.refine(study, model);
     let (fit, appraisal) = engine::upheld(study, fit, &conditions);
-    let simpler = fit.model.len() + SIMPLER <= found.fit.model.len();
+    let simpler = fit.model.effects.len() + SIMPLER <= found.fit.model.effects.len();
     let is_needed = if is_composed {
         takes_most(study, &found.appraisal, &appraisal)
     } else {
-        fit.model.len() <= found.fit.model.len() || is_something_left(study, &found.appraisal)
+        fit.model.effects.len() <= found.fit.model.effects.len() || is_something_left(study, &found.appraisal)
     };
-    if fit.model.iter().any(is_wanted)
+    if fit.model.effects.iter().any(is_wanted)
         && (simpler || is_needed)
         && is_better(study, found, (&fit, &appraisal), price)
     {
@@ -203,7 +200,6 @@ fn take_model(
         found.appraisal = appraisal;
         return true;
     }
-    study.crossings = crossings;
     found.appraisal.mark(study);
     false
 }
@@ -260,7 +256,7 @@ fn more_likely(
         let conditions = found.conditions();
         let conditions = conditions.under(&appraisal.noises);
         let names: f64 = conditions.prices(study, &fit.model, fit.samples)[found.always..].iter().sum();
-        names + fit.model.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum::<f64>()
+        names + fit.model.effects.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum::<f64>()
     };
     let cost = |fit: &Fit, appraisal: &Appraisal| deviance(study, appraisal) + paid(fit, appraisal);
     cost(&found.fit, &found.appraisal) - cost(fit, appraisal)
@@ -285,7 +281,7 @@ fn gain(study: &Study<'_>, found: &Found, fit: &Fit, (noises, price): (&[Vec<Noi
     let cost = |model: &Model| {
         let fit = conditions.refine(study, model.clone());
         let names = conditions.cost_at(study, &fit, &conditions.prices(study, &fit.model, fit.samples));
-        names + fit.model.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum::<f64>()
+        names + fit.model.effects.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum::<f64>()
     };
     cost(&found.fit.model) - cost(&fit.model)
 }

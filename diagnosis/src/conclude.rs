@@ -208,11 +208,9 @@ fn claims(study: &Study<'_>, found: &mut Found, units: &Units, diagnosis: &mut D
 /// a piece of that.
 fn piece_of_the_rest(study: &Study<'_>, found: &Found, numbers: &[usize]) -> Option<usize> {
     let model = &found.fit.model;
-    let waves = numbers.iter().rev().copied().filter(|number| model[*number].effect.shape.is_wave());
+    let waves = numbers.iter().rev().copied().filter(|number| model.effects[*number].effect.shape.is_wave());
     waves.into_iter().find(|number| {
-        let mut rest = model.clone();
-        rest.remove(*number);
-        let rest = fit::refine(study, rest, &found.appraisal.noises, &found.travels);
+        let rest = fit::refine(study, model.without(*number), &found.appraisal.noises, &found.travels);
         let without = Appraisal::beside(study, &rest.model, &found.appraisal);
         !revise::stands_apart(study, &without, &found.appraisal)
     })
@@ -220,41 +218,33 @@ fn piece_of_the_rest(study: &Study<'_>, found: &Found, numbers: &[usize]) -> Opt
 
 /// Takes one effect back and fits the rest again.
 fn drop_effect(study: &mut Study<'_>, found: &mut Found, number: usize) {
-    let mut model = found.fit.model.clone();
-    model.remove(number);
-    crossing::follow(study, &model);
+    let mut model = found.fit.model.without(number);
+    crossing::follow(study, &mut model);
     found.fit = fit::refine(study, model, &found.appraisal.noises, &found.travels);
     found.appraisal = Appraisal::new(study, &found.fit.model);
     found.appraisal.mark(study);
 }
 
 /// Takes all effects of the machine back.
-fn withdraw(study: &mut Study<'_>, found: &mut Found) {
-    let settings: Model = found.fit.model[..found.always].to_vec();
-    crossing::follow(study, &settings);
+fn withdraw(study: &Study<'_>, found: &mut Found) {
+    let mut settings = found.fit.model.keeping(|number, _| number < found.always);
+    crossing::follow(study, &mut settings);
     found.fit = fit::refine(study, settings, &found.appraisal.as_white(), &found.travels);
     found.appraisal = Appraisal::new(study, &found.fit.model);
 }
 
-/// What `left` tells of the instruments' settings alone where known plays are crossed as far as they go: beside it, what changes
-/// is what was found, and not how a play acts that was known.
-fn with_known_crossings<T>(
-    study: &mut Study<'_>,
-    bare: &Model,
-    left: impl FnOnce(&Study<'_>, &Model) -> T,
-) -> T {
-    let found = study.crossings.clone();
-    crossing::follow(study, bare);
-    let bare = bare_model(study);
-    let left = left(study, &bare);
-    study.crossings = found;
-    left
+/// The settings of the instruments alone, fitted, where known plays are crossed as far as they go on the axes on which a model crosses
+/// plays: beside that, what changes is what was found, and not how a play acts that was known.
+fn bare_beside(study: &mut Study<'_>, bare: &Model, found: &Model) -> Model {
+    let mut known = bare.clone().crossed_as(found);
+    crossing::follow(study, &mut known);
+    bare_model(study, &known)
 }
 
-/// The settings of the instruments alone, fitted.
-fn bare_model(study: &mut Study<'_>) -> Model {
-    let effects = candidates::always(study);
-    let model: Model = effects.into_iter().map(|effect| Fitted { effect, coefficients: vec![0.0] }).collect();
+/// The settings of the instruments alone, fitted, with plays that are crossed as in another model.
+fn bare_model(study: &mut Study<'_>, crossed: &Model) -> Model {
+    let effects = candidates::always(study).into_iter();
+    let model = crossed.with_effects(effects.map(|effect| Fitted { effect, coefficients: vec![0.0] }));
     let appraisal = Appraisal::new(study, &model);
     appraisal.mark(study);
     let mut model = fit::refine(study, model, &appraisal.as_white(), &[]).model;

@@ -50,13 +50,13 @@ impl<'c> Conditions<'c> {
     /// What a fit costs: its misfit and the price of its effects.
     pub(crate) fn cost(&self, study: &Study<'_>, fit: &Fit) -> f64 {
         let prices: Vec<f64> =
-            fit.model.iter().map(|fitted| self.price(study, &fitted.effect, fit.samples)).collect();
+            fit.model.effects.iter().map(|fitted| self.price(study, &fitted.effect, fit.samples)).collect();
         self.cost_at(study, fit, &prices)
     }
 
     /// What a fit costs where its effects have these prices.
     pub(crate) fn cost_at(&self, study: &Study<'_>, fit: &Fit, prices: &[f64]) -> f64 {
-        let paid: f64 = fit.model[self.always..]
+        let paid: f64 = fit.model.effects[self.always..]
             .iter()
             .zip(&prices[self.always..])
             .map(|(fitted, price)| price + odd(study, fitted))
@@ -72,10 +72,10 @@ impl<'c> Conditions<'c> {
     /// The prices of the effects of a model, where waves that stand out at their own noise have paid.
     pub(crate) fn prices(&self, study: &Study<'_>, model: &Model, samples: f64) -> Vec<f64> {
         let price = |number: usize| {
-            let price = self.price(study, &model[number].effect, samples);
+            let price = self.price(study, &model.effects[number].effect, samples);
             if self.stands_out(study, model, number, price) { PAID } else { price }
         };
-        (0..model.len()).map(price).collect()
+        (0..model.effects.len()).map(price).collect()
     }
 
     /// The price of a wave of a spectrum.
@@ -99,7 +99,7 @@ impl<'c> Conditions<'c> {
 
     /// Whether an effect of a model is a wave that stands out at its own noise, beyond this price.
     pub(crate) fn stands_out(&self, study: &Study<'_>, model: &Model, number: usize, price: f64) -> bool {
-        self.own_noise_counts(study, &model[number].effect.shape) && {
+        self.own_noise_counts(study, &model.effects[number].effect.shape) && {
             let around = waves::around(study, model, number, self.noises, self.travels);
             around.iter().any(|peak| peak.local >= OUTSTANDING * price)
         }

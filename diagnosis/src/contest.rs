@@ -67,8 +67,7 @@ impl Contest {
         candidates: usize,
         of_candidates: &Columns<'_>,
     ) -> Self {
-        let regressors: Vec<Regressor> =
-            model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+        let regressors = Regressor::all(&model.effects);
         let width: usize = regressors.iter().map(Regressor::columns).sum();
         let mut contest = Self {
             products: vec![vec![0.0; width + 2]; candidates],
@@ -81,14 +80,14 @@ impl Contest {
                 let at = ChannelAt { scene, channel };
                 let mut columns = Design::columns_in(study, at, model, &regressors, rows);
                 let coefficients: Vec<f64> =
-                    model.iter().flat_map(|fitted| &fitted.coefficients).copied().collect();
+                    model.effects.iter().flat_map(|fitted| &fitted.coefficients).copied().collect();
                 add_back(&mut columns, &coefficients);
                 contest.add(study, at, (*noise, rows), columns, of_candidates);
             }
         }
         let conditions = found.conditions();
         let mut first = 0;
-        for (number, fitted) in model.iter().enumerate() {
+        for (number, fitted) in model.effects.iter().enumerate() {
             let columns = first..first + regressors[number].columns();
             first = columns.end;
             let price = if number >= found.always {

@@ -37,10 +37,10 @@ const ALIKE: f64 = 0.5;
 
 /// Dents that may hide what else there is, each with the model beside which it takes most: the settings alone, and all that was found.
 pub(crate) fn hidden(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Vec<(Dent, Model)> {
-    let Some(settings) = model.get(..conditions.always) else { return Vec::new() };
-    let beside = [settings.to_vec(), model.clone()].into_iter();
+    let settings = model.keeping(|number, _| number < conditions.always);
+    let beside = [settings, model.clone()].into_iter();
     let dents = beside.filter_map(|known| Some((largest(study, &known, conditions)?, known)));
-    dents.filter(|(dent, _)| !model.iter().any(|fitted| dent.is_table(fitted))).collect()
+    dents.filter(|(dent, _)| !model.effects.iter().any(|fitted| dent.is_table(fitted))).collect()
 }
 
 /// The dent that takes most beside a model, where it takes much.
@@ -92,13 +92,13 @@ impl Dent {
         let appraisal = Appraisal::new(study, model);
         let under = conditions.under(&appraisal.floors);
         let mut added = model.clone();
-        added.insert(conditions.always, self.table(study, model, &under)?);
+        added.effects.insert(conditions.always, self.table(study, model, &under)?);
         Some(conditions.refine(study, added).model)
     }
 
     /// Whether a model has a table of the dent's motion that is flat but for one place.
     pub(crate) fn is_in(&self, model: &Model, travels: &[Travel]) -> bool {
-        model.iter().any(|fitted| is_dent(fitted, self.place, &travels[self.axis]))
+        model.effects.iter().any(|fitted| is_dent(fitted, self.place, &travels[self.axis]))
     }
 
     /// Whether a model has it, and it takes much of what all others leave.
@@ -111,7 +111,7 @@ impl Dent {
         let (products, _) = design.sum(|_| true);
         let mut swept = Swept::new(&products);
         let (tables, others): (Vec<usize>, Vec<usize>) =
-            (0..model.len()).partition(|number| self.is_table(&model[*number]));
+            (0..model.effects.len()).partition(|number| self.is_table(&model.effects[*number]));
         let mut left_by = |effects: Vec<usize>| {
             for column in effects.into_iter().flat_map(|number| design.columns(number)) {
                 swept.take(column);
@@ -124,9 +124,9 @@ impl Dent {
 
     /// A fit with another table over the dent, as it shows beside all the others.
     pub(crate) fn drawn(&self, study: &Study<'_>, fit: Fit, conditions: &Conditions<'_>) -> Fit {
-        let mut others: Model = fit.model.iter().filter(|fitted| !self.is_table(fitted)).cloned().collect();
+        let mut others = fit.model.keeping(|_, fitted| !self.is_table(fitted));
         let Some(table) = self.table(study, &others, conditions) else { return fit };
-        others.insert(conditions.always, table);
+        others.effects.insert(conditions.always, table);
         conditions.refine(study, others)
     }
 
@@ -195,12 +195,12 @@ impl Looked {
         let nodes = even(travel.low, travel.high, PLACES);
         let hats = Effect { place, shape: Shape::Table { axis, nodes, directed: true, repeats: false } };
         let sums = |noises: &[Vec<Noise>]| {
-            let effects = model.iter().map(|fitted| &fitted.effect).chain([&hats]);
+            let effects = model.effects.iter().map(|fitted| &fitted.effect).chain([&hats]);
             let regressors = effects.cloned().map(Regressor::of).collect();
             let mut design = Design::new(study, model, noises, regressors);
-            design.rebase(model);
+            design.rebase(&model.effects);
             let (products, samples) = design.sum(|_| true);
-            (design.columns(model.len()).start, Sums { products, samples })
+            (design.columns(model.effects.len()).start, Sums { products, samples })
         };
         let (beside, weighed) = sums(&appraisal.floors);
         let (_, plain) = sums(&appraisal.as_white());

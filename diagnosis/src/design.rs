@@ -13,7 +13,7 @@ mod shapes;
 use nalgebra::DMatrix;
 
 use crate::course::{Course, STRETCH, pieces};
-use crate::model::{Effect, Model};
+use crate::model::{Effect, Fitted, Model};
 use crate::noise::Noise;
 use crate::observations::{Frame, Passage};
 use crate::parallel;
@@ -33,6 +33,11 @@ impl Regressor {
     /// The effect itself.
     pub(crate) fn of(effect: Effect) -> Self {
         Self { effect, slope: None }
+    }
+
+    /// Effects, each for itself.
+    pub(crate) fn all(effects: &[Fitted]) -> Vec<Self> {
+        effects.iter().map(|fitted| Self::of(fitted.effect.clone())).collect()
     }
 
     /// How many columns it has.
@@ -112,11 +117,11 @@ impl Design {
         chosen
     }
 
-    /// Adds back to the residual what the effects of the present model take from it, so that all effects stand on one line:
+    /// Adds back to the residual what effects of the present model take from it, so that all effects stand on one line:
     /// those of the model can be kept, changed or dropped like any other.
-    pub(crate) fn rebase(&mut self, model: &Model) {
+    pub(crate) fn rebase(&mut self, effects: &[Fitted]) {
         let mut shares = vec![0.0; self.width];
-        for fitted in model {
+        for fitted in effects {
             let number = self
                 .regressors
                 .iter()

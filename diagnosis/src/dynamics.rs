@@ -21,9 +21,8 @@ pub(crate) fn try_loops(study: &Study<'_>, model: Model, conditions: &Conditions
         return model;
     }
     let now = conditions.refine(study, model);
-    let stays =
-        |(number, fitted): &(usize, &Fitted)| *number < conditions.always || !mistakable(&fitted.effect);
-    let kept: Model = now.model.iter().enumerate().filter(stays).map(|(_, fitted)| fitted.clone()).collect();
+    let stays = |number: usize, fitted: &Fitted| number < conditions.always || !mistakable(&fitted.effect);
+    let kept = now.model.keeping(stays);
     let trials = looped(study, &kept, &now.model, conditions);
     conditions.cheapest(study, now, trials).model
 }
@@ -34,7 +33,7 @@ pub(crate) fn loops_alone(study: &Study<'_>, model: &Model, conditions: &Conditi
     if !may_lag(study, model, conditions) {
         return None;
     }
-    let kept = model[..conditions.always].to_vec();
+    let kept = model.keeping(|number, _| number < conditions.always);
     let trials = looped(study, &kept, model, conditions).into_iter();
     let cheapest =
         trials.min_by(|one, other| conditions.cost(study, one).total_cmp(&conditions.cost(study, other)));
@@ -48,13 +47,13 @@ fn may_lag(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> boo
     let lacks = |axis: usize| {
         // The drive's own feedback shows its loop to the linear choice.
         let hidden = travels[axis].moves && study.own[axis].is_some() && !study.has_drive(axis);
-        hidden && !model.iter().any(|fitted| lag_of(&fitted.effect.shape) == Some(axis))
+        hidden && !model.effects.iter().any(|fitted| lag_of(&fitted.effect.shape) == Some(axis))
     };
     let suspicious = |fitted: &Fitted| {
         mistakable(&fitted.effect)
             || oddity(plausible(study, &fitted.effect), &fitted.effect.shape, &fitted.coefficients) > 0.0
     };
-    (0..travels.len()).any(lacks) && model[always..].iter().any(suspicious)
+    (0..travels.len()).any(lacks) && model.effects[always..].iter().any(suspicious)
 }
 
 /// Models with loops on all moving axes beside what is kept, fitted from several time constants.
@@ -71,13 +70,13 @@ fn looped(study: &Study<'_>, kept: &Model, known: &Model, conditions: &Condition
 /// loop answers.
 pub(crate) fn try_drives(study: &Study<'_>, model: Model, conditions: &Conditions<'_>) -> Model {
     let always = conditions.always;
-    if !model[always..].iter().any(|fitted| lag_of(&fitted.effect.shape).is_some()) {
+    if !model.effects[always..].iter().any(|fitted| lag_of(&fitted.effect.shape).is_some()) {
         return model;
     }
     let mut best = conditions.refine(study, model);
     for axis in 0..study.own.len() {
         let Some(held) =
-            best.model[always..].iter().find(|fitted| lag_of(&fitted.effect.shape) == Some(axis))
+            best.model.effects[always..].iter().find(|fitted| lag_of(&fitted.effect.shape) == Some(axis))
         else {
             continue;
         };
@@ -108,7 +107,7 @@ fn drives(study: &Study<'_>, model: &Model, always: usize, axis: usize, loops: &
 /// Whether [`try_drives`] may find something: a first-order loop beside what would imitate its ringing, or friction beside
 /// any loop.
 pub(crate) fn may_answer(model: &Model, always: usize) -> bool {
-    let effects = || model[always..].iter().map(|fitted| &fitted.effect);
+    let effects = || model.effects[always..].iter().map(|fitted| &fitted.effect);
     let friction = |effect: &Effect| {
         effect.side() == Some(Side::Drive) && matches!(effect.shape, Shape::Backlash { .. })
     };
@@ -133,7 +132,7 @@ fn loops(lag: &Fitted, step: f64) -> Vec<Shape> {
 }
 
 fn with_loop(mut model: Model, axis: usize, shape: &Shape) -> Model {
-    for fitted in model.iter_mut().filter(|fitted| lag_of(&fitted.effect.shape) == Some(axis)) {
+    for fitted in model.effects.iter_mut().filter(|fitted| lag_of(&fitted.effect.shape) == Some(axis)) {
         fitted.effect.shape = shape.clone();
     }
     model
@@ -142,7 +141,7 @@ fn with_loop(mut model: Model, axis: usize, shape: &Shape) -> Model {
 /// A model in which friction of an axis that seemed to act at once, or to build up as the loop lets it, lies inside the loop.
 fn with_friction(study: &Study<'_>, model: &Model, always: usize, axis: usize) -> Model {
     let mut model = model.clone();
-    for fitted in &mut model[always..] {
+    for fitted in &mut model.effects[always..] {
         if let (Place::Motion { motion, side: Side::Drive }, Shape::Backlash { axis: of, .. }) =
             (fitted.effect.place, &fitted.effect.shape)
             && *of == axis
@@ -156,8 +155,7 @@ fn with_friction(study: &Study<'_>, model: &Model, always: usize, axis: usize) -
 }
 
 fn without_imitations(model: &Model, always: usize) -> Model {
-    let stays = |(number, fitted): &(usize, &Fitted)| *number < always || !imitates_ringing(&fitted.effect);
-    model.iter().enumerate().filter(stays).map(|(_, fitted)| fitted.clone()).collect()
+    model.keeping(|number, fitted| number < always || !imitates_ringing(&fitted.effect))
 }
 
 /// Whether an effect, beside a lag of first order, may be what a loop makes that rings at every change of speed.
@@ -197,10 +195,10 @@ fn with_loops(
     for (axis, own) in study.own.iter().enumerate() {
         let Some(motion) = own.filter(|_| travels[axis].moves) else { continue };
         let shape = Shape::Lag { axis, inertia: 0.0 };
-        let lags = known.iter().filter(|fitted| lag_of(&fitted.effect.shape) == Some(axis));
+        let lags = known.effects.iter().filter(|fitted| lag_of(&fitted.effect.shape) == Some(axis));
         let lag: f64 = lags.flat_map(|fitted| &fitted.coefficients).sum();
         let effect = Effect { place: Place::Motion { motion, side: Side::Drive }, shape };
-        model.push(Fitted { effect, coefficients: vec![lag + time_constant] });
+        model.effects.push(Fitted { effect, coefficients: vec![lag + time_constant] });
     }
     model
 }
@@ -212,15 +210,9 @@ fn without_idle(study: &Study<'_>, fit: Fit, conditions: &Conditions<'_>) -> Fit
             && matches!(fitted.effect.shape, Shape::Lag { .. })
             && fitted.coefficients.iter().all(|lag| *lag < 1e-6)
     };
-    let before = fit.model.len();
-    let model: Model = fit
-        .model
-        .iter()
-        .enumerate()
-        .filter(|(number, fitted)| !idle(*number, fitted))
-        .map(|(_, f)| f.clone())
-        .collect();
-    if model.len() < before { conditions.refine(study, model) } else { fit }
+    let before = fit.model.effects.len();
+    let model = fit.model.keeping(|number, fitted| !idle(number, fitted));
+    if model.effects.len() < before { conditions.refine(study, model) } else { fit }
 }
 
 #[cfg(test)]

@@ -55,7 +55,7 @@ pub(crate) struct Found {
 impl Found {
     /// Whether the model holds more than the settings that are fitted whatever else is.
     pub(crate) fn claims(&self) -> bool {
-        self.fit.model.len() > self.always
+        self.fit.model.effects.len() > self.always
     }
 
     /// The conditions under which its model stands.
@@ -67,7 +67,6 @@ impl Found {
 
 /// Looks for the model. `always` are the settings that are fitted whatever else is.
 pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dyn FnMut(f64)) -> Found {
-    study.crossings.fill(0.0);
     let mut search = Search::new(study, always);
     let places = search.places.clone();
     search.go_round(study, progress);
@@ -77,11 +76,9 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
         (search, fit) = begun_anew(study, (search, fit), Start { model: loops, dent: None }, progress);
     }
     let plain = (search, fit);
-    let crossings = study.crossings.clone();
     let (other, dent) = beside_dents(study, plain.clone(), progress);
     let (mut search, mut fit, mut appraisal) = judged(study, other, progress);
     if dent.is_some_and(|dent| !dent.is_in(&fit.model, &search.travels)) {
-        study.crossings = crossings;
         Appraisal::new(study, &plain.1.model).mark(study);
         (search, fit, appraisal) = judged(study, plain, progress);
     }
@@ -89,7 +86,7 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     let conditions = Conditions { always, noises: &noises, travels: &travels, tries };
     let revision = Revision { pool: &pool, places: &places, conditions };
     for model in richer {
-        if fit.model.len() == always && appraisal.lacks() {
+        if fit.model.effects.len() == always && appraisal.lacks() {
             (fit, appraisal) = better(study, (fit, appraisal), model, &revision);
         }
     }
@@ -141,7 +138,6 @@ fn begun_anew(
     Start { model, dent }: Start,
     progress: &mut dyn FnMut(f64),
 ) -> (Search, Fit) {
-    let crossings = study.crossings.clone();
     let mut other = search.clone();
     if dent.is_some() {
         other.always += 1;
@@ -157,7 +153,6 @@ fn begun_anew(
     if other.ends_better(study, &better, (&search, &fit)) {
         return (other, better);
     }
-    study.crossings = crossings;
     Appraisal::new(study, &fit.model).mark(study);
     (search, fit)
 }
@@ -171,13 +166,13 @@ fn beside_dents(
     let mut taken = None;
     for (dent, beside) in dents::hidden(study, &fit.model, &search.conditions()) {
         let Some(model) = dent.added(study, &beside, &search.conditions()) else { continue };
-        let known = (study.crossings.clone(), search.clone(), fit.clone());
+        let known = (search.clone(), fit.clone());
         let start = Start { model, dent: Some(dent.clone()) };
         (search, fit) = begun_anew(study, (search, fit), start, progress);
         if dent.takes_much(study, &fit.model, &search.conditions()) {
             taken = Some(dent);
         } else {
-            (study.crossings, search, fit) = known;
+            (search, fit) = known;
             Appraisal::new(study, &fit.model).mark(study);
         }
     }
@@ -188,8 +183,8 @@ fn beside_dents(
 /// its new length; what stands up beside that is asked again.
 pub(crate) fn upheld(study: &mut Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> (Fit, Appraisal) {
     for _ in 0..ROUNDS {
-        let (kept, appraisal) = judge::uphold(study, fit, conditions);
-        if !crossing::follow(study, &kept.model) {
+        let (mut kept, appraisal) = judge::uphold(study, fit, conditions);
+        if !crossing::follow(study, &mut kept.model) {
             return (kept, appraisal);
         }
         fit = conditions.under(&appraisal.noises).refine(study, kept.model);
@@ -207,7 +202,7 @@ fn better(
     revision: &Revision<'_>,
 ) -> (Fit, Appraisal) {
     let conditions = &revision.conditions;
-    let crossings = study.crossings.clone();
+    let model = model.crossed_as(&stands.0.model);
     let noises = Appraisal::new(study, &model).noises;
     let other = conditions.under(&noises).refine(study, model);
     let kept = upheld(study, other, conditions);
@@ -218,11 +213,9 @@ fn better(
     let gains = taken > new[conditions.always..].iter().sum()
         && other.1.held_out(study, &other.1) < stands.1.held_out(study, &other.1);
     let new = conditions.cost_at(study, &other.0, &new);
-    let crossings_of_other = std::mem::replace(&mut study.crossings, crossings);
     let old = conditions.refine(study, stands.0.model.clone());
     let old = conditions.cost_at(study, &old, &conditions.prices(study, &old.model, old.samples));
     if gains && new < old {
-        study.crossings = crossings_of_other;
         return other;
     }
     stands.1.mark(study);
@@ -234,10 +227,10 @@ fn better(
 fn taken_from_walk(study: &Study<'_>, stands: &Appraisal, other: &(Fit, Appraisal), always: usize) -> f64 {
     let (Fit { model, .. }, appraisal) = other;
     let as_fitted = stands.wandering - appraisal.wandering;
-    if model.iter().any(|fitted| fitted.effect.shape.is_wave()) {
+    if model.effects.iter().any(|fitted| fitted.effect.shape.is_wave()) {
         return as_fitted;
     }
-    let effects: Vec<usize> = (always..model.len()).collect();
+    let effects: Vec<usize> = (always..model.effects.len()).collect();
     as_fitted.max(judge::worth_in(study, model, &stands.floors, &effects))
 }
 
@@ -259,8 +252,7 @@ struct Search {
 
 impl Search {
     fn new(study: &Study<'_>, always: Vec<Effect>) -> Self {
-        let model: Model =
-            always.into_iter().map(|effect| Fitted { effect, coefficients: vec![0.0] }).collect();
+        let model = Model::of(always.into_iter().map(|effect| Fitted { effect, coefficients: vec![0.0] }));
         let courses = courses(study, &model);
         let travels = travel::travels(study, &courses);
         let noises = first_noises(study, &model, &courses);
@@ -268,12 +260,22 @@ impl Search {
         let pool = kinship::groups(study, &courses, &noises, pool);
         let places = waves::places(study, &courses, &noises, &travels);
         let tries = Tries { candidates: crate::number(pool.len() + 2 * WAVES), waves: 1.0 };
-        Self { always: model.len(), model, richer: Vec::new(), noises, courses, travels, pool, places, tries }
+        Self {
+            always: model.effects.len(),
+            model,
+            richer: Vec::new(),
+            noises,
+            courses,
+            travels,
+            pool,
+            places,
+            tries,
+        }
     }
 
-    /// Begins anew with a model.
+    /// Begins anew with a model. Its plays act at once, as at the beginning of every search.
     fn begin(&mut self, study: &mut Study<'_>, model: Model) {
-        study.crossings.fill(0.0);
+        let model = model.uncrossed();
         let appraisal = Appraisal::new(study, &model);
         appraisal.mark(study);
         self.noises = appraisal.noises;
@@ -295,7 +297,7 @@ impl Search {
     fn paid(&self, study: &Study<'_>, end: &Fit, appraisal: &Appraisal) -> f64 {
         let conditions = self.conditions();
         let conditions = conditions.under(&appraisal.noises);
-        conditions.cost(study, end) - conditions.cost_at(study, end, &vec![0.0; end.model.len()])
+        conditions.cost(study, end) - conditions.cost_at(study, end, &vec![0.0; end.model.effects.len()])
     }
 
     /// The conditions of the present round.
@@ -318,7 +320,7 @@ impl Search {
                 // Not in a first round, whose choice serves to know the noise: at the very first, all of it is taken as white.
                 next = dynamics::try_drives(study, next, &self.conditions());
             }
-            if next.len() < self.model.len() {
+            if next.effects.len() < self.model.effects.len() {
                 self.richer.push(self.model.clone());
             }
             self.model = next;
@@ -340,7 +342,7 @@ impl Search {
         for _ in 0..ROUNDS {
             self.courses = courses(study, &self.model);
             self.go_round(study, progress);
-            if !crossing::follow(study, &self.model) {
+            if !crossing::follow(study, &mut self.model) {
                 break;
             }
         }
@@ -358,27 +360,27 @@ impl Search {
         let mut regressors = regressors(study, &self.model, self.always, &self.pool, peaks);
         regressors.extend(others);
         let mut design = Design::new(study, &self.model, &self.noises, regressors);
-        design.rebase(&self.model);
+        design.rebase(&self.model.effects);
         let (products, samples) = design.fitted();
         let resolution = Resolution::new(study, &self.travels);
         let choice =
             Choice::new(study, &design, products.clone(), samples, self.always, self.tries.waves, resolution)
                 .best();
-        fit::linear(&design, &products, self.always, &choice)
+        self.model.with_effects(fit::linear(&design, &products, self.always, &choice))
     }
 
     /// Fits the model; what has run to the end of its range becomes what it is there.
     fn fit(&self, study: &Study<'_>) -> Fit {
         let mut fit = self.conditions().refine(study, self.model.clone());
-        let mut model: Model = Vec::new();
-        for fitted in &fit.model {
+        let mut model = fit.model.with_effects([]);
+        for fitted in &fit.model.effects {
             let mut fitted = fitted.clone();
             if let Some(limit) = limit(study, &self.travels, &fitted.effect.shape) {
                 fitted.effect.shape = limit;
             }
             // At its end it may have become one that stands there already.
-            if !model.iter().any(|known| known.effect == fitted.effect) {
-                model.push(fitted);
+            if !model.effects.iter().any(|known| known.effect == fitted.effect) {
+                model.effects.push(fitted);
             }
         }
         if !same_effects(&model, &fit.model) {
@@ -392,7 +394,9 @@ impl Search {
 /// between them give every wave neighbours of nearly its height, and a first fit may stand on one of them.
 fn other_peaks(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Vec<Regressor> {
     let mut regressors = Vec::new();
-    for (number, fitted) in model.iter().enumerate().filter(|(_, fitted)| fitted.effect.shape.is_wave()) {
+    for (number, fitted) in
+        model.effects.iter().enumerate().filter(|(_, fitted)| fitted.effect.shape.is_wave())
+    {
         let mut peaks = waves::around(study, model, number, conditions.noises, conditions.travels);
         peaks.retain(|peak| rivals(&peak.effect, &fitted.effect) && peak.effect != fitted.effect);
         peaks.sort_by(|a, b| b.gain.total_cmp(&a.gain));
@@ -433,8 +437,8 @@ fn regressors(
     pool: &[Kin],
     peaks: Vec<waves::Peak>,
 ) -> Vec<Regressor> {
-    let mut effects: Vec<Effect> = model.iter().map(|fitted| fitted.effect.clone()).collect();
-    effects.extend(open_candidates(&model[always..], pool));
+    let mut effects: Vec<Effect> = model.effects.iter().map(|fitted| fitted.effect.clone()).collect();
+    effects.extend(open_candidates(&model.effects[always..], pool));
     effects.extend(highest(study, peaks).into_iter().map(|peak| peak.effect));
     effects.into_iter().map(Regressor::of).collect()
 }
@@ -470,6 +474,7 @@ fn same_effects(a: &Model, b: &Model) -> bool {
     let answered = |fitted: &Fitted| fitted.effect.side().and_then(Side::answered_by);
     let alike = |a: &Fitted, b: &Fitted| inert(a) == inert(b) && answered(a) == answered(b);
     let kind = |a: &Fitted, b: &Fitted| a.effect == b.effect || (rivals(&a.effect, &b.effect) && alike(a, b));
+    let (a, b) = (&a.effects, &b.effects);
     a.len() == b.len() && a.iter().all(|member| b.iter().any(|other| kind(member, other)))
 }
 

@@ -24,8 +24,13 @@ pub(crate) struct Fit {
     pub(crate) samples: f64,
 }
 
-/// The model of chosen regressors of a rebased design, by linear least squares. The first `always` regressors are in it.
-pub(crate) fn linear(design: &Design, products: &DMatrix<f64>, always: usize, chosen: &[usize]) -> Model {
+/// The effects of chosen regressors of a rebased design, by linear least squares. The first `always` regressors are among them.
+pub(crate) fn linear(
+    design: &Design,
+    products: &DMatrix<f64>,
+    always: usize,
+    chosen: &[usize],
+) -> Vec<Fitted> {
     let numbers: Vec<usize> = (0..always).chain(chosen.iter().copied()).collect();
     let mut swept = Swept::new(products);
     for column in numbers.iter().flat_map(|number| design.columns(*number)) {
@@ -76,10 +81,9 @@ struct Linearised {
 
 impl Linearised {
     fn new(study: &Study<'_>, model: Model, noises: &[Vec<Noise>]) -> Self {
-        let mut regressors: Vec<Regressor> =
-            model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+        let mut regressors = Regressor::all(&model.effects);
         let mut slopes = Vec::new();
-        for fitted in &model {
+        for fitted in &model.effects {
             let slope = fitted.effect.shape.nonlinear().map(|_| {
                 let slope = Some(fitted.coefficients.clone());
                 regressors.push(Regressor { effect: fitted.effect.clone(), slope });
@@ -126,7 +130,7 @@ impl Linearised {
             let (shape, coefficients) = timed(shape, coefficients);
             Fitted { effect: Effect { place: fitted.effect.place, shape }, coefficients }
         };
-        self.model.iter().enumerate().map(step).collect()
+        self.model.with_effects(self.model.effects.iter().enumerate().map(step))
     }
 
     fn fit(self) -> Fit {
@@ -140,7 +144,7 @@ impl Linearised {
                 scale * widened * self.swept.covariance(columns[row], columns[column])
             })
         };
-        let covariances = (0..self.model.len()).map(covariance).collect();
+        let covariances = (0..self.model.effects.len()).map(covariance).collect();
         Fit { covariances, remaining: self.remaining, samples: self.samples, model: self.model }
     }
 }

@@ -14,7 +14,6 @@ use crate::Inputs;
 use crate::appraisal::Appraisal;
 use crate::candidates;
 use crate::certainty::{Certainty, WIDTH_95};
-use crate::crossing;
 use crate::design::{Design, Regressor};
 use crate::diagnosis::{Estimate, Finding};
 use crate::engine;
@@ -82,12 +81,12 @@ pub fn follow(inputs: &Inputs<'_>, followed: &[Followed]) -> Vec<Vec<Size>> {
     let mut study = Study::new(inputs.equations, inputs.calibration, &inputs.recordings);
     rest::tell(&mut study);
     study.scenes.iter_mut().flat_map(|scene| &mut scene.blocks).for_each(|block| block.held_out = false);
-    let always: Model = candidates::always(&study).into_iter().map(unfitted).collect();
+    let always = Model::of(candidates::always(&study).into_iter().map(unfitted));
     let travels = travel::travels(&study, &engine::courses(&study, &always));
     let begun: Vec<Option<Fitted>> = followed.iter().map(|one| begun(&study, &travels, one)).collect();
-    let model: Model = always.iter().cloned().chain(begun.iter().flatten().cloned()).collect();
+    let model = Model::of(always.effects.iter().chain(begun.iter().flatten()).cloned());
     let sized = Sized::new(&mut study, model);
-    let mut numbers = always.len()..;
+    let mut numbers = always.effects.len()..;
     let size = |begun: &Option<Fitted>| match begun {
         Some(_) => numbers.next().map(|number| sized.sizes(&study, number)).unwrap_or_default(),
         None => Vec::new(),
@@ -206,7 +205,6 @@ impl Sized {
         let mut noises = Appraisal::new(study, &model).as_white();
         for _ in 1..ROUNDS {
             model = Self::once(study, model, &noises).stepped();
-            crossing::follow(study, &model);
             let appraisal = Appraisal::new(study, &model);
             appraisal.mark(study);
             noises = appraisal.noises;
@@ -217,7 +215,7 @@ impl Sized {
 
     /// One linear fit, from where the model stands.
     fn once(study: &Study<'_>, model: Model, noises: &[Vec<Noise>]) -> Self {
-        let regressors = model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+        let regressors = Regressor::all(&model.effects);
         let design = Design::new(study, &model, noises, regressors);
         let (products, samples) = design.fitted();
         let mut swept = Swept::new(&products);
@@ -240,12 +238,12 @@ impl Sized {
             };
             Fitted { effect: fitted.effect.clone(), coefficients: columns.map(change).collect() }
         };
-        self.model.iter().enumerate().map(moved).collect()
+        self.model.with_effects(self.model.effects.iter().enumerate().map(moved))
     }
 
     /// The sizes of an effect; none where one of its columns is not told. The power 0 of a polynomial is free where a zero is.
     fn sizes(&self, study: &Study<'_>, number: usize) -> Vec<Size> {
-        let Some(fitted) = self.model.get(number) else { return Vec::new() };
+        let Some(fitted) = self.model.effects.get(number) else { return Vec::new() };
         let shape = fitted.effect.shape.core();
         let Some(kind) = TermKind::of_name(shape.name()) else { return Vec::new() };
         let free = usize::from(matches!(shape, Shape::Polynomial { .. } | Shape::SensorPolynomial { .. }));
@@ -292,7 +290,7 @@ impl Sized {
     fn covariance(&self, number: usize) -> DMatrix<f64> {
         let columns: Vec<usize> = self.design.columns(number).collect();
         let held = usize::from(
-            self.model.get(number).is_some_and(|fitted| fitted.effect.shape.nonlinear().is_some()),
+            self.model.effects.get(number).is_some_and(|fitted| fitted.effect.shape.nonlinear().is_some()),
         );
         let size = columns.len() + held;
         DMatrix::from_fn(size, size, |row, column| match (columns.get(row), columns.get(column)) {

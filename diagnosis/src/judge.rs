@@ -38,9 +38,7 @@ pub(crate) fn uphold(study: &mut Study<'_>, mut fit: Fit, conditions: &Condition
             let fit = conditions.refine(study, fit.model);
             return (fit, appraisal);
         };
-        let mut model = fit.model.clone();
-        model.remove(weakest);
-        fit = conditions.refine(study, model);
+        fit = conditions.refine(study, fit.model.without(weakest));
     }
 }
 
@@ -65,7 +63,7 @@ fn weakest(
         let columns: Vec<usize> = design.columns(number).collect();
         let worth = swept.worth(&columns) / scale;
         let told = columns.iter().filter(|column| swept.has(**column)).count();
-        let price = conditions.price(study, &fit.model[number].effect, samples)
+        let price = conditions.price(study, &fit.model.effects[number].effect, samples)
             - untold_price(columns.len() - told, samples);
         let weak = worth < price || noise_explains(study, &design, &swept, fit, appraisal, number, price);
         let fails = weak && !conditions.stands_out(study, &fit.model, number, price)
@@ -76,7 +74,7 @@ fn weakest(
             || !pays(study, &design, &swept, fit, (appraisal, &whole), number, conditions);
         fails.then_some((worth, number))
     };
-    let count = fit.model.len() - always;
+    let count = fit.model.effects.len() - always;
     let failing = parallel::counted(count, study.rows() * count, |number| judged(always + number));
     let weakest =
         failing.into_iter().flatten().reduce(|least, next| if next.0 < least.0 { next } else { least });
@@ -97,16 +95,16 @@ fn is_made_up_for(design: &Design, beside_settings: &Swept, model: &Model, numbe
     let energy = |effects: &[usize]| {
         let columns: Vec<usize> = effects.iter().flat_map(|effect| design.columns(*effect)).collect();
         let coefficients: Vec<f64> =
-            effects.iter().flat_map(|effect| model[*effect].coefficients.clone()).collect();
+            effects.iter().flat_map(|effect| model.effects[*effect].coefficients.clone()).collect();
         beside_settings.energy(&columns, &coefficients)
     };
     let own = energy(&[number]);
     let same = |other: &usize| {
         *other != number
-            && model[*other].effect.motion().is_some()
-            && model[*other].effect.motion() == model[number].effect.motion()
+            && model.effects[*other].effect.motion().is_some()
+            && model.effects[*other].effect.motion() == model.effects[number].effect.motion()
     };
-    let mut others = (0..model.len()).filter(same);
+    let mut others = (0..model.effects.len()).filter(same);
     others.any(|other| own <= energy(&[other]) && energy(&[number, other]) < LEAST * LEAST * own)
 }
 
@@ -127,13 +125,12 @@ fn pays(
     conditions: &Conditions<'_>,
 ) -> bool {
     let (appraisal, whole) = left;
-    let mut bare = fit.model.clone();
-    bare.remove(number);
+    let bare = fit.model.without(number);
     let others = followed(study, without(design, swept, &fit.model, number), fit, number, conditions);
     let [bare, others] = [&bare, &others].map(|model| zeros::residuals(study, model));
     let (mut gained, mut expected, mut peak) = (0.0, 0.0, 0.0_f64);
     let (mut taken, mut returning) = (0.0, 0.0);
-    let mut told = !fit.model[number].effect.shape.is_wave();
+    let mut told = !fit.model.effects[number].effect.shape.is_wave();
     for (scene, known) in study.scenes.iter().enumerate() {
         let fitted = known.fitted_rows();
         for channel in 0..known.channels.len() {
@@ -174,12 +171,10 @@ fn imitates_a_state(
     (appraisal, whole): (&Appraisal, &[Vec<Vec<f64>>]),
     number: usize,
 ) -> bool {
-    if !matches!(model[number].effect.shape, Shape::Vibration { .. }) {
+    if !matches!(model.effects[number].effect.shape, Shape::Vibration { .. }) {
         return false;
     }
-    let mut bare = model.clone();
-    bare.remove(number);
-    let bare = zeros::residuals(study, &bare);
+    let bare = zeros::residuals(study, &model.without(number));
     study.scenes.iter().enumerate().any(|(scene, known)| {
         (0..known.channels.len()).any(|channel| {
             let (bare, left) = (&bare[scene][channel], &whole[scene][channel]);
@@ -208,13 +203,13 @@ fn followed(
     number: usize,
     conditions: &Conditions<'_>,
 ) -> Model {
-    let dropped = &fit.model[number].effect;
+    let dropped = &fit.model.effects[number].effect;
     let draws = |fitted: &Fitted| {
         fitted.effect.shape.is_wave()
             && fitted.effect.shape.axis() == dropped.shape.axis()
             && fitted.effect.motion() == dropped.motion()
     };
-    let drawn = dropped.shape.axis().is_some() && others.iter().any(draws);
+    let drawn = dropped.shape.axis().is_some() && others.effects.iter().any(draws);
     if drawn { conditions.refine(study, others).model } else { others }
 }
 
@@ -223,9 +218,9 @@ const MATERIAL: f64 = 0.12;
 
 /// The products of the effects of a model, slopes left out, the whole response restored.
 pub(crate) fn design(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>]) -> Design {
-    let regressors = model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+    let regressors = Regressor::all(&model.effects);
     let mut design = Design::new(study, model, noises, regressors);
-    design.rebase(model);
+    design.rebase(&model.effects);
     design
 }
 
@@ -242,7 +237,8 @@ fn noise_explains(
     let without = without(design, swept, &fit.model, number);
     let bare = Appraisal::beside(study, &without, appraisal);
     // A walk draws any curve along a single pass. It knows nothing of reversals, speeds and temperatures.
-    let curve = matches!(fit.model[number].effect.shape, Shape::Polynomial { .. } | Shape::Table { .. });
+    let curve =
+        matches!(fit.model.effects[number].effect.shape, Shape::Polynomial { .. } | Shape::Table { .. });
     let rise = if curve {
         // Both are less than the fit of greatest likelihood would give: the one keeps the coefficients, the other the noise.
         (bare.wandering - appraisal.wandering).max(worth_in(study, &fit.model, &bare.floors, &[number]))
@@ -271,15 +267,14 @@ pub(crate) fn without(design: &Design, swept: &Swept, model: &Model, number: usi
     for column in design.columns(number) {
         reduced.drop(column);
     }
-    let kept = model.iter().enumerate().filter(|(other, _)| *other != number);
-    kept.map(|(other, fitted)| Fitted {
+    let kept = model.effects.iter().enumerate().filter(|(other, _)| *other != number);
+    model.with_effects(kept.map(|(other, fitted)| Fitted {
         effect: fitted.effect.clone(),
         coefficients: match fitted.effect.shape.nonlinear_in_coefficient() {
             true => fitted.coefficients.clone(),
             false => design.columns(other).map(|column| reduced.coefficient(column)).collect(),
         },
-    })
-    .collect()
+    }))
 }
 
 /// Whether the effect comes back in the held-out blocks about as strong as it was fitted; true where they cannot tell.

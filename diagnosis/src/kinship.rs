@@ -80,7 +80,7 @@ fn column_sums(
     let regressors: Vec<Regressor> = effects.iter().cloned().map(Regressor::of).collect();
     let width = regressors.iter().map(Regressor::columns).sum();
     let jobs: Vec<ChannelAt> = study.channels().collect();
-    let model = Model::new();
+    let model = Model::default();
     let results = parallel::counted(jobs.len(), study.rows() * width, |job| {
         let at = jobs[job];
         let noise = noises[at.scene][at.channel];

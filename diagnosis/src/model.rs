@@ -1,4 +1,6 @@
-//! Models: which effects act, where, and how strongly.
+//! Models: which effects act, where, and how strongly, and over which ways axes cross their plays.
+
+use std::collections::BTreeMap;
 
 use crate::side::Side;
 use crate::terms::{Setting, Shape};
@@ -26,8 +28,80 @@ pub(crate) struct Fitted {
     pub(crate) coefficients: Vec<f64>,
 }
 
-/// All effects that act together, beside those of the calibration.
-pub(crate) type Model = Vec<Fitted>;
+/// All that is held to act beside the calibration: effects, and the plays that axes cross.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub(crate) struct Model {
+    pub(crate) effects: Vec<Fitted>,
+    /// How far the drive of an axis goes until it has crossed its play, mm or rad; the plays of all other axes act at once.
+    /// Whatever of the axis jumps behind the drive, a reversal of its yaw too, goes with it.
+    crossings: BTreeMap<usize, f64>,
+}
+
+impl Model {
+    /// Effects, with plays that act at once.
+    pub(crate) fn of(effects: impl IntoIterator<Item = Fitted>) -> Self {
+        Self { effects: effects.into_iter().collect(), crossings: BTreeMap::new() }
+    }
+
+    /// Other effects, with plays that are crossed as in this model.
+    pub(crate) fn with_effects(&self, effects: impl IntoIterator<Item = Fitted>) -> Self {
+        Self { effects: effects.into_iter().collect(), crossings: self.crossings.clone() }
+    }
+
+    /// The same with one effect more.
+    pub(crate) fn with(&self, fitted: Fitted) -> Self {
+        let mut more = self.clone();
+        more.effects.push(fitted);
+        more
+    }
+
+    /// The same without one of its effects.
+    pub(crate) fn without(&self, number: usize) -> Self {
+        let mut rest = self.clone();
+        rest.effects.remove(number);
+        rest
+    }
+
+    /// The same with those of its effects that `stays` picks by number.
+    pub(crate) fn keeping(&self, stays: impl Fn(usize, &Fitted) -> bool) -> Self {
+        let kept = self.effects.iter().enumerate().filter(|(number, fitted)| stays(*number, fitted));
+        self.with_effects(kept.map(|(_, fitted)| fitted.clone()))
+    }
+
+    /// The same with plays that are crossed as in another model.
+    pub(crate) fn crossed_as(self, other: &Self) -> Self {
+        other.with_effects(self.effects)
+    }
+
+    /// The same with plays that act at once.
+    pub(crate) fn uncrossed(self) -> Self {
+        Self::of(self.effects)
+    }
+
+    /// How far the drive of an axis goes until it has crossed its play, mm or rad; 0 where that acts at once.
+    pub(crate) fn crossing(&self, axis: usize) -> f64 {
+        self.crossings.get(&axis).copied().unwrap_or_default()
+    }
+
+    /// Whether any axis crosses its play.
+    pub(crate) fn crosses(&self) -> bool {
+        !self.crossings.is_empty()
+    }
+
+    /// The axes that cross their plays.
+    pub(crate) fn crossing_axes(&self) -> Vec<usize> {
+        self.crossings.keys().copied().collect()
+    }
+
+    /// Lets an axis cross its play over a way, mm or rad; one of 0 or less acts at once.
+    pub(crate) fn cross(&mut self, axis: usize, way: f64) {
+        if way > 0.0 {
+            self.crossings.insert(axis, way);
+        } else {
+            self.crossings.remove(&axis);
+        }
+    }
+}
 
 impl Effect {
     /// A setting of the instrument of a recording.

@@ -7,7 +7,7 @@ use crate::appraisal::Appraisal;
 use crate::design::{Design, Regressor};
 use crate::diagnosis::Repeatability;
 use crate::fit;
-use crate::model::{Effect, Model};
+use crate::model::{Effect, Fitted, Model};
 use crate::study::{Kind, Scene, Study};
 use crate::terms::Setting;
 
@@ -100,10 +100,10 @@ fn of_scene(study: &Study<'_>, scene: usize, model: &Model) -> Option<Scatter> {
     let mut free = model.clone();
     let mut after = None;
     for _ in 0..TURNS {
-        let mut effects: Vec<Effect> = model.iter().map(|fitted| fitted.effect.clone()).collect();
+        let mut effects: Vec<Effect> = model.effects.iter().map(|fitted| fitted.effect.clone()).collect();
         effects.extend(zeros.iter().cloned());
         let mut design = Design::new(study, &free, &noises, effects.into_iter().map(Regressor::of).collect());
-        design.rebase(&free);
+        design.rebase(&free.effects);
         let (products, _) = design.fitted();
         free = keep_loops(model, fit::linear(&design, &products, design.regressors.len(), &[]));
         let appraisal = Appraisal::new(study, &free);
@@ -166,19 +166,20 @@ const SHARED: f64 = 0.5;
 const SAME_PLACE: f64 = 1e-3;
 
 /// A linear fit of loops and clocks holds only nearby: they stay as they were.
-fn keep_loops(model: &Model, mut free: Model) -> Model {
-    for (fitted, known) in free.iter_mut().zip(model) {
+fn keep_loops(model: &Model, mut free: Vec<Fitted>) -> Model {
+    for (fitted, known) in free.iter_mut().zip(&model.effects) {
         if known.effect.shape.nonlinear_in_coefficient() {
             fitted.coefficients.clone_from(&known.coefficients);
         }
     }
-    free
+    model.with_effects(free)
 }
 
 fn measure(study: &Study<'_>, scene: usize, free: &Model, after: &Appraisal, runs: Vec<i64>) -> Scatter {
     let value = |zero: Zero, run: i64| -> f64 {
         let wanted = Some(zero.of(run));
-        free.iter()
+        free.effects
+            .iter()
             .filter(|fitted| fitted.effect.setting_of(scene) == wanted)
             .flat_map(|fitted| &fitted.coefficients)
             .sum()

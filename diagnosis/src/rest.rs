@@ -27,7 +27,7 @@ pub(crate) fn tell(study: &mut Study<'_>) {
 
 /// The sum of distances of each channel from its median under the calibration alone.
 fn misfit(study: &Study<'_>, scene: usize) -> f64 {
-    let model = Model::new();
+    let model = Model::default();
     let course = Course::new(study, scene, &model);
     let residuals = residuals(study, scene, &model, &course);
     let spread = |residual: &Vec<f64>| {

@@ -13,7 +13,7 @@ use model_dsl::program::Interpreter;
 
 use crate::course::{Course, LastCourse};
 use crate::legs::GAP;
-use crate::model::{Effect, Fitted, Place};
+use crate::model::{Effect, Fitted, Model, Place};
 use crate::noise;
 use crate::observations;
 use crate::recording::{Instrument, Lie, Recording};
@@ -50,9 +50,6 @@ pub(crate) struct Study<'a> {
     pub(crate) known: Vec<Fitted>,
     /// The number of the motion that is each axis's own: EXX of X.
     pub(crate) own: Vec<Option<usize>>,
-    /// How far the drive of each axis goes until it has crossed its play, mm or rad; 0 where the play is taken to act at once.
-    /// Whatever of the axis jumps behind the drive, a reversal of its yaw too, goes with it.
-    pub(crate) crossings: Vec<f64>,
 }
 
 /// A channel of a recording, by the numbers of both.
@@ -213,10 +210,9 @@ impl<'a> Study<'a> {
                 Scene::new(recording, equations, calibration, (&sensors, &loads), built(recording))
             })
             .collect();
-        let crossings = vec![0.0; own.len()];
-        let mut study = Self { equations, sensors, loads, scenes, known, own, crossings };
+        let mut study = Self { equations, sensors, loads, scenes, known, own };
         for scene in 0..study.scenes.len() {
-            let course = Course::new(&study, scene, &[]);
+            let course = Course::new(&study, scene, &Model::default());
             if study.scenes[scene].recording.free_datum {
                 let readings = observations::part_readings(&study, scene, &course);
                 study.scenes[scene].lie = Some(Lie::of(&readings, study.scenes[scene].is_probed()));
@@ -230,11 +226,6 @@ impl<'a> Study<'a> {
     /// How many rows all recordings have together.
     pub(crate) fn rows(&self) -> usize {
         self.scenes.iter().map(Scene::rows).sum()
-    }
-
-    /// Whether any axis crosses its play.
-    pub(crate) fn crosses(&self) -> bool {
-        self.crossings.iter().any(|crossing| *crossing > 0.0)
     }
 
     /// Whether the drive's own feedback of an axis was recorded anywhere.

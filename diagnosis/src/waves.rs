@@ -229,9 +229,8 @@ pub(crate) fn around(
     noises: &[Vec<Noise>],
     travels: &[Travel],
 ) -> Vec<Peak> {
-    let wave = &model[number].effect;
-    let mut without = model.clone();
-    without.remove(number);
+    let wave = &model.effects[number].effect;
+    let without = model.without(number);
     let courses: Vec<Arc<Course>> =
         (0..study.scenes.len()).map(|scene| Course::new(study, scene, &without)).collect();
     let residuals = all_weighted(study, &without, noises, &courses);

@@ -35,10 +35,10 @@ fn held(
         let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
         let effect = Effect { place, shape: shape.clone() };
         let zero = Effect::setting(0, crate::terms::Setting::Offset { channel: 0 });
-        let model: Model = vec![
+        let model = Model::of([
             Fitted { effect: zero, coefficients: vec![0.0] },
             Fitted { coefficients: vec![0.0; effect.shape.columns()], effect },
-        ];
+        ]);
         let courses = engine::courses(&study, &model);
         let travels = crate::travel::travels(&study, &courses);
         let noises = vec![vec![Noise::white(1e-3)]];
@@ -46,7 +46,7 @@ fn held(
         let certainty = certainties(&study, &fit, &noises, &travels).remove(1);
         let plain = Certainty { richer: None, ..certainty.clone() };
         for (held, certainty) in held.iter_mut().zip([&certainty, &plain]) {
-            let described = Described::new(&study, &fit.model[1], certainty);
+            let described = Described::new(&study, &fit.model.effects[1], certainty);
             let parameters = described.parameters();
             let value = &parameters.iter().find(|parameter| parameter.name == name).unwrap().value;
             let estimate: &Estimate = match value {

@@ -87,10 +87,11 @@ fn ranked(study: &Study<'_>, found: &Found, places: &[Place], times: &[f64]) -> 
     let model = &found.fit.model;
     let always_there =
         |place: &Place| Regressor::of(Effect { place: *place, shape: Shape::Step { time: f64::MIN } });
-    let known = model.iter().map(|fitted| Regressor::of(fitted.effect.clone()));
+    let known = model.effects.iter().map(|fitted| Regressor::of(fitted.effect.clone()));
     let regressors: Vec<Regressor> = known.chain(places.iter().map(always_there)).collect();
     let columns_of = |effects: &[Regressor]| effects.iter().map(Regressor::columns).sum::<usize>();
-    let (whole, always) = (columns_of(&regressors[..model.len()]), columns_of(&regressors[..found.always]));
+    let (whole, always) =
+        (columns_of(&regressors[..model.effects.len()]), columns_of(&regressors[..found.always]));
     let mut times = times.to_vec();
     times.sort_by(f64::total_cmp);
     let mut sums = Sums::new(always, places.len(), times.len());
@@ -182,7 +183,7 @@ fn restored(
     rows: &[usize],
 ) -> nalgebra::DVector<f64> {
     let mut response = matrix.column(matrix.ncols() - 1).into_owned();
-    let coefficients = found.fit.model.iter().flat_map(|fitted| &fitted.coefficients);
+    let coefficients = found.fit.model.effects.iter().flat_map(|fitted| &fitted.coefficients);
     for (column, coefficient) in coefficients.enumerate() {
         response += matrix.column(column) * *coefficient;
     }
@@ -193,20 +194,22 @@ fn restored(
 
 /// The best set of what was found and of steps at a moment, by linear least squares.
 fn chosen(study: &Study<'_>, found: &Found, time: f64, places: &[Place]) -> Event {
-    let mut effects: Vec<Effect> = found.fit.model.iter().map(|fitted| fitted.effect.clone()).collect();
+    let mut effects: Vec<Effect> =
+        found.fit.model.effects.iter().map(|fitted| fitted.effect.clone()).collect();
     effects.extend(places.iter().map(|place| Effect { place: *place, shape: Shape::Step { time } }));
     let regressors = effects.into_iter().map(Regressor::of).collect();
     // As white noise: a noise that wanders, as it seemed to before, would take the event for one of its steps.
     let noises = found.appraisal.as_white();
     let mut design = Design::new(study, &found.fit.model, &noises, regressors);
-    design.rebase(&found.fit.model);
+    design.rebase(&found.fit.model.effects);
     let (products, samples) = design.fitted();
     let resolution = Resolution::new(study, &found.travels);
     let waves = found.tries.waves;
     let choice =
         Choice::new(study, &design, products.clone(), samples, found.always, waves, resolution).best();
-    let model = fit::linear(&design, &products, found.always, &choice);
-    let steps = model.iter().filter(|fitted| matches!(fitted.effect.shape, Shape::Step { .. })).count();
+    let model = found.fit.model.with_effects(fit::linear(&design, &products, found.always, &choice));
+    let steps =
+        model.effects.iter().filter(|fitted| matches!(fitted.effect.shape, Shape::Step { .. })).count();
     Event { model, steps }
 }
 

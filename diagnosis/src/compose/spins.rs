@@ -164,9 +164,9 @@ impl<'p> Polish<'p> {
     fn swept(&self, rate: f64) -> (Swept, [usize; 2]) {
         let wave = [0.0, FRAC_PI_2]
             .map(|phase| Effect { place: self.place, shape: Shape::spin(self.load, rate, phase) });
-        let found = self.model.iter().map(|fitted| fitted.effect.clone());
+        let found = self.model.effects.iter().map(|fitted| fitted.effect.clone());
         let regressors: Vec<Regressor> = found.chain(wave).map(Regressor::of).collect();
-        let number = self.model.len();
+        let number = self.model.effects.len();
         let design = Design::new(self.study, self.model, &self.noises, regressors);
         let mut swept = Swept::new(&design.fitted().0);
         let wave = [design.first[number], design.first[number + 1]];

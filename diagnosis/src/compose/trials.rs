@@ -38,7 +38,7 @@ pub(super) struct Trial {
     /// What is fitted beside it, and stays if it stands up.
     pub(super) beside: Option<Effect>,
     /// What is kept of what was found beyond the settings, and names that were missing.
-    pub(super) kept: Model,
+    pub(super) kept: Vec<Fitted>,
 }
 
 /// What forms compete with, and how samples weigh.
@@ -89,7 +89,7 @@ pub(super) fn best(ring: Ring<'_>, forms: &[Form]) -> Vec<Trial> {
     let again = lacks.then(|| {
         let names = most_promising(forms, &promises, &price, (forms.len(), &is_name));
         let missing = different(forms, names);
-        model.extend(missing.into_iter().map(|number| forms[number].fitted(0.0)));
+        model.effects.extend(missing.into_iter().map(|number| forms[number].fitted(0.0)));
         let compared: Vec<Form> = compared.iter().map(|number| forms[*number].clone()).collect();
         ring.contest(&model, &compared)
     });
@@ -112,7 +112,7 @@ pub(super) fn best(ring: Ring<'_>, forms: &[Form]) -> Vec<Trial> {
 /// hidden it; of all other names the search has decided.
 fn has_a_form(model: &Model) -> bool {
     let is_form = |shape: &Shape| shape.is_composed() || matches!(shape, Shape::Delay { .. });
-    model.iter().any(|fitted| is_form(&fitted.effect.shape))
+    model.effects.iter().any(|fitted| is_form(&fitted.effect.shape))
 }
 
 /// The wanted forms whose promise exceeds their price most: `count` of them beside all that was found, and as many alone. They come in
@@ -204,7 +204,7 @@ impl Ring<'_> {
         Trial {
             form: variants[number].fitted(outcome.amount),
             beside: form.beside.clone(),
-            kept: kept.map(|number| model[number].clone()).collect(),
+            kept: kept.map(|number| model.effects[number].clone()).collect(),
         }
     }
 }

@@ -86,7 +86,7 @@ const RESOLVED: f64 = 3.0;
 
 /// The size of each effect that would be found in nine of ten cases, mm or rad; nothing where the recordings do not show it.
 fn sizes(study: &Study<'_>, found: &Found, effects: &[Effect]) -> Vec<Option<f64>> {
-    let always = &found.fit.model[..found.always];
+    let always = &found.fit.model.effects[..found.always];
     let regressors = always.iter().map(|fitted| fitted.effect.clone()).chain(effects.iter().cloned());
     let regressors: Vec<Regressor> = regressors.map(Regressor::of).collect();
     let design = Design::new(study, &found.fit.model, &found.appraisal.noises, regressors);

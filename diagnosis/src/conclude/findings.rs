@@ -39,7 +39,7 @@ pub(super) fn report(
     }
     let shares = shares(study, found, units);
     let certainties = certainty::certainties(study, &found.fit, &found.appraisal.noises, &found.travels);
-    for (number, fitted) in found.fit.model.iter().enumerate() {
+    for (number, fitted) in found.fit.model.effects.iter().enumerate() {
         let described = Described::new(study, fitted, &certainties[number]);
         let names = number.checked_sub(found.always).map_or(&[] as &[Effect], |place| &names[place]);
         let alternatives = told(study, &fitted.effect, names);
@@ -77,7 +77,7 @@ pub(super) fn report(
     }
     diagnosis.findings.sort_by(|a, b| b.share.total_cmp(&a.share));
     diagnosis.settings = joined(std::mem::take(&mut diagnosis.settings));
-    let model = found.fit.model.iter().enumerate();
+    let model = found.fit.model.effects.iter().enumerate();
     let machine = model.filter(|(_, fitted)| fitted.effect.motion().is_some());
     let mut numbers: Vec<usize> = machine.map(|(number, _)| number).collect();
     numbers.sort_by(|a, b| shares[*b].total_cmp(&shares[*a]));
@@ -110,14 +110,17 @@ fn shares(study: &Study<'_>, found: &Found, units: &Units) -> Vec<f64> {
     let model = &found.fit.model;
     let whole = units.held_out(study, model);
     let difference = |number: usize| -> Vec<f64> {
-        if model[number].effect.motion().is_none() {
+        if model.effects[number].effect.motion().is_none() {
             return Vec::new();
         }
-        let mut without = model.clone();
-        without.remove(number);
-        units.held_out(study, &without).iter().zip(&whole).map(|(without, whole)| without - whole).collect()
+        units
+            .held_out(study, &model.without(number))
+            .iter()
+            .zip(&whole)
+            .map(|(without, whole)| without - whole)
+            .collect()
     };
-    let signals: Vec<Vec<f64>> = (0..model.len()).map(difference).collect();
+    let signals: Vec<Vec<f64>> = (0..model.effects.len()).map(difference).collect();
     let sum: Vec<f64> =
         (0..whole.len()).map(|at| signals.iter().filter_map(|signal| signal.get(at)).sum()).collect();
     let product = |signal: &[f64]| signal.iter().zip(&sum).map(|(a, b)| a * b).sum::<f64>();
@@ -154,7 +157,7 @@ fn setting(
     number: usize,
     alternatives: Vec<Alternative>,
 ) -> Option<SettingFinding> {
-    let fitted = &found.fit.model[number];
+    let fitted = &found.fit.model.effects[number];
     let (crate::model::Place::Instrument { recording }, Shape::Instrument(setting)) =
         (fitted.effect.place, &fitted.effect.shape)
     else {
@@ -194,7 +197,7 @@ fn setting(
 /// How the part of a recording is turned: as its readings alone have it, and what the model adds to that, rad.
 fn rotation(study: &Study<'_>, model: &Model, recording: usize) -> Option<[f64; 3]> {
     let mut more = [0.0; 3];
-    for fitted in model {
+    for fitted in &model.effects {
         if let Some(Setting::Rotation { direction }) = fitted.effect.setting_of(recording) {
             more[direction] += fitted.coefficients.first()?;
         }

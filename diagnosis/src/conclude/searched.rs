@@ -5,7 +5,7 @@
 
 use super::decidable::{Misread, astray, impossible, misplaced, misread, no_circle, too_little, undecided};
 use super::units::Units;
-use super::{bare_model, ceiling, fitted_runs, strongest, undecidable, with_known_crossings};
+use super::{bare_beside, bare_model, ceiling, fitted_runs, strongest, undecidable};
 use crate::audit::Trial;
 use crate::candidates;
 use crate::diagnosis::{Diagnosis, NothingReturns, Residual, Returning};
@@ -63,7 +63,7 @@ impl<'s> Searched<'s> {
             return Err(Box::new(undecidable(opened, &study, reason)));
         }
         let units = Units::new(&study);
-        let bare = bare_model(&mut study);
+        let bare = bare_model(&mut study, &Model::default());
         opened.returns = ceiling::ceiling(&study);
         opened.nothing_returns = ceiling::nothing(&study);
         if let Some(reason) = astray(&study, &bare).or_else(|| no_circle(&study, &bare)) {
@@ -74,8 +74,9 @@ impl<'s> Searched<'s> {
         };
         let (mut before, mut drawn) = left(&study, &bare);
         let (found, scattered) = search(&mut study, progress);
-        if study.crosses() {
-            (before, drawn) = with_known_crossings(&mut study, &bare, left);
+        if found.fit.model.crosses() {
+            let bare = bare_beside(&mut study, &bare, &found.fit.model);
+            (before, drawn) = left(&study, &bare);
             found.appraisal.mark(&mut study);
         }
         let Diagnosis { returns, nothing_returns, undecided, .. } = opened;
@@ -104,7 +105,7 @@ impl<'s> Searched<'s> {
             Some(fitted)
         };
         let Found { fit, appraisal, travels, .. } = &trial.found;
-        let model = fit.model.iter().filter_map(here).collect();
+        let model = self.found.fit.model.with_effects(fit.model.effects.iter().filter_map(here));
         let mut model = fit::refine(&self.study, model, &appraisal.noises, travels).model;
         zeros::free_held_out(&self.study, &mut model);
         self.units.residual(&self.study, &model)

@@ -18,15 +18,15 @@ fn prices(period: f64, alike: f64) -> [f64; 2] {
     let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
     let shape = Shape::Cyclic { axis: 0, period, center: 150.0 };
     let zero = Effect::setting(0, Setting::Offset { channel: 0 });
-    let model = vec![
+    let model = Model::of([
         Fitted { effect: zero, coefficients: vec![0.0] },
         Fitted { effect: Effect { place, shape }, coefficients: vec![0.0, 0.0] },
-    ];
+    ]);
     let travels = travels(&study, &crate::engine::courses(&study, &model));
     let noises = vec![vec![Noise { alike, ..Noise::white(0.01) }]];
     let tries = Tries { candidates: 40.0, waves: 300.0 };
     let conditions = Conditions { always: 1, noises: &noises, travels: &travels, tries };
-    [conditions.prices(&study, &model, 100.0)[1], conditions.price(&study, &model[1].effect, 100.0)]
+    [conditions.prices(&study, &model, 100.0)[1], conditions.price(&study, &model.effects[1].effect, 100.0)]
 }
 
 #[test]

@@ -22,11 +22,10 @@ pub(crate) fn thinned(
     noises: &[Vec<Noise>],
 ) -> Option<Shape> {
     let shape = |nodes: Vec<f64>| Shape::Table { axis, nodes, directed: false, repeats: false };
-    let mut regressors: Vec<Regressor> =
-        kept.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+    let mut regressors = Regressor::all(&kept.effects);
     regressors.push(Regressor::of(Effect { place, shape: shape(all.to_vec()) }));
     let mut design = Design::new(study, kept, noises, regressors);
-    design.rebase(kept);
+    design.rebase(&kept.effects);
     let (products, samples) = design.fitted();
     let curve = Curve { first: *design.first.last()?, products, samples };
     let mut nodes: Vec<usize> = (0..all.len()).collect();

@@ -16,7 +16,7 @@ fn with<T>(errors: &str, asked: impl Fn(&Study<'_>, &Model, &Conditions<'_>) -> 
     let recording = bench.record(&truth, &noisy(there_and_back, position("x"), 0.000_3, 5));
     let study = Study::new(bench.equations(), None, std::slice::from_ref(&&recording));
     let zero = Effect::setting(0, Setting::Offset { channel: 0 });
-    let model = vec![Fitted { effect: zero, coefficients: vec![0.0] }];
+    let model = Model::of([Fitted { effect: zero, coefficients: vec![0.0] }]);
     let travels = travels(&study, &courses(&study, &model));
     let noises = vec![vec![Noise::white(0.000_3)]];
     let tries = Tries { candidates: 40.0, waves: 300.0 };
@@ -38,7 +38,7 @@ fn drawn(errors: &str) -> Option<Vec<(f64, f64)>> {
         let begun = dent.added(study, &beside, conditions)?;
         let fit = dent.drawn(study, conditions.refine(study, begun), conditions);
         assert!(dent.is_in(&fit.model, conditions.travels));
-        let table = fit.model.iter().find(|fitted| dent.is_table(fitted))?;
+        let table = fit.model.effects.iter().find(|fitted| dent.is_table(fitted))?;
         match &table.effect.shape {
             Shape::Table { nodes, .. } => {
                 Some(nodes.iter().copied().zip(table.coefficients.iter().copied()).collect())

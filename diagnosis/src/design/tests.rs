@@ -42,7 +42,7 @@ fn machine(study: &Study<'_>, name: &str, side: Side, shape: Shape) -> Effect {
 
 /// A model of some size: terms of the machine with memory, a loop, a clock.
 fn model(study: &Study<'_>, settings: &[(Setting, f64)]) -> Model {
-    let mut model = vec![
+    let mut model = Model::of([
         Fitted {
             effect: machine(study, "EXX", Side::After, Shape::Backlash { axis: 0, wind_up: 5.0 }),
             coefficients: vec![0.01],
@@ -59,8 +59,8 @@ fn model(study: &Study<'_>, settings: &[(Setting, f64)]) -> Model {
             effect: machine(study, "EYY", Side::Drive, Shape::Backlash { axis: 1, wind_up: 0.0 }),
             coefficients: vec![0.004],
         },
-    ];
-    model.extend(
+    ]);
+    model.effects.extend(
         settings.iter().map(|(setting, value)| Fitted {
             effect: Effect::setting(0, *setting),
             coefficients: vec![*value],
@@ -95,9 +95,9 @@ fn columns_are_slopes(study: &Study<'_>, model: &Model, effects: &[Effect], what
                     let mut changed = model.clone();
                     let mut coefficients = vec![0.0; effect.shape.columns()];
                     coefficients[k] = step;
-                    match changed.iter_mut().find(|fitted| fitted.effect == *effect) {
+                    match changed.effects.iter_mut().find(|fitted| fitted.effect == *effect) {
                         Some(fitted) => fitted.coefficients[k] += step,
-                        None => changed.push(Fitted { effect: effect.clone(), coefficients }),
+                        None => changed.effects.push(Fitted { effect: effect.clone(), coefficients }),
                     }
                     left(study, &changed).swap_remove(channel)
                 };
@@ -215,7 +215,7 @@ fn the_clock_s_column_is_how_the_residual_falls_behind_a_loop_too() {
         let recording = recorded(&bench, position("xy"), circle(60.0), true);
         let study = Study::new(bench.equations(), Some(&known), &[&recording]);
         let clock = Effect::setting(0, Setting::Clock);
-        let model = vec![Fitted { effect: clock.clone(), coefficients: vec![0.02] }];
+        let model = Model::of([Fitted { effect: clock.clone(), coefficients: vec![0.02] }]);
         columns_are_slopes(&study, &model, &[clock], errors);
     }
 }
@@ -248,13 +248,13 @@ fn slopes_are_how_the_residual_falls_with_the_nonlinear_parameter() {
         let fitted = Fitted { effect: effect.clone(), coefficients: coefficients.clone() };
         let regressors = [Regressor { effect: effect.clone(), slope: Some(coefficients.clone()) }];
         for channel in 0..3 {
-            let found = columns(&study, channel, &vec![fitted.clone()], &regressors);
+            let found = columns(&study, channel, &Model::of([fitted.clone()]), &regressors);
             let found: Vec<f64> = found.column(0).iter().copied().collect();
             let value = effect.shape.nonlinear().unwrap().value;
             let step = 1e-3 * value;
             let moved = |value: f64| {
                 let effect = Effect { place: effect.place, shape: effect.shape.with_nonlinear(value) };
-                left(&study, &vec![Fitted { effect, coefficients: coefficients.clone() }])
+                left(&study, &Model::of([Fitted { effect, coefficients: coefficients.clone() }]))
                     .swap_remove(channel)
             };
             let (up, down) = (moved(value + step), moved(value - step));
@@ -363,15 +363,10 @@ fn a_rebased_design_gives_whole_coefficients() {
     let solved = |coefficients: [f64; 4]| {
         let [a, b, c, d] = coefficients;
         let parts = [vec![a], vec![b, c], vec![d]];
-        let model: Model = effects
-            .iter()
-            .cloned()
-            .zip(parts)
-            .map(|(effect, coefficients)| Fitted { effect, coefficients })
-            .collect();
-        let regressors = effects.iter().cloned().map(Regressor::of).collect();
-        let mut design = Design::new(&study, &model, &noises, regressors);
-        design.rebase(&model);
+        let effects = effects.iter().cloned().zip(parts);
+        let model = Model::of(effects.map(|(effect, coefficients)| Fitted { effect, coefficients }));
+        let mut design = Design::new(&study, &model, &noises, Regressor::all(&model.effects));
+        design.rebase(&model.effects);
         let (products, _) = design.fitted();
         let fitted = fit::linear(&design, &products, 0, &[0, 1, 2]);
         fitted.into_iter().flat_map(|fitted| fitted.coefficients).collect::<Vec<f64>>()

@@ -47,7 +47,7 @@ fn fitted<'a>(bench: &'a Bench, recordings: &[&'a Recording], noise: f64) -> Cas
     let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
     let shape = Shape::Backlash { axis: 0, wind_up: 0.0 };
     let effects = [Effect::setting(0, Setting::Offset { channel: 0 }), Effect { place, shape }];
-    let model = effects.map(|effect| Fitted { effect, coefficients: vec![0.0] }).to_vec();
+    let model = Model::of(effects.map(|effect| Fitted { effect, coefficients: vec![0.0] }));
     let noises = vec![vec![Noise::white(noise)]; recordings.len()];
     let fit = crate::fit::refine(&study, model, &noises, &[]);
     let design = design(&study, &fit.model, &noises);
@@ -211,7 +211,7 @@ fn falls(case: &Case<'_>, always: usize, share: f64) -> Option<usize> {
     let squares = swept.worth(&columns) * samples / swept.remaining();
     let bare = Appraisal::new(&case.study, &without(&design, &swept, &case.fit.model, PLAY));
     let worth = squares.min(bare.deviance - case.appraisal.deviance);
-    let untried = crate::search::price(&case.study, &case.fit.model[PLAY].effect, samples, 1.0, 1.0);
+    let untried = crate::search::price(&case.study, &case.fit.model.effects[PLAY].effect, samples, 1.0, 1.0);
     assert!(untried < 0.5 * worth, "{untried} {worth}");
     let candidates = (0.5 * (share * worth - untried)).exp();
     let noises = &case.appraisal.noises;
@@ -253,8 +253,8 @@ fn made_up_for(lost_motions: [f64; 2]) -> [bool; 2] {
         coefficients: vec![lost_motion],
     };
     let zero = Effect::setting(0, Setting::Offset { channel: 0 });
-    let mut model = vec![Fitted { effect: zero, coefficients: vec![0.0] }];
-    model.extend([3.0, 4.0].into_iter().zip(lost_motions).map(play));
+    let mut model = Model::of([Fitted { effect: zero, coefficients: vec![0.0] }]);
+    model.effects.extend([3.0, 4.0].into_iter().zip(lost_motions).map(play));
     let design = design(&study, &model, &[vec![Noise::white(QUIET)]]);
     let beside_settings = beside_settings(&design, &design.fitted().0, 1);
     [1, 2].map(|number| is_made_up_for(&design, &beside_settings, &model, number))

@@ -174,8 +174,9 @@ fn range(values: &[f64]) -> f64 {
 /// The sensors that the model reads, then those that change most.
 fn temperatures(sight: &Sight<'_>, rows: &[usize]) -> Vec<Track> {
     let given = &sight.study.scenes[sight.scene].given.temperatures;
-    let reads =
-        |sensor: usize| sight.model.iter().any(|fitted| sensor_of(&fitted.effect.shape) == Some(sensor));
+    let reads = |sensor: usize| {
+        sight.model.effects.iter().any(|fitted| sensor_of(&fitted.effect.shape) == Some(sensor))
+    };
     let mut sensors: Vec<usize> = (0..given.len()).filter(|sensor| range(&given[*sensor]) > WARMER).collect();
     sensors.sort_by(|a, b| {
         reads(*b).cmp(&reads(*a)).then(range(&given[*b]).total_cmp(&range(&given[*a]))).then(a.cmp(b))

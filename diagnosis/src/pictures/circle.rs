@@ -39,7 +39,7 @@ pub(super) fn draw(sight: &Sight<'_>, before: &[Vec<f64>], after: &[Vec<f64>]) -
         return None;
     }
     // What the known calibration predicts, without any setting of the instrument.
-    let none = Vec::new();
+    let none = sight.model.with_effects([]);
     let plain = observations::residuals(study, sight.scene, &none, &Course::new(study, sight.scene, &none));
     let radial = |row: usize, of: &dyn Fn(usize) -> f64| match &seen {
         Seen::Bar { channel, .. } => of(*channel),

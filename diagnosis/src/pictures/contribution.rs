@@ -14,8 +14,7 @@ pub(super) fn draw(
     findings: &[usize],
 ) -> Vec<Contribution> {
     let of = |number: &usize| {
-        let mut without = model.clone();
-        without.remove(*number);
+        let without = model.without(*number);
         let (mut squares, mut samples, mut max) = (0.0, 0.0, 0.0_f64);
         for (scene, residuals) in zeros::residuals(study, &without).iter().enumerate() {
             let channels = study.scenes[scene].channels.iter().zip(residuals).zip(&after[scene]);
@@ -31,5 +30,5 @@ pub(super) fn draw(
         }
         Contribution { rms: (squares / f64::max(samples, 1.0)).sqrt() * factor, max: max * factor }
     };
-    findings.iter().filter(|number| **number < model.len()).map(of).collect()
+    findings.iter().filter(|number| **number < model.effects.len()).map(of).collect()
 }

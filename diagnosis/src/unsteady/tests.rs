@@ -54,15 +54,15 @@ fn lines_that_crowd_become_a_band_with_their_strength_together() {
         // More than 2 % away.
         vibration(2, 32.0, [4e-3, 0.0]),
     ];
-    let mut model: Model = Vec::new();
-    model.extend(others[..3].iter().cloned());
-    model.push(crowd[0].clone());
-    model.push(others[3].clone());
-    model.push(crowd[1].clone());
-    model.extend(others[4..].iter().cloned());
-    model.push(crowd[2].clone());
+    let mut model = Model::default();
+    model.effects.extend(others[..3].iter().cloned());
+    model.effects.push(crowd[0].clone());
+    model.effects.push(others[3].clone());
+    model.effects.push(crowd[1].clone());
+    model.effects.extend(others[4..].iter().cloned());
+    model.effects.push(crowd[2].clone());
     let bands = take_bands(&mut model, 1);
-    assert_eq!(model, others);
+    assert_eq!(model.effects, others);
     let [band] = bands.as_slice() else { panic!("{bands:?}") };
     assert_eq!((band.motion, band.from, band.to), (2, 30.0, 30.5));
     // Over 10 s all three lines have whole periods.
@@ -82,27 +82,27 @@ fn lines_that_crowd_become_a_band_with_their_strength_together() {
 fn lines_need_not_be_near_to_each_other_but_to_one_of_them() {
     let of = |frequency: f64| vibration(0, frequency, [1e-3, 0.0]);
     // From the lowest to the highest it is 3 %.
-    let mut model = vec![of(50.0), of(51.5), of(50.7)];
+    let mut model = Model::of([of(50.0), of(51.5), of(50.7)]);
     let bands = take_bands(&mut model, 0);
     assert_eq!((bands[0].from, bands[0].to), (50.0, 51.5));
-    assert!(model.is_empty());
+    assert!(model.effects.is_empty());
     // Neighbours, none of which has both of the others near.
-    let mut model = vec![of(50.0), of(52.0), of(54.0)];
+    let mut model = Model::of([of(50.0), of(52.0), of(54.0)]);
     assert!(take_bands(&mut model, 0).is_empty());
-    assert_eq!(model.len(), 3);
+    assert_eq!(model.effects.len(), 3);
 }
 
 #[test]
 fn every_motion_and_every_crowd_has_a_band_of_its_own() {
-    let mut model = Model::new();
+    let mut model = Model::default();
     for (motion, center) in [(0, 20.0), (0, 90.0), (3, 20.0)] {
-        model.extend([0.0, 0.05, 0.1].map(|off| vibration(motion, center + off, [1e-3, 0.0])));
+        model.effects.extend([0.0, 0.05, 0.1].map(|off| vibration(motion, center + off, [1e-3, 0.0])));
     }
     let mut bands: Vec<(usize, f64, f64)> =
         take_bands(&mut model, 0).iter().map(|band| (band.motion, band.from, band.to)).collect();
     bands.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     assert_eq!(bands, [(0, 20.0, 20.1), (0, 90.0, 90.1), (3, 20.0, 20.1)]);
-    assert!(model.is_empty());
+    assert!(model.effects.is_empty());
     assert!(take_bands(&mut model, 0).is_empty());
 }
 
@@ -258,7 +258,7 @@ fn stage(errors: &str, leftover: impl Fn(f64) -> f64) -> (Bench, Recording) {
 
 /// What is found where nothing but the zero of the instrument is fitted.
 fn found(study: &Study<'_>) -> Found {
-    let model = vec![zero(0)];
+    let model = Model::of([zero(0)]);
     let courses = engine::courses(study, &model);
     let travels = travel::travels(study, &courses);
     let noises = vec![vec![Noise::white(1e-3); study.scenes[0].channels.len()]];
@@ -338,7 +338,7 @@ fn what_is_in_the_model_is_not_suspected_again() {
     let study = Study::new(bench.equations(), None, &[&recording]);
     let mut found = found(&study);
     let play = machine(bench.motion("EXX"), Shape::Backlash { axis: 0, wind_up: 0.0 }, &[0.0]);
-    found.fit.model.push(play);
+    found.fit.model.effects.push(play);
     let noises = found.appraisal.as_white();
     found.fit = fit::refine(&study, found.fit.model.clone(), &noises, &found.travels);
     found.appraisal = Appraisal::new(&study, &found.fit.model);

@@ -11,11 +11,11 @@ use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::kinship::Kin;
 use crate::model::{Effect, Model, Place};
-use crate::noise::Noise;
 use crate::search::rivals;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::{Setting, Shape};
+use crate::weights::Weights;
 
 /// By how much minus twice the log-likelihood may rise for another name still to be possible: odds of one to twenty.
 const HIDDEN: f64 = 6.0;
@@ -23,9 +23,9 @@ const HIDDEN: f64 = 6.0;
 /// For each effect of the model beyond the first `always`: other effects that could stand in its place, simplest first.
 pub(crate) fn find(study: &Study<'_>, found: &Found) -> Vec<Vec<Effect>> {
     let model = &found.fit.model;
-    let noises = &found.appraisal.noises;
+    let weights = &found.appraisal.weights;
     let others = others(study, found);
-    let design = joint(study, model, noises, &others);
+    let design = joint(study, model, weights, &others);
     let (products, samples) = design.fitted();
     let mut swept = Swept::new(&products);
     for column in (0..model.effects.len()).flat_map(|number| design.columns(number)) {
@@ -165,10 +165,10 @@ fn speed(study: &Study<'_>, axis: usize) -> Option<f64> {
 const STRIDES: usize = 400;
 
 /// The design of the model and of everything that could stand in for it, the present model's response restored.
-fn joint(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], others: &[Kin]) -> Design {
+fn joint(study: &Study<'_>, model: &Model, weights: &Weights, others: &[Kin]) -> Design {
     let mut regressors = Regressor::all(&model.effects);
     regressors.extend(others.iter().map(|kin| Regressor::of(kin.effect.clone())));
-    let mut design = Design::new(study, model, noises, regressors);
+    let mut design = Design::new(study, model, weights, regressors);
     design.rebase(&model.effects);
     design
 }

@@ -24,10 +24,11 @@ use crate::contest::DECISIVE;
 use crate::engine::{self, Found};
 use crate::fit::Fit;
 use crate::model::{Fitted, Model};
-use crate::noise::{self, Noise};
+use crate::noise;
 use crate::study::{ChannelAt, Study};
 use crate::terms::Shape;
 use crate::unsteady;
+use crate::weights::Weights;
 use delays::Late;
 use events::Event;
 use forms::Form;
@@ -38,7 +39,7 @@ use trials::{FormPrice, Ring, Trial};
 const MOST: usize = 3;
 
 /// Puts forms in the place of what imitates them, as long as one makes all of it better.
-pub(crate) fn compose(study: &mut Study<'_>, found: &mut Found) {
+pub(crate) fn compose(study: &Study<'_>, found: &mut Found) {
     for _ in 0..MOST {
         let spins = spins::spins(study, found);
         let open = is_open(study, found);
@@ -61,25 +62,27 @@ pub(crate) fn compose(study: &mut Study<'_>, found: &mut Found) {
 }
 
 /// Takes over the first delay that makes all of it better, if one does.
-fn take_delay(study: &mut Study<'_>, found: &mut Found, (price, lacks): (&FormPrice, bool)) -> bool {
+fn take_delay(study: &Study<'_>, found: &mut Found, (price, lacks): (&FormPrice, bool)) -> bool {
     let late = delays::delays(study, found, lacks);
     late.into_iter().any(|late| take_late(study, found, late, price))
 }
 
 /// Takes over the first form that makes all of it better, the one that promises most first.
 fn take_form(
-    study: &mut Study<'_>,
+    study: &Study<'_>,
     found: &mut Found,
     forms: &[Form],
     (price, lacks): (&FormPrice, bool),
 ) -> bool {
-    let noises = each_for_itself(&found.appraisal.noises);
-    let tried = trials::best(Ring { study, found, noises: &noises, price, lacks }, forms);
+    // What a model lacks keeps its direction, and the search counts such stretches once: so few samples are left then that no form could
+    // pay its price. A form that makes the rest noise again has to win under that noise.
+    let weights = found.appraisal.weights.each_for_itself();
+    let tried = trials::best(Ring { study, found, weights: &weights, price, lacks }, forms);
     tried.into_iter().any(|trial| take(study, found, &trial, price))
 }
 
 /// Takes over the first event that makes all of it better. Where nothing is left, only what was found as a course of time may be one.
-fn take_event(study: &mut Study<'_>, found: &mut Found, (price, lacks): (&FormPrice, bool)) -> bool {
+fn take_event(study: &Study<'_>, found: &mut Found, (price, lacks): (&FormPrice, bool)) -> bool {
     let is_course = |fitted: &Fitted| {
         let shape = fitted.effect.shape.core();
         matches!(shape, Shape::Drift { .. } | Shape::Growth { .. } | Shape::SensorPolynomial { .. })
@@ -115,9 +118,9 @@ fn is_rough(study: &Study<'_>, appraisal: &Appraisal) -> bool {
 }
 
 /// What is left of a channel in the rows that are fitted and count.
-fn left(study: &Study<'_>, appraisal: &Appraisal, ChannelAt { scene, channel }: ChannelAt) -> Vec<f64> {
-    let fitted = study.scenes[scene].fitted_rows();
-    let (marks, residual) = (&appraisal.outliers[scene][channel], &appraisal.residuals[scene][channel]);
+fn left(study: &Study<'_>, appraisal: &Appraisal, at: ChannelAt) -> Vec<f64> {
+    let fitted = study.scenes[at.scene].fitted_rows();
+    let (marks, residual) = (appraisal.weights.outliers.of(at), &appraisal.residuals[at.scene][at.channel]);
     let counts = |row: &usize| fitted[*row] && !marks[*row] && residual[*row].is_finite();
     (0..residual.len()).filter(counts).map(|row| residual[row]).collect()
 }
@@ -136,16 +139,9 @@ fn square(left: &[f64]) -> f64 {
 /// number. By chance one channel of 4300 lies 3.5 of them above (a normal tail), and costs the time of a contest.
 const ROUGH: f64 = 3.5;
 
-/// The noises in which every sample counts for itself. What a model lacks keeps its direction, and the search counts such stretches once:
-/// so few samples are left then that no form could pay its price. A form that makes the rest noise again has to win under that noise.
-fn each_for_itself(noises: &[Vec<Noise>]) -> Vec<Vec<Noise>> {
-    let itself = |noise: &Noise| Noise { alike: 1.0, ..*noise };
-    noises.iter().map(|channels| channels.iter().map(itself).collect()).collect()
-}
-
 /// Fits a form beside what is kept, and takes it over where all of it is better: it stands up before the judge, costs decisively less
 /// under the noise that it leaves, and held-out samples lie nearer.
-fn take(study: &mut Study<'_>, found: &mut Found, trial: &Trial, price: &FormPrice) -> bool {
+fn take(study: &Study<'_>, found: &mut Found, trial: &Trial, price: &FormPrice) -> bool {
     let Trial { form, beside, kept } = trial;
     let settings = found.fit.model.effects[..found.always].iter();
     let beside = beside
@@ -161,13 +157,13 @@ fn take(study: &mut Study<'_>, found: &mut Found, trial: &Trial, price: &FormPri
 }
 
 /// Fits a model in which something happened, and takes it over on the same terms.
-fn take_happened(study: &mut Study<'_>, found: &mut Found, event: Event, price: &FormPrice) -> bool {
+fn take_happened(study: &Study<'_>, found: &mut Found, event: Event, price: &FormPrice) -> bool {
     let is_step = |fitted: &Fitted| matches!(fitted.effect.shape, Shape::Step { .. });
     take_model(study, found, event.model, (&is_step, true), price)
 }
 
 /// Fits a model in which an axis is late, and takes it over on the same terms.
-fn take_late(study: &mut Study<'_>, found: &mut Found, late: Late, price: &FormPrice) -> bool {
+fn take_late(study: &Study<'_>, found: &mut Found, late: Late, price: &FormPrice) -> bool {
     let is_delay =
         |fitted: &Fitted| matches!(fitted.effect.shape, Shape::Delay { axis, .. } if axis == late.axis);
     take_model(study, found, late.model, (&is_delay, false), price)
@@ -177,7 +173,7 @@ fn take_late(study: &mut Study<'_>, found: &mut Found, late: Late, price: &FormP
 /// names; or what is composed takes most of what was left. A name may replace another one, and is added only where more than noise was
 /// left: otherwise the search has asked for it.
 fn take_model(
-    study: &mut Study<'_>,
+    study: &Study<'_>,
     found: &mut Found,
     model: Model,
     (is_wanted, is_composed): (&dyn Fn(&Fitted) -> bool, bool),
@@ -200,7 +196,6 @@ fn take_model(
         found.appraisal = appraisal;
         return true;
     }
-    found.appraisal.mark(study);
     false
 }
 
@@ -235,11 +230,11 @@ fn is_better(
     (fit, appraisal): (&Fit, &Appraisal),
     price: &FormPrice,
 ) -> bool {
-    let gains = |noises: &[Vec<Noise>]| gain(study, found, fit, (noises, price));
+    let gains = |weights: &Weights| gain(study, found, fit, (weights, price));
     let nearer = appraisal.held_out(study, appraisal) < found.appraisal.held_out(study, appraisal);
-    let before = each_for_itself(&found.appraisal.as_white());
+    let before = found.appraisal.weights.as_white().each_for_itself();
     nearer
-        && gains(&appraisal.noises) > DECISIVE
+        && gains(&appraisal.weights) > DECISIVE
         && gains(&before) > -DECISIVE
         && more_likely(study, found, (fit, appraisal), price) > DECISIVE
 }
@@ -254,7 +249,7 @@ fn more_likely(
 ) -> f64 {
     let paid = |fit: &Fit, appraisal: &Appraisal| {
         let conditions = found.conditions();
-        let conditions = conditions.under(&appraisal.noises);
+        let conditions = conditions.under(&appraisal.weights);
         let names: f64 = conditions.prices(study, &fit.model, fit.samples)[found.always..].iter().sum();
         names + fit.model.effects.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum::<f64>()
     };
@@ -266,7 +261,8 @@ fn more_likely(
 fn deviance(study: &Study<'_>, appraisal: &Appraisal) -> f64 {
     let of_channel = |ChannelAt { scene, channel }| {
         let (known, residual) = (&study.scenes[scene], &appraisal.residuals[scene][channel]);
-        let (fitted, outliers) = (known.fitted_rows(), &appraisal.outliers[scene][channel]);
+        let outliers = appraisal.weights.outliers.of(ChannelAt { scene, channel });
+        let fitted = known.fitted_rows();
         let counts = |row: usize| fitted[row] && residual[row].is_finite() && !outliers[row];
         let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
         noise::estimate(&known.recording.time, residual, &valid, known.channels[channel].rounding).1
@@ -275,9 +271,9 @@ fn deviance(study: &Study<'_>, appraisal: &Appraisal) -> f64 {
 }
 
 /// By how much a model costs less than what was found, both fitted under a noise.
-fn gain(study: &Study<'_>, found: &Found, fit: &Fit, (noises, price): (&[Vec<Noise>], &FormPrice)) -> f64 {
+fn gain(study: &Study<'_>, found: &Found, fit: &Fit, (weights, price): (&Weights, &FormPrice)) -> f64 {
     let conditions = found.conditions();
-    let conditions = conditions.under(noises);
+    let conditions = conditions.under(weights);
     let cost = |model: &Model| {
         let fit = conditions.refine(study, model.clone());
         let names = conditions.cost_at(study, &fit, &conditions.prices(study, &fit.model, fit.samples));

@@ -11,12 +11,13 @@ use nalgebra::DMatrix;
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::model::{Effect, Model};
-use crate::noise::{Noise, Step, Whitening, whiten};
+use crate::noise::{Step, Whitening, whiten};
 use crate::parallel;
 use crate::search::untold_price;
 use crate::study::{ChannelAt, Study};
 use crate::sweep::Swept;
 use crate::terms::Shape;
+use crate::weights::Weights;
 
 /// A candidate must lower the cost by this much. The cost is that of Schwarz's criterion, and the odds are then 150 to 1.
 pub(crate) const DECISIVE: f64 = 10.0;
@@ -58,11 +59,11 @@ type Set<'m> = (Swept, Vec<&'m Member>);
 pub(crate) type Columns<'c> = dyn Fn(Range<usize>, ChannelAt) -> Vec<Vec<f64>> + Sync + 'c;
 
 impl Contest {
-    /// Works out the products over all recordings, in the given rows of each, as samples weigh under these noises. The model is what was
+    /// Works out the products over all recordings, in the given rows of each, under these weights. The model is what was
     /// found, and behind it what may be missing, with coefficients of 0. `candidates` is the number of candidates.
     pub(crate) fn new(
         study: &Study<'_>,
-        (found, model, noises): (&Found, &Model, &[Vec<Noise>]),
+        (found, model, weights): (&Found, &Model, &Weights),
         rows: &[Vec<usize>],
         candidates: usize,
         of_candidates: &Columns<'_>,
@@ -75,14 +76,14 @@ impl Contest {
             effects: Vec::new(),
             samples: 0.0,
         };
-        for (scene, (rows, noises)) in rows.iter().zip(noises).enumerate() {
-            for (channel, noise) in noises.iter().enumerate() {
+        for (scene, rows) in rows.iter().enumerate() {
+            for channel in 0..study.scenes[scene].channels.len() {
                 let at = ChannelAt { scene, channel };
                 let mut columns = Design::columns_in(study, at, model, &regressors, rows);
                 let coefficients: Vec<f64> =
                     model.effects.iter().flat_map(|fitted| &fitted.coefficients).copied().collect();
                 add_back(&mut columns, &coefficients);
-                contest.add(study, at, (*noise, rows), columns, of_candidates);
+                contest.add(study, at, (weights, rows), columns, of_candidates);
             }
         }
         let conditions = found.conditions();
@@ -105,11 +106,12 @@ impl Contest {
         &mut self,
         study: &Study<'_>,
         at: ChannelAt,
-        (noise, rows): (Noise, &[usize]),
+        (weights, rows): (&Weights, &[usize]),
         mut columns: DMatrix<f64>,
         of_candidates: &Columns<'_>,
     ) {
-        let (known, outliers) = (&study.scenes[at.scene], &study.channel(at).outliers);
+        let known = &study.scenes[at.scene];
+        let (noise, outliers) = (weights.noise(at), weights.outliers.of(at));
         let fitted = known.fitted_rows();
         let valid: Vec<bool> = rows
             .iter()

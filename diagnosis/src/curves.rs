@@ -83,7 +83,7 @@ impl Imitation {
 
     /// The fit with a table in the place of it, where that says the same with less.
     fn replaced(&self, study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> Fit {
-        let Conditions { noises, travels, .. } = *conditions;
+        let Conditions { weights, travels, .. } = *conditions;
         if !self.is_tried(&fit.model, travels) {
             return fit;
         }
@@ -92,7 +92,7 @@ impl Imitation {
         let mut shapes = tables(study, self.axis, travel);
         if self.waving {
             let fine = even(travel.low, travel.high, FINE);
-            shapes.extend(nodes::thinned(study, &kept, (self.place, self.axis), &fine, noises));
+            shapes.extend(nodes::thinned(study, &kept, (self.place, self.axis), &fine, weights));
         }
         for shape in shapes {
             let effect = Effect { place: self.place, shape };

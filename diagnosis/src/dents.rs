@@ -14,11 +14,11 @@ use crate::design::{Design, Regressor};
 use crate::fit::Fit;
 use crate::judge;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::noise::Noise;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 use crate::travel::Travel;
+use crate::weights::Weights;
 
 /// How many even places of an axis are looked at, a fortieth of the travel apart, as for the curves. A dent is at least as wide as from one to the next on both sides.
 const PLACES: usize = FINE;
@@ -90,7 +90,8 @@ impl Dent {
         conditions: &Conditions<'_>,
     ) -> Option<Model> {
         let appraisal = Appraisal::new(study, model);
-        let under = conditions.under(&appraisal.floors);
+        let floors = appraisal.beside_floor();
+        let under = conditions.under(&floors);
         let mut added = model.clone();
         added.effects.insert(conditions.always, self.table(study, model, &under)?);
         Some(conditions.refine(study, added).model)
@@ -106,8 +107,8 @@ impl Dent {
         if !self.is_in(model, conditions.travels) {
             return false;
         }
-        let noises = Appraisal::new(study, model).as_white();
-        let design = judge::design(study, model, &noises);
+        let weights = Appraisal::new(study, model).weights.as_white();
+        let design = judge::design(study, model, &weights);
         let (products, _) = design.sum(|_| true);
         let mut swept = Swept::new(&products);
         let (tables, others): (Vec<usize>, Vec<usize>) =
@@ -133,7 +134,7 @@ impl Dent {
     /// A table over the dent beside a model: of close nodes those that it needs.
     fn table(&self, study: &Study<'_>, others: &Model, conditions: &Conditions<'_>) -> Option<Fitted> {
         let nodes = self.nodes(study, &conditions.travels[self.axis]);
-        let shape = thinned(study, others, (self.place, self.axis), &nodes, conditions.noises)?;
+        let shape = thinned(study, others, (self.place, self.axis), &nodes, conditions.weights)?;
         let effect = Effect { place: self.place, shape };
         Some(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect })
     }
@@ -194,16 +195,16 @@ impl Looked {
         let travel = &conditions.travels[axis];
         let nodes = even(travel.low, travel.high, PLACES);
         let hats = Effect { place, shape: Shape::Table { axis, nodes, directed: true, repeats: false } };
-        let sums = |noises: &[Vec<Noise>]| {
+        let sums = |weights: &Weights| {
             let effects = model.effects.iter().map(|fitted| &fitted.effect).chain([&hats]);
             let regressors = effects.cloned().map(Regressor::of).collect();
-            let mut design = Design::new(study, model, noises, regressors);
+            let mut design = Design::new(study, model, weights, regressors);
             design.rebase(&model.effects);
             let (products, samples) = design.sum(|_| true);
             (design.columns(model.effects.len()).start, Sums { products, samples })
         };
-        let (beside, weighed) = sums(&appraisal.floors);
-        let (_, plain) = sums(&appraisal.as_white());
+        let (beside, weighed) = sums(&appraisal.beside_floor());
+        let (_, plain) = sums(&appraisal.weights.as_white());
         let step = travel.range() / crate::number(PLACES - 1);
         Some(Self { place, axis, low: travel.low, step, beside, weighed, plain })
     }

@@ -18,6 +18,7 @@ use crate::noise::Noise;
 use crate::observations::{Frame, Passage};
 use crate::parallel;
 use crate::study::{ChannelAt, Study};
+use crate::weights::Weights;
 
 pub(crate) use run::ChannelRun;
 
@@ -72,7 +73,7 @@ impl Design {
     pub(crate) fn new(
         study: &Study<'_>,
         model: &Model,
-        noises: &[Vec<Noise>],
+        weights: &Weights,
         regressors: Vec<Regressor>,
     ) -> Self {
         let mut first = Vec::with_capacity(regressors.len());
@@ -82,8 +83,8 @@ impl Design {
             width += regressor.columns();
         }
         let mut blocks = Vec::new();
-        for (scene, noises) in noises.iter().enumerate() {
-            blocks.extend(scene_products(study, scene, model, noises, &regressors, width));
+        for scene in 0..study.scenes.len() {
+            blocks.extend(scene_products(study, scene, model, weights, &regressors, width));
         }
         Self { regressors, first, width, blocks }
     }
@@ -179,14 +180,15 @@ fn scene_products(
     study: &Study<'_>,
     scene: usize,
     model: &Model,
-    noises: &[Noise],
+    weights: &Weights,
     regressors: &[Regressor],
     width: usize,
 ) -> Vec<Products> {
     let known = &study.scenes[scene];
     let course = Course::new(study, scene, model);
     let of = |channel: usize| {
-        ChannelRun::new(study, ChannelAt { scene, channel }, model, noises[channel], regressors, width)
+        let at = ChannelAt { scene, channel };
+        ChannelRun::new(study, at, model, weights.noise(at), regressors, width)
     };
     let mut runs: Vec<ChannelRun<'_>> = (0..known.channels.len()).map(of).collect();
     let mut passage = Passage::new(study, scene, model);
@@ -199,7 +201,7 @@ fn scene_products(
                 Frame::new(study, &course, &moved, stretches[number].clone())
             });
             let work = frames.len() * STRETCH * (width + 1);
-            parallel::each(&mut runs, work, |run| run.add(&frames, &course));
+            parallel::each(&mut runs, work, |run| run.add(&frames, &course, &weights.outliers));
         }
         let mut products = Products {
             scene,

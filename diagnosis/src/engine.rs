@@ -30,6 +30,7 @@ use crate::terms::Shape;
 use crate::travel::{self, Travel};
 use crate::unsteady::{self, Band};
 use crate::waves::{self, WavePlace};
+use crate::weights::{Outliers, Weights};
 
 /// The most rounds.
 const ROUNDS: usize = 6;
@@ -60,14 +61,20 @@ impl Found {
 
     /// The conditions under which its model stands.
     pub(crate) fn conditions(&self) -> Conditions<'_> {
-        let noises = &self.appraisal.noises;
-        Conditions { always: self.always, noises, travels: &self.travels, tries: self.tries }
+        let weights = &self.appraisal.weights;
+        Conditions { always: self.always, weights, travels: &self.travels, tries: self.tries }
     }
 }
 
-/// Looks for the model. `always` are the settings that are fitted whatever else is.
-pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dyn FnMut(f64)) -> Found {
-    let mut search = Search::new(study, always);
+/// Looks for the model. `always` are the settings that are fitted whatever else is, `outliers` the samples that are left out until
+/// there is a first model.
+pub(crate) fn find(
+    study: &Study<'_>,
+    always: Vec<Effect>,
+    outliers: Outliers,
+    progress: &mut dyn FnMut(f64),
+) -> Found {
+    let mut search = Search::new(study, always, outliers);
     let places = search.places.clone();
     search.go_round(study, progress);
     search.cross_plays(study, progress);
@@ -79,11 +86,10 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     let (other, dent) = beside_dents(study, plain.clone(), progress);
     let (mut search, mut fit, mut appraisal) = judged(study, other, progress);
     if dent.is_some_and(|dent| !dent.is_in(&fit.model, &search.travels)) {
-        Appraisal::new(study, &plain.1.model).mark(study);
         (search, fit, appraisal) = judged(study, plain, progress);
     }
-    let Search { pool, travels, always, tries, richer, noises, .. } = search;
-    let conditions = Conditions { always, noises: &noises, travels: &travels, tries };
+    let Search { pool, travels, always, tries, richer, weights, .. } = search;
+    let conditions = Conditions { always, weights: &weights, travels: &travels, tries };
     let revision = Revision { pool: &pool, places: &places, conditions };
     for model in richer {
         if fit.model.effects.len() == always && appraisal.lacks() {
@@ -92,12 +98,12 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
     }
     (fit, appraisal) = revision.revised(study, fit, appraisal);
     while let Some(model) = curves::without_combs(&fit.model, always) {
-        let rest = conditions.under(&appraisal.noises).refine(study, model);
+        let rest = conditions.under(&appraisal.weights).refine(study, model);
         (fit, appraisal) = upheld(study, rest, &conditions);
     }
     let bands = unsteady::take_bands(&mut fit.model, always);
     if !bands.is_empty() {
-        let steady = conditions.under(&appraisal.noises).refine(study, fit.model);
+        let steady = conditions.under(&appraisal.weights).refine(study, fit.model);
         (fit, appraisal) = upheld(study, steady, &conditions);
     }
     Found { fit, appraisal, pool, travels, bands, always, tries, plain_zeros: false }
@@ -105,7 +111,7 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
 
 /// What of the end of a search is upheld, tables in the place of what imitates them.
 fn judged(
-    study: &mut Study<'_>,
+    study: &Study<'_>,
     (mut search, mut fit): (Search, Fit),
     progress: &mut dyn FnMut(f64),
 ) -> (Search, Fit, Appraisal) {
@@ -133,7 +139,7 @@ struct Start {
 /// A search that begins with another model, where it comes to a better end than the one that did not. A dent stays in the model while
 /// the search goes on; at its end it is priced like all others.
 fn begun_anew(
-    study: &mut Study<'_>,
+    study: &Study<'_>,
     (search, fit): (Search, Fit),
     Start { model, dent }: Start,
     progress: &mut dyn FnMut(f64),
@@ -153,13 +159,12 @@ fn begun_anew(
     if other.ends_better(study, &better, (&search, &fit)) {
         return (other, better);
     }
-    Appraisal::new(study, &fit.model).mark(study);
     (search, fit)
 }
 
 /// A search that began with a dent and what it was seen beside, where it came to a better end and the dent is in it.
 fn beside_dents(
-    study: &mut Study<'_>,
+    study: &Study<'_>,
     (mut search, mut fit): (Search, Fit),
     progress: &mut dyn FnMut(f64),
 ) -> ((Search, Fit), Option<Dent>) {
@@ -173,7 +178,6 @@ fn beside_dents(
             taken = Some(dent);
         } else {
             (search, fit) = known;
-            Appraisal::new(study, &fit.model).mark(study);
         }
     }
     ((search, fit), taken)
@@ -181,13 +185,13 @@ fn beside_dents(
 
 /// What the judge upholds. A play that it drops is no longer crossed, and one that the rest is fitted to anew is crossed over
 /// its new length; what stands up beside that is asked again.
-pub(crate) fn upheld(study: &mut Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> (Fit, Appraisal) {
+pub(crate) fn upheld(study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> (Fit, Appraisal) {
     for _ in 0..ROUNDS {
         let (mut kept, appraisal) = judge::uphold(study, fit, conditions);
         if !crossing::follow(study, &mut kept.model) {
             return (kept, appraisal);
         }
-        fit = conditions.under(&appraisal.noises).refine(study, kept.model);
+        fit = conditions.under(&appraisal.weights).refine(study, kept.model);
     }
     judge::uphold(study, fit, conditions)
 }
@@ -196,18 +200,18 @@ pub(crate) fn upheld(study: &mut Study<'_>, mut fit: Fit, conditions: &Condition
 /// less under the noise that it leaves itself, held-out samples lie nearer to it, and a wandering noise does not explain as much. A
 /// walk draws curves and waves together as well as each of them alone. Nothing is added: a few waves draw any place together.
 fn better(
-    study: &mut Study<'_>,
+    study: &Study<'_>,
     stands: (Fit, Appraisal),
     model: Model,
     revision: &Revision<'_>,
 ) -> (Fit, Appraisal) {
     let conditions = &revision.conditions;
     let model = model.crossed_as(&stands.0.model);
-    let noises = Appraisal::new(study, &model).noises;
-    let other = conditions.under(&noises).refine(study, model);
+    let weights = Appraisal::new(study, &model).weights;
+    let other = conditions.under(&weights).refine(study, model);
     let kept = upheld(study, other, conditions);
     let other = revision.exchanged(study, kept.0, kept.1);
-    let conditions = conditions.under(&other.1.noises);
+    let conditions = conditions.under(&other.1.weights);
     let new = conditions.prices(study, &other.0.model, other.0.samples);
     let taken = taken_from_walk(study, &stands.1, &other, conditions.always);
     let gains = taken > new[conditions.always..].iter().sum()
@@ -218,7 +222,6 @@ fn better(
     if gains && new < old {
         return other;
     }
-    stands.1.mark(study);
     stands
 }
 
@@ -231,7 +234,8 @@ fn taken_from_walk(study: &Study<'_>, stands: &Appraisal, other: &(Fit, Appraisa
         return as_fitted;
     }
     let effects: Vec<usize> = (always..model.effects.len()).collect();
-    as_fitted.max(judge::worth_in(study, model, &stands.floors, &effects))
+    let floors = appraisal.weights.beside(stands.floors.clone());
+    as_fitted.max(judge::worth_in(study, model, &floors, &effects))
 }
 
 /// A search on its way.
@@ -241,7 +245,7 @@ struct Search {
     /// Models of earlier rounds with more effects than a later one. Where much is left, a round that takes an effect less leaves more
     /// to the noise, and the next takes less still: so a search can run down to nothing past what would have stood up.
     richer: Vec<Model>,
-    noises: Vec<Vec<Noise>>,
+    weights: Weights,
     courses: Vec<Arc<Course>>,
     travels: Vec<Travel>,
     pool: Vec<Kin>,
@@ -251,7 +255,7 @@ struct Search {
 }
 
 impl Search {
-    fn new(study: &Study<'_>, always: Vec<Effect>) -> Self {
+    fn new(study: &Study<'_>, always: Vec<Effect>, outliers: Outliers) -> Self {
         let model = Model::of(always.into_iter().map(|effect| Fitted { effect, coefficients: vec![0.0] }));
         let courses = courses(study, &model);
         let travels = travel::travels(study, &courses);
@@ -264,7 +268,7 @@ impl Search {
             always: model.effects.len(),
             model,
             richer: Vec::new(),
-            noises,
+            weights: Weights { noises, outliers },
             courses,
             travels,
             pool,
@@ -274,11 +278,9 @@ impl Search {
     }
 
     /// Begins anew with a model. Its plays act at once, as at the beginning of every search.
-    fn begin(&mut self, study: &mut Study<'_>, model: Model) {
+    fn begin(&mut self, study: &Study<'_>, model: Model) {
         let model = model.uncrossed();
-        let appraisal = Appraisal::new(study, &model);
-        appraisal.mark(study);
-        self.noises = appraisal.noises;
+        self.weights = Appraisal::new(study, &model).weights;
         self.courses = courses(study, &model);
         self.model = model;
     }
@@ -296,17 +298,17 @@ impl Search {
     /// The prices of all effects of its end.
     fn paid(&self, study: &Study<'_>, end: &Fit, appraisal: &Appraisal) -> f64 {
         let conditions = self.conditions();
-        let conditions = conditions.under(&appraisal.noises);
+        let conditions = conditions.under(&appraisal.weights);
         conditions.cost(study, end) - conditions.cost_at(study, end, &vec![0.0; end.model.effects.len()])
     }
 
     /// The conditions of the present round.
     fn conditions(&self) -> Conditions<'_> {
-        Conditions { always: self.always, noises: &self.noises, travels: &self.travels, tries: self.tries }
+        Conditions { always: self.always, weights: &self.weights, travels: &self.travels, tries: self.tries }
     }
 
     /// Chooses anew, with a better idea of the noise each time, until nothing changes.
-    fn go_round(&mut self, study: &mut Study<'_>, progress: &mut dyn FnMut(f64)) {
+    fn go_round(&mut self, study: &Study<'_>, progress: &mut dyn FnMut(f64)) {
         for round in 0..ROUNDS {
             progress(crate::number(round + 1) / crate::number(ROUNDS + 2));
             let next = self.choose(study);
@@ -325,10 +327,8 @@ impl Search {
             }
             self.model = next;
             self.courses = courses(study, &self.model);
-            let appraisal = Appraisal::new(study, &self.model);
-            appraisal.mark(study);
-            let quiet = same_noises(&self.noises, &appraisal.noises);
-            self.noises = appraisal.noises;
+            let known = std::mem::replace(&mut self.weights, Appraisal::new(study, &self.model).weights);
+            let quiet = same_noises(&known.noises, &self.weights.noises);
             if settled && quiet && round > 0 {
                 break;
             }
@@ -336,7 +336,7 @@ impl Search {
     }
 
     /// Lets axes cross their plays where that says as much as what seems to hold them after reversals, and goes on from there.
-    fn cross_plays(&mut self, study: &mut Study<'_>, progress: &mut dyn FnMut(f64)) {
+    fn cross_plays(&mut self, study: &Study<'_>, progress: &mut dyn FnMut(f64)) {
         let Some(crossed) = crossing::try_plays(study, &self.model, &self.conditions()) else { return };
         self.model = crossed;
         for _ in 0..ROUNDS {
@@ -350,7 +350,7 @@ impl Search {
 
     /// The best set of effects under the present noise, by linear least squares.
     fn choose(&mut self, study: &Study<'_>) -> Model {
-        let residuals = waves::all_weighted(study, &self.model, &self.noises, &self.courses);
+        let residuals = waves::all_weighted(study, &self.model, &self.weights, &self.courses);
         let (peaks, waves) =
             waves::peaks(study, &self.model, &self.courses, &residuals, &self.travels, &self.places);
         self.tries.waves = self.tries.waves.max(waves);
@@ -359,7 +359,7 @@ impl Search {
         drop((std::mem::take(&mut self.courses), residuals));
         let mut regressors = regressors(study, &self.model, self.always, &self.pool, peaks);
         regressors.extend(others);
-        let mut design = Design::new(study, &self.model, &self.noises, regressors);
+        let mut design = Design::new(study, &self.model, &self.weights, regressors);
         design.rebase(&self.model.effects);
         let (products, samples) = design.fitted();
         let resolution = Resolution::new(study, &self.travels);
@@ -397,7 +397,7 @@ fn other_peaks(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) ->
     for (number, fitted) in
         model.effects.iter().enumerate().filter(|(_, fitted)| fitted.effect.shape.is_wave())
     {
-        let mut peaks = waves::around(study, model, number, conditions.noises, conditions.travels);
+        let mut peaks = waves::around(study, model, number, conditions.weights, conditions.travels);
         peaks.retain(|peak| rivals(&peak.effect, &fitted.effect) && peak.effect != fitted.effect);
         peaks.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         // Its own line as the spectrum has it now, and the highest of the others.

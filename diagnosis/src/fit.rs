@@ -6,12 +6,12 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::design::{Design, Products, Regressor};
 use crate::model::{Effect, Fitted, Model};
-use crate::noise::Noise;
 use crate::ranges::range;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 use crate::travel::Travel;
+use crate::weights::Weights;
 
 /// A fitted model and how certain it is.
 #[derive(Clone, Debug)]
@@ -49,11 +49,11 @@ const STEPS: usize = 12;
 const DONE: f64 = 1e-7;
 
 /// Fits all parameters of a model, from where it stands, by Gauss-Newton steps that never make it worse.
-pub(crate) fn refine(study: &Study<'_>, model: Model, noises: &[Vec<Noise>], travels: &[Travel]) -> Fit {
-    let mut best = Linearised::new(study, model, noises);
+pub(crate) fn refine(study: &Study<'_>, model: Model, weights: &Weights, travels: &[Travel]) -> Fit {
+    let mut best = Linearised::new(study, model, weights);
     let mut size = 1.0;
     for _ in 0..STEPS {
-        let next = Linearised::new(study, best.stepped(study, size, travels), noises);
+        let next = Linearised::new(study, best.stepped(study, size, travels), weights);
         let fall = (best.remaining - next.remaining) / best.remaining;
         if fall >= 0.0 {
             best = next;
@@ -80,7 +80,7 @@ struct Linearised {
 }
 
 impl Linearised {
-    fn new(study: &Study<'_>, model: Model, noises: &[Vec<Noise>]) -> Self {
+    fn new(study: &Study<'_>, model: Model, weights: &Weights) -> Self {
         let mut regressors = Regressor::all(&model.effects);
         let mut slopes = Vec::new();
         for fitted in &model.effects {
@@ -91,7 +91,7 @@ impl Linearised {
             });
             slopes.push(slope);
         }
-        let design = Design::new(study, &model, noises, regressors);
+        let design = Design::new(study, &model, weights, regressors);
         let (products, samples) = design.fitted();
         let mut swept = Swept::new(&products);
         let remaining = swept.remaining();

@@ -19,7 +19,6 @@ use crate::diagnosis::{Estimate, Finding};
 use crate::engine;
 use crate::fit;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::noise::Noise;
 use crate::parameters::{Described, motion_unit};
 use crate::rest;
 use crate::side::Side;
@@ -28,6 +27,7 @@ use crate::sweep::Swept;
 use crate::terms::{self, Shape};
 use crate::travel::{self, Travel};
 use crate::waves;
+use crate::weights::Weights;
 
 mod wave;
 
@@ -85,7 +85,7 @@ pub fn follow(inputs: &Inputs<'_>, followed: &[Followed]) -> Vec<Vec<Size>> {
     let travels = travel::travels(&study, &engine::courses(&study, &always));
     let begun: Vec<Option<Fitted>> = followed.iter().map(|one| begun(&study, &travels, one)).collect();
     let model = Model::of(always.effects.iter().chain(begun.iter().flatten()).cloned());
-    let sized = Sized::new(&mut study, model);
+    let sized = Sized::new(&study, model);
     let mut numbers = always.effects.len()..;
     let size = |begun: &Option<Fitted>| match begun {
         Some(_) => numbers.next().map(|number| sized.sizes(&study, number)).unwrap_or_default(),
@@ -201,22 +201,22 @@ struct Sized {
 }
 
 impl Sized {
-    fn new(study: &mut Study<'_>, mut model: Model) -> Self {
-        let mut noises = Appraisal::new(study, &model).as_white();
+    fn new(study: &Study<'_>, mut model: Model) -> Self {
+        // Where nothing is fitted yet, every sample counts.
+        let first = Appraisal::new(study, &model).weights.as_white();
+        let mut weights = Weights::of_all(study, first.noises);
         for _ in 1..ROUNDS {
-            model = Self::once(study, model, &noises).stepped();
-            let appraisal = Appraisal::new(study, &model);
-            appraisal.mark(study);
-            noises = appraisal.noises;
+            model = Self::once(study, model, &weights).stepped();
+            weights = Appraisal::new(study, &model).weights;
         }
-        let last = Self::once(study, model, &noises);
+        let last = Self::once(study, model, &weights);
         Self { model: last.stepped(), ..last }
     }
 
     /// One linear fit, from where the model stands.
-    fn once(study: &Study<'_>, model: Model, noises: &[Vec<Noise>]) -> Self {
+    fn once(study: &Study<'_>, model: Model, weights: &Weights) -> Self {
         let regressors = Regressor::all(&model.effects);
-        let design = Design::new(study, &model, noises, regressors);
+        let design = Design::new(study, &model, weights, regressors);
         let (products, samples) = design.fitted();
         let mut swept = Swept::new(&products);
         let take = |column: usize| swept.independence(column) > APART && swept.take(column);

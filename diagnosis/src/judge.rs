@@ -10,13 +10,13 @@ use crate::conditions::Conditions;
 use crate::design::{Design, Products, Regressor};
 use crate::fit::Fit;
 use crate::model::{Fitted, Model};
-use crate::noise::Noise;
 use crate::parallel;
 use crate::rounded;
 use crate::search::untold_price;
-use crate::study::Study;
+use crate::study::{ChannelAt, Study};
 use crate::sweep::Swept;
 use crate::terms::Shape;
+use crate::weights::Weights;
 use crate::zeros;
 
 /// The share of its fitted strength with which an effect must come back in the held-out data, at least.
@@ -29,11 +29,10 @@ const STEADY: f64 = 3.5;
 const FEW_BLOCKS: usize = 5;
 
 /// Drops what does not stand up, one effect at a time, and fits the rest again.
-pub(crate) fn uphold(study: &mut Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> (Fit, Appraisal) {
+pub(crate) fn uphold(study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> (Fit, Appraisal) {
     loop {
         let appraisal = Appraisal::new(study, &fit.model);
-        appraisal.mark(study);
-        let conditions = conditions.under(&appraisal.noises);
+        let conditions = conditions.under(&appraisal.weights);
         let Some(weakest) = weakest(study, &fit, &appraisal, &conditions) else {
             let fit = conditions.refine(study, fit.model);
             return (fit, appraisal);
@@ -50,7 +49,7 @@ fn weakest(
     conditions: &Conditions<'_>,
 ) -> Option<usize> {
     let always = conditions.always;
-    let design = design(study, &fit.model, &appraisal.noises);
+    let design = design(study, &fit.model, &appraisal.weights);
     let (products, samples) = design.fitted();
     let mut swept = Swept::new(&products);
     for column in 0..design.width {
@@ -134,11 +133,11 @@ fn pays(
     for (scene, known) in study.scenes.iter().enumerate() {
         let fitted = known.fitted_rows();
         for channel in 0..known.channels.len() {
-            let noise = appraisal.noises[scene][channel];
-            let size = noise.size();
+            let at = ChannelAt { scene, channel };
+            let (size, outliers) = (appraisal.weights.noise(at).size(), appraisal.weights.outliers.of(at));
             let (bare, others, left) =
                 (&bare[scene][channel], &others[scene][channel], &whole[scene][channel]);
-            let usable = |row: usize| bare[row].is_finite() && !appraisal.outliers[scene][channel][row];
+            let usable = |row: usize| bare[row].is_finite() && !outliers[row];
             let rows: Vec<usize> = (0..bare.len()).filter(|row| usable(*row)).collect();
             let effect = |row: usize| (bare[row] - left[row]) / size;
             let mut everywhere: Vec<f64> = rows.iter().map(|row| effect(*row)).collect();
@@ -178,7 +177,7 @@ fn imitates_a_state(
     study.scenes.iter().enumerate().any(|(scene, known)| {
         (0..known.channels.len()).any(|channel| {
             let (bare, left) = (&bare[scene][channel], &whole[scene][channel]);
-            let outliers = &appraisal.outliers[scene][channel];
+            let outliers = appraisal.weights.outliers.of(ChannelAt { scene, channel });
             let valid: Vec<bool> =
                 bare.iter().zip(outliers).map(|(value, outlier)| value.is_finite() && !outlier).collect();
             let signal: Vec<f64> = bare.iter().zip(left).map(|(bare, left)| bare - left).collect();
@@ -217,9 +216,9 @@ fn followed(
 const MATERIAL: f64 = 0.12;
 
 /// The products of the effects of a model, slopes left out, the whole response restored.
-pub(crate) fn design(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>]) -> Design {
+pub(crate) fn design(study: &Study<'_>, model: &Model, weights: &Weights) -> Design {
     let regressors = Regressor::all(&model.effects);
-    let mut design = Design::new(study, model, noises, regressors);
+    let mut design = Design::new(study, model, weights, regressors);
     design.rebase(&model.effects);
     design
 }
@@ -241,16 +240,17 @@ fn noise_explains(
         matches!(fit.model.effects[number].effect.shape, Shape::Polynomial { .. } | Shape::Table { .. });
     let rise = if curve {
         // Both are less than the fit of greatest likelihood would give: the one keeps the coefficients, the other the noise.
-        (bare.wandering - appraisal.wandering).max(worth_in(study, &fit.model, &bare.floors, &[number]))
+        let floors = appraisal.weights.beside(bare.floors);
+        (bare.wandering - appraisal.wandering).max(worth_in(study, &fit.model, &floors, &[number]))
     } else {
         bare.deviance - appraisal.deviance
     };
     rise < price
 }
 
-/// What effects of a model take together from minus twice the log-likelihood where this is the noise.
-pub(crate) fn worth_in(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], effects: &[usize]) -> f64 {
-    let design = design(study, model, noises);
+/// What effects of a model take together from minus twice the log-likelihood where samples weigh so.
+pub(crate) fn worth_in(study: &Study<'_>, model: &Model, weights: &Weights, effects: &[usize]) -> f64 {
+    let design = design(study, model, weights);
     let (products, samples) = design.fitted();
     let mut swept = Swept::new(&products);
     for column in 0..design.width {

@@ -69,6 +69,7 @@ mod travel;
 mod unsteady;
 mod waves;
 mod way;
+mod weights;
 mod words;
 mod zeros;
 

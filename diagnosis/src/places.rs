@@ -20,7 +20,7 @@ use crate::travel::Travel;
 const NODES: usize = 24;
 
 /// The model with a table for a feature that covers much of an axis, where the judge upholds it.
-pub(crate) fn with_table(study: &mut Study<'_>, found: &Found, feature: &Feature) -> Option<Found> {
+pub(crate) fn with_table(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Found> {
     let effect = table(study, found, feature)?;
     // The table takes over what smooth terms of the same motion said.
     let covered = |fitted: &Fitted| {
@@ -43,8 +43,8 @@ pub(crate) fn with_table(study: &mut Study<'_>, found: &Found, feature: &Feature
 pub(crate) fn beside(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Appraisal> {
     let effect = table(study, found, feature)?;
     let model = found.fit.model.with(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
-    let noises = found.appraisal.as_white();
-    Some(Appraisal::new(study, &found.conditions().under(&noises).refine(study, model).model))
+    let weights = found.appraisal.weights.as_white();
+    Some(Appraisal::new(study, &found.conditions().under(&weights).refine(study, model).model))
 }
 
 /// The motion of which a table would explain most of a feature.
@@ -116,10 +116,10 @@ fn table(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Effect> 
         })
         .collect();
     let model = &found.fit.model;
-    let noises = found.appraisal.as_white();
+    let weights = found.appraisal.weights.as_white();
     let mut regressors = Regressor::all(&model.effects);
     regressors.extend(tables.iter().cloned().map(Regressor::of));
-    let design = Design::new(study, model, &noises, regressors);
+    let design = Design::new(study, model, &weights, regressors);
     let (products, _) = design.fitted();
     let mut swept = Swept::new(&products);
     for column in (0..model.effects.len()).flat_map(|number| design.columns(number)) {

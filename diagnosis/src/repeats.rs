@@ -96,18 +96,19 @@ fn of_scene(study: &Study<'_>, scene: usize, model: &Model) -> Option<Scatter> {
     }
     let zeros = run_zeros(scene, &study.scenes[scene], &runs);
     let before = Appraisal::new(study, model);
-    let mut noises = before.noises.clone();
+    let mut weights = before.weights.clone();
     let mut free = model.clone();
     let mut after = None;
     for _ in 0..TURNS {
         let mut effects: Vec<Effect> = model.effects.iter().map(|fitted| fitted.effect.clone()).collect();
         effects.extend(zeros.iter().cloned());
-        let mut design = Design::new(study, &free, &noises, effects.into_iter().map(Regressor::of).collect());
+        let mut design =
+            Design::new(study, &free, &weights, effects.into_iter().map(Regressor::of).collect());
         design.rebase(&free.effects);
         let (products, _) = design.fitted();
         free = keep_loops(model, fit::linear(&design, &products, design.regressors.len(), &[]));
         let appraisal = Appraisal::new(study, &free);
-        noises.clone_from(&appraisal.noises);
+        weights = appraisal.weights.clone();
         after = Some(appraisal);
     }
     let after = after?;
@@ -188,7 +189,7 @@ fn measure(study: &Study<'_>, scene: usize, free: &Model, after: &Appraisal, run
     let (mut between, mut within) = (0.0_f64, 0.0_f64);
     for zero in zeros_of(&study.scenes[scene]) {
         let of_runs: Vec<f64> = runs.iter().map(|run| value(zero, *run)).collect();
-        let noise = after.noises[scene][zero.channel()];
+        let noise = after.weights.noises[scene][zero.channel()];
         let spread = deviation(&of_runs);
         let size = noise.size();
         if spread * within.max(f64::MIN_POSITIVE) >= between * size {

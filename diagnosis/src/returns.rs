@@ -15,7 +15,8 @@ use crate::noise::{self, Noise};
 use crate::observations;
 use crate::parallel;
 use crate::states::States;
-use crate::study::Study;
+use crate::study::{ChannelAt, Study};
+use crate::weights::Outliers;
 use chance::Normals;
 use curve::{Place, Sums, at};
 
@@ -413,15 +414,15 @@ fn variance(residual: &[f64], valid: &[bool]) -> f64 {
     known().map(|value| (value - mean).powi(2)).sum::<f64>() / count
 }
 
-/// Tells for each channel of every recording which states predict what a model leaves.
-pub(crate) fn tell(study: &mut Study<'_>, model: &Model) {
+/// Tells for each channel of every recording which states predict what a model leaves, outliers left out.
+pub(crate) fn tell(study: &mut Study<'_>, model: &Model, outliers: &Outliers) {
     for scene in 0..study.scenes.len() {
         let course = Course::new(study, scene, model);
         let residuals = observations::residuals(study, scene, model, &course);
         let known = &study.scenes[scene];
         let found = parallel::counted(residuals.len(), known.rows() * residuals.len(), |channel| {
             let residual = &residuals[channel];
-            let outliers = &known.channels[channel].outliers;
+            let outliers = outliers.of(ChannelAt { scene, channel });
             let valid: Vec<bool> =
                 residual.iter().zip(outliers).map(|(value, out)| value.is_finite() && !out).collect();
             let floor = known.channels[channel].rounding;

@@ -15,7 +15,7 @@ use crate::kinship::Kin;
 use crate::model::{Effect, Fitted, Model};
 use crate::ranges::holds;
 use crate::search::rivals;
-use crate::study::Study;
+use crate::study::{ChannelAt, Study};
 use crate::sweep::Swept;
 use crate::terms::Shape;
 use crate::waves::{self, WavePlace};
@@ -34,17 +34,12 @@ pub(crate) struct Revision<'r> {
 
 impl Revision<'_> {
     /// Exchanges and adds effects until nothing is better.
-    pub(crate) fn revised(&self, study: &mut Study<'_>, fit: Fit, appraisal: Appraisal) -> (Fit, Appraisal) {
+    pub(crate) fn revised(&self, study: &Study<'_>, fit: Fit, appraisal: Appraisal) -> (Fit, Appraisal) {
         self.revised_to(study, (fit, appraisal), usize::MAX)
     }
 
     /// Exchanges effects until nothing is better.
-    pub(crate) fn exchanged(
-        &self,
-        study: &mut Study<'_>,
-        fit: Fit,
-        appraisal: Appraisal,
-    ) -> (Fit, Appraisal) {
+    pub(crate) fn exchanged(&self, study: &Study<'_>, fit: Fit, appraisal: Appraisal) -> (Fit, Appraisal) {
         let count = fit.model.effects.len();
         self.revised_to(study, (fit, appraisal), count)
     }
@@ -52,7 +47,7 @@ impl Revision<'_> {
     /// Exchanges effects, and adds some as long as there are no more than `most`, until nothing is better.
     fn revised_to(
         &self,
-        study: &mut Study<'_>,
+        study: &Study<'_>,
         (mut fit, mut appraisal): (Fit, Appraisal),
         most: usize,
     ) -> (Fit, Appraisal) {
@@ -60,7 +55,7 @@ impl Revision<'_> {
             if !appraisal.lacks() {
                 break;
             }
-            let conditions = self.conditions.under(&appraisal.noises);
+            let conditions = self.conditions.under(&appraisal.weights);
             let prices = conditions.prices(study, &fit.model, fit.samples);
             let cost = conditions.cost_at(study, &fit, &prices);
             let mut trials = self.trials(study, &fit, &prices, &appraisal);
@@ -71,7 +66,6 @@ impl Revision<'_> {
                 break;
             };
             (fit, appraisal) = better;
-            appraisal.mark(study);
         }
         (fit, appraisal)
     }
@@ -79,13 +73,13 @@ impl Revision<'_> {
     /// A trial, fitted, where it costs less and all of it stands up.
     fn stands(
         &self,
-        study: &mut Study<'_>,
+        study: &Study<'_>,
         trial: Trial,
         cost: f64,
         fit: &Fit,
         appraisal: &Appraisal,
     ) -> Option<(Fit, Appraisal)> {
-        let conditions = self.conditions.under(&appraisal.noises);
+        let conditions = self.conditions.under(&appraisal.weights);
         let fitted = conditions.refine(study, trial.model);
         if conditions.cost_at(study, &fitted, &trial.prices) >= cost {
             return None;
@@ -93,7 +87,6 @@ impl Revision<'_> {
         let (count, more) =
             (fitted.model.effects.len(), fitted.model.effects.len() > fit.model.effects.len());
         let (kept, left) = judge::uphold(study, fitted, &self.conditions);
-        appraisal.mark(study);
         let stands = kept.model.effects.len() == count && (!more || stands_apart(study, appraisal, &left));
         stands.then_some((kept, left))
     }
@@ -104,7 +97,7 @@ impl Revision<'_> {
         let open = self.open(study, model, appraisal, fit.samples);
         let mut regressors = Regressor::all(&model.effects);
         regressors.extend(open.iter().map(|open| Regressor::of(open.effect.clone())));
-        let mut design = Design::new(study, model, &appraisal.noises, regressors);
+        let mut design = Design::new(study, model, &appraisal.weights, regressors);
         design.rebase(&model.effects);
         let (products, samples) = design.fitted();
         let mut whole = Swept::new(&products);
@@ -155,9 +148,9 @@ impl Revision<'_> {
 
     /// Effects that are not in the model: candidates, and waves of what it leaves.
     fn open(&self, study: &Study<'_>, model: &Model, appraisal: &Appraisal, samples: f64) -> Vec<Open> {
-        let conditions = self.conditions.under(&appraisal.noises);
+        let conditions = self.conditions.under(&appraisal.weights);
         let courses = courses(study, model);
-        let residuals = waves::all_weighted(study, model, &appraisal.noises, &courses);
+        let residuals = waves::all_weighted(study, model, &appraisal.weights, &courses);
         let (peaks, _) = waves::peaks(study, model, &courses, &residuals, conditions.travels, self.places);
         let candidates = engine::open_candidates(&model.effects[conditions.always..], self.pool);
         let candidates = candidates
@@ -195,10 +188,15 @@ pub(crate) fn stands_apart(study: &Study<'_>, without: &Appraisal, with: &Apprai
     let (mut taken, mut returning) = (0.0, 0.0);
     for (scene, known) in study.scenes.iter().enumerate() {
         for channel in 0..known.channels.len() {
-            let outliers = with.outliers[scene][channel].iter().zip(&without.outliers[scene][channel]);
+            let [one, other] =
+                [with, without].map(|one| one.weights.outliers.of(ChannelAt { scene, channel }));
             let [before, after] = [without, with].map(|one| &one.residuals[scene][channel]);
-            let valid: Vec<bool> =
-                outliers.zip(after).map(|((a, b), value)| !a && !b && value.is_finite()).collect();
+            let valid: Vec<bool> = one
+                .iter()
+                .zip(other)
+                .zip(after)
+                .map(|((a, b), value)| !a && !b && value.is_finite())
+                .collect();
             let size = with.leftover[scene][channel].max(f64::MIN_POSITIVE);
             let rows = || before.iter().zip(after).zip(&valid).filter(|(_, valid)| **valid);
             taken += rows().map(|((before, after), _)| before * before - after * after).sum::<f64>()

@@ -94,8 +94,6 @@ pub(crate) struct Channel<'a> {
     pub(crate) kind: Kind,
     /// mm or rad; NaN where it is missing.
     pub(crate) values: &'a [f64],
-    /// Samples that are left out as outliers.
-    pub(crate) outliers: Vec<bool>,
     /// The standard deviation of the rounding of its values, and of the commands that it is held against.
     pub(crate) rounding: f64,
     /// The states of which functions predict what the calibration leaves of it.
@@ -462,7 +460,6 @@ fn temperatures(
 
 /// What was observed. `rounded` are the steps of the commands: their rounding is noise of what is predicted.
 fn channels<'a>(recording: &'a Recording, equations: &Equations, rounded: &[f64]) -> Vec<Channel<'a>> {
-    let rows = recording.time.len();
     let mut channels = Vec::new();
     let mut add = |name: String, kind: Kind, values: &'a [f64]| {
         let predicted = rounded.iter().enumerate().filter(|(axis, _)| match kind {
@@ -472,8 +469,7 @@ fn channels<'a>(recording: &'a Recording, equations: &Equations, rounded: &[f64]
         });
         let predicted = predicted.map(|(_, step)| rounded::deviation(*step));
         let rounding = predicted.fold(noise::rounding(values), f64::hypot);
-        let (outliers, returning) = (vec![false; rows], Vec::new());
-        channels.push(Channel { name, kind, values, outliers, rounding, returning });
+        channels.push(Channel { name, kind, values, rounding, returning: Vec::new() });
     };
     for (direction, values) in recording.measured.iter().enumerate() {
         if let Some(values) = values {

@@ -5,7 +5,7 @@
 
 use crate::engine::Found;
 use crate::pictures::Before;
-use crate::study::Study;
+use crate::study::{ChannelAt, Study};
 use crate::zeros;
 
 /// One channel of one recording, row by row: mm or rad, s. NaN where nothing was measured, and where a row is left out because an axis
@@ -41,7 +41,8 @@ pub(crate) fn traces(study: &Study<'_>, before: &Before, found: &Found) -> Vec<T
     let mut traces = Vec::new();
     for (number, (scene, (before, after))) in study.scenes.iter().zip(left).enumerate() {
         let held_out: Vec<bool> = scene.fitted_rows().iter().map(|fitted| !fitted).collect();
-        for (channel, (before, after)) in scene.channels.iter().zip(before.iter().zip(after)) {
+        for (place, (before, after)) in before.iter().zip(after).enumerate() {
+            let (at, channel) = (ChannelAt { scene: number, channel: place }, &scene.channels[place]);
             traces.push(Trace {
                 recording: number,
                 channel: channel.name.clone(),
@@ -52,7 +53,7 @@ pub(crate) fn traces(study: &Study<'_>, before: &Before, found: &Found) -> Vec<T
                 before: before.clone(),
                 after,
                 held_out: held_out.clone(),
-                outlier: channel.outliers.clone(),
+                outlier: found.appraisal.weights.outliers.of(at).to_vec(),
             });
         }
     }

@@ -150,8 +150,8 @@ fn looped(model: &Model, axis: usize) -> bool {
 }
 
 /// What is left of a channel, without its outliers.
-fn accepted(appraisal: &Appraisal, ChannelAt { scene, channel }: ChannelAt) -> Vec<f64> {
-    let residual = appraisal.residuals[scene][channel].iter().zip(&appraisal.outliers[scene][channel]);
+fn accepted(appraisal: &Appraisal, at: ChannelAt) -> Vec<f64> {
+    let residual = appraisal.residuals[at.scene][at.channel].iter().zip(appraisal.weights.outliers.of(at));
     residual.map(|(value, outlier)| if *outlier { f64::NAN } else { *value }).collect()
 }
 
@@ -202,7 +202,7 @@ pub(crate) struct Suspect {
 /// The plain term that would take most of what remains, were the noise white.
 pub(crate) fn suspect(study: &Study<'_>, found: &Found) -> Option<Suspect> {
     let model = &found.fit.model;
-    let noises = found.appraisal.as_white();
+    let weights = found.appraisal.weights.as_white();
     let plain = |effect: &Effect| {
         matches!(effect.place, Place::Motion { .. }) && effect.shape.columns() <= 2 && !effect.shape.is_wave()
     };
@@ -210,7 +210,7 @@ pub(crate) fn suspect(study: &Study<'_>, found: &Found) -> Option<Suspect> {
         found.pool.iter().map(|kin| kin.effect.clone()).filter(|effect| plain(effect)).collect();
     let mut regressors = Regressor::all(&model.effects);
     regressors.extend(others.iter().cloned().map(Regressor::of));
-    let design = Design::new(study, model, &noises, regressors);
+    let design = Design::new(study, model, &weights, regressors);
     let (products, samples) = design.fitted();
     let mut swept = Swept::new(&products);
     for column in (0..model.effects.len()).flat_map(|number| design.columns(number)) {

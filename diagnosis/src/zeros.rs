@@ -14,10 +14,10 @@ use crate::course::Course;
 use crate::design::{Design, Regressor};
 use crate::fit;
 use crate::model::{Fitted, Model, Place};
-use crate::noise::Noise;
 use crate::observations;
 use crate::study::{Kind, Scene, Study};
 use crate::terms::{Setting, Shape};
+use crate::weights::Weights;
 
 /// Fits the settings that are always free of every recording of which no row is fitted.
 pub(crate) fn free_held_out(study: &Study<'_>, model: &mut Model) {
@@ -33,8 +33,8 @@ pub(crate) fn free_held_out(study: &Study<'_>, model: &mut Model) {
             .collect();
         let regressors =
             own.iter().map(|number| Regressor::of(model.effects[*number].effect.clone())).collect();
-        let noises = Appraisal::new(study, model).noises;
-        let mut design = Design::new(study, model, &noises, regressors);
+        let weights = Appraisal::new(study, model).weights;
+        let mut design = Design::new(study, model, &weights, regressors);
         let settings: Vec<Fitted> = own.iter().map(|number| model.effects[*number].clone()).collect();
         design.rebase(&settings);
         let (products, _) = design.sum(|block| block.scene == scene);
@@ -48,10 +48,10 @@ pub(crate) fn free_held_out(study: &Study<'_>, model: &mut Model) {
 
 /// Fits the first `always` effects, which are settings, to the rows that are fitted, each row for itself; what else the model
 /// holds stays. Where noise wanders, zeros that allow for it may lie far from the mean of those rows, and farther from others.
-pub(crate) fn weigh_plainly(study: &Study<'_>, model: &mut Model, always: usize, noises: &[Vec<Noise>]) {
+pub(crate) fn weigh_plainly(study: &Study<'_>, model: &mut Model, always: usize, weights: &Weights) {
     let settings: Vec<Fitted> = model.effects[..always].to_vec();
     let regressors = Regressor::all(&settings);
-    let mut design = Design::new(study, model, noises, regressors);
+    let mut design = Design::new(study, model, weights, regressors);
     design.rebase(&settings);
     let (products, _) = design.fitted();
     let fitted = fit::linear(&design, &products, always, &[]);

@@ -35,7 +35,7 @@ impl<'v> FaultContest<'v> {
         };
         let contest = Contest::new(
             study,
-            (found, &found.fit.model, &found.appraisal.noises),
+            (found, &found.fit.model, &found.appraisal.weights),
             &versions.rows,
             suspected.len(),
             &columns,

@@ -100,8 +100,8 @@ fn ranked(study: &Study<'_>, found: &Found, places: &[Place], times: &[f64]) -> 
         for channel in 0..known.channels.len() {
             let at = ChannelAt { scene, channel };
             let matrix = Design::columns_in(study, at, model, &regressors, &rows);
-            let response = restored(study, found, &matrix, at, &rows);
-            let weight = 1.0 / found.appraisal.noises[scene][channel].size();
+            let response = restored(found, &matrix, at, &rows);
+            let weight = 1.0 / found.appraisal.weights.noise(at).size();
             let mut row_of = vec![0.0; always + places.len() + 1];
             for (place, row) in rows.iter().enumerate() {
                 let settings = (0..always).chain(whole..whole + places.len());
@@ -175,19 +175,13 @@ impl Sums {
 }
 
 /// What the settings and the steps have to explain: the residual, with what the model takes from it; NaN in rows that do not count.
-fn restored(
-    study: &Study<'_>,
-    found: &Found,
-    matrix: &DMatrix<f64>,
-    at: ChannelAt,
-    rows: &[usize],
-) -> nalgebra::DVector<f64> {
+fn restored(found: &Found, matrix: &DMatrix<f64>, at: ChannelAt, rows: &[usize]) -> nalgebra::DVector<f64> {
     let mut response = matrix.column(matrix.ncols() - 1).into_owned();
     let coefficients = found.fit.model.effects.iter().flat_map(|fitted| &fitted.coefficients);
     for (column, coefficient) in coefficients.enumerate() {
         response += matrix.column(column) * *coefficient;
     }
-    let outliers = &study.channel(at).outliers;
+    let outliers = found.appraisal.weights.outliers.of(at);
     response.iter_mut().zip(rows).filter(|(_, row)| outliers[**row]).for_each(|(value, _)| *value = f64::NAN);
     response
 }
@@ -199,8 +193,8 @@ fn chosen(study: &Study<'_>, found: &Found, time: f64, places: &[Place]) -> Even
     effects.extend(places.iter().map(|place| Effect { place: *place, shape: Shape::Step { time } }));
     let regressors = effects.into_iter().map(Regressor::of).collect();
     // As white noise: a noise that wanders, as it seemed to before, would take the event for one of its steps.
-    let noises = found.appraisal.as_white();
-    let mut design = Design::new(study, &found.fit.model, &noises, regressors);
+    let weights = found.appraisal.weights.as_white();
+    let mut design = Design::new(study, &found.fit.model, &weights, regressors);
     design.rebase(&found.fit.model.effects);
     let (products, samples) = design.fitted();
     let resolution = Resolution::new(study, &found.travels);

@@ -153,7 +153,7 @@ fn loops(study: &Study<'_>, found: &Found, atoms: &Atoms) -> Vec<Effect> {
         .flat_map(|place| shapes.iter().map(move |shape| Effect { place, shape: shape.clone() }));
     let model = &found.fit.model;
     let courses: Vec<_> = (0..study.scenes.len()).map(|scene| Course::new(study, scene, model)).collect();
-    let kin = kinship::groups(study, &courses, &found.appraisal.noises, everywhere.collect());
+    let kin = kinship::groups(study, &courses, &found.appraisal.weights.noises, everywhere.collect());
     let own = |effect: &Effect| {
         let axis = effect.shape.factors().first().and_then(Factor::axis);
         axis.is_some_and(|axis| study.own[axis].is_some() && study.own[axis] == effect.motion())

@@ -9,9 +9,9 @@ use crate::contest::{Contest, DECISIVE};
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::model::{Effect, Fitted, Model};
-use crate::noise::Noise;
 use crate::study::{ChannelAt, Study};
 use crate::terms::Shape;
+use crate::weights::Weights;
 
 use super::forms::{self, Form};
 
@@ -46,7 +46,7 @@ pub(super) struct Trial {
 pub(super) struct Ring<'r> {
     pub(super) study: &'r Study<'r>,
     pub(super) found: &'r Found,
-    pub(super) noises: &'r [Vec<Noise>],
+    pub(super) weights: &'r Weights,
     pub(super) price: &'r FormPrice,
     /// Whether more than noise is left, so that names may be missing too.
     pub(super) lacks: bool,
@@ -161,7 +161,7 @@ impl Ring<'_> {
         let columns = |chunk: std::ops::Range<usize>, at: ChannelAt| {
             columns(self.study, model, &forms[chunk], at, &rows[at.scene])
         };
-        Contest::new(self.study, (self.found, model, self.noises), &rows, forms.len(), &columns)
+        Contest::new(self.study, (self.found, model, self.weights), &rows, forms.len(), &columns)
     }
 
     /// The forms and what they gain, with a better value of a factor's number where a neighbour on the grid gains more; the best first. A

@@ -89,7 +89,7 @@ fn sizes(study: &Study<'_>, found: &Found, effects: &[Effect]) -> Vec<Option<f64
     let always = &found.fit.model.effects[..found.always];
     let regressors = always.iter().map(|fitted| fitted.effect.clone()).chain(effects.iter().cloned());
     let regressors: Vec<Regressor> = regressors.map(Regressor::of).collect();
-    let design = Design::new(study, &found.fit.model, &found.appraisal.noises, regressors);
+    let design = Design::new(study, &found.fit.model, &found.appraisal.weights, regressors);
     let (products, samples) = design.fitted();
     let mut swept = Swept::new(&products);
     (0..found.always).flat_map(|number| design.columns(number)).for_each(|column| {

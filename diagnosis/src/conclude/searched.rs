@@ -5,7 +5,7 @@
 
 use super::decidable::{Misread, astray, impossible, misplaced, misread, no_circle, too_little, undecided};
 use super::units::Units;
-use super::{bare_beside, bare_model, ceiling, fitted_runs, strongest, undecidable};
+use super::{Bare, bare_beside, bare_model, ceiling, fitted_runs, strongest, undecidable};
 use crate::audit::Trial;
 use crate::candidates;
 use crate::diagnosis::{Diagnosis, NothingReturns, Residual, Returning};
@@ -16,6 +16,7 @@ use crate::pictures;
 use crate::repeats::{self, Scatter};
 use crate::rest;
 use crate::study::Study;
+use crate::weights::Outliers;
 use crate::zeros;
 use crate::{Inputs, Keep, Progress};
 
@@ -56,28 +57,28 @@ impl<'s> Searched<'s> {
         if let Some(Misread { reason, change }) = misread(&study) {
             opened.undecided.clear();
             opened.model.push(change);
-            return Err(Box::new(undecidable(opened, &study, reason)));
+            return Err(Box::new(undecidable(opened, &study, &Outliers::none(&study), reason)));
         }
         if let Some(reason) = too_little(&study).or_else(|| impossible(&study)).or_else(|| misplaced(&study))
         {
-            return Err(Box::new(undecidable(opened, &study, reason)));
+            return Err(Box::new(undecidable(opened, &study, &Outliers::none(&study), reason)));
         }
         let units = Units::new(&study);
         let bare = bare_model(&mut study, &Model::default());
         opened.returns = ceiling::ceiling(&study);
         opened.nothing_returns = ceiling::nothing(&study);
-        if let Some(reason) = astray(&study, &bare).or_else(|| no_circle(&study, &bare)) {
-            return Err(Box::new(undecidable(opened, &study, reason)));
+        if let Some(reason) = astray(&study, &bare.model).or_else(|| no_circle(&study, &bare.model)) {
+            return Err(Box::new(undecidable(opened, &study, &bare.outliers, reason)));
         }
-        let left = |study: &Study<'_>, bare: &Model| {
-            (units.residual(study, bare), (keep != Keep::Nothing).then(|| pictures::Before::new(study, bare)))
+        let left = |study: &Study<'_>, Bare { model, outliers }: &Bare| {
+            let drawn = (keep != Keep::Nothing).then(|| pictures::Before::new(study, model, outliers));
+            (units.residual(study, model, outliers), drawn)
         };
         let (mut before, mut drawn) = left(&study, &bare);
-        let (found, scattered) = search(&mut study, progress);
+        let (found, scattered) = search(&mut study, &bare.outliers, progress);
         if found.fit.model.crosses() {
             let bare = bare_beside(&mut study, &bare, &found.fit.model);
             (before, drawn) = left(&study, &bare);
-            found.appraisal.mark(&mut study);
         }
         let Diagnosis { returns, nothing_returns, undecided, .. } = opened;
         let opening = Opening { before, drawn, keep, returns, nothing_returns, undecided };
@@ -106,9 +107,11 @@ impl<'s> Searched<'s> {
         };
         let Found { fit, appraisal, travels, .. } = &trial.found;
         let model = self.found.fit.model.with_effects(fit.model.effects.iter().filter_map(here));
-        let mut model = fit::refine(&self.study, model, &appraisal.noises, travels).model;
+        let own = &self.found.appraisal.weights;
+        let weights = own.beside(appraisal.weights.noises.clone());
+        let mut model = fit::refine(&self.study, model, &weights, travels).model;
         zeros::free_held_out(&self.study, &mut model);
-        self.units.residual(&self.study, &model)
+        self.units.residual(&self.study, &model, &own.outliers)
     }
 
     /// The same as the audit takes it.
@@ -130,10 +133,14 @@ fn study<'s>(inputs: &Inputs<'s>) -> Study<'s> {
 }
 
 /// What the engine finds, and the recordings whose runs do not repeat.
-fn search(study: &mut Study<'_>, progress: &mut dyn FnMut(Progress)) -> (Found, Vec<Scatter>) {
+fn search(
+    study: &mut Study<'_>,
+    outliers: &Outliers,
+    progress: &mut dyn FnMut(Progress),
+) -> (Found, Vec<Scatter>) {
     let mut step = |done: f64| progress(Progress { step: "looking for left-out physics", done: 0.9 * done });
     let always = candidates::always(study);
-    let mut found = engine::find(study, always, &mut step);
+    let mut found = engine::find(study, always, outliers.clone(), &mut step);
     let scattered = repeats::scatter(study, &found.fit.model);
     if !scattered.is_empty() {
         let mut always = candidates::always(study);
@@ -141,7 +148,7 @@ fn search(study: &mut Study<'_>, progress: &mut dyn FnMut(Progress)) -> (Found, 
             let fitted: Vec<i64> = fitted_runs(&study.scenes[scatter.scene]);
             always.extend(repeats::run_zeros(scatter.scene, &study.scenes[scatter.scene], &fitted));
         }
-        found = engine::find(study, always, &mut step);
+        found = engine::find(study, always, found.appraisal.weights.outliers, &mut step);
     }
     (found, scattered)
 }

@@ -105,7 +105,7 @@ pub(super) fn on_the_way(study: &Study<'_>) -> Option<Unexplained> {
 fn state_of_what_is_left(study: &Study<'_>, found: &Found, moving: &Moving) -> Option<(Quantity, f64)> {
     let scene = &study.scenes[moving.at.scene];
     let residual = &found.appraisal.residuals[moving.at.scene][moving.at.channel];
-    let outliers = &found.appraisal.outliers[moving.at.scene][moving.at.channel];
+    let outliers = found.appraisal.weights.outliers.of(moving.at);
     let valid: Vec<bool> =
         residual.iter().zip(outliers).map(|(value, outlier)| value.is_finite() && !outlier).collect();
     let rounding = study.channel(moving.at).rounding;

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::model::{Fitted, Place};
+use crate::noise::Noise;
 use crate::side::Side;
 use crate::terms::Setting;
 use crate::testing::{Bench, line, noisy, path, position};
@@ -23,9 +24,9 @@ fn prices(period: f64, alike: f64) -> [f64; 2] {
         Fitted { effect: Effect { place, shape }, coefficients: vec![0.0, 0.0] },
     ]);
     let travels = travels(&study, &crate::engine::courses(&study, &model));
-    let noises = vec![vec![Noise { alike, ..Noise::white(0.01) }]];
+    let weights = Weights::of_all(&study, vec![vec![Noise { alike, ..Noise::white(0.01) }]]);
     let tries = Tries { candidates: 40.0, waves: 300.0 };
-    let conditions = Conditions { always: 1, noises: &noises, travels: &travels, tries };
+    let conditions = Conditions { always: 1, weights: &weights, travels: &travels, tries };
     [conditions.prices(&study, &model, 100.0)[1], conditions.price(&study, &model.effects[1].effect, 100.0)]
 }
 

@@ -6,6 +6,7 @@ use crate::model::Fitted;
 use crate::noise::Noise;
 use crate::recording::Recording;
 use crate::testing::{Bench, circle, distance, noisy, path, peak, position, together};
+use crate::weights::Weights;
 use crate::zeros;
 
 /// Lost motion of X and of Y, mm.
@@ -119,9 +120,9 @@ fn nothing_is_tried_where_nothing_holds_an_axis() {
     let known = bench.calibration("{EXX: [{backlash: {lost_motion: 9 um}}]}");
     let study = Study::new(bench.equations(), Some(&known), &[&recording]);
     let tries = Tries { candidates: 50.0, waves: 100.0 };
-    let noises = vec![vec![Noise::white(1e-4); 2]];
+    let weights = Weights::of_all(&study, vec![vec![Noise::white(1e-4); 2]]);
     let travels = crate::travel::travels(&study, &crate::engine::courses(&study, &Model::default()));
-    let conditions = Conditions { always: 0, noises: &noises, travels: &travels, tries };
+    let conditions = Conditions { always: 0, weights: &weights, travels: &travels, tries };
     let model = Model::of([at_once(&bench, 1, LOST[1])]);
     assert!(try_plays(&study, &model, &conditions).is_none());
     // With something that does, the known play explains what that seemed to.

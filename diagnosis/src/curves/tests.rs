@@ -8,6 +8,7 @@ use crate::recording::Recording;
 use crate::side::Side;
 use crate::terms::Setting;
 use crate::testing::{Bench, line, noisy, path, position, programmed};
+use crate::weights::Weights;
 use simulation::path::{Shape as PathShape, Stations, Stroke};
 
 fn travel(low: f64, high: f64) -> Travel {
@@ -168,9 +169,9 @@ fn tried(bench: &Bench, recording: &Recording, degrees: &[usize]) -> (Model, [f6
         model.effects.push(Fitted { effect: Effect { place, shape }, coefficients: vec![0.0; degree + 1] });
     }
     let travels = crate::travel::travels(&study, &engine::courses(&study, &model));
-    let noises = vec![vec![Noise::white(NOISE)]];
+    let weights = Weights::of_all(&study, vec![vec![Noise::white(NOISE)]]);
     let tries = Tries { candidates: 40.0, waves: 40.0 };
-    let conditions = Conditions { always: 1, noises: &noises, travels: &travels, tries };
+    let conditions = Conditions { always: 1, weights: &weights, travels: &travels, tries };
     let before = conditions.refine(&study, model);
     let costs = conditions.cost(&study, &before);
     let after = try_tables(&study, before, &conditions);

@@ -18,9 +18,9 @@ fn with<T>(errors: &str, asked: impl Fn(&Study<'_>, &Model, &Conditions<'_>) -> 
     let zero = Effect::setting(0, Setting::Offset { channel: 0 });
     let model = Model::of([Fitted { effect: zero, coefficients: vec![0.0] }]);
     let travels = travels(&study, &courses(&study, &model));
-    let noises = vec![vec![Noise::white(0.000_3)]];
+    let weights = Weights::of_all(&study, vec![vec![Noise::white(0.000_3)]]);
     let tries = Tries { candidates: 40.0, waves: 300.0 };
-    asked(&study, &model, &Conditions { always: 1, noises: &noises, travels: &travels, tries })
+    asked(&study, &model, &Conditions { always: 1, weights: &weights, travels: &travels, tries })
 }
 
 /// Middle and flank of the dent that is seen, mm.

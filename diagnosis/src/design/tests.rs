@@ -12,6 +12,7 @@ use crate::side::Side;
 use crate::study::Block;
 use crate::terms::{Setting, Shape};
 use crate::testing::{Bench, ballbar, circle, distance, line, noisy, normals, path, peak, position, warming};
+use crate::weights::Outliers;
 
 const ERRORS: &str = "{EXX: [{polynomial: {axis: X, per: mm, unit: um, coefficients: [3, 0.05]}}], \
     EYY: [{lag: {gain: 25 1/s}}], EBX: [{table: {axis: X, start: -100 mm, step: 40 mm, unit: urad, values: [0, 20, -10, 30, 5, 0]}}], \
@@ -265,7 +266,7 @@ fn slopes_are_how_the_residual_falls_with_the_nonlinear_parameter() {
     }
 }
 
-/// A recording with gaps, an outlier and uneven blocks, of which some are held out.
+/// A recording with gaps and uneven blocks, of which some are held out.
 fn prepared<'r>(
     bench: &'r Bench,
     known: &'r model_dsl::calibration::Calibration,
@@ -279,7 +280,6 @@ fn prepared<'r>(
         .windows(2)
         .map(|pair| Block { rows: pair[0]..pair[1], run: 1, held_out: pair[0] == 31 })
         .collect();
-    scene.channels[0].outliers[77] = true;
     study
 }
 
@@ -295,6 +295,14 @@ fn gappy(bench: &Bench) -> Recording {
 
 const COLORED: Noise = Noise { white: 1e-3, wander: 2e-3, time_constant: 1.5, alike: 1.0 };
 
+/// Weights beside that noise; a sample of the first channel is an outlier.
+fn colored(study: &Study<'_>) -> Weights {
+    let scene = &study.scenes[0];
+    let mut marks = vec![vec![false; scene.rows()]; scene.channels.len()];
+    marks[0][77] = true;
+    Weights { noises: vec![vec![COLORED; scene.channels.len()]], outliers: Outliers::new(vec![marks]) }
+}
+
 #[test]
 fn products_are_those_of_whitened_columns() {
     let bench = Bench::of("XYFZ");
@@ -303,15 +311,15 @@ fn products_are_those_of_whitened_columns() {
     let study = prepared(&bench, &known, &recording);
     let model = model(&study, &[]);
     let regressors: Vec<Regressor> = effects(&study).into_iter().map(Regressor::of).collect();
-    let noises = vec![vec![COLORED; study.scenes[0].channels.len()]];
-    let design = Design::new(&study, &model, &noises, regressors.clone());
+    let weights = colored(&study);
+    let design = Design::new(&study, &model, &weights, regressors.clone());
     let mut expected = vec![DMatrix::zeros(design.width + 1, design.width + 1); 4];
     let mut samples = [0.0; 4];
     for channel in 0..study.scenes[0].channels.len() {
         let mut columns = columns(&study, channel, &model, &regressors);
         let known = |row: usize| columns.row(row).iter().all(|value| value.is_finite());
         let valid: Vec<bool> = (0..columns.nrows())
-            .map(|row| known(row) && !study.scenes[0].channels[channel].outliers[row])
+            .map(|row| known(row) && !weights.outliers.of(ChannelAt { scene: 0, channel })[row])
             .collect();
         let steps = Whitening::new(COLORED).steps(&recording.time, &valid);
         for mut column in columns.column_iter_mut() {
@@ -359,13 +367,13 @@ fn a_rebased_design_gives_whole_coefficients() {
         ),
         Effect::setting(0, Setting::Offset { channel: 0 }),
     ];
-    let noises = vec![vec![COLORED; study.scenes[0].channels.len()]];
+    let weights = colored(&study);
     let solved = |coefficients: [f64; 4]| {
         let [a, b, c, d] = coefficients;
         let parts = [vec![a], vec![b, c], vec![d]];
         let effects = effects.iter().cloned().zip(parts);
         let model = Model::of(effects.map(|(effect, coefficients)| Fitted { effect, coefficients }));
-        let mut design = Design::new(&study, &model, &noises, Regressor::all(&model.effects));
+        let mut design = Design::new(&study, &model, &weights, Regressor::all(&model.effects));
         design.rebase(&model.effects);
         let (products, _) = design.fitted();
         let fitted = fit::linear(&design, &products, 0, &[0, 1, 2]);

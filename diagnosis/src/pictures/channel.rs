@@ -7,8 +7,9 @@ use super::{AxisTrack, ChannelPicture, RunMean, Samples, Track};
 use crate::course::Course;
 use crate::model::Model;
 use crate::states::States;
-use crate::study::{Kind, Scene, Study};
+use crate::study::{ChannelAt, Kind, Scene, Study};
 use crate::terms::Shape;
+use crate::weights::Outliers;
 
 /// What all channels of a recording are seen with.
 pub(super) struct Sight<'s> {
@@ -16,6 +17,8 @@ pub(super) struct Sight<'s> {
     pub(super) scene: usize,
     pub(super) course: &'s Course,
     pub(super) model: &'s Model,
+    /// Samples that are left out beside the model.
+    pub(super) outliers: &'s Outliers,
     /// How many samples are drawn of a channel.
     pub(super) samples: usize,
 }
@@ -36,11 +39,12 @@ pub(super) fn draw(
 ) -> ChannelPicture {
     let scene = &sight.study.scenes[sight.scene];
     let channel = &scene.channels[number];
+    let outliers = sight.outliers.of(ChannelAt { scene: sight.scene, channel: number });
     let clean = |values: &[f64], outliers: &[bool]| -> Vec<f64> {
         let marked = values.iter().zip(outliers);
         marked.map(|(value, outlier)| if *outlier { f64::NAN } else { *value }).collect()
     };
-    let cleaned = (clean(before, outliers_before), clean(after, &channel.outliers));
+    let cleaned = (clean(before, outliers_before), clean(after, outliers));
     let states = sight.course.states(channel.kind);
     ChannelPicture {
         name: channel.name.clone(),
@@ -48,11 +52,11 @@ pub(super) fn draw(
         unit: if channel.kind.angular(sight.study.equations) { "rad" } else { "mm" },
         counts: counts(channel.kind),
         samples: count(&cleaned.1),
-        outliers: channel.outliers.iter().filter(|outlier| **outlier).count(),
+        outliers: outliers.iter().filter(|outlier| **outlier).count(),
         rms: (rms(&cleaned.0), rms(&cleaned.1)),
         unchanged: unchanged(&cleaned),
         reach: (reach(&cleaned.0), reach(&cleaned.1)),
-        shown: shown(sight, states, (before, after), &cleaned, &channel.outliers),
+        shown: shown(sight, states, (before, after), &cleaned, outliers),
         runs: run_means(scene, &cleaned),
         over_time: spectrum::over_time(sight, &cleaned),
         over_position: spectrum::over_position(sight, states, &cleaned),

@@ -7,7 +7,7 @@ use super::channel::Sight;
 use super::{Circle, Pass};
 use crate::course::Course;
 use crate::observations;
-use crate::study::{Kind, Scene};
+use crate::study::{ChannelAt, Kind, Scene};
 
 /// How many points are drawn of a pass, and how many passes of each sense at most: the first and the last.
 const POINTS: usize = 500;
@@ -64,7 +64,10 @@ pub(super) fn draw(sight: &Sight<'_>, before: &[Vec<f64>], after: &[Vec<f64>]) -
         })
     };
     let left = |row: usize, residuals: &[Vec<f64>]| radial(row, &|channel| residuals[channel][row]);
-    let outlier = |row: usize| seen.channels().iter().any(|channel| scene.channels[*channel].outliers[row]);
+    let left_out = |channel: &usize, row: usize| {
+        sight.outliers.of(ChannelAt { scene: sight.scene, channel: *channel })[row]
+    };
+    let outlier = |row: usize| seen.channels().iter().any(|channel| left_out(channel, row));
     let point = |row: usize| {
         let [x, y] = spoke(row);
         let known = known(row);

@@ -6,6 +6,7 @@ use crate::model::{Fitted, Model, Place};
 use crate::noise::Noise;
 use crate::side::Side;
 use crate::testing::{Bench, circle, path, position, scenario};
+use crate::weights::Weights;
 
 #[test]
 fn each_parameter_costs_the_logarithm_of_the_samples() {
@@ -39,7 +40,7 @@ fn a_set_costs_the_same_by_whatever_way_it_is_reached() {
     let study = Study::new(bench.equations(), None, &[&recording]);
     let fitted = |effect: Effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect };
     let model = Model::of(effects(&bench).into_iter().map(fitted));
-    let design = judge::design(&study, &model, &[vec![Noise::white(1e-3)]]);
+    let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3)]]));
     let (products, samples) = design.fitted();
     let choice = Choice::new(&study, &design, products, samples, 1, 1.0, Resolution::new(&study, &[]));
 
@@ -152,7 +153,7 @@ fn a_drive_leads_only_where_no_clock_does_the_same() {
         let model = Model::of(
             effects.map(|effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect }),
         );
-        let design = judge::design(&study, &model, &[vec![Noise::white(1e-3)]]);
+        let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3)]]));
         let (products, samples) = design.fitted();
         let choice = Choice::new(&study, &design, products, samples, 1, 1.0, Resolution::new(&study, &[]));
         let empty = choice.empty();
@@ -188,7 +189,7 @@ fn of_two_that_bend_alike_in_one_place_one_is_enough() {
     ];
     let fitted = |effect: Effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect };
     let model = Model::of(effects.into_iter().map(fitted));
-    let design = judge::design(&study, &model, &[vec![Noise::white(1e-3); 2]]);
+    let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3); 2]]));
     let (products, samples) = design.fitted();
     let travels = crate::travel::travels(&study, &crate::engine::courses(&study, &Model::default()));
     let resolution = Resolution::new(&study, &travels);
@@ -223,7 +224,7 @@ fn outgrown(calibration: &str, effects: &[(&str, Shape)]) -> Vec<bool> {
     });
     let fitted = |effect: Effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect };
     let model = Model::of(zeros.chain(effects).map(fitted));
-    let design = judge::design(&study, &model, &[vec![Noise::white(1e-3); 2]]);
+    let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3); 2]]));
     let (products, samples) = design.fitted();
     let choice = Choice::new(&study, &design, products, samples, 2, 1.0, Resolution::new(&study, &[]));
     let all = choice.open.iter().fold(choice.empty(), |set, regressor| choice.with(&set, *regressor));

@@ -16,6 +16,7 @@ use crate::side::Side;
 use crate::terms::Setting;
 use crate::testing::{Bench, line, noisy, normals, path, position};
 use crate::travel;
+use crate::weights::{Outliers, Weights};
 
 /// The seeds every kind of noise is tried with.
 const SEEDS: std::ops::Range<u64> = 0..20;
@@ -263,7 +264,7 @@ fn found(study: &Study<'_>) -> Found {
     let travels = travel::travels(study, &courses);
     let noises = vec![vec![Noise::white(1e-3); study.scenes[0].channels.len()]];
     let pool = kinship::groups(study, &courses, &noises, candidates::candidates(study, &travels));
-    let fit = fit::refine(study, model, &noises, &travels);
+    let fit = fit::refine(study, model, &Weights::of_all(study, noises), &travels);
     let appraisal = Appraisal::new(study, &fit.model);
     let tries = Tries { candidates: crate::number(pool.len()), waves: 1.0 };
     Found { fit, appraisal, pool, travels, bands: Vec::new(), always: 1, tries, plain_zeros: false }
@@ -339,8 +340,8 @@ fn what_is_in_the_model_is_not_suspected_again() {
     let mut found = found(&study);
     let play = machine(bench.motion("EXX"), Shape::Backlash { axis: 0, wind_up: 0.0 }, &[0.0]);
     found.fit.model.effects.push(play);
-    let noises = found.appraisal.as_white();
-    found.fit = fit::refine(&study, found.fit.model.clone(), &noises, &found.travels);
+    let weights = found.appraisal.weights.as_white();
+    found.fit = fit::refine(&study, found.fit.model.clone(), &weights, &found.travels);
     found.appraisal = Appraisal::new(&study, &found.fit.model);
     assert!(suspect(&study, &found).is_none());
 }
@@ -358,13 +359,11 @@ fn the_largest_channel_that_moves_is_named_and_outliers_do_not_hide_it() {
     let mut residuals: Vec<Vec<f64>> =
         vec![normals(9, rows).iter().map(|value| 10.0 * value).collect(); channels];
     residuals[0] = smooth.iter().map(|value| 0.5 * value).collect();
-    let none = vec![vec![vec![false; rows]; channels]];
     let noises = vec![vec![Noise::white(1.0); channels]];
     let mut appraisal = Appraisal {
         residuals: vec![residuals],
-        outliers: none,
         floors: noises.clone(),
-        noises,
+        weights: Weights::of_all(&study, noises),
         returning: Vec::new(),
         leftover: Vec::new(),
         deviance: 0.0,
@@ -377,9 +376,11 @@ fn the_largest_channel_that_moves_is_named_and_outliers_do_not_hide_it() {
         appraisal.residuals[0][1][row] += 40.0;
     }
     assert_eq!(moving(&study, &appraisal).unwrap().at.channel, 0, "what jumps does not move smoothly");
+    let mut marks = vec![vec![false; rows]; channels];
     for row in (7..rows).step_by(31) {
-        appraisal.outliers[0][1][row] = true;
+        marks[1][row] = true;
     }
+    appraisal.weights.outliers = Outliers::new(vec![marks]);
     let found = moving(&study, &appraisal).unwrap();
     assert_eq!(found.at, ChannelAt { scene: 0, channel: 1 });
     keeps_on_for(Some((found.time, found.rms)), &sines, "channel 1");

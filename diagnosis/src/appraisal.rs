@@ -10,13 +10,15 @@
 //! Two models are compared by their likelihoods, each with the noise that suits it best: an effect that a wandering sensor
 //! explains as well is then worth nothing.
 
+use crate::channel::ChannelAt;
 use crate::course::Course;
 use crate::model::Model;
 use crate::noise::{self, Noise};
 use crate::observations;
 use crate::outliers;
 use crate::parallel;
-use crate::study::{ChannelAt, Scene, Study};
+use crate::scene::Scene;
+use crate::study::Study;
 use crate::unsteady;
 use crate::weights::{Outliers, Weights};
 
@@ -58,22 +60,34 @@ struct Estimate {
 impl Appraisal {
     /// Appraises a model.
     pub(crate) fn new(study: &Study<'_>, model: &Model) -> Self {
-        Self::under(study, model, None)
+        Self::under(study, model, None, |scene| scene.fitted_rows())
+    }
+
+    /// Appraises a model by all rows, also those that are held out; beside another model where one is given.
+    pub(crate) fn of_all_rows(study: &Study<'_>, model: &Model, other: Option<&Self>) -> Self {
+        Self::under(study, model, other, |scene| vec![true; scene.rows()])
     }
 
     /// Appraises a model beside another one, so that their likelihoods can be compared: where samples weigh alike under that one
     /// they do so here.
     pub(crate) fn beside(study: &Study<'_>, model: &Model, other: &Self) -> Self {
-        Self::under(study, model, Some(other))
+        Self::under(study, model, Some(other), |scene| scene.fitted_rows())
     }
 
-    fn under(study: &Study<'_>, model: &Model, other: Option<&Self>) -> Self {
+    /// `fitted` tells which rows of a scene it goes by.
+    fn under(
+        study: &Study<'_>,
+        model: &Model,
+        other: Option<&Self>,
+        fitted: impl Fn(&Scene<'_>) -> Vec<bool>,
+    ) -> Self {
         let (mut residuals, mut outliers, mut estimates) = (Vec::new(), Vec::new(), Vec::new());
         for scene in 0..study.scenes.len() {
             let course = Course::new(study, scene, model);
             let left = observations::residuals(study, scene, model, &course);
             let like = other.map(|other| &other.weights.noises[scene]);
-            let (marks, found) = estimated(&study.scenes[scene], &left, like).into_iter().unzip();
+            let known = &study.scenes[scene];
+            let (marks, found) = estimated(known, &left, like, &fitted(known)).into_iter().unzip();
             residuals.push(left);
             outliers.push(marks);
             estimates.push(found);
@@ -125,13 +139,13 @@ fn each<T>(estimates: &[Vec<Estimate>], of: impl Fn(&Estimate) -> T) -> Vec<Vec<
     estimates.iter().map(|channels| channels.iter().map(&of).collect()).collect()
 }
 
-/// Outliers and estimate of every channel of a scene; `like` are weights with which these are to be compared.
+/// Outliers and estimate of every channel of a scene by the rows that are fitted; `like` are weights with which these are to be compared.
 fn estimated(
     known: &Scene<'_>,
     residuals: &[Vec<f64>],
     like: Option<&Vec<Noise>>,
+    fitted: &[bool],
 ) -> Vec<(Vec<bool>, Estimate)> {
-    let fitted = known.fitted_rows();
     let work = residuals.len() * known.rows() * ESTIMATES;
     parallel::counted(residuals.len(), work, |channel| {
         let residual = &residuals[channel];

@@ -20,12 +20,13 @@ mod spins;
 mod trials;
 
 use crate::appraisal::Appraisal;
+use crate::channel::ChannelAt;
 use crate::contest::DECISIVE;
 use crate::engine::{self, Found};
 use crate::fit::Fit;
 use crate::model::{Fitted, Model};
 use crate::noise;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::terms::Shape;
 use crate::unsteady;
 use crate::weights::Weights;

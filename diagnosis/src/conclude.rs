@@ -24,9 +24,9 @@ use crate::local::{self, Feature};
 use crate::model::{Fitted, Model};
 use crate::places;
 use crate::repeats;
-use crate::returns;
 use crate::revise;
-use crate::study::{Scene, Study};
+use crate::scene::Scene;
+use crate::study::Study;
 use crate::terms::SettingKind;
 use crate::traces;
 use crate::unsteady;
@@ -234,28 +234,27 @@ fn withdraw(study: &Study<'_>, found: &mut Found) {
     found.appraisal = Appraisal::new(study, &found.fit.model);
 }
 
-/// The settings of the instruments alone, fitted, where known plays are crossed as far as they go on the axes on which a model crosses
-/// plays: beside that, what changes is what was found, and not how a play acts that was known.
-fn bare_beside(study: &mut Study<'_>, bare: &Bare, found: &Model) -> Bare {
-    let mut known = bare.model.clone().crossed_as(found);
-    crossing::follow(study, &mut known);
-    bare_model(study, &known)
-}
-
 /// The settings of the instruments alone, and the samples that are left out beside them.
 struct Bare {
     model: Model,
     outliers: Outliers,
 }
 
+/// The settings of the instruments alone, fitted, where known plays are crossed as far as they go on the axes on which a model crosses
+/// plays: beside that, what changes is what was found, and not how a play acts that was known.
+fn bare_beside(study: &Study<'_>, bare: &Bare, found: &Model) -> Bare {
+    let mut known = bare.model.clone().crossed_as(found);
+    crossing::follow(study, &mut known);
+    bare_model(study, &known)
+}
+
 /// The settings of the instruments alone, fitted, with plays that are crossed as in another model.
-fn bare_model(study: &mut Study<'_>, crossed: &Model) -> Bare {
+fn bare_model(study: &Study<'_>, crossed: &Model) -> Bare {
     let effects = candidates::always(study).into_iter();
     let model = crossed.with_effects(effects.map(|effect| Fitted { effect, coefficients: vec![0.0] }));
     let weights = Appraisal::new(study, &model).weights;
     let mut model = fit::refine(study, model, &weights.as_white(), &[]).model;
     zeros::free_held_out(study, &mut model);
-    returns::tell(study, &model, &weights.outliers);
     Bare { model, outliers: weights.outliers }
 }
 

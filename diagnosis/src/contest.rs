@@ -8,13 +8,14 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 
+use crate::channel::ChannelAt;
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::model::{Effect, Model};
 use crate::noise::{Step, Whitening, whiten};
 use crate::parallel;
 use crate::search::untold_price;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 use crate::weights::Weights;

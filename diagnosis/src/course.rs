@@ -9,11 +9,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 use model_dsl::exact::{Columns, Displaced};
 use model_dsl::program::Column;
 
+use crate::channel::Kind;
 use crate::model::{Fitted, Model};
 use crate::parallel;
 use crate::position_loop::PositionLoop;
+use crate::scene::Built;
 use crate::states::{Driven, Rows, States};
-use crate::study::{Built, Kind, Study};
+use crate::study::Study;
 use crate::terms::{Memory, Setting, Shape};
 
 /// How many rows are worked on at a time.

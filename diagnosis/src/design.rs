@@ -12,12 +12,13 @@ mod shapes;
 
 use nalgebra::DMatrix;
 
+use crate::channel::ChannelAt;
 use crate::course::{Course, STRETCH, pieces};
 use crate::model::{Effect, Fitted, Model};
 use crate::noise::Noise;
 use crate::observations::{Frame, Passage};
 use crate::parallel;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::weights::Weights;
 
 pub(crate) use run::ChannelRun;

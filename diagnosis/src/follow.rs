@@ -20,7 +20,6 @@ use crate::engine;
 use crate::fit;
 use crate::model::{Effect, Fitted, Model, Place};
 use crate::parameters::{Described, motion_unit};
-use crate::rest;
 use crate::side::Side;
 use crate::study::Study;
 use crate::sweep::Swept;
@@ -78,9 +77,7 @@ const APART: f64 = 0.06;
 /// The sizes of effects in the recordings of `inputs`, in the order of `followed`: nothing of an effect that these recordings do not show,
 /// or do not tell from those before it. So the surest come first.
 pub fn follow(inputs: &Inputs<'_>, followed: &[Followed]) -> Vec<Vec<Size>> {
-    let mut study = Study::new(inputs.equations, inputs.calibration, &inputs.recordings);
-    rest::tell(&mut study);
-    study.scenes.iter_mut().flat_map(|scene| &mut scene.blocks).for_each(|block| block.held_out = false);
+    let study = Study::new(inputs.equations, inputs.calibration, &inputs.recordings).with_nothing_held_out();
     let always = Model::of(candidates::always(&study).into_iter().map(unfitted));
     let travels = travel::travels(&study, &engine::courses(&study, &always));
     let begun: Vec<Option<Fitted>> = followed.iter().map(|one| begun(&study, &travels, one)).collect();

@@ -6,6 +6,7 @@
 use nalgebra::DMatrix;
 
 use crate::appraisal::Appraisal;
+use crate::channel::ChannelAt;
 use crate::conditions::Conditions;
 use crate::design::{Design, Products, Regressor};
 use crate::fit::Fit;
@@ -13,7 +14,7 @@ use crate::model::{Fitted, Model};
 use crate::parallel;
 use crate::rounded;
 use crate::search::untold_price;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 use crate::weights::Weights;

@@ -9,12 +9,13 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use crate::candidates::simplicity;
+use crate::channel::ChannelAt;
 use crate::course::Course;
 use crate::design::{ChannelRun, Regressor};
 use crate::model::{Effect, Model};
 use crate::noise::Noise;
 use crate::parallel;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 
 /// An effect, and others that the recordings show alike.
 #[derive(Clone, Debug)]

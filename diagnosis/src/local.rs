@@ -8,10 +8,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::appraisal::Appraisal;
+use crate::channel::ChannelAt;
 use crate::course::Course;
 use crate::model::Model;
 use crate::rounded;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::travel::Travel;
 use crate::unsteady;
 

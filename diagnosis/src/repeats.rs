@@ -4,11 +4,13 @@
 //! noise that runs on from one run to the next; a wandering sensor does not jump between runs.
 
 use crate::appraisal::Appraisal;
+use crate::channel::Kind;
 use crate::design::{Design, Regressor};
 use crate::diagnosis::Repeatability;
 use crate::fit;
 use crate::model::{Effect, Fitted, Model};
-use crate::study::{Kind, Scene, Study};
+use crate::scene::Scene;
+use crate::study::Study;
 use crate::terms::Setting;
 
 /// How many times the noise the zeros of runs must scatter to be called so.
@@ -72,21 +74,9 @@ fn zeros_of<'k>(known: &'k Scene<'_>) -> impl Iterator<Item = Zero> + 'k {
     })
 }
 
-/// Looks for recordings whose runs do not repeat under a model.
-pub(crate) fn scatter(study: &mut Study<'_>, model: &Model) -> Vec<Scatter> {
-    let held: Vec<Vec<bool>> =
-        study.scenes.iter().map(|scene| scene.blocks.iter().map(|block| block.held_out).collect()).collect();
-    // Every run tells of repeatability, also one that is held out for the fit.
-    for block in study.scenes.iter_mut().flat_map(|scene| &mut scene.blocks) {
-        block.held_out = false;
-    }
-    let found = (0..study.scenes.len()).filter_map(|scene| of_scene(study, scene, model)).collect();
-    for (scene, held) in study.scenes.iter_mut().zip(held) {
-        for (block, held) in scene.blocks.iter_mut().zip(held) {
-            block.held_out = held;
-        }
-    }
-    found
+/// Looks for recordings whose runs do not repeat under a model. Every run tells of that, also one that is held out for the fit.
+pub(crate) fn scatter(study: &Study<'_>, model: &Model) -> Vec<Scatter> {
+    (0..study.scenes.len()).filter_map(|scene| of_scene(study, scene, model)).collect()
 }
 
 fn of_scene(study: &Study<'_>, scene: usize, model: &Model) -> Option<Scatter> {
@@ -95,7 +85,7 @@ fn of_scene(study: &Study<'_>, scene: usize, model: &Model) -> Option<Scatter> {
         return None;
     }
     let zeros = run_zeros(scene, &study.scenes[scene], &runs);
-    let before = Appraisal::new(study, model);
+    let before = Appraisal::of_all_rows(study, model, None);
     let mut weights = before.weights.clone();
     let mut free = model.clone();
     let mut after = None;
@@ -105,9 +95,9 @@ fn of_scene(study: &Study<'_>, scene: usize, model: &Model) -> Option<Scatter> {
         let mut design =
             Design::new(study, &free, &weights, effects.into_iter().map(Regressor::of).collect());
         design.rebase(&free.effects);
-        let (products, _) = design.fitted();
+        let (products, _) = design.sum(|_| true);
         free = keep_loops(model, fit::linear(&design, &products, design.regressors.len(), &[]));
-        let appraisal = Appraisal::new(study, &free);
+        let appraisal = Appraisal::of_all_rows(study, &free, None);
         weights = appraisal.weights.clone();
         after = Some(appraisal);
     }
@@ -117,8 +107,8 @@ fn of_scene(study: &Study<'_>, scene: usize, model: &Model) -> Option<Scatter> {
     let scatter = measure(study, scene, &free, &after, runs);
     // Under the weights of either: where a model lacks something, fewer samples count.
     let gains = [
-        before.deviance - Appraisal::beside(study, &free, &before).deviance,
-        Appraisal::beside(study, model, &after).deviance - after.deviance,
+        before.deviance - Appraisal::of_all_rows(study, &free, Some(&before)).deviance,
+        Appraisal::of_all_rows(study, model, Some(&after)).deviance - after.deviance,
     ];
     let significant = gains.iter().all(|gain| *gain > price);
     (significant && scatter.between > WIDE * scatter.within).then_some(scatter)

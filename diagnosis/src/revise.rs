@@ -6,6 +6,7 @@
 //! it is compared, and nothing is added that the judge would drop.
 
 use crate::appraisal::Appraisal;
+use crate::channel::ChannelAt;
 use crate::conditions::Conditions;
 use crate::design::{Design, Regressor};
 use crate::engine::{self, courses};
@@ -15,7 +16,7 @@ use crate::kinship::Kin;
 use crate::model::{Effect, Fitted, Model};
 use crate::ranges::holds;
 use crate::search::rivals;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 use crate::waves::{self, WavePlace};

@@ -3,9 +3,10 @@
 //! In: a study, what the calibration alone left and what was found. Out: columns as long as the recordings, for whoever draws, tests or
 //! fits them on: nothing is thinned out, unlike in [`crate::pictures`].
 
+use crate::channel::ChannelAt;
 use crate::engine::Found;
 use crate::pictures::Before;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::zeros;
 
 /// One channel of one recording, row by row: mm or rad, s. NaN where nothing was measured, and where a row is left out because an axis

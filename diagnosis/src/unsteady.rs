@@ -6,10 +6,11 @@
 
 use crate::appraisal::Appraisal;
 use crate::candidates::simplicity;
+use crate::channel::{ChannelAt, Kind};
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::study::{ChannelAt, Kind, Study};
+use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 

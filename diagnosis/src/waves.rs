@@ -11,6 +11,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::channel::ChannelAt;
 use crate::course::Course;
 use crate::kinship;
 use crate::model::{Effect, Model, Place};
@@ -18,8 +19,9 @@ use crate::noise::{Noise, Whitening, unwhiten, whiten};
 use crate::observations::{Frame, each_frame, residuals};
 use crate::parallel;
 use crate::ranges::{CYCLES, PERIODS, goes_round, shortest_step};
+use crate::scene::Scene;
 use crate::side::Side;
-use crate::study::{ChannelAt, Scene, Study};
+use crate::study::Study;
 use crate::terms::Shape;
 use crate::travel::Travel;
 use crate::weights::Weights;

@@ -5,8 +5,10 @@
 
 use std::sync::Arc;
 
+use crate::channel::ChannelAt;
 use crate::noise::Noise;
-use crate::study::{ChannelAt, Scene, Study};
+use crate::scene::Scene;
+use crate::study::Study;
 
 /// The samples that are left out as outliers: for each scene, channel and row. Cheap to clone.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,12 +10,14 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 
 use crate::appraisal::Appraisal;
+use crate::channel::Kind;
 use crate::course::Course;
 use crate::design::{Design, Regressor};
 use crate::fit;
 use crate::model::{Fitted, Model, Place};
 use crate::observations;
-use crate::study::{Kind, Scene, Study};
+use crate::scene::Scene;
+use crate::study::Study;
 use crate::terms::{Setting, Shape};
 use crate::weights::Weights;
 

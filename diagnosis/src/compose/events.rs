@@ -7,13 +7,14 @@
 use nalgebra::DMatrix;
 
 use crate::audit::spread;
+use crate::channel::ChannelAt;
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::fit;
 use crate::model::{Effect, Model, Place};
 use crate::ranges::Resolution;
 use crate::search::Choice;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 

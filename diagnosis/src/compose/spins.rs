@@ -59,7 +59,7 @@ fn turns(study: &Study<'_>, load: usize) -> Option<Turns> {
         return None;
     }
     let of_scene =
-        |scene: &crate::study::Scene<'_>| terms::turned(&scene.given.time, &scene.given.loads[load]);
+        |scene: &crate::scene::Scene<'_>| terms::turned(&scene.given.time, &scene.given.loads[load]);
     let turned: Vec<Vec<f64>> = study.scenes.iter().map(of_scene).collect();
     let mut steps: Vec<f64> =
         turned.iter().flat_map(|turned| turned.windows(2).map(|pair| (pair[1] - pair[0]).abs())).collect();

@@ -5,11 +5,12 @@
 //! it would have found beside it, and without that a form that makes up for both looks better than the right one.
 
 use crate::audit::spread;
+use crate::channel::ChannelAt;
 use crate::contest::{Contest, DECISIVE};
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::model::{Effect, Fitted, Model};
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::terms::Shape;
 use crate::weights::Weights;
 

@@ -5,13 +5,15 @@
 
 use crate::answers::answers;
 use crate::audit::gross;
+use crate::channel::Channel;
 use crate::course::Course;
 use crate::crossing;
 use crate::diagnosis::Change;
 use crate::model::{Fitted, Model};
 use crate::observations;
 use crate::recording::{Instrument, clamped_anew, turned};
-use crate::study::{Channel, Scene, Study};
+use crate::scene::Scene;
+use crate::study::Study;
 use crate::terms::Setting;
 use crate::zeros;
 

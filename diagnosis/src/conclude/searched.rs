@@ -14,7 +14,7 @@ use crate::fit;
 use crate::model::{Fitted, Model, Place};
 use crate::pictures;
 use crate::repeats::{self, Scatter};
-use crate::rest;
+use crate::returns;
 use crate::study::Study;
 use crate::weights::Outliers;
 use crate::zeros;
@@ -48,7 +48,7 @@ impl<'s> Searched<'s> {
         keep: Keep,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<(Self, Opening), Box<Diagnosis>> {
-        let mut study = study(inputs);
+        let study = study(inputs);
         let mut opened = Diagnosis {
             machine: inputs.equations.machine.clone(),
             undecided: undecided(&study),
@@ -64,7 +64,8 @@ impl<'s> Searched<'s> {
             return Err(Box::new(undecidable(opened, &study, &Outliers::none(&study), reason)));
         }
         let units = Units::new(&study);
-        let bare = bare_model(&mut study, &Model::default());
+        let bare = bare_model(&study, &Model::default());
+        let mut study = returns::told(study, &bare.model, &bare.outliers);
         opened.returns = ceiling::ceiling(&study);
         opened.nothing_returns = ceiling::nothing(&study);
         if let Some(reason) = astray(&study, &bare.model).or_else(|| no_circle(&study, &bare.model)) {
@@ -75,10 +76,11 @@ impl<'s> Searched<'s> {
             (units.residual(study, model, outliers), drawn)
         };
         let (mut before, mut drawn) = left(&study, &bare);
-        let (found, scattered) = search(&mut study, &bare.outliers, progress);
+        let (found, scattered) = search(&study, &bare.outliers, progress);
         if found.fit.model.crosses() {
-            let bare = bare_beside(&mut study, &bare, &found.fit.model);
+            let bare = bare_beside(&study, &bare, &found.fit.model);
             (before, drawn) = left(&study, &bare);
+            study = returns::told(study, &bare.model, &bare.outliers);
         }
         let Diagnosis { returns, nothing_returns, undecided, .. } = opened;
         let opening = Opening { before, drawn, keep, returns, nothing_returns, undecided };
@@ -122,19 +124,13 @@ impl<'s> Searched<'s> {
 
 fn study<'s>(inputs: &Inputs<'s>) -> Study<'s> {
     let recordings: Vec<_> = inputs.recordings.iter().copied().chain(inputs.holdout).collect();
-    let mut study = Study::new(inputs.equations, inputs.calibration, &recordings);
-    rest::tell(&mut study);
-    if inputs.holdout.is_some()
-        && let Some(scene) = study.scenes.last_mut()
-    {
-        scene.blocks.iter_mut().for_each(|block| block.held_out = true);
-    }
-    study
+    let study = Study::new(inputs.equations, inputs.calibration, &recordings);
+    if inputs.holdout.is_some() { study.with_last_held_out() } else { study }
 }
 
 /// What the engine finds, and the recordings whose runs do not repeat.
 fn search(
-    study: &mut Study<'_>,
+    study: &Study<'_>,
     outliers: &Outliers,
     progress: &mut dyn FnMut(Progress),
 ) -> (Found, Vec<Scatter>) {

@@ -2,9 +2,11 @@
 //!
 //! In: a recording in the study, and which of its samples were left out. Out: its instrument, its rows and samples, and what of it was held out.
 
+use crate::channel::ChannelAt;
 use crate::diagnosis::Summary;
 use crate::recording::Instrument;
-use crate::study::{ChannelAt, Scene, Study};
+use crate::scene::Scene;
+use crate::study::Study;
 use crate::weights::Outliers;
 
 /// The summaries of all recordings, and how many of their samples were left out.

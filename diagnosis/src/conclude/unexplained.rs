@@ -8,6 +8,7 @@ use super::units::Units;
 use nalgebra::DMatrix;
 
 use crate::certainty::Certainty;
+use crate::channel::{Channel, Kind};
 use crate::diagnosis::{Interval, IntervalOf, ParameterValue, Unexplained};
 use crate::engine::Found;
 use crate::local::Feature;
@@ -15,7 +16,7 @@ use crate::noise;
 use crate::parameters::{Described, axis_unit, motion_unit};
 use crate::places;
 use crate::returns::Quantity;
-use crate::study::{Channel, Kind, Study};
+use crate::study::Study;
 use crate::unsteady::{self, Band, Moving, Suspect};
 use crate::words;
 

@@ -4,11 +4,12 @@
 //! or over the drives' own where there is no other.
 
 use crate::appraisal::Appraisal;
+use crate::channel::{ChannelAt, Kind};
 use crate::diagnosis::{NoiseSummary, Residual};
 use crate::model::Model;
 use crate::noise::Noise;
 use crate::parameters::axis_unit;
-use crate::study::{ChannelAt, Kind, Study};
+use crate::study::Study;
 use crate::weights::Outliers;
 use crate::zeros;
 

@@ -9,6 +9,7 @@ use super::Regressor;
 use super::lower::{Lower, NARROW};
 use super::random::Random;
 use super::shapes::Shapes;
+use crate::channel::{Channel, ChannelAt, Kind};
 use crate::course::{BATCH, Course, STRETCH, pieces};
 use crate::model::{Model, Place};
 use crate::noise::{Noise, Step, Whitening, whiten};
@@ -16,7 +17,7 @@ use crate::observations::{Frame, Passage, acts};
 use crate::parallel;
 use crate::side::Side;
 use crate::states::Rows;
-use crate::study::{Channel, ChannelAt, Kind, Study};
+use crate::study::Study;
 use crate::terms::{Setting, Shape};
 use crate::weights::Outliers;
 

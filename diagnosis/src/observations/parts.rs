@@ -2,10 +2,11 @@
 //! part lay.
 
 use super::{Frame, along, each_frame};
+use crate::channel::Kind;
 use crate::course::Course;
 use crate::model::Model;
 use crate::recording::PartReading;
-use crate::study::{Kind, Study};
+use crate::study::Study;
 
 /// The readings of a part as the calibration leaves them, evenly from all rows: enough to tell how it lies.
 pub(crate) fn part_readings(study: &Study<'_>, scene: usize, course: &Course) -> Vec<PartReading> {

@@ -4,9 +4,10 @@
 //! ballbar's centre and length, and the clock, act exactly: their columns are how the reading changes with a little more of them.
 
 use super::{Frame, along, at, dot};
+use crate::channel::{Channel, Kind};
 use crate::model::Model;
 use crate::side::Side;
-use crate::study::{Channel, Kind, Study};
+use crate::study::Study;
 use crate::terms::Setting;
 
 impl Frame<'_> {

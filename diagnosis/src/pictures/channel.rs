@@ -4,10 +4,12 @@ use pages::plot::thin::{extremes, spread};
 
 use super::spectrum;
 use super::{AxisTrack, ChannelPicture, RunMean, Samples, Track};
+use crate::channel::{ChannelAt, Kind};
 use crate::course::Course;
 use crate::model::Model;
+use crate::scene::Scene;
 use crate::states::States;
-use crate::study::{ChannelAt, Kind, Scene, Study};
+use crate::study::Study;
 use crate::terms::Shape;
 use crate::weights::Outliers;
 

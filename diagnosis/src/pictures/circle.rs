@@ -5,9 +5,10 @@ use pages::plot::thin::extremes;
 
 use super::channel::Sight;
 use super::{Circle, Pass};
+use crate::channel::{ChannelAt, Kind};
 use crate::course::Course;
 use crate::observations;
-use crate::study::{ChannelAt, Kind, Scene};
+use crate::scene::Scene;
 
 /// How many points are drawn of a pass, and how many passes of each sense at most: the first and the last.
 const POINTS: usize = 500;

@@ -1,8 +1,9 @@
 //! Contributions. In: a fitted model. Out: how much each finding adds to the readings.
 
 use super::Contribution;
+use crate::channel::{ChannelAt, Kind};
 use crate::engine::Found;
-use crate::study::{ChannelAt, Kind, Study};
+use crate::study::Study;
 use crate::zeros;
 
 /// For each of the effects with these numbers what the model leaves without it, minus what it leaves with it.

@@ -2,7 +2,8 @@
 
 use super::channel::reach;
 use super::{Before, Distribution};
-use crate::study::{ChannelAt, Kind, Study};
+use crate::channel::{ChannelAt, Kind};
+use crate::study::Study;
 use crate::weights::Outliers;
 
 /// How many classes there are, at least and at most.

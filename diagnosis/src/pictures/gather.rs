@@ -2,10 +2,11 @@
 
 use super::channel::{self, Sight};
 use super::{Picture, Pictures, circle, contribution, distribution};
+use crate::channel::ChannelAt;
 use crate::course::Course;
 use crate::engine::Found;
 use crate::model::Model;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::weights::Outliers;
 use crate::zeros;
 
@@ -35,7 +36,7 @@ impl Before {
         self,
         study: &Study<'_>,
         found: &Found,
-        counts: (&dyn Fn(crate::study::Kind) -> bool, f64),
+        counts: (&dyn Fn(crate::channel::Kind) -> bool, f64),
         findings: &[usize],
     ) -> Pictures {
         let (model, outliers) = (&found.fit.model, &found.appraisal.weights.outliers);

@@ -33,7 +33,8 @@ pub(crate) fn find(study: &Study<'_>, found: &Found) -> Vec<Vec<Effect>> {
     }
     let scale = (swept.remaining() / samples.max(1.0)).max(f64::MIN_POSITIVE);
     let columns = |number: usize| design.columns(number).collect::<Vec<usize>>();
-    (found.always..model.effects.len())
+    model
+        .chosen_numbers()
         .map(|number| {
             let worth = swept.worth(&columns(number)) / scale;
             let mut without = swept.clone();
@@ -47,7 +48,7 @@ pub(crate) fn find(study: &Study<'_>, found: &Found) -> Vec<Vec<Effect>> {
             names.extend(
                 (0..others.len()).filter(|other| stands_in(*other)).flat_map(|other| all(&others[other])),
             );
-            let kept = &model.effects[found.always..];
+            let kept = model.chosen();
             names.retain(|name| {
                 !rivals(name, &model.effects[number].effect)
                     && !kept.iter().any(|fitted| rivals(&fitted.effect, name))
@@ -91,7 +92,7 @@ fn same_place(effect: &Effect, others: &[Kin]) -> Vec<Effect> {
 
 /// All candidates, and the effects of the model at all other motions where they could be.
 fn others(study: &Study<'_>, found: &Found) -> Vec<Kin> {
-    let kept = || found.fit.model.effects[found.always..].iter().map(|fitted| &fitted.effect);
+    let kept = || found.fit.model.chosen().iter().map(|fitted| &fitted.effect);
     let turned = kept().flat_map(|effect| other_guise(study, effect));
     let moved = kept().flat_map(|effect| elsewhere(study, effect)).chain(turned);
     let moved = moved.map(|effect| Kin { effect, equals: Vec::new() });

@@ -97,7 +97,7 @@ fn take_event(study: &Study<'_>, found: &mut Found, (price, lacks): (&FormPrice,
 
 /// Whether there is anything for a form to explain: more than noise is left, or one form may be behind several names.
 fn is_open(study: &Study<'_>, found: &Found) -> bool {
-    found.fit.model.effects.len() >= found.always + MANY || is_something_left(study, &found.appraisal)
+    found.fit.model.chosen().len() >= MANY || is_something_left(study, &found.appraisal)
 }
 
 /// Whether more is left of some channel than noise.
@@ -144,10 +144,8 @@ const ROUGH: f64 = 3.5;
 /// under the noise that it leaves, and held-out samples lie nearer.
 fn take(study: &Study<'_>, found: &mut Found, trial: &Trial, price: &FormPrice) -> bool {
     let Trial { form, beside, kept } = trial;
-    let settings = found.fit.model.effects[..found.always].iter();
-    let beside = beside
-        .iter()
-        .map(|effect| Fitted { effect: effect.clone(), coefficients: vec![0.0; effect.shape.columns()] });
+    let settings = found.fit.model.settings().iter();
+    let beside = beside.iter().map(|effect| Fitted::unfitted(effect.clone()));
     let effects = settings.chain(kept).chain([form]).cloned().chain(beside);
     let model = found.fit.model.with_effects(effects);
     let is_form = |fitted: &Fitted| {
@@ -251,7 +249,8 @@ fn more_likely(
     let paid = |fit: &Fit, appraisal: &Appraisal| {
         let conditions = found.conditions();
         let conditions = conditions.under(&appraisal.weights);
-        let names: f64 = conditions.prices(study, &fit.model, fit.samples)[found.always..].iter().sum();
+        let names: f64 =
+            conditions.prices(study, &fit.model, fit.samples)[fit.model.chosen_numbers()].iter().sum();
         names + fit.model.effects.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum::<f64>()
     };
     let cost = |fit: &Fit, appraisal: &Appraisal| deviance(study, appraisal) + paid(fit, appraisal);

@@ -21,7 +21,7 @@ use crate::diagnosis::{Change, Diagnosis, Mended, NoiseSummary, Residual, Settin
 use crate::engine::{self, Found};
 use crate::fit;
 use crate::local::{self, Feature};
-use crate::model::{Fitted, Model};
+use crate::model::Model;
 use crate::places;
 use crate::repeats;
 use crate::revise;
@@ -182,7 +182,7 @@ fn stand_or_fall(study: &Study<'_>, units: &Units, found: &mut Found, before: Op
         return;
     }
     let mut plain = found.fit.model.clone();
-    zeros::weigh_plainly(study, &mut plain, found.always, &found.appraisal.weights.as_white());
+    zeros::weigh_plainly(study, &mut plain, &found.appraisal.weights.as_white());
     if farther(&plain) {
         withdraw(study, found);
     } else {
@@ -197,7 +197,7 @@ fn stand_or_fall(study: &Study<'_>, units: &Units, found: &mut Found, before: Op
 fn claims(study: &Study<'_>, found: &mut Found, units: &Units, diagnosis: &mut Diagnosis) -> Vec<usize> {
     if !found.claims() {
         // Zeros that allow for a noise that wanders are no better than the plain ones where there is nothing beside them.
-        zeros::weigh_plainly(study, &mut found.fit.model, found.always, &found.appraisal.weights.as_white());
+        zeros::weigh_plainly(study, &mut found.fit.model, &found.appraisal.weights.as_white());
     }
     zeros::free_held_out(study, &mut found.fit.model);
     diagnosis.after = units.residual(study, &found.fit.model, &found.appraisal.weights.outliers);
@@ -228,7 +228,7 @@ fn drop_effect(study: &Study<'_>, found: &mut Found, number: usize) {
 
 /// Takes all effects of the machine back.
 fn withdraw(study: &Study<'_>, found: &mut Found) {
-    let mut settings = found.fit.model.keeping(|number, _| number < found.always);
+    let mut settings = found.fit.model.settings_alone();
     crossing::follow(study, &mut settings);
     found.fit = fit::refine(study, settings, &found.appraisal.weights.as_white(), &found.travels);
     found.appraisal = Appraisal::new(study, &found.fit.model);
@@ -250,8 +250,7 @@ fn bare_beside(study: &Study<'_>, bare: &Bare, found: &Model) -> Bare {
 
 /// The settings of the instruments alone, fitted, with plays that are crossed as in another model.
 fn bare_model(study: &Study<'_>, crossed: &Model) -> Bare {
-    let effects = candidates::always(study).into_iter();
-    let model = crossed.with_effects(effects.map(|effect| Fitted { effect, coefficients: vec![0.0] }));
+    let model = Model::of_settings(candidates::always(study)).crossed_as(crossed);
     let weights = Appraisal::new(study, &model).weights;
     let mut model = fit::refine(study, model, &weights.as_white(), &[]).model;
     zeros::free_held_out(study, &mut model);

@@ -25,8 +25,6 @@ pub(crate) struct Tries {
 /// The conditions under which models are fitted and compared.
 #[derive(Clone, Copy)]
 pub(crate) struct Conditions<'c> {
-    /// How many of a model's first effects are settings that are always fitted.
-    pub(crate) always: usize,
     /// How samples weigh.
     pub(crate) weights: &'c Weights,
     pub(crate) travels: &'c [Travel],
@@ -56,9 +54,12 @@ impl<'c> Conditions<'c> {
 
     /// What a fit costs where its effects have these prices.
     pub(crate) fn cost_at(&self, study: &Study<'_>, fit: &Fit, prices: &[f64]) -> f64 {
-        let paid: f64 = fit.model.effects[self.always..]
+        let chosen = fit.model.chosen_numbers();
+        let paid: f64 = fit
+            .model
+            .chosen()
             .iter()
-            .zip(&prices[self.always..])
+            .zip(&prices[chosen])
             .map(|(fitted, price)| price + odd(study, fitted))
             .sum();
         fit.samples * (fit.remaining / fit.samples).ln() + paid

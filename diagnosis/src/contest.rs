@@ -92,7 +92,7 @@ impl Contest {
         for (number, fitted) in model.effects.iter().enumerate() {
             let columns = first..first + regressors[number].columns();
             first = columns.end;
-            let price = if number >= found.always {
+            let price = if model.chosen_numbers().contains(&number) {
                 Some(conditions.price(study, &fitted.effect, contest.samples))
             } else {
                 price_of_a_run(&fitted.effect, contest.samples)

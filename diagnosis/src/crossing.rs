@@ -20,8 +20,7 @@ const AGREED: f64 = 0.01;
 
 /// Tries crossed plays on every axis that something seems to hold after a reversal; `None` where none is better.
 pub(crate) fn try_plays(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Option<Model> {
-    let always = conditions.always;
-    let held = |axis: &usize| model.effects[always..].iter().any(|fitted| holds(&fitted.effect, *axis));
+    let held = |axis: &usize| model.chosen().iter().any(|fitted| holds(&fitted.effect, *axis));
     let held: Vec<usize> = (0..study.own.len()).filter(held).collect();
     if held.is_empty() {
         return None;
@@ -31,7 +30,7 @@ pub(crate) fn try_plays(study: &Study<'_>, model: &Model, conditions: &Condition
     let mut chosen = None;
     for axis in held {
         let start = chosen.clone().unwrap_or_else(|| now.model.clone());
-        for trial in without_holds(study, &start, always, axis) {
+        for trial in without_holds(study, &start, axis) {
             let Some(fit) = crossed(study, trial, axis, conditions) else { continue };
             let cost = conditions.cost(study, &fit);
             if cost < least {
@@ -80,18 +79,14 @@ fn crossed(study: &Study<'_>, mut model: Model, axis: usize, conditions: &Condit
 
 /// A model as it stands; without what seems to hold an axis; and without that and the plays of the axis which were found beside
 /// it. Each of them once.
-fn without_holds(study: &Study<'_>, model: &Model, always: usize, axis: usize) -> Vec<Model> {
-    let free = without(model, always, |effect| holds(effect, axis));
-    let known = without(&free, always, |effect| is_play(study, effect, axis));
+fn without_holds(study: &Study<'_>, model: &Model, axis: usize) -> Vec<Model> {
+    let free = model.keeping(|fitted| !holds(&fitted.effect, axis));
+    let known = free.keeping(|fitted| !is_play(study, &fitted.effect, axis));
     let mut models = vec![model.clone(), free];
     if known != models[1] {
         models.push(known);
     }
     models
-}
-
-fn without(model: &Model, always: usize, of: impl Fn(&Effect) -> bool) -> Model {
-    model.keeping(|number, fitted| number < always || !of(&fitted.effect))
 }
 
 /// Whether an effect seems to hold an axis after a reversal, for a time or over some way.

@@ -22,9 +22,9 @@ pub(crate) const LONG: f64 = 0.12;
 /// Tries tables for every motion of which two or more smooth terms are in the model, or a polynomial of a high power, and of
 /// every axis that is known at stations alone. A table over one place stays: smooth terms beside it are others.
 pub(crate) fn try_tables(study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> Fit {
-    let Conditions { always, travels, .. } = *conditions;
+    let travels = conditions.travels;
     let mut places: Vec<(Place, usize)> = Vec::new();
-    for fitted in &fit.model.effects[always..] {
+    for fitted in fit.model.chosen() {
         if let Some(axis) = smooth(&fitted.effect, travels).or_else(|| wave_along(&fitted.effect))
             && !places.contains(&(fitted.effect.place, axis))
         {
@@ -88,7 +88,7 @@ impl Imitation {
             return fit;
         }
         let travel = &travels[self.axis];
-        let kept = fit.model.keeping(|_, fitted| !self.holds(fitted, travels));
+        let kept = fit.model.keeping(|fitted| !self.holds(fitted, travels));
         let mut shapes = tables(study, self.axis, travel);
         if self.waving {
             let fine = even(travel.low, travel.high, FINE);
@@ -96,7 +96,7 @@ impl Imitation {
         }
         for shape in shapes {
             let effect = Effect { place: self.place, shape };
-            let trial = kept.with(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
+            let trial = kept.with(Fitted::unfitted(effect));
             let trial = conditions.refine(study, trial);
             if conditions.cost(study, &trial) >= conditions.cost(study, &fit) {
                 continue;
@@ -114,8 +114,8 @@ impl Imitation {
 /// A model without the vibrations of a motion of which many are multiples of one frequency and none of those stands out, where it has
 /// any: they draw pulses that come at equal times, which have no name here. Waves along an axis are kept: the elements of one drive
 /// repeat in multiples of each other.
-pub(crate) fn without_combs(model: &Model, always: usize) -> Option<Model> {
-    let vibrations: Vec<(&Fitted, f64)> = model.effects[always..].iter().filter_map(vibration).collect();
+pub(crate) fn without_combs(model: &Model) -> Option<Model> {
+    let vibrations: Vec<(&Fitted, f64)> = model.chosen().iter().filter_map(vibration).collect();
     let is_comb = |(lowest, of): &&(&Fitted, f64)| {
         let same = vibrations.iter().filter(|(other, _)| other.effect.place == lowest.effect.place);
         let teeth = same.filter(|(_, frequency)| is_multiple(*frequency, *of));
@@ -123,7 +123,7 @@ pub(crate) fn without_combs(model: &Model, always: usize) -> Option<Model> {
         energies.len() >= MANY && !one_stands_out(&energies)
     };
     let place = vibrations.iter().find(is_comb)?.0.effect.place;
-    Some(model.keeping(|_, fitted| fitted.effect.place != place || vibration(fitted).is_none()))
+    Some(model.keeping(|fitted| fitted.effect.place != place || vibration(fitted).is_none()))
 }
 
 /// A vibration with its frequency.

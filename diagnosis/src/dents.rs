@@ -37,7 +37,7 @@ const ALIKE: f64 = 0.5;
 
 /// Dents that may hide what else there is, each with the model beside which it takes most: the settings alone, and all that was found.
 pub(crate) fn hidden(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Vec<(Dent, Model)> {
-    let settings = model.keeping(|number, _| number < conditions.always);
+    let settings = model.settings_alone();
     let beside = [settings, model.clone()].into_iter();
     let dents = beside.filter_map(|known| Some((largest(study, &known, conditions)?, known)));
     dents.filter(|(dent, _)| !model.effects.iter().any(|fitted| dent.is_table(fitted))).collect()
@@ -93,7 +93,7 @@ impl Dent {
         let floors = appraisal.beside_floor();
         let under = conditions.under(&floors);
         let mut added = model.clone();
-        added.effects.insert(conditions.always, self.table(study, model, &under)?);
+        added.effects.insert(model.settings().len(), self.table(study, model, &under)?);
         Some(conditions.refine(study, added).model)
     }
 
@@ -125,9 +125,9 @@ impl Dent {
 
     /// A fit with another table over the dent, as it shows beside all the others.
     pub(crate) fn drawn(&self, study: &Study<'_>, fit: Fit, conditions: &Conditions<'_>) -> Fit {
-        let mut others = fit.model.keeping(|_, fitted| !self.is_table(fitted));
+        let mut others = fit.model.keeping(|fitted| !self.is_table(fitted));
         let Some(table) = self.table(study, &others, conditions) else { return fit };
-        others.effects.insert(conditions.always, table);
+        others.effects.insert(others.settings().len(), table);
         conditions.refine(study, others)
     }
 
@@ -136,7 +136,7 @@ impl Dent {
         let nodes = self.nodes(study, &conditions.travels[self.axis]);
         let shape = thinned(study, others, (self.place, self.axis), &nodes, conditions.weights)?;
         let effect = Effect { place: self.place, shape };
-        Some(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect })
+        Some(Fitted::unfitted(effect))
     }
 
     /// Close nodes over the dent, and the ends of the travel: the table is straight beside it. Of an axis that was observed at stations,

@@ -46,8 +46,6 @@ pub(crate) struct Found {
     pub(crate) travels: Vec<Travel>,
     /// Oscillations that are not steady, and not in the model.
     pub(crate) bands: Vec<Band>,
-    /// How many of the model's first effects are settings that are always fitted.
-    pub(crate) always: usize,
     pub(crate) tries: Tries,
     /// Whether the settings are fitted to each row for itself, and not as a noise that wanders lets them.
     pub(crate) plain_zeros: bool,
@@ -56,25 +54,25 @@ pub(crate) struct Found {
 impl Found {
     /// Whether the model holds more than the settings that are fitted whatever else is.
     pub(crate) fn claims(&self) -> bool {
-        self.fit.model.effects.len() > self.always
+        !self.fit.model.chosen().is_empty()
     }
 
     /// The conditions under which its model stands.
     pub(crate) fn conditions(&self) -> Conditions<'_> {
         let weights = &self.appraisal.weights;
-        Conditions { always: self.always, weights, travels: &self.travels, tries: self.tries }
+        Conditions { weights, travels: &self.travels, tries: self.tries }
     }
 }
 
-/// Looks for the model. `always` are the settings that are fitted whatever else is, `outliers` the samples that are left out until
+/// Looks for the model. `settings` are fitted whatever else is; `outliers` are the samples that are left out until
 /// there is a first model.
 pub(crate) fn find(
     study: &Study<'_>,
-    always: Vec<Effect>,
+    settings: Vec<Effect>,
     outliers: Outliers,
     progress: &mut dyn FnMut(f64),
 ) -> Found {
-    let mut search = Search::new(study, always, outliers);
+    let mut search = Search::new(study, settings, outliers);
     let places = search.places.clone();
     search.go_round(study, progress);
     search.cross_plays(study, progress);
@@ -88,25 +86,25 @@ pub(crate) fn find(
     if dent.is_some_and(|dent| !dent.is_in(&fit.model, &search.travels)) {
         (search, fit, appraisal) = judged(study, plain, progress);
     }
-    let Search { pool, travels, always, tries, richer, weights, .. } = search;
-    let conditions = Conditions { always, weights: &weights, travels: &travels, tries };
+    let Search { pool, travels, tries, richer, weights, .. } = search;
+    let conditions = Conditions { weights: &weights, travels: &travels, tries };
     let revision = Revision { pool: &pool, places: &places, conditions };
     for model in richer {
-        if fit.model.effects.len() == always && appraisal.lacks() {
+        if fit.model.chosen().is_empty() && appraisal.lacks() {
             (fit, appraisal) = better(study, (fit, appraisal), model, &revision);
         }
     }
     (fit, appraisal) = revision.revised(study, fit, appraisal);
-    while let Some(model) = curves::without_combs(&fit.model, always) {
+    while let Some(model) = curves::without_combs(&fit.model) {
         let rest = conditions.under(&appraisal.weights).refine(study, model);
         (fit, appraisal) = upheld(study, rest, &conditions);
     }
-    let bands = unsteady::take_bands(&mut fit.model, always);
+    let bands = unsteady::take_bands(&mut fit.model);
     if !bands.is_empty() {
         let steady = conditions.under(&appraisal.weights).refine(study, fit.model);
         (fit, appraisal) = upheld(study, steady, &conditions);
     }
-    Found { fit, appraisal, pool, travels, bands, always, tries, plain_zeros: false }
+    Found { fit, appraisal, pool, travels, bands, tries, plain_zeros: false }
 }
 
 /// What of the end of a search is upheld, tables in the place of what imitates them.
@@ -145,13 +143,11 @@ fn begun_anew(
     progress: &mut dyn FnMut(f64),
 ) -> (Search, Fit) {
     let mut other = search.clone();
-    if dent.is_some() {
-        other.always += 1;
-    }
-    other.begin(study, model);
+    let settings = model.settings().len();
+    other.begin(study, model.with_settings(settings + usize::from(dent.is_some())));
     other.go_round(study, progress);
     other.cross_plays(study, progress);
-    other.always = search.always;
+    other.price_all_but(settings);
     let mut better = other.fit(study);
     if let Some(dent) = dent {
         better = dent.drawn(study, better, &other.conditions());
@@ -213,8 +209,8 @@ fn better(
     let other = revision.exchanged(study, kept.0, kept.1);
     let conditions = conditions.under(&other.1.weights);
     let new = conditions.prices(study, &other.0.model, other.0.samples);
-    let taken = taken_from_walk(study, &stands.1, &other, conditions.always);
-    let gains = taken > new[conditions.always..].iter().sum()
+    let taken = taken_from_walk(study, &stands.1, &other);
+    let gains = taken > new[other.0.model.chosen_numbers()].iter().sum()
         && other.1.held_out(study, &other.1) < stands.1.held_out(study, &other.1);
     let new = conditions.cost_at(study, &other.0, &new);
     let old = conditions.refine(study, stands.0.model.clone());
@@ -227,13 +223,13 @@ fn better(
 
 /// What the effects of another model take from minus twice the log-likelihood of a noise that wanders. The fit of greatest likelihood
 /// under that noise would take more: the one figure keeps the coefficients, the other the noise. Waves keep their coefficients.
-fn taken_from_walk(study: &Study<'_>, stands: &Appraisal, other: &(Fit, Appraisal), always: usize) -> f64 {
+fn taken_from_walk(study: &Study<'_>, stands: &Appraisal, other: &(Fit, Appraisal)) -> f64 {
     let (Fit { model, .. }, appraisal) = other;
     let as_fitted = stands.wandering - appraisal.wandering;
     if model.effects.iter().any(|fitted| fitted.effect.shape.is_wave()) {
         return as_fitted;
     }
-    let effects: Vec<usize> = (always..model.effects.len()).collect();
+    let effects: Vec<usize> = model.chosen_numbers().collect();
     let floors = appraisal.weights.beside(stands.floors.clone());
     as_fitted.max(judge::worth_in(study, model, &floors, &effects))
 }
@@ -250,13 +246,12 @@ struct Search {
     travels: Vec<Travel>,
     pool: Vec<Kin>,
     places: Vec<WavePlace>,
-    always: usize,
     tries: Tries,
 }
 
 impl Search {
-    fn new(study: &Study<'_>, always: Vec<Effect>, outliers: Outliers) -> Self {
-        let model = Model::of(always.into_iter().map(|effect| Fitted { effect, coefficients: vec![0.0] }));
+    fn new(study: &Study<'_>, settings: Vec<Effect>, outliers: Outliers) -> Self {
+        let model = Model::of_settings(settings);
         let courses = courses(study, &model);
         let travels = travel::travels(study, &courses);
         let noises = first_noises(study, &model, &courses);
@@ -265,7 +260,6 @@ impl Search {
         let places = waves::places(study, &courses, &noises, &travels);
         let tries = Tries { candidates: crate::number(pool.len() + 2 * WAVES), waves: 1.0 };
         Self {
-            always: model.effects.len(),
             model,
             richer: Vec::new(),
             weights: Weights { noises, outliers },
@@ -283,6 +277,14 @@ impl Search {
         self.weights = Appraisal::new(study, &model).weights;
         self.courses = courses(study, &model);
         self.model = model;
+    }
+
+    /// Goes on with so many settings: whatever else was always fitted is chosen like all others.
+    fn price_all_but(&mut self, settings: usize) {
+        self.model = std::mem::take(&mut self.model).with_settings(settings);
+        for model in &mut self.richer {
+            *model = std::mem::take(model).with_settings(settings);
+        }
     }
 
     /// Whether its end costs less than that of another search: minus twice the likelihood, and the prices. It must under the weights that
@@ -304,7 +306,7 @@ impl Search {
 
     /// The conditions of the present round.
     fn conditions(&self) -> Conditions<'_> {
-        Conditions { always: self.always, weights: &self.weights, travels: &self.travels, tries: self.tries }
+        Conditions { weights: &self.weights, travels: &self.travels, tries: self.tries }
     }
 
     /// Chooses anew, with a better idea of the noise each time, until nothing changes.
@@ -318,7 +320,7 @@ impl Search {
                 next = dynamics::try_loops(study, next, &self.conditions());
                 next = dynamics::try_drives(study, next, &self.conditions());
                 settled = same_effects(&self.model, &next);
-            } else if round > 0 && dynamics::may_answer(&next, self.always) {
+            } else if round > 0 && dynamics::may_answer(&next) {
                 // Not in a first round, whose choice serves to know the noise: at the very first, all of it is taken as white.
                 next = dynamics::try_drives(study, next, &self.conditions());
             }
@@ -357,32 +359,34 @@ impl Search {
         let others = other_peaks(study, &self.model, &self.conditions());
         // One course of states at a time is enough for the memory.
         drop((std::mem::take(&mut self.courses), residuals));
-        let mut regressors = regressors(study, &self.model, self.always, &self.pool, peaks);
+        let mut regressors = regressors(study, &self.model, &self.pool, peaks);
         regressors.extend(others);
         let mut design = Design::new(study, &self.model, &self.weights, regressors);
         design.rebase(&self.model.effects);
         let (products, samples) = design.fitted();
         let resolution = Resolution::new(study, &self.travels);
+        let settings = self.model.settings().len();
+        let waves = self.tries.waves;
         let choice =
-            Choice::new(study, &design, products.clone(), samples, self.always, self.tries.waves, resolution)
-                .best();
-        self.model.with_effects(fit::linear(&design, &products, self.always, &choice))
+            Choice::new(study, &design, products.clone(), samples, settings, waves, resolution).best();
+        self.model.with_effects(fit::linear(&design, &products, settings, &choice))
     }
 
     /// Fits the model; what has run to the end of its range becomes what it is there.
     fn fit(&self, study: &Study<'_>) -> Fit {
         let mut fit = self.conditions().refine(study, self.model.clone());
-        let mut model = fit.model.with_effects([]);
+        let mut effects: Vec<Fitted> = Vec::new();
         for fitted in &fit.model.effects {
             let mut fitted = fitted.clone();
             if let Some(limit) = limit(study, &self.travels, &fitted.effect.shape) {
                 fitted.effect.shape = limit;
             }
             // At its end it may have become one that stands there already.
-            if !model.effects.iter().any(|known| known.effect == fitted.effect) {
-                model.effects.push(fitted);
+            if !effects.iter().any(|known| known.effect == fitted.effect) {
+                effects.push(fitted);
             }
         }
+        let model = fit.model.with_effects(effects);
         if !same_effects(&model, &fit.model) {
             fit = self.conditions().refine(study, model);
         }
@@ -430,15 +434,9 @@ fn first_noises(study: &Study<'_>, model: &Model, courses: &[Arc<Course>]) -> Ve
 }
 
 /// The effects of the present model as they stand, the candidates, and waves.
-fn regressors(
-    study: &Study<'_>,
-    model: &Model,
-    always: usize,
-    pool: &[Kin],
-    peaks: Vec<waves::Peak>,
-) -> Vec<Regressor> {
+fn regressors(study: &Study<'_>, model: &Model, pool: &[Kin], peaks: Vec<waves::Peak>) -> Vec<Regressor> {
     let mut effects: Vec<Effect> = model.effects.iter().map(|fitted| fitted.effect.clone()).collect();
-    effects.extend(open_candidates(&model.effects[always..], pool));
+    effects.extend(open_candidates(model.chosen(), pool));
     effects.extend(highest(study, peaks).into_iter().map(|peak| peak.effect));
     effects.into_iter().map(Regressor::of).collect()
 }

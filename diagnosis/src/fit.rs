@@ -24,14 +24,14 @@ pub(crate) struct Fit {
     pub(crate) samples: f64,
 }
 
-/// The effects of chosen regressors of a rebased design, by linear least squares. The first `always` regressors are among them.
+/// The effects of chosen regressors of a rebased design, by linear least squares. The first regressors, `settings` in number, are among them.
 pub(crate) fn linear(
     design: &Design,
     products: &DMatrix<f64>,
-    always: usize,
+    settings: usize,
     chosen: &[usize],
 ) -> Vec<Fitted> {
-    let numbers: Vec<usize> = (0..always).chain(chosen.iter().copied()).collect();
+    let numbers: Vec<usize> = (0..settings).chain(chosen.iter().copied()).collect();
     let mut swept = Swept::new(products);
     for column in numbers.iter().flat_map(|number| design.columns(*number)) {
         swept.take(column);

@@ -78,12 +78,13 @@ const APART: f64 = 0.06;
 /// or do not tell from those before it. So the surest come first.
 pub fn follow(inputs: &Inputs<'_>, followed: &[Followed]) -> Vec<Vec<Size>> {
     let study = Study::new(inputs.equations, inputs.calibration, &inputs.recordings).with_nothing_held_out();
-    let always = Model::of(candidates::always(&study).into_iter().map(unfitted));
-    let travels = travel::travels(&study, &engine::courses(&study, &always));
+    let settings = Model::of_settings(candidates::always(&study));
+    let travels = travel::travels(&study, &engine::courses(&study, &settings));
     let begun: Vec<Option<Fitted>> = followed.iter().map(|one| begun(&study, &travels, one)).collect();
-    let model = Model::of(always.effects.iter().chain(begun.iter().flatten()).cloned());
+    let effects = settings.effects.iter().chain(begun.iter().flatten()).cloned();
+    let model = settings.with_effects(effects);
     let sized = Sized::new(&study, model);
-    let mut numbers = always.effects.len()..;
+    let mut numbers = settings.effects.len()..;
     let size = |begun: &Option<Fitted>| match begun {
         Some(_) => numbers.next().map(|number| sized.sizes(&study, number)).unwrap_or_default(),
         None => Vec::new(),
@@ -103,10 +104,6 @@ pub fn told_by(term: &str) -> Option<&'static str> {
 /// Whether a term happened once: when it did says nothing of another recording, so that it is not followed.
 pub fn is_event(term: &str) -> bool {
     TermKind::of_name(term) == Some(TermKind::Step)
-}
-
-fn unfitted(effect: Effect) -> Fitted {
-    Fitted { coefficients: vec![0.0; effect.shape.columns()], effect }
 }
 
 /// The effect as these recordings have it; nothing where they lack a state that it reads, or an axis that moves.
@@ -135,7 +132,7 @@ fn begun(study: &Study<'_>, travels: &[Travel], followed: &Followed) -> Option<F
     // What acts on the states is fitted from where it was found; all else from nothing.
     Some(match effect.shape.nonlinear_in_coefficient() {
         true => Fitted { effect, coefficients },
-        false => unfitted(effect),
+        false => Fitted::unfitted(effect),
     })
 }
 

@@ -49,7 +49,7 @@ fn weakest(
     appraisal: &Appraisal,
     conditions: &Conditions<'_>,
 ) -> Option<usize> {
-    let always = conditions.always;
+    let chosen = fit.model.chosen_numbers();
     let design = design(study, &fit.model, &appraisal.weights);
     let (products, samples) = design.fitted();
     let mut swept = Swept::new(&products);
@@ -57,7 +57,7 @@ fn weakest(
         swept.take(column);
     }
     let scale = (swept.remaining() / samples.max(1.0)).max(f64::MIN_POSITIVE);
-    let beside_settings = beside_settings(&design, &products, always);
+    let beside_settings = beside_settings(&design, &products, chosen.start);
     let whole = zeros::residuals(study, &fit.model);
     let judged = |number: usize| {
         let columns: Vec<usize> = design.columns(number).collect();
@@ -74,17 +74,17 @@ fn weakest(
             || !pays(study, &design, &swept, fit, (appraisal, &whole), number, conditions);
         fails.then_some((worth, number))
     };
-    let count = fit.model.effects.len() - always;
-    let failing = parallel::counted(count, study.rows() * count, |number| judged(always + number));
+    let failing =
+        parallel::counted(chosen.len(), study.rows() * chosen.len(), |number| judged(chosen.start + number));
     let weakest =
         failing.into_iter().flatten().reduce(|least, next| if next.0 < least.0 { next } else { least });
     weakest.map(|(_, number)| number)
 }
 
 /// The products as the settings leave them.
-fn beside_settings(design: &Design, products: &DMatrix<f64>, always: usize) -> Swept {
+fn beside_settings(design: &Design, products: &DMatrix<f64>, settings: usize) -> Swept {
     let mut swept = Swept::new(products);
-    for column in (0..always).flat_map(|setting| design.columns(setting)) {
+    for column in (0..settings).flat_map(|setting| design.columns(setting)) {
         swept.take(column);
     }
     swept

@@ -26,23 +26,21 @@ pub(crate) fn with_table(study: &Study<'_>, found: &Found, feature: &Feature) ->
     let covered = |fitted: &Fitted| {
         fitted.effect.motion() == effect.motion() && matches!(fitted.effect.shape, Shape::Polynomial { .. })
     };
-    let coefficients = vec![0.0; effect.shape.columns()];
-    let rest = found.fit.model.keeping(|_, fitted| !covered(fitted));
-    let model = rest.with(Fitted { effect: effect.clone(), coefficients });
+    let rest = found.fit.model.keeping(|fitted| !covered(fitted));
+    let model = rest.with(Fitted::unfitted(effect.clone()));
     let fit = found.conditions().refine(study, model);
     let (fit, appraisal) = upheld(study, fit, &found.conditions());
     if !fit.model.effects.iter().any(|fitted| fitted.effect == effect) {
         return None;
     }
     let (pool, travels, bands) = (found.pool.clone(), found.travels.clone(), found.bands.clone());
-    let (always, tries) = (found.always, found.tries);
-    Some(Found { fit, appraisal, pool, travels, bands, always, tries, plain_zeros: false })
+    Some(Found { fit, appraisal, pool, travels, bands, tries: found.tries, plain_zeros: false })
 }
 
 /// What is left beside a feature: the appraisal of the model with a table in its place.
 pub(crate) fn beside(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Appraisal> {
     let effect = table(study, found, feature)?;
-    let model = found.fit.model.with(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
+    let model = found.fit.model.with(Fitted::unfitted(effect));
     let weights = found.appraisal.weights.as_white();
     Some(Appraisal::new(study, &found.conditions().under(&weights).refine(study, model).model))
 }

@@ -109,8 +109,8 @@ impl Revision<'_> {
         let mut trials: Vec<Trial> = Vec::new();
         // A curve is made of what stood in for it: those are no better.
         let tabled = |number: &usize| matches!(model.effects[*number].effect.shape, Shape::Table { .. });
-        let places = std::iter::once(None)
-            .chain((self.conditions.always..model.effects.len()).filter(|number| !tabled(number)).map(Some));
+        let places =
+            std::iter::once(None).chain(model.chosen_numbers().filter(|number| !tabled(number)).map(Some));
         for place in places {
             let mut swept = whole.clone();
             let (mut kept, mut prices) = (model.clone(), prices.to_vec());
@@ -135,8 +135,7 @@ impl Revision<'_> {
             // One in the place of another may say less before it is fitted.
             let least = if place.is_some() { -LEEWAY } else { 0.0 };
             for (gain, number) in gains.into_iter().filter(|(gain, _)| *gain > least).take(TRIED) {
-                let coefficients = vec![0.0; open[number].effect.shape.columns()];
-                let trial = kept.with(Fitted { effect: open[number].effect.clone(), coefficients });
+                let trial = kept.with(Fitted::unfitted(open[number].effect.clone()));
                 let mut prices = prices.clone();
                 prices.push(open[number].price);
                 trials.push(Trial { model: trial, prices, gain });
@@ -153,7 +152,7 @@ impl Revision<'_> {
         let courses = courses(study, model);
         let residuals = waves::all_weighted(study, model, &appraisal.weights, &courses);
         let (peaks, _) = waves::peaks(study, model, &courses, &residuals, conditions.travels, self.places);
-        let candidates = engine::open_candidates(&model.effects[conditions.always..], self.pool);
+        let candidates = engine::open_candidates(model.chosen(), self.pool);
         let candidates = candidates
             .into_iter()
             .map(|effect| Open { price: conditions.price(study, &effect, samples), effect });

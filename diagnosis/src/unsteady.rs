@@ -31,9 +31,9 @@ const LINES: usize = 3;
 const NEAR: f64 = 0.02;
 
 /// Takes oscillations that are not steady out of a model.
-pub(crate) fn take_bands(model: &mut Model, always: usize) -> Vec<Band> {
+pub(crate) fn take_bands(model: &mut Model) -> Vec<Band> {
     let mut bands = Vec::new();
-    while let Some(members) = crowded(model, always) {
+    while let Some(members) = crowded(model) {
         let motion = model.effects[members[0]].effect.motion().unwrap_or_default();
         let frequencies = members.iter().filter_map(|number| frequency(&model.effects[*number].effect));
         let (from, to) =
@@ -54,8 +54,8 @@ fn frequency(effect: &Effect) -> Option<f64> {
 }
 
 /// Vibrations of one motion that crowd around one of them, in the order of the model.
-fn crowded(model: &Model, always: usize) -> Option<Vec<usize>> {
-    (always..model.effects.len()).find_map(|center| {
+fn crowded(model: &Model) -> Option<Vec<usize>> {
+    model.chosen_numbers().find_map(|center| {
         let (motion, around) =
             (model.effects[center].effect.motion(), frequency(&model.effects[center].effect)?);
         let near = |number: &usize| {
@@ -63,19 +63,20 @@ fn crowded(model: &Model, always: usize) -> Option<Vec<usize>> {
             effect.motion() == motion
                 && frequency(effect).is_some_and(|frequency| (frequency / around - 1.0).abs() < NEAR)
         };
-        let members: Vec<usize> = (always..model.effects.len()).filter(near).collect();
-        (members.len() >= LINES).then(|| with_neighbours(model, always, members))
+        let members: Vec<usize> = model.chosen_numbers().filter(near).collect();
+        (members.len() >= LINES).then(|| with_neighbours(model, members))
     })
 }
 
 /// The members of a band, and what stands as near to one of them as they to one another.
-fn with_neighbours(model: &Model, always: usize, mut members: Vec<usize>) -> Vec<usize> {
+fn with_neighbours(model: &Model, mut members: Vec<usize>) -> Vec<usize> {
     let near = |a: usize, b: usize| {
         let pair = (frequency(&model.effects[a].effect), frequency(&model.effects[b].effect));
         let close = matches!(pair, (Some(a), Some(b)) if (a / b - 1.0).abs() < NEAR);
         close && model.effects[a].effect.motion() == model.effects[b].effect.motion()
     };
-    while let Some(next) = (always..model.effects.len())
+    while let Some(next) = model
+        .chosen_numbers()
         .find(|other| !members.contains(other) && members.iter().any(|known| near(*other, *known)))
     {
         members.push(next);

@@ -48,16 +48,16 @@ pub(crate) fn free_held_out(study: &Study<'_>, model: &mut Model) {
     }
 }
 
-/// Fits the first `always` effects, which are settings, to the rows that are fitted, each row for itself; what else the model
+/// Fits the settings that are always fitted to the rows that are fitted, each row for itself; what else the model
 /// holds stays. Where noise wanders, zeros that allow for it may lie far from the mean of those rows, and farther from others.
-pub(crate) fn weigh_plainly(study: &Study<'_>, model: &mut Model, always: usize, weights: &Weights) {
-    let settings: Vec<Fitted> = model.effects[..always].to_vec();
+pub(crate) fn weigh_plainly(study: &Study<'_>, model: &mut Model, weights: &Weights) {
+    let settings: Vec<Fitted> = model.settings().to_vec();
     let regressors = Regressor::all(&settings);
     let mut design = Design::new(study, model, weights, regressors);
     design.rebase(&settings);
     let (products, _) = design.fitted();
-    let fitted = fit::linear(&design, &products, always, &[]);
-    model.effects.splice(..always, fitted);
+    let fitted = fit::linear(&design, &products, settings.len(), &[]);
+    model.effects.splice(..settings.len(), fitted);
 }
 
 /// Observed minus predicted of every channel of every recording; where runs have zeros of their own, those of held-out runs

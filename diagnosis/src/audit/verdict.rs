@@ -23,7 +23,7 @@ pub(crate) struct Trial<'t, 's> {
 impl Trial<'_, '_> {
     /// How many effects were found.
     fn effects(&self) -> usize {
-        self.found.fit.model.effects.len() - self.found.always
+        self.found.fit.model.chosen().len()
     }
 }
 
@@ -99,8 +99,8 @@ fn cost(trial: &Trial<'_, '_>, noises: &[Vec<Noise>]) -> f64 {
     let weights = trial.found.appraisal.weights.beside(noises.to_vec());
     let conditions = conditions.under(&weights);
     let fit = conditions.refine(trial.study, trial.found.fit.model.clone());
-    let always = fit.model.effects[..trial.found.always].iter();
-    let zeros: f64 = always.filter_map(|fitted| price_of_a_run(&fitted.effect, fit.samples)).sum();
+    let settings = fit.model.settings().iter();
+    let zeros: f64 = settings.filter_map(|fitted| price_of_a_run(&fitted.effect, fit.samples)).sum();
     zeros + conditions.cost(trial.study, &fit)
 }
 

@@ -36,10 +36,7 @@ fn held(
         let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
         let effect = Effect { place, shape: shape.clone() };
         let zero = Effect::setting(0, crate::terms::Setting::Offset { channel: 0 });
-        let model = Model::of([
-            Fitted { effect: zero, coefficients: vec![0.0] },
-            Fitted { coefficients: vec![0.0; effect.shape.columns()], effect },
-        ]);
+        let model = Model::of([Fitted { effect: zero, coefficients: vec![0.0] }, Fitted::unfitted(effect)]);
         let courses = engine::courses(&study, &model);
         let travels = crate::travel::travels(&study, &courses);
         let weights = Weights::of_all(&study, vec![vec![Noise::white(1e-3)]]);

@@ -25,7 +25,7 @@ pub(super) struct Late {
 /// For each loop that was found: a delay in its place, and one beside it. Where nothing is left, only for those beside which something
 /// else follows the motion of the axis.
 pub(super) fn delays(study: &Study<'_>, found: &Found, lacks: bool) -> Vec<Late> {
-    let effects = &found.fit.model.effects[found.always..];
+    let effects = found.fit.model.chosen();
     let is_open = |(axis, _): &(usize, f64)| {
         lacks || effects.iter().any(|fitted| follows_its_motion(&fitted.effect, *axis))
     };
@@ -43,8 +43,8 @@ fn behind(study: &Study<'_>, fitted: &Fitted) -> Option<(usize, f64)> {
 /// What was found, with a delay that takes this share of what a loop stays behind by. What follows the motion of the axis otherwise may
 /// stand in for it, and is left out.
 fn late(found: &Found, axis: usize, time: f64, share: f64) -> Late {
-    let mut effects = Vec::new();
-    for (number, fitted) in found.fit.model.effects.iter().enumerate() {
+    let mut effects = found.fit.model.settings().to_vec();
+    for fitted in found.fit.model.chosen() {
         if matches!(fitted.effect.shape, Shape::Lag { axis: of, .. } if of == axis) {
             let effect =
                 Effect { place: fitted.effect.place, shape: Shape::Delay { axis, time: share * time } };
@@ -59,7 +59,7 @@ fn late(found: &Found, axis: usize, time: f64, share: f64) -> Late {
                 let effect = Effect { place: fitted.effect.place, shape: Shape::Lag { axis, inertia: 0.0 } };
                 effects.push(Fitted { effect, coefficients: vec![(1.0 - share) * time] });
             }
-        } else if number < found.always || !follows_its_motion(&fitted.effect, axis) {
+        } else if !follows_its_motion(&fitted.effect, axis) {
             effects.push(fitted.clone());
         }
     }

@@ -92,7 +92,7 @@ fn ranked(study: &Study<'_>, found: &Found, places: &[Place], times: &[f64]) -> 
     let regressors: Vec<Regressor> = known.chain(places.iter().map(always_there)).collect();
     let columns_of = |effects: &[Regressor]| effects.iter().map(Regressor::columns).sum::<usize>();
     let (whole, always) =
-        (columns_of(&regressors[..model.effects.len()]), columns_of(&regressors[..found.always]));
+        (columns_of(&regressors[..model.effects.len()]), columns_of(&regressors[..model.settings().len()]));
     let mut times = times.to_vec();
     times.sort_by(f64::total_cmp);
     let mut sums = Sums::new(always, places.len(), times.len());
@@ -199,10 +199,9 @@ fn chosen(study: &Study<'_>, found: &Found, time: f64, places: &[Place]) -> Even
     design.rebase(&found.fit.model.effects);
     let (products, samples) = design.fitted();
     let resolution = Resolution::new(study, &found.travels);
-    let waves = found.tries.waves;
-    let choice =
-        Choice::new(study, &design, products.clone(), samples, found.always, waves, resolution).best();
-    let model = found.fit.model.with_effects(fit::linear(&design, &products, found.always, &choice));
+    let (settings, waves) = (found.fit.model.settings().len(), found.tries.waves);
+    let choice = Choice::new(study, &design, products.clone(), samples, settings, waves, resolution).best();
+    let model = found.fit.model.with_effects(fit::linear(&design, &products, settings, &choice));
     let steps =
         model.effects.iter().filter(|fitted| matches!(fitted.effect.shape, Shape::Step { .. })).count();
     Event { model, steps }

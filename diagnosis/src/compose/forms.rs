@@ -184,7 +184,7 @@ fn of_effects(found: &Found, atoms: &Atoms) -> Vec<Form> {
             && !fitted.effect.shape.nonlinear_in_coefficient()
             && !matches!(fitted.effect.shape, Shape::Constant | Shape::Vibration { .. } | Shape::Drift { .. })
     };
-    let effects = found.fit.model.effects[found.always..].iter().filter(multiplied);
+    let effects = found.fit.model.chosen().iter().filter(multiplied);
     effects
         .flat_map(|fitted| {
             // A play of the axis is multiplied anyway.
@@ -211,7 +211,10 @@ fn of_effects(found: &Found, atoms: &Atoms) -> Vec<Form> {
 /// Two waves of nearly the same period along one axis, of opposite phases, as one wave that grows along the axis: over less than a beat
 /// they are the same.
 fn beats(found: &Found, atoms: &Atoms) -> Vec<Form> {
-    let waves: Vec<&Fitted> = found.fit.model.effects[found.always..]
+    let waves: Vec<&Fitted> = found
+        .fit
+        .model
+        .chosen()
         .iter()
         .filter(|fitted| matches!(fitted.effect.shape, Shape::Cyclic { .. }))
         .collect();

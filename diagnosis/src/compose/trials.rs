@@ -201,7 +201,7 @@ impl Ring<'_> {
         let outcomes = (0..variants.len()).map(|number| (number, contest.outcome(Some(number))));
         let best = outcomes.min_by(|(_, a), (_, b)| a.cost.total_cmp(&b.cost));
         let (number, outcome) = best.unwrap_or_else(|| (0, contest.outcome(None)));
-        let kept = outcome.kept.into_iter().filter(|number| *number >= self.found.always);
+        let kept = outcome.kept.into_iter().filter(|number| model.chosen_numbers().contains(number));
         Trial {
             form: variants[number].fitted(outcome.amount),
             beside: form.beside.clone(),

@@ -41,7 +41,9 @@ pub(super) fn report(
     let certainties = certainty::certainties(study, &found.fit, &found.appraisal.weights, &found.travels);
     for (number, fitted) in found.fit.model.effects.iter().enumerate() {
         let described = Described::new(study, fitted, &certainties[number]);
-        let names = number.checked_sub(found.always).map_or(&[] as &[Effect], |place| &names[place]);
+        let names = number
+            .checked_sub(found.fit.model.settings().len())
+            .map_or(&[] as &[Effect], |place| &names[place]);
         let alternatives = told(study, &fitted.effect, names);
         let Some(motion) = fitted.effect.motion() else {
             if let Some(setting) = setting(study, found, number, alternatives) {
@@ -51,7 +53,7 @@ pub(super) fn report(
         };
         let mut reduced = judge::without(&design, &swept, &found.fit.model, number);
         if found.plain_zeros {
-            zeros::weigh_plainly(study, &mut reduced, found.always, &found.appraisal.weights.as_white());
+            zeros::weigh_plainly(study, &mut reduced, &found.appraisal.weights.as_white());
         }
         zeros::free_held_out(study, &mut reduced);
         let known = &study.equations.motions[motion];

@@ -22,11 +22,12 @@ fn prices(period: f64, alike: f64) -> [f64; 2] {
     let model = Model::of([
         Fitted { effect: zero, coefficients: vec![0.0] },
         Fitted { effect: Effect { place, shape }, coefficients: vec![0.0, 0.0] },
-    ]);
+    ])
+    .with_settings(1);
     let travels = travels(&study, &crate::engine::courses(&study, &model));
     let weights = Weights::of_all(&study, vec![vec![Noise { alike, ..Noise::white(0.01) }]]);
     let tries = Tries { candidates: 40.0, waves: 300.0 };
-    let conditions = Conditions { always: 1, weights: &weights, travels: &travels, tries };
+    let conditions = Conditions { weights: &weights, travels: &travels, tries };
     [conditions.prices(&study, &model, 100.0)[1], conditions.price(&study, &model.effects[1].effect, 100.0)]
 }
 

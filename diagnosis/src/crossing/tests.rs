@@ -101,16 +101,18 @@ fn what_holds_an_axis_is_tried_without_it_and_without_the_plays_beside_it() {
     let spike = own(&bench, 0, Shape::ReversalSpike { axis: 0, decay: 0.05 }, 0.003);
     let wound = own(&bench, 0, Shape::Backlash { axis: 0, wind_up: 0.5 }, 0.003);
     let (x, y) = (at_once(&bench, 0, 0.004), at_once(&bench, 1, 0.004));
-    let trials = |model: &Model, always: usize| without_holds(&study, model, always, 0);
+    let trials = |model: &Model| without_holds(&study, model, 0);
     let all = Model::of([spike.clone(), x.clone(), y.clone()]);
-    assert_eq!(trials(&all, 0), [all.clone(), Model::of([x.clone(), y.clone()]), Model::of([y.clone()])]);
+    assert_eq!(trials(&all), [all.clone(), Model::of([x.clone(), y.clone()]), Model::of([y.clone()])]);
     assert_eq!(
-        trials(&Model::of([wound.clone(), y.clone()]), 0),
+        trials(&Model::of([wound.clone(), y.clone()])),
         [Model::of([wound, y.clone()]), Model::of([y.clone()])]
     );
     // Settings that are always fitted stay, whatever they are; so does what holds another axis.
-    assert_eq!(trials(&all, 1), [all.clone(), all.clone(), Model::of([spike.clone(), y.clone()])]);
-    assert_eq!(without_holds(&study, &all, 0, 1), [all.clone(), all.clone(), Model::of([spike, x])]);
+    let held = all.clone().with_settings(1);
+    let rest = Model::of([spike.clone(), y.clone()]).with_settings(1);
+    assert_eq!(trials(&held), [held.clone(), held.clone(), rest]);
+    assert_eq!(without_holds(&study, &all, 1), [all.clone(), all.clone(), Model::of([spike, x])]);
 }
 
 #[test]
@@ -122,7 +124,7 @@ fn nothing_is_tried_where_nothing_holds_an_axis() {
     let tries = Tries { candidates: 50.0, waves: 100.0 };
     let weights = Weights::of_all(&study, vec![vec![Noise::white(1e-4); 2]]);
     let travels = crate::travel::travels(&study, &crate::engine::courses(&study, &Model::default()));
-    let conditions = Conditions { always: 0, weights: &weights, travels: &travels, tries };
+    let conditions = Conditions { weights: &weights, travels: &travels, tries };
     let model = Model::of([at_once(&bench, 1, LOST[1])]);
     assert!(try_plays(&study, &model, &conditions).is_none());
     // With something that does, the known play explains what that seemed to.

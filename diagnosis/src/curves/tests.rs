@@ -163,7 +163,7 @@ fn tried(bench: &Bench, recording: &Recording, degrees: &[usize]) -> (Model, [f6
     let study = Study::new(bench.equations(), None, &[recording]);
     let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
     let zero = Effect::setting(0, Setting::Offset { channel: 0 });
-    let mut model = Model::of([Fitted { effect: zero, coefficients: vec![0.0] }]);
+    let mut model = Model::of_settings([zero]);
     for degree in degrees {
         let shape = Shape::Polynomial { axis: 0, degree: *degree, center: 160.0, scale: 160.0 };
         model.effects.push(Fitted { effect: Effect { place, shape }, coefficients: vec![0.0; degree + 1] });
@@ -171,7 +171,7 @@ fn tried(bench: &Bench, recording: &Recording, degrees: &[usize]) -> (Model, [f6
     let travels = crate::travel::travels(&study, &engine::courses(&study, &model));
     let weights = Weights::of_all(&study, vec![vec![Noise::white(NOISE)]]);
     let tries = Tries { candidates: 40.0, waves: 40.0 };
-    let conditions = Conditions { always: 1, weights: &weights, travels: &travels, tries };
+    let conditions = Conditions { weights: &weights, travels: &travels, tries };
     let before = conditions.refine(&study, model);
     let costs = conditions.cost(&study, &before);
     let after = try_tables(&study, before, &conditions);
@@ -308,13 +308,13 @@ fn vibrations_in_multiples_of_one_are_pulses_unless_one_stands_out() {
     // What else vibrates in that motion goes with them, another motion keeps its own.
     let mut more = comb.to_vec();
     more.push((7.4, 1e-3));
-    assert_eq!(without_combs(&model(&more), 0), Some(model(&[])));
+    assert_eq!(without_combs(&model(&more)), Some(model(&[])));
     // A rotation and its harmonics, and frequencies that have nothing to do with each other.
     let turning = [(1.01, 5e-3), (2.0, 0.9e-3), (3.02, 1.1e-3), (4.97, 0.8e-3)];
     let apart = [(1.0, 1e-3), (1.43, 0.9e-3), (3.33, 1.1e-3), (4.71, 0.8e-3)];
-    assert_eq!(without_combs(&model(&turning), 0), None);
-    assert_eq!(without_combs(&model(&apart), 0), None);
-    assert_eq!(without_combs(&model(&comb[..3]), 0), None);
+    assert_eq!(without_combs(&model(&turning)), None);
+    assert_eq!(without_combs(&model(&apart)), None);
+    assert_eq!(without_combs(&model(&comb[..3])), None);
 }
 
 #[test]
@@ -327,5 +327,5 @@ fn waves_along_an_axis_are_kept_in_multiples_too() {
         coefficients: vec![1e-3, 0.0],
     };
     let model = Model::of([10.0, 5.0, 2.5, 1.25, 1.0].map(wave));
-    assert_eq!(without_combs(&model, 0), None);
+    assert_eq!(without_combs(&model), None);
 }

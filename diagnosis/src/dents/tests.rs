@@ -16,11 +16,11 @@ fn with<T>(errors: &str, asked: impl Fn(&Study<'_>, &Model, &Conditions<'_>) -> 
     let recording = bench.record(&truth, &noisy(there_and_back, position("x"), 0.000_3, 5));
     let study = Study::new(bench.equations(), None, std::slice::from_ref(&&recording));
     let zero = Effect::setting(0, Setting::Offset { channel: 0 });
-    let model = Model::of([Fitted { effect: zero, coefficients: vec![0.0] }]);
+    let model = Model::of_settings([zero]);
     let travels = travels(&study, &courses(&study, &model));
     let weights = Weights::of_all(&study, vec![vec![Noise::white(0.000_3)]]);
     let tries = Tries { candidates: 40.0, waves: 300.0 };
-    asked(&study, &model, &Conditions { always: 1, weights: &weights, travels: &travels, tries })
+    asked(&study, &model, &Conditions { weights: &weights, travels: &travels, tries })
 }
 
 /// Middle and flank of the dent that is seen, mm.

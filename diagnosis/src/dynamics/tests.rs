@@ -43,7 +43,7 @@ fn every_other_way_to_drive_an_axis_is_tried_once() {
     let study = Study::new(bench.equations(), None, &[&recording]);
     let lag = lag(&bench, 0.02);
     let shapes = loops(&lag, 0.01);
-    let of = |model: &Model| drives(&study, model, 0, 0, &shapes);
+    let of = |model: &Model| drives(&study, model, 0, &shapes);
     let alone = Model::of([lag.clone()]);
     assert_eq!(of(&alone).len(), DAMPINGS.len());
     // With something that imitates ringing: with it and without it.

@@ -48,7 +48,7 @@ fn fitted<'a>(bench: &'a Bench, recordings: &[&'a Recording], noise: f64) -> Cas
     let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
     let shape = Shape::Backlash { axis: 0, wind_up: 0.0 };
     let effects = [Effect::setting(0, Setting::Offset { channel: 0 }), Effect { place, shape }];
-    let model = Model::of(effects.map(|effect| Fitted { effect, coefficients: vec![0.0] }));
+    let model = Model::of(effects.map(|effect| Fitted { effect, coefficients: vec![0.0] })).with_settings(1);
     let weights = Weights::of_all(&study, vec![vec![Noise::white(noise)]; recordings.len()]);
     let fit = crate::fit::refine(&study, model, &weights, &[]);
     let design = design(&study, &fit.model, &weights);
@@ -89,7 +89,7 @@ impl Case<'_> {
     fn pays(&self) -> bool {
         let whole = zeros::residuals(&self.study, &self.fit.model);
         let tries = Tries { candidates: 1.0, waves: 1.0 };
-        let conditions = Conditions { always: 1, weights: &self.appraisal.weights, travels: &[], tries };
+        let conditions = Conditions { weights: &self.appraisal.weights, travels: &[], tries };
         let left = (&self.appraisal, &*whole);
         pays(&self.study, &self.design, &swept(&self.design), &self.fit, left, PLAY, &conditions)
     }
@@ -202,9 +202,9 @@ fn recordings_weigh_by_the_squares_of_their_noise() {
     }
 }
 
-/// The first effect to fall, of those after the first `always`, where so many candidates were tried that the price of the lost
+/// The first effect to fall, of those behind so many settings, where so many candidates were tried that the price of the lost
 /// motion is this share of what it is worth: in squares, or in likelihood where the noise takes up a part of it.
-fn falls(case: &Case<'_>, always: usize, share: f64) -> Option<usize> {
+fn falls(case: &Case<'_>, settings: usize, share: f64) -> Option<usize> {
     let design = design(&case.study, &case.fit.model, &case.appraisal.weights);
     let (swept, samples) = (swept(&design), design.fitted().1);
     let columns: Vec<usize> = design.columns(PLAY).collect();
@@ -215,8 +215,9 @@ fn falls(case: &Case<'_>, always: usize, share: f64) -> Option<usize> {
     assert!(untried < 0.5 * worth, "{untried} {worth}");
     let candidates = (0.5 * (share * worth - untried)).exp();
     let weights = &case.appraisal.weights;
-    let conditions = Conditions { always, weights, travels: &[], tries: Tries { candidates, waves: 1.0 } };
-    weakest(&case.study, &case.fit, &case.appraisal, &conditions)
+    let conditions = Conditions { weights, travels: &[], tries: Tries { candidates, waves: 1.0 } };
+    let fit = Fit { model: case.fit.model.clone().with_settings(settings), ..case.fit.clone() };
+    weakest(&case.study, &fit, &case.appraisal, &conditions)
 }
 
 #[test]

@@ -38,8 +38,7 @@ fn a_set_costs_the_same_by_whatever_way_it_is_reached() {
     );
     let recording = bench.record(&calibration, &scenario(path(circle(40.0), 20.0, 10.0), position("x")));
     let study = Study::new(bench.equations(), None, &[&recording]);
-    let fitted = |effect: Effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect };
-    let model = Model::of(effects(&bench).into_iter().map(fitted));
+    let model = Model::of(effects(&bench).into_iter().map(Fitted::unfitted));
     let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3)]]));
     let (products, samples) = design.fitted();
     let choice = Choice::new(&study, &design, products, samples, 1, 1.0, Resolution::new(&study, &[]));
@@ -150,9 +149,7 @@ fn a_drive_leads_only_where_no_clock_does_the_same() {
         let zero = Effect::setting(0, Setting::Offset { channel: 0 });
         let clock = beside_clock.then(|| Effect::setting(0, Setting::Clock));
         let effects = [zero, lag].into_iter().chain(clock);
-        let model = Model::of(
-            effects.map(|effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect }),
-        );
+        let model = Model::of(effects.map(Fitted::unfitted));
         let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3)]]));
         let (products, samples) = design.fitted();
         let choice = Choice::new(&study, &design, products, samples, 1, 1.0, Resolution::new(&study, &[]));
@@ -187,8 +184,7 @@ fn of_two_that_bend_alike_in_one_place_one_is_enough() {
         on("EXX", wave(5.0)),
         on("EYX", wave(7.3)),
     ];
-    let fitted = |effect: Effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect };
-    let model = Model::of(effects.into_iter().map(fitted));
+    let model = Model::of(effects.into_iter().map(Fitted::unfitted));
     let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3); 2]]));
     let (products, samples) = design.fitted();
     let travels = crate::travel::travels(&study, &crate::engine::courses(&study, &Model::default()));
@@ -222,8 +218,7 @@ fn outgrown(calibration: &str, effects: &[(&str, Shape)]) -> Vec<bool> {
         place: Place::Motion { motion: bench.motion(motion), side: Side::After },
         shape: shape.clone(),
     });
-    let fitted = |effect: Effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect };
-    let model = Model::of(zeros.chain(effects).map(fitted));
+    let model = Model::of(zeros.chain(effects).map(Fitted::unfitted));
     let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3); 2]]));
     let (products, samples) = design.fitted();
     let choice = Choice::new(&study, &design, products, samples, 2, 1.0, Resolution::new(&study, &[]));

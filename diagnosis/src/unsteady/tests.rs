@@ -62,7 +62,8 @@ fn lines_that_crowd_become_a_band_with_their_strength_together() {
     model.effects.push(crowd[1].clone());
     model.effects.extend(others[4..].iter().cloned());
     model.effects.push(crowd[2].clone());
-    let bands = take_bands(&mut model, 1);
+    let mut model = model.with_settings(1);
+    let bands = take_bands(&mut model);
     assert_eq!(model.effects, others);
     let [band] = bands.as_slice() else { panic!("{bands:?}") };
     assert_eq!((band.motion, band.from, band.to), (2, 30.0, 30.5));
@@ -84,12 +85,12 @@ fn lines_need_not_be_near_to_each_other_but_to_one_of_them() {
     let of = |frequency: f64| vibration(0, frequency, [1e-3, 0.0]);
     // From the lowest to the highest it is 3 %.
     let mut model = Model::of([of(50.0), of(51.5), of(50.7)]);
-    let bands = take_bands(&mut model, 0);
+    let bands = take_bands(&mut model);
     assert_eq!((bands[0].from, bands[0].to), (50.0, 51.5));
     assert!(model.effects.is_empty());
     // Neighbours, none of which has both of the others near.
     let mut model = Model::of([of(50.0), of(52.0), of(54.0)]);
-    assert!(take_bands(&mut model, 0).is_empty());
+    assert!(take_bands(&mut model).is_empty());
     assert_eq!(model.effects.len(), 3);
 }
 
@@ -100,11 +101,11 @@ fn every_motion_and_every_crowd_has_a_band_of_its_own() {
         model.effects.extend([0.0, 0.05, 0.1].map(|off| vibration(motion, center + off, [1e-3, 0.0])));
     }
     let mut bands: Vec<(usize, f64, f64)> =
-        take_bands(&mut model, 0).iter().map(|band| (band.motion, band.from, band.to)).collect();
+        take_bands(&mut model).iter().map(|band| (band.motion, band.from, band.to)).collect();
     bands.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     assert_eq!(bands, [(0, 20.0, 20.1), (0, 90.0, 90.1), (3, 20.0, 20.1)]);
     assert!(model.effects.is_empty());
-    assert!(take_bands(&mut model, 0).is_empty());
+    assert!(take_bands(&mut model).is_empty());
 }
 
 fn times(rows: usize) -> Vec<f64> {
@@ -259,7 +260,7 @@ fn stage(errors: &str, leftover: impl Fn(f64) -> f64) -> (Bench, Recording) {
 
 /// What is found where nothing but the zero of the instrument is fitted.
 fn found(study: &Study<'_>) -> Found {
-    let model = Model::of([zero(0)]);
+    let model = Model::of([zero(0)]).with_settings(1);
     let courses = engine::courses(study, &model);
     let travels = travel::travels(study, &courses);
     let noises = vec![vec![Noise::white(1e-3); study.scenes[0].channels.len()]];
@@ -267,7 +268,7 @@ fn found(study: &Study<'_>) -> Found {
     let fit = fit::refine(study, model, &Weights::of_all(study, noises), &travels);
     let appraisal = Appraisal::new(study, &fit.model);
     let tries = Tries { candidates: crate::number(pool.len()), waves: 1.0 };
-    Found { fit, appraisal, pool, travels, bands: Vec::new(), always: 1, tries, plain_zeros: false }
+    Found { fit, appraisal, pool, travels, bands: Vec::new(), tries, plain_zeros: false }
 }
 
 /// The standard deviation of what is left over, mm, and the periods of its sines, s.

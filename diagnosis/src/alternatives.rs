@@ -20,7 +20,7 @@ use crate::weights::Weights;
 /// By how much minus twice the log-likelihood may rise for another name still to be possible: odds of one to twenty.
 const HIDDEN: f64 = 6.0;
 
-/// For each effect of the model beyond the first `always`: other effects that could stand in its place, simplest first.
+/// For each chosen effect of the model: other effects that could stand in its place, simplest first.
 pub(crate) fn find(study: &Study<'_>, found: &Found) -> Vec<Vec<Effect>> {
     let model = &found.fit.model;
     let weights = &found.appraisal.weights;

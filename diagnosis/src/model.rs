@@ -194,3 +194,6 @@ impl Effect {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

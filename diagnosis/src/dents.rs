@@ -14,11 +14,12 @@ use crate::design::{Design, Regressor};
 use crate::fit::Fit;
 use crate::judge;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::noise::{self, Noise};
+use crate::noise;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 use crate::travel::Travel;
+use crate::weights::Weights;
 
 /// How many even places of an axis are looked at, a fortieth of the travel apart, as for the curves. A dent is at least as wide as from one to the next on both sides.
 const PLACES: usize = FINE;
@@ -45,12 +46,11 @@ const FEWEST: usize = 24;
 
 /// Dents that may hide what else there is, each with the model beside which it takes most: the settings alone, and all that was found.
 pub(crate) fn hidden(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Vec<(Dent, Model)> {
-    let Some(settings) = model.get(..conditions.always) else { return Vec::new() };
-    let beside = [settings.to_vec(), model.clone()].into_iter();
     let largest =
         |known: &Model| largest(study, known, &Appraisal::new(study, known), conditions, Looked::is_sure);
+    let beside = [model.settings_alone(), model.clone()].into_iter();
     let dents = beside.filter_map(|known| Some((largest(&known)?, known)));
-    dents.filter(|(dent, _)| !model.iter().any(|fitted| dent.is_table(fitted))).collect()
+    dents.filter(|(dent, _)| !model.effects.iter().any(|fitted| dent.is_table(fitted))).collect()
 }
 
 /// The dent that takes most beside a model that leaves what the appraisal says, where it takes much and stands out among what is left
@@ -119,15 +119,16 @@ impl Dent {
         conditions: &Conditions<'_>,
     ) -> Option<Model> {
         let appraisal = Appraisal::new(study, model);
-        let under = conditions.under(&appraisal.floors);
+        let floors = appraisal.beside_floor();
+        let under = conditions.under(&floors);
         let mut added = model.clone();
-        added.insert(conditions.always, self.table(study, model, &under)?);
+        added.effects.insert(model.settings().len(), self.table(study, model, &under)?);
         Some(conditions.refine(study, added).model)
     }
 
     /// Whether a model has a table of the dent's motion that is flat but for one place.
     pub(crate) fn is_in(&self, model: &Model, travels: &[Travel]) -> bool {
-        model.iter().any(|fitted| is_dent(fitted, self.place, &travels[self.axis]))
+        model.effects.iter().any(|fitted| is_dent(fitted, self.place, &travels[self.axis]))
     }
 
     /// Whether a model has it, and it takes much of what all others leave.
@@ -135,12 +136,12 @@ impl Dent {
         if !self.is_in(model, conditions.travels) {
             return false;
         }
-        let noises = Appraisal::new(study, model).as_white();
-        let design = judge::design(study, model, &noises);
+        let weights = Appraisal::new(study, model).weights.as_white();
+        let design = judge::design(study, model, &weights);
         let (products, _) = design.sum(|_| true);
         let mut swept = Swept::new(&products);
         let (tables, others): (Vec<usize>, Vec<usize>) =
-            (0..model.len()).partition(|number| self.is_table(&model[*number]));
+            (0..model.effects.len()).partition(|number| self.is_table(&model.effects[*number]));
         let mut left_by = |effects: Vec<usize>| {
             for column in effects.into_iter().flat_map(|number| design.columns(number)) {
                 swept.take(column);
@@ -153,18 +154,18 @@ impl Dent {
 
     /// A fit with another table over the dent, as it shows beside all the others.
     pub(crate) fn drawn(&self, study: &Study<'_>, fit: Fit, conditions: &Conditions<'_>) -> Fit {
-        let mut others: Model = fit.model.iter().filter(|fitted| !self.is_table(fitted)).cloned().collect();
+        let mut others = fit.model.keeping(|fitted| !self.is_table(fitted));
         let Some(table) = self.table(study, &others, conditions) else { return fit };
-        others.insert(conditions.always, table);
+        others.effects.insert(others.settings().len(), table);
         conditions.refine(study, others)
     }
 
     /// A table over the dent beside a model: of close nodes those that it needs.
     fn table(&self, study: &Study<'_>, others: &Model, conditions: &Conditions<'_>) -> Option<Fitted> {
         let nodes = self.nodes(study, &conditions.travels[self.axis]);
-        let shape = thinned(study, others, (self.place, self.axis), &nodes, conditions.noises)?;
+        let shape = thinned(study, others, (self.place, self.axis), &nodes, conditions.weights)?;
         let effect = Effect { place: self.place, shape };
-        Some(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect })
+        Some(Fitted::unfitted(effect))
     }
 
     /// Close nodes over the dent, and the ends of the travel: the table is straight beside it. Of an axis that was observed at stations,
@@ -223,16 +224,16 @@ impl Looked {
         let travel = &conditions.travels[axis];
         let nodes = even(travel.low, travel.high, PLACES);
         let hats = Effect { place, shape: Shape::Table { axis, nodes, directed: true, repeats: false } };
-        let sums = |noises: &[Vec<Noise>]| {
-            let effects = model.iter().map(|fitted| &fitted.effect).chain([&hats]);
+        let sums = |weights: &Weights| {
+            let effects = model.effects.iter().map(|fitted| &fitted.effect).chain([&hats]);
             let regressors = effects.cloned().map(Regressor::of).collect();
-            let mut design = Design::new(study, model, noises, regressors);
-            design.rebase(model);
+            let mut design = Design::new(study, model, weights, regressors);
+            design.rebase(&model.effects);
             let (products, samples) = design.sum(|_| true);
-            (design.columns(model.len()).start, Sums { products, samples })
+            (design.columns(model.effects.len()).start, Sums { products, samples })
         };
-        let (beside, weighed) = sums(&appraisal.floors);
-        let (_, plain) = sums(&appraisal.as_white());
+        let (beside, weighed) = sums(&appraisal.beside_floor());
+        let (_, plain) = sums(&appraisal.weights.as_white());
         let step = travel.range() / crate::number(PLACES - 1);
         Some(Self { place, axis, low: travel.low, step, beside, weighed, plain })
     }

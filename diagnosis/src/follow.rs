@@ -14,21 +14,19 @@ use crate::Inputs;
 use crate::appraisal::Appraisal;
 use crate::candidates;
 use crate::certainty::{Certainty, WIDTH_95};
-use crate::crossing;
 use crate::design::{Design, Regressor};
 use crate::diagnosis::{Estimate, Finding};
 use crate::engine;
 use crate::fit;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::noise::Noise;
 use crate::parameters::{Described, motion_unit};
-use crate::rest;
 use crate::side::Side;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::{self, Shape};
 use crate::travel::{self, Travel};
 use crate::waves;
+use crate::weights::Weights;
 
 mod wave;
 
@@ -79,15 +77,14 @@ const APART: f64 = 0.06;
 /// The sizes of effects in the recordings of `inputs`, in the order of `followed`: nothing of an effect that these recordings do not show,
 /// or do not tell from those before it. So the surest come first.
 pub fn follow(inputs: &Inputs<'_>, followed: &[Followed]) -> Vec<Vec<Size>> {
-    let mut study = Study::new(inputs.equations, inputs.calibration, &inputs.recordings);
-    rest::tell(&mut study);
-    study.scenes.iter_mut().flat_map(|scene| &mut scene.blocks).for_each(|block| block.held_out = false);
-    let always: Model = candidates::always(&study).into_iter().map(unfitted).collect();
-    let travels = travel::travels(&study, &engine::courses(&study, &always));
+    let study = Study::new(inputs.equations, inputs.calibration, &inputs.recordings).with_nothing_held_out();
+    let settings = Model::of_settings(candidates::always(&study));
+    let travels = travel::travels(&study, &engine::courses(&study, &settings));
     let begun: Vec<Option<Fitted>> = followed.iter().map(|one| begun(&study, &travels, one)).collect();
-    let model: Model = always.iter().cloned().chain(begun.iter().flatten().cloned()).collect();
-    let sized = Sized::new(&mut study, model);
-    let mut numbers = always.len()..;
+    let effects = settings.effects.iter().chain(begun.iter().flatten()).cloned();
+    let model = settings.with_effects(effects);
+    let sized = Sized::new(&study, model);
+    let mut numbers = settings.effects.len()..;
     let size = |begun: &Option<Fitted>| match begun {
         Some(_) => numbers.next().map(|number| sized.sizes(&study, number)).unwrap_or_default(),
         None => Vec::new(),
@@ -107,10 +104,6 @@ pub fn told_by(term: &str) -> Option<&'static str> {
 /// Whether a term happened once: when it did says nothing of another recording, so that it is not followed.
 pub fn is_event(term: &str) -> bool {
     TermKind::of_name(term) == Some(TermKind::Step)
-}
-
-fn unfitted(effect: Effect) -> Fitted {
-    Fitted { coefficients: vec![0.0; effect.shape.columns()], effect }
 }
 
 /// The effect as these recordings have it; nothing where they lack a state that it reads, or an axis that moves.
@@ -139,7 +132,7 @@ fn begun(study: &Study<'_>, travels: &[Travel], followed: &Followed) -> Option<F
     // What acts on the states is fitted from where it was found; all else from nothing.
     Some(match effect.shape.nonlinear_in_coefficient() {
         true => Fitted { effect, coefficients },
-        false => unfitted(effect),
+        false => Fitted::unfitted(effect),
     })
 }
 
@@ -202,23 +195,22 @@ struct Sized {
 }
 
 impl Sized {
-    fn new(study: &mut Study<'_>, mut model: Model) -> Self {
-        let mut noises = Appraisal::new(study, &model).as_white();
+    fn new(study: &Study<'_>, mut model: Model) -> Self {
+        // Where nothing is fitted yet, every sample counts.
+        let first = Appraisal::new(study, &model).weights.as_white();
+        let mut weights = Weights::of_all(study, first.noises);
         for _ in 1..ROUNDS {
-            model = Self::once(study, model, &noises).stepped();
-            crossing::follow(study, &model);
-            let appraisal = Appraisal::new(study, &model);
-            appraisal.mark(study);
-            noises = appraisal.noises;
+            model = Self::once(study, model, &weights).stepped();
+            weights = Appraisal::new(study, &model).weights;
         }
-        let last = Self::once(study, model, &noises);
+        let last = Self::once(study, model, &weights);
         Self { model: last.stepped(), ..last }
     }
 
     /// One linear fit, from where the model stands.
-    fn once(study: &Study<'_>, model: Model, noises: &[Vec<Noise>]) -> Self {
-        let regressors = model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
-        let design = Design::new(study, &model, noises, regressors);
+    fn once(study: &Study<'_>, model: Model, weights: &Weights) -> Self {
+        let regressors = Regressor::all(&model.effects);
+        let design = Design::new(study, &model, weights, regressors);
         let (products, samples) = design.fitted();
         let mut swept = Swept::new(&products);
         let take = |column: usize| swept.independence(column) > APART && swept.take(column);
@@ -240,12 +232,12 @@ impl Sized {
             };
             Fitted { effect: fitted.effect.clone(), coefficients: columns.map(change).collect() }
         };
-        self.model.iter().enumerate().map(moved).collect()
+        self.model.with_effects(self.model.effects.iter().enumerate().map(moved))
     }
 
     /// The sizes of an effect; none where one of its columns is not told. The power 0 of a polynomial is free where a zero is.
     fn sizes(&self, study: &Study<'_>, number: usize) -> Vec<Size> {
-        let Some(fitted) = self.model.get(number) else { return Vec::new() };
+        let Some(fitted) = self.model.effects.get(number) else { return Vec::new() };
         let shape = fitted.effect.shape.core();
         let Some(kind) = TermKind::of_name(shape.name()) else { return Vec::new() };
         let free = usize::from(matches!(shape, Shape::Polynomial { .. } | Shape::SensorPolynomial { .. }));
@@ -292,7 +284,7 @@ impl Sized {
     fn covariance(&self, number: usize) -> DMatrix<f64> {
         let columns: Vec<usize> = self.design.columns(number).collect();
         let held = usize::from(
-            self.model.get(number).is_some_and(|fitted| fitted.effect.shape.nonlinear().is_some()),
+            self.model.effects.get(number).is_some_and(|fitted| fitted.effect.shape.nonlinear().is_some()),
         );
         let size = columns.len() + held;
         DMatrix::from_fn(size, size, |row, column| match (columns.get(row), columns.get(column)) {

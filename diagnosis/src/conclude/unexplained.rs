@@ -8,6 +8,7 @@ use super::units::Units;
 use nalgebra::DMatrix;
 
 use crate::certainty::Certainty;
+use crate::channel::{Channel, Kind};
 use crate::dents;
 use crate::diagnosis::{Interval, IntervalOf, ParameterValue, Unexplained};
 use crate::engine::Found;
@@ -16,7 +17,7 @@ use crate::noise;
 use crate::parameters::{Described, axis_unit, motion_unit};
 use crate::places;
 use crate::returns::Quantity;
-use crate::study::{Channel, Kind, Study};
+use crate::study::Study;
 use crate::unsteady::{self, Band, Moving, Suspect};
 use crate::words;
 
@@ -107,7 +108,7 @@ pub(super) fn on_the_way(study: &Study<'_>) -> Option<Unexplained> {
 fn state_of_what_is_left(study: &Study<'_>, found: &Found, moving: &Moving) -> Option<(Quantity, f64)> {
     let scene = &study.scenes[moving.at.scene];
     let residual = &found.appraisal.residuals[moving.at.scene][moving.at.channel];
-    let outliers = &found.appraisal.outliers[moving.at.scene][moving.at.channel];
+    let outliers = found.appraisal.weights.outliers.of(moving.at);
     let valid: Vec<bool> =
         residual.iter().zip(outliers).map(|(value, outlier)| value.is_finite() && !outlier).collect();
     let rounding = study.channel(moving.at).rounding;

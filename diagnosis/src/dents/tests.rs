@@ -16,11 +16,11 @@ fn with<T>(errors: &str, asked: impl Fn(&Study<'_>, &Model, &Conditions<'_>) -> 
     let recording = bench.record(&truth, &noisy(there_and_back, position("x"), 0.000_3, 5));
     let study = Study::new(bench.equations(), None, std::slice::from_ref(&&recording));
     let zero = Effect::setting(0, Setting::Offset { channel: 0 });
-    let model = vec![Fitted { effect: zero, coefficients: vec![0.0] }];
+    let model = Model::of_settings([zero]);
     let travels = travels(&study, &courses(&study, &model));
-    let noises = vec![vec![Noise::white(0.000_3)]];
+    let weights = Weights::of_all(&study, vec![vec![Noise::white(0.000_3)]]);
     let tries = Tries { candidates: 40.0, waves: 300.0 };
-    asked(&study, &model, &Conditions { always: 1, noises: &noises, travels: &travels, tries })
+    asked(&study, &model, &Conditions { weights: &weights, travels: &travels, tries })
 }
 
 /// Middle and flank of the dent that is seen, mm.
@@ -38,7 +38,7 @@ fn drawn(errors: &str) -> Option<Vec<(f64, f64)>> {
         let begun = dent.added(study, &beside, conditions)?;
         let fit = dent.drawn(study, conditions.refine(study, begun), conditions);
         assert!(dent.is_in(&fit.model, conditions.travels));
-        let table = fit.model.iter().find(|fitted| dent.is_table(fitted))?;
+        let table = fit.model.effects.iter().find(|fitted| dent.is_table(fitted))?;
         match &table.effect.shape {
             Shape::Table { nodes, .. } => {
                 Some(nodes.iter().copied().zip(table.coefficients.iter().copied()).collect())

@@ -22,8 +22,9 @@ use self::known::Known;
 use self::motors::Corrected;
 use self::prediction::{FIRST, Prediction};
 use self::setup::Needs;
-use crate::math::{add_scaled, all_finite, sqrt};
-use crate::{ErrorMotion, ErrorMotions, Kinematics, Sample, Share, Sines, TermState};
+use super::math::{add_scaled, all_finite, sqrt};
+use super::real::Real;
+use super::{ErrorMotion, ErrorMotions, Kinematics, Sample, Share, Sines, TermState};
 
 pub use self::report::{
     Convergence, DirectionOutcome, GREATEST_AMPLIFICATION, Limits, Outcome, Refusal, SetupError, Work,
@@ -46,7 +47,7 @@ pub struct Compensator<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized = [E
     pub convergence: Convergence,
     prediction: Prediction<'a, K, M>,
     /// The directions in which the axes move the tip.
-    directions: &'a mut [[f64; 3]],
+    directions: &'a mut [[Real; 3]],
     /// What the axes reach, once that is known and where it is the same everywhere.
     reach: Option<Reach>,
     /// What the last cycle found of the direction of the tool, where rotary axes correct it.
@@ -143,7 +144,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     /// # Errors
     /// Refuses slices of the wrong length and numbers that are not finite; memories then stay as they were, unless it is
     /// the error itself that is not finite.
-    pub fn error(&mut self, sample: &Sample<'_>) -> Result<[f64; 3], Refusal> {
+    pub fn error(&mut self, sample: &Sample<'_>) -> Result<[Real; 3], Refusal> {
         self.prediction.begin(sample)
     }
 
@@ -158,11 +159,11 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     /// times that error, and E is that of the tip in this pose, less where the tip was wanted.
     /// Direction, velocity, temperature and memories are those of the sample
     /// throughout. What no axis reaches is left in [`Outcome::remaining`], and so is what the ramp of a backlash leaves for
-    /// later cycles: E is then [`Term::corrected`](crate::Term::corrected).
+    /// later cycles: E is then [`Term::corrected`](super::Term::corrected).
     ///
     /// # Errors
     /// Every [`Refusal`] leaves the position of the sample in `out`, and nothing of a correction.
-    pub fn compensate(&mut self, sample: &Sample<'_>, out: &mut [f64]) -> Result<Outcome, Refusal> {
+    pub fn compensate(&mut self, sample: &Sample<'_>, out: &mut [Real]) -> Result<Outcome, Refusal> {
         self.direction = None;
         self.check_lengths(sample, out)?;
         let outcome = self.cycle(sample, out);
@@ -175,7 +176,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
 
     /// [`compensate`](Self::compensate), where all is as long as it must be; a refusal leaves anything in `out`.
     #[inline]
-    fn cycle(&mut self, sample: &Sample<'_>, out: &mut [f64]) -> Result<Outcome, Refusal> {
+    fn cycle(&mut self, sample: &Sample<'_>, out: &mut [Real]) -> Result<Outcome, Refusal> {
         let error = self.prediction.begin(sample)?;
         if self.prediction.kinematics.axes_aim() {
             return self.cycle_aimed(sample, error, out);
@@ -189,7 +190,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     }
 
     /// Checks that there is a position, and room for a command, for each axis.
-    pub(crate) fn check_lengths(&self, sample: &Sample<'_>, out: &[f64]) -> Result<(), Refusal> {
+    pub(crate) fn check_lengths(&self, sample: &Sample<'_>, out: &[Real]) -> Result<(), Refusal> {
         let axes = self.axes();
         same_length("out", axes, out.len())?;
         same_length("position", axes, sample.position.len())
@@ -197,7 +198,12 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
 
     /// Searches for the command, from the error at the target on, and holds it against the limit.
     #[inline]
-    fn search(&mut self, sample: &Sample<'_>, error: [f64; 3], out: &mut [f64]) -> Result<Outcome, Refusal> {
+    fn search(
+        &mut self,
+        sample: &Sample<'_>,
+        error: [Real; 3],
+        out: &mut [Real],
+    ) -> Result<Outcome, Refusal> {
         let reach = self.reach_at(sample.position)?;
         let Self { prediction, convergence, limits, directions, .. } = self;
         let (kinematics, ramp) = (prediction.kinematics, prediction.needs.ramp);
@@ -222,7 +228,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
         if ramp {
             left = prediction.error_behind_ramp(sample, turned, out)?;
             if !all_finite(&left) {
-                return Err(Refusal::NotConverging { iterations, distance: f64::INFINITY });
+                return Err(Refusal::NotConverging { iterations, distance: Real::INFINITY });
             }
         }
         let remaining = add_scaled(left, -1.0, reach.tip(columns, pull));
@@ -231,7 +237,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
 
     /// What the axes reach; finds in which directions they move the tip, but where that is known.
     #[inline(always)]
-    fn reach_at(&mut self, position: &[f64]) -> Result<Reach, Refusal> {
+    fn reach_at(&mut self, position: &[Real]) -> Result<Reach, Refusal> {
         let kinematics = self.prediction.kinematics;
         if let Some(squares) = kinematics.squares() {
             self.find_directions(position)?;
@@ -244,7 +250,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     }
 
     /// Finds what the axes reach, in the directions in which they move the tip.
-    fn find_reach(&mut self, position: &[f64]) -> Result<Reach, Refusal> {
+    fn find_reach(&mut self, position: &[Real]) -> Result<Reach, Refusal> {
         self.find_directions(position)?;
         let reach = Reach::new(self.directions);
         self.reach = Some(reach).filter(|_| !self.prediction.kinematics.directions_vary());
@@ -253,14 +259,14 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
 
     /// Finds in which directions the axes move the tip.
     #[inline]
-    fn find_directions(&mut self, position: &[f64]) -> Result<(), Refusal> {
+    fn find_directions(&mut self, position: &[Real]) -> Result<(), Refusal> {
         self.prediction.kinematics.directions_with(&self.prediction.sines, position, self.directions);
         if all_finite(self.directions.as_flattened()) { Ok(()) } else { Err(Refusal::NotFinite) }
     }
 }
 
 /// Copies as many numbers as both hold; unlike `copy_from_slice` it has no way to panic.
-fn copy(from: &[f64], to: &mut [f64]) {
+fn copy(from: &[Real], to: &mut [Real]) {
     for (to, &from) in to.iter_mut().zip(from) {
         *to = from;
     }

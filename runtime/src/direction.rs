@@ -4,6 +4,8 @@
 //! exists because the sign of the velocity is no direction: at rest an encoder dithers by a count or two, and a table
 //! that flipped with it would shake the axis by the whole lost motion.
 
+use super::real::Real;
+
 /// The direction of the last real motion of an axis.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Direction {
@@ -17,7 +19,7 @@ pub enum Direction {
 impl Direction {
     /// +1.0 or -1.0.
     #[must_use]
-    pub const fn sign(self) -> f64 {
+    pub const fn sign(self) -> Real {
         match self {
             Self::Positive => 1.0,
             Self::Negative => -1.0,
@@ -48,8 +50,8 @@ impl Direction {
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct DirectionTracker {
-    threshold: f64,
-    furthest: Option<f64>,
+    threshold: Real,
+    furthest: Option<Real>,
     direction: Direction,
 }
 
@@ -57,14 +59,14 @@ impl DirectionTracker {
     /// A tracker that has seen no position yet. `threshold` is in the unit of the axis (mm or rad); a negative one or
     /// NaN counts as zero, which turns at every step back.
     #[must_use]
-    pub const fn new(threshold: f64) -> Self {
+    pub const fn new(threshold: Real) -> Self {
         let threshold = if threshold > 0.0 { threshold } else { 0.0 };
         Self { threshold, furthest: None, direction: Direction::Positive }
     }
 
     /// The distance back, in mm or rad, that must be exceeded before the direction turns.
     #[must_use]
-    pub const fn threshold(&self) -> f64 {
+    pub const fn threshold(&self) -> Real {
         self.threshold
     }
 
@@ -75,7 +77,7 @@ impl DirectionTracker {
     }
 
     /// Takes the position of this cycle and returns the direction after it. A position that is not finite is ignored.
-    pub fn update(&mut self, position: f64) -> Direction {
+    pub fn update(&mut self, position: Real) -> Direction {
         if position.is_finite() {
             let onward = (position - self.furthest.unwrap_or(position)) * self.direction.sign();
             if onward < -self.threshold {

@@ -5,44 +5,51 @@
 
 use core::cell::Cell;
 
-use crate::{Kinematics, Share, Sines, Turning};
+use super::real::Real;
+use super::{Kinematics, Share, Sines, Turning};
 
 /// Passes the methods of [`Kinematics`] that give numbers on to another machine.
 macro_rules! numbers_of {
     ($machine:ident => $of:expr) => {
-        fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
+        fn error(&self, position: &[Real], travel: &[Real], motions: &[Real]) -> [Real; 3] {
             let $machine = self;
             $of.error(position, travel, motions)
         }
-        fn turn(&self, position: &[f64], sines: &mut Sines) {
+        fn turn(&self, position: &[Real], sines: &mut Sines) {
             let $machine = self;
             $of.turn(position, sines);
         }
-        fn error_with(&self, sines: &Sines, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
+        fn error_with(
+            &self,
+            sines: &Sines,
+            position: &[Real],
+            travel: &[Real],
+            motions: &[Real],
+        ) -> [Real; 3] {
             let $machine = self;
             $of.error_with(sines, position, travel, motions)
         }
-        fn nominal(&self, position: &[f64]) -> [f64; 3] {
+        fn nominal(&self, position: &[Real]) -> [Real; 3] {
             let $machine = self;
             $of.nominal(position)
         }
-        fn direction(&self, position: &[f64]) -> [f64; 3] {
+        fn direction(&self, position: &[Real]) -> [Real; 3] {
             let $machine = self;
             $of.direction(position)
         }
-        fn direction_error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
+        fn direction_error(&self, position: &[Real], travel: &[Real], motions: &[Real]) -> [Real; 3] {
             let $machine = self;
             $of.direction_error(position, travel, motions)
         }
-        fn aims(&self, position: &[f64], aims: &mut [[f64; 3]; 3]) {
+        fn aims(&self, position: &[Real], aims: &mut [[Real; 3]; 3]) {
             let $machine = self;
             $of.aims(position, aims);
         }
-        fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]) {
+        fn directions(&self, position: &[Real], directions: &mut [[Real; 3]]) {
             let $machine = self;
             $of.directions(position, directions);
         }
-        fn directions_with(&self, sines: &Sines, position: &[f64], directions: &mut [[f64; 3]]) {
+        fn directions_with(&self, sines: &Sines, position: &[Real], directions: &mut [[Real; 3]]) {
             let $machine = self;
             $of.directions_with(sines, position, directions);
         }
@@ -88,11 +95,11 @@ macro_rules! topology_of {
             let $machine = self;
             $of.resting()
         }
-        fn squares(&self) -> Option<[f64; 3]> {
+        fn squares(&self) -> Option<[Real; 3]> {
             let $machine = self;
             $of.squares()
         }
-        fn fixed_directions(&self) -> Option<&'static [[f64; 3]]> {
+        fn fixed_directions(&self) -> Option<&'static [[Real; 3]]> {
             let $machine = self;
             $of.fixed_directions()
         }
@@ -125,7 +132,7 @@ impl<K: Kinematics + ?Sized> Kinematics for &K {
 /// ```
 ///
 /// A compensator or a supervisor runs over it as over any machine. Whoever exchanges it calls
-/// [`Supervisor::switch`](crate::Supervisor::switch) too, so that the correction does not jump.
+/// [`Supervisor::switch`](super::Supervisor::switch) too, so that the correction does not jump.
 #[derive(Debug)]
 pub struct Exchanged<K: Copy> {
     /// What is the same whichever is there: its slices are borrowed while another may come.

@@ -4,31 +4,30 @@
 //! is multiplied with. It exists because machines multiply states: a play that is larger where the screw is worn, a wave
 //! that grows along the travel, a yaw that follows the warmth of a drive.
 
-use core::f64::consts::TAU;
-
-use crate::math::{exp_m1, sin};
-use crate::sample::OneSample;
-use crate::term::check::{FINE, not_negative};
-use crate::term::memory::{advance_filter, advance_warmth, advance_width};
-use crate::{Sample, Table, TermState};
+use super::math::{exp_m1, sin};
+use super::real::{Real, angle};
+use super::sample::OneSample;
+use super::term::check::{FINE, not_negative};
+use super::term::memory::{advance_filter, advance_warmth, advance_width};
+use super::{Sample, Table, TermState};
 
 /// The range in which a state was seen. Outside, a factor holds the value that it has at the end, as a table does.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Within {
     /// The lower end, in the unit of the state.
-    pub from: f64,
+    pub from: Real,
     /// The upper end, not below the lower one.
-    pub to: f64,
+    pub to: Real,
 }
 
 impl Within {
     /// No range: nothing is held.
-    pub const EVERYWHERE: Self = Self { from: f64::NEG_INFINITY, to: f64::INFINITY };
+    pub const EVERYWHERE: Self = Self { from: Real::NEG_INFINITY, to: Real::INFINITY };
 
     /// The state, or the end of the range beyond which it lies; NaN at NaN.
     #[must_use]
     #[inline]
-    pub fn hold(self, state: f64) -> f64 {
+    pub fn hold(self, state: Real) -> Real {
         let below = if state > self.to { self.to } else { state };
         if self.from > below { self.from } else { below }
     }
@@ -83,16 +82,16 @@ pub enum Factor<'a> {
         /// The axis.
         axis: usize,
         /// The speed at which a third is left, in mm/s or rad/s, greater than zero.
-        over: f64,
+        over: Real,
     },
     /// `T* - T0`. T* is T behind a first-order filter that starts at the first T.
     Temperature {
         /// The sensor.
         sensor: usize,
         /// T0, in degC.
-        reference: f64,
+        reference: Real,
         /// Time constant of the filter, in s; 0: no filter.
-        time_constant: f64,
+        time_constant: Real,
         /// Where T* was seen, in degC.
         within: Within,
     },
@@ -101,27 +100,27 @@ pub enum Factor<'a> {
         /// The sensor.
         sensor: usize,
         /// T0, in degC.
-        reference: f64,
+        reference: Real,
         /// The width, in K, not negative.
-        width: f64,
+        width: Real,
     },
     /// W, of `tau W' = rise |v| - W` from zero: how warm the motion of an axis has made it.
     Warmth {
         /// The axis.
         axis: usize,
         /// tau, in s, greater than zero.
-        time_constant: f64,
+        time_constant: Real,
         /// How warm a lasting speed makes it, in K for each mm/s or rad/s.
-        rise: f64,
+        rise: Real,
     },
     /// `sin(2 pi q/P + f)`.
     Turn {
         /// The axis.
         axis: usize,
         /// Period P, in mm or rad, greater than zero.
-        period: f64,
+        period: Real,
         /// Phase f, in rad.
-        phase: f64,
+        phase: Real,
     },
     /// A curve over q, piecewise linear, held constant outside.
     Curve {
@@ -135,7 +134,7 @@ pub enum Factor<'a> {
 impl Factor<'_> {
     /// The value in what is read; `memory` is what the factor remembers, none before its first cycle.
     #[inline(always)]
-    pub(crate) fn read(&self, from: &mut OneSample<'_>, memory: Option<&f64>) -> f64 {
+    pub(crate) fn read(&self, from: &mut OneSample<'_>, memory: Option<&Real>) -> Real {
         match *self {
             Self::Position { axis, power, within } => {
                 let position = within.hold(from.position(axis));
@@ -157,15 +156,12 @@ impl Factor<'_> {
                 memory.copied().unwrap_or(from.temperature(sensor)) - reference
             }
             Self::Warmth { .. } => memory.copied().unwrap_or(0.0),
-            Self::Turn { axis, period, phase } => {
-                let turn = TAU * (from.position(axis) / period);
-                sin(turn + phase)
-            }
+            Self::Turn { axis, period, phase } => sin(angle(from.position(axis) / period, phase)),
             Self::Curve { axis, ref table } => from.table(table, axis),
         }
     }
 
-    /// Takes the factor's memory over to the cycle of this sample: see [`Term::advance`](crate::Term::advance).
+    /// Takes the factor's memory over to the cycle of this sample: see [`Term::advance`](super::Term::advance).
     pub(crate) fn advance(&self, sample: &Sample<'_>, state: &mut TermState) {
         match *self {
             Self::Temperature { sensor, time_constant, .. } if time_constant > 0.0 => {
@@ -247,11 +243,11 @@ impl Factor<'_> {
 }
 
 /// The size of a velocity.
-fn magnitude(velocity: f64) -> f64 {
+fn magnitude(velocity: Real) -> Real {
     if velocity > 0.0 { velocity } else { -velocity }
 }
 
 /// Finite and above zero.
-fn positive(value: f64) -> bool {
+fn positive(value: Real) -> bool {
     value.is_finite() && value > 0.0
 }

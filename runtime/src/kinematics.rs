@@ -2,13 +2,14 @@
 //!
 //! In: axis positions, travels and the values of the error motions. Out: the error at the tool tip and the direction in
 //! which each axis can correct it. It exists so that generated code and the compiler's interpreter serve the same
-//! [`Compensator`](crate::Compensator).
+//! [`Compensator`](super::Compensator).
 
-use crate::sample::number;
+use super::real::Real;
+use super::sample::number;
 
 /// The sines and the cosines of the rotary axes that the equations read, in the order of the axes; zero beyond them. ISO 841
 /// names three rotary axes: A, B and C.
-pub type Sines = ([f64; 3], [f64; 3]);
+pub type Sines = ([Real; 3], [Real; 3]);
 
 /// An error motion that is a rotary axis's own angle, actual minus commanded: its positioning error, or its zero.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -27,11 +28,11 @@ pub struct Share {
     /// Index of the axis that it follows, or of the error motion that it corrects.
     pub of: usize,
     /// How far the motor goes for each mm of the axis; or what its own travel is, mm, for each mm or rad of the error motion.
-    pub weight: f64,
+    pub weight: Real,
 }
 
 /// Puts motors where the axes that they [follow](Kinematics::following) stand.
-pub fn place_motors(following: &[Share], position: &mut [f64]) {
+pub fn place_motors(following: &[Share], position: &mut [Real]) {
     for share in following {
         if let Some(place) = position.get_mut(share.motor) {
             *place = 0.0;
@@ -63,16 +64,16 @@ pub trait Kinematics {
     /// First-order error of the tool tip relative to the part, actual minus commanded, in mm.
     ///
     /// A direction that is not sensitive is 0.0. A slice of the wrong length gives NaN in all three.
-    fn error(&self, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3];
+    fn error(&self, position: &[Real], travel: &[Real], motions: &[Real]) -> [Real; 3];
 
     /// Writes the sines and cosines of rotary axes at a position, as far as the equations read them. A rotary axis that corrects no more
     /// than its [own angle](Self::turning) then stands at the angle of the position wanted: a compensator asks once for what
     /// it passes to [`error_with`](Self::error_with) at each step, and anew where axes turn to [aim](Self::aiming) the tool.
-    fn turn(&self, _position: &[f64], _sines: &mut Sines) {}
+    fn turn(&self, _position: &[Real], _sines: &mut Sines) {}
 
     /// [`Kinematics::error`], bit for bit, at a position at which [`turn`](Self::turn) writes these.
     #[inline(always)]
-    fn error_with(&self, _sines: &Sines, position: &[f64], travel: &[f64], motions: &[f64]) -> [f64; 3] {
+    fn error_with(&self, _sines: &Sines, position: &[Real], travel: &[Real], motions: &[Real]) -> [Real; 3] {
         self.error(position, travel, motions)
     }
 
@@ -110,25 +111,25 @@ pub trait Kinematics {
 
     /// The tool tip relative to the part without errors: mm, part frame; a direction that is not sensitive is 0.0. A slice of the wrong
     /// length gives NaN, and so does a machine that corrects no direction of the tool.
-    fn nominal(&self, _position: &[f64]) -> [f64; 3] {
-        [f64::NAN; 3]
+    fn nominal(&self, _position: &[Real]) -> [Real; 3] {
+        [Real::NAN; 3]
     }
 
     /// The direction of the tool without errors, from its tip towards the spindle: a vector of length 1 in the part's frame. NaN as in
     /// [`nominal`](Self::nominal).
-    fn direction(&self, _position: &[f64]) -> [f64; 3] {
-        [f64::NAN; 3]
+    fn direction(&self, _position: &[Real]) -> [Real; 3] {
+        [Real::NAN; 3]
     }
 
     /// First-order error of that direction, actual minus nominal, in rad. NaN as in [`nominal`](Self::nominal).
-    fn direction_error(&self, _position: &[f64], _travel: &[f64], _motions: &[f64]) -> [f64; 3] {
-        [f64::NAN; 3]
+    fn direction_error(&self, _position: &[Real], _travel: &[Real], _motions: &[Real]) -> [Real; 3] {
+        [Real::NAN; 3]
     }
 
     /// For each of the [aiming](Self::aiming) axes, what it turns that direction by for each rad; zero beyond them. NaN as in
     /// [`nominal`](Self::nominal).
-    fn aims(&self, _position: &[f64], aims: &mut [[f64; 3]; 3]) {
-        *aims = [[f64::NAN; 3]; 3];
+    fn aims(&self, _position: &[Real], aims: &mut [[Real; 3]; 3]) {
+        *aims = [[Real::NAN; 3]; 3];
     }
 
     /// For each axis, the displacement of the tool tip relative to the part per mm of programmed motion.
@@ -136,10 +137,10 @@ pub trait Kinematics {
     /// An axis that does not correct is zero: rotary axes, redundant slides and motors; so are the components in directions
     /// that are not sensitive. A slide whose positive motion moves the tool towards negative X of the part
     /// has -1 there. Writes `directions[axis]`; a slice of the wrong length is filled with NaN.
-    fn directions(&self, position: &[f64], directions: &mut [[f64; 3]]);
+    fn directions(&self, position: &[Real], directions: &mut [[Real; 3]]);
 
     /// [`Kinematics::directions`], bit for bit, at a position at which [`turn`](Self::turn) writes these.
-    fn directions_with(&self, _sines: &Sines, position: &[f64], directions: &mut [[f64; 3]]) {
+    fn directions_with(&self, _sines: &Sines, position: &[Real], directions: &mut [[Real; 3]]) {
         self.directions(position, directions);
     }
 
@@ -158,13 +159,13 @@ pub trait Kinematics {
     /// The diagonal of `J J^T`, J being the [directions](Self::directions) of all axes as columns, where these vary, but it is known
     /// to be the same at every position, with nothing beside it: of three slides at right angles, however a rotary axis has
     /// turned them. A compensator then need not find out in each cycle what they reach.
-    fn squares(&self) -> Option<[f64; 3]> {
+    fn squares(&self) -> Option<[Real; 3]> {
         None
     }
 
     /// [`Kinematics::directions`] where they are the same at every position and known when the code is compiled; none where
     /// nothing else is said. A search for a command then leaves out what is zero.
-    fn fixed_directions(&self) -> Option<&'static [[f64; 3]]> {
+    fn fixed_directions(&self) -> Option<&'static [[Real; 3]]> {
         None
     }
 }

@@ -115,33 +115,15 @@
 //!
 //! `std` takes the exponential, the square root, and sine and cosine of angles beyond a million rad from the standard library in
 //! place of libm. Nothing else changes.
+//!
+//! `single` adds the module `single`: the same once more over numbers of 32 bits, for controllers whose processor knows no others.
 #![no_std]
 
 #[cfg(feature = "std")]
 extern crate std;
 
-mod compensator;
-mod direction;
-mod exchanged;
-mod factor;
-mod kinematics;
-pub mod math;
-mod motion;
-mod sample;
-mod supervisor;
-mod table;
-mod term;
+mod double;
+#[cfg(feature = "single")]
+pub mod single;
 
-pub use compensator::{
-    Compensator, Convergence, DirectionOutcome, GREATEST_AMPLIFICATION, Limits, Outcome, Refusal, SetupError,
-    Work, states_needed,
-};
-pub use direction::{Direction, DirectionTracker};
-pub use exchanged::Exchanged;
-pub use factor::{Factor, Within};
-pub use kinematics::{Kinematics, Share, Sines, Turning, place_motors};
-pub use motion::{ErrorMotion, ErrorMotions, MotionReader};
-pub use sample::Sample;
-pub use supervisor::{AxisMemory, Cycle, Memory, State, Supervisor, Transition};
-pub use table::{Bundle, Table, TableError, Values};
-pub use term::{Input, Term, TermState};
+pub use self::double::*;

@@ -5,8 +5,9 @@
 
 mod reader;
 
-use crate::sample::OneSample;
-use crate::{Sample, Term, TermState};
+use super::real::Real;
+use super::sample::OneSample;
+use super::{Sample, Term, TermState};
 
 pub use self::reader::MotionReader;
 
@@ -19,7 +20,7 @@ pub trait ErrorMotions {
     /// One number for each error motion, in mm or rad.
     ///
     /// A calibration that was compiled in gives an array, which need never lie in memory.
-    type Values<'k>: AsRef<[f64]> + AsMut<[f64]>;
+    type Values<'k>: AsRef<[Real]> + AsMut<[Real]>;
 
     /// The error motions, in the order of the kinematics.
     fn motions(&self) -> &[ErrorMotion<'_>];
@@ -28,25 +29,25 @@ pub trait ErrorMotions {
     /// machine.
     ///
     /// `kept` has a place for each; what stays there is what [`read_moved`](Self::read_moved) needs of it.
-    fn read<'k>(&self, from: MotionReader<'_>, kept: &'k mut [f64]) -> Option<Self::Values<'k>>;
+    fn read<'k>(&self, from: MotionReader<'_>, kept: &'k mut [Real]) -> Option<Self::Values<'k>>;
 
     /// [`read`](Self::read) once more in the same state of the machine, but at positions that differ for axes that correct:
-    /// those that have a [direction](crate::Kinematics::directions), and motors that follow them.
+    /// those that have a [direction](super::Kinematics::directions), and motors that follow them.
     #[inline]
-    fn read_moved<'k>(&self, from: MotionReader<'_>, kept: &'k mut [f64]) -> Option<Self::Values<'k>> {
+    fn read_moved<'k>(&self, from: MotionReader<'_>, kept: &'k mut [Real]) -> Option<Self::Values<'k>> {
         self.read(from, kept)
     }
 }
 
 impl ErrorMotions for [ErrorMotion<'_>] {
-    type Values<'k> = &'k mut [f64];
+    type Values<'k> = &'k mut [Real];
 
     fn motions(&self) -> &[ErrorMotion<'_>] {
         self
     }
 
     #[inline]
-    fn read<'k>(&self, mut from: MotionReader<'_>, kept: &'k mut [f64]) -> Option<&'k mut [f64]> {
+    fn read<'k>(&self, mut from: MotionReader<'_>, kept: &'k mut [Real]) -> Option<&'k mut [Real]> {
         let values = kept.get_mut(..self.len())?;
         for (motion, value) in self.iter().zip(&mut *values) {
             *value = from.motion(motion);
@@ -66,28 +67,28 @@ impl ErrorMotion<'_> {
     /// The value in a state of the machine, in mm or rad; `states` holds one state a term, or the value is NaN.
     #[must_use]
     #[inline]
-    pub fn value(&self, sample: &Sample<'_>, states: &[TermState]) -> f64 {
+    pub fn value(&self, sample: &Sample<'_>, states: &[TermState]) -> Real {
         self.read(&mut OneSample::new(sample), states, false)
     }
 
     /// The part of the value that is corrected in this cycle, see [`Term::corrected`]; in mm or rad.
     #[must_use]
     #[inline]
-    pub fn corrected(&self, sample: &Sample<'_>, states: &[TermState]) -> f64 {
+    pub fn corrected(&self, sample: &Sample<'_>, states: &[TermState]) -> Real {
         self.read(&mut OneSample::new(sample), states, true)
     }
 
     /// [`value`](Self::value) in what is read, or [`corrected`](Self::corrected): the sum over the terms, each times the factors before
     /// it; NaN where there is not one state a term.
     #[inline]
-    pub(crate) fn read(&self, from: &mut OneSample<'_>, states: &[TermState], corrected: bool) -> f64 {
+    pub(crate) fn read(&self, from: &mut OneSample<'_>, states: &[TermState], corrected: bool) -> Real {
         match (self.terms, states) {
             ([term], [state]) => term.read_one(from, state, corrected),
             (terms, states) if terms.len() == states.len() => {
                 let (mut sum, mut factors) = (0.0, None);
                 for (term, state) in terms.iter().zip(states) {
                     let value = term.read_one(from, state, corrected);
-                    let product = factors.map_or(value, |before: f64| before * value);
+                    let product = factors.map_or(value, |before: Real| before * value);
                     if term.is_factor() {
                         factors = Some(product);
                     } else {
@@ -97,14 +98,14 @@ impl ErrorMotion<'_> {
                 }
                 sum
             }
-            _ => f64::NAN,
+            _ => Real::NAN,
         }
     }
 
     /// Both of these where one table or one number makes them, as in most motions: without a state, and without the way
     /// through all other terms. None elsewhere.
     #[inline]
-    fn read_alone(&self, from: &mut OneSample<'_>) -> Option<f64> {
+    fn read_alone(&self, from: &mut OneSample<'_>) -> Option<Real> {
         match self.terms {
             [Term::Table { axis, table }] => Some(from.table(table, *axis)),
             [Term::Constant { value }] => Some(*value),

@@ -5,8 +5,9 @@
 
 mod readings;
 
-use crate::Direction;
-use crate::math::nothing;
+use super::Direction;
+use super::math::nothing;
+use super::real::Real;
 
 pub(crate) use self::readings::{OneSample, number};
 
@@ -14,29 +15,29 @@ pub(crate) use self::readings::{OneSample, number};
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Sample<'a> {
     /// Position of each axis in mm or rad: the position wanted, in machine coordinates.
-    pub position: &'a [f64],
+    pub position: &'a [Real],
     /// Each free travel in mm; empty: each travel is the position of its axis, that of the compensated command included.
-    pub travel: &'a [f64],
-    /// Direction of each axis's last real motion, see [`DirectionTracker`](crate::DirectionTracker).
+    pub travel: &'a [Real],
+    /// Direction of each axis's last real motion, see [`DirectionTracker`](super::DirectionTracker).
     pub direction: &'a [Direction],
     /// Velocity of each axis in mm/s or rad/s; may be empty where no term reads one.
-    pub velocity: &'a [f64],
+    pub velocity: &'a [Real],
     /// Temperature of each sensor in degC; may be empty where no term reads a sensor.
-    pub temperature: &'a [f64],
+    pub temperature: &'a [Real],
     /// Time since the sample before this one, in s; not negative.
-    pub time_step: f64,
+    pub time_step: Real,
 }
 
 impl Sample<'_> {
     /// Position of an axis; NaN where the slice is too short.
     #[inline]
-    pub(crate) fn position(&self, axis: usize) -> f64 {
+    pub(crate) fn position(&self, axis: usize) -> Real {
         number(self.position, axis)
     }
 
     /// Temperature of a sensor; NaN where the slice is too short.
     #[inline]
-    pub(crate) fn temperature(&self, sensor: usize) -> f64 {
+    pub(crate) fn temperature(&self, sensor: usize) -> Real {
         number(self.temperature, sensor)
     }
 

@@ -9,7 +9,8 @@ mod sensors;
 
 use self::correction::Correction;
 use self::sensors::{Heard, Sensors};
-use crate::{Compensator, ErrorMotion, ErrorMotions, Kinematics, Outcome, Refusal, Sample, SetupError};
+use super::real::Real;
+use super::{Compensator, ErrorMotion, ErrorMotions, Kinematics, Outcome, Refusal, Sample, SetupError};
 
 pub use self::correction::AxisMemory;
 
@@ -18,14 +19,14 @@ pub use self::correction::AxisMemory;
 pub struct Transition {
     /// Greatest change of the correction per second, as a length over all slides in mm/s, whatever causes it: a reversal,
     /// a step of a table, a switch; none: no limit. With 0 or NaN the correction stays as it is.
-    pub rate: Option<f64>,
+    pub rate: Option<Real>,
     /// The same for rotary axes that correct their own angle or the direction of the tool, over all of them, in rad/s.
-    pub rotation_rate: Option<f64>,
+    pub rotation_rate: Option<Real>,
     /// How long the last reading of a sensor that fell silent is held, in s. With NaN it is not held.
-    pub hold: f64,
+    pub hold: Real,
     /// The time over which a correction fades in or out after a switch, a refusal, the loss or the return of a sensor,
     /// in s. With 0, a negative one or NaN it jumps.
-    pub fade: f64,
+    pub fade: Real,
 }
 
 impl Default for Transition {
@@ -42,9 +43,9 @@ pub struct Memory<'a> {
     /// calibration say, take over without a jump.
     pub axes: &'a mut [AxisMemory],
     /// One number for each sensor, [`Compensator::sensors`]; what it holds before does not matter.
-    pub temperature: &'a mut [f64],
+    pub temperature: &'a mut [Real],
     /// One number for each sensor; what it holds before does not matter.
-    pub silence: &'a mut [f64],
+    pub silence: &'a mut [Real],
 }
 
 /// What a supervisor does with the correction.
@@ -85,7 +86,7 @@ pub struct Cycle {
     /// Whether the correction is still on its way to what the state asks for. [`Outcome::remaining`] is that of its end.
     pub settling: bool,
     /// Length of the correction made in this cycle over all slides, in mm.
-    pub correction: f64,
+    pub correction: Real,
 }
 
 /// Runs a [`Compensator`] cycle by cycle so that its correction never jumps.
@@ -94,7 +95,7 @@ pub struct Cycle {
 /// where a sample is refused or taken again, where a sensor is lost or returns, the difference between the correction made
 /// and the one now wanted fades over [`Transition::fade`]. A reading that is not finite is a silent sensor: its last value
 /// is held for [`Transition::hold`], then compensation fades out until it speaks again. On top of that the correction
-/// changes by no more than [`Transition::rate`] and [`Transition::rotation_rate`], and stays within its [`Limits`](crate::Limits).
+/// changes by no more than [`Transition::rate`] and [`Transition::rotation_rate`], and stays within its [`Limits`](super::Limits).
 ///
 /// ```
 /// # use abbe_runtime::*;
@@ -188,7 +189,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Supervisor<'a, K, M> 
     /// A position that is not finite is refused as a whole and passes unchanged, while the correction of the other axes
     /// fades out. Where the time step is negative or not finite no time goes on, and the correction stays as it is.
     /// Nothing is written, and no time goes on, where `out` or the position has not one entry for each axis.
-    pub fn cycle(&mut self, sample: &Sample<'_>, out: &mut [f64]) -> Cycle {
+    pub fn cycle(&mut self, sample: &Sample<'_>, out: &mut [Real]) -> Cycle {
         if self.compensator.check_lengths(sample, out).is_err() {
             // It refuses before it writes anything, and forgets what it found in the cycle before.
             let outcome = self.compensator.compensate(sample, out);

@@ -8,8 +8,9 @@ mod place;
 
 use core::fmt;
 
-use crate::Direction;
-use crate::math::{all_finite, floor};
+use super::Direction;
+use super::math::{all_finite, floor};
+use super::real::Real;
 
 pub use self::bundle::Bundle;
 pub(crate) use self::place::Place;
@@ -19,19 +20,19 @@ use self::place::{Even, Last, MOST};
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Values<'a> {
     /// One curve for both directions.
-    Both(&'a [f64]),
+    Both(&'a [Real]),
     /// A curve for each direction, over the same nodes.
     Directed {
         /// Values while the last real motion was positive.
-        forward: &'a [f64],
+        forward: &'a [Real],
         /// Values while the last real motion was negative.
-        reverse: &'a [f64],
+        reverse: &'a [Real],
     },
 }
 
 impl<'a> Values<'a> {
     /// The curve of a direction.
-    const fn curve(self, direction: Direction) -> &'a [f64] {
+    const fn curve(self, direction: Direction) -> &'a [Real] {
         match (self, direction) {
             (Self::Both(values), _)
             | (Self::Directed { forward: values, .. }, Direction::Positive)
@@ -40,8 +41,8 @@ impl<'a> Values<'a> {
     }
 }
 
-impl<'a> From<&'a [f64]> for Values<'a> {
-    fn from(values: &'a [f64]) -> Self {
+impl<'a> From<&'a [Real]> for Values<'a> {
+    fn from(values: &'a [Real]) -> Self {
         Self::Both(values)
     }
 }
@@ -109,7 +110,7 @@ impl core::error::Error for TableError {}
 enum Nodes<'a> {
     Even(Even),
     At {
-        at: &'a [f64],
+        at: &'a [Real],
         /// Whether the table repeats itself after its last node.
         repeats: bool,
     },
@@ -128,8 +129,8 @@ enum Nodes<'a> {
 pub struct Table<'a> {
     nodes: Nodes<'a>,
     /// One for each direction, so that reading them has nothing to decide; one curve for both stands twice.
-    forward: &'a [f64],
-    reverse: &'a [f64],
+    forward: &'a [Real],
+    reverse: &'a [Real],
 }
 
 impl<'a> Table<'a> {
@@ -139,7 +140,7 @@ impl<'a> Table<'a> {
     /// # Errors
     /// Refuses a table without values or with more than 2^24, curves that differ in length, a step of zero or nearly so (its
     /// inverse must be finite) and numbers that are not finite.
-    pub const fn uniform(start: f64, step: f64, values: Values<'a>) -> Result<Self, TableError> {
+    pub const fn uniform(start: Real, step: Real, values: Values<'a>) -> Result<Self, TableError> {
         // Reading multiplies, which takes less time than to divide.
         let per_unit = 1.0 / step;
         if !step.is_finite() || !per_unit.is_finite() {
@@ -163,7 +164,7 @@ impl<'a> Table<'a> {
     ///
     /// # Errors
     /// Refuses a table without values, slices that differ in length, nodes out of order and numbers that are not finite.
-    pub const fn at(at: &'a [f64], values: Values<'a>) -> Result<Self, TableError> {
+    pub const fn at(at: &'a [Real], values: Values<'a>) -> Result<Self, TableError> {
         if let Err(error) = check_values(values, Some(at.len())) {
             return Err(error);
         }
@@ -214,7 +215,7 @@ impl<'a> Table<'a> {
 
     /// The values while an axis moves in a direction.
     #[inline]
-    const fn curve(&self, direction: Direction) -> &'a [f64] {
+    const fn curve(&self, direction: Direction) -> &'a [Real] {
         match direction {
             Direction::Positive => self.forward,
             Direction::Negative => self.reverse,
@@ -224,7 +225,7 @@ impl<'a> Table<'a> {
     /// The value at a position, on the curve of the given direction; NaN at NaN.
     #[must_use]
     #[inline]
-    pub fn value(&self, position: f64, direction: Direction) -> f64 {
+    pub fn value(&self, position: Real, direction: Direction) -> Real {
         match self.nodes {
             Nodes::Even(even) => Place::new(even, 0, position, direction).read(self.curve(direction)),
             Nodes::At { at, repeats } => read_at(self.curve(direction), at, repeats, position),
@@ -252,9 +253,9 @@ const fn check_values(values: Values<'_>, expected: Option<usize>) -> Result<(),
 }
 
 /// Reads a curve over ascending nodes by binary search. Ends are held; NaN at NaN.
-fn read_at(values: &[f64], at: &[f64], repeats: bool, position: f64) -> f64 {
+fn read_at(values: &[Real], at: &[Real], repeats: bool, position: Real) -> Real {
     if position.is_nan() {
-        return f64::NAN;
+        return Real::NAN;
     }
     let position = match (at.first(), at.last()) {
         (Some(first), Some(last)) if repeats => first + within_a_turn(position - first, last - first),
@@ -262,24 +263,24 @@ fn read_at(values: &[f64], at: &[f64], repeats: bool, position: f64) -> f64 {
     };
     let above = at.partition_point(|&node| node <= position);
     let Some(index) = above.checked_sub(1) else {
-        return values.first().copied().unwrap_or(f64::NAN);
+        return values.first().copied().unwrap_or(Real::NAN);
     };
     match (at.get(index), at.get(above), values.get(index), values.get(above)) {
         (Some(&from), Some(&to), Some(&low), Some(&high)) => {
             between(low, high, (position - from) / (to - from))
         }
-        _ => values.last().copied().unwrap_or(f64::NAN),
+        _ => values.last().copied().unwrap_or(Real::NAN),
     }
 }
 
 /// What is left of a way after all whole turns of a length: from 0 to that length, which rounding may reach; NaN at what is not finite.
 #[inline]
-fn within_a_turn(way: f64, length: f64) -> f64 {
+fn within_a_turn(way: Real, length: Real) -> Real {
     way - length * floor(way / length)
 }
 
 /// Linear interpolation; exactly `low` at 0.
 #[inline]
-fn between(low: f64, high: f64, part: f64) -> f64 {
+fn between(low: Real, high: Real, part: Real) -> Real {
     low + (high - low) * part
 }

@@ -6,12 +6,11 @@
 pub(crate) mod check;
 pub(crate) mod memory;
 
-use core::f64::consts::TAU;
-
 use self::memory::{advance_filter, advance_play, follow, followed, take_up};
-use crate::math::sin;
-use crate::sample::OneSample;
-use crate::{Factor, Sample, Table};
+use super::math::sin;
+use super::real::{Real, angle};
+use super::sample::OneSample;
+use super::{Factor, Sample, Table};
 
 pub use self::memory::TermState;
 
@@ -34,21 +33,21 @@ pub enum Term<'a> {
     /// `value`: an offset, an alignment.
     Constant {
         /// The value in mm or rad.
-        value: f64,
+        value: Real,
     },
     /// The sum of `c_k q^k`, or of `c_k T^k`, from k = 0: scale, straightness, pitch; a component against temperature.
     Polynomial {
         /// The position or temperature it is a polynomial of.
         input: Input,
         /// The coefficients from k = 0 on, in mm or rad per unit of the input to the power k.
-        coefficients: &'a [f64],
+        coefficients: &'a [Real],
     },
     /// The sum of `c_k q^k` from k = 1, q of another axis: sag and cross-talk of a body that is not rigid.
     Coupling {
         /// The other axis.
         axis: usize,
         /// The coefficients from k = 1 on.
-        coefficients: &'a [f64],
+        coefficients: &'a [Real],
     },
     /// A measured curve over q, by direction where the table has two curves.
     Table {
@@ -62,23 +61,23 @@ pub enum Term<'a> {
         /// The axis.
         axis: usize,
         /// Lost motion B, in mm or rad: the axis lags by half of it behind every motion.
-        lost_motion: f64,
+        lost_motion: Real,
         /// Wind-up w, in mm or rad: the travel after a reversal over which the play is taken up; 0: at once.
-        wind_up: f64,
+        wind_up: Real,
         /// Ramp, in s: the time over which the correction of a whole reversal is spread; 0: it is made at once. The play
         /// itself knows nothing of it: see [`Term::corrected`].
-        ramp: f64,
+        ramp: Real,
     },
     /// `A sin(2 pi q / P + f)`: pitch error of a screw, interpolation error of an encoder.
     Cyclic {
         /// The axis.
         axis: usize,
         /// Period P, in mm or rad.
-        period: f64,
+        period: Real,
         /// Amplitude A, in mm or rad.
-        amplitude: f64,
+        amplitude: Real,
         /// Phase f, in rad.
-        phase: f64,
+        phase: Real,
     },
     /// `c (T - T0) q`: a scale that grows with temperature.
     Expansion {
@@ -87,27 +86,27 @@ pub enum Term<'a> {
         /// The sensor.
         sensor: usize,
         /// Coefficient c, per degC (for a slide; 11.5e-6 for steel).
-        coefficient: f64,
+        coefficient: Real,
         /// Reference temperature T0, in degC.
-        reference: f64,
+        reference: Real,
     },
     /// `c (T* - T0)`: growth of a spindle or a structure. T* is T behind a first-order filter that starts at the first T.
     Growth {
         /// The sensor.
         sensor: usize,
         /// Coefficient c, in mm or rad per degC.
-        coefficient: f64,
+        coefficient: Real,
         /// Reference temperature T0, in degC.
-        reference: f64,
+        reference: Real,
         /// Time constant of the filter, in s; 0: no filter.
-        time_constant: f64,
+        time_constant: Real,
     },
     /// `-v / K`: the following error of a position loop in its steady state.
     Lag {
         /// The axis.
         axis: usize,
         /// Gain K of the position loop, in 1/s.
-        gain: f64,
+        gain: Real,
     },
     /// A state that the next term of the list is multiplied with; several in a row are multiplied with one another.
     Factor(Factor<'a>),
@@ -121,13 +120,13 @@ impl Term<'_> {
     /// not been advanced yet answers as in its first cycle.
     #[must_use]
     #[inline]
-    pub fn value(&self, sample: &Sample<'_>, state: &TermState) -> f64 {
+    pub fn value(&self, sample: &Sample<'_>, state: &TermState) -> Real {
         self.read_one(&mut OneSample::new(sample), state, false)
     }
 
     /// The value in what is read; `memory` is what the term remembers, none before its first cycle.
     #[inline(always)]
-    pub(crate) fn read(&self, from: &mut OneSample<'_>, memory: Option<&f64>) -> f64 {
+    pub(crate) fn read(&self, from: &mut OneSample<'_>, memory: Option<&Real>) -> Real {
         match *self {
             Self::Constant { value } => value,
             Self::Polynomial { input: Input::Axis(axis), coefficients } => {
@@ -145,8 +144,7 @@ impl Term<'_> {
                 -0.5 * lost_motion * take_up(from, axis, wind_up, memory)
             }
             Self::Cyclic { axis, period, amplitude, phase } => {
-                let turn = TAU * (from.position(axis) / period);
-                amplitude * sin(turn + phase)
+                amplitude * sin(angle(from.position(axis) / period, phase))
             }
             Self::Expansion { axis, sensor, coefficient, reference } => {
                 let warmer = from.temperature(sensor) - reference;
@@ -169,13 +167,13 @@ impl Term<'_> {
     /// compensation move over steps, and ends exactly on it; a reversal on the way turns it back from where it is.
     #[must_use]
     #[inline]
-    pub fn corrected(&self, sample: &Sample<'_>, state: &TermState) -> f64 {
+    pub fn corrected(&self, sample: &Sample<'_>, state: &TermState) -> Real {
         self.read_one(&mut OneSample::new(sample), state, true)
     }
 
     /// [`value`](Self::value) in what is read of one sample, or [`corrected`](Self::corrected).
     #[inline(always)]
-    pub(crate) fn read_one(&self, from: &mut OneSample<'_>, state: &TermState, corrected: bool) -> f64 {
+    pub(crate) fn read_one(&self, from: &mut OneSample<'_>, state: &TermState, corrected: bool) -> Real {
         match *self {
             Self::Backlash { axis, lost_motion, wind_up, ramp } if ramp > 0.0 && corrected => {
                 -0.5 * lost_motion * followed(state, take_up(from, axis, wind_up, state.remembered()))
@@ -208,6 +206,6 @@ impl Term<'_> {
 }
 
 /// The polynomial with the given coefficients from the constant upwards; NaN at NaN, even where it has no coefficient.
-fn horner(coefficients: &[f64], at: f64) -> f64 {
+fn horner(coefficients: &[Real], at: Real) -> Real {
     coefficients.iter().rev().fold(0.0 * at, |sum, &coefficient| sum * at + coefficient)
 }

@@ -4,6 +4,9 @@
 //! all axes, and what stays of both errors. It exists apart from the search for the slides alone, which all other machines go through: here
 //! a rotary axis stands elsewhere than it was asked to, and takes the tip along.
 
+use super::super::math::{add_scaled, all_finite, dot, sqrt};
+use super::super::real::Real;
+use super::super::{ErrorMotions, Kinematics, Sample};
 use super::inverse::{Columns, Reach};
 use super::known::Known;
 use super::prediction::Prediction;
@@ -11,8 +14,6 @@ use super::report::{self, DirectionOutcome};
 use super::seen::{Part, Posed};
 use super::tilts::{AXES, Tilts};
 use super::{Compensator, Convergence, Limits, Outcome, Refusal, copy};
-use crate::math::{add_scaled, all_finite, dot, sqrt};
-use crate::{ErrorMotions, Kinematics, Sample};
 
 /// So many times as many steps as the slides alone may take. Their search leaves less than a thousandth of the way with each step. In front
 /// of the pose in which an axis turns the direction nowhere, axes turn up to a hundred times as far as the errors, and slides follow: a
@@ -21,17 +22,17 @@ const SLOWER: u32 = 3;
 
 /// Tip and direction of the tool without errors at the position of the sample, and what turns the direction there.
 struct Target {
-    tip: [f64; 3],
-    direction: [f64; 3],
+    tip: [Real; 3],
+    direction: [Real; 3],
     tilts: Tilts,
 }
 
 /// A pose of the rotary axes.
 struct Pose {
     /// What it moves the tip by without errors, the slides at their targets: mm.
-    tip: [f64; 3],
+    tip: [Real; 3],
     /// What it turns the direction by without errors, rad.
-    direction: [f64; 3],
+    direction: [Real; 3],
     /// What the slides reach in it.
     reach: Reach,
 }
@@ -40,22 +41,22 @@ struct Pose {
 #[derive(Clone, Copy)]
 struct Step {
     /// What the aiming axes turn by, rad.
-    angles: [f64; AXES],
+    angles: [Real; AXES],
     /// Where they stand then, and at which commands.
     posed: Posed,
     /// Error of the tip in the pose before, with all slides at their targets: mm.
-    tip: [f64; 3],
+    tip: [Real; 3],
     /// `A^+` of it, of which each slide has its share.
-    pull: [f64; 3],
+    pull: [Real; 3],
     /// Error of the direction that stays, rad.
-    lean: [f64; 3],
+    lean: [Real; 3],
 }
 
 /// The squares of how far a step went: over the rotary axes, and over the slides.
 #[derive(Clone, Copy)]
 struct Gone {
-    turned: f64,
-    moved: f64,
+    turned: Real,
+    moved: Real,
 }
 
 impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
@@ -64,8 +65,8 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
     pub(super) fn cycle_aimed(
         &mut self,
         sample: &Sample<'_>,
-        error: [f64; 3],
-        out: &mut [f64],
+        error: [Real; 3],
+        out: &mut [Real],
     ) -> Result<Outcome, Refusal> {
         let lean = self.prediction.lean(sample)?;
         if !self.enabled {
@@ -82,11 +83,11 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
     fn search_aimed(
         &mut self,
         sample: &Sample<'_>,
-        out: &mut [f64],
-    ) -> Result<(Step, [f64; 3], u32), Refusal> {
+        out: &mut [Real],
+    ) -> Result<(Step, [Real; 3], u32), Refusal> {
         let target = Target::at(self.prediction.kinematics, sample.position);
         let mut step = Step::first(self.prediction.kinematics.aiming(), sample);
-        let mut gone = Gone { turned: f64::INFINITY, moved: f64::INFINITY };
+        let mut gone = Gone { turned: Real::INFINITY, moved: Real::INFINITY };
         let most = self.convergence.iterations.saturating_mul(SLOWER);
         let mut iterations = 0_u32;
         while iterations < most {
@@ -114,7 +115,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
     }
 
     /// What the slides reach where the rotary axes are turned to.
-    fn reach_turned(&mut self, position: &[f64]) -> Result<Reach, Refusal> {
+    fn reach_turned(&mut self, position: &[Real]) -> Result<Reach, Refusal> {
         let Prediction { kinematics, sines, .. } = &self.prediction;
         kinematics.directions_with(sines, position, self.directions);
         if !all_finite(self.directions.as_flattened()) {
@@ -130,7 +131,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
         sample: &Sample<'_>,
         target: &Target,
         step: &Step,
-        out: &mut [f64],
+        out: &mut [Real],
     ) -> Result<Pose, Refusal> {
         copy(sample.position, out);
         step.posed.stands.write(out);
@@ -147,7 +148,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
 }
 
 impl Target {
-    fn at<K: Kinematics + ?Sized>(kinematics: &K, position: &[f64]) -> Self {
+    fn at<K: Kinematics + ?Sized>(kinematics: &K, position: &[Real]) -> Self {
         Self {
             tip: kinematics.nominal(position),
             direction: kinematics.direction(position),
@@ -164,7 +165,7 @@ impl Pose {
         (sample, target, convergence, limits): (&Sample<'_>, &Target, &Convergence, &Limits),
         columns: Columns<'_>,
         step: &Step,
-        out: &mut [f64],
+        out: &mut [Real],
     ) -> Result<Step, Refusal> {
         let seen = prediction.seen(sample, &step.posed, Part::Corrected, out)?;
         let tip = add_scaled(seen.tip, 1.0, self.tip);
@@ -176,7 +177,7 @@ impl Pose {
         let made = target.tilts.turned(step.angles);
         let whole = add_scaled(add_scaled(seen.lean, 1.0, self.direction), -1.0, made);
         // What the own angles take is no room for others.
-        let most = limits.rotation.map_or(f64::INFINITY, |limit| (limit - seen.own.length()).max(0.0));
+        let most = limits.rotation.map_or(Real::INFINITY, |limit| (limit - seen.own.length()).max(0.0));
         let found = target.tilts.angles(whole, most).map(|angle| -angle);
         let angles = convergence.kept(step.angles, found);
         let posed = Posed::turned(prediction.kinematics.aiming(), angles, sample);
@@ -198,10 +199,10 @@ impl Step {
     }
 
     /// How far it is to the next one, `by_motors` of it by what motors correct themselves, mm^2, `out` holding the commands of this one.
-    fn until(&self, next: &Self, reach: &Reach, by_motors: f64, out: &[f64]) -> Gone {
+    fn until(&self, next: &Self, reach: &Reach, by_motors: Real, out: &[Real]) -> Gone {
         // Not from the commands of the slides, which far from the origin are too coarse to tell when it ends.
         let moved = reach.distance_squared(add_scaled(next.tip, -1.0, self.tip)) + by_motors;
-        Gone { turned: next.posed.commands.distance_squared(out), moved }
+        Gone { turned: next.posed.commands.step_squared(out), moved }
     }
 
     /// The same with the errors that stay where a part of them is corrected in later cycles.
@@ -209,7 +210,7 @@ impl Step {
         self,
         prediction: &mut Prediction<'_, K, M>,
         sample: &Sample<'_>,
-        out: &mut [f64],
+        out: &mut [Real],
     ) -> Result<Self, Refusal> {
         if !prediction.needs.ramp {
             return Ok(self);
@@ -229,7 +230,7 @@ impl Step {
 impl Convergence {
     /// The angles found, or those of the step before where they are the same but for less than counts: what rounding changes of an angle
     /// moves the tip, far from the axis, by more than the slides are to settle to.
-    fn kept(&self, before: [f64; AXES], found: [f64; AXES]) -> [f64; AXES] {
+    fn kept(&self, before: [Real; AXES], found: [Real; AXES]) -> [Real; AXES] {
         let change = add_scaled(found, -1.0, before);
         if dot(change, change) <= self.tolerance_squared() { before } else { found }
     }
@@ -241,8 +242,8 @@ impl Gone {
         if !self.turned.is_finite() {
             return Err(Refusal::NotFinite);
         }
-        let finite = self.moved < f64::INFINITY;
-        if finite { Ok(()) } else { Err(Refusal::NotConverging { iterations, distance: f64::INFINITY }) }
+        let finite = self.moved < Real::INFINITY;
+        if finite { Ok(()) } else { Err(Refusal::NotConverging { iterations, distance: Real::INFINITY }) }
     }
 
     fn is_settled(self, convergence: &Convergence) -> bool {

@@ -4,8 +4,9 @@
 //! machines have no motors, and no axis that corrects itself or the tool: where the code of a machine is known when a program is compiled,
 //! so are these answers, and nothing is left of what hangs on them.
 
+use super::super::Kinematics;
+use super::super::real::Real;
 use super::inverse::{Columns, Reach};
-use crate::Kinematics;
 
 /// What a compensator asks a machine first.
 pub(super) trait Known: Kinematics {
@@ -35,7 +36,7 @@ pub(super) trait Known: Kinematics {
 
     /// The directions of the axes: those that are known, or else these.
     #[inline(always)]
-    fn columns<'c>(&'c self, found: &'c [[f64; 3]]) -> Columns<'c> {
+    fn columns<'c>(&'c self, found: &'c [[Real; 3]]) -> Columns<'c> {
         match self.fixed_directions() {
             Some(known) => Columns::Known(known),
             None => Columns::Found { columns: found, resting: self.resting() },

@@ -3,25 +3,22 @@
 //! In: the commands of the axes, and the error motions that motors correct by themselves. Out: the command of each motor. It exists
 //! because the error of a motor is read where the motor stands, and since two motors of one beam can turn it, as no slide can.
 
+use super::super::real::{APART, Real};
+use super::super::sample::number;
+use super::super::{Kinematics, Share};
 use super::report::{Refusal, SetupError};
-use crate::sample::number;
-use crate::{Kinematics, Share};
 
 /// The greatest number of shares of error motions that motors correct: two of them, with their own error and the rotation of their
 /// beam, for each of the slides X Y Z U V W.
 pub(super) const MOST: usize = 24;
 
-/// How far the position of a motor may be from where its axes put it, mm: what fine scales resolve, and far above what sums of positions
-/// round by.
-const ROUNDING: f64 = 1e-6;
-
 /// What motors correct by themselves in this cycle.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Corrected {
     /// The values of the error motions, mm or rad, in the order of [`Kinematics::squaring`].
-    values: [f64; MOST],
+    values: [Real; MOST],
     /// The square of how far the commands of the motors have moved between the last two readings, over all motors: mm^2.
-    moved: f64,
+    moved: Real,
 }
 
 impl Corrected {
@@ -29,18 +26,18 @@ impl Corrected {
     pub(super) const NONE: Self = Self { values: [0.0; MOST], moved: 0.0 };
 
     /// The square of how far the commands of the motors have moved with the last reading, beside the axes that they follow: mm^2.
-    pub(super) const fn moved(&self) -> f64 {
+    pub(super) const fn moved(&self) -> Real {
         self.moved
     }
 
     /// The square of what motors correct by themselves, over all motors: mm^2.
-    pub(super) fn square(&self, squaring: &[Share]) -> f64 {
+    pub(super) fn square(&self, squaring: &[Share]) -> Real {
         square(squaring, |place| number(&self.values, place))
     }
 }
 
 /// The square over all motors of the sum of shares of something, by the places of the shares.
-fn square(squaring: &[Share], of: impl Fn(usize) -> f64) -> f64 {
+fn square(squaring: &[Share], of: impl Fn(usize) -> Real) -> Real {
     let of_motor = |motor: usize| {
         let own = squaring.iter().enumerate().filter(|(_, share)| share.motor == motor);
         own.fold(0.0, |sum, (place, share)| sum + share.weight * of(place))
@@ -82,13 +79,13 @@ pub(super) fn check_shares<K: Kinematics + ?Sized>(kinematics: &K) -> Result<(),
 /// Refuses positions of motors that are not where their axes put them.
 #[cold]
 #[inline(never)]
-pub(super) fn check_positions(following: &[Share], position: &[f64]) -> Result<(), Refusal> {
+pub(super) fn check_positions(following: &[Share], position: &[Real]) -> Result<(), Refusal> {
     for motor in following.iter().map(|share| share.motor) {
         let own = following.iter().filter(|share| share.motor == motor);
         let expected = own.fold(0.0, |sum, share| sum + share.weight * number(position, share.of));
         let found = number(position, motor);
         // Not `>`: also at NaN, which no comparison lets through.
-        let fits = (found - expected).abs() <= ROUNDING;
+        let fits = (found - expected).abs() <= APART;
         if !fits {
             return Err(Refusal::Motor { axis: motor, expected, found });
         }
@@ -99,7 +96,7 @@ pub(super) fn check_positions(following: &[Share], position: &[f64]) -> Result<(
 /// Keeps what motors correct, and leaves nothing of it in the values.
 #[cold]
 #[inline(never)]
-pub(super) fn take(squaring: &[Share], values: &mut [f64], corrected: &mut Corrected) {
+pub(super) fn take(squaring: &[Share], values: &mut [Real], corrected: &mut Corrected) {
     let before = corrected.values;
     for (share, kept) in squaring.iter().zip(&mut corrected.values) {
         *kept = number(values, share.of);
@@ -116,7 +113,7 @@ pub(super) fn take(squaring: &[Share], values: &mut [f64], corrected: &mut Corre
 /// Takes from the values what motors correct in this cycle.
 #[cold]
 #[inline(never)]
-pub(super) fn subtract(squaring: &[Share], values: &mut [f64], corrected: &Corrected) {
+pub(super) fn subtract(squaring: &[Share], values: &mut [Real], corrected: &Corrected) {
     for (place, (share, kept)) in squaring.iter().zip(&corrected.values).enumerate() {
         // The rotation of a beam stands there for each of its motors.
         let again = squaring.iter().take(place).any(|before| before.of == share.of);
@@ -131,9 +128,9 @@ pub(super) fn subtract(squaring: &[Share], values: &mut [f64], corrected: &Corre
 #[inline(never)]
 pub(super) fn follow<K: Kinematics + ?Sized>(
     kinematics: &K,
-    target: &[f64],
+    target: &[Real],
     corrected: &Corrected,
-    out: &mut [f64],
+    out: &mut [Real],
 ) {
     for share in kinematics.following() {
         if let Some(command) = out.get_mut(share.motor) {

@@ -3,13 +3,14 @@
 //! In: the state of the machine in one cycle, and what the terms remember. Out: the error at the tool tip there, or at other
 //! positions in the same state. It exists beside the search for the command, which asks it again and again.
 
+use super::super::math::all_finite;
+use super::super::real::Real;
+use super::super::sample::number;
+use super::super::{ErrorMotions, Kinematics, MotionReader, Sample, Sines, TermState};
 use super::known::Known;
 use super::motors::{self, Corrected};
 use super::turns::{Turned, Turns};
 use super::{Convergence, Needs, Refusal, copy, same_length};
-use crate::math::all_finite;
-use crate::sample::number;
-use crate::{ErrorMotions, Kinematics, MotionReader, Sample, Sines, TermState};
 
 /// The equations of a machine, its error motions, and the storage in which they are evaluated.
 #[derive(Debug)]
@@ -19,9 +20,9 @@ pub(super) struct Prediction<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Size
     /// What each term remembers.
     pub(super) states: &'a mut [TermState],
     /// The value of each error motion.
-    pub(super) values: &'a mut [f64],
+    pub(super) values: &'a mut [Real],
     /// The value of each free travel.
-    pub(super) travel: &'a mut [f64],
+    pub(super) travel: &'a mut [Real],
     /// What the equations need of rotary axes in this cycle.
     pub(super) sines: Sines,
     /// What motors correct by themselves in this cycle.
@@ -32,7 +33,7 @@ pub(super) struct Prediction<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Size
 impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> {
     /// Begins a cycle: checks the sample, takes the memories over to it, and gives the error at its position.
     #[inline]
-    pub(super) fn begin(&mut self, sample: &Sample<'_>) -> Result<[f64; 3], Refusal> {
+    pub(super) fn begin(&mut self, sample: &Sample<'_>) -> Result<[Real; 3], Refusal> {
         self.check(sample)?;
         if self.kinematics.motors_correct() {
             self.by_motors = Corrected::NONE;
@@ -89,7 +90,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
 
     /// The error at a position in the state of the sample, the rotary axes where they are there; memories are read only.
     #[inline(always)]
-    pub(super) fn error(&mut self, sample: &Sample<'_>, position: &[f64]) -> Result<[f64; 3], Refusal> {
+    pub(super) fn error(&mut self, sample: &Sample<'_>, position: &[Real]) -> Result<[Real; 3], Refusal> {
         let from = MotionReader::new(sample, position, self.states);
         let values = self.motions.read(from, self.values);
         sum(self.kinematics, &self.sines, sample, position, self.travel, values)
@@ -103,8 +104,8 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
         &mut self,
         sample: &Sample<'_>,
         turned: Option<&Turned>,
-        out: &mut [f64],
-    ) -> Result<[f64; 3], Refusal> {
+        out: &mut [Real],
+    ) -> Result<[Real; 3], Refusal> {
         let from = MotionReader::new(sample, out, self.states);
         let mut values = self.motions.read(from, self.values).ok_or(Refusal::NotFinite)?;
         motors::subtract(self.kinematics.squaring(), values.as_mut(), &self.by_motors);
@@ -122,7 +123,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
 
     /// Writes the commands of the motors behind those of the axes that they follow.
     #[inline]
-    pub(super) fn let_motors_follow(&self, target: &[f64], out: &mut [f64]) {
+    pub(super) fn let_motors_follow(&self, target: &[Real], out: &mut [Real]) {
         if self.kinematics.has_motors() {
             motors::follow(self.kinematics, target, &self.by_motors, out);
         }
@@ -130,13 +131,13 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
 
     /// The square of how far motors went with the last reading by what they correct themselves: mm^2.
     #[inline]
-    pub(super) fn motors_moved(&self) -> f64 {
+    pub(super) fn motors_moved(&self) -> Real {
         if self.kinematics.motors_correct() { self.by_motors.moved() } else { 0.0 }
     }
 
     /// The square of what motors correct by themselves: mm^2.
     #[inline]
-    pub(super) fn by_motors_squared(&self) -> f64 {
+    pub(super) fn by_motors_squared(&self) -> Real {
         if self.kinematics.motors_correct() { self.by_motors.square(self.kinematics.squaring()) } else { 0.0 }
     }
 
@@ -147,7 +148,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
         &self,
         sample: &Sample<'_>,
         convergence: &Convergence,
-        out: &mut [f64],
+        out: &mut [Real],
     ) -> Result<Option<Turned>, Refusal> {
         let turns = &self.needs.turns;
         if !self.kinematics.axes_turn() || turns.is_empty() {
@@ -164,8 +165,8 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
         &mut self,
         sample: &Sample<'_>,
         turned: &Turned,
-        out: &mut [f64],
-    ) -> Result<[f64; 3], Refusal> {
+        out: &mut [Real],
+    ) -> Result<[Real; 3], Refusal> {
         let from = MotionReader::of_corrected(sample, out, self.states);
         let values = without(&self.needs.turns, values::<READING, _>(self.motions, from, self.values));
         let values = left_by_motors(self.kinematics, values, &mut self.by_motors);
@@ -175,7 +176,7 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
     /// The part of the error at the target that is corrected in this cycle.
     #[cold]
     #[inline(never)]
-    pub(super) fn corrected_at_target(&mut self, sample: &Sample<'_>) -> Result<[f64; 3], Refusal> {
+    pub(super) fn corrected_at_target(&mut self, sample: &Sample<'_>) -> Result<[Real; 3], Refusal> {
         self.corrected::<FIRST>(sample, sample.position)
     }
 
@@ -184,8 +185,8 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'a, K, M> 
     pub(super) fn corrected<const READING: bool>(
         &mut self,
         sample: &Sample<'_>,
-        position: &[f64],
-    ) -> Result<[f64; 3], Refusal> {
+        position: &[Real],
+    ) -> Result<[Real; 3], Refusal> {
         let from = MotionReader::of_corrected(sample, position, self.states);
         let values = values::<READING, _>(self.motions, from, self.values);
         let values = left_by_motors(self.kinematics, values, &mut self.by_motors);
@@ -205,14 +206,14 @@ pub(super) const AGAIN: bool = true;
 fn values<'k, const READING: bool, M: ErrorMotions + ?Sized>(
     motions: &M,
     from: MotionReader<'_>,
-    kept: &'k mut [f64],
+    kept: &'k mut [Real],
 ) -> Option<M::Values<'k>> {
     if READING == AGAIN { motions.read_moved(from, kept) } else { motions.read(from, kept) }
 }
 
 /// The values of the error motions without those of own angles, which rotary axes correct.
 #[inline]
-fn without<V: AsMut<[f64]>>(turns: &Turns, mut values: Option<V>) -> Option<V> {
+fn without<V: AsMut<[Real]>>(turns: &Turns, mut values: Option<V>) -> Option<V> {
     let numbers = values.as_mut()?.as_mut();
     for motion in turns.motions() {
         if let Some(value) = numbers.get_mut(motion) {
@@ -224,7 +225,7 @@ fn without<V: AsMut<[f64]>>(turns: &Turns, mut values: Option<V>) -> Option<V> {
 
 /// The values of the error motions without those that motors correct, which are kept apart.
 #[inline(always)]
-fn left_by_motors<K: Kinematics + ?Sized, V: AsMut<[f64]>>(
+fn left_by_motors<K: Kinematics + ?Sized, V: AsMut<[Real]>>(
     kinematics: &K,
     mut values: Option<V>,
     kept: &mut Corrected,
@@ -241,10 +242,10 @@ fn standing<K: Kinematics + ?Sized>(
     kinematics: &K,
     sines: &Sines,
     (sample, turned): (&Sample<'_>, &Turned),
-    out: &mut [f64],
-    travel: &mut [f64],
-    values: Option<impl AsRef<[f64]>>,
-) -> Result<[f64; 3], Refusal> {
+    out: &mut [Real],
+    travel: &mut [Real],
+    values: Option<impl AsRef<[Real]>>,
+) -> Result<[Real; 3], Refusal> {
     turned.stand(sample.position, out);
     sum(kinematics, sines, sample, out, travel, values)
 }
@@ -258,10 +259,10 @@ fn sum<K: Kinematics + ?Sized>(
     kinematics: &K,
     sines: &Sines,
     sample: &Sample<'_>,
-    position: &[f64],
-    travel: &mut [f64],
-    values: Option<impl AsRef<[f64]>>,
-) -> Result<[f64; 3], Refusal> {
+    position: &[Real],
+    travel: &mut [Real],
+    values: Option<impl AsRef<[Real]>>,
+) -> Result<[Real; 3], Refusal> {
     let values = values.ok_or(Refusal::NotFinite)?;
     let travel = travels(kinematics, sample, position, travel)?;
     Ok(kinematics.error_with(sines, position, travel, values.as_ref()))
@@ -272,9 +273,9 @@ fn sum<K: Kinematics + ?Sized>(
 pub(super) fn travels<'t, K: Kinematics + ?Sized>(
     kinematics: &K,
     sample: &'t Sample<'_>,
-    position: &[f64],
-    travel: &'t mut [f64],
-) -> Result<&'t [f64], Refusal> {
+    position: &[Real],
+    travel: &'t mut [Real],
+) -> Result<&'t [Real], Refusal> {
     if !sample.travel.is_empty() {
         return Ok(sample.travel);
     }

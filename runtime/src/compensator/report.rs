@@ -5,23 +5,24 @@
 
 use core::fmt;
 
-use crate::math::sqrt;
+use super::super::math::sqrt;
+use super::super::real::{Real, TOLERANCE};
 
 /// What a correction must not exceed.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Limits {
     /// Greatest length of a correction over all slides, and over what motors of a beam correct by themselves beside the slide that they
     /// carry, in mm; none: no limit. A NaN refuses every correction.
-    pub compensation: Option<f64>,
+    pub compensation: Option<Real>,
     /// Greatest correction of rotary axes, over all of them, in rad; none: no limit. A NaN refuses every correction. What an axis that lies
     /// nearly along the tool would turn for its direction is cut to it, and not refused.
-    pub rotation: Option<f64>,
+    pub rotation: Option<Real>,
 }
 
 impl Limits {
     /// Refuses a correction over the limit; its length over all axes is asked for where there is one.
     #[inline]
-    pub(super) fn check(&self, length: impl FnOnce() -> f64) -> Result<(), Refusal> {
+    pub(super) fn check(&self, length: impl FnOnce() -> Real) -> Result<(), Refusal> {
         let Some(limit) = self.compensation else { return Ok(()) };
         let correction = length();
         // Not `>`: also at NaN, which no comparison lets through.
@@ -29,7 +30,7 @@ impl Limits {
     }
 
     /// Refuses a correction of rotary axes over the limit.
-    pub(super) fn check_rotation(&self, correction: f64) -> Result<(), Refusal> {
+    pub(super) fn check_rotation(&self, correction: Real) -> Result<(), Refusal> {
         match self.rotation {
             None => Ok(()),
             Some(limit) if correction <= limit => Ok(()),
@@ -47,11 +48,11 @@ impl Limits {
 /// Rotary axes that correct the direction of the tool turn at most this many times as far as the direction is to turn. A rotary axis that
 /// lies along the tool turns it nowhere, and many machines cut most of the time in that pose or near it: there nothing is refused, and
 /// what the axes do not correct is told in [`DirectionOutcome::remaining`].
-pub const GREATEST_AMPLIFICATION: f64 = 100.0;
+pub const GREATEST_AMPLIFICATION: Real = 100.0;
 
 /// Refuses a correction for which the axes would move too far beside the tip, from the squares of both ways.
 #[inline]
-pub(super) fn check_amplification([moved, corrected]: [f64; 2]) -> Result<(), Refusal> {
+pub(super) fn check_amplification([moved, corrected]: [Real; 2]) -> Result<(), Refusal> {
     if moved > GREATEST_AMPLIFICATION * GREATEST_AMPLIFICATION * corrected {
         return Err(Refusal::NearSingular { amplification: sqrt(moved / corrected) });
     }
@@ -65,7 +66,7 @@ pub struct Convergence {
     /// times as many.
     pub iterations: u32,
     /// Length over all slides below which a step ends the search, in mm; for the angles of rotary axes, in rad.
-    pub tolerance: f64,
+    pub tolerance: Real,
 }
 
 impl Convergence {
@@ -73,15 +74,15 @@ impl Convergence {
     ///
     /// Squares are compared: a root would be worked out at every step.
     #[inline]
-    pub(super) const fn tolerance_squared(&self) -> f64 {
+    pub(super) const fn tolerance_squared(&self) -> Real {
         self.tolerance * self.tolerance.abs()
     }
 }
 
 impl Default for Convergence {
-    /// 20 steps, 1e-10 mm or rad.
+    /// 20 steps, 1e-10 mm or rad; in `single` 1e-6 mm or rad.
     fn default() -> Self {
-        Self { iterations: 20, tolerance: 1e-10 }
+        Self { iterations: 20, tolerance: TOLERANCE }
     }
 }
 
@@ -89,33 +90,33 @@ impl Default for Convergence {
 #[derive(Debug)]
 pub struct Work<'a> {
     /// One vector for each axis.
-    pub directions: &'a mut [[f64; 3]],
+    pub directions: &'a mut [[Real; 3]],
     /// One number for each error motion.
-    pub motions: &'a mut [f64],
+    pub motions: &'a mut [Real],
     /// One number for each free travel.
-    pub travel: &'a mut [f64],
+    pub travel: &'a mut [Real],
 }
 
 /// What was found for one sample.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Outcome {
     /// Error of the tool tip relative to the part at the position of the sample, without compensation: mm, part frame.
-    pub error: [f64; 3],
+    pub error: [Real; 3],
     /// Error that stays at the position written, since no axis can correct it or a ramp leaves it for later cycles: mm,
     /// part frame. All of it when switched off.
-    pub remaining: [f64; 3],
+    pub remaining: [Real; 3],
     /// Steps that the search took; 0 when switched off.
     pub iterations: u32,
 }
 
-/// What was found of the direction of the tool for one sample, on a machine that [corrects](crate::Kinematics::aiming) it.
+/// What was found of the direction of the tool for one sample, on a machine that [corrects](super::super::Kinematics::aiming) it.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct DirectionOutcome {
     /// Error of the direction at the position of the sample, without compensation: I, J, K in rad, part frame.
-    pub error: [f64; 3],
+    pub error: [Real; 3],
     /// Error that stays at the position written: no axis turns the direction that way, or it would have to turn too far (see
     /// [`GREATEST_AMPLIFICATION`]), or a ramp leaves it for later cycles. All of it when switched off.
-    pub remaining: [f64; 3],
+    pub remaining: [Real; 3],
 }
 
 /// Why a sample was not compensated. The position written is then that of the sample.
@@ -135,50 +136,50 @@ pub enum Refusal {
     /// The time step is below zero.
     NegativeTimeStep {
         /// The time step, in s.
-        time_step: f64,
+        time_step: Real,
     },
-    /// A motor does not stand where its axes put it, see [`Kinematics::following`](crate::Kinematics::following).
+    /// A motor does not stand where its axes put it, see [`Kinematics::following`](super::super::Kinematics::following).
     Motor {
         /// Index of the motor among the axes.
         axis: usize,
         /// Where its axes put it, in mm.
-        expected: f64,
+        expected: Real,
         /// Where the sample has it, in mm.
-        found: f64,
+        found: Real,
     },
     /// The search did not settle: the error changes about as fast as the position, or faster.
     NotConverging {
         /// Steps taken.
         iterations: u32,
         /// Length of the last step over all slides, in mm.
-        distance: f64,
+        distance: Real,
     },
     /// The search for the angles of the rotary axes did not settle: the error of an angle changes about as fast as the angle.
     AngleNotConverging {
         /// Steps taken.
         iterations: u32,
         /// The last step over all rotary axes, in rad.
-        angle: f64,
+        angle: Real,
     },
     /// The correction is longer than the limit.
     OverLimit {
         /// Length of the correction over all slides, in mm.
-        correction: f64,
+        correction: Real,
         /// The limit, in mm.
-        limit: f64,
+        limit: Real,
     },
     /// The correction of the rotary axes is greater than its limit.
     OverRotationLimit {
         /// The correction over all rotary axes, in rad.
-        correction: f64,
+        correction: Real,
         /// The limit, in rad.
-        limit: f64,
+        limit: Real,
     },
     /// The axes would have to move far against one another to move the tip a little: in this pose they move it in nearly the same
     /// direction, see [`GREATEST_AMPLIFICATION`].
     NearSingular {
         /// How many times as far as the tip the axes would move.
-        amplification: f64,
+        amplification: Real,
     },
 }
 
@@ -240,20 +241,20 @@ pub enum SetupError {
         /// The axis it names.
         axis: usize,
     },
-    /// An entry of [`Kinematics::turning`](crate::Kinematics::turning) names an axis or an error motion that the machine lacks,
+    /// An entry of [`Kinematics::turning`](super::super::Kinematics::turning) names an axis or an error motion that the machine lacks,
     /// stands before one of an earlier axis, or is more than three rotary axes have.
     Turning {
         /// Index of the entry.
         turning: usize,
     },
-    /// A share of [`Kinematics::following`](crate::Kinematics::following) or, counted on behind these, of
-    /// [`Kinematics::squaring`](crate::Kinematics::squaring) names what the machine lacks, is not finite, or is one too many; or a motor
+    /// A share of [`Kinematics::following`](super::super::Kinematics::following) or, counted on behind these, of
+    /// [`Kinematics::squaring`](super::super::Kinematics::squaring) names what the machine lacks, is not finite, or is one too many; or a motor
     /// follows another one.
     Share {
         /// Index of the share.
         share: usize,
     },
-    /// An entry of [`Kinematics::aiming`](crate::Kinematics::aiming) names an axis that the machine lacks, or is with those of own
+    /// An entry of [`Kinematics::aiming`](super::super::Kinematics::aiming) names an axis that the machine lacks, or is with those of own
     /// angles one more than three rotary axes.
     Aiming {
         /// Index of the entry.

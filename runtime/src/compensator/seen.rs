@@ -3,13 +3,14 @@
 //! In: commands, and where the rotary axes stand with them. Out: both errors in that pose, and what the axes' own angles are wrong by. It
 //! exists because error motions belong to the commands and lever arms to the angles at which the axes stand.
 
+use super::super::math::all_finite;
+use super::super::real::Real;
+use super::super::sample::number;
+use super::super::{ErrorMotions, Kinematics, MotionReader, Sample};
 use super::Refusal;
 use super::motors;
 use super::prediction::{Prediction, travels};
 use super::turns::Turned;
-use crate::math::all_finite;
-use crate::sample::number;
-use crate::{ErrorMotions, Kinematics, MotionReader, Sample};
 
 /// Which part of the error motions counts.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -23,9 +24,9 @@ pub(super) enum Part {
 /// What was found in a pose.
 pub(super) struct Seen {
     /// Error of the tip, mm.
-    pub(super) tip: [f64; 3],
+    pub(super) tip: [Real; 3],
     /// Error of the direction, rad.
-    pub(super) lean: [f64; 3],
+    pub(super) lean: [Real; 3],
     /// The corrections of the axes' own angles, from zero on: rad.
     pub(super) own: Turned,
 }
@@ -39,7 +40,7 @@ pub(super) struct Posed {
 
 impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
     /// The error of the direction at the position of the sample, without any correction.
-    pub(super) fn lean(&mut self, sample: &Sample<'_>) -> Result<[f64; 3], Refusal> {
+    pub(super) fn lean(&mut self, sample: &Sample<'_>) -> Result<[Real; 3], Refusal> {
         let from = MotionReader::new(sample, sample.position, self.states);
         let values = self.motions.read(from, self.values).ok_or(Refusal::NotFinite)?;
         let travel = travels(self.kinematics, sample, sample.position, self.travel)?;
@@ -54,7 +55,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
         sample: &Sample<'_>,
         posed: &Posed,
         part: Part,
-        out: &mut [f64],
+        out: &mut [Real],
     ) -> Result<Seen, Refusal> {
         let (kinematics, motions) = (self.kinematics, self.motions.motions());
         let from = match part {
@@ -88,7 +89,7 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Prediction<'_, K, M> {
 
 impl Posed {
     /// The axes at these angles beyond their targets, and none that corrects its own angle yet.
-    pub(super) fn turned(axes: &[usize], angles: [f64; 3], sample: &Sample<'_>) -> Self {
+    pub(super) fn turned(axes: &[usize], angles: [Real; 3], sample: &Sample<'_>) -> Self {
         let mut stands = Turned::default();
         for (&axis, angle) in axes.iter().zip(angles) {
             stands.add(axis, number(sample.position, axis), angle);

@@ -3,10 +3,10 @@
 //! In: the equations, the error motions and the storage of a caller. Out: the sensors needed and whether velocities are, or
 //! the first mistake. It exists so that the cycle itself has nothing left that can fail for a wrong set-up.
 
+use super::super::{ErrorMotion, Kinematics, Term, TermState};
 use super::turns::Turns;
 use super::{SetupError, Work};
 use super::{motors, tilts};
-use crate::{ErrorMotion, Kinematics, Term, TermState};
 
 /// What the terms need of every sample.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]

@@ -4,11 +4,12 @@
 //! it stands at the angle wanted. It exists apart from the search for the slides, since an angle that is right on its own axis moves
 //! the tip nowhere and leaves its direction right; the slides then correct what is left.
 
+use super::super::math::sqrt;
+use super::super::real::{COARSE, Real};
+use super::super::sample::{OneSample, number};
+use super::super::{ErrorMotion, Kinematics, Sample, TermState, Turning};
 use super::report::{Convergence, Refusal, SetupError};
 use super::tilts::AXES;
-use crate::math::sqrt;
-use crate::sample::{OneSample, number};
-use crate::{ErrorMotion, Kinematics, Sample, TermState, Turning};
 
 /// The greatest number of error motions of own angles: for each rotary axis its positioning error and its zero.
 pub(super) const MOST: usize = 6;
@@ -29,7 +30,7 @@ pub(super) struct Turns {
 /// The commands of the rotary axes that correct their own angle.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub(super) struct Turned {
-    commands: [Option<(usize, f64)>; AXES],
+    commands: [Option<(usize, Real)>; AXES],
 }
 
 impl Turns {
@@ -78,8 +79,8 @@ impl Turns {
         motions: &[ErrorMotion<'_>],
         states: &[TermState],
         sample: &Sample<'_>,
-        position: &[f64],
-    ) -> f64 {
+        position: &[Real],
+    ) -> Real {
         let own = self.own.iter().flatten().find(|own| own.turning.motion == motion);
         own.map_or(0.0, |own| own.corrected(motions, states, sample, position))
     }
@@ -92,13 +93,13 @@ impl Turns {
         states: &[TermState],
         sample: &Sample<'_>,
         convergence: &Convergence,
-        out: &mut [f64],
+        out: &mut [Real],
     ) -> Result<Turned, Refusal> {
         let bound = convergence.tolerance_squared();
-        let mut square = f64::INFINITY;
+        let mut square = Real::INFINITY;
         for _ in 0..convergence.iterations {
             let turned = self.step(motions, states, sample, out);
-            square = turned.distance_squared(out);
+            square = turned.step_squared(out);
             if !square.is_finite() {
                 return Err(Refusal::NotFinite);
             }
@@ -116,7 +117,7 @@ impl Turns {
         motions: &[ErrorMotion<'_>],
         states: &[TermState],
         sample: &Sample<'_>,
-        position: &[f64],
+        position: &[Real],
     ) -> Turned {
         let mut turned = Turned::default();
         for own in self.own.iter().flatten() {
@@ -138,9 +139,9 @@ impl Own {
         motions: &[ErrorMotion<'_>],
         states: &[TermState],
         sample: &Sample<'_>,
-        position: &[f64],
-    ) -> f64 {
-        let Some(motion) = motions.get(self.turning.motion) else { return f64::NAN };
+        position: &[Real],
+    ) -> Real {
+        let Some(motion) = motions.get(self.turning.motion) else { return Real::NAN };
         let last_term = self.first_term.saturating_add(motion.terms.len());
         let states = states.get(self.first_term..last_term).unwrap_or_default();
         motion.read(&mut OneSample::at(sample, position), states, true)
@@ -149,7 +150,7 @@ impl Own {
 
 impl Turned {
     /// Adds to the command of an axis, which is the target before.
-    pub(super) fn add(&mut self, axis: usize, target: f64, correction: f64) {
+    pub(super) fn add(&mut self, axis: usize, target: Real, correction: Real) {
         let known = self.commands.iter_mut().find(|known| known.is_none_or(|(known, _)| known == axis));
         if let Some(command) = known {
             let (_, before) = command.unwrap_or((axis, target));
@@ -158,31 +159,45 @@ impl Turned {
     }
 
     /// How far the axes turn, over all of them, where commands are corrections: rad.
-    pub(super) fn length(&self) -> f64 {
+    pub(super) fn length(&self) -> Real {
         sqrt(self.iter().fold(0.0, |sum, (_, command)| sum + command * command))
     }
 
     /// The axes that have a command, and these commands.
-    pub(super) fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
+    pub(super) fn iter(&self) -> impl Iterator<Item = (usize, Real)> {
         self.commands.iter().flatten().copied()
     }
 
     /// The square of the way from these positions to the commands, over all axes that have one.
-    pub(super) fn distance_squared(&self, position: &[f64]) -> f64 {
+    pub(super) fn distance_squared(&self, position: &[Real]) -> Real {
         self.commands.iter().flatten().fold(0.0, |sum, &(axis, command)| {
             let part = command - number(position, axis);
             sum + part * part
         })
     }
 
+    /// [`distance_squared`](Self::distance_squared) as a step of a search: where commands are coarse, one between neighbours is none.
+    #[inline]
+    pub(super) fn step_squared(&self, position: &[Real]) -> Real {
+        if !COARSE {
+            return self.distance_squared(position);
+        }
+        self.commands.iter().flatten().fold(0.0, |sum, &(axis, command)| {
+            let part = command - number(position, axis);
+            // A number of this size has steps of half as much, or as much.
+            let neighbours = part.abs() <= Real::EPSILON * command.abs();
+            if neighbours { sum } else { sum + part * part }
+        })
+    }
+
     /// How far the axes turn from their targets, over all of them: rad.
-    pub(super) fn correction(&self, target: &[f64]) -> f64 {
+    pub(super) fn correction(&self, target: &[Real]) -> Real {
         sqrt(self.distance_squared(target))
     }
 
     /// Writes the commands.
     #[inline]
-    pub(super) fn write(&self, out: &mut [f64]) {
+    pub(super) fn write(&self, out: &mut [Real]) {
         for &(axis, command) in self.commands.iter().flatten() {
             set(out, axis, command);
         }
@@ -190,7 +205,7 @@ impl Turned {
 
     /// Writes in their place where the axes really stand with them: at the angles wanted.
     #[inline]
-    pub(super) fn stand(&self, target: &[f64], out: &mut [f64]) {
+    pub(super) fn stand(&self, target: &[Real], out: &mut [Real]) {
         for &(axis, _) in self.commands.iter().flatten() {
             set(out, axis, number(target, axis));
         }
@@ -198,7 +213,7 @@ impl Turned {
 }
 
 /// Writes one number, where there is a place for it.
-fn set(out: &mut [f64], axis: usize, number: f64) {
+fn set(out: &mut [Real], axis: usize, number: Real) {
     if let Some(out) = out.get_mut(axis) {
         *out = number;
     }

@@ -3,12 +3,13 @@
 //! In: a sample, and the memories of all terms. Out: the value of each error motion, or of each term, in its turn. It exists
 //! so that motions that are known when the code is compiled and motions that come from a file go through the same formulas.
 
-use crate::sample::OneSample;
-use crate::{Bundle, ErrorMotion, Sample, Term, TermState};
+use super::super::real::Real;
+use super::super::sample::OneSample;
+use super::super::{Bundle, ErrorMotion, Sample, Term, TermState};
 
 /// Reads the terms of a machine's error motions, each in its turn, in one state of the machine.
 ///
-/// It is what [`ErrorMotions::read`](crate::ErrorMotions::read) is given.
+/// It is what [`ErrorMotions::read`](super::super::ErrorMotions::read) is given.
 #[derive(Debug)]
 pub struct MotionReader<'a> {
     from: OneSample<'a>,
@@ -23,7 +24,7 @@ pub struct MotionReader<'a> {
 impl<'a> MotionReader<'a> {
     /// A reader of what the error motions are at a position, in the state of a sample.
     #[inline]
-    pub(crate) const fn new(sample: &'a Sample<'a>, position: &'a [f64], states: &'a [TermState]) -> Self {
+    pub(crate) const fn new(sample: &'a Sample<'a>, position: &'a [Real], states: &'a [TermState]) -> Self {
         Self { from: OneSample::at(sample, position), states, read: 0, corrected: false }
     }
 
@@ -31,7 +32,7 @@ impl<'a> MotionReader<'a> {
     #[inline]
     pub(crate) const fn of_corrected(
         sample: &'a Sample<'a>,
-        position: &'a [f64],
+        position: &'a [Real],
         states: &'a [TermState],
     ) -> Self {
         Self { from: OneSample::at(sample, position), states, read: 0, corrected: true }
@@ -49,8 +50,8 @@ impl<'a> MotionReader<'a> {
     /// The value of the next term, in mm or rad; NaN where it has no memory left.
     #[inline(always)]
     #[must_use]
-    pub fn term(&mut self, term: &Term<'_>) -> f64 {
-        let Some(state) = self.states.get(self.read) else { return f64::NAN };
+    pub fn term(&mut self, term: &Term<'_>) -> Real {
+        let Some(state) = self.states.get(self.read) else { return Real::NAN };
         self.read = self.read.saturating_add(1);
         term.read_one(&mut self.from, state, self.corrected)
     }
@@ -61,14 +62,14 @@ impl<'a> MotionReader<'a> {
     pub fn bundle<const CURVES: usize, const ROWS: usize>(
         &self,
         bundle: &Bundle<CURVES, ROWS>,
-    ) -> Option<[f64; CURVES]> {
+    ) -> Option<[Real; CURVES]> {
         self.from.bundle(bundle)
     }
 
     /// The value of the next term, which was read before its turn.
     #[inline]
     #[must_use]
-    pub fn known(&mut self, value: f64) -> f64 {
+    pub fn known(&mut self, value: Real) -> Real {
         self.pass_over(1);
         value
     }
@@ -82,7 +83,7 @@ impl<'a> MotionReader<'a> {
 
     /// The value of the next error motion, in mm or rad; NaN where its terms have no memories left.
     #[inline]
-    pub(super) fn motion(&mut self, motion: &ErrorMotion<'_>) -> f64 {
+    pub(super) fn motion(&mut self, motion: &ErrorMotion<'_>) -> Real {
         let first = self.read;
         self.pass_over(motion.terms.len());
         match motion.read_alone(&mut self.from) {

@@ -3,14 +3,15 @@
 //! In: a [`Sample`], and a position that need not be its own. Out: positions, velocities, temperatures, directions, and tables read
 //! there. It exists because the inverse reads the same state at one position after the other.
 
+use super::super::real::Real;
+use super::super::table::Place;
+use super::super::{Bundle, Direction, Table};
 use super::Sample;
-use crate::table::Place;
-use crate::{Bundle, Direction, Table};
 
 /// One sample, or its state at another position.
 #[derive(Debug)]
 pub(crate) struct OneSample<'a> {
-    position: &'a [f64],
+    position: &'a [Real],
     direction: &'a [Direction],
     /// All else of the sample.
     others: &'a Sample<'a>,
@@ -26,7 +27,7 @@ impl<'a> OneSample<'a> {
 
     /// The state of a sample at another position.
     #[inline]
-    pub(crate) const fn at(sample: &'a Sample<'a>, position: &'a [f64]) -> Self {
+    pub(crate) const fn at(sample: &'a Sample<'a>, position: &'a [Real]) -> Self {
         Self { position, direction: sample.direction, others: sample, place: None }
     }
 
@@ -34,7 +35,7 @@ impl<'a> OneSample<'a> {
     /// on. None where there are others.
     #[inline]
     pub(crate) fn sized<const AXES: usize>(self) -> Option<Self> {
-        let position: &[f64; AXES] = self.position.try_into().ok()?;
+        let position: &[Real; AXES] = self.position.try_into().ok()?;
         let direction: &[Direction; AXES] = self.direction.try_into().ok()?;
         Some(Self { position, direction, others: self.others, place: None })
     }
@@ -44,43 +45,43 @@ impl<'a> OneSample<'a> {
     pub(crate) fn bundle<const CURVES: usize, const ROWS: usize>(
         &self,
         bundle: &Bundle<CURVES, ROWS>,
-    ) -> Option<[f64; CURVES]> {
+    ) -> Option<[Real; CURVES]> {
         bundle.read(self.position, self.direction)
     }
 
     /// Position of an axis, in mm or rad; NaN where there is none, as below.
     #[inline]
-    pub(crate) fn position(&self, axis: usize) -> f64 {
+    pub(crate) fn position(&self, axis: usize) -> Real {
         number(self.position, axis)
     }
 
     /// Velocity of an axis, in mm/s or rad/s.
     #[inline]
-    pub(crate) fn velocity(&self, axis: usize) -> f64 {
+    pub(crate) fn velocity(&self, axis: usize) -> Real {
         number(self.others.velocity, axis)
     }
 
     /// Temperature of a sensor, in degC.
     #[inline]
-    pub(crate) fn temperature(&self, sensor: usize) -> f64 {
+    pub(crate) fn temperature(&self, sensor: usize) -> Real {
         number(self.others.temperature, sensor)
     }
 
     /// Direction of an axis: +1 or -1.
     #[inline]
-    pub(crate) fn sign(&self, axis: usize) -> f64 {
-        self.direction.get(axis).map_or(f64::NAN, |direction| direction.sign())
+    pub(crate) fn sign(&self, axis: usize) -> Real {
+        self.direction.get(axis).map_or(Real::NAN, |direction| direction.sign())
     }
 
     /// A table at the position of an axis, on the curve of its direction.
     #[inline(always)]
-    pub(crate) fn table(&mut self, table: &Table<'_>, axis: usize) -> f64 {
+    pub(crate) fn table(&mut self, table: &Table<'_>, axis: usize) -> Real {
         table.read(axis, self.position, self.direction, &mut self.place)
     }
 }
 
 /// The number at an index; NaN where there is none.
 #[inline]
-pub(crate) fn number(slice: &[f64], index: usize) -> f64 {
-    slice.get(index).copied().unwrap_or(f64::NAN)
+pub(crate) fn number(slice: &[Real], index: usize) -> Real {
+    slice.get(index).copied().unwrap_or(Real::NAN)
 }

@@ -4,22 +4,22 @@
 //! a jump. It exists because every switch is the same problem: what is made and what is wanted differ from one cycle to
 //! the next, and the difference has to go away slowly.
 
+use super::super::math::sqrt;
+use super::super::real::{Lost, NOTHING, Real, add, onward};
+use super::super::{Limits, Share};
 use super::Transition;
-use crate::math::sqrt;
-use crate::{Limits, Share};
-
-/// Less of an offset, or of a step, counts as none: sums of time steps round.
-const NOTHING: f64 = 1e-9;
 
 /// The correction of one axis, remembered from cycle to cycle. The default is that of a machine just started.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct AxisMemory {
     /// Correction made in the last cycle: command less position, in mm or rad.
-    made: f64,
+    made: Real,
+    /// What it has lost on its way by rounding.
+    lost: Lost,
     /// Correction wanted in this cycle.
-    wanted: f64,
+    wanted: Real,
     /// Made less wanted at the last switch.
-    offset: f64,
+    offset: Real,
     /// Whether it is a rotary axis that corrects its own angle, or the direction of the tool.
     turns: bool,
 }
@@ -27,7 +27,7 @@ pub struct AxisMemory {
 impl AxisMemory {
     /// The correction made in the last cycle: command less position, in mm or rad.
     #[must_use]
-    pub const fn made(&self) -> f64 {
+    pub const fn made(&self) -> Real {
         self.made
     }
 }
@@ -43,7 +43,7 @@ pub(super) struct Correction<'a> {
     /// Whether the next cycle begins a transition.
     switched: bool,
     /// The part of the offset that is left, from 1 at a switch to 0.
-    left: f64,
+    left: Real,
 }
 
 impl<'a> Correction<'a> {
@@ -73,12 +73,12 @@ impl<'a> Correction<'a> {
     }
 
     /// Length over all slides of the correction made, mm.
-    pub(super) fn length(&self) -> f64 {
+    pub(super) fn length(&self) -> Real {
         self.size(|axis| axis.made).slides
     }
 
     /// The size of a number over all axes. Of a motor counts what it has beside the axes that it follows, which count themselves.
-    fn size(&self, of: impl Fn(&AxisMemory) -> f64) -> Size {
+    fn size(&self, of: impl Fn(&AxisMemory) -> Real) -> Size {
         let root = |turns: bool| {
             let mut sum = 0.0;
             for (number, axis) in self.axes.iter().enumerate().filter(|(_, axis)| axis.turns == turns) {
@@ -91,14 +91,14 @@ impl<'a> Correction<'a> {
     }
 
     /// The part of a number of a motor that it has from the axes that it follows; 0 of an axis.
-    fn followed(&self, axis: usize, of: &impl Fn(&AxisMemory) -> f64) -> f64 {
+    fn followed(&self, axis: usize, of: &impl Fn(&AxisMemory) -> Real) -> Real {
         let own = self.following.iter().filter(|share| share.motor == axis);
         own.fold(0.0, |sum, share| sum + share.weight * self.axes.get(share.of).map_or(0.0, of))
     }
 
     /// Takes what is wanted now: the compensator's commands less the positions where its correction is active, and else
     /// nothing.
-    pub(super) fn set_wanted(&mut self, positions: &[f64], commands: &[f64], active: bool) {
+    pub(super) fn set_wanted(&mut self, positions: &[Real], commands: &[Real], active: bool) {
         for ((axis, &position), &command) in self.axes.iter_mut().zip(positions).zip(commands) {
             axis.wanted = if active { command - position } else { 0.0 };
         }
@@ -107,7 +107,7 @@ impl<'a> Correction<'a> {
     }
 
     /// Takes the correction made one step further, and tells whether it is still on its way.
-    pub(super) fn follow(&mut self, transition: &Transition, limits: &Limits, time_step: f64) -> bool {
+    pub(super) fn follow(&mut self, transition: &Transition, limits: &Limits, time_step: Real) -> bool {
         if self.switched {
             self.switched = false;
             self.left = 1.0;
@@ -115,7 +115,7 @@ impl<'a> Correction<'a> {
                 axis.offset = axis.made - axis.wanted;
             }
         }
-        let left = if transition.fade > 0.0 { self.left - time_step / transition.fade } else { 0.0 };
+        let left = if transition.fade > 0.0 { onward(self.left, -time_step / transition.fade) } else { 0.0 };
         let fading = left > NOTHING;
         self.left = if fading { left } else { 0.0 };
         let within = if fading { self.within(limits) } else { 1.0 };
@@ -126,13 +126,18 @@ impl<'a> Correction<'a> {
         let part = part.min(part_of_change(change.turns, transition.rotation_rate, time_step));
         for axis in &mut *self.axes {
             let next = next(axis);
-            axis.made = if part < 1.0 { axis.made + part * (next - axis.made) } else { next };
+            axis.made = if part < 1.0 {
+                add(axis.made, &mut axis.lost, part * (next - axis.made))
+            } else {
+                axis.lost = Lost::default();
+                next
+            };
         }
         fading || part < 1.0
     }
 
     /// The factor that keeps a fading correction within its limits, or within what is made already where that is more.
-    fn within(&self, limits: &Limits) -> f64 {
+    fn within(&self, limits: &Limits) -> Real {
         let left = self.left;
         let next = self.size(|axis| axis.wanted + left * axis.offset);
         let made = self.size(|axis| axis.made);
@@ -141,7 +146,7 @@ impl<'a> Correction<'a> {
     }
 
     /// Writes the commands, where they are not those of the compensator already.
-    pub(super) fn write(&self, positions: &[f64], commands: &mut [f64], differs: bool) {
+    pub(super) fn write(&self, positions: &[Real], commands: &mut [Real], differs: bool) {
         if differs {
             for ((axis, &position), command) in self.axes.iter().zip(positions).zip(commands) {
                 *command = position + axis.made;
@@ -151,7 +156,7 @@ impl<'a> Correction<'a> {
 }
 
 /// The part of a change that the rate lets pass in this cycle.
-fn part_of_change(change: f64, rate: Option<f64>, time_step: f64) -> f64 {
+fn part_of_change(change: Real, rate: Option<Real>, time_step: Real) -> Real {
     let Some(rate) = rate else { return 1.0 };
     let most = rate * time_step;
     if change <= most * (1.0 + NOTHING) {
@@ -165,12 +170,12 @@ fn part_of_change(change: f64, rate: Option<f64>, time_step: f64) -> f64 {
 /// How large something is over all slides, in mm, and over all rotary axes that correct themselves, in rad.
 #[derive(Clone, Copy)]
 struct Size {
-    slides: f64,
-    turns: f64,
+    slides: Real,
+    turns: Real,
 }
 
 /// The factor that keeps what comes next within a limit, or within what is made already.
-fn within(next: f64, limit: Option<f64>, made: f64) -> f64 {
-    let most = limit.map_or(f64::INFINITY, |limit| made.max(limit));
+fn within(next: Real, limit: Option<Real>, made: Real) -> Real {
+    let most = limit.map_or(Real::INFINITY, |limit| made.max(limit));
     if next > most { most / next } else { 1.0 }
 }

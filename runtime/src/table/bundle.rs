@@ -4,9 +4,10 @@
 //! a position. It exists because the error motions of an axis are mostly measured at the same places: what stands side by side is
 //! found once, chosen by direction once, and read as one row, which a vector unit takes several numbers of at a time.
 
+use super::super::real::Real;
+use super::super::{Direction, Term};
 use super::place::Even;
 use super::{Nodes, Table, TableError};
-use crate::{Direction, Term};
 
 /// Tables over the same even nodes of one axis, a row for each node: what each table is there, and by how much it rises to the next
 /// one, which then need not be found when it is read.
@@ -47,7 +48,7 @@ struct Row<const CURVES: usize> {
 /// Numbers side by side, of which a vector unit takes two at a time from where they lie.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[repr(align(16))]
-struct Side<const CURVES: usize>([f64; CURVES]);
+struct Side<const CURVES: usize>([Real; CURVES]);
 
 impl<const CURVES: usize, const ROWS: usize> Bundle<CURVES, ROWS> {
     /// Tables side by side, in their order.
@@ -92,7 +93,7 @@ impl<const CURVES: usize, const ROWS: usize> Bundle<CURVES, ROWS> {
 
     /// The value of each table where its axis is, on the curves of its direction; none where there is no such axis.
     #[inline(always)]
-    pub(crate) fn read(&self, position: &[f64], direction: &[Direction]) -> Option<[f64; CURVES]> {
+    pub(crate) fn read(&self, position: &[Real], direction: &[Direction]) -> Option<[Real; CURVES]> {
         let side = match direction.get(self.axis)? {
             Direction::Negative if self.directed => REVERSE,
             Direction::Positive | Direction::Negative => FORWARD,
@@ -114,7 +115,7 @@ const fn fill<const CURVES: usize>(
     rows: &mut [[Row<CURVES>; 2]],
     side: usize,
     column: usize,
-    mut curve: &[f64],
+    mut curve: &[Real],
 ) {
     let mut row = 0;
     while let [value, later @ ..] = curve
@@ -130,7 +131,7 @@ const fn fill<const CURVES: usize>(
 }
 
 /// Whether numbers are others than these, which are as many.
-const fn differ(mut numbers: &[f64], mut others: &[f64]) -> bool {
+const fn differ(mut numbers: &[Real], mut others: &[Real]) -> bool {
     while let ([number, numbers_after @ ..], [other, others_after @ ..]) = (numbers, others) {
         if number.to_bits() != other.to_bits() {
             return true;

@@ -3,14 +3,15 @@
 //! In: the position of an axis, and its direction. Out: the value there. It exists because the curves of an axis
 //! mostly have the same nodes, so that a place that was found for one of them serves all.
 
+use super::super::Direction;
+use super::super::real::{Real, split};
 use super::{Nodes, Table, between, read_at, within_a_turn};
-use crate::Direction;
 
 /// Even nodes: the first, how many of them there are for each mm or rad, and the last.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Even {
-    pub(super) start: f64,
-    pub(super) per_unit: f64,
+    pub(super) start: Real,
+    pub(super) per_unit: Real,
     pub(super) last: Last,
 }
 
@@ -44,7 +45,7 @@ pub(crate) struct Place {
     below: usize,
     above: usize,
     /// The part of the way from one to the other, from 0 to less than 1; 0 beyond the ends.
-    part: f64,
+    part: Real,
     direction: Direction,
 }
 
@@ -56,24 +57,30 @@ impl Table<'_> {
     pub(crate) fn read(
         &self,
         axis: usize,
-        position: &[f64],
+        position: &[Real],
         direction: &[Direction],
         known: &mut Option<Place>,
-    ) -> f64 {
+    ) -> Real {
         if let (Nodes::Even(even), Some(place)) = (self.nodes, &*known)
             && place.is(axis, even)
         {
             return place.read(self.curve(place.direction));
         }
         let (Some(&position), Some(&direction)) = (position.get(axis), direction.get(axis)) else {
-            return f64::NAN;
+            return Real::NAN;
         };
         self.read_anew(axis, position, direction, known)
     }
 
     /// [`read`](Self::read) where no place is known.
     #[inline(always)]
-    fn read_anew(&self, axis: usize, position: f64, direction: Direction, known: &mut Option<Place>) -> f64 {
+    fn read_anew(
+        &self,
+        axis: usize,
+        position: Real,
+        direction: Direction,
+        known: &mut Option<Place>,
+    ) -> Real {
         let curve = self.curve(direction);
         match self.nodes {
             Nodes::Even(even) => known.insert(Place::new(even, axis, position, direction)).read(curve),
@@ -90,7 +97,7 @@ impl Place {
     }
 
     #[inline(always)]
-    pub(super) fn new(even: Even, axis: usize, position: f64, direction: Direction) -> Self {
+    pub(super) fn new(even: Even, axis: usize, position: Real, direction: Direction) -> Self {
         let (below, part) = even.place(position);
         let above = below.saturating_add(1).min(even.last.index());
         Self { axis, even, below, above, part, direction }
@@ -98,7 +105,7 @@ impl Place {
 
     /// Reads a curve.
     #[inline]
-    pub(super) fn read(&self, curve: &[f64]) -> f64 {
+    pub(super) fn read(&self, curve: &[Real]) -> Real {
         between(node(curve, self.below), node(curve, self.above), self.part)
     }
 }
@@ -115,10 +122,10 @@ impl Even {
 
     /// The index of the node below a position, not above the last one, and what is left of a step from there; NaN is left of NaN.
     #[inline(always)]
-    pub(super) fn place(self, position: f64) -> (usize, f64) {
+    pub(super) fn place(self, position: Real) -> (usize, Real) {
         let count = self.count(position);
         let last = self.last.index();
-        let count = if self.last.repeats() { within_a_turn(count, last as f64) } else { count };
+        let count = if self.last.repeats() { within_a_turn(count, last as Real) } else { count };
         let (below, part) = split(count);
         if below < last {
             (below, part)
@@ -130,32 +137,16 @@ impl Even {
 
     /// How many steps a position lies behind the first node.
     #[inline]
-    const fn count(self, position: f64) -> f64 {
+    const fn count(self, position: Real) -> Real {
         (position - self.start) * self.per_unit
     }
 }
 
 /// The value at a node.
 #[inline]
-fn node(curve: &[f64], index: usize) -> f64 {
-    curve.get(index).copied().unwrap_or(f64::NAN)
+fn node(curve: &[Real], index: usize) -> Real {
+    curve.get(index).copied().unwrap_or(Real::NAN)
 }
 
 /// The number of even nodes that a table may have: as many as [`split`] tells apart.
 pub(super) const MOST: usize = 1 << 24;
-
-/// A sum of it and a smaller number has 28 binary digits behind the point, in the last of its bits.
-const FIXED: f64 = MOST as f64;
-
-/// The bits of these digits.
-const FRACTION: u64 = (1 << 28) - 1;
-
-/// The greatest whole number that is not above a number of steps, and what is left of it. What is no more than 2^-29 below a whole number
-/// is that number. What is further below zero, too large or NaN gives a whole number from [`MOST`] on.
-#[inline]
-fn split(number: f64) -> (usize, f64) {
-    let bits = (number + FIXED).to_bits();
-    let left = number - (f64::from_bits(bits & !FRACTION) - FIXED);
-    let whole = bits.wrapping_sub(FIXED.to_bits()) >> FRACTION.count_ones();
-    (usize::try_from(whole).unwrap_or(usize::MAX), if left < 0.0 { 0.0 } else { left })
-}

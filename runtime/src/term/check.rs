@@ -3,6 +3,7 @@
 //! In: a term. Out: its axis, its sensor, the name of a parameter that is out of range. It exists so that a compensator
 //! refuses a bad term once, when it is built, and not in every cycle.
 
+use super::super::real::Real;
 use super::{Input, Term};
 
 impl Term<'_> {
@@ -103,11 +104,11 @@ impl Term<'_> {
 pub(crate) const FINE: (&str, bool) = ("", true);
 
 /// Finite and not below zero.
-pub(crate) fn not_negative(value: f64) -> bool {
+pub(crate) fn not_negative(value: Real) -> bool {
     value.is_finite() && value >= 0.0
 }
 
 /// Finite and not zero.
-fn divisor(value: f64) -> bool {
+fn divisor(value: Real) -> bool {
     value.is_finite() && value != 0.0
 }

@@ -124,6 +124,10 @@ pub(crate) struct Expand {
     /// crates abbe-runtime and abbe-c provides the functions of `abbe.h`.
     #[arg(long)]
     pub(crate) c_abi: bool,
+    /// Write numbers of 32 bits, for a controller whose processor knows no others: code over `abbe_runtime::single`, which
+    /// is there with the feature `single` of abbe-runtime.
+    #[arg(long, conflicts_with = "c_abi")]
+    pub(crate) f32: bool,
     /// Where to write the result.
     #[command(flatten)]
     pub(crate) target: Target,

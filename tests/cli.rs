@@ -187,6 +187,26 @@ fn a_library_for_c_is_the_same_code_and_what_c_asks_of_it() {
     }
 }
 
+/// The command, a build script and the generator behind the macro give the same code over numbers of 32 bits.
+#[test]
+fn code_over_numbers_of_32_bits_has_no_others() {
+    let (machine, numbers) =
+        (root().join("machines/postech-mill.yaml"), root().join("calibrations/postech-mill.yaml"));
+    let found = abbe(&["expand", "postech-mill", "--f32", "--calibration", numbers.to_str().unwrap()], "");
+    assert_eq!((found.status, found.err.as_str()), (0, ""));
+    assert_eq!(found.out, model_dsl::single::calibrated_rust_for(machine, numbers).unwrap());
+    assert!(!found.out.contains("f64") && !found.out.contains("abbe_runtime::Term"), "{}", found.out);
+    for known in ["pub x: f32", "abbe_runtime::single::Bundle<6, 11>", "lost_motion: 0.01,", "-> [f32; 3]"] {
+        assert!(found.out.contains(known), "no {known} in {}", found.out);
+    }
+    let both = abbe(&["expand", "postech-mill", "--f32", "--c-abi"], "");
+    assert_eq!((both.status, both.out.as_str()), (2, ""));
+    let tiny = "calibration: 1\nmachine: FX\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\nerrors:\n  EXX: [{polynomial: {per: mm, unit: mm, coefficients: [0, 1e-50]}}]\n";
+    let tiny = abbe(&["expand", "FX", "--f32", "--calibration", &file("expand", "tiny.yaml", tiny)], "");
+    assert_eq!((tiny.status, tiny.out.as_str()), (2, ""));
+    assert!(tiny.err.contains("tiny.yaml: 1e-50 cannot be written in 32 bits"), "{}", tiny.err);
+}
+
 #[test]
 fn a_calibration_is_compiled_in_beside_the_same_code() {
     let numbers = root().join("calibrations/postech-mill.yaml");

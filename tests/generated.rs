@@ -333,7 +333,7 @@ const HARD: [(&str, &str); 10] = [
     ),
     (
         "arguments",
-        "{slide: X, along: +X, origin: [position, travel, directions]}, {slide: Z, along: +Z, origin: [filled, constants, names]}, {tool: tip, offset: [f64, machine, from_array]}",
+        "{slide: X, along: +X, origin: [position, travel, directions]}, {slide: Y, along: +Y, origin: [abbe_runtime, f32, real]}, {slide: Z, along: +Z, origin: [filled, constants, names]}, {tool: tip, offset: [f64, machine, from_array]}",
     ),
     ("no-errors", "{slide: X, along: +X, errors: []}, {tool: tip}"),
     ("no-constants", "{slide: X, along: +X}, {slide: Y, along: -Y}, {tool: tip, offset: [1.5, -2, 0.001]}"),
@@ -370,7 +370,7 @@ fn fresh_code_passes_the_strictest_compiler() {
     fs::create_dir_all(folder.join("src")).unwrap();
     let runtime = root().join("runtime").canonicalize().unwrap();
     let manifest = format!(
-        "[package]\nname = \"fresh\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[dependencies]\nabbe-runtime = {{ path = {runtime:?} }}\n\n[workspace]\n"
+        "[package]\nname = \"fresh\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[dependencies]\nabbe-runtime = {{ path = {runtime:?}, features = [\"single\"] }}\n\n[workspace]\n"
     );
     fs::write(folder.join("Cargo.toml"), manifest).unwrap();
     let mut library = String::from(
@@ -383,11 +383,17 @@ fn fresh_code_passes_the_strictest_compiler() {
     };
     for shipped in SHIPPED {
         module(shipped.name, &model_dsl::rust_for(machine_file(shipped.name)).unwrap());
+        let single = model_dsl::single::rust_for(machine_file(shipped.name)).unwrap();
+        assert!(!single.contains("f64"), "{}", shipped.name);
+        module(&format!("single-{}", shipped.name), &single);
     }
     for name in ["excello-921", "nist-turning-center", "postech-mill"] {
         let numbers = root().join("calibrations").join(name).with_extension("yaml");
         let code = model_dsl::calibrated_rust_for(machine_file(name), numbers).unwrap();
         module(&format!("calibrated-{name}"), &code);
+        let numbers = root().join("calibrations").join(name).with_extension("yaml");
+        let code = model_dsl::single::calibrated_rust_for(machine_file(name), numbers).unwrap();
+        module(&format!("single-calibrated-{name}"), &code);
     }
     // Numbers for each motion of a machine whose ids are in lower case, tables among them: they become constants.
     let numbers = "calibration: 1\nmachine: small.yaml\nconstants: {l_1: 5 mm}\nerrors:\n  EXx1: 3 um\n  EBx1: [{table: {start: 0 mm, step: 10 mm, unit: urad, values: [0, 1, 2]}}]\n  ECx1: [{table: {start: 0 mm, step: 10 mm, unit: urad, values: [0, 2, 1]}}]\n  EXc2: 2 um\n";
@@ -402,6 +408,8 @@ fn fresh_code_passes_the_strictest_compiler() {
         let source = SourceFile::new(format!("{name}.yaml"), text);
         let (tokens, _, _) = model_dsl::rust_tokens(&source).unwrap_or_else(|told| panic!("{told}"));
         module(&name, &model_dsl::codegen::file(&tokens, &name).unwrap());
+        let single = model_dsl::codegen::single(tokens).unwrap();
+        module(&format!("single-{name}"), &model_dsl::codegen::file(&single, &name).unwrap());
     }
     fs::write(folder.join("src/lib.rs"), library).unwrap();
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());

@@ -43,7 +43,7 @@ fn prepared() -> PathBuf {
     fs::create_dir_all(&folder).unwrap();
     let [macros, runtime] = ["macros", "runtime"].map(|name| root().join(name).canonicalize().unwrap());
     let manifest = format!(
-        "[package]\nname = \"mistaken\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[dependencies]\nabbe-macros = {{ path = {macros:?} }}\nabbe-runtime = {{ path = {runtime:?} }}\n\n[workspace]\n"
+        "[package]\nname = \"mistaken\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[dependencies]\nabbe-macros = {{ path = {macros:?} }}\nabbe-runtime = {{ path = {runtime:?}, features = [\"single\"] }}\n\n[workspace]\n"
     );
     fs::write(folder.join("Cargo.toml"), manifest).unwrap();
     fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
@@ -63,7 +63,8 @@ fn every_mistake_stands_at_the_literal() {
         assert_eq!(content, name == "warning", "{name}: {told}");
         let place = match (content, &*name) {
             (true, _) => "machine.yaml:",
-            (false, "calibration") => "--> src/lib.rs:5:43",
+            (false, "calibration" | "numbers-of-16-bits") => "--> src/lib.rs:5:43",
+            (false, "beyond-32-bits") => "--> src/lib.rs:5:59",
             (false, _) => "--> src/lib.rs:5:27",
         };
         assert!(told.contains(place), "{name}: {told}");

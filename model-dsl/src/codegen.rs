@@ -15,6 +15,7 @@ mod functions;
 mod held;
 mod idents;
 mod sensors;
+mod single;
 mod structs;
 
 use proc_macro2::TokenStream;
@@ -23,6 +24,8 @@ use quote::quote;
 use crate::calibration::{Calibration, NotCompensable};
 use crate::equations::Equations;
 use crate::program::Programs;
+
+pub use self::single::{Unfit, single};
 
 /// The tokens of one machine's module.
 pub fn tokens(equations: &Equations) -> TokenStream {

@@ -28,6 +28,7 @@ pub mod program;
 pub mod quantity;
 mod quoted;
 pub mod sheet;
+pub mod single;
 pub mod source;
 pub mod suggest;
 pub mod yaml;
@@ -122,16 +123,25 @@ pub fn calibrated_rust_for(
     machine: impl AsRef<Path>,
     calibration: impl AsRef<Path>,
 ) -> Result<String, CompileError> {
-    let calibration = calibration.as_ref();
-    code_for(machine.as_ref(), |equations| {
-        let source = SourceFile::open(calibration)?;
-        calibrated_rust_tokens(equations, &source, calibration.parent())
-    })
+    calibrated_code_for(machine.as_ref(), calibration.as_ref(), Ok)
 }
 
 /// The code of [`rust_for`] with what a library for controllers in C needs: the crates `abbe-runtime` and `abbe-c`.
 pub fn c_library_for(path: impl AsRef<Path>) -> Result<String, CompileError> {
     code_for(path.as_ref(), |equations| Ok((codegen::c_tokens(equations), String::new())))
+}
+
+/// The formatted code of a machine and a calibration of it, after something more was done with its tokens.
+fn calibrated_code_for(
+    machine: &Path,
+    calibration: &Path,
+    then: impl Fn(TokenStream) -> Result<TokenStream, String>,
+) -> Result<String, CompileError> {
+    code_for(machine, |equations| {
+        let source = SourceFile::open(calibration)?;
+        let (tokens, warnings) = calibrated_rust_tokens(equations, &source, calibration.parent())?;
+        Ok((then(tokens)?, warnings))
+    })
 }
 
 /// The formatted code that a writer of tokens, and of more warnings, makes of a machine file.

@@ -33,6 +33,7 @@ pub(crate) const EXPAND: &str = examples! {
     "abbe expand XYFZ" => "The Rust code of a mill, the same as from `machine!` or a build script.",
     "abbe expand postech-mill --calibration calibrations/postech-mill.yaml --output mill.rs"
         => "The same with the numbers of one specimen compiled in.",
+    "abbe expand postech-mill --f32 --output mill-f32.rs" => "The mill for a controller whose processor has no doubles.",
 };
 
 pub(crate) const COMPENSATE: &str = examples! {

@@ -56,6 +56,7 @@ mod schemas;
 mod shipped;
 mod shipped_recordings;
 mod simulate;
+mod single;
 mod snapshots;
 mod terminal;
 mod tidy;

@@ -3,15 +3,21 @@
 //! In: the machine that `build.rs` compiled, terms of every kind, read at run time and compiled in, a servo cycle. Out:
 //! two exported functions, so that a linker keeps what a cycle needs and drops the rest. It exists to be looked into:
 //! were there a way to panic in a cycle, the functions that panic would stand among the symbols of this library
-//! (`./no-panic.sh`).
+//! (`./no-panic.sh`). With the feature `f32` all numbers have 32 bits, and it holds no operation on longer ones (`./no-double.sh`).
 #![no_std]
 
 use core::hint::black_box;
 use core::panic::PanicInfo;
 
-use abbe_runtime::{
-    AxisMemory, Compensator, DirectionTracker, ErrorMotion, ErrorMotions, Input, Memory, Sample, Supervisor,
-    Table, Term, TermState, Transition, Values, Work, states_needed,
+// All that a program has to say of its numbers.
+#[cfg(not(feature = "f32"))]
+use abbe_runtime as runtime;
+#[cfg(feature = "f32")]
+use abbe_runtime::single as runtime;
+
+use runtime::{
+    AxisMemory, Compensator, DirectionTracker, ErrorMotion, ErrorMotions, Input, Memory, Real, Sample,
+    Supervisor, Table, Term, TermState, Transition, Values, Work, states_needed,
 };
 
 /// The five-axis machine with a swivelling head.
@@ -35,7 +41,7 @@ fn never(_: &PanicInfo<'_>) -> ! {
 ///
 /// Returns the length of the correction in mm, -1 where the set-up is refused.
 #[unsafe(no_mangle)]
-pub extern "C" fn cycle(time_step: f64, temperature: f64) -> f64 {
+pub extern "C" fn cycle(time_step: Real, temperature: Real) -> Real {
     let nodes = black_box([0.0, 10.0, 30.0]);
     let curve = black_box([0.0, 1e-3, 2e-3]);
     let directed = Values::Directed { forward: black_box(&curve), reverse: black_box(&curve) };
@@ -72,7 +78,7 @@ pub extern "C" fn cycle(time_step: f64, temperature: f64) -> f64 {
 
 /// The same cycle with the calibration that was compiled in.
 #[unsafe(no_mangle)]
-pub extern "C" fn cycle_compiled(time_step: f64, bed: f64, column: f64) -> f64 {
+pub extern "C" fn cycle_compiled(time_step: Real, bed: Real, column: Real) -> Real {
     let mut states = [TermState::default(); Calibration::TERMS];
     let temperature = Sensors::new().update([bed, column]);
     supervised(&Calibration::MACHINE, &Calibration, &mut states, time_step, &temperature)
@@ -83,9 +89,9 @@ fn supervised<M: ErrorMotions + ?Sized>(
     machine: &Machine,
     motions: &M,
     states: &mut [TermState],
-    time_step: f64,
-    temperature: &[f64],
-) -> f64 {
+    time_step: Real,
+    temperature: &[Real],
+) -> Real {
     let (mut directions, mut values) = ([[0.0; 3]; Axes::NAMES.len()], [0.0; Motions::NAMES.len()]);
     let work = Work { directions: &mut directions, motions: &mut values, travel: &mut [] };
     let Ok(compensator) = Compensator::with_calibration(machine, motions, states, work) else { return -1.0 };

@@ -243,6 +243,7 @@ fn mills() {
 fn five_axes() {
     judged("trunnion-5axis", machine!(trunnion_5axis));
     judged("head-table-5axis", machine!(head_table_5axis));
+    judged("nutating-head-5axis", machine!(nutating_head_5axis));
 }
 
 /// The interpreter serves the compensator as generated code does.

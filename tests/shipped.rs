@@ -30,6 +30,7 @@ pub(crate) const SHIPPED: &[Shipped] = &[
     Shipped { name: "msl-moving-bridge", described: || of_word("FYXZ") },
     Shipped { name: "msl-moving-table", described: || of_word("XFYZ") },
     Shipped { name: "nist-turning-center", described: nist },
+    Shipped { name: "nutating-head-5axis", described: nutating_head },
     Shipped { name: "postech-mill", described: postech },
     Shipped { name: "printer-skew", described: printer },
     Shipped { name: "trunnion-5axis", described: trunnion },
@@ -235,6 +236,15 @@ fn head_table() -> Machine {
         ],
         ..of_word("FX")
     }
+}
+
+/// The axis of B leans by 45 degrees from Y towards Z.
+fn nutating_head() -> Machine {
+    let mut machine = head_table();
+    if let Some(head) = machine.tool.get_mut(2) {
+        head.turned = [450, 0, 0];
+    }
+    machine
 }
 
 /// LinuxCNC's trunnions: C stands on A or B, whose axis passes that of C; only the axes' own positions are wrong.

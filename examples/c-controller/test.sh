@@ -57,5 +57,42 @@ else
     echo "no valgrind: not run under it"
 fi
 
+# A machine with motors, and one whose head leans, from their machine files to their commands: by abbe.h, and by the component of LinuxCNC
+# on pins that are numbers in a process. In: the machine file, its calibration, `motors` where it has some; the table's positions.
+follow() {
+    "$ABBE" compensate "$2" --quiet < "$folder/positions.csv" > "$folder/table.csv"
+    ABBE_MACHINE="$1" cargo build --quiet
+    local hal sanitized=(-fsanitize=address,undefined -fno-sanitize-recover=all)
+    for hal in "" HAL; do
+        cc "${flags[@]}" -Wno-unused-function ${hal:+-DHAL -D_GNU_SOURCE -Wno-unused-parameter -I tests/hal} "${sanitized[@]}" -o "$folder/follow" tests/follow.c \
+            "$libraries/libmill.a" "${system[@]}"
+        echo "$1, ${hal:-abbe.h}:"
+        "$folder/follow" "$2" "$folder/table.csv" "$3"
+    done
+}
+awk 'function sign(of) { return of < 0 ? -1 : 1 }
+BEGIN {
+    print "t,x,y,z,a,b,dir_x,dir_y,dir_z,dir_a,dir_b,T_frame"
+    for (row = 0; row < 2000; row++) {
+        t = row * 0.002
+        x = sprintf("%.6f", 150 - 140 * cos(1.3 * t)); dx = 1.3 * 140 * sin(1.3 * t)
+        y = sprintf("%.6f", 120 + 110 * sin(2.1 * t)); dy = 2.1 * 110 * cos(2.1 * t)
+        printf "%.3f,%s,%s,%.6f,%.6f,%.6f,%d,%d,%d,%d,%d,%.4f\n", t, x, y, 60 + 50 * sin(3.7 * t), x + y, x - y,
+            sign(dx), sign(dy), sign(cos(3.7 * t)), sign(dx + dy), sign(dx - dy), 20 + 2 * t
+    }
+}' > "$folder/positions.csv"
+follow corexy.yaml corexy-3.yaml motors
+awk 'function sign(of) { return of < 0 ? -1 : 1 }
+BEGIN {
+    print "t,x,y,z,b,c,dir_x,dir_y,dir_z,dir_b,dir_c,T_head"
+    for (row = 0; row < 2000; row++) {
+        t = row * 0.002
+        printf "%.3f,%.6f,%.6f,%.6f,%.6f,%.6f,%d,%d,%d,%d,%d,%.4f\n", t,
+            200 * sin(1.3 * t), 150 * sin(2.1 * t), 100 * sin(3.7 * t), 90 - 85 * cos(0.9 * t), 170 * sin(0.7 * t),
+            sign(cos(1.3 * t)), sign(cos(2.1 * t)), sign(cos(3.7 * t)), sign(sin(0.9 * t)), sign(cos(0.7 * t)), 20 + t
+    }
+}' > "$folder/positions.csv"
+follow ../../machines/nutating-head-5axis.yaml nutating-5.yaml plain
+
 echo "the header is C++ too"
 c++ -x c++ -std=c++17 -Wall -Wextra -Werror -fsyntax-only -I ../../c-interface/include -include abbe.h /dev/null

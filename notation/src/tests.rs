@@ -11,7 +11,7 @@ const FORMATS: [Format; 6] =
     [Format::Text, Format::Latex, Format::Html, Format::Json, Format::Maxima, Format::Python];
 
 /// All shipped machines.
-pub(super) const MACHINES: [&str; 15] = [
+pub(super) const MACHINES: [&str; 16] = [
     "excello-921",
     "nist-turning-center",
     "postech-mill",
@@ -27,6 +27,7 @@ pub(super) const MACHINES: [&str; 15] = [
     "linuxcnc-xyzbc-trt",
     "trunnion-5axis",
     "head-table-5axis",
+    "nutating-head-5axis",
 ];
 
 /// The equations of a shipped machine.

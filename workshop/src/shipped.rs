@@ -2,7 +2,7 @@
 //! text of the machine file; the file of printed equations.
 
 /// The names of the shipped machines with their files.
-pub const MACHINES: [(&str, &str); 15] = [
+pub const MACHINES: [(&str, &str); 16] = [
     ("cai-wafer-grinder", include_str!("../../machines/cai-wafer-grinder.yaml")),
     ("excello-921", include_str!("../../machines/excello-921.yaml")),
     ("fxyz-mill", include_str!("../../machines/fxyz-mill.yaml")),
@@ -12,6 +12,7 @@ pub const MACHINES: [(&str, &str); 15] = [
     ("msl-moving-bridge", include_str!("../../machines/msl-moving-bridge.yaml")),
     ("msl-moving-table", include_str!("../../machines/msl-moving-table.yaml")),
     ("nist-turning-center", include_str!("../../machines/nist-turning-center.yaml")),
+    ("nutating-head-5axis", include_str!("../../machines/nutating-head-5axis.yaml")),
     ("postech-mill", include_str!("../../machines/postech-mill.yaml")),
     ("printer-skew", include_str!("../../machines/printer-skew.yaml")),
     ("trunnion-5axis", include_str!("../../machines/trunnion-5axis.yaml")),

@@ -9,7 +9,7 @@ use crate::equations::{Equations, Names};
 use crate::source::SourceFile;
 
 /// All shipped machines.
-pub(super) const MACHINES: [&str; 15] = [
+pub(super) const MACHINES: [&str; 16] = [
     "excello-921",
     "nist-turning-center",
     "postech-mill",
@@ -25,6 +25,7 @@ pub(super) const MACHINES: [&str; 15] = [
     "linuxcnc-xyzbc-trt",
     "trunnion-5axis",
     "head-table-5axis",
+    "nutating-head-5axis",
 ];
 
 /// The equations of a shipped machine.

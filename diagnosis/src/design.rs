@@ -19,6 +19,7 @@ use crate::observations::{Frame, Passage};
 use crate::parallel;
 use crate::study::{ChannelAt, Study};
 
+pub(crate) use lower::Lower;
 pub(crate) use run::ChannelRun;
 
 /// One or more columns: an effect, or how an effect changes with its nonlinear parameter.

@@ -8,7 +8,7 @@ mod likelihood;
 mod simplex;
 
 use likelihood::deviances;
-use simplex::{TOGETHER, minimise};
+pub(crate) use simplex::{TOGETHER, minimise};
 
 /// The noise of one channel: mm or rad, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -178,6 +178,11 @@ impl Step {
             0.0
         }
     }
+}
+
+/// The logarithm of the determinant of the covariance of noise that these steps make white.
+pub(crate) fn log_sizes(steps: &[Step]) -> f64 {
+    steps.iter().filter(|step| step.weight > 0.0).map(|step| -2.0 * step.weight.ln()).sum()
 }
 
 /// The transpose of [`whiten`] over a whole recording, in place: white numbers become weights of the samples.

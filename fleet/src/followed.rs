@@ -78,6 +78,7 @@ fn followed(equations: &Equations, effect: &Effect) -> Option<Followed> {
         at_drive: effect.at_drive,
         inside_loop: listed.is_inside_loop(0),
         sensors: term.sensors().filter_map(name).collect(),
+        share: effect.share(),
         term,
     })
 }

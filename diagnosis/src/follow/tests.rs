@@ -7,7 +7,7 @@ use model_dsl::calibration::{CalibratedTerm, Calibration};
 
 /// An error of X of the machine XYFZ, as it is followed.
 fn followed(bench: &Bench, motion: &str, term: CalibratedTerm) -> Followed {
-    Followed { motion: bench.motion(motion), at_drive: false, inside_loop: false, term, sensors: Vec::new() }
+    Followed { motion: bench.motion(motion), at_drive: false, inside_loop: false, term, sensors: Vec::new(), share: 0.0 }
 }
 
 fn backlash(axis: usize) -> CalibratedTerm {

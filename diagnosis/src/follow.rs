@@ -67,12 +67,43 @@ pub struct Size {
     pub estimate: Estimate,
 }
 
+/// Why recordings say nothing about an effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Untold {
+    /// An axis does not move, or a sensor was not recorded.
+    Absent,
+    /// A wave does not come round once where something was read: a part of one is any curve.
+    Part,
+    /// The period of a wave is not known well enough for so many turns.
+    Slips,
+    /// Those before it explain it as well.
+    Mixed,
+    /// The recording does not tell how large its noise is where the effect shows.
+    Short,
+}
+
+impl Untold {
+    /// The reason as a clause.
+    #[must_use]
+    pub fn why(self) -> &'static str {
+        match self {
+            Self::Absent => "its axis does not move, or its sensor was not recorded",
+            Self::Part => "it does not come round once",
+            Self::Slips => "its period is not known well enough for so many turns",
+            Self::Mixed => "other effects explain it as well",
+            Self::Short => "the recording is too short to tell it from noise",
+        }
+    }
+}
+
 impl From<&Finding> for Followed {
     fn from(finding: &Finding) -> Self {
         let told_by = told_by(finding.term);
         let mut held = finding.parameters.iter().filter(|parameter| Some(parameter.name) == told_by);
         let share = held.find_map(|parameter| match &parameter.value {
-            ParameterValue::Fitted(estimate) => Some((estimate.ci95.1 - estimate.ci95.0) / 2.0 / estimate.value),
+            ParameterValue::Fitted(estimate) => {
+                Some((estimate.ci95.1 - estimate.ci95.0) / 2.0 / estimate.value)
+            }
             _ => None,
         });
         Self {
@@ -103,9 +134,9 @@ const FEWEST_KNOWN: f64 = 2.0;
 /// of twenty cases, the end of chi-squared with eleven degrees of freedom (19.7 / 11) with what is added for Student's distribution.
 const BY_CHANCE: f64 = 1.5;
 
-/// The sizes of effects in the recordings of `inputs`, in the order of `followed`: nothing of an effect that these recordings do not show,
-/// or do not tell from those before it. So the surest come first.
-pub fn follow(inputs: &Inputs<'_>, followed: &[Followed]) -> Vec<Vec<Size>> {
+/// The sizes of effects in the recordings of `inputs`, in the order of `followed`; or why these recordings say nothing about one. What is
+/// not told from others is that which comes later: so the surest come first.
+pub fn follow(inputs: &Inputs<'_>, followed: &[Followed]) -> Vec<Result<Vec<Size>, Untold>> {
     let mut study = Study::new(inputs.equations, inputs.calibration, &inputs.recordings);
     rest::tell(&mut study);
     study.scenes.iter_mut().flat_map(|scene| &mut scene.blocks).for_each(|block| block.held_out = false);
@@ -113,14 +144,14 @@ pub fn follow(inputs: &Inputs<'_>, followed: &[Followed]) -> Vec<Vec<Size>> {
     let courses = engine::courses(&study, &always);
     let travels = travel::travels(&study, &courses);
     let read = read(&study, &courses);
-    let begun: Vec<Option<Fitted>> =
+    let begun: Vec<Result<Fitted, Untold>> =
         followed.iter().map(|one| begun(&study, (&travels, &read), one)).collect();
     let model: Model = always.iter().cloned().chain(begun.iter().flatten().cloned()).collect();
     let sized = Sized::new(&mut study, model);
     let mut numbers = always.len()..;
-    let size = |begun: &Option<Fitted>| match begun {
-        Some(_) => numbers.next().map(|number| sized.sizes(&study, number)).unwrap_or_default(),
-        None => Vec::new(),
+    let size = |begun: &Result<Fitted, Untold>| {
+        begun.as_ref().map_err(|untold| *untold)?;
+        numbers.next().ok_or(Untold::Absent).and_then(|number| sized.sizes(&study, number))
     };
     begun.iter().map(size).collect()
 }
@@ -143,12 +174,30 @@ fn unfitted(effect: Effect) -> Fitted {
     Fitted { coefficients: vec![0.0; effect.shape.columns()], effect }
 }
 
-/// The effect as these recordings have it; nothing where they lack a state that it reads, or an axis that moves.
+/// The effect as these recordings have it; or why they do not show it.
 fn begun(
     study: &Study<'_>,
     (travels, read): (&[Travel], &[f64]),
     followed: &Followed,
-) -> Option<Fitted> {
+) -> Result<Fitted, Untold> {
+    let (effect, coefficients) = placed(study, travels, followed).ok_or(Untold::Absent)?;
+    let turns = turns(study, read, &effect.shape);
+    if turns.is_some_and(|turns| turns < 1.0) {
+        return Err(Untold::Part);
+    }
+    if turns.is_some_and(|turns| followed.share * turns / 2.0 > SLIP) {
+        return Err(Untold::Slips);
+    }
+    // What acts on the states is fitted from where it was found; all else from nothing.
+    Ok(match effect.shape.nonlinear_in_coefficient() {
+        true => Fitted { effect, coefficients },
+        false => unfitted(effect),
+    })
+}
+
+/// The effect with the coefficients with which it was found; nothing where the recordings lack a state that it reads, or an axis that
+/// moves.
+fn placed(study: &Study<'_>, travels: &[Travel], followed: &Followed) -> Option<(Effect, Vec<f64>)> {
     if is_event(followed.term.core().name()) {
         return None;
     }
@@ -160,21 +209,13 @@ fn begun(
     if shape.axis().is_some_and(|axis| travels.get(axis).is_none_or(|travel| !travel.moves)) {
         return None;
     }
-    if turns(study, read, &shape).is_some_and(|turns| turns < 1.0 || followed.share * turns / 2.0 > SLIP) {
-        return None;
-    }
     let side = match axis.filter(|_| followed.inside_loop) {
         Some(axis) => Side::Loop { axis },
         None if followed.at_drive => Side::Drive,
         None => Side::After,
     };
-    let shape = about(shape, travels);
-    let effect = Effect { place: Place::Motion { motion, side }, shape };
-    // What acts on the states is fitted from where it was found; all else from nothing.
-    Some(match effect.shape.nonlinear_in_coefficient() {
-        true => Fitted { effect, coefficients },
-        false => unfitted(effect),
-    })
+    let place = Place::Motion { motion, side };
+    Some((Effect { place, shape: about(shape, travels) }, coefficients))
 }
 
 /// How far apart each axis was in rows in which something was read.
@@ -183,7 +224,10 @@ fn read(study: &Study<'_>, courses: &[Arc<Course>]) -> Vec<f64> {
         let positions = study.scenes.iter().zip(courses).flat_map(|(scene, course)| {
             let is_read = |row: &usize| scene.channels.iter().any(|channel| channel.values[*row].is_finite());
             let positions = &course.shown.axes[axis].position;
-            (0..scene.rows()).filter(is_read).map(|row| positions[row]).filter(|position| position.is_finite())
+            (0..scene.rows())
+                .filter(is_read)
+                .map(|row| positions[row])
+                .filter(|position| position.is_finite())
         });
         let ends = (f64::INFINITY, f64::NEG_INFINITY);
         let (low, high) = positions.fold(ends, |(low, high), place| (low.min(place), high.max(place)));
@@ -245,13 +289,14 @@ struct Sized {
     design: Design,
     /// The covariance of all coefficients.
     covariance: DMatrix<f64>,
-    /// Whether a column was told from those before it.
+    /// Whether a column was told from those before it, and whether its noise is known too.
     told: Vec<bool>,
+    known: Vec<bool>,
 }
 
 impl Sized {
     fn new(study: &mut Study<'_>, model: Model) -> Self {
-        let (model, mut told) = settled(study, model);
+        let (model, told) = settled(study, model);
         let regressors = regressors(&model);
         let channels: Vec<ChannelAt> = study.channels().collect();
         let noises: Vec<Vec<Possible>> =
@@ -274,39 +319,55 @@ impl Sized {
         let covariance = DMatrix::from_fn(design.width, design.width, |row, column| {
             mixed.covariance[(row, column)] * wider(row) * wider(column)
         });
-        told.iter_mut().zip(&mixed.freedoms).for_each(|(told, freedom)| *told &= *freedom >= FEWEST_KNOWN);
-        Self { model, design, covariance, told }
+        let known = told.iter().zip(&mixed.freedoms);
+        let known = known.map(|(told, freedom)| *told && *freedom >= FEWEST_KNOWN).collect();
+        Self { model, design, covariance, told, known }
     }
 
-    /// The sizes of an effect; none where one of its columns is not told. The power 0 of a polynomial is free where a zero is.
-    fn sizes(&self, study: &Study<'_>, number: usize) -> Vec<Size> {
-        let Some(fitted) = self.model.get(number) else { return Vec::new() };
+    /// The sizes of an effect, or why it has none. The power 0 of a polynomial is free where a zero is; of a table each value is told for
+    /// itself.
+    fn sizes(&self, study: &Study<'_>, number: usize) -> Result<Vec<Size>, Untold> {
+        let fitted = self.model.get(number).ok_or(Untold::Absent)?;
+        let shape = fitted.effect.shape.core();
+        let free = usize::from(matches!(shape, Shape::Polynomial { .. } | Shape::SensorPolynomial { .. }));
+        let columns = match shape {
+            Shape::Table { .. } => 0..0,
+            _ => self.design.columns(number),
+        };
+        let mut needed = columns.skip(free);
+        if needed.clone().any(|column| !self.told[column]) {
+            return Err(Untold::Mixed);
+        }
+        if needed.any(|column| !self.known[column]) {
+            return Err(Untold::Short);
+        }
+        let sizes = match shape {
+            shape if shape.is_wave() => self.of_wave(study, fitted, number),
+            Shape::Lag { .. } => vec![self.of_gain(fitted, number, "s")],
+            Shape::Acceleration { .. } => vec![self.of_gain(fitted, number, "s^2")],
+            _ => self.of_parameters(study, fitted, number),
+        };
+        if sizes.is_empty() { Err(Untold::Mixed) } else { Ok(sizes) }
+    }
+
+    fn of_wave(&self, study: &Study<'_>, fitted: &Fitted, number: usize) -> Vec<Size> {
+        let Some(motion) = fitted.effect.motion() else { return Vec::new() };
+        let unit = motion_unit(study, motion);
+        let estimate = wave::amplitude(&fitted.coefficients, &self.covariance(number), unit);
+        estimate.map(|estimate| Size { name: "amplitude".to_owned(), estimate }).into_iter().collect()
+    }
+
+    fn of_gain(&self, fitted: &Fitted, number: usize, unit: &str) -> Size {
+        let half = WIDTH_95 * self.covariance(number)[(0, 0)].max(0.0).sqrt();
+        let value = fitted.coefficients.first().copied().unwrap_or_default();
+        let estimate = Estimate { value, ci95: (value - half, value + half), unit: unit.to_owned() };
+        Size { name: "1/gain".to_owned(), estimate }
+    }
+
+    fn of_parameters(&self, study: &Study<'_>, fitted: &Fitted, number: usize) -> Vec<Size> {
         let shape = fitted.effect.shape.core();
         let Some(kind) = TermKind::of_name(shape.name()) else { return Vec::new() };
-        let free = usize::from(matches!(shape, Shape::Polynomial { .. } | Shape::SensorPolynomial { .. }));
-        let columns = self.design.columns(number);
-        let untold = |column: usize| self.told.get(column) != Some(&true);
-        let (partly, first) = (matches!(shape, Shape::Table { .. }), columns.start);
-        if !partly && columns.clone().skip(free).any(untold) {
-            return Vec::new();
-        }
-        let covariance = self.covariance(number);
-        if shape.is_wave() {
-            let Some(motion) = fitted.effect.motion() else { return Vec::new() };
-            let estimate = wave::amplitude(&fitted.coefficients, &covariance, motion_unit(study, motion));
-            return estimate
-                .map(|estimate| Size { name: "amplitude".to_owned(), estimate })
-                .into_iter()
-                .collect();
-        }
-        if let Shape::Lag { .. } | Shape::Acceleration { .. } = shape {
-            let half = WIDTH_95 * covariance[(0, 0)].max(0.0).sqrt();
-            let value = fitted.coefficients.first().copied().unwrap_or_default();
-            let unit = if matches!(shape, Shape::Lag { .. }) { "s" } else { "s^2" };
-            let estimate = Estimate { value, ci95: (value - half, value + half), unit: unit.to_owned() };
-            return vec![Size { name: "1/gain".to_owned(), estimate }];
-        }
-        let certainty = Certainty::linear(covariance);
+        let certainty = Certainty::linear(self.covariance(number));
         let held = fitted.effect.shape.nonlinear().map(|parameter| parameter.name);
         let parameters = Described::new(study, fitted, &certainty).parameters();
         let fitted = parameters.iter().filter(|parameter| Some(parameter.name) != held);
@@ -314,13 +375,11 @@ impl Sized {
             .flat_map(|parameter| parameter.estimates(kind))
             .map(|(name, estimate)| Size { name, estimate });
         // What no interval was found for was not told: a node that no row comes near, the free power of a polynomial.
-        let of_node = |place: usize| !partly || !untold(first + place);
+        let (partly, first) = (matches!(shape, Shape::Table { .. }), self.design.columns(number).start);
+        let of_node = |place: usize| !partly || self.known.get(first + place) == Some(&true);
         let known = |size: &Size| size.estimate.ci95.0 < size.estimate.ci95.1;
-        sizes
-            .enumerate()
-            .filter(|(place, size)| of_node(*place) && known(size))
-            .map(|(_, size)| size)
-            .collect()
+        let told = sizes.enumerate().filter(|(place, size)| of_node(*place) && known(size));
+        told.map(|(_, size)| size).collect()
     }
 
     /// The covariance of the coefficients of an effect; a last row of nothing for a parameter that is held.

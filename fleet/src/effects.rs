@@ -181,3 +181,71 @@ fn named_apart(effects: &mut [Effect]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::Table;
+    use crate::table::{Cell, read, written};
+
+    /// A wave that was found in a recording, deg: its amplitude with half of the interval, and its period with half of that.
+    struct Wave(&'static str, [f64; 2], [f64; 2]);
+
+    /// The rows of waves of one family.
+    fn rows(waves: &[Wave]) -> Vec<Known> {
+        let row = |Wave(id, amplitude, period): &Wave| {
+            let of = |name: &str, [value, half]: [f64; 2]| {
+                let cell = |column: &str| match column {
+                    "motion" => Cell::from("ECC"),
+                    "term" => Cell::from("cyclic"),
+                    "family" => Cell::from("ECC cyclic"),
+                    "parameter" => Cell::from(name),
+                    "value" => Cell::from(value),
+                    "low" => Cell::from(value - half),
+                    "high" => Cell::from(value + half),
+                    "unit" => Cell::from("deg"),
+                    "recording" | "calibration" => Cell::from(*id),
+                    "finding" => Cell::Count(0),
+                    _ => Cell::None,
+                };
+                Table::Parameters.columns().iter().map(|(column, _)| cell(column)).collect::<Vec<_>>()
+            };
+            [of("period", *period), of("amplitude", *amplitude), of("phase", [1.0, 0.1])]
+        };
+        let rows: Vec<Vec<Cell>> = waves.iter().flat_map(row).collect();
+        let own = format!("{}-{:?}", std::process::id(), std::thread::current().id());
+        let path = std::env::temp_dir().join(format!("abbe-effects-{own}.parquet"));
+        std::fs::write(&path, written(Table::Parameters.columns(), &rows).unwrap()).unwrap();
+        let read = read(&path).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        let known =
+            |row: Row| Known { machine: "mount".to_owned(), id: row.text("recording").to_owned(), row };
+        read.into_iter().map(known).collect()
+    }
+
+    #[test]
+    fn a_wave_has_the_period_that_is_known_best_and_not_that_of_the_surest_size() {
+        let found = rows(&[
+            // Loud, in a recording of a few turns; faint, in a long one; and another wave.
+            Wave("short", [9.0, 0.1], [2.10, 0.05]),
+            Wave("long", [2.0, 1.0], [2.003, 0.011]),
+            Wave("other", [1.0, 0.5], [0.668, 0.002]),
+        ]);
+        let effects = effects(&found);
+        let told: Vec<(&str, &str, usize)> = effects
+            .iter()
+            .map(|effect| (effect.name.as_str(), effect.calibration.as_str(), effect.found_in.len()))
+            .collect();
+        assert_eq!(told, [("ECC cyclic 2 deg", "long", 2), ("ECC cyclic 0.668 deg", "other", 1)]);
+        assert!((effects[0].share() - 0.011 / 2.003).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_key_of_what_is_followed_knows_how_well_the_period_is_known() {
+        let key_of =
+            |half: f64| key(("key", "long"), &effects(&rows(&[Wave("long", [2.0, 1.0], [2.003, half])])));
+        // The same name, rounded.
+        assert_ne!(key_of(0.011), key_of(0.012));
+        assert_eq!(key_of(0.011), key_of(0.011));
+    }
+}

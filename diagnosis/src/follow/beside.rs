@@ -99,7 +99,8 @@ impl Seen {
         let rows: Vec<usize> = (0..scene.rows()).collect();
         let all = Design::columns_in(study, at, model, regressors, &rows);
         let is_known = |row: &usize| all.row(*row).iter().all(|value| value.is_finite());
-        let kept: Vec<usize> = rows.into_iter().filter(|row| !channel.outliers[*row]).filter(is_known).collect();
+        let kept: Vec<usize> =
+            rows.into_iter().filter(|row| !channel.outliers[*row]).filter(is_known).collect();
         let all = all.select_rows(&kept);
         let response = all.ncols().saturating_sub(1);
         let acts = |column: usize| told[column] && all.column(column).iter().any(|value| *value != 0.0);

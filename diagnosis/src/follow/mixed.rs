@@ -34,9 +34,8 @@ impl Mixed {
     pub(super) fn new(channels: &[Vec<Possible>], width: usize) -> Self {
         let parts: Vec<Part> =
             settings(channels).iter().filter_map(|setting| Part::new(setting, width)).collect();
-        let mean = |of: &dyn Fn(&Part) -> f64| -> f64 {
-            parts.iter().map(|part| part.probability * of(part)).sum()
-        };
+        let mean =
+            |of: &dyn Fn(&Part) -> f64| -> f64 { parts.iter().map(|part| part.probability * of(part)).sum() };
         let coefficients: Vec<f64> =
             (0..width).map(|column| mean(&|part| part.coefficients[column])).collect();
         let apart = |part: &Part, column: usize| part.coefficients[column] - coefficients[column];

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use model_dsl::calibration::CalibratedTerm;
 
-use super::{Followed, follow};
+use super::{Followed, Untold, follow};
 use crate::recording::{AxisChannels, Instrument, Recording};
 use crate::testing::{Bench, normals, programmed, uneven};
 
@@ -97,8 +97,14 @@ impl Session {
             coefficients: vec![0.0, 1.0, 1.0],
         };
         let terms = waves.chain((self.waves > 1).then_some(drift));
-        let followed =
-            |term| Followed { motion, at_drive: false, inside_loop: false, term, sensors: Vec::new(), share: 0.0 };
+        let followed = |term| Followed {
+            motion,
+            at_drive: false,
+            inside_loop: false,
+            term,
+            sensors: Vec::new(),
+            share: 0.0,
+        };
         terms.map(followed).collect()
     }
 }
@@ -111,7 +117,7 @@ fn counted(session: &Session, count: u64) -> (usize, usize) {
     let one = |seed: u64| {
         let recording = session.recorded(1000 * seed);
         let found = follow(&bench.inputs(&known, &[&recording]), &effects);
-        let (low, high) = found[0].first()?.estimate.ci95;
+        let (low, high) = found[0].as_ref().ok()?.first()?.estimate.ci95;
         Some((low..=high).contains(&(AMPLITUDE * ARCSEC)))
     };
     let told: Vec<bool> = (1..=count).filter_map(one).collect();
@@ -141,7 +147,6 @@ fn short_sessions_have_intervals_that_hold_the_truth() {
         }
         // Of 600 intervals of 95 %, fewer than 92 or more than 98 in a hundred hold the truth once in a thousand times.
         let share = crate::number(held) / crate::number(told);
-        eprintln!("{guiding:?}: {held} of {told}, {share}");
         assert!(told >= 500 && (0.92..=0.98).contains(&share), "{guiding:?}: {held} of {told}, {share}");
     }
 }
@@ -152,14 +157,14 @@ fn a_wave_that_hardly_comes_round_where_a_star_was_seen_is_not_told() {
     let session = Session { turns: 3.0, guiding, waves: 1, missing: 0 };
     let bench = Bench::of("FC");
     let (effects, known) = (session.followed(bench.motion("ECC")), bench.calibration("{}"));
-    for (seen, is_told) in [(3.0, true), (0.9, false)] {
+    for (seen, untold) in [(3.0, None), (0.9, Some(Untold::Part))] {
         let mut recording = session.recorded(1);
         let axis = &mut recording.axes[0];
         let place = axis.command.clone().unwrap();
         let readings = axis.measured.as_mut().unwrap().iter_mut().zip(&place);
         readings.filter(|(_, place)| **place > seen * PERIOD).for_each(|(reading, _)| *reading = f64::NAN);
         let found = follow(&bench.inputs(&known, &[&recording]), &effects);
-        assert_eq!(!found[0].is_empty(), is_told, "{seen} turns: {found:?}");
+        assert_eq!(found[0].as_ref().err().copied(), untold, "{seen} turns: {found:?}");
     }
 }
 
@@ -169,11 +174,11 @@ fn a_wave_whose_period_is_not_known_well_enough_for_a_session_is_not_told() {
     let bench = Bench::of("FC");
     let known = bench.calibration("{}");
     // Off by a twentieth of a turn in a turn: after two turns on either side a tenth, after five a quarter.
-    for (turns, is_told) in [(4.0, true), (10.0, false)] {
+    for (turns, untold) in [(4.0, None), (10.0, Some(Untold::Slips))] {
         let session = Session { turns, guiding, waves: 1, missing: 0 };
         let recording = session.recorded(1);
         let effects = [Followed { share: 0.05, ..session.followed(bench.motion("ECC")).remove(0) }];
         let found = follow(&bench.inputs(&known, &[&recording]), &effects);
-        assert_eq!(!found[0].is_empty(), is_told, "{turns} turns: {found:?}");
+        assert_eq!(found[0].as_ref().err().copied(), untold, "{turns} turns: {found:?}");
     }
 }

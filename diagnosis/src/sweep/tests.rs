@@ -176,7 +176,8 @@ fn the_determinant_is_that_of_the_columns_that_are_in() {
     let of = |columns: &[usize]| {
         let chosen = all.select_columns(columns);
         let lengths: Vec<f64> = chosen.column_iter().map(|column| column.norm()).collect();
-        let unit = DMatrix::from_fn(ROWS, columns.len(), |row, column| chosen[(row, column)] / lengths[column]);
+        let unit =
+            DMatrix::from_fn(ROWS, columns.len(), |row, column| chosen[(row, column)] / lengths[column]);
         let sizes: f64 = lengths.iter().map(|length| 2.0 * length.ln()).sum();
         (unit.transpose() * unit).determinant().ln() + sizes
     };

@@ -54,7 +54,8 @@ fn by_covariance(seen: &Seen, (deviation, time_constant): (f64, f64)) -> (f64, f
     let response: DVector<f64> = seen.columns.column(3).into_owned();
     let decomposed = covariance.clone().cholesky().unwrap();
     let products = columns.transpose() * decomposed.solve(&columns);
-    let fit = products.clone().cholesky().unwrap().solve(&(columns.transpose() * decomposed.solve(&response)));
+    let fit =
+        products.clone().cholesky().unwrap().solve(&(columns.transpose() * decomposed.solve(&response)));
     let left = &response - &columns * fit;
     let freedom = number(rows - 3);
     let variance = left.dot(&decomposed.solve(&left)) / freedom;
@@ -92,7 +93,8 @@ fn the_noises_that_may_be_hold_the_one_that_was_drawn() {
     for (deviation, time_constant) in [(0.0, 9.0), (3.0, 100.0), (3.0, 1e5)] {
         let seen = seen(&time, &wandering(&time, (deviation, time_constant), 6));
         let around = seen.around(seen.likeliest().unwrap());
-        let of_truth = by_covariance(&seen, (deviation, time_constant)).0 - 2.0 * super::LASTING * time_constant.ln();
+        let of_truth =
+            by_covariance(&seen, (deviation, time_constant)).0 - 2.0 * super::LASTING * time_constant.ln();
         let least = around.iter().map(|known| known.cost).fold(f64::INFINITY, f64::min);
         // Chi-squared of two degrees of freedom passes 9.2 once in a hundred cases.
         assert!(least < of_truth + 0.5, "the truth is likelier by {} than all", least - of_truth);

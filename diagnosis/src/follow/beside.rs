@@ -10,11 +10,11 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Matrix2, SymmetricEigen};
 
 use crate::design::{Design, Lower, Regressor};
 use crate::model::Model;
-use crate::noise::{Noise, TOGETHER, Whitening, log_sizes, minimise, typical_step, whiten};
+use crate::noise::{Noise, Whitening, log_sizes, typical_step, whiten};
 use crate::number;
 use crate::study::{ChannelAt, Study};
 use crate::sweep::Swept;
@@ -79,8 +79,7 @@ pub(super) fn possible(
     columns: (&[Regressor], &[bool]),
 ) -> Vec<Possible> {
     let seen = Seen::new(study, at, model, columns);
-    let Some(best) = seen.likeliest() else { return Vec::new() };
-    let mut around = seen.around(best);
+    let mut around = seen.around();
     around.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let least = around.first().map_or(0.0, |first| first.cost);
     let weight = |known: &Weighed| (-(known.cost - least) / 2.0).exp();
@@ -172,31 +171,16 @@ impl Seen {
         left.cost - 2.0 * LASTING * point[1]
     }
 
-    /// The likeliest point.
-    fn likeliest(&self) -> Option<Point> {
-        let cost = |point: Point| match self.left(point) {
-            Some(left) => self.cost(point, &left) + STEEP * self.beyond(point),
-            None => f64::INFINITY,
-        };
-        let starts = self.starts().into_iter().map(|start| (cost(start), start));
-        let (least, start) = starts.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let costs = |points: [Point; TOGETHER]| points.map(cost);
-        least.is_finite().then(|| self.inside(minimise(&costs, start).1))
-    }
-
-    /// Where the search for the likeliest point may begin: at short and at long times.
-    fn starts(&self) -> Vec<Point> {
-        let times = [1.5 * self.step, 10.0 * self.step, 0.1 * self.span, self.span];
-        let walks = [0.1_f64, 1.0];
-        times.into_iter().flat_map(|time| walks.map(|walk| self.inside([walk.ln(), time.ln()]))).collect()
-    }
-
-    /// The points around the likeliest one that are not far less likely, each with its cost: a grid, as close as the likelihood changes.
-    fn around(&self, best: Point) -> Vec<Weighed> {
-        let Some(middle) = self.weighed(best) else { return Vec::new() };
-        let widths = [0, 1].map(|direction| self.width(&middle, direction));
-        let at = |place: Place| {
-            [best[0] + f64::from(place.0) * widths[0], best[1] + f64::from(place.1) * widths[1]]
+    /// The points that are not far less likely than the likeliest one, each with its cost: a grid, as close as the likelihood changes; none
+    /// where too few samples are left.
+    fn around(&self) -> Vec<Weighed> {
+        let Some((middle, widths)) = self.likeliest() else { return Vec::new() };
+        let (from, steps) = (middle.point, self.steps(&middle, widths));
+        let at = |(first, second): Place| {
+            let [along, across] = steps;
+            [0, 1].map(|number| {
+                from[number] + f64::from(first) * along[number] + f64::from(second) * across[number]
+            })
         };
         let mut lowest = middle.cost;
         let mut found = vec![middle];
@@ -214,28 +198,81 @@ impl Seen {
         found
     }
 
+    /// The likeliest point, as near as matters, and how far from it the cost rises by little more than one in each direction.
+    fn likeliest(&self) -> Option<(Weighed, Point)> {
+        let starts = self.starts().into_iter().filter_map(|start| self.weighed(start));
+        let mut best = starts.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+        let mut widths = [WIDEST; 2];
+        for _ in 0..MOST_STEPS {
+            let mut is_done = true;
+            for direction in [0, 1] {
+                let beside = self.beside(best.point, direction, widths[direction]);
+                let steepest = beside.iter().fold(0.0, |most, known| f64::max(most, known.cost - best.cost));
+                let lower = beside.into_iter().filter(|known| known.cost < best.cost);
+                match lower.min_by(|a, b| a.cost.total_cmp(&b.cost)) {
+                    Some(lower) => (best, is_done) = (lower, false),
+                    None if steepest > RISE => {
+                        (widths[direction], is_done) = (widths[direction] / 2.0, false)
+                    }
+                    None => {}
+                }
+            }
+            if is_done {
+                break;
+            }
+        }
+        Some((best, widths))
+    }
+
+    /// The steps of the grid about the likeliest point: along the ridge of the likelihood, and across it. Of a noise that is shorter and
+    /// wanders further from row to row, much is the same.
+    fn steps(&self, middle: &Weighed, widths: Point) -> [Point; 2] {
+        let rise = |first: f64, second: f64| {
+            let point = [middle.point[0] + first * widths[0], middle.point[1] + second * widths[1]];
+            self.weighed(point).map(|known| known.cost - middle.cost)
+        };
+        let mean = |of: [Option<f64>; 2]| {
+            let known: Vec<f64> = of.into_iter().flatten().collect();
+            (!known.is_empty()).then(|| known.iter().sum::<f64>() / number(known.len()))
+        };
+        let [first, second] =
+            [mean([rise(1.0, 0.0), rise(-1.0, 0.0)]), mean([rise(0.0, 1.0), rise(0.0, -1.0)])];
+        let same = mean([rise(1.0, 1.0), rise(-1.0, -1.0)]);
+        let other = mean([rise(1.0, -1.0), rise(-1.0, 1.0)]);
+        let both = same.zip(other).map_or(0.0, |(same, other)| (same - other) / 4.0);
+        let curved = Matrix2::new(first.unwrap_or_default(), both, both, second.unwrap_or_default());
+        let SymmetricEigen { eigenvectors, eigenvalues } = curved.symmetric_eigen();
+        [0, 1].map(|number| {
+            let axis = eigenvectors.column(number);
+            let step = (RISE / eigenvalues[number].max(f64::MIN_POSITIVE)).sqrt();
+            let [walk, time] = [step * axis[0] * widths[0], step * axis[1] * widths[1]];
+            let longest = walk.abs().max(time.abs());
+            let shorter = if longest > WIDEST { WIDEST / longest } else { 1.0 };
+            [walk * shorter, time * shorter]
+        })
+    }
+
+    /// The two neighbours of a point in a direction, where the recording tells them apart.
+    fn beside(&self, point: Point, direction: usize, width: f64) -> Vec<Weighed> {
+        let at = |by: f64| {
+            let mut near = point;
+            near[direction] += by;
+            self.weighed(near)
+        };
+        [-width, width].into_iter().filter_map(at).collect()
+    }
+
+    /// Where the search for the likeliest point may begin: at short and at long times.
+    fn starts(&self) -> Vec<Point> {
+        let times = [1.5 * self.step, 10.0 * self.step, 0.1 * self.span, self.span];
+        let walks = [0.1_f64, 1.0];
+        times.into_iter().flat_map(|time| walks.map(|walk| self.inside([walk.ln(), time.ln()]))).collect()
+    }
+
     /// A point with its cost; nothing where it lies beyond what the recording tells apart.
     fn weighed(&self, point: Point) -> Option<Weighed> {
         let left = self.left(point).filter(|_| self.beyond(point) <= ROUNDED)?;
         Some(Weighed { cost: self.cost(point, &left), point, left })
-    }
-
-    /// How far neighbours in the grid lie apart in a direction: where the cost rises by little more than one.
-    fn width(&self, middle: &Weighed, direction: usize) -> f64 {
-        let rise = |by: f64| {
-            let mut point = middle.point;
-            point[direction] += by;
-            self.weighed(point).map_or(0.0, |known| known.cost - middle.cost)
-        };
-        let mut width = WIDEST;
-        for _ in 0..NARROWINGS {
-            let steepest = rise(width).max(rise(-width));
-            if steepest <= RISE {
-                break;
-            }
-            width *= (RISE / steepest).sqrt().max(LEAST_NARROWING);
-        }
-        width
     }
 
     /// The products with those of the columns that are zero.
@@ -290,8 +327,6 @@ const MOST: f64 = 3.0;
 /// (`short_sessions_have_intervals_that_hold_the_truth`).
 const LASTING: f64 = 0.5;
 
-/// What lies beyond costs so much for each e-fold that no likelihood pays it.
-const STEEP: f64 = 1e3;
 /// What is left of a bound by the rounding of numbers.
 const ROUNDED: f64 = 1e-9;
 
@@ -299,9 +334,11 @@ const ROUNDED: f64 = 1e-9;
 const RISE: f64 = 1.5;
 /// The widest grid, in e-folds: the form of a noise changes within one.
 const WIDEST: f64 = 1.2;
-/// How often a grid is made narrower, and to which share at a time at least.
-const NARROWINGS: usize = 8;
+/// To which share a width is made narrower at a time: to where the cost would rise by so much if it were a parabola.
 const LEAST_NARROWING: f64 = 0.2;
+const MOST_NARROWING: f64 = 0.95;
+/// The search ends long before: each step goes down, or makes a width narrower.
+const MOST_STEPS: usize = 200;
 /// Points with so much more cost are left out: each has a hundredth of the probability of the likeliest.
 const FAR: f64 = 9.0;
 

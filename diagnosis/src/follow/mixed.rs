@@ -29,35 +29,55 @@ struct Part {
     freedom: f64,
 }
 
+/// What is known under all noises that may be.
+struct Parts(Vec<Part>);
+
 impl Mixed {
     /// The coefficients of so many columns.
     pub(super) fn new(channels: &[Vec<Possible>], width: usize) -> Self {
-        let parts: Vec<Part> =
-            settings(channels).iter().filter_map(|setting| Part::new(setting, width)).collect();
-        let mean =
-            |of: &dyn Fn(&Part) -> f64| -> f64 { parts.iter().map(|part| part.probability * of(part)).sum() };
+        let settings = settings(channels);
+        let parts = Parts(settings.iter().filter_map(|setting| Part::new(setting, width)).collect());
         let coefficients: Vec<f64> =
-            (0..width).map(|column| mean(&|part| part.coefficients[column])).collect();
-        let apart = |part: &Part, column: usize| part.coefficients[column] - coefficients[column];
-        let plain = DMatrix::from_fn(width, width, |row, column| {
-            mean(&|part| part.covariance[(row, column)] + apart(part, row) * apart(part, column))
-        });
-        let wider = |column: usize| {
-            let deviation = plain[(column, column)].sqrt();
-            let parts: Vec<(f64, f64, f64)> =
-                parts.iter().map(|part| part.beside(column, coefficients[column])).collect();
-            if deviation > 0.0 { half(&parts, deviation) / (WIDTH_95 * deviation) } else { 1.0 }
-        };
-        let wider: Vec<f64> = (0..width).map(wider).collect();
-        let covariance =
-            DMatrix::from_fn(width, width, |row, column| plain[(row, column)] * wider[row] * wider[column]);
-        let freedom = |column: usize| {
-            let size = |part: &Part| part.covariance[(column, column)].max(f64::MIN_POSITIVE).ln();
-            let middle = mean(&size);
-            2.0 / mean(&|part| (size(part) - middle).powi(2) + 2.0 / part.freedom)
-        };
-        let freedoms = (0..width).map(freedom).collect();
-        Self { coefficients, covariance, freedoms }
+            (0..width).map(|column| parts.mean(|part| part.coefficients[column])).collect();
+        let plain = parts.covariance(&coefficients);
+        let wider: Vec<f64> = (0..width)
+            .map(|column| parts.wider(column, coefficients[column], plain[(column, column)].sqrt()))
+            .collect();
+        Self {
+            covariance: DMatrix::from_fn(width, width, |row, column| {
+                plain[(row, column)] * wider[row] * wider[column]
+            }),
+            freedoms: (0..width).map(|column| parts.freedom(column)).collect(),
+            coefficients,
+        }
+    }
+}
+
+impl Parts {
+    fn mean(&self, of: impl Fn(&Part) -> f64) -> f64 {
+        self.0.iter().map(|part| part.probability * of(part)).sum()
+    }
+
+    /// The covariance of coefficients about their means.
+    fn covariance(&self, means: &[f64]) -> DMatrix<f64> {
+        let apart = |part: &Part, column: usize| part.coefficients[column] - means[column];
+        DMatrix::from_fn(means.len(), means.len(), |row, column| {
+            self.mean(|part| part.covariance[(row, column)] + apart(part, row) * apart(part, column))
+        })
+    }
+
+    /// How many times wider the interval of a coefficient is than its standard deviation has it.
+    fn wider(&self, column: usize, mean: f64, deviation: f64) -> f64 {
+        let parts: Vec<(f64, f64, f64)> = self.0.iter().map(|part| part.beside(column, mean)).collect();
+        if deviation > 0.0 { half(&parts, deviation) / (WIDTH_95 * deviation) } else { 1.0 }
+    }
+
+    /// The degrees of freedom of the variance of a coefficient.
+    fn freedom(&self, column: usize) -> f64 {
+        let size = |part: &Part| part.covariance[(column, column)].max(f64::MIN_POSITIVE).ln();
+        let middle = self.mean(size);
+        let varies = self.mean(|part| (size(part) - middle).powi(2) + 2.0 / part.freedom);
+        if varies > 0.0 { 2.0 / varies } else { 0.0 }
     }
 }
 
@@ -85,11 +105,11 @@ impl Part {
         })
     }
 
-    /// The probability, how far the coefficient of a column lies from a middle, and its standard deviation, widened so that a normal
+    /// The probability, how far the coefficient of a column lies from a mean, and its standard deviation, widened so that a normal
     /// distribution ends where Student's does.
-    fn beside(&self, column: usize, middle: f64) -> (f64, f64, f64) {
+    fn beside(&self, column: usize, mean: f64) -> (f64, f64, f64) {
         let deviation = self.covariance[(column, column)].max(0.0).sqrt();
-        (self.probability, self.coefficients[column] - middle, deviation * student(self.freedom))
+        (self.probability, self.coefficients[column] - mean, deviation * student(self.freedom))
     }
 }
 
@@ -131,7 +151,7 @@ const DRAWS: usize = 61;
 /// A number whose powers are all numbers below that prime, so that no two of sixty channels have the same order.
 const FACTOR: usize = 6;
 
-/// How far from the middle 95 % of a sum of normal distributions end: of each the probability, its own middle and its deviation.
+/// How far from a middle 95 % of a sum of normal distributions end: of each the probability, its own middle beside that one and its deviation.
 fn half(parts: &[(f64, f64, f64)], deviation: f64) -> f64 {
     let beyond = |half: f64| -> f64 {
         let of = |(probability, middle, deviation): &(f64, f64, f64)| {
@@ -236,6 +256,12 @@ mod tests {
         let half = WIDTH_95 * mixed.covariance[(0, 0)].sqrt();
         assert!((half / (3.182 * (10.0_f64 / 12.0).sqrt()) - 1.0).abs() < 0.01, "{half}");
         assert!((mixed.freedoms[0] - 3.0).abs() < 1e-9, "{:?}", mixed.freedoms);
+    }
+
+    #[test]
+    fn channels_that_tell_no_noise_tell_no_effect() {
+        let mixed = Mixed::new(&[Vec::new(), Vec::new()], 2);
+        assert_eq!((mixed.coefficients, mixed.freedoms), (vec![0.0, 0.0], vec![0.0, 0.0]));
     }
 
     #[test]

@@ -4,10 +4,10 @@
 //! ask for is asked for at once: for likelihoods four together take hardly longer than one.
 
 /// How many costs are worked out together.
-pub(crate) const TOGETHER: usize = 4;
+pub(super) const TOGETHER: usize = 4;
 
 /// The simplex search of Nelder and Mead in two dimensions: the least cost found, and where.
-pub(crate) fn minimise(
+pub(super) fn minimise(
     costs: &impl Fn([[f64; 2]; TOGETHER]) -> [f64; TOGETHER],
     start: [f64; 2],
 ) -> (f64, [f64; 2]) {

@@ -90,16 +90,16 @@ fn a_point_says_how_far_a_noise_wanders_from_row_to_row() {
 #[test]
 fn the_noises_that_may_be_hold_the_one_that_was_drawn() {
     let time = uneven(5, 400, 9.0);
-    for (deviation, time_constant) in [(0.0, 9.0), (3.0, 100.0), (3.0, 1e5)] {
+    for (deviation, time_constant) in [(0.0, 9.0), (3.0, 100.0), (3.0, 3e4)] {
         let seen = seen(&time, &wandering(&time, (deviation, time_constant), 6));
-        let around = seen.around(seen.likeliest().unwrap());
+        let around = seen.around();
         let of_truth =
             by_covariance(&seen, (deviation, time_constant)).0 - 2.0 * super::LASTING * time_constant.ln();
         let least = around.iter().map(|known| known.cost).fold(f64::INFINITY, f64::min);
         // Chi-squared of two degrees of freedom passes 9.2 once in a hundred cases.
         assert!(least < of_truth + 0.5, "the truth is likelier by {} than all", least - of_truth);
         assert!(deviation == 0.0 || of_truth < least + 9.2, "{}", of_truth - least);
-        assert!((4..200).contains(&around.len()), "{} points", around.len());
+        assert!((4..100).contains(&around.len()), "{} points", around.len());
     }
 }
 
@@ -117,6 +117,6 @@ fn columns_that_are_not_there_have_no_products() {
 fn few_samples_beside_the_columns_tell_no_noise() {
     for (rows, is_told) in [(5, false), (6, true)] {
         let time = uneven(9, rows, 9.0);
-        assert_eq!(seen(&time, &normals(10, rows)).likeliest().is_some(), is_told, "{rows} rows");
+        assert_eq!(!seen(&time, &normals(10, rows)).around().is_empty(), is_told, "{rows} rows");
     }
 }

@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 
 use abbe_runtime::{Compensator, Direction, ErrorMotion, Sample, Term, TermState, Work, states_needed};
 use model_dsl::equations::{Equations, Names};
-use model_dsl::notation::{example, page};
 use model_dsl::program::Interpreter;
+use notation::{example, page};
 
 use crate::agreement::compiled;
 use crate::cli::abbe;

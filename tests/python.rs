@@ -8,8 +8,8 @@ use std::process::Command;
 
 use abbe_runtime::Kinematics;
 use model_dsl::equations::{Equations, Names};
-use model_dsl::notation::{Format, print};
 use model_dsl::program::Interpreter;
+use notation::{Format, print};
 use serde_json::{Map, Value};
 
 use crate::agreement::{asking, compiled};

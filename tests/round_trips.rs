@@ -3,7 +3,7 @@
 use model_dsl::algebra::{Polynomial, Symbol};
 use model_dsl::equations::Equations;
 use model_dsl::machine::template;
-use model_dsl::notation::infix;
+use model_dsl::sheet::infix;
 use model_dsl::{diagnostic::Diagnostics, expression};
 use proptest::prelude::*;
 

@@ -5,8 +5,8 @@
 //! read against (3-21) to (3-26) of the Excello report, the turning centre's against (A.12) of NISTIR 6722.
 
 use model_dsl::equations::Names;
-use model_dsl::notation::{Format, print};
 use model_dsl::source::SourceFile;
+use notation::{Format, print};
 
 use crate::agreement::{asking, compiled};
 use crate::shipped::{SHIPPED, shipped};

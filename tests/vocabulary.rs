@@ -42,7 +42,7 @@ const OTHER_SENSES: [(&str, &str); 13] = [
     ("model-dsl/src/calibration/term/parts.rs", "step"),
     ("diagnosis/src/report/parameter.rs", "step"),
     // A word of Maxima.
-    ("model-dsl/src/notation/maxima.rs", "step"),
+    ("notation/src/maxima.rs", "step"),
 ];
 
 /// The path of a file from the root, and its text without tests and comments; nothing for tests and examples.
@@ -93,7 +93,7 @@ fn a_term_is_its_entry_and_its_formulas() {
         "runtime/src/term",
         "simulation/src/plant/",
         "diagnosis/src/",
-        "model-dsl/src/notation/formula.rs",
+        "notation/src/formula.rs",
         "model-dsl/src/calibration/factor",
         // What is injected is written from the definitions of the terms alone, so that it can judge all others.
         "limits/src/injection/",

@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 use model_dsl::algebra::{Axis, Polynomial};
 use model_dsl::machine::{Branch, Link as MachineLink, LinkKind, Machine, Motion, MotionKind, Reference};
-use model_dsl::notation::infix;
+use model_dsl::sheet::infix;
 
 /// A chain: both branches from the bed outwards, the part's first.
 #[derive(Clone, Debug)]

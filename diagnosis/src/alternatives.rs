@@ -11,45 +11,46 @@ use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::kinship::Kin;
 use crate::model::{Effect, Model, Place};
-use crate::noise::Noise;
 use crate::search::rivals;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::{Setting, Shape};
+use crate::weights::Weights;
 
 /// By how much minus twice the log-likelihood may rise for another name still to be possible: odds of one to twenty.
 const HIDDEN: f64 = 6.0;
 
-/// For each effect of the model beyond the first `always`: other effects that could stand in its place, simplest first.
+/// For each chosen effect of the model: other effects that could stand in its place, simplest first.
 pub(crate) fn find(study: &Study<'_>, found: &Found) -> Vec<Vec<Effect>> {
     let model = &found.fit.model;
-    let noises = &found.appraisal.noises;
+    let weights = &found.appraisal.weights;
     let others = others(study, found);
-    let design = joint(study, model, noises, &others);
+    let design = joint(study, model, weights, &others);
     let (products, samples) = design.fitted();
     let mut swept = Swept::new(&products);
-    for column in (0..model.len()).flat_map(|number| design.columns(number)) {
+    for column in (0..model.effects.len()).flat_map(|number| design.columns(number)) {
         swept.take(column);
     }
     let scale = (swept.remaining() / samples.max(1.0)).max(f64::MIN_POSITIVE);
     let columns = |number: usize| design.columns(number).collect::<Vec<usize>>();
-    (found.always..model.len())
+    model
+        .chosen_numbers()
         .map(|number| {
             let worth = swept.worth(&columns(number)) / scale;
             let mut without = swept.clone();
             columns(number).into_iter().for_each(|column| without.drop(column));
             let stands_in = |other: usize| {
-                let (gain, _) = without.promise(&columns(model.len() + other));
+                let (gain, _) = without.promise(&columns(model.effects.len() + other));
                 worth - gain / scale < HIDDEN
             };
-            let mut names = same_place(&model[number].effect, &others);
+            let mut names = same_place(&model.effects[number].effect, &others);
             names.extend(all_loops(study, &design, &without, model, number, worth - HIDDEN, scale));
             names.extend(
                 (0..others.len()).filter(|other| stands_in(*other)).flat_map(|other| all(&others[other])),
             );
-            let kept = &model[found.always..];
+            let kept = model.chosen();
             names.retain(|name| {
-                !rivals(name, &model[number].effect)
+                !rivals(name, &model.effects[number].effect)
                     && !kept.iter().any(|fitted| rivals(&fitted.effect, name))
             });
             names.sort_by(|a, b| simplicity(study, a).total_cmp(&simplicity(study, b)));
@@ -68,11 +69,11 @@ fn all_loops(
     worth: f64,
     scale: f64,
 ) -> Vec<Effect> {
-    if model[number].effect.shape != Shape::Instrument(Setting::Clock) {
+    if model.effects[number].effect.shape != Shape::Instrument(Setting::Clock) {
         return Vec::new();
     }
     let is_loop = |other: &usize| matches!(design.regressors[*other].effect.shape, Shape::Lag { .. });
-    let loops: Vec<usize> = (model.len()..design.regressors.len()).filter(is_loop).collect();
+    let loops: Vec<usize> = (model.effects.len()..design.regressors.len()).filter(is_loop).collect();
     let columns: Vec<usize> = loops.iter().flat_map(|other| design.columns(*other)).collect();
     let (gain, _) = without.promise(&columns);
     let stand_in = loops.len() > 1 && gain / scale > worth && study.own.iter().flatten().count() > 1;
@@ -91,7 +92,7 @@ fn same_place(effect: &Effect, others: &[Kin]) -> Vec<Effect> {
 
 /// All candidates, and the effects of the model at all other motions where they could be.
 fn others(study: &Study<'_>, found: &Found) -> Vec<Kin> {
-    let kept = || found.fit.model[found.always..].iter().map(|fitted| &fitted.effect);
+    let kept = || found.fit.model.chosen().iter().map(|fitted| &fitted.effect);
     let turned = kept().flat_map(|effect| other_guise(study, effect));
     let moved = kept().flat_map(|effect| elsewhere(study, effect)).chain(turned);
     let moved = moved.map(|effect| Kin { effect, equals: Vec::new() });
@@ -165,12 +166,11 @@ fn speed(study: &Study<'_>, axis: usize) -> Option<f64> {
 const STRIDES: usize = 400;
 
 /// The design of the model and of everything that could stand in for it, the present model's response restored.
-fn joint(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], others: &[Kin]) -> Design {
-    let mut regressors: Vec<Regressor> =
-        model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+fn joint(study: &Study<'_>, model: &Model, weights: &Weights, others: &[Kin]) -> Design {
+    let mut regressors = Regressor::all(&model.effects);
     regressors.extend(others.iter().map(|kin| Regressor::of(kin.effect.clone())));
-    let mut design = Design::new(study, model, noises, regressors);
-    design.rebase(model);
+    let mut design = Design::new(study, model, weights, regressors);
+    design.rebase(&model.effects);
     design
 }
 

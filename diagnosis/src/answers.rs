@@ -6,8 +6,9 @@
 
 use nalgebra::DMatrix;
 
+use crate::scene::Scene;
 use crate::states::nominal_position;
-use crate::study::{Scene, Study};
+use crate::study::Study;
 use crate::sweep::Swept;
 
 /// A load that answers the error of an axis.

@@ -10,14 +10,17 @@
 //! Two models are compared by their likelihoods, each with the noise that suits it best: an effect that a wandering sensor
 //! explains as well is then worth nothing.
 
+use crate::channel::ChannelAt;
 use crate::course::Course;
 use crate::model::Model;
 use crate::noise::{self, Noise};
 use crate::observations;
 use crate::outliers;
 use crate::parallel;
-use crate::study::{ChannelAt, Scene, Study};
+use crate::scene::Scene;
+use crate::study::Study;
 use crate::unsteady;
+use crate::weights::{Outliers, Weights};
 
 /// How often a likelihood is worked out until the noise of a channel is known, at least.
 const ESTIMATES: usize = 20;
@@ -26,9 +29,8 @@ const ESTIMATES: usize = 20;
 pub(crate) struct Appraisal {
     /// For each scene and channel.
     pub(crate) residuals: Vec<Vec<Vec<f64>>>,
-    pub(crate) outliers: Vec<Vec<Vec<bool>>>,
-    /// How samples weigh.
-    pub(crate) noises: Vec<Vec<Noise>>,
+    /// How samples weigh, and which are left out.
+    pub(crate) weights: Weights,
     /// What does not come back.
     pub(crate) floors: Vec<Vec<Noise>>,
     /// The sum of squares of what comes back, and the root mean square of what does not.
@@ -58,35 +60,46 @@ struct Estimate {
 impl Appraisal {
     /// Appraises a model.
     pub(crate) fn new(study: &Study<'_>, model: &Model) -> Self {
-        Self::under(study, model, None)
+        Self::under(study, model, None, |scene| scene.fitted_rows())
+    }
+
+    /// Appraises a model by all rows, also those that are held out; beside another model where one is given.
+    pub(crate) fn of_all_rows(study: &Study<'_>, model: &Model, other: Option<&Self>) -> Self {
+        Self::under(study, model, other, |scene| vec![true; scene.rows()])
     }
 
     /// Appraises a model beside another one, so that their likelihoods can be compared: where samples weigh alike under that one
     /// they do so here.
     pub(crate) fn beside(study: &Study<'_>, model: &Model, other: &Self) -> Self {
-        Self::under(study, model, Some(other))
+        Self::under(study, model, Some(other), |scene| scene.fitted_rows())
     }
 
-    fn under(study: &Study<'_>, model: &Model, other: Option<&Self>) -> Self {
+    /// `fitted` tells which rows of a scene it goes by.
+    fn under(
+        study: &Study<'_>,
+        model: &Model,
+        other: Option<&Self>,
+        fitted: impl Fn(&Scene<'_>) -> Vec<bool>,
+    ) -> Self {
         let (mut residuals, mut outliers, mut estimates) = (Vec::new(), Vec::new(), Vec::new());
         for scene in 0..study.scenes.len() {
             let course = Course::new(study, scene, model);
             let left = observations::residuals(study, scene, model, &course);
-            let weights = other.map(|other| &other.noises[scene]);
-            let (marks, found) = estimated(&study.scenes[scene], &left, weights).into_iter().unzip();
+            let like = other.map(|other| &other.weights.noises[scene]);
+            let known = &study.scenes[scene];
+            let (marks, found) = estimated(known, &left, like, &fitted(known)).into_iter().unzip();
             residuals.push(left);
             outliers.push(marks);
             estimates.push(found);
         }
         share_weights(study, &residuals, &mut estimates);
-        Self::of(residuals, outliers, &estimates)
+        Self::of(residuals, Outliers::new(outliers), &estimates)
     }
 
-    fn of(residuals: Vec<Vec<Vec<f64>>>, outliers: Vec<Vec<Vec<bool>>>, estimates: &[Vec<Estimate>]) -> Self {
+    fn of(residuals: Vec<Vec<Vec<f64>>>, outliers: Outliers, estimates: &[Vec<Estimate>]) -> Self {
         Self {
             residuals,
-            outliers,
-            noises: each(estimates, |estimate| estimate.weights),
+            weights: Weights { noises: each(estimates, |estimate| estimate.weights), outliers },
             floors: each(estimates, |estimate| estimate.floor),
             returning: each(estimates, |estimate| estimate.returning),
             leftover: each(estimates, |estimate| estimate.leftover),
@@ -97,7 +110,7 @@ impl Appraisal {
 
     /// Whether a model leaves more than noise of any channel.
     pub(crate) fn lacks(&self) -> bool {
-        self.noises.iter().flatten().any(|noise| noise.alike > 1.0)
+        self.weights.noises.iter().flatten().any(|noise| noise.alike > 1.0)
     }
 
     /// By how much the held-out samples are off, squared, in units of what another appraisal leaves of each channel.
@@ -106,7 +119,7 @@ impl Appraisal {
         for (scene, known) in study.scenes.iter().enumerate() {
             let fitted = known.fitted_rows();
             for (channel, residual) in self.residuals[scene].iter().enumerate() {
-                let outliers = &self.outliers[scene][channel];
+                let outliers = self.weights.outliers.of(ChannelAt { scene, channel });
                 let counts = |row: &usize| !fitted[*row] && !outliers[*row] && residual[*row].is_finite();
                 let squares: f64 = (0..residual.len()).filter(counts).map(|row| residual[row].powi(2)).sum();
                 sum += squares / other.leftover[scene][channel].max(f64::MIN_POSITIVE).powi(2);
@@ -115,18 +128,9 @@ impl Appraisal {
         sum
     }
 
-    /// White noise of the same sizes.
-    pub(crate) fn as_white(&self) -> Vec<Vec<Noise>> {
-        self.noises.iter().map(|channels| channels.iter().map(Noise::as_white).collect()).collect()
-    }
-
-    /// Takes the marks of outliers over into the study.
-    pub(crate) fn mark(&self, study: &mut Study<'_>) {
-        for (scene, marks) in study.scenes.iter_mut().zip(&self.outliers) {
-            for (channel, mark) in scene.channels.iter_mut().zip(marks) {
-                channel.outliers.clone_from(mark);
-            }
-        }
+    /// How samples weigh beside the floor alone.
+    pub(crate) fn beside_floor(&self) -> Weights {
+        self.weights.beside(self.floors.clone())
     }
 }
 
@@ -135,13 +139,13 @@ fn each<T>(estimates: &[Vec<Estimate>], of: impl Fn(&Estimate) -> T) -> Vec<Vec<
     estimates.iter().map(|channels| channels.iter().map(&of).collect()).collect()
 }
 
-/// Outliers and estimate of every channel of a scene; `weights` are those with which these are to be compared.
+/// Outliers and estimate of every channel of a scene by the rows that are fitted; `like` are weights with which these are to be compared.
 fn estimated(
     known: &Scene<'_>,
     residuals: &[Vec<f64>],
-    weights: Option<&Vec<Noise>>,
+    like: Option<&Vec<Noise>>,
+    fitted: &[bool],
 ) -> Vec<(Vec<bool>, Estimate)> {
-    let fitted = known.fitted_rows();
     let work = residuals.len() * known.rows() * ESTIMATES;
     parallel::counted(residuals.len(), work, |channel| {
         let residual = &residuals[channel];
@@ -149,7 +153,7 @@ fn estimated(
         let marks = outliers::mark(residual, known.channels[channel].step(), &apart);
         let counts = |row: usize| fitted[row] && residual[row].is_finite() && !marks[row];
         let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
-        let estimate = estimate(known, channel, residual, valid, weights.map(|weights| weights[channel]));
+        let estimate = estimate(known, channel, residual, valid, like.map(|like| like[channel]));
         (marks, estimate)
     })
 }

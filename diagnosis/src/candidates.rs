@@ -4,10 +4,12 @@
 //! Terms with a parameter that is not linear stand on a grid; periods and frequencies are searched for elsewhere.
 
 use crate::answers::answers;
+use crate::channel::Kind;
 use crate::model::{Effect, Place};
 use crate::ranges::shortest_step;
+use crate::scene::Scene;
 use crate::side::Side;
-use crate::study::{Kind, Scene, Study};
+use crate::study::Study;
 use crate::terms::{REFERENCE_TEMPERATURE, Setting, Shape};
 use crate::travel::Travel;
 

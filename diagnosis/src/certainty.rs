@@ -10,12 +10,12 @@ use crate::candidates;
 use crate::design::{Design, Regressor};
 use crate::fit::Fit;
 use crate::model::{Effect, Fitted};
-use crate::noise::Noise;
 use crate::parallel;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 use crate::travel::Travel;
+use crate::weights::Weights;
 
 /// The half width of a 95 % interval in standard deviations.
 pub(crate) const WIDTH_95: f64 = 1.959_964;
@@ -49,16 +49,16 @@ impl Certainty {
 pub(crate) fn certainties(
     study: &Study<'_>,
     fit: &Fit,
-    noises: &[Vec<Noise>],
+    weights: &Weights,
     travels: &[Travel],
 ) -> Vec<Certainty> {
-    parallel::counted(fit.model.len(), study.rows() * fit.model.len(), |number| {
+    parallel::counted(fit.model.effects.len(), study.rows() * fit.model.effects.len(), |number| {
         let mut certainty = Certainty::linear(fit.covariances[number].clone());
-        if let Some(interval) = interval(study, fit, noises, number) {
-            widen(&mut certainty.covariance, &fit.model[number].effect.shape, interval);
+        if let Some(interval) = interval(study, fit, weights, number) {
+            widen(&mut certainty.covariance, &fit.model.effects[number].effect.shape, interval);
             certainty.nonlinear = Some(interval);
         }
-        certainty.richer = richer(study, fit, noises, travels, number).map(Box::new);
+        certainty.richer = richer(study, fit, weights, travels, number).map(Box::new);
         certainty
     })
 }
@@ -72,8 +72,8 @@ const REACH: f64 = 6.0;
 const FALL_95: f64 = WIDTH_95 * WIDTH_95;
 
 /// The interval of the nonlinear parameter of an effect.
-fn interval(study: &Study<'_>, fit: &Fit, noises: &[Vec<Noise>], number: usize) -> Option<(f64, f64)> {
-    let shape = &fit.model[number].effect.shape;
+fn interval(study: &Study<'_>, fit: &Fit, weights: &Weights, number: usize) -> Option<(f64, f64)> {
+    let shape = &fit.model.effects[number].effect.shape;
     // The inertia of a loop acts on the states, not on columns of its own.
     if shape.nonlinear_in_coefficient() {
         return None;
@@ -101,7 +101,7 @@ fn interval(study: &Study<'_>, fit: &Fit, noises: &[Vec<Noise>], number: usize) 
         if places.is_empty() {
             break;
         }
-        let falls = falls(study, fit, noises, number, &places);
+        let falls = falls(study, fit, weights, number, &places);
         known.extend(places.into_iter().zip(falls));
         scale *= REACH;
     }
@@ -172,11 +172,11 @@ fn teeth(study: &Study<'_>, shape: &Shape) -> Vec<f64> {
 
 /// How far twice the log-likelihood falls when the nonlinear parameter of an effect stands at each of these places, everything
 /// else fitted again.
-fn falls(study: &Study<'_>, fit: &Fit, noises: &[Vec<Noise>], number: usize, places: &[f64]) -> Vec<f64> {
-    let own = &fit.model[number].effect;
+fn falls(study: &Study<'_>, fit: &Fit, weights: &Weights, number: usize, places: &[f64]) -> Vec<f64> {
+    let own = &fit.model.effects[number].effect;
     let forms =
         places.iter().map(|place| Effect { place: own.place, shape: own.shape.with_nonlinear(*place) });
-    let beside = Beside::new(study, fit, noises, number, forms.collect());
+    let beside = Beside::new(study, fit, weights, number, forms.collect());
     let found = beside.with(number).0;
     (0..places.len()).map(|form| (beside.with_form(form).0 - found) / beside.scale(number)).collect()
 }
@@ -186,11 +186,11 @@ fn falls(study: &Study<'_>, fit: &Fit, noises: &[Vec<Noise>], number: usize, pla
 fn richer(
     study: &Study<'_>,
     fit: &Fit,
-    noises: &[Vec<Noise>],
+    weights: &Weights,
     travels: &[Travel],
     number: usize,
 ) -> Option<Richer> {
-    let own = &fit.model[number].effect;
+    let own = &fit.model.effects[number].effect;
     let forms = candidates::richer(&own.shape, travels);
     if own.motion().is_none() || forms.is_empty() {
         return None;
@@ -201,7 +201,7 @@ fn richer(
             |shape: &Shape| crate::number(shape.columns() + usize::from(shape.nonlinear().is_some()));
         parameters(&effect.shape) - parameters(&own.shape)
     };
-    let beside = Beside::new(study, fit, noises, number, effects.clone());
+    let beside = Beside::new(study, fit, weights, number, effects.clone());
     let (scale, found) = (beside.scale(number), beside.with(number).0);
     let gain = |form: usize| (found - beside.with_form(form).0) / scale - 2.0 * further(&effects[form]);
     let best = (0..effects.len()).max_by(|a, b| gain(*a).total_cmp(&gain(*b)))?;
@@ -229,11 +229,11 @@ struct Beside {
 }
 
 impl Beside {
-    fn new(study: &Study<'_>, fit: &Fit, noises: &[Vec<Noise>], number: usize, forms: Vec<Effect>) -> Self {
-        let mut regressors: Vec<Regressor> =
-            fit.model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+    fn new(study: &Study<'_>, fit: &Fit, weights: &Weights, number: usize, forms: Vec<Effect>) -> Self {
+        let mut regressors = Regressor::all(&fit.model.effects);
         let bent = fit
             .model
+            .effects
             .iter()
             .enumerate()
             .filter(|(other, fitted)| *other != number && fitted.effect.shape.nonlinear().is_some());
@@ -243,8 +243,8 @@ impl Beside {
         }));
         let first_form = regressors.len();
         regressors.extend(forms.into_iter().map(Regressor::of));
-        let mut design = Design::new(study, &fit.model, noises, regressors);
-        design.rebase(&fit.model);
+        let mut design = Design::new(study, &fit.model, weights, regressors);
+        design.rebase(&fit.model.effects);
         let (products, samples) = design.fitted();
         let mut others = Swept::new(&products);
         for other in (0..first_form).filter(|other| *other != number) {

@@ -20,14 +20,16 @@ mod spins;
 mod trials;
 
 use crate::appraisal::Appraisal;
+use crate::channel::ChannelAt;
 use crate::contest::DECISIVE;
 use crate::engine::{self, Found};
 use crate::fit::Fit;
 use crate::model::{Fitted, Model};
-use crate::noise::{self, Noise};
-use crate::study::{ChannelAt, Study};
+use crate::noise;
+use crate::study::Study;
 use crate::terms::Shape;
 use crate::unsteady;
+use crate::weights::Weights;
 use delays::Late;
 use events::Event;
 use forms::Form;
@@ -38,7 +40,7 @@ use trials::{FormPrice, Ring, Trial};
 const MOST: usize = 3;
 
 /// Puts forms in the place of what imitates them, as long as one makes all of it better.
-pub(crate) fn compose(study: &mut Study<'_>, found: &mut Found) {
+pub(crate) fn compose(study: &Study<'_>, found: &mut Found) {
     for _ in 0..MOST {
         let spins = spins::spins(study, found);
         let open = is_open(study, found);
@@ -61,30 +63,32 @@ pub(crate) fn compose(study: &mut Study<'_>, found: &mut Found) {
 }
 
 /// Takes over the first delay that makes all of it better, if one does.
-fn take_delay(study: &mut Study<'_>, found: &mut Found, (price, lacks): (&FormPrice, bool)) -> bool {
+fn take_delay(study: &Study<'_>, found: &mut Found, (price, lacks): (&FormPrice, bool)) -> bool {
     let late = delays::delays(study, found, lacks);
     late.into_iter().any(|late| take_late(study, found, late, price))
 }
 
 /// Takes over the first form that makes all of it better, the one that promises most first.
 fn take_form(
-    study: &mut Study<'_>,
+    study: &Study<'_>,
     found: &mut Found,
     forms: &[Form],
     (price, lacks): (&FormPrice, bool),
 ) -> bool {
-    let noises = each_for_itself(&found.appraisal.noises);
-    let tried = trials::best(Ring { study, found, noises: &noises, price, lacks }, forms);
+    // What a model lacks keeps its direction, and the search counts such stretches once: so few samples are left then that no form could
+    // pay its price. A form that makes the rest noise again has to win under that noise.
+    let weights = found.appraisal.weights.each_for_itself();
+    let tried = trials::best(Ring { study, found, weights: &weights, price, lacks }, forms);
     tried.into_iter().any(|trial| take(study, found, &trial, price))
 }
 
 /// Takes over the first event that makes all of it better. Where nothing is left, only what was found as a course of time may be one.
-fn take_event(study: &mut Study<'_>, found: &mut Found, (price, lacks): (&FormPrice, bool)) -> bool {
+fn take_event(study: &Study<'_>, found: &mut Found, (price, lacks): (&FormPrice, bool)) -> bool {
     let is_course = |fitted: &Fitted| {
         let shape = fitted.effect.shape.core();
         matches!(shape, Shape::Drift { .. } | Shape::Growth { .. } | Shape::SensorPolynomial { .. })
     };
-    if !lacks && !found.fit.model.iter().any(is_course) {
+    if !lacks && !found.fit.model.effects.iter().any(is_course) {
         return false;
     }
     let happened = events::events(study, found);
@@ -93,7 +97,7 @@ fn take_event(study: &mut Study<'_>, found: &mut Found, (price, lacks): (&FormPr
 
 /// Whether there is anything for a form to explain: more than noise is left, or one form may be behind several names.
 fn is_open(study: &Study<'_>, found: &Found) -> bool {
-    found.fit.model.len() >= found.always + MANY || is_something_left(study, &found.appraisal)
+    found.fit.model.chosen().len() >= MANY || is_something_left(study, &found.appraisal)
 }
 
 /// Whether more is left of some channel than noise.
@@ -115,9 +119,9 @@ fn is_rough(study: &Study<'_>, appraisal: &Appraisal) -> bool {
 }
 
 /// What is left of a channel in the rows that are fitted and count.
-fn left(study: &Study<'_>, appraisal: &Appraisal, ChannelAt { scene, channel }: ChannelAt) -> Vec<f64> {
-    let fitted = study.scenes[scene].fitted_rows();
-    let (marks, residual) = (&appraisal.outliers[scene][channel], &appraisal.residuals[scene][channel]);
+fn left(study: &Study<'_>, appraisal: &Appraisal, at: ChannelAt) -> Vec<f64> {
+    let fitted = study.scenes[at.scene].fitted_rows();
+    let (marks, residual) = (appraisal.weights.outliers.of(at), &appraisal.residuals[at.scene][at.channel]);
     let counts = |row: &usize| fitted[*row] && !marks[*row] && residual[*row].is_finite();
     (0..residual.len()).filter(counts).map(|row| residual[row]).collect()
 }
@@ -136,25 +140,14 @@ fn square(left: &[f64]) -> f64 {
 /// number. By chance one channel of 4300 lies 3.5 of them above (a normal tail), and costs the time of a contest.
 const ROUGH: f64 = 3.5;
 
-/// The noises in which every sample counts for itself. What a model lacks keeps its direction, and the search counts such stretches once:
-/// so few samples are left then that no form could pay its price. A form that makes the rest noise again has to win under that noise.
-fn each_for_itself(noises: &[Vec<Noise>]) -> Vec<Vec<Noise>> {
-    let itself = |noise: &Noise| Noise { alike: 1.0, ..*noise };
-    noises.iter().map(|channels| channels.iter().map(itself).collect()).collect()
-}
-
 /// Fits a form beside what is kept, and takes it over where all of it is better: it stands up before the judge, costs decisively less
 /// under the noise that it leaves, and held-out samples lie nearer.
-fn take(study: &mut Study<'_>, found: &mut Found, trial: &Trial, price: &FormPrice) -> bool {
+fn take(study: &Study<'_>, found: &mut Found, trial: &Trial, price: &FormPrice) -> bool {
     let Trial { form, beside, kept } = trial;
-    let mut model: Model = found.fit.model[..found.always].to_vec();
-    model.extend(kept.iter().cloned());
-    model.push(form.clone());
-    model.extend(
-        beside
-            .iter()
-            .map(|effect| Fitted { effect: effect.clone(), coefficients: vec![0.0; effect.shape.columns()] }),
-    );
+    let settings = found.fit.model.settings().iter();
+    let beside = beside.iter().map(|effect| Fitted::unfitted(effect.clone()));
+    let effects = settings.chain(kept).chain([form]).cloned().chain(beside);
+    let model = found.fit.model.with_effects(effects);
     let is_form = |fitted: &Fitted| {
         fitted.effect.place == form.effect.place
             && fitted.effect.shape.factors() == form.effect.shape.factors()
@@ -163,13 +156,13 @@ fn take(study: &mut Study<'_>, found: &mut Found, trial: &Trial, price: &FormPri
 }
 
 /// Fits a model in which something happened, and takes it over on the same terms.
-fn take_happened(study: &mut Study<'_>, found: &mut Found, event: Event, price: &FormPrice) -> bool {
+fn take_happened(study: &Study<'_>, found: &mut Found, event: Event, price: &FormPrice) -> bool {
     let is_step = |fitted: &Fitted| matches!(fitted.effect.shape, Shape::Step { .. });
     take_model(study, found, event.model, (&is_step, true), price)
 }
 
 /// Fits a model in which an axis is late, and takes it over on the same terms.
-fn take_late(study: &mut Study<'_>, found: &mut Found, late: Late, price: &FormPrice) -> bool {
+fn take_late(study: &Study<'_>, found: &mut Found, late: Late, price: &FormPrice) -> bool {
     let is_delay =
         |fitted: &Fitted| matches!(fitted.effect.shape, Shape::Delay { axis, .. } if axis == late.axis);
     take_model(study, found, late.model, (&is_delay, false), price)
@@ -179,23 +172,22 @@ fn take_late(study: &mut Study<'_>, found: &mut Found, late: Late, price: &FormP
 /// names; or what is composed takes most of what was left. A name may replace another one, and is added only where more than noise was
 /// left: otherwise the search has asked for it.
 fn take_model(
-    study: &mut Study<'_>,
+    study: &Study<'_>,
     found: &mut Found,
     model: Model,
     (is_wanted, is_composed): (&dyn Fn(&Fitted) -> bool, bool),
     price: &FormPrice,
 ) -> bool {
-    let crossings = study.crossings.clone();
     let conditions = found.conditions();
     let fit = conditions.refine(study, model);
     let (fit, appraisal) = engine::upheld(study, fit, &conditions);
-    let simpler = fit.model.len() + SIMPLER <= found.fit.model.len();
+    let simpler = fit.model.effects.len() + SIMPLER <= found.fit.model.effects.len();
     let is_needed = if is_composed {
         takes_most(study, &found.appraisal, &appraisal)
     } else {
-        fit.model.len() <= found.fit.model.len() || is_something_left(study, &found.appraisal)
+        fit.model.effects.len() <= found.fit.model.effects.len() || is_something_left(study, &found.appraisal)
     };
-    if fit.model.iter().any(is_wanted)
+    if fit.model.effects.iter().any(is_wanted)
         && (simpler || is_needed)
         && is_better(study, found, (&fit, &appraisal), price)
     {
@@ -203,8 +195,6 @@ fn take_model(
         found.appraisal = appraisal;
         return true;
     }
-    study.crossings = crossings;
-    found.appraisal.mark(study);
     false
 }
 
@@ -239,11 +229,11 @@ fn is_better(
     (fit, appraisal): (&Fit, &Appraisal),
     price: &FormPrice,
 ) -> bool {
-    let gains = |noises: &[Vec<Noise>]| gain(study, found, fit, (noises, price));
+    let gains = |weights: &Weights| gain(study, found, fit, (weights, price));
     let nearer = appraisal.held_out(study, appraisal) < found.appraisal.held_out(study, appraisal);
-    let before = each_for_itself(&found.appraisal.as_white());
+    let before = found.appraisal.weights.as_white().each_for_itself();
     nearer
-        && gains(&appraisal.noises) > DECISIVE
+        && gains(&appraisal.weights) > DECISIVE
         && gains(&before) > -DECISIVE
         && more_likely(study, found, (fit, appraisal), price) > DECISIVE
 }
@@ -258,9 +248,10 @@ fn more_likely(
 ) -> f64 {
     let paid = |fit: &Fit, appraisal: &Appraisal| {
         let conditions = found.conditions();
-        let conditions = conditions.under(&appraisal.noises);
-        let names: f64 = conditions.prices(study, &fit.model, fit.samples)[found.always..].iter().sum();
-        names + fit.model.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum::<f64>()
+        let conditions = conditions.under(&appraisal.weights);
+        let names: f64 =
+            conditions.prices(study, &fit.model, fit.samples)[fit.model.chosen_numbers()].iter().sum();
+        names + fit.model.effects.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum::<f64>()
     };
     let cost = |fit: &Fit, appraisal: &Appraisal| deviance(study, appraisal) + paid(fit, appraisal);
     cost(&found.fit, &found.appraisal) - cost(fit, appraisal)
@@ -270,7 +261,8 @@ fn more_likely(
 fn deviance(study: &Study<'_>, appraisal: &Appraisal) -> f64 {
     let of_channel = |ChannelAt { scene, channel }| {
         let (known, residual) = (&study.scenes[scene], &appraisal.residuals[scene][channel]);
-        let (fitted, outliers) = (known.fitted_rows(), &appraisal.outliers[scene][channel]);
+        let outliers = appraisal.weights.outliers.of(ChannelAt { scene, channel });
+        let fitted = known.fitted_rows();
         let counts = |row: usize| fitted[row] && residual[row].is_finite() && !outliers[row];
         let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
         noise::estimate(&known.recording.time, residual, &valid, known.channels[channel].rounding).1
@@ -279,13 +271,13 @@ fn deviance(study: &Study<'_>, appraisal: &Appraisal) -> f64 {
 }
 
 /// By how much a model costs less than what was found, both fitted under a noise.
-fn gain(study: &Study<'_>, found: &Found, fit: &Fit, (noises, price): (&[Vec<Noise>], &FormPrice)) -> f64 {
+fn gain(study: &Study<'_>, found: &Found, fit: &Fit, (weights, price): (&Weights, &FormPrice)) -> f64 {
     let conditions = found.conditions();
-    let conditions = conditions.under(noises);
+    let conditions = conditions.under(weights);
     let cost = |model: &Model| {
         let fit = conditions.refine(study, model.clone());
         let names = conditions.cost_at(study, &fit, &conditions.prices(study, &fit.model, fit.samples));
-        names + fit.model.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum::<f64>()
+        names + fit.model.effects.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum::<f64>()
     };
     cost(&found.fit.model) - cost(&fit.model)
 }

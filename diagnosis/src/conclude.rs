@@ -21,21 +21,22 @@ use crate::diagnosis::{Change, Diagnosis, Mended, NoiseSummary, Residual, Settin
 use crate::engine::{self, Found};
 use crate::fit;
 use crate::local::{self, Feature};
-use crate::model::{Fitted, Model};
+use crate::model::Model;
 use crate::places;
 use crate::repeats;
-use crate::returns;
 use crate::revise;
-use crate::study::{Scene, Study};
+use crate::scene::Scene;
+use crate::study::Study;
 use crate::terms::SettingKind;
 use crate::traces;
 use crate::unsteady;
+use crate::weights::Outliers;
 use crate::zeros;
 use crate::{Inputs, Keep, Progress};
 use decidable::crossed;
 use findings::report;
 use searched::{Opening, Searched};
-use summary::summary;
+use summary::summaries;
 use units::Units;
 
 /// Finds what the model leaves out; with the numbers behind plots of it, or all numbers, where `keep` says so.
@@ -100,20 +101,20 @@ fn concluded(
     mut diagnosis: Diagnosis,
     progress: &mut dyn FnMut(Progress),
 ) -> Diagnosis {
-    let Searched { mut study, units, mut found, scattered, before } = searched;
+    let Searched { study, units, mut found, scattered, before } = searched;
     diagnosis.machine = study.equations.machine.clone();
     (diagnosis.before, diagnosis.undecided) = (opening.before, opening.undecided);
     (diagnosis.returns, diagnosis.nothing_returns) = (opening.returns, opening.nothing_returns);
-    stand_or_fall(&mut study, &units, &mut found, before.holdout_rms);
-    compose::compose(&mut study, &mut found);
-    let mut feature = explain_locally(&mut study, &mut found);
+    stand_or_fall(&study, &units, &mut found, before.holdout_rms);
+    compose::compose(&study, &mut found);
+    let mut feature = explain_locally(&study, &mut found);
     progress(Progress { step: "comparing with other names", done: 0.95 });
     let mut numbers = claims(&study, &mut found, &units, &mut diagnosis);
     while let Some(weakest) = refuted::weakest(&diagnosis.findings)
         .map(|weakest| numbers[weakest])
         .or_else(|| piece_of_the_rest(&study, &found, &numbers))
     {
-        drop_effect(&mut study, &mut found, weakest);
+        drop_effect(&study, &mut found, weakest);
         // A table that was refuted is not made again.
         feature = strongest(&study, &found);
         numbers = claims(&study, &mut found, &units, &mut diagnosis);
@@ -143,7 +144,7 @@ fn concluded(
         diagnosis.denied = denied::denied(&study, &found);
     }
     diagnosis.candidates = found.pool.len();
-    diagnosis.recordings = study.scenes.iter().map(summary).collect();
+    diagnosis.recordings = summaries(&study, &found.appraisal.weights.outliers);
     diagnosis
 }
 
@@ -165,23 +166,24 @@ fn verdict(diagnosis: &Diagnosis) -> Verdict {
 
 /// What a model leaves of held-out rows, the zeros of recordings that are held out as a whole left free; `None` where nothing is
 /// held out.
-fn held_out(study: &Study<'_>, units: &Units, model: &Model) -> Option<f64> {
+fn held_out(study: &Study<'_>, units: &Units, model: &Model, outliers: &Outliers) -> Option<f64> {
     let mut model = model.clone();
     zeros::free_held_out(study, &mut model);
-    units.residual(study, &model).holdout_rms
+    units.residual(study, &model, outliers).holdout_rms
 }
 
 /// Keeps what was found only where held-out rows lie no farther with it than the calibration leaves them, `before`: what makes
 /// them lie farther is no explanation, however well it fitted. Where it is only that zeros allow for a noise that wanders, they are
 /// weighed as those of the calibration are.
-fn stand_or_fall(study: &mut Study<'_>, units: &Units, found: &mut Found, before: Option<f64>) {
-    let farther = |study: &Study<'_>, model: &Model| held_out(study, units, model) > before;
-    if !found.claims() || !farther(study, &found.fit.model) {
+fn stand_or_fall(study: &Study<'_>, units: &Units, found: &mut Found, before: Option<f64>) {
+    let outliers = &found.appraisal.weights.outliers;
+    let farther = |model: &Model| held_out(study, units, model, outliers) > before;
+    if !found.claims() || !farther(&found.fit.model) {
         return;
     }
     let mut plain = found.fit.model.clone();
-    zeros::weigh_plainly(study, &mut plain, found.always, &found.appraisal.as_white());
-    if farther(study, &plain) {
+    zeros::weigh_plainly(study, &mut plain, &found.appraisal.weights.as_white());
+    if farther(&plain) {
         withdraw(study, found);
     } else {
         found.plain_zeros = true;
@@ -195,10 +197,10 @@ fn stand_or_fall(study: &mut Study<'_>, units: &Units, found: &mut Found, before
 fn claims(study: &Study<'_>, found: &mut Found, units: &Units, diagnosis: &mut Diagnosis) -> Vec<usize> {
     if !found.claims() {
         // Zeros that allow for a noise that wanders are no better than the plain ones where there is nothing beside them.
-        zeros::weigh_plainly(study, &mut found.fit.model, found.always, &found.appraisal.as_white());
+        zeros::weigh_plainly(study, &mut found.fit.model, &found.appraisal.weights.as_white());
     }
     zeros::free_held_out(study, &mut found.fit.model);
-    diagnosis.after = units.residual(study, &found.fit.model);
+    diagnosis.after = units.residual(study, &found.fit.model, &found.appraisal.weights.outliers);
     diagnosis.findings.clear();
     diagnosis.settings.clear();
     report(study, found, units, diagnosis)
@@ -208,63 +210,55 @@ fn claims(study: &Study<'_>, found: &mut Found, units: &Units, diagnosis: &mut D
 /// a piece of that.
 fn piece_of_the_rest(study: &Study<'_>, found: &Found, numbers: &[usize]) -> Option<usize> {
     let model = &found.fit.model;
-    let waves = numbers.iter().rev().copied().filter(|number| model[*number].effect.shape.is_wave());
+    let waves = numbers.iter().rev().copied().filter(|number| model.effects[*number].effect.shape.is_wave());
     waves.into_iter().find(|number| {
-        let mut rest = model.clone();
-        rest.remove(*number);
-        let rest = fit::refine(study, rest, &found.appraisal.noises, &found.travels);
+        let rest = fit::refine(study, model.without(*number), &found.appraisal.weights, &found.travels);
         let without = Appraisal::beside(study, &rest.model, &found.appraisal);
         !revise::stands_apart(study, &without, &found.appraisal)
     })
 }
 
 /// Takes one effect back and fits the rest again.
-fn drop_effect(study: &mut Study<'_>, found: &mut Found, number: usize) {
-    let mut model = found.fit.model.clone();
-    model.remove(number);
-    crossing::follow(study, &model);
-    found.fit = fit::refine(study, model, &found.appraisal.noises, &found.travels);
+fn drop_effect(study: &Study<'_>, found: &mut Found, number: usize) {
+    let mut model = found.fit.model.without(number);
+    crossing::follow(study, &mut model);
+    found.fit = fit::refine(study, model, &found.appraisal.weights, &found.travels);
     found.appraisal = Appraisal::new(study, &found.fit.model);
-    found.appraisal.mark(study);
 }
 
 /// Takes all effects of the machine back.
-fn withdraw(study: &mut Study<'_>, found: &mut Found) {
-    let settings: Model = found.fit.model[..found.always].to_vec();
-    crossing::follow(study, &settings);
-    found.fit = fit::refine(study, settings, &found.appraisal.as_white(), &found.travels);
+fn withdraw(study: &Study<'_>, found: &mut Found) {
+    let mut settings = found.fit.model.settings_alone();
+    crossing::follow(study, &mut settings);
+    found.fit = fit::refine(study, settings, &found.appraisal.weights.as_white(), &found.travels);
     found.appraisal = Appraisal::new(study, &found.fit.model);
 }
 
-/// What `left` tells of the instruments' settings alone where known plays are crossed as far as they go: beside it, what changes
-/// is what was found, and not how a play acts that was known.
-fn with_known_crossings<T>(
-    study: &mut Study<'_>,
-    bare: &Model,
-    left: impl FnOnce(&Study<'_>, &Model) -> T,
-) -> T {
-    let found = study.crossings.clone();
-    crossing::follow(study, bare);
-    let bare = bare_model(study);
-    let left = left(study, &bare);
-    study.crossings = found;
-    left
+/// The settings of the instruments alone, and the samples that are left out beside them.
+struct Bare {
+    model: Model,
+    outliers: Outliers,
 }
 
-/// The settings of the instruments alone, fitted.
-fn bare_model(study: &mut Study<'_>) -> Model {
-    let effects = candidates::always(study);
-    let model: Model = effects.into_iter().map(|effect| Fitted { effect, coefficients: vec![0.0] }).collect();
-    let appraisal = Appraisal::new(study, &model);
-    appraisal.mark(study);
-    let mut model = fit::refine(study, model, &appraisal.as_white(), &[]).model;
+/// The settings of the instruments alone, fitted, where known plays are crossed as far as they go on the axes on which a model crosses
+/// plays: beside that, what changes is what was found, and not how a play acts that was known.
+fn bare_beside(study: &Study<'_>, bare: &Bare, found: &Model) -> Bare {
+    let mut known = bare.model.clone().crossed_as(found);
+    crossing::follow(study, &mut known);
+    bare_model(study, &known)
+}
+
+/// The settings of the instruments alone, fitted, with plays that are crossed as in another model.
+fn bare_model(study: &Study<'_>, crossed: &Model) -> Bare {
+    let model = Model::of_settings(candidates::always(study)).crossed_as(crossed);
+    let weights = Appraisal::new(study, &model).weights;
+    let mut model = fit::refine(study, model, &weights.as_white(), &[]).model;
     zeros::free_held_out(study, &mut model);
-    returns::tell(study, &model);
-    model
+    Bare { model, outliers: weights.outliers }
 }
 
 /// Looks for what remains at one place of an axis. It becomes a `table` where that stands up, and the search goes on.
-fn explain_locally(study: &mut Study<'_>, found: &mut Found) -> Option<Feature> {
+fn explain_locally(study: &Study<'_>, found: &mut Found) -> Option<Feature> {
     for _ in 0..TABLES {
         let feature = strongest(study, found)?;
         match places::with_table(study, found, &feature) {
@@ -288,7 +282,12 @@ fn fitted_runs(scene: &Scene<'_>) -> Vec<i64> {
     scene.run_numbers().into_iter().filter(fits).collect()
 }
 
-fn undecidable(mut diagnosis: Diagnosis, study: &Study<'_>, because: String) -> Diagnosis {
+fn undecidable(
+    mut diagnosis: Diagnosis,
+    study: &Study<'_>,
+    outliers: &Outliers,
+    because: String,
+) -> Diagnosis {
     let sentence = format!("Nothing can be decided from this recording, because {because}.");
     diagnosis.undecided.push(sentence.clone());
     // An axis that is read wrongly is not on its way anywhere.
@@ -302,6 +301,6 @@ fn undecidable(mut diagnosis: Diagnosis, study: &Study<'_>, because: String) -> 
     let nothing = Residual { rms: f64::NAN, holdout_rms: None, unit: "mm" };
     (diagnosis.before, diagnosis.after) = (nothing, nothing);
     diagnosis.noise = NoiseSummary { value: f64::NAN, unit: "mm", ..NoiseSummary::default() };
-    diagnosis.recordings = study.scenes.iter().map(summary).collect();
+    diagnosis.recordings = summaries(study, outliers);
     diagnosis
 }

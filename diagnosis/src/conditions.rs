@@ -1,17 +1,17 @@
 //! Conditions: all that a fit and its cost depend on beside the recordings and the model.
 //!
-//! In: the noises, how far the axes travel, and how much was looked through. Out: fits, what they cost, and the cheapest of several
+//! In: how samples weigh, how far the axes travel, and how much was looked through. Out: fits, what they cost, and the cheapest of several
 //! trials. Models are compared under the same conditions, so that a cost is always a cost beside another one.
 
 use crate::curves::LONG;
 use crate::fit::{self, Fit};
 use crate::model::{Effect, Fitted, Model};
-use crate::noise::Noise;
 use crate::search::price;
 use crate::study::Study;
 use crate::terms::{Shape, oddity, plausible};
 use crate::travel::Travel;
 use crate::waves::{self, Peak};
+use crate::weights::Weights;
 
 /// How much was tried before a model was chosen.
 #[derive(Clone, Copy, Debug)]
@@ -25,40 +25,41 @@ pub(crate) struct Tries {
 /// The conditions under which models are fitted and compared.
 #[derive(Clone, Copy)]
 pub(crate) struct Conditions<'c> {
-    /// How many of a model's first effects are settings that are always fitted.
-    pub(crate) always: usize,
-    /// How samples weigh, for each scene and channel.
-    pub(crate) noises: &'c [Vec<Noise>],
+    /// How samples weigh.
+    pub(crate) weights: &'c Weights,
     pub(crate) travels: &'c [Travel],
     pub(crate) tries: Tries,
 }
 
 impl<'c> Conditions<'c> {
     /// The same with other weights.
-    pub(crate) fn under<'n>(&self, noises: &'n [Vec<Noise>]) -> Conditions<'n>
+    pub(crate) fn under<'w>(&self, weights: &'w Weights) -> Conditions<'w>
     where
-        'c: 'n,
+        'c: 'w,
     {
-        Conditions { noises, ..*self }
+        Conditions { weights, ..*self }
     }
 
     /// Fits all parameters of a model, from where it stands.
     pub(crate) fn refine(&self, study: &Study<'_>, model: Model) -> Fit {
-        fit::refine(study, model, self.noises, self.travels)
+        fit::refine(study, model, self.weights, self.travels)
     }
 
     /// What a fit costs: its misfit and the price of its effects.
     pub(crate) fn cost(&self, study: &Study<'_>, fit: &Fit) -> f64 {
         let prices: Vec<f64> =
-            fit.model.iter().map(|fitted| self.price(study, &fitted.effect, fit.samples)).collect();
+            fit.model.effects.iter().map(|fitted| self.price(study, &fitted.effect, fit.samples)).collect();
         self.cost_at(study, fit, &prices)
     }
 
     /// What a fit costs where its effects have these prices.
     pub(crate) fn cost_at(&self, study: &Study<'_>, fit: &Fit, prices: &[f64]) -> f64 {
-        let paid: f64 = fit.model[self.always..]
+        let chosen = fit.model.chosen_numbers();
+        let paid: f64 = fit
+            .model
+            .chosen()
             .iter()
-            .zip(&prices[self.always..])
+            .zip(&prices[chosen])
             .map(|(fitted, price)| price + odd(study, fitted))
             .sum();
         fit.samples * (fit.remaining / fit.samples).ln() + paid
@@ -72,10 +73,10 @@ impl<'c> Conditions<'c> {
     /// The prices of the effects of a model, where waves that stand out at their own noise have paid.
     pub(crate) fn prices(&self, study: &Study<'_>, model: &Model, samples: f64) -> Vec<f64> {
         let price = |number: usize| {
-            let price = self.price(study, &model[number].effect, samples);
+            let price = self.price(study, &model.effects[number].effect, samples);
             if self.stands_out(study, model, number, price) { PAID } else { price }
         };
-        (0..model.len()).map(price).collect()
+        (0..model.effects.len()).map(price).collect()
     }
 
     /// The price of a wave of a spectrum.
@@ -99,8 +100,8 @@ impl<'c> Conditions<'c> {
 
     /// Whether an effect of a model is a wave that stands out at its own noise, beyond this price.
     pub(crate) fn stands_out(&self, study: &Study<'_>, model: &Model, number: usize, price: f64) -> bool {
-        self.own_noise_counts(study, &model[number].effect.shape) && {
-            let around = waves::around(study, model, number, self.noises, self.travels);
+        self.own_noise_counts(study, &model.effects[number].effect.shape) && {
+            let around = waves::around(study, model, number, self.weights, self.travels);
             around.iter().any(|peak| peak.local >= OUTSTANDING * price)
         }
     }
@@ -109,7 +110,7 @@ impl<'c> Conditions<'c> {
     /// something: there a slow residual would hide it. Elsewhere the weights know the noise of each frequency already. A long wave is
     /// never judged so: its neighbours may be parts of the same curve.
     fn own_noise_counts(&self, study: &Study<'_>, shape: &Shape) -> bool {
-        let alike = self.noises.iter().flatten().any(|noise| noise.alike > 1.0);
+        let alike = self.weights.noises.iter().flatten().any(|noise| noise.alike > 1.0);
         let cycles = match shape {
             Shape::Cyclic { axis, period, .. } => self.travels[*axis].range() / period,
             Shape::Vibration { frequency } => frequency * waves::observed(study),

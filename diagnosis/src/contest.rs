@@ -8,15 +8,17 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 
+use crate::channel::ChannelAt;
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::model::{Effect, Model};
-use crate::noise::{Noise, Step, Whitening, whiten};
+use crate::noise::{Step, Whitening, whiten};
 use crate::parallel;
 use crate::search::untold_price;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
+use crate::weights::Weights;
 
 /// A candidate must lower the cost by this much. The cost is that of Schwarz's criterion, and the odds are then 150 to 1.
 pub(crate) const DECISIVE: f64 = 10.0;
@@ -58,17 +60,16 @@ type Set<'m> = (Swept, Vec<&'m Member>);
 pub(crate) type Columns<'c> = dyn Fn(Range<usize>, ChannelAt) -> Vec<Vec<f64>> + Sync + 'c;
 
 impl Contest {
-    /// Works out the products over all recordings, in the given rows of each, as samples weigh under these noises. The model is what was
+    /// Works out the products over all recordings, in the given rows of each, under these weights. The model is what was
     /// found, and behind it what may be missing, with coefficients of 0. `candidates` is the number of candidates.
     pub(crate) fn new(
         study: &Study<'_>,
-        (found, model, noises): (&Found, &Model, &[Vec<Noise>]),
+        (found, model, weights): (&Found, &Model, &Weights),
         rows: &[Vec<usize>],
         candidates: usize,
         of_candidates: &Columns<'_>,
     ) -> Self {
-        let regressors: Vec<Regressor> =
-            model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+        let regressors = Regressor::all(&model.effects);
         let width: usize = regressors.iter().map(Regressor::columns).sum();
         let mut contest = Self {
             products: vec![vec![0.0; width + 2]; candidates],
@@ -76,22 +77,22 @@ impl Contest {
             effects: Vec::new(),
             samples: 0.0,
         };
-        for (scene, (rows, noises)) in rows.iter().zip(noises).enumerate() {
-            for (channel, noise) in noises.iter().enumerate() {
+        for (scene, rows) in rows.iter().enumerate() {
+            for channel in 0..study.scenes[scene].channels.len() {
                 let at = ChannelAt { scene, channel };
                 let mut columns = Design::columns_in(study, at, model, &regressors, rows);
                 let coefficients: Vec<f64> =
-                    model.iter().flat_map(|fitted| &fitted.coefficients).copied().collect();
+                    model.effects.iter().flat_map(|fitted| &fitted.coefficients).copied().collect();
                 add_back(&mut columns, &coefficients);
-                contest.add(study, at, (*noise, rows), columns, of_candidates);
+                contest.add(study, at, (weights, rows), columns, of_candidates);
             }
         }
         let conditions = found.conditions();
         let mut first = 0;
-        for (number, fitted) in model.iter().enumerate() {
+        for (number, fitted) in model.effects.iter().enumerate() {
             let columns = first..first + regressors[number].columns();
             first = columns.end;
-            let price = if number >= found.always {
+            let price = if model.chosen_numbers().contains(&number) {
                 Some(conditions.price(study, &fitted.effect, contest.samples))
             } else {
                 price_of_a_run(&fitted.effect, contest.samples)
@@ -106,11 +107,12 @@ impl Contest {
         &mut self,
         study: &Study<'_>,
         at: ChannelAt,
-        (noise, rows): (Noise, &[usize]),
+        (weights, rows): (&Weights, &[usize]),
         mut columns: DMatrix<f64>,
         of_candidates: &Columns<'_>,
     ) {
-        let (known, outliers) = (&study.scenes[at.scene], &study.channel(at).outliers);
+        let known = &study.scenes[at.scene];
+        let (noise, outliers) = (weights.noise(at), weights.outliers.of(at));
         let fitted = known.fitted_rows();
         let valid: Vec<bool> = rows
             .iter()

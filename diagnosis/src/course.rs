@@ -9,11 +9,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 use model_dsl::exact::{Columns, Displaced};
 use model_dsl::program::Column;
 
+use crate::channel::Kind;
 use crate::model::{Fitted, Model};
 use crate::parallel;
 use crate::position_loop::PositionLoop;
+use crate::scene::Built;
 use crate::states::{Driven, Rows, States};
-use crate::study::{Built, Kind, Study};
+use crate::study::Study;
 use crate::terms::{Memory, Setting, Shape};
 
 /// How many rows are worked on at a time.
@@ -54,7 +56,7 @@ struct Ways {
 }
 
 impl Ways {
-    fn new(study: &Study<'_>, scene: usize, model: &[Fitted]) -> Self {
+    fn new(study: &Study<'_>, scene: usize, model: &Model) -> Self {
         let loops = match study.scenes[scene].at_rest {
             true => vec![PositionLoop::default(); study.equations.axes.len()],
             false => loops(study, model),
@@ -64,21 +66,19 @@ impl Ways {
             true => feedback_zero(study, scene, model, axis),
             false => 0.0,
         };
-        let driven = loops.into_iter().zip(&study.crossings).enumerate();
-        let driven = driven
-            .map(|(axis, (position_loop, crossing))| Driven {
-                position_loop,
-                zero: zero(axis, position_loop),
-                crossing: *crossing,
-            })
-            .collect();
+        let driven = |(axis, position_loop): (usize, PositionLoop)| Driven {
+            position_loop,
+            zero: zero(axis, position_loop),
+            crossing: model.crossing(axis),
+        };
+        let driven = loops.into_iter().enumerate().map(driven).collect();
         Self { driven, clock: clock(scene, model) }
     }
 }
 
 impl Course {
     /// The course of a recording under a model.
-    pub(crate) fn new(study: &Study<'_>, scene: usize, model: &[Fitted]) -> Arc<Self> {
+    pub(crate) fn new(study: &Study<'_>, scene: usize, model: &Model) -> Arc<Self> {
         let ways = Ways::new(study, scene, model);
         let last = &study.scenes[scene].last_course.0;
         // What a thread left that panicked is as good as any other course.
@@ -216,9 +216,9 @@ pub(crate) fn inputs<'s>(study: &Study<'_>, view: &Rows<'s>) -> (Vec<&'s [f64]>,
 }
 
 /// The position loop of each axis: lags and inertias of the calibration and of the model add.
-fn loops(study: &Study<'_>, model: &[Fitted]) -> Vec<PositionLoop> {
+fn loops(study: &Study<'_>, model: &Model) -> Vec<PositionLoop> {
     let mut loops = vec![PositionLoop::default(); study.equations.axes.len()];
-    for fitted in study.known.iter().chain(model) {
+    for fitted in study.known.iter().chain(&model.effects) {
         if let (Shape::Lag { axis, inertia }, [lag]) = (&fitted.effect.shape, fitted.coefficients.as_slice())
         {
             loops[*axis].time_constant += lag;
@@ -229,16 +229,17 @@ fn loops(study: &Study<'_>, model: &[Fitted]) -> Vec<PositionLoop> {
 }
 
 /// The zero of the drive's own feedback of an axis in a recording.
-fn feedback_zero(study: &Study<'_>, scene: usize, model: &[Fitted], axis: usize) -> f64 {
+fn feedback_zero(study: &Study<'_>, scene: usize, model: &Model, axis: usize) -> f64 {
     let mut channels = study.scenes[scene].channels.iter();
     let Some(channel) = channels.position(|channel| channel.kind == Kind::Drive(axis)) else { return 0.0 };
     let zero = Some(Setting::Offset { channel });
-    let zeros = model.iter().filter(|fitted| fitted.effect.setting_of(scene) == zero);
+    let zeros = model.effects.iter().filter(|fitted| fitted.effect.setting_of(scene) == zero);
     zeros.filter_map(|fitted| fitted.coefficients.first()).sum()
 }
 
-fn clock(scene: usize, model: &[Fitted]) -> f64 {
-    let clocks = model.iter().filter(|fitted| fitted.effect.setting_of(scene) == Some(Setting::Clock));
+fn clock(scene: usize, model: &Model) -> f64 {
+    let clocks =
+        model.effects.iter().filter(|fitted| fitted.effect.setting_of(scene) == Some(Setting::Clock));
     clocks.filter_map(|fitted| fitted.coefficients.first()).sum()
 }
 
@@ -251,7 +252,7 @@ pub(crate) struct Terms<'m> {
 impl<'m> Terms<'m> {
     /// All terms of the machine in a model, at the beginning of a recording.
     pub(crate) fn new(model: &'m Model) -> Self {
-        Self::of(model.iter())
+        Self::of(model.effects.iter())
     }
 
     /// Some terms, at the beginning of a recording.

@@ -19,41 +19,36 @@ const AGREEING: usize = 6;
 const AGREED: f64 = 0.01;
 
 /// Tries crossed plays on every axis that something seems to hold after a reversal; `None` where none is better.
-pub(crate) fn try_plays(study: &mut Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Option<Model> {
-    let always = conditions.always;
-    let held = |axis: &usize| model[always..].iter().any(|fitted| holds(&fitted.effect, *axis));
+pub(crate) fn try_plays(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Option<Model> {
+    let held = |axis: &usize| model.chosen().iter().any(|fitted| holds(&fitted.effect, *axis));
     let held: Vec<usize> = (0..study.own.len()).filter(held).collect();
     if held.is_empty() {
         return None;
     }
     let now = conditions.refine(study, model.clone());
-    let mut best = (conditions.cost(study, &now), study.crossings.clone());
+    let mut least = conditions.cost(study, &now);
     let mut chosen = None;
     for axis in held {
         let start = chosen.clone().unwrap_or_else(|| now.model.clone());
-        let before = best.1.clone();
-        for trial in without_holds(study, &start, always, axis) {
-            study.crossings.clone_from(&before);
+        for trial in without_holds(study, &start, axis) {
             let Some(fit) = crossed(study, trial, axis, conditions) else { continue };
             let cost = conditions.cost(study, &fit);
-            if cost < best.0 {
-                best = (cost, study.crossings.clone());
+            if cost < least {
+                least = cost;
                 chosen = Some(fit.model);
             }
         }
-        study.crossings.clone_from(&best.1);
     }
     chosen
 }
 
-/// Brings the ways over which plays are crossed to the plays of a model; none where there is no play any more. Whether that
-/// changed any.
-pub(crate) fn follow(study: &mut Study<'_>, model: &Model) -> bool {
+/// Brings the ways over which a model crosses plays to those plays; none where there is no play any more. Whether that changed any.
+pub(crate) fn follow(study: &Study<'_>, model: &mut Model) -> bool {
     let mut changed = false;
-    for axis in 0..study.crossings.len() {
-        let (way, play) = (study.crossings[axis], play(study, model, axis));
-        if way > 0.0 && (play - way).abs() > AGREED * way {
-            study.crossings[axis] = play;
+    for axis in model.crossing_axes() {
+        let (way, play) = (model.crossing(axis), play(study, model, axis));
+        if (play - way).abs() > AGREED * way {
+            model.cross(axis, play);
             changed = true;
         }
     }
@@ -61,20 +56,20 @@ pub(crate) fn follow(study: &mut Study<'_>, model: &Model) -> bool {
 }
 
 /// The axes that cross their plays and that nothing else of the model holds.
-pub(crate) fn crossing_only(study: &Study<'_>, model: &Model) -> Vec<usize> {
-    let held = |axis: usize| model.iter().any(|fitted| holds(&fitted.effect, axis));
-    (0..study.crossings.len()).filter(|axis| study.crossings[*axis] > 0.0 && !held(*axis)).collect()
+pub(crate) fn crossing_only(model: &Model) -> Vec<usize> {
+    let held = |axis: usize| model.effects.iter().any(|fitted| holds(&fitted.effect, axis));
+    model.crossing_axes().into_iter().filter(|axis| !held(*axis)).collect()
 }
 
 /// The model fitted with the play of an axis crossed over its own length; `None` where the axis has none.
-fn crossed(study: &mut Study<'_>, mut model: Model, axis: usize, conditions: &Conditions<'_>) -> Option<Fit> {
-    study.crossings[axis] = play(study, &model, axis);
+fn crossed(study: &Study<'_>, mut model: Model, axis: usize, conditions: &Conditions<'_>) -> Option<Fit> {
+    model.cross(axis, play(study, &model, axis));
     for _ in 0..AGREEING {
-        if study.crossings[axis] <= 0.0 {
+        if model.crossing(axis) <= 0.0 {
             return None;
         }
-        let fit = conditions.refine(study, model);
-        if !follow(study, &fit.model) {
+        let mut fit = conditions.refine(study, model);
+        if !follow(study, &mut fit.model) {
             return Some(fit);
         }
         model = fit.model;
@@ -84,19 +79,14 @@ fn crossed(study: &mut Study<'_>, mut model: Model, axis: usize, conditions: &Co
 
 /// A model as it stands; without what seems to hold an axis; and without that and the plays of the axis which were found beside
 /// it. Each of them once.
-fn without_holds(study: &Study<'_>, model: &Model, always: usize, axis: usize) -> Vec<Model> {
-    let free = without(model, always, |effect| holds(effect, axis));
-    let known = without(&free, always, |effect| is_play(study, effect, axis));
+fn without_holds(study: &Study<'_>, model: &Model, axis: usize) -> Vec<Model> {
+    let free = model.keeping(|fitted| !holds(&fitted.effect, axis));
+    let known = free.keeping(|fitted| !is_play(study, &fitted.effect, axis));
     let mut models = vec![model.clone(), free];
     if known != models[1] {
         models.push(known);
     }
     models
-}
-
-fn without(model: &Model, always: usize, of: impl Fn(&Effect) -> bool) -> Model {
-    let kept = model.iter().enumerate().filter(|(number, fitted)| *number < always || !of(&fitted.effect));
-    kept.map(|(_, fitted)| fitted.clone()).collect()
 }
 
 /// Whether an effect seems to hold an axis after a reversal, for a time or over some way.
@@ -116,7 +106,7 @@ fn is_play(study: &Study<'_>, effect: &Effect, axis: usize) -> bool {
 
 /// How wide the plays of an axis are together, known and found, mm or rad.
 fn play(study: &Study<'_>, model: &Model, axis: usize) -> f64 {
-    let all = study.known.iter().chain(model);
+    let all = study.known.iter().chain(&model.effects);
     let plays = all.filter(|fitted| is_play(study, &fitted.effect, axis));
     plays.flat_map(|fitted| &fitted.coefficients).sum::<f64>().max(0.0)
 }

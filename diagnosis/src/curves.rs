@@ -22,9 +22,9 @@ pub(crate) const LONG: f64 = 0.12;
 /// Tries tables for every motion of which two or more smooth terms are in the model, or a polynomial of a high power, and of
 /// every axis that is known at stations alone. A table over one place stays: smooth terms beside it are others.
 pub(crate) fn try_tables(study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> Fit {
-    let Conditions { always, travels, .. } = *conditions;
+    let travels = conditions.travels;
     let mut places: Vec<(Place, usize)> = Vec::new();
-    for fitted in &fit.model[always..] {
+    for fitted in fit.model.chosen() {
         if let Some(axis) = smooth(&fitted.effect, travels).or_else(|| wave_along(&fitted.effect))
             && !places.contains(&(fitted.effect.place, axis))
         {
@@ -36,7 +36,9 @@ pub(crate) fn try_tables(study: &Study<'_>, mut fit: Fit, conditions: &Condition
             places.push(at_stations);
         }
     }
-    places.retain(|(place, axis)| !fit.model.iter().any(|fitted| is_dent(fitted, *place, &travels[*axis])));
+    places.retain(|(place, axis)| {
+        !fit.model.effects.iter().any(|fitted| is_dent(fitted, *place, &travels[*axis]))
+    });
     for (place, axis) in places {
         let imitations = [false, true].map(|waving| Imitation { place, axis, waving });
         for imitation in imitations {
@@ -68,7 +70,7 @@ impl Imitation {
 
     /// Whether there is enough of it for a table to be tried.
     fn is_tried(&self, model: &Model, travels: &[Travel]) -> bool {
-        let parts: Vec<&Fitted> = model.iter().filter(|fitted| self.holds(fitted, travels)).collect();
+        let parts: Vec<&Fitted> = model.effects.iter().filter(|fitted| self.holds(fitted, travels)).collect();
         let winding =
             |fitted: &&Fitted| matches!(fitted.effect.shape, Shape::Polynomial { degree, .. } if degree > 2);
         let unnamed = parts.is_empty() && travels[self.axis].is_known_at_stations_alone();
@@ -81,27 +83,26 @@ impl Imitation {
 
     /// The fit with a table in the place of it, where that says the same with less.
     fn replaced(&self, study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> Fit {
-        let Conditions { noises, travels, .. } = *conditions;
+        let Conditions { weights, travels, .. } = *conditions;
         if !self.is_tried(&fit.model, travels) {
             return fit;
         }
         let travel = &travels[self.axis];
-        let kept: Model = fit.model.iter().filter(|fitted| !self.holds(fitted, travels)).cloned().collect();
+        let kept = fit.model.keeping(|fitted| !self.holds(fitted, travels));
         let mut shapes = tables(study, self.axis, travel);
         if self.waving {
             let fine = even(travel.low, travel.high, FINE);
-            shapes.extend(nodes::thinned(study, &kept, (self.place, self.axis), &fine, noises));
+            shapes.extend(nodes::thinned(study, &kept, (self.place, self.axis), &fine, weights));
         }
         for shape in shapes {
-            let mut trial = kept.clone();
             let effect = Effect { place: self.place, shape };
-            trial.push(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
+            let trial = kept.with(Fitted::unfitted(effect));
             let trial = conditions.refine(study, trial);
             if conditions.cost(study, &trial) >= conditions.cost(study, &fit) {
                 continue;
             }
             // A curve that is flat but for one place is a place; that is looked for elsewhere, without imitations.
-            if trial.model.last().is_some_and(|table| is_dent(table, self.place, travel)) {
+            if trial.model.effects.last().is_some_and(|table| is_dent(table, self.place, travel)) {
                 return conditions.refine(study, kept);
             }
             fit = trial;
@@ -113,8 +114,8 @@ impl Imitation {
 /// A model without the vibrations of a motion of which many are multiples of one frequency and none of those stands out, where it has
 /// any: they draw pulses that come at equal times, which have no name here. Waves along an axis are kept: the elements of one drive
 /// repeat in multiples of each other.
-pub(crate) fn without_combs(model: &Model, always: usize) -> Option<Model> {
-    let vibrations: Vec<(&Fitted, f64)> = model[always..].iter().filter_map(vibration).collect();
+pub(crate) fn without_combs(model: &Model) -> Option<Model> {
+    let vibrations: Vec<(&Fitted, f64)> = model.chosen().iter().filter_map(vibration).collect();
     let is_comb = |(lowest, of): &&(&Fitted, f64)| {
         let same = vibrations.iter().filter(|(other, _)| other.effect.place == lowest.effect.place);
         let teeth = same.filter(|(_, frequency)| is_multiple(*frequency, *of));
@@ -122,8 +123,7 @@ pub(crate) fn without_combs(model: &Model, always: usize) -> Option<Model> {
         energies.len() >= MANY && !one_stands_out(&energies)
     };
     let place = vibrations.iter().find(is_comb)?.0.effect.place;
-    let kept = model.iter().filter(|fitted| fitted.effect.place != place || vibration(fitted).is_none());
-    Some(kept.cloned().collect())
+    Some(model.keeping(|fitted| fitted.effect.place != place || vibration(fitted).is_none()))
 }
 
 /// A vibration with its frequency.

@@ -14,11 +14,12 @@ use crate::design::{Design, Regressor};
 use crate::fit::Fit;
 use crate::judge;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::noise::Noise;
+use crate::noise;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 use crate::travel::Travel;
+use crate::weights::Weights;
 
 /// How many even places of an axis are looked at, a fortieth of the travel apart, as for the curves. A dent is at least as wide as from one to the next on both sides.
 const PLACES: usize = FINE;
@@ -35,20 +36,48 @@ const HIDES: f64 = 0.1;
 /// sure are known to a quarter each; two that are equal differ by more than half once in six times.
 const ALIKE: f64 = 0.5;
 
+/// How many times the usual height of hats elsewhere a dent must be in each direction to stand out among them. Of the 192 hats some 90 are
+/// independent; chance gives one of them so much in both directions with one sign once in 30 times.
+const OUTSTANDING: f64 = 2.2;
+/// The median of the size of a normal variable, in standard deviations.
+const NORMAL_MEDIAN: f64 = 0.6745;
+/// The fewest heights that tell what is usual: half of all hats of the widest kind, in both directions.
+const FEWEST: usize = 24;
+
 /// Dents that may hide what else there is, each with the model beside which it takes most: the settings alone, and all that was found.
 pub(crate) fn hidden(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Vec<(Dent, Model)> {
-    let Some(settings) = model.get(..conditions.always) else { return Vec::new() };
-    let beside = [settings.to_vec(), model.clone()].into_iter();
-    let dents = beside.filter_map(|known| Some((largest(study, &known, conditions)?, known)));
-    dents.filter(|(dent, _)| !model.iter().any(|fitted| dent.is_table(fitted))).collect()
+    let largest =
+        |known: &Model| largest(study, known, &Appraisal::new(study, known), conditions, Looked::is_sure);
+    let beside = [model.settings_alone(), model.clone()].into_iter();
+    let dents = beside.filter_map(|known| Some((largest(&known)?, known)));
+    dents.filter(|(dent, _)| !model.effects.iter().any(|fitted| dent.is_table(fitted))).collect()
 }
 
-/// The dent that takes most beside a model, where it takes much.
-fn largest(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Option<Dent> {
-    let appraisal = Appraisal::new(study, model);
+/// The dent that takes most beside a model that leaves what the appraisal says, where it takes much and stands out among what is left
+/// elsewhere.
+pub(crate) fn outstanding(
+    study: &Study<'_>,
+    model: &Model,
+    appraisal: &Appraisal,
+    conditions: &Conditions<'_>,
+) -> Option<Dent> {
+    let counts =
+        |looked: &Looked, middle, flank| looked.is_sure(middle, flank) && looked.stands_out(middle, flank);
+    largest(study, model, appraisal, conditions, counts)
+}
+
+/// Of the dents that count, the one that takes most beside a model, where it takes much.
+fn largest(
+    study: &Study<'_>,
+    model: &Model,
+    appraisal: &Appraisal,
+    conditions: &Conditions<'_>,
+    counts: impl Fn(&Looked, usize, usize) -> bool,
+) -> Option<Dent> {
     let axes = (0..study.own.len()).filter(|axis| conditions.travels[*axis].moves);
-    let dents = axes.filter_map(|axis| Looked::new(study, model, axis, (&appraisal, conditions))?.dent());
-    dents.reduce(|most, next| if next.takes > most.takes { next } else { most })
+    let dents =
+        axes.filter_map(|axis| Looked::new(study, model, axis, (appraisal, conditions))?.dent(&counts));
+    dents.reduce(|most, next| if next.share > most.share { next } else { most })
 }
 
 /// How high a dent is in one direction of motion, and its standard deviation.
@@ -74,11 +103,11 @@ impl Height {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Dent {
     place: Place,
-    axis: usize,
-    middle: f64,
-    flank: f64,
-    /// What it takes from the sum of squares.
-    takes: f64,
+    pub(crate) axis: usize,
+    pub(crate) middle: f64,
+    pub(crate) flank: f64,
+    /// The share of what is left that it takes.
+    pub(crate) share: f64,
 }
 
 impl Dent {
@@ -90,15 +119,16 @@ impl Dent {
         conditions: &Conditions<'_>,
     ) -> Option<Model> {
         let appraisal = Appraisal::new(study, model);
-        let under = conditions.under(&appraisal.floors);
+        let floors = appraisal.beside_floor();
+        let under = conditions.under(&floors);
         let mut added = model.clone();
-        added.insert(conditions.always, self.table(study, model, &under)?);
+        added.effects.insert(model.settings().len(), self.table(study, model, &under)?);
         Some(conditions.refine(study, added).model)
     }
 
     /// Whether a model has a table of the dent's motion that is flat but for one place.
     pub(crate) fn is_in(&self, model: &Model, travels: &[Travel]) -> bool {
-        model.iter().any(|fitted| is_dent(fitted, self.place, &travels[self.axis]))
+        model.effects.iter().any(|fitted| is_dent(fitted, self.place, &travels[self.axis]))
     }
 
     /// Whether a model has it, and it takes much of what all others leave.
@@ -106,12 +136,12 @@ impl Dent {
         if !self.is_in(model, conditions.travels) {
             return false;
         }
-        let noises = Appraisal::new(study, model).as_white();
-        let design = judge::design(study, model, &noises);
+        let weights = Appraisal::new(study, model).weights.as_white();
+        let design = judge::design(study, model, &weights);
         let (products, _) = design.sum(|_| true);
         let mut swept = Swept::new(&products);
         let (tables, others): (Vec<usize>, Vec<usize>) =
-            (0..model.len()).partition(|number| self.is_table(&model[*number]));
+            (0..model.effects.len()).partition(|number| self.is_table(&model.effects[*number]));
         let mut left_by = |effects: Vec<usize>| {
             for column in effects.into_iter().flat_map(|number| design.columns(number)) {
                 swept.take(column);
@@ -124,18 +154,18 @@ impl Dent {
 
     /// A fit with another table over the dent, as it shows beside all the others.
     pub(crate) fn drawn(&self, study: &Study<'_>, fit: Fit, conditions: &Conditions<'_>) -> Fit {
-        let mut others: Model = fit.model.iter().filter(|fitted| !self.is_table(fitted)).cloned().collect();
+        let mut others = fit.model.keeping(|fitted| !self.is_table(fitted));
         let Some(table) = self.table(study, &others, conditions) else { return fit };
-        others.insert(conditions.always, table);
+        others.effects.insert(others.settings().len(), table);
         conditions.refine(study, others)
     }
 
     /// A table over the dent beside a model: of close nodes those that it needs.
     fn table(&self, study: &Study<'_>, others: &Model, conditions: &Conditions<'_>) -> Option<Fitted> {
         let nodes = self.nodes(study, &conditions.travels[self.axis]);
-        let shape = thinned(study, others, (self.place, self.axis), &nodes, conditions.noises)?;
+        let shape = thinned(study, others, (self.place, self.axis), &nodes, conditions.weights)?;
         let effect = Effect { place: self.place, shape };
-        Some(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect })
+        Some(Fitted::unfitted(effect))
     }
 
     /// Close nodes over the dent, and the ends of the travel: the table is straight beside it. Of an axis that was observed at stations,
@@ -194,22 +224,22 @@ impl Looked {
         let travel = &conditions.travels[axis];
         let nodes = even(travel.low, travel.high, PLACES);
         let hats = Effect { place, shape: Shape::Table { axis, nodes, directed: true, repeats: false } };
-        let sums = |noises: &[Vec<Noise>]| {
-            let effects = model.iter().map(|fitted| &fitted.effect).chain([&hats]);
+        let sums = |weights: &Weights| {
+            let effects = model.effects.iter().map(|fitted| &fitted.effect).chain([&hats]);
             let regressors = effects.cloned().map(Regressor::of).collect();
-            let mut design = Design::new(study, model, noises, regressors);
-            design.rebase(model);
+            let mut design = Design::new(study, model, weights, regressors);
+            design.rebase(&model.effects);
             let (products, samples) = design.sum(|_| true);
-            (design.columns(model.len()).start, Sums { products, samples })
+            (design.columns(model.effects.len()).start, Sums { products, samples })
         };
-        let (beside, weighed) = sums(&appraisal.floors);
-        let (_, plain) = sums(&appraisal.as_white());
+        let (beside, weighed) = sums(&appraisal.beside_floor());
+        let (_, plain) = sums(&appraisal.weights.as_white());
         let step = travel.range() / crate::number(PLACES - 1);
         Some(Self { place, axis, low: travel.low, step, beside, weighed, plain })
     }
 
-    /// The dent that takes most.
-    fn dent(&self) -> Option<Dent> {
+    /// The dent that takes most, of those that count.
+    fn dent(&self, counts: impl Fn(&Self, usize, usize) -> bool) -> Option<Dent> {
         let mut beside = Swept::new(&self.plain.products);
         for column in 0..self.beside {
             beside.take(column);
@@ -217,8 +247,8 @@ impl Looked {
         let left = beside.remaining();
         let tried =
             FLANKS.into_iter().flat_map(|flank| (flank..PLACES - flank).map(move |middle| (middle, flank)));
-        let sure = tried.filter(|(middle, flank)| self.is_sure(*middle, *flank));
-        let taken = sure.filter_map(|(middle, flank)| {
+        let counted = tried.filter(|(middle, flank)| counts(self, *middle, *flank));
+        let taken = counted.filter_map(|(middle, flank)| {
             let swept = self.swept(&self.plain, middle, flank)?;
             Some((left - swept.remaining(), middle, flank))
         });
@@ -228,20 +258,37 @@ impl Looked {
             axis: self.axis,
             middle: self.low + crate::number(middle) * self.step,
             flank: crate::number(flank) * self.step,
-            takes,
+            share: takes / left,
         };
-        (takes > HIDES * left).then_some(dent)
+        (dent.share > HIDES).then_some(dent)
     }
 
-    /// Whether a hat stands out alike in both directions.
+    /// Whether a hat is sure in both directions, and as high.
     fn is_sure(&self, middle: usize, flank: usize) -> bool {
-        let Some(swept) = self.swept(&self.weighed, middle, flank) else { return false };
+        self.heights(middle, flank).is_some_and(|[up, down]| up.agrees(&down))
+    }
+
+    /// Whether a hat is higher in both directions than hats elsewhere on the axis are: what is left has its own bumps, which differ from
+    /// pass to pass and by chance agree somewhere.
+    fn stands_out(&self, middle: usize, flank: usize) -> bool {
+        let all = (flank..PLACES - flank).filter_map(|middle| self.heights(middle, flank));
+        let mut sizes: Vec<f64> = all.flatten().map(|height| height.value.abs()).collect();
+        let Some(usual) = noise::middle(&mut sizes).map(|median| median / NORMAL_MEDIAN) else {
+            return false;
+        };
+        let heights = self.heights(middle, flank).into_iter().flatten();
+        sizes.len() >= FEWEST && heights.into_iter().all(|height| height.value.abs() > OUTSTANDING * usual)
+    }
+
+    /// How high a hat is on the way up and on the way down.
+    fn heights(&self, middle: usize, flank: usize) -> Option<[Height; 2]> {
+        let swept = self.swept(&self.weighed, middle, flank)?;
         let scale = swept.remaining() / self.weighed.samples.max(1.0);
         let height = |column: usize| Height {
             value: swept.coefficient(column),
             deviation: (scale * swept.covariance(column, column)).max(0.0).sqrt(),
         };
-        height(self.beside).agrees(&height(self.beside + 1))
+        Some([height(self.beside), height(self.beside + 1)])
     }
 
     /// The columns of the model and of a hat in both directions, all taken; nothing where the model has a direction of the hat already.

@@ -12,12 +12,14 @@ mod shapes;
 
 use nalgebra::DMatrix;
 
+use crate::channel::ChannelAt;
 use crate::course::{Course, STRETCH, pieces};
-use crate::model::{Effect, Model};
+use crate::model::{Effect, Fitted, Model};
 use crate::noise::Noise;
 use crate::observations::{Frame, Passage};
 use crate::parallel;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
+use crate::weights::Weights;
 
 pub(crate) use lower::Lower;
 pub(crate) use run::ChannelRun;
@@ -34,6 +36,11 @@ impl Regressor {
     /// The effect itself.
     pub(crate) fn of(effect: Effect) -> Self {
         Self { effect, slope: None }
+    }
+
+    /// Effects, each for itself.
+    pub(crate) fn all(effects: &[Fitted]) -> Vec<Self> {
+        effects.iter().map(|fitted| Self::of(fitted.effect.clone())).collect()
     }
 
     /// How many columns it has.
@@ -68,7 +75,7 @@ impl Design {
     pub(crate) fn new(
         study: &Study<'_>,
         model: &Model,
-        noises: &[Vec<Noise>],
+        weights: &Weights,
         regressors: Vec<Regressor>,
     ) -> Self {
         let mut first = Vec::with_capacity(regressors.len());
@@ -78,8 +85,8 @@ impl Design {
             width += regressor.columns();
         }
         let mut blocks = Vec::new();
-        for (scene, noises) in noises.iter().enumerate() {
-            blocks.extend(scene_products(study, scene, model, noises, &regressors, width));
+        for scene in 0..study.scenes.len() {
+            blocks.extend(scene_products(study, scene, model, weights, &regressors, width));
         }
         Self { regressors, first, width, blocks }
     }
@@ -113,11 +120,11 @@ impl Design {
         chosen
     }
 
-    /// Adds back to the residual what the effects of the present model take from it, so that all effects stand on one line:
+    /// Adds back to the residual what effects of the present model take from it, so that all effects stand on one line:
     /// those of the model can be kept, changed or dropped like any other.
-    pub(crate) fn rebase(&mut self, model: &Model) {
+    pub(crate) fn rebase(&mut self, effects: &[Fitted]) {
         let mut shares = vec![0.0; self.width];
-        for fitted in model {
+        for fitted in effects {
             let number = self
                 .regressors
                 .iter()
@@ -175,14 +182,15 @@ fn scene_products(
     study: &Study<'_>,
     scene: usize,
     model: &Model,
-    noises: &[Noise],
+    weights: &Weights,
     regressors: &[Regressor],
     width: usize,
 ) -> Vec<Products> {
     let known = &study.scenes[scene];
     let course = Course::new(study, scene, model);
     let of = |channel: usize| {
-        ChannelRun::new(study, ChannelAt { scene, channel }, model, noises[channel], regressors, width)
+        let at = ChannelAt { scene, channel };
+        ChannelRun::new(study, at, model, weights.noise(at), regressors, width)
     };
     let mut runs: Vec<ChannelRun<'_>> = (0..known.channels.len()).map(of).collect();
     let mut passage = Passage::new(study, scene, model);
@@ -195,7 +203,7 @@ fn scene_products(
                 Frame::new(study, &course, &moved, stretches[number].clone())
             });
             let work = frames.len() * STRETCH * (width + 1);
-            parallel::each(&mut runs, work, |run| run.add(&frames, &course));
+            parallel::each(&mut runs, work, |run| run.add(&frames, &course, &weights.outliers));
         }
         let mut products = Products {
             scene,

@@ -3,7 +3,7 @@
 use model_dsl::calibration::{CalibratedTerm, Calibration, TermKind};
 use model_dsl::equations::Equations;
 use model_dsl::machine::ElementKind;
-use model_dsl::notation::Formula;
+use notation::Formula;
 
 use crate::pictures::Pictures;
 use crate::traces::Trace;

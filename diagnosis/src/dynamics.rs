@@ -21,9 +21,7 @@ pub(crate) fn try_loops(study: &Study<'_>, model: Model, conditions: &Conditions
         return model;
     }
     let now = conditions.refine(study, model);
-    let stays =
-        |(number, fitted): &(usize, &Fitted)| *number < conditions.always || !mistakable(&fitted.effect);
-    let kept: Model = now.model.iter().enumerate().filter(stays).map(|(_, fitted)| fitted.clone()).collect();
+    let kept = now.model.keeping(|fitted| !mistakable(&fitted.effect));
     let trials = looped(study, &kept, &now.model, conditions);
     conditions.cheapest(study, now, trials).model
 }
@@ -34,7 +32,7 @@ pub(crate) fn loops_alone(study: &Study<'_>, model: &Model, conditions: &Conditi
     if !may_lag(study, model, conditions) {
         return None;
     }
-    let kept = model[..conditions.always].to_vec();
+    let kept = model.settings_alone();
     let trials = looped(study, &kept, model, conditions).into_iter();
     let cheapest =
         trials.min_by(|one, other| conditions.cost(study, one).total_cmp(&conditions.cost(study, other)));
@@ -44,17 +42,17 @@ pub(crate) fn loops_alone(study: &Study<'_>, model: &Model, conditions: &Conditi
 /// Whether loops are missing on moving axes, and something stands in the model that could be mistaken for them, or is larger than
 /// its physics allows.
 fn may_lag(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> bool {
-    let Conditions { always, travels, .. } = *conditions;
+    let travels = conditions.travels;
     let lacks = |axis: usize| {
         // The drive's own feedback shows its loop to the linear choice.
         let hidden = travels[axis].moves && study.own[axis].is_some() && !study.has_drive(axis);
-        hidden && !model.iter().any(|fitted| lag_of(&fitted.effect.shape) == Some(axis))
+        hidden && !model.effects.iter().any(|fitted| lag_of(&fitted.effect.shape) == Some(axis))
     };
     let suspicious = |fitted: &Fitted| {
         mistakable(&fitted.effect)
             || oddity(plausible(study, &fitted.effect), &fitted.effect.shape, &fitted.coefficients) > 0.0
     };
-    (0..travels.len()).any(lacks) && model[always..].iter().any(suspicious)
+    (0..travels.len()).any(lacks) && model.chosen().iter().any(suspicious)
 }
 
 /// Models with loops on all moving axes beside what is kept, fitted from several time constants.
@@ -70,19 +68,17 @@ fn looped(study: &Study<'_>, kept: &Model, known: &Model, conditions: &Condition
 /// Tries what a first-order loop, and what acts at once, cannot say: loops that ring, and friction on the drive, which the
 /// loop answers.
 pub(crate) fn try_drives(study: &Study<'_>, model: Model, conditions: &Conditions<'_>) -> Model {
-    let always = conditions.always;
-    if !model[always..].iter().any(|fitted| lag_of(&fitted.effect.shape).is_some()) {
+    if !model.chosen().iter().any(|fitted| lag_of(&fitted.effect.shape).is_some()) {
         return model;
     }
     let mut best = conditions.refine(study, model);
     for axis in 0..study.own.len() {
-        let Some(held) =
-            best.model[always..].iter().find(|fitted| lag_of(&fitted.effect.shape) == Some(axis))
+        let Some(held) = best.model.chosen().iter().find(|fitted| lag_of(&fitted.effect.shape) == Some(axis))
         else {
             continue;
         };
         let loops = loops(held, shortest_step(study));
-        let trials = drives(study, &best.model, always, axis, &loops).into_iter();
+        let trials = drives(study, &best.model, axis, &loops).into_iter();
         best = conditions.cheapest(study, best, trials.map(|trial| conditions.refine(study, trial)));
     }
     best.model
@@ -90,10 +86,10 @@ pub(crate) fn try_drives(study: &Study<'_>, model: Model, conditions: &Condition
 
 /// Other models of how an axis is driven: with each of these loops, with and without what imitates its ringing, with friction
 /// where it is and inside the loop; each of them once.
-fn drives(study: &Study<'_>, model: &Model, always: usize, axis: usize, loops: &[Shape]) -> Vec<Model> {
+fn drives(study: &Study<'_>, model: &Model, axis: usize, loops: &[Shape]) -> Vec<Model> {
     let mut known = vec![model.clone()];
-    for start in [model, &without_imitations(model, always)] {
-        for inside in [start.clone(), with_friction(study, start, always, axis)] {
+    for start in [model, &without_imitations(model)] {
+        for inside in [start.clone(), with_friction(study, start, axis)] {
             for shape in loops {
                 let trial = with_loop(inside.clone(), axis, shape);
                 if !known.contains(&trial) {
@@ -107,8 +103,8 @@ fn drives(study: &Study<'_>, model: &Model, always: usize, axis: usize, loops: &
 
 /// Whether [`try_drives`] may find something: a first-order loop beside what would imitate its ringing, or friction beside
 /// any loop.
-pub(crate) fn may_answer(model: &Model, always: usize) -> bool {
-    let effects = || model[always..].iter().map(|fitted| &fitted.effect);
+pub(crate) fn may_answer(model: &Model) -> bool {
+    let effects = || model.chosen().iter().map(|fitted| &fitted.effect);
     let friction = |effect: &Effect| {
         effect.side() == Some(Side::Drive) && matches!(effect.shape, Shape::Backlash { .. })
     };
@@ -133,16 +129,16 @@ fn loops(lag: &Fitted, step: f64) -> Vec<Shape> {
 }
 
 fn with_loop(mut model: Model, axis: usize, shape: &Shape) -> Model {
-    for fitted in model.iter_mut().filter(|fitted| lag_of(&fitted.effect.shape) == Some(axis)) {
+    for fitted in model.effects.iter_mut().filter(|fitted| lag_of(&fitted.effect.shape) == Some(axis)) {
         fitted.effect.shape = shape.clone();
     }
     model
 }
 
 /// A model in which friction of an axis that seemed to act at once, or to build up as the loop lets it, lies inside the loop.
-fn with_friction(study: &Study<'_>, model: &Model, always: usize, axis: usize) -> Model {
+fn with_friction(study: &Study<'_>, model: &Model, axis: usize) -> Model {
     let mut model = model.clone();
-    for fitted in &mut model[always..] {
+    for fitted in model.chosen_mut() {
         if let (Place::Motion { motion, side: Side::Drive }, Shape::Backlash { axis: of, .. }) =
             (fitted.effect.place, &fitted.effect.shape)
             && *of == axis
@@ -155,9 +151,8 @@ fn with_friction(study: &Study<'_>, model: &Model, always: usize, axis: usize) -
     model
 }
 
-fn without_imitations(model: &Model, always: usize) -> Model {
-    let stays = |(number, fitted): &(usize, &Fitted)| *number < always || !imitates_ringing(&fitted.effect);
-    model.iter().enumerate().filter(stays).map(|(_, fitted)| fitted.clone()).collect()
+fn without_imitations(model: &Model) -> Model {
+    model.keeping(|fitted| !imitates_ringing(&fitted.effect))
 }
 
 /// Whether an effect, beside a lag of first order, may be what a loop makes that rings at every change of speed.
@@ -197,30 +192,22 @@ fn with_loops(
     for (axis, own) in study.own.iter().enumerate() {
         let Some(motion) = own.filter(|_| travels[axis].moves) else { continue };
         let shape = Shape::Lag { axis, inertia: 0.0 };
-        let lags = known.iter().filter(|fitted| lag_of(&fitted.effect.shape) == Some(axis));
+        let lags = known.effects.iter().filter(|fitted| lag_of(&fitted.effect.shape) == Some(axis));
         let lag: f64 = lags.flat_map(|fitted| &fitted.coefficients).sum();
         let effect = Effect { place: Place::Motion { motion, side: Side::Drive }, shape };
-        model.push(Fitted { effect, coefficients: vec![lag + time_constant] });
+        model.effects.push(Fitted { effect, coefficients: vec![lag + time_constant] });
     }
     model
 }
 
 /// Drops loops that came out as good as immediate.
 fn without_idle(study: &Study<'_>, fit: Fit, conditions: &Conditions<'_>) -> Fit {
-    let idle = |number: usize, fitted: &Fitted| {
-        number >= conditions.always
-            && matches!(fitted.effect.shape, Shape::Lag { .. })
-            && fitted.coefficients.iter().all(|lag| *lag < 1e-6)
+    let idle = |fitted: &Fitted| {
+        matches!(fitted.effect.shape, Shape::Lag { .. }) && fitted.coefficients.iter().all(|lag| *lag < 1e-6)
     };
-    let before = fit.model.len();
-    let model: Model = fit
-        .model
-        .iter()
-        .enumerate()
-        .filter(|(number, fitted)| !idle(*number, fitted))
-        .map(|(_, f)| f.clone())
-        .collect();
-    if model.len() < before { conditions.refine(study, model) } else { fit }
+    let before = fit.model.effects.len();
+    let model = fit.model.keeping(|fitted| !idle(fitted));
+    if model.effects.len() < before { conditions.refine(study, model) } else { fit }
 }
 
 #[cfg(test)]

@@ -30,6 +30,7 @@ use crate::terms::Shape;
 use crate::travel::{self, Travel};
 use crate::unsteady::{self, Band};
 use crate::waves::{self, WavePlace};
+use crate::weights::{Outliers, Weights};
 
 /// The most rounds.
 const ROUNDS: usize = 6;
@@ -45,8 +46,6 @@ pub(crate) struct Found {
     pub(crate) travels: Vec<Travel>,
     /// Oscillations that are not steady, and not in the model.
     pub(crate) bands: Vec<Band>,
-    /// How many of the model's first effects are settings that are always fitted.
-    pub(crate) always: usize,
     pub(crate) tries: Tries,
     /// Whether the settings are fitted to each row for itself, and not as a noise that wanders lets them.
     pub(crate) plain_zeros: bool,
@@ -55,20 +54,25 @@ pub(crate) struct Found {
 impl Found {
     /// Whether the model holds more than the settings that are fitted whatever else is.
     pub(crate) fn claims(&self) -> bool {
-        self.fit.model.len() > self.always
+        !self.fit.model.chosen().is_empty()
     }
 
     /// The conditions under which its model stands.
     pub(crate) fn conditions(&self) -> Conditions<'_> {
-        let noises = &self.appraisal.noises;
-        Conditions { always: self.always, noises, travels: &self.travels, tries: self.tries }
+        let weights = &self.appraisal.weights;
+        Conditions { weights, travels: &self.travels, tries: self.tries }
     }
 }
 
-/// Looks for the model. `always` are the settings that are fitted whatever else is.
-pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dyn FnMut(f64)) -> Found {
-    study.crossings.fill(0.0);
-    let mut search = Search::new(study, always);
+/// Looks for the model. `settings` are fitted whatever else is; `outliers` are the samples that are left out until
+/// there is a first model.
+pub(crate) fn find(
+    study: &Study<'_>,
+    settings: Vec<Effect>,
+    outliers: Outliers,
+    progress: &mut dyn FnMut(f64),
+) -> Found {
+    let mut search = Search::new(study, settings, outliers);
     let places = search.places.clone();
     search.go_round(study, progress);
     search.cross_plays(study, progress);
@@ -77,38 +81,35 @@ pub(crate) fn find(study: &mut Study<'_>, always: Vec<Effect>, progress: &mut dy
         (search, fit) = begun_anew(study, (search, fit), Start { model: loops, dent: None }, progress);
     }
     let plain = (search, fit);
-    let crossings = study.crossings.clone();
     let (other, dent) = beside_dents(study, plain.clone(), progress);
     let (mut search, mut fit, mut appraisal) = judged(study, other, progress);
     if dent.is_some_and(|dent| !dent.is_in(&fit.model, &search.travels)) {
-        study.crossings = crossings;
-        Appraisal::new(study, &plain.1.model).mark(study);
         (search, fit, appraisal) = judged(study, plain, progress);
     }
-    let Search { pool, travels, always, tries, richer, noises, .. } = search;
-    let conditions = Conditions { always, noises: &noises, travels: &travels, tries };
+    let Search { pool, travels, tries, richer, weights, .. } = search;
+    let conditions = Conditions { weights: &weights, travels: &travels, tries };
     let revision = Revision { pool: &pool, places: &places, conditions };
     for model in richer {
-        if fit.model.len() == always && appraisal.lacks() {
+        if fit.model.chosen().is_empty() && appraisal.lacks() {
             (fit, appraisal) = better(study, (fit, appraisal), model, &revision);
         }
     }
     (fit, appraisal) = revision.revised(study, fit, appraisal);
-    while let Some(model) = curves::without_combs(&fit.model, always) {
-        let rest = conditions.under(&appraisal.noises).refine(study, model);
+    while let Some(model) = curves::without_combs(&fit.model) {
+        let rest = conditions.under(&appraisal.weights).refine(study, model);
         (fit, appraisal) = upheld(study, rest, &conditions);
     }
-    let bands = unsteady::take_bands(&mut fit.model, always);
+    let bands = unsteady::take_bands(&mut fit.model);
     if !bands.is_empty() {
-        let steady = conditions.under(&appraisal.noises).refine(study, fit.model);
+        let steady = conditions.under(&appraisal.weights).refine(study, fit.model);
         (fit, appraisal) = upheld(study, steady, &conditions);
     }
-    Found { fit, appraisal, pool, travels, bands, always, tries, plain_zeros: false }
+    Found { fit, appraisal, pool, travels, bands, tries, plain_zeros: false }
 }
 
 /// What of the end of a search is upheld, tables in the place of what imitates them.
 fn judged(
-    study: &mut Study<'_>,
+    study: &Study<'_>,
     (mut search, mut fit): (Search, Fit),
     progress: &mut dyn FnMut(f64),
 ) -> (Search, Fit, Appraisal) {
@@ -136,20 +137,17 @@ struct Start {
 /// A search that begins with another model, where it comes to a better end than the one that did not. A dent stays in the model while
 /// the search goes on; at its end it is priced like all others.
 fn begun_anew(
-    study: &mut Study<'_>,
+    study: &Study<'_>,
     (search, fit): (Search, Fit),
     Start { model, dent }: Start,
     progress: &mut dyn FnMut(f64),
 ) -> (Search, Fit) {
-    let crossings = study.crossings.clone();
     let mut other = search.clone();
-    if dent.is_some() {
-        other.always += 1;
-    }
-    other.begin(study, model);
+    let settings = model.settings().len();
+    other.begin(study, model.with_settings(settings + usize::from(dent.is_some())));
     other.go_round(study, progress);
     other.cross_plays(study, progress);
-    other.always = search.always;
+    other.price_all_but(settings);
     let mut better = other.fit(study);
     if let Some(dent) = dent {
         better = dent.drawn(study, better, &other.conditions());
@@ -157,28 +155,25 @@ fn begun_anew(
     if other.ends_better(study, &better, (&search, &fit)) {
         return (other, better);
     }
-    study.crossings = crossings;
-    Appraisal::new(study, &fit.model).mark(study);
     (search, fit)
 }
 
 /// A search that began with a dent and what it was seen beside, where it came to a better end and the dent is in it.
 fn beside_dents(
-    study: &mut Study<'_>,
+    study: &Study<'_>,
     (mut search, mut fit): (Search, Fit),
     progress: &mut dyn FnMut(f64),
 ) -> ((Search, Fit), Option<Dent>) {
     let mut taken = None;
     for (dent, beside) in dents::hidden(study, &fit.model, &search.conditions()) {
         let Some(model) = dent.added(study, &beside, &search.conditions()) else { continue };
-        let known = (study.crossings.clone(), search.clone(), fit.clone());
+        let known = (search.clone(), fit.clone());
         let start = Start { model, dent: Some(dent.clone()) };
         (search, fit) = begun_anew(study, (search, fit), start, progress);
         if dent.takes_much(study, &fit.model, &search.conditions()) {
             taken = Some(dent);
         } else {
-            (study.crossings, search, fit) = known;
-            Appraisal::new(study, &fit.model).mark(study);
+            (search, fit) = known;
         }
     }
     ((search, fit), taken)
@@ -186,13 +181,13 @@ fn beside_dents(
 
 /// What the judge upholds. A play that it drops is no longer crossed, and one that the rest is fitted to anew is crossed over
 /// its new length; what stands up beside that is asked again.
-pub(crate) fn upheld(study: &mut Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> (Fit, Appraisal) {
+pub(crate) fn upheld(study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> (Fit, Appraisal) {
     for _ in 0..ROUNDS {
-        let (kept, appraisal) = judge::uphold(study, fit, conditions);
-        if !crossing::follow(study, &kept.model) {
+        let (mut kept, appraisal) = judge::uphold(study, fit, conditions);
+        if !crossing::follow(study, &mut kept.model) {
             return (kept, appraisal);
         }
-        fit = conditions.under(&appraisal.noises).refine(study, kept.model);
+        fit = conditions.under(&appraisal.weights).refine(study, kept.model);
     }
     judge::uphold(study, fit, conditions)
 }
@@ -201,44 +196,42 @@ pub(crate) fn upheld(study: &mut Study<'_>, mut fit: Fit, conditions: &Condition
 /// less under the noise that it leaves itself, held-out samples lie nearer to it, and a wandering noise does not explain as much. A
 /// walk draws curves and waves together as well as each of them alone. Nothing is added: a few waves draw any place together.
 fn better(
-    study: &mut Study<'_>,
+    study: &Study<'_>,
     stands: (Fit, Appraisal),
     model: Model,
     revision: &Revision<'_>,
 ) -> (Fit, Appraisal) {
     let conditions = &revision.conditions;
-    let crossings = study.crossings.clone();
-    let noises = Appraisal::new(study, &model).noises;
-    let other = conditions.under(&noises).refine(study, model);
+    let model = model.crossed_as(&stands.0.model);
+    let weights = Appraisal::new(study, &model).weights;
+    let other = conditions.under(&weights).refine(study, model);
     let kept = upheld(study, other, conditions);
     let other = revision.exchanged(study, kept.0, kept.1);
-    let conditions = conditions.under(&other.1.noises);
+    let conditions = conditions.under(&other.1.weights);
     let new = conditions.prices(study, &other.0.model, other.0.samples);
-    let taken = taken_from_walk(study, &stands.1, &other, conditions.always);
-    let gains = taken > new[conditions.always..].iter().sum()
+    let taken = taken_from_walk(study, &stands.1, &other);
+    let gains = taken > new[other.0.model.chosen_numbers()].iter().sum()
         && other.1.held_out(study, &other.1) < stands.1.held_out(study, &other.1);
     let new = conditions.cost_at(study, &other.0, &new);
-    let crossings_of_other = std::mem::replace(&mut study.crossings, crossings);
     let old = conditions.refine(study, stands.0.model.clone());
     let old = conditions.cost_at(study, &old, &conditions.prices(study, &old.model, old.samples));
     if gains && new < old {
-        study.crossings = crossings_of_other;
         return other;
     }
-    stands.1.mark(study);
     stands
 }
 
 /// What the effects of another model take from minus twice the log-likelihood of a noise that wanders. The fit of greatest likelihood
 /// under that noise would take more: the one figure keeps the coefficients, the other the noise. Waves keep their coefficients.
-fn taken_from_walk(study: &Study<'_>, stands: &Appraisal, other: &(Fit, Appraisal), always: usize) -> f64 {
+fn taken_from_walk(study: &Study<'_>, stands: &Appraisal, other: &(Fit, Appraisal)) -> f64 {
     let (Fit { model, .. }, appraisal) = other;
     let as_fitted = stands.wandering - appraisal.wandering;
-    if model.iter().any(|fitted| fitted.effect.shape.is_wave()) {
+    if model.effects.iter().any(|fitted| fitted.effect.shape.is_wave()) {
         return as_fitted;
     }
-    let effects: Vec<usize> = (always..model.len()).collect();
-    as_fitted.max(judge::worth_in(study, model, &stands.floors, &effects))
+    let effects: Vec<usize> = model.chosen_numbers().collect();
+    let floors = appraisal.weights.beside(stands.floors.clone());
+    as_fitted.max(judge::worth_in(study, model, &floors, &effects))
 }
 
 /// A search on its way.
@@ -248,19 +241,17 @@ struct Search {
     /// Models of earlier rounds with more effects than a later one. Where much is left, a round that takes an effect less leaves more
     /// to the noise, and the next takes less still: so a search can run down to nothing past what would have stood up.
     richer: Vec<Model>,
-    noises: Vec<Vec<Noise>>,
+    weights: Weights,
     courses: Vec<Arc<Course>>,
     travels: Vec<Travel>,
     pool: Vec<Kin>,
     places: Vec<WavePlace>,
-    always: usize,
     tries: Tries,
 }
 
 impl Search {
-    fn new(study: &Study<'_>, always: Vec<Effect>) -> Self {
-        let model: Model =
-            always.into_iter().map(|effect| Fitted { effect, coefficients: vec![0.0] }).collect();
+    fn new(study: &Study<'_>, settings: Vec<Effect>, outliers: Outliers) -> Self {
+        let model = Model::of_settings(settings);
         let courses = courses(study, &model);
         let travels = travel::travels(study, &courses);
         let noises = first_noises(study, &model, &courses);
@@ -268,17 +259,32 @@ impl Search {
         let pool = kinship::groups(study, &courses, &noises, pool);
         let places = waves::places(study, &courses, &noises, &travels);
         let tries = Tries { candidates: crate::number(pool.len() + 2 * WAVES), waves: 1.0 };
-        Self { always: model.len(), model, richer: Vec::new(), noises, courses, travels, pool, places, tries }
+        Self {
+            model,
+            richer: Vec::new(),
+            weights: Weights { noises, outliers },
+            courses,
+            travels,
+            pool,
+            places,
+            tries,
+        }
     }
 
-    /// Begins anew with a model.
-    fn begin(&mut self, study: &mut Study<'_>, model: Model) {
-        study.crossings.fill(0.0);
-        let appraisal = Appraisal::new(study, &model);
-        appraisal.mark(study);
-        self.noises = appraisal.noises;
+    /// Begins anew with a model. Its plays act at once, as at the beginning of every search.
+    fn begin(&mut self, study: &Study<'_>, model: Model) {
+        let model = model.uncrossed();
+        self.weights = Appraisal::new(study, &model).weights;
         self.courses = courses(study, &model);
         self.model = model;
+    }
+
+    /// Goes on with so many settings: whatever else was always fitted is chosen like all others.
+    fn price_all_but(&mut self, settings: usize) {
+        self.model = std::mem::take(&mut self.model).with_settings(settings);
+        for model in &mut self.richer {
+            *model = std::mem::take(model).with_settings(settings);
+        }
     }
 
     /// Whether its end costs less than that of another search: minus twice the likelihood, and the prices. It must under the weights that
@@ -294,17 +300,17 @@ impl Search {
     /// The prices of all effects of its end.
     fn paid(&self, study: &Study<'_>, end: &Fit, appraisal: &Appraisal) -> f64 {
         let conditions = self.conditions();
-        let conditions = conditions.under(&appraisal.noises);
-        conditions.cost(study, end) - conditions.cost_at(study, end, &vec![0.0; end.model.len()])
+        let conditions = conditions.under(&appraisal.weights);
+        conditions.cost(study, end) - conditions.cost_at(study, end, &vec![0.0; end.model.effects.len()])
     }
 
     /// The conditions of the present round.
     fn conditions(&self) -> Conditions<'_> {
-        Conditions { always: self.always, noises: &self.noises, travels: &self.travels, tries: self.tries }
+        Conditions { weights: &self.weights, travels: &self.travels, tries: self.tries }
     }
 
     /// Chooses anew, with a better idea of the noise each time, until nothing changes.
-    fn go_round(&mut self, study: &mut Study<'_>, progress: &mut dyn FnMut(f64)) {
+    fn go_round(&mut self, study: &Study<'_>, progress: &mut dyn FnMut(f64)) {
         for round in 0..ROUNDS {
             progress(crate::number(round + 1) / crate::number(ROUNDS + 2));
             let next = self.choose(study);
@@ -314,19 +320,17 @@ impl Search {
                 next = dynamics::try_loops(study, next, &self.conditions());
                 next = dynamics::try_drives(study, next, &self.conditions());
                 settled = same_effects(&self.model, &next);
-            } else if round > 0 && dynamics::may_answer(&next, self.always) {
+            } else if round > 0 && dynamics::may_answer(&next) {
                 // Not in a first round, whose choice serves to know the noise: at the very first, all of it is taken as white.
                 next = dynamics::try_drives(study, next, &self.conditions());
             }
-            if next.len() < self.model.len() {
+            if next.effects.len() < self.model.effects.len() {
                 self.richer.push(self.model.clone());
             }
             self.model = next;
             self.courses = courses(study, &self.model);
-            let appraisal = Appraisal::new(study, &self.model);
-            appraisal.mark(study);
-            let quiet = same_noises(&self.noises, &appraisal.noises);
-            self.noises = appraisal.noises;
+            let known = std::mem::replace(&mut self.weights, Appraisal::new(study, &self.model).weights);
+            let quiet = same_noises(&known.noises, &self.weights.noises);
             if settled && quiet && round > 0 {
                 break;
             }
@@ -334,13 +338,13 @@ impl Search {
     }
 
     /// Lets axes cross their plays where that says as much as what seems to hold them after reversals, and goes on from there.
-    fn cross_plays(&mut self, study: &mut Study<'_>, progress: &mut dyn FnMut(f64)) {
+    fn cross_plays(&mut self, study: &Study<'_>, progress: &mut dyn FnMut(f64)) {
         let Some(crossed) = crossing::try_plays(study, &self.model, &self.conditions()) else { return };
         self.model = crossed;
         for _ in 0..ROUNDS {
             self.courses = courses(study, &self.model);
             self.go_round(study, progress);
-            if !crossing::follow(study, &self.model) {
+            if !crossing::follow(study, &mut self.model) {
                 break;
             }
         }
@@ -348,39 +352,41 @@ impl Search {
 
     /// The best set of effects under the present noise, by linear least squares.
     fn choose(&mut self, study: &Study<'_>) -> Model {
-        let residuals = waves::all_weighted(study, &self.model, &self.noises, &self.courses);
+        let residuals = waves::all_weighted(study, &self.model, &self.weights, &self.courses);
         let (peaks, waves) =
             waves::peaks(study, &self.model, &self.courses, &residuals, &self.travels, &self.places);
         self.tries.waves = self.tries.waves.max(waves);
         let others = other_peaks(study, &self.model, &self.conditions());
         // One course of states at a time is enough for the memory.
         drop((std::mem::take(&mut self.courses), residuals));
-        let mut regressors = regressors(study, &self.model, self.always, &self.pool, peaks);
+        let mut regressors = regressors(study, &self.model, &self.pool, peaks);
         regressors.extend(others);
-        let mut design = Design::new(study, &self.model, &self.noises, regressors);
-        design.rebase(&self.model);
+        let mut design = Design::new(study, &self.model, &self.weights, regressors);
+        design.rebase(&self.model.effects);
         let (products, samples) = design.fitted();
         let resolution = Resolution::new(study, &self.travels);
+        let settings = self.model.settings().len();
+        let waves = self.tries.waves;
         let choice =
-            Choice::new(study, &design, products.clone(), samples, self.always, self.tries.waves, resolution)
-                .best();
-        fit::linear(&design, &products, self.always, &choice)
+            Choice::new(study, &design, products.clone(), samples, settings, waves, resolution).best();
+        self.model.with_effects(fit::linear(&design, &products, settings, &choice))
     }
 
     /// Fits the model; what has run to the end of its range becomes what it is there.
     fn fit(&self, study: &Study<'_>) -> Fit {
         let mut fit = self.conditions().refine(study, self.model.clone());
-        let mut model: Model = Vec::new();
-        for fitted in &fit.model {
+        let mut effects: Vec<Fitted> = Vec::new();
+        for fitted in &fit.model.effects {
             let mut fitted = fitted.clone();
             if let Some(limit) = limit(study, &self.travels, &fitted.effect.shape) {
                 fitted.effect.shape = limit;
             }
             // At its end it may have become one that stands there already.
-            if !model.iter().any(|known| known.effect == fitted.effect) {
-                model.push(fitted);
+            if !effects.iter().any(|known| known.effect == fitted.effect) {
+                effects.push(fitted);
             }
         }
+        let model = fit.model.with_effects(effects);
         if !same_effects(&model, &fit.model) {
             fit = self.conditions().refine(study, model);
         }
@@ -392,8 +398,10 @@ impl Search {
 /// between them give every wave neighbours of nearly its height, and a first fit may stand on one of them.
 fn other_peaks(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Vec<Regressor> {
     let mut regressors = Vec::new();
-    for (number, fitted) in model.iter().enumerate().filter(|(_, fitted)| fitted.effect.shape.is_wave()) {
-        let mut peaks = waves::around(study, model, number, conditions.noises, conditions.travels);
+    for (number, fitted) in
+        model.effects.iter().enumerate().filter(|(_, fitted)| fitted.effect.shape.is_wave())
+    {
+        let mut peaks = waves::around(study, model, number, conditions.weights, conditions.travels);
         peaks.retain(|peak| rivals(&peak.effect, &fitted.effect) && peak.effect != fitted.effect);
         peaks.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         // Its own line as the spectrum has it now, and the highest of the others.
@@ -426,15 +434,9 @@ fn first_noises(study: &Study<'_>, model: &Model, courses: &[Arc<Course>]) -> Ve
 }
 
 /// The effects of the present model as they stand, the candidates, and waves.
-fn regressors(
-    study: &Study<'_>,
-    model: &Model,
-    always: usize,
-    pool: &[Kin],
-    peaks: Vec<waves::Peak>,
-) -> Vec<Regressor> {
-    let mut effects: Vec<Effect> = model.iter().map(|fitted| fitted.effect.clone()).collect();
-    effects.extend(open_candidates(&model[always..], pool));
+fn regressors(study: &Study<'_>, model: &Model, pool: &[Kin], peaks: Vec<waves::Peak>) -> Vec<Regressor> {
+    let mut effects: Vec<Effect> = model.effects.iter().map(|fitted| fitted.effect.clone()).collect();
+    effects.extend(open_candidates(model.chosen(), pool));
     effects.extend(highest(study, peaks).into_iter().map(|peak| peak.effect));
     effects.into_iter().map(Regressor::of).collect()
 }
@@ -470,6 +472,7 @@ fn same_effects(a: &Model, b: &Model) -> bool {
     let answered = |fitted: &Fitted| fitted.effect.side().and_then(Side::answered_by);
     let alike = |a: &Fitted, b: &Fitted| inert(a) == inert(b) && answered(a) == answered(b);
     let kind = |a: &Fitted, b: &Fitted| a.effect == b.effect || (rivals(&a.effect, &b.effect) && alike(a, b));
+    let (a, b) = (&a.effects, &b.effects);
     a.len() == b.len() && a.iter().all(|member| b.iter().any(|other| kind(member, other)))
 }
 

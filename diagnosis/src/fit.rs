@@ -6,12 +6,12 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::design::{Design, Products, Regressor};
 use crate::model::{Effect, Fitted, Model};
-use crate::noise::Noise;
 use crate::ranges::range;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 use crate::travel::Travel;
+use crate::weights::Weights;
 
 /// A fitted model and how certain it is.
 #[derive(Clone, Debug)]
@@ -24,9 +24,14 @@ pub(crate) struct Fit {
     pub(crate) samples: f64,
 }
 
-/// The model of chosen regressors of a rebased design, by linear least squares. The first `always` regressors are in it.
-pub(crate) fn linear(design: &Design, products: &DMatrix<f64>, always: usize, chosen: &[usize]) -> Model {
-    let numbers: Vec<usize> = (0..always).chain(chosen.iter().copied()).collect();
+/// The effects of chosen regressors of a rebased design, by linear least squares. The first regressors, `settings` in number, are among them.
+pub(crate) fn linear(
+    design: &Design,
+    products: &DMatrix<f64>,
+    settings: usize,
+    chosen: &[usize],
+) -> Vec<Fitted> {
+    let numbers: Vec<usize> = (0..settings).chain(chosen.iter().copied()).collect();
     let mut swept = Swept::new(products);
     for column in numbers.iter().flat_map(|number| design.columns(*number)) {
         swept.take(column);
@@ -44,11 +49,11 @@ const STEPS: usize = 12;
 const DONE: f64 = 1e-7;
 
 /// Fits all parameters of a model, from where it stands, by Gauss-Newton steps that never make it worse.
-pub(crate) fn refine(study: &Study<'_>, model: Model, noises: &[Vec<Noise>], travels: &[Travel]) -> Fit {
-    let mut best = Linearised::new(study, model, noises);
+pub(crate) fn refine(study: &Study<'_>, model: Model, weights: &Weights, travels: &[Travel]) -> Fit {
+    let mut best = Linearised::new(study, model, weights);
     let mut size = 1.0;
     for _ in 0..STEPS {
-        let next = Linearised::new(study, best.stepped(study, size, travels), noises);
+        let next = Linearised::new(study, best.stepped(study, size, travels), weights);
         let fall = (best.remaining - next.remaining) / best.remaining;
         if fall >= 0.0 {
             best = next;
@@ -75,11 +80,10 @@ struct Linearised {
 }
 
 impl Linearised {
-    fn new(study: &Study<'_>, model: Model, noises: &[Vec<Noise>]) -> Self {
-        let mut regressors: Vec<Regressor> =
-            model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+    fn new(study: &Study<'_>, model: Model, weights: &Weights) -> Self {
+        let mut regressors = Regressor::all(&model.effects);
         let mut slopes = Vec::new();
-        for fitted in &model {
+        for fitted in &model.effects {
             let slope = fitted.effect.shape.nonlinear().map(|_| {
                 let slope = Some(fitted.coefficients.clone());
                 regressors.push(Regressor { effect: fitted.effect.clone(), slope });
@@ -87,7 +91,7 @@ impl Linearised {
             });
             slopes.push(slope);
         }
-        let design = Design::new(study, &model, noises, regressors);
+        let design = Design::new(study, &model, weights, regressors);
         let (products, samples) = design.fitted();
         let mut swept = Swept::new(&products);
         let remaining = swept.remaining();
@@ -126,7 +130,7 @@ impl Linearised {
             let (shape, coefficients) = timed(shape, coefficients);
             Fitted { effect: Effect { place: fitted.effect.place, shape }, coefficients }
         };
-        self.model.iter().enumerate().map(step).collect()
+        self.model.with_effects(self.model.effects.iter().enumerate().map(step))
     }
 
     fn fit(self) -> Fit {
@@ -140,7 +144,7 @@ impl Linearised {
                 scale * widened * self.swept.covariance(columns[row], columns[column])
             })
         };
-        let covariances = (0..self.model.len()).map(covariance).collect();
+        let covariances = (0..self.model.effects.len()).map(covariance).collect();
         Fit { covariances, remaining: self.remaining, samples: self.samples, model: self.model }
     }
 }

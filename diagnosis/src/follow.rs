@@ -17,21 +17,19 @@ use crate::appraisal::Appraisal;
 use crate::candidates;
 use crate::certainty::{Certainty, WIDTH_95};
 use crate::course::Course;
-use crate::crossing;
 use crate::design::{Design, Regressor};
 use crate::diagnosis::{Estimate, Finding, ParameterValue};
 use crate::engine;
 use crate::fit;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::noise::Noise;
 use crate::parameters::{Described, motion_unit};
-use crate::rest;
 use crate::side::Side;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::{self, Shape};
 use crate::travel::{self, Travel};
 use crate::waves;
+use crate::weights::{Outliers, Weights};
 
 mod beside;
 mod mixed;
@@ -137,18 +135,16 @@ const BY_CHANCE: f64 = 1.5;
 /// The sizes of effects in the recordings of `inputs`, in the order of `followed`; or why these recordings say nothing about one. What is
 /// not told from others is that which comes later: so the surest come first.
 pub fn follow(inputs: &Inputs<'_>, followed: &[Followed]) -> Vec<Result<Vec<Size>, Untold>> {
-    let mut study = Study::new(inputs.equations, inputs.calibration, &inputs.recordings);
-    rest::tell(&mut study);
-    study.scenes.iter_mut().flat_map(|scene| &mut scene.blocks).for_each(|block| block.held_out = false);
-    let always: Model = candidates::always(&study).into_iter().map(unfitted).collect();
-    let courses = engine::courses(&study, &always);
+    let study = Study::new(inputs.equations, inputs.calibration, &inputs.recordings).with_nothing_held_out();
+    let settings = Model::of_settings(candidates::always(&study));
+    let courses = engine::courses(&study, &settings);
     let travels = travel::travels(&study, &courses);
     let read = read(&study, &courses);
     let begun: Vec<Result<Fitted, Untold>> =
         followed.iter().map(|one| begun(&study, (&travels, &read), one)).collect();
-    let model: Model = always.iter().cloned().chain(begun.iter().flatten().cloned()).collect();
-    let sized = Sized::new(&mut study, model);
-    let mut numbers = always.len()..;
+    let effects = settings.effects.iter().chain(begun.iter().flatten()).cloned();
+    let sized = Sized::new(&study, settings.with_effects(effects));
+    let mut numbers = settings.effects.len()..;
     let size = |begun: &Result<Fitted, Untold>| {
         begun.as_ref().map_err(|untold| *untold)?;
         numbers.next().ok_or(Untold::Absent).and_then(|number| sized.sizes(&study, number))
@@ -170,10 +166,6 @@ pub fn is_event(term: &str) -> bool {
     TermKind::of_name(term) == Some(TermKind::Step)
 }
 
-fn unfitted(effect: Effect) -> Fitted {
-    Fitted { coefficients: vec![0.0; effect.shape.columns()], effect }
-}
-
 /// The effect as these recordings have it; or why they do not show it.
 fn begun(
     study: &Study<'_>,
@@ -191,7 +183,7 @@ fn begun(
     // What acts on the states is fitted from where it was found; all else from nothing.
     Ok(match effect.shape.nonlinear_in_coefficient() {
         true => Fitted { effect, coefficients },
-        false => unfitted(effect),
+        false => Fitted::unfitted(effect),
     })
 }
 
@@ -295,22 +287,12 @@ struct Sized {
 }
 
 impl Sized {
-    fn new(study: &mut Study<'_>, model: Model) -> Self {
-        let (model, told) = settled(study, model);
-        let regressors = regressors(&model);
-        let channels: Vec<ChannelAt> = study.channels().collect();
-        let noises: Vec<Vec<Possible>> =
-            channels.iter().map(|at| beside::possible(study, *at, &model, (&regressors, &told))).collect();
-        let mut likeliest: Vec<Vec<Noise>> =
-            study.scenes.iter().map(|scene| vec![Noise::white(1.0); scene.channels.len()]).collect();
-        for (at, possible) in channels.iter().zip(&noises) {
-            match possible.first() {
-                Some(first) => likeliest[at.scene][at.channel] = first.noise,
-                // What no noise can be told of tells nothing.
-                None => study.scenes[at.scene].channels[at.channel].outliers.fill(true),
-            }
-        }
-        let design = Design::new(study, &model, &likeliest, regressors);
+    fn new(study: &Study<'_>, model: Model) -> Self {
+        let (model, told, weights) = settled(study, model);
+        let regressors = Regressor::all(&model.effects);
+        let possible = |at| beside::possible(study, at, (&model, &weights), (&regressors, &told));
+        let noises: Vec<Vec<Possible>> = study.channels().map(possible).collect();
+        let design = Design::new(study, &model, &likeliest(study, &weights, &noises), regressors);
         let (swept, scale) = least_squares(&design, &told);
         let mixed = Mixed::new(&noises, design.width);
         let model = stepped(&model, &design, &told, &mixed.coefficients);
@@ -327,7 +309,7 @@ impl Sized {
     /// The sizes of an effect, or why it has none. The power 0 of a polynomial is free where a zero is; of a table each value is told for
     /// itself.
     fn sizes(&self, study: &Study<'_>, number: usize) -> Result<Vec<Size>, Untold> {
-        let fitted = self.model.get(number).ok_or(Untold::Absent)?;
+        let fitted = self.model.effects.get(number).ok_or(Untold::Absent)?;
         let shape = fitted.effect.shape.core();
         let free = usize::from(matches!(shape, Shape::Polynomial { .. } | Shape::SensorPolynomial { .. }));
         let columns = match shape {
@@ -386,7 +368,7 @@ impl Sized {
     fn covariance(&self, number: usize) -> DMatrix<f64> {
         let columns: Vec<usize> = self.design.columns(number).collect();
         let held = usize::from(
-            self.model.get(number).is_some_and(|fitted| fitted.effect.shape.nonlinear().is_some()),
+            self.model.effects.get(number).is_some_and(|fitted| fitted.effect.shape.nonlinear().is_some()),
         );
         let size = columns.len() + held;
         DMatrix::from_fn(size, size, |row, column| match (columns.get(row), columns.get(column)) {
@@ -396,27 +378,37 @@ impl Sized {
     }
 }
 
-/// A model brought to where a fit of it stays: with outliers left out, and loops and plays, which act on the states, as they are fitted;
-/// and whether each column is told from those before it.
-fn settled(study: &mut Study<'_>, mut model: Model) -> (Model, Vec<bool>) {
-    let mut noises = Appraisal::new(study, &model).as_white();
+/// A model brought to where a fit of it stays: with loops, which act on the states, as they are fitted; whether each column is told from
+/// those before it; and the weights that it leaves, without outliers.
+fn settled(study: &Study<'_>, mut model: Model) -> (Model, Vec<bool>, Weights) {
+    // Where nothing is fitted yet, every sample counts.
+    let first = Appraisal::new(study, &model).weights.as_white();
+    let mut weights = Weights::of_all(study, first.noises);
     let mut told = Vec::new();
     for _ in 0..ROUNDS {
-        let design = Design::new(study, &model, &noises, regressors(&model));
+        let design = Design::new(study, &model, &weights, Regressor::all(&model.effects));
         told = apart(&design);
         let (swept, _) = least_squares(&design, &told);
         let change: Vec<f64> = (0..design.width).map(|column| swept.coefficient(column)).collect();
         model = stepped(&model, &design, &told, &change);
-        crossing::follow(study, &model);
-        let appraisal = Appraisal::new(study, &model);
-        appraisal.mark(study);
-        noises = appraisal.noises;
+        weights = Appraisal::new(study, &model).weights;
     }
-    (model, told)
+    (model, told, weights)
 }
 
-fn regressors(model: &Model) -> Vec<Regressor> {
-    model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect()
+/// The weights of the likeliest noises. Of a channel that tells no noise no sample counts.
+fn likeliest(study: &Study<'_>, weights: &Weights, noises: &[Vec<Possible>]) -> Weights {
+    let mut marks: Vec<Vec<Vec<bool>>> = vec![Vec::new(); study.scenes.len()];
+    let mut likeliest = weights.noises.clone();
+    for (at, possible) in study.channels().zip(noises) {
+        let known = possible.first();
+        let outliers = weights.outliers.of(at);
+        marks[at.scene].push(outliers.iter().map(|outlier| *outlier || known.is_none()).collect());
+        if let Some(possible) = known {
+            likeliest[at.scene][at.channel] = possible.noise;
+        }
+    }
+    Weights { noises: likeliest, outliers: Outliers::new(marks) }
 }
 
 /// Whether each column of a design is told from those before it.
@@ -445,7 +437,7 @@ fn stepped(model: &Model, design: &Design, told: &[bool], change: &[f64]) -> Mod
         };
         Fitted { effect: fitted.effect.clone(), coefficients: columns.map(moved).collect() }
     };
-    model.iter().enumerate().map(moved).collect()
+    model.with_effects(model.effects.iter().enumerate().map(moved))
 }
 
 #[cfg(test)]

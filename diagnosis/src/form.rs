@@ -4,7 +4,6 @@
 //! A form is not a cause: the vocabulary alone has names of causes.
 
 use model_dsl::calibration::{CalibratedTerm, Factor, Sensors, TermKind, Within};
-use model_dsl::notation;
 
 use crate::alternatives::{factor_state, listed};
 use crate::diagnosis::Form;
@@ -53,6 +52,7 @@ fn when(study: &Study<'_>, time: f64) -> String {
 /// The linear number of the same term without factors beside it, which adds up with it.
 fn plain(model: &Model, effect: &Effect) -> f64 {
     let same = model
+        .effects
         .iter()
         .filter(|other| other.effect.place == effect.place && other.effect.shape == *effect.shape.core());
     // A constant beside a product is a zero.

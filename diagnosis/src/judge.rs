@@ -6,17 +6,18 @@
 use nalgebra::DMatrix;
 
 use crate::appraisal::Appraisal;
+use crate::channel::ChannelAt;
 use crate::conditions::Conditions;
 use crate::design::{Design, Products, Regressor};
 use crate::fit::Fit;
 use crate::model::{Fitted, Model};
-use crate::noise::Noise;
 use crate::parallel;
 use crate::rounded;
 use crate::search::untold_price;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
+use crate::weights::Weights;
 use crate::zeros;
 
 /// The share of its fitted strength with which an effect must come back in the held-out data, at least.
@@ -29,18 +30,15 @@ const STEADY: f64 = 3.5;
 const FEW_BLOCKS: usize = 5;
 
 /// Drops what does not stand up, one effect at a time, and fits the rest again.
-pub(crate) fn uphold(study: &mut Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> (Fit, Appraisal) {
+pub(crate) fn uphold(study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> (Fit, Appraisal) {
     loop {
         let appraisal = Appraisal::new(study, &fit.model);
-        appraisal.mark(study);
-        let conditions = conditions.under(&appraisal.noises);
+        let conditions = conditions.under(&appraisal.weights);
         let Some(weakest) = weakest(study, &fit, &appraisal, &conditions) else {
             let fit = conditions.refine(study, fit.model);
             return (fit, appraisal);
         };
-        let mut model = fit.model.clone();
-        model.remove(weakest);
-        fit = conditions.refine(study, model);
+        fit = conditions.refine(study, fit.model.without(weakest));
     }
 }
 
@@ -51,21 +49,21 @@ fn weakest(
     appraisal: &Appraisal,
     conditions: &Conditions<'_>,
 ) -> Option<usize> {
-    let always = conditions.always;
-    let design = design(study, &fit.model, &appraisal.noises);
+    let chosen = fit.model.chosen_numbers();
+    let design = design(study, &fit.model, &appraisal.weights);
     let (products, samples) = design.fitted();
     let mut swept = Swept::new(&products);
     for column in 0..design.width {
         swept.take(column);
     }
     let scale = (swept.remaining() / samples.max(1.0)).max(f64::MIN_POSITIVE);
-    let beside_settings = beside_settings(&design, &products, always);
+    let beside_settings = beside_settings(&design, &products, chosen.start);
     let whole = zeros::residuals(study, &fit.model);
     let judged = |number: usize| {
         let columns: Vec<usize> = design.columns(number).collect();
         let worth = swept.worth(&columns) / scale;
         let told = columns.iter().filter(|column| swept.has(**column)).count();
-        let price = conditions.price(study, &fit.model[number].effect, samples)
+        let price = conditions.price(study, &fit.model.effects[number].effect, samples)
             - untold_price(columns.len() - told, samples);
         let weak = worth < price || noise_explains(study, &design, &swept, fit, appraisal, number, price);
         let fails = weak && !conditions.stands_out(study, &fit.model, number, price)
@@ -76,17 +74,17 @@ fn weakest(
             || !pays(study, &design, &swept, fit, (appraisal, &whole), number, conditions);
         fails.then_some((worth, number))
     };
-    let count = fit.model.len() - always;
-    let failing = parallel::counted(count, study.rows() * count, |number| judged(always + number));
+    let failing =
+        parallel::counted(chosen.len(), study.rows() * chosen.len(), |number| judged(chosen.start + number));
     let weakest =
         failing.into_iter().flatten().reduce(|least, next| if next.0 < least.0 { next } else { least });
     weakest.map(|(_, number)| number)
 }
 
 /// The products as the settings leave them.
-fn beside_settings(design: &Design, products: &DMatrix<f64>, always: usize) -> Swept {
+fn beside_settings(design: &Design, products: &DMatrix<f64>, settings: usize) -> Swept {
     let mut swept = Swept::new(products);
-    for column in (0..always).flat_map(|setting| design.columns(setting)) {
+    for column in (0..settings).flat_map(|setting| design.columns(setting)) {
         swept.take(column);
     }
     swept
@@ -97,16 +95,16 @@ fn is_made_up_for(design: &Design, beside_settings: &Swept, model: &Model, numbe
     let energy = |effects: &[usize]| {
         let columns: Vec<usize> = effects.iter().flat_map(|effect| design.columns(*effect)).collect();
         let coefficients: Vec<f64> =
-            effects.iter().flat_map(|effect| model[*effect].coefficients.clone()).collect();
+            effects.iter().flat_map(|effect| model.effects[*effect].coefficients.clone()).collect();
         beside_settings.energy(&columns, &coefficients)
     };
     let own = energy(&[number]);
     let same = |other: &usize| {
         *other != number
-            && model[*other].effect.motion().is_some()
-            && model[*other].effect.motion() == model[number].effect.motion()
+            && model.effects[*other].effect.motion().is_some()
+            && model.effects[*other].effect.motion() == model.effects[number].effect.motion()
     };
-    let mut others = (0..model.len()).filter(same);
+    let mut others = (0..model.effects.len()).filter(same);
     others.any(|other| own <= energy(&[other]) && energy(&[number, other]) < LEAST * LEAST * own)
 }
 
@@ -127,21 +125,20 @@ fn pays(
     conditions: &Conditions<'_>,
 ) -> bool {
     let (appraisal, whole) = left;
-    let mut bare = fit.model.clone();
-    bare.remove(number);
+    let bare = fit.model.without(number);
     let others = followed(study, without(design, swept, &fit.model, number), fit, number, conditions);
     let [bare, others] = [&bare, &others].map(|model| zeros::residuals(study, model));
     let (mut gained, mut expected, mut peak) = (0.0, 0.0, 0.0_f64);
     let (mut taken, mut returning) = (0.0, 0.0);
-    let mut told = !fit.model[number].effect.shape.is_wave();
+    let mut told = !fit.model.effects[number].effect.shape.is_wave();
     for (scene, known) in study.scenes.iter().enumerate() {
         let fitted = known.fitted_rows();
         for channel in 0..known.channels.len() {
-            let noise = appraisal.noises[scene][channel];
-            let size = noise.size();
+            let at = ChannelAt { scene, channel };
+            let (size, outliers) = (appraisal.weights.noise(at).size(), appraisal.weights.outliers.of(at));
             let (bare, others, left) =
                 (&bare[scene][channel], &others[scene][channel], &whole[scene][channel]);
-            let usable = |row: usize| bare[row].is_finite() && !appraisal.outliers[scene][channel][row];
+            let usable = |row: usize| bare[row].is_finite() && !outliers[row];
             let rows: Vec<usize> = (0..bare.len()).filter(|row| usable(*row)).collect();
             let effect = |row: usize| (bare[row] - left[row]) / size;
             let mut everywhere: Vec<f64> = rows.iter().map(|row| effect(*row)).collect();
@@ -174,16 +171,14 @@ fn imitates_a_state(
     (appraisal, whole): (&Appraisal, &[Vec<Vec<f64>>]),
     number: usize,
 ) -> bool {
-    if !matches!(model[number].effect.shape, Shape::Vibration { .. }) {
+    if !matches!(model.effects[number].effect.shape, Shape::Vibration { .. }) {
         return false;
     }
-    let mut bare = model.clone();
-    bare.remove(number);
-    let bare = zeros::residuals(study, &bare);
+    let bare = zeros::residuals(study, &model.without(number));
     study.scenes.iter().enumerate().any(|(scene, known)| {
         (0..known.channels.len()).any(|channel| {
             let (bare, left) = (&bare[scene][channel], &whole[scene][channel]);
-            let outliers = &appraisal.outliers[scene][channel];
+            let outliers = appraisal.weights.outliers.of(ChannelAt { scene, channel });
             let valid: Vec<bool> =
                 bare.iter().zip(outliers).map(|(value, outlier)| value.is_finite() && !outlier).collect();
             let signal: Vec<f64> = bare.iter().zip(left).map(|(bare, left)| bare - left).collect();
@@ -208,13 +203,13 @@ fn followed(
     number: usize,
     conditions: &Conditions<'_>,
 ) -> Model {
-    let dropped = &fit.model[number].effect;
+    let dropped = &fit.model.effects[number].effect;
     let draws = |fitted: &Fitted| {
         fitted.effect.shape.is_wave()
             && fitted.effect.shape.axis() == dropped.shape.axis()
             && fitted.effect.motion() == dropped.motion()
     };
-    let drawn = dropped.shape.axis().is_some() && others.iter().any(draws);
+    let drawn = dropped.shape.axis().is_some() && others.effects.iter().any(draws);
     if drawn { conditions.refine(study, others).model } else { others }
 }
 
@@ -222,10 +217,10 @@ fn followed(
 const MATERIAL: f64 = 0.12;
 
 /// The products of the effects of a model, slopes left out, the whole response restored.
-pub(crate) fn design(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>]) -> Design {
-    let regressors = model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
-    let mut design = Design::new(study, model, noises, regressors);
-    design.rebase(model);
+pub(crate) fn design(study: &Study<'_>, model: &Model, weights: &Weights) -> Design {
+    let regressors = Regressor::all(&model.effects);
+    let mut design = Design::new(study, model, weights, regressors);
+    design.rebase(&model.effects);
     design
 }
 
@@ -242,19 +237,21 @@ fn noise_explains(
     let without = without(design, swept, &fit.model, number);
     let bare = Appraisal::beside(study, &without, appraisal);
     // A walk draws any curve along a single pass. It knows nothing of reversals, speeds and temperatures.
-    let curve = matches!(fit.model[number].effect.shape, Shape::Polynomial { .. } | Shape::Table { .. });
+    let curve =
+        matches!(fit.model.effects[number].effect.shape, Shape::Polynomial { .. } | Shape::Table { .. });
     let rise = if curve {
         // Both are less than the fit of greatest likelihood would give: the one keeps the coefficients, the other the noise.
-        (bare.wandering - appraisal.wandering).max(worth_in(study, &fit.model, &bare.floors, &[number]))
+        let floors = appraisal.weights.beside(bare.floors);
+        (bare.wandering - appraisal.wandering).max(worth_in(study, &fit.model, &floors, &[number]))
     } else {
         bare.deviance - appraisal.deviance
     };
     rise < price
 }
 
-/// What effects of a model take together from minus twice the log-likelihood where this is the noise.
-pub(crate) fn worth_in(study: &Study<'_>, model: &Model, noises: &[Vec<Noise>], effects: &[usize]) -> f64 {
-    let design = design(study, model, noises);
+/// What effects of a model take together from minus twice the log-likelihood where samples weigh so.
+pub(crate) fn worth_in(study: &Study<'_>, model: &Model, weights: &Weights, effects: &[usize]) -> f64 {
+    let design = design(study, model, weights);
     let (products, samples) = design.fitted();
     let mut swept = Swept::new(&products);
     for column in 0..design.width {
@@ -271,15 +268,14 @@ pub(crate) fn without(design: &Design, swept: &Swept, model: &Model, number: usi
     for column in design.columns(number) {
         reduced.drop(column);
     }
-    let kept = model.iter().enumerate().filter(|(other, _)| *other != number);
-    kept.map(|(other, fitted)| Fitted {
+    let kept = model.effects.iter().enumerate().filter(|(other, _)| *other != number);
+    model.with_effects(kept.map(|(other, fitted)| Fitted {
         effect: fitted.effect.clone(),
         coefficients: match fitted.effect.shape.nonlinear_in_coefficient() {
             true => fitted.coefficients.clone(),
             false => design.columns(other).map(|column| reduced.coefficient(column)).collect(),
         },
-    })
-    .collect()
+    }))
 }
 
 /// Whether the effect comes back in the held-out blocks about as strong as it was fitted; true where they cannot tell.

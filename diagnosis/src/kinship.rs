@@ -9,12 +9,13 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use crate::candidates::simplicity;
+use crate::channel::ChannelAt;
 use crate::course::Course;
 use crate::design::{ChannelRun, Regressor};
 use crate::model::{Effect, Model};
 use crate::noise::Noise;
 use crate::parallel;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 
 /// An effect, and others that the recordings show alike.
 #[derive(Clone, Debug)]
@@ -80,7 +81,7 @@ fn column_sums(
     let regressors: Vec<Regressor> = effects.iter().cloned().map(Regressor::of).collect();
     let width = regressors.iter().map(Regressor::columns).sum();
     let jobs: Vec<ChannelAt> = study.channels().collect();
-    let model = Model::new();
+    let model = Model::default();
     let results = parallel::counted(jobs.len(), study.rows() * width, |job| {
         let at = jobs[job];
         let noise = noises[at.scene][at.channel];

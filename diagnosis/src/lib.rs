@@ -4,14 +4,18 @@
 //! located, named, fitted, tested on held-out data, and written as terms that the compiler takes.
 //!
 //! ```text
-//! recordings -> study: channels, sensors, blocks of rows (legs, targets, rounded, rest) -> states: what every axis did (way, position_loop)
-//!   -> observations: residual and gain of every channel (course, travel) -> noise: the filter that whitens it
+//! recordings -> study: scenes with channels, sensors, blocks of rows (legs, targets, rounded, rest) -> states: what every axis did (way,
+//!   position_loop) -> observations: residual and gain of every channel (course, travel) -> noise: the filter that whitens it
 //! terms -> candidates, waves -> design: products of their columns -> search: the cheapest set (model, sweep) -> fit -> judge -> revise
 //!   -> engine: the rounds through all of this; dynamics, curves, dents, crossing, answers: what imitates or hides something else
-//! returns: what comes back of a residual, before any name -> appraisal: the floor, and how samples weigh
+//! returns: what comes back of a residual, before any name -> appraisal: the floor, and how samples weigh (weights)
 //! a fitted model -> audit: wrong files; compose: forms without a name; places, unsteady, repeats, zeros: what remains
 //!   -> certainty, alternatives, parameters, elements, words -> conclude: a Diagnosis, plain data -> report: text, JSON, a page (pictures)
 //! ```
+//!
+//! Three values are apart, and none of them is kept in another. A study is what was recorded, and never changes after it is made. A model is
+//! what is held to act: effects, and the plays that axes cross. Weights are how samples count, outliers among them. So a fit is one
+//! model under one set of weights, and a search that comes to nothing leaves nothing to restore.
 
 mod alternatives;
 mod answers;
@@ -19,6 +23,7 @@ mod appraisal;
 mod audit;
 mod candidates;
 mod certainty;
+mod channel;
 mod compose;
 mod conclude;
 mod conditions;
@@ -55,6 +60,7 @@ mod rest;
 mod returns;
 mod revise;
 mod rounded;
+mod scene;
 mod search;
 mod side;
 mod states;
@@ -69,6 +75,7 @@ mod travel;
 mod unsteady;
 mod waves;
 mod way;
+mod weights;
 mod words;
 mod zeros;
 

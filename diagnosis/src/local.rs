@@ -8,10 +8,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::appraisal::Appraisal;
+use crate::channel::ChannelAt;
 use crate::course::Course;
 use crate::model::Model;
 use crate::rounded;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::travel::Travel;
 use crate::unsteady;
 
@@ -71,13 +72,14 @@ pub(crate) fn strongest(
             let answers = unsteady::answers_motion(study, appraisal, model, ChannelAt { scene, channel });
             let directions: &[f64] = if answers { &[0.0] } else { &[0.0, 1.0, -1.0] };
             let alike = (0..known.channels.len()).filter(|other| angular(*other) == angular(channel));
-            let loudest = alike.map(|other| appraisal.noises[scene][other].size()).fold(0.0, f64::max);
+            let loudest =
+                alike.map(|other| appraisal.weights.noises[scene][other].size()).fold(0.0, f64::max);
             for (axis, travel) in travels.iter().enumerate().filter(|(_, travel)| travel.moves) {
                 let position = &courses[scene].states(observed.kind).axes[axis].position;
                 let moves = &courses[scene].states(observed.kind).axes[axis].direction;
                 let residual = &appraisal.residuals[scene][channel];
-                let valid =
-                    |row: usize| residual[row].is_finite() && !appraisal.outliers[scene][channel][row];
+                let outliers = appraisal.weights.outliers.of(ChannelAt { scene, channel });
+                let valid = |row: usize| residual[row].is_finite() && !outliers[row];
                 let passes = passes(position, moves, &known.recording.run);
                 for direction in directions.iter().copied() {
                     let chosen: Vec<&Range<usize>> = passes
@@ -85,7 +87,7 @@ pub(crate) fn strongest(
                         .filter(|(_, d)| direction == 0.0 || *d == direction)
                         .map(|(rows, _)| rows)
                         .collect();
-                    let noise = appraisal.noises[scene][channel].size();
+                    let noise = appraisal.weights.noises[scene][channel].size();
                     let profile = Profile::new(residual, position, &chosen, &valid, travel);
                     // In every pass over the same place a display is off by as much.
                     let least =

@@ -1,4 +1,7 @@
-//! Models: which effects act, where, and how strongly.
+//! Models: which effects act, where, and how strongly, and over which ways axes cross their plays.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
 
 use crate::side::Side;
 use crate::terms::{Setting, Shape};
@@ -26,8 +29,128 @@ pub(crate) struct Fitted {
     pub(crate) coefficients: Vec<f64>,
 }
 
-/// All effects that act together, beside those of the calibration.
-pub(crate) type Model = Vec<Fitted>;
+impl Fitted {
+    /// An effect that is not fitted yet.
+    pub(crate) fn unfitted(effect: Effect) -> Self {
+        Self { coefficients: vec![0.0; effect.shape.columns()], effect }
+    }
+}
+
+/// All that is held to act beside the calibration: effects, and the plays that axes cross.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub(crate) struct Model {
+    /// The settings of instruments that are fitted whatever else is, then the effects that were chosen.
+    pub(crate) effects: Vec<Fitted>,
+    /// How many of the effects are such settings.
+    settings: usize,
+    /// How far the drive of an axis goes until it has crossed its play, mm or rad; the plays of all other axes act at once.
+    /// Whatever of the axis jumps behind the drive, a reversal of its yaw too, goes with it.
+    crossings: BTreeMap<usize, f64>,
+}
+
+impl Model {
+    /// Effects that were chosen, with plays that act at once.
+    pub(crate) fn of(effects: impl IntoIterator<Item = Fitted>) -> Self {
+        Self { effects: effects.into_iter().collect(), ..Self::default() }
+    }
+
+    /// Settings that are always fitted, not fitted yet.
+    pub(crate) fn of_settings(settings: impl IntoIterator<Item = Effect>) -> Self {
+        let model = Self::of(settings.into_iter().map(Fitted::unfitted));
+        let count = model.effects.len();
+        model.with_settings(count)
+    }
+
+    /// The same of which the first so many effects are always fitted.
+    pub(crate) fn with_settings(self, settings: usize) -> Self {
+        Self { settings: settings.min(self.effects.len()), ..self }
+    }
+
+    /// Other effects, of which as many are settings, with plays that are crossed as in this model.
+    pub(crate) fn with_effects(&self, effects: impl IntoIterator<Item = Fitted>) -> Self {
+        Self::of(effects).with_settings(self.settings).crossed_as(self)
+    }
+
+    /// The same with one effect more.
+    pub(crate) fn with(&self, fitted: Fitted) -> Self {
+        let mut more = self.clone();
+        more.effects.push(fitted);
+        more
+    }
+
+    /// The same without one of its effects.
+    pub(crate) fn without(&self, number: usize) -> Self {
+        let mut rest = self.clone();
+        rest.effects.remove(number);
+        rest.settings -= usize::from(number < self.settings);
+        rest
+    }
+
+    /// The same with its settings, and those of the chosen effects that `stays` picks.
+    pub(crate) fn keeping(&self, stays: impl Fn(&Fitted) -> bool) -> Self {
+        let chosen = self.chosen().iter().filter(|fitted| stays(fitted));
+        self.with_effects(self.settings().iter().chain(chosen).cloned())
+    }
+
+    /// The same with nothing but its settings.
+    pub(crate) fn settings_alone(&self) -> Self {
+        self.with_effects(self.settings().iter().cloned())
+    }
+
+    /// The settings that are always fitted.
+    pub(crate) fn settings(&self) -> &[Fitted] {
+        &self.effects[..self.settings]
+    }
+
+    /// The effects that were chosen.
+    pub(crate) fn chosen(&self) -> &[Fitted] {
+        &self.effects[self.settings..]
+    }
+
+    /// The same, to change them.
+    pub(crate) fn chosen_mut(&mut self) -> &mut [Fitted] {
+        &mut self.effects[self.settings..]
+    }
+
+    /// The numbers of the chosen effects.
+    pub(crate) fn chosen_numbers(&self) -> Range<usize> {
+        self.settings..self.effects.len()
+    }
+
+    /// The same with plays that are crossed as in another model.
+    pub(crate) fn crossed_as(self, other: &Self) -> Self {
+        Self { crossings: other.crossings.clone(), ..self }
+    }
+
+    /// The same with plays that act at once.
+    pub(crate) fn uncrossed(self) -> Self {
+        Self { crossings: BTreeMap::new(), ..self }
+    }
+
+    /// How far the drive of an axis goes until it has crossed its play, mm or rad; 0 where that acts at once.
+    pub(crate) fn crossing(&self, axis: usize) -> f64 {
+        self.crossings.get(&axis).copied().unwrap_or_default()
+    }
+
+    /// Whether any axis crosses its play.
+    pub(crate) fn crosses(&self) -> bool {
+        !self.crossings.is_empty()
+    }
+
+    /// The axes that cross their plays.
+    pub(crate) fn crossing_axes(&self) -> Vec<usize> {
+        self.crossings.keys().copied().collect()
+    }
+
+    /// Lets an axis cross its play over a way, mm or rad; one of 0 or less acts at once.
+    pub(crate) fn cross(&mut self, axis: usize, way: f64) {
+        if way > 0.0 {
+            self.crossings.insert(axis, way);
+        } else {
+            self.crossings.remove(&axis);
+        }
+    }
+}
 
 impl Effect {
     /// A setting of the instrument of a recording.
@@ -71,3 +194,6 @@ impl Effect {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

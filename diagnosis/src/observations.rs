@@ -12,11 +12,12 @@ use std::ops::Range;
 
 use model_dsl::program::Column;
 
+use crate::channel::{Channel, Kind};
 use crate::course::{BATCH, Course, inputs, part, pieces, plus, weighted_sum};
 use crate::model::{Effect, Model, Place};
 use crate::parallel;
 use crate::side::Side;
-use crate::study::{Channel, Kind, Study};
+use crate::study::Study;
 
 pub(crate) use parts::part_readings;
 pub(crate) use passage::{Moved, Passage};

@@ -20,35 +20,29 @@ use crate::travel::Travel;
 const NODES: usize = 24;
 
 /// The model with a table for a feature that covers much of an axis, where the judge upholds it.
-pub(crate) fn with_table(study: &mut Study<'_>, found: &Found, feature: &Feature) -> Option<Found> {
+pub(crate) fn with_table(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Found> {
     let effect = table(study, found, feature)?;
-    let mut model = found.fit.model.clone();
     // The table takes over what smooth terms of the same motion said.
     let covered = |fitted: &Fitted| {
         fitted.effect.motion() == effect.motion() && matches!(fitted.effect.shape, Shape::Polynomial { .. })
     };
-    model.retain(|fitted| !covered(fitted));
-    let coefficients = vec![0.0; effect.shape.columns()];
-    model.push(Fitted { effect: effect.clone(), coefficients });
-    let crossings = study.crossings.clone();
+    let rest = found.fit.model.keeping(|fitted| !covered(fitted));
+    let model = rest.with(Fitted::unfitted(effect.clone()));
     let fit = found.conditions().refine(study, model);
     let (fit, appraisal) = upheld(study, fit, &found.conditions());
-    if !fit.model.iter().any(|fitted| fitted.effect == effect) {
-        study.crossings = crossings;
+    if !fit.model.effects.iter().any(|fitted| fitted.effect == effect) {
         return None;
     }
     let (pool, travels, bands) = (found.pool.clone(), found.travels.clone(), found.bands.clone());
-    let (always, tries) = (found.always, found.tries);
-    Some(Found { fit, appraisal, pool, travels, bands, always, tries, plain_zeros: false })
+    Some(Found { fit, appraisal, pool, travels, bands, tries: found.tries, plain_zeros: false })
 }
 
 /// What is left beside a feature: the appraisal of the model with a table in its place.
 pub(crate) fn beside(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Appraisal> {
     let effect = table(study, found, feature)?;
-    let mut model = found.fit.model.clone();
-    model.push(Fitted { coefficients: vec![0.0; effect.shape.columns()], effect });
-    let noises = found.appraisal.as_white();
-    Some(Appraisal::new(study, &found.conditions().under(&noises).refine(study, model).model))
+    let model = found.fit.model.with(Fitted::unfitted(effect));
+    let weights = found.appraisal.weights.as_white();
+    Some(Appraisal::new(study, &found.conditions().under(&weights).refine(study, model).model))
 }
 
 /// The motion of which a table would explain most of a feature.
@@ -120,18 +114,17 @@ fn table(study: &Study<'_>, found: &Found, feature: &Feature) -> Option<Effect> 
         })
         .collect();
     let model = &found.fit.model;
-    let noises = found.appraisal.as_white();
-    let mut regressors: Vec<Regressor> =
-        model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+    let weights = found.appraisal.weights.as_white();
+    let mut regressors = Regressor::all(&model.effects);
     regressors.extend(tables.iter().cloned().map(Regressor::of));
-    let design = Design::new(study, model, &noises, regressors);
+    let design = Design::new(study, model, &weights, regressors);
     let (products, _) = design.fitted();
     let mut swept = Swept::new(&products);
-    for column in (0..model.len()).flat_map(|number| design.columns(number)) {
+    for column in (0..model.effects.len()).flat_map(|number| design.columns(number)) {
         swept.take(column);
     }
     let gain = |number: usize| {
-        let columns: Vec<usize> = design.columns(model.len() + number).collect();
+        let columns: Vec<usize> = design.columns(model.effects.len() + number).collect();
         swept.promise(&columns).0 - candidates::simplicity(study, &tables[number])
     };
     (0..tables.len()).max_by(|a, b| gain(*a).total_cmp(&gain(*b))).map(|best| tables[best].clone())

@@ -4,11 +4,13 @@
 //! noise that runs on from one run to the next; a wandering sensor does not jump between runs.
 
 use crate::appraisal::Appraisal;
+use crate::channel::Kind;
 use crate::design::{Design, Regressor};
 use crate::diagnosis::Repeatability;
 use crate::fit;
-use crate::model::{Effect, Model};
-use crate::study::{Kind, Scene, Study};
+use crate::model::{Effect, Fitted, Model};
+use crate::scene::Scene;
+use crate::study::Study;
 use crate::terms::Setting;
 
 /// How many times the noise the zeros of runs must scatter to be called so.
@@ -72,21 +74,9 @@ fn zeros_of<'k>(known: &'k Scene<'_>) -> impl Iterator<Item = Zero> + 'k {
     })
 }
 
-/// Looks for recordings whose runs do not repeat under a model.
-pub(crate) fn scatter(study: &mut Study<'_>, model: &Model) -> Vec<Scatter> {
-    let held: Vec<Vec<bool>> =
-        study.scenes.iter().map(|scene| scene.blocks.iter().map(|block| block.held_out).collect()).collect();
-    // Every run tells of repeatability, also one that is held out for the fit.
-    for block in study.scenes.iter_mut().flat_map(|scene| &mut scene.blocks) {
-        block.held_out = false;
-    }
-    let found = (0..study.scenes.len()).filter_map(|scene| of_scene(study, scene, model)).collect();
-    for (scene, held) in study.scenes.iter_mut().zip(held) {
-        for (block, held) in scene.blocks.iter_mut().zip(held) {
-            block.held_out = held;
-        }
-    }
-    found
+/// Looks for recordings whose runs do not repeat under a model. Every run tells of that, also one that is held out for the fit.
+pub(crate) fn scatter(study: &Study<'_>, model: &Model) -> Vec<Scatter> {
+    (0..study.scenes.len()).filter_map(|scene| of_scene(study, scene, model)).collect()
 }
 
 fn of_scene(study: &Study<'_>, scene: usize, model: &Model) -> Option<Scatter> {
@@ -95,19 +85,20 @@ fn of_scene(study: &Study<'_>, scene: usize, model: &Model) -> Option<Scatter> {
         return None;
     }
     let zeros = run_zeros(scene, &study.scenes[scene], &runs);
-    let before = Appraisal::new(study, model);
-    let mut noises = before.noises.clone();
+    let before = Appraisal::of_all_rows(study, model, None);
+    let mut weights = before.weights.clone();
     let mut free = model.clone();
     let mut after = None;
     for _ in 0..TURNS {
-        let mut effects: Vec<Effect> = model.iter().map(|fitted| fitted.effect.clone()).collect();
+        let mut effects: Vec<Effect> = model.effects.iter().map(|fitted| fitted.effect.clone()).collect();
         effects.extend(zeros.iter().cloned());
-        let mut design = Design::new(study, &free, &noises, effects.into_iter().map(Regressor::of).collect());
-        design.rebase(&free);
-        let (products, _) = design.fitted();
+        let mut design =
+            Design::new(study, &free, &weights, effects.into_iter().map(Regressor::of).collect());
+        design.rebase(&free.effects);
+        let (products, _) = design.sum(|_| true);
         free = keep_loops(model, fit::linear(&design, &products, design.regressors.len(), &[]));
-        let appraisal = Appraisal::new(study, &free);
-        noises.clone_from(&appraisal.noises);
+        let appraisal = Appraisal::of_all_rows(study, &free, None);
+        weights = appraisal.weights.clone();
         after = Some(appraisal);
     }
     let after = after?;
@@ -116,8 +107,8 @@ fn of_scene(study: &Study<'_>, scene: usize, model: &Model) -> Option<Scatter> {
     let scatter = measure(study, scene, &free, &after, runs);
     // Under the weights of either: where a model lacks something, fewer samples count.
     let gains = [
-        before.deviance - Appraisal::beside(study, &free, &before).deviance,
-        Appraisal::beside(study, model, &after).deviance - after.deviance,
+        before.deviance - Appraisal::of_all_rows(study, &free, Some(&before)).deviance,
+        Appraisal::of_all_rows(study, model, Some(&after)).deviance - after.deviance,
     ];
     let significant = gains.iter().all(|gain| *gain > price);
     (significant && scatter.between > WIDE * scatter.within).then_some(scatter)
@@ -166,19 +157,20 @@ const SHARED: f64 = 0.5;
 const SAME_PLACE: f64 = 1e-3;
 
 /// A linear fit of loops and clocks holds only nearby: they stay as they were.
-fn keep_loops(model: &Model, mut free: Model) -> Model {
-    for (fitted, known) in free.iter_mut().zip(model) {
+fn keep_loops(model: &Model, mut free: Vec<Fitted>) -> Model {
+    for (fitted, known) in free.iter_mut().zip(&model.effects) {
         if known.effect.shape.nonlinear_in_coefficient() {
             fitted.coefficients.clone_from(&known.coefficients);
         }
     }
-    free
+    model.with_effects(free)
 }
 
 fn measure(study: &Study<'_>, scene: usize, free: &Model, after: &Appraisal, runs: Vec<i64>) -> Scatter {
     let value = |zero: Zero, run: i64| -> f64 {
         let wanted = Some(zero.of(run));
-        free.iter()
+        free.effects
+            .iter()
             .filter(|fitted| fitted.effect.setting_of(scene) == wanted)
             .flat_map(|fitted| &fitted.coefficients)
             .sum()
@@ -187,7 +179,7 @@ fn measure(study: &Study<'_>, scene: usize, free: &Model, after: &Appraisal, run
     let (mut between, mut within) = (0.0_f64, 0.0_f64);
     for zero in zeros_of(&study.scenes[scene]) {
         let of_runs: Vec<f64> = runs.iter().map(|run| value(zero, *run)).collect();
-        let noise = after.noises[scene][zero.channel()];
+        let noise = after.weights.noises[scene][zero.channel()];
         let spread = deviation(&of_runs);
         let size = noise.size();
         if spread * within.max(f64::MIN_POSITIVE) >= between * size {

@@ -10,24 +10,25 @@ use crate::observations::residuals;
 use crate::study::Study;
 use crate::terms::Shape;
 
-/// Decides it by what the calibration's loops explain better.
-pub(crate) fn tell(study: &mut Study<'_>) {
+/// The study in which it is decided by what the calibration's loops explain better. It is the last step of making one.
+pub(crate) fn told(mut study: Study<'_>) -> Study<'_> {
     if !study.known.iter().any(|fitted| matches!(fitted.effect.shape, Shape::Lag { .. })) {
-        return;
+        return study;
     }
     for scene in 0..study.scenes.len() {
         if study.scenes[scene].sparse() && study.scenes[scene].targets.axes.is_empty() {
-            let moving = misfit(study, scene);
+            let moving = misfit(&study, scene);
             study.scenes[scene].at_rest = true;
-            let resting = misfit(study, scene);
+            let resting = misfit(&study, scene);
             study.scenes[scene].at_rest = resting < moving;
         }
     }
+    study
 }
 
 /// The sum of distances of each channel from its median under the calibration alone.
 fn misfit(study: &Study<'_>, scene: usize) -> f64 {
-    let model = Model::new();
+    let model = Model::default();
     let course = Course::new(study, scene, &model);
     let residuals = residuals(study, scene, &model, &course);
     let spread = |residual: &Vec<f64>| {

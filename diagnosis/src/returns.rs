@@ -9,6 +9,7 @@ mod chance;
 mod curve;
 mod state;
 
+use crate::channel::ChannelAt;
 use crate::course::Course;
 use crate::model::Model;
 use crate::noise::{self, Noise};
@@ -16,6 +17,7 @@ use crate::observations;
 use crate::parallel;
 use crate::states::States;
 use crate::study::Study;
+use crate::weights::Outliers;
 use chance::Normals;
 use curve::{Place, Sums, at};
 
@@ -413,25 +415,24 @@ fn variance(residual: &[f64], valid: &[bool]) -> f64 {
     known().map(|value| (value - mean).powi(2)).sum::<f64>() / count
 }
 
-/// Tells for each channel of every recording which states predict what a model leaves.
-pub(crate) fn tell(study: &mut Study<'_>, model: &Model) {
-    for scene in 0..study.scenes.len() {
-        let course = Course::new(study, scene, model);
-        let residuals = observations::residuals(study, scene, model, &course);
+/// The study in which it is told for each channel which states predict what a model leaves, outliers left out.
+pub(crate) fn told<'a>(study: Study<'a>, model: &Model, outliers: &Outliers) -> Study<'a> {
+    let of_scene = |scene: usize| {
+        let course = Course::new(&study, scene, model);
+        let residuals = observations::residuals(&study, scene, model, &course);
         let known = &study.scenes[scene];
-        let found = parallel::counted(residuals.len(), known.rows() * residuals.len(), |channel| {
+        parallel::counted(residuals.len(), known.rows() * residuals.len(), |channel| {
             let residual = &residuals[channel];
-            let outliers = &known.channels[channel].outliers;
+            let outliers = outliers.of(ChannelAt { scene, channel });
             let valid: Vec<bool> =
                 residual.iter().zip(outliers).map(|(value, out)| value.is_finite() && !out).collect();
             let floor = known.channels[channel].rounding;
             let noise = noise::estimate(&known.recording.time, residual, &valid, floor).0;
             known.returns.of(residual, &valid, noise)
-        });
-        for (channel, returning) in study.scenes[scene].channels.iter_mut().zip(found) {
-            channel.returning = returning;
-        }
-    }
+        })
+    };
+    let returning = (0..study.scenes.len()).map(of_scene).collect();
+    study.with_returning(returning)
 }
 
 #[cfg(test)]

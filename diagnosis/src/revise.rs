@@ -6,6 +6,7 @@
 //! it is compared, and nothing is added that the judge would drop.
 
 use crate::appraisal::Appraisal;
+use crate::channel::ChannelAt;
 use crate::conditions::Conditions;
 use crate::design::{Design, Regressor};
 use crate::engine::{self, courses};
@@ -34,25 +35,20 @@ pub(crate) struct Revision<'r> {
 
 impl Revision<'_> {
     /// Exchanges and adds effects until nothing is better.
-    pub(crate) fn revised(&self, study: &mut Study<'_>, fit: Fit, appraisal: Appraisal) -> (Fit, Appraisal) {
+    pub(crate) fn revised(&self, study: &Study<'_>, fit: Fit, appraisal: Appraisal) -> (Fit, Appraisal) {
         self.revised_to(study, (fit, appraisal), usize::MAX)
     }
 
     /// Exchanges effects until nothing is better.
-    pub(crate) fn exchanged(
-        &self,
-        study: &mut Study<'_>,
-        fit: Fit,
-        appraisal: Appraisal,
-    ) -> (Fit, Appraisal) {
-        let count = fit.model.len();
+    pub(crate) fn exchanged(&self, study: &Study<'_>, fit: Fit, appraisal: Appraisal) -> (Fit, Appraisal) {
+        let count = fit.model.effects.len();
         self.revised_to(study, (fit, appraisal), count)
     }
 
     /// Exchanges effects, and adds some as long as there are no more than `most`, until nothing is better.
     fn revised_to(
         &self,
-        study: &mut Study<'_>,
+        study: &Study<'_>,
         (mut fit, mut appraisal): (Fit, Appraisal),
         most: usize,
     ) -> (Fit, Appraisal) {
@@ -60,18 +56,17 @@ impl Revision<'_> {
             if !appraisal.lacks() {
                 break;
             }
-            let conditions = self.conditions.under(&appraisal.noises);
+            let conditions = self.conditions.under(&appraisal.weights);
             let prices = conditions.prices(study, &fit.model, fit.samples);
             let cost = conditions.cost_at(study, &fit, &prices);
             let mut trials = self.trials(study, &fit, &prices, &appraisal);
-            trials.retain(|trial| trial.model.len() <= most);
+            trials.retain(|trial| trial.model.effects.len() <= most);
             let Some(better) =
                 trials.into_iter().find_map(|trial| self.stands(study, trial, cost, &fit, &appraisal))
             else {
                 break;
             };
             (fit, appraisal) = better;
-            appraisal.mark(study);
         }
         (fit, appraisal)
     }
@@ -79,21 +74,21 @@ impl Revision<'_> {
     /// A trial, fitted, where it costs less and all of it stands up.
     fn stands(
         &self,
-        study: &mut Study<'_>,
+        study: &Study<'_>,
         trial: Trial,
         cost: f64,
         fit: &Fit,
         appraisal: &Appraisal,
     ) -> Option<(Fit, Appraisal)> {
-        let conditions = self.conditions.under(&appraisal.noises);
+        let conditions = self.conditions.under(&appraisal.weights);
         let fitted = conditions.refine(study, trial.model);
         if conditions.cost_at(study, &fitted, &trial.prices) >= cost {
             return None;
         }
-        let (count, more) = (fitted.model.len(), fitted.model.len() > fit.model.len());
+        let (count, more) =
+            (fitted.model.effects.len(), fitted.model.effects.len() > fit.model.effects.len());
         let (kept, left) = judge::uphold(study, fitted, &self.conditions);
-        appraisal.mark(study);
-        let stands = kept.model.len() == count && (!more || stands_apart(study, appraisal, &left));
+        let stands = kept.model.effects.len() == count && (!more || stands_apart(study, appraisal, &left));
         stands.then_some((kept, left))
     }
 
@@ -101,36 +96,37 @@ impl Revision<'_> {
     fn trials(&self, study: &Study<'_>, fit: &Fit, prices: &[f64], appraisal: &Appraisal) -> Vec<Trial> {
         let model = &fit.model;
         let open = self.open(study, model, appraisal, fit.samples);
-        let mut regressors: Vec<Regressor> =
-            model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+        let mut regressors = Regressor::all(&model.effects);
         regressors.extend(open.iter().map(|open| Regressor::of(open.effect.clone())));
-        let mut design = Design::new(study, model, &appraisal.noises, regressors);
-        design.rebase(model);
+        let mut design = Design::new(study, model, &appraisal.weights, regressors);
+        design.rebase(&model.effects);
         let (products, samples) = design.fitted();
         let mut whole = Swept::new(&products);
-        for column in (0..model.len()).flat_map(|number| design.columns(number)) {
+        for column in (0..model.effects.len()).flat_map(|number| design.columns(number)) {
             whole.take(column);
         }
         let scale = (whole.remaining() / samples.max(1.0)).max(f64::MIN_POSITIVE);
         let mut trials: Vec<Trial> = Vec::new();
         // A curve is made of what stood in for it: those are no better.
-        let tabled = |number: &usize| matches!(model[*number].effect.shape, Shape::Table { .. });
-        let places = std::iter::once(None)
-            .chain((self.conditions.always..model.len()).filter(|number| !tabled(number)).map(Some));
+        let tabled = |number: &usize| matches!(model.effects[*number].effect.shape, Shape::Table { .. });
+        let places =
+            std::iter::once(None).chain(model.chosen_numbers().filter(|number| !tabled(number)).map(Some));
         for place in places {
             let mut swept = whole.clone();
             let (mut kept, mut prices) = (model.clone(), prices.to_vec());
             let mut spared = 0.0;
             if let Some(number) = place {
                 design.columns(number).for_each(|column| swept.drop(column));
-                kept.remove(number);
+                kept = kept.without(number);
                 spared = prices.remove(number);
             }
             let lost = (swept.remaining() - whole.remaining()) / scale;
             let mut gains: Vec<(f64, usize)> = (0..open.len())
-                .filter(|number| !kept.iter().any(|known| against(&known.effect, &open[*number].effect)))
+                .filter(|number| {
+                    !kept.effects.iter().any(|known| against(&known.effect, &open[*number].effect))
+                })
                 .map(|number| {
-                    let columns: Vec<usize> = design.columns(model.len() + number).collect();
+                    let columns: Vec<usize> = design.columns(model.effects.len() + number).collect();
                     let gain = swept.promise(&columns).0 / scale - open[number].price;
                     (gain - lost + spared, number)
                 })
@@ -139,9 +135,7 @@ impl Revision<'_> {
             // One in the place of another may say less before it is fitted.
             let least = if place.is_some() { -LEEWAY } else { 0.0 };
             for (gain, number) in gains.into_iter().filter(|(gain, _)| *gain > least).take(TRIED) {
-                let mut trial = kept.clone();
-                let coefficients = vec![0.0; open[number].effect.shape.columns()];
-                trial.push(Fitted { effect: open[number].effect.clone(), coefficients });
+                let trial = kept.with(Fitted::unfitted(open[number].effect.clone()));
                 let mut prices = prices.clone();
                 prices.push(open[number].price);
                 trials.push(Trial { model: trial, prices, gain });
@@ -154,11 +148,11 @@ impl Revision<'_> {
 
     /// Effects that are not in the model: candidates, and waves of what it leaves.
     fn open(&self, study: &Study<'_>, model: &Model, appraisal: &Appraisal, samples: f64) -> Vec<Open> {
-        let conditions = self.conditions.under(&appraisal.noises);
+        let conditions = self.conditions.under(&appraisal.weights);
         let courses = courses(study, model);
-        let residuals = waves::all_weighted(study, model, &appraisal.noises, &courses);
+        let residuals = waves::all_weighted(study, model, &appraisal.weights, &courses);
         let (peaks, _) = waves::peaks(study, model, &courses, &residuals, conditions.travels, self.places);
-        let candidates = engine::open_candidates(&model[conditions.always..], self.pool);
+        let candidates = engine::open_candidates(model.chosen(), self.pool);
         let candidates = candidates
             .into_iter()
             .map(|effect| Open { price: conditions.price(study, &effect, samples), effect });
@@ -194,10 +188,15 @@ pub(crate) fn stands_apart(study: &Study<'_>, without: &Appraisal, with: &Apprai
     let (mut taken, mut returning) = (0.0, 0.0);
     for (scene, known) in study.scenes.iter().enumerate() {
         for channel in 0..known.channels.len() {
-            let outliers = with.outliers[scene][channel].iter().zip(&without.outliers[scene][channel]);
+            let [one, other] =
+                [with, without].map(|one| one.weights.outliers.of(ChannelAt { scene, channel }));
             let [before, after] = [without, with].map(|one| &one.residuals[scene][channel]);
-            let valid: Vec<bool> =
-                outliers.zip(after).map(|((a, b), value)| !a && !b && value.is_finite()).collect();
+            let valid: Vec<bool> = one
+                .iter()
+                .zip(other)
+                .zip(after)
+                .map(|((a, b), value)| !a && !b && value.is_finite())
+                .collect();
             let size = with.leftover[scene][channel].max(f64::MIN_POSITIVE);
             let rows = || before.iter().zip(after).zip(&valid).filter(|(_, valid)| **valid);
             taken += rows().map(|((before, after), _)| before * before - after * after).sum::<f64>()

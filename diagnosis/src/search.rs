@@ -83,23 +83,23 @@ struct Set {
 }
 
 impl<'d> Choice<'d> {
-    /// Prepares the choice. The first `always` regressors are fitted whatever else is; `waves` tells how many independent
+    /// Prepares the choice. The first regressors, `settings` in number, are fitted whatever else is; `waves` tells how many independent
     /// waves were looked at.
     pub(crate) fn new(
         study: &Study<'_>,
         design: &'d Design,
         products: DMatrix<f64>,
         samples: f64,
-        always: usize,
+        settings: usize,
         waves: f64,
         resolution: Resolution,
     ) -> Self {
-        let open: Vec<usize> = (always..design.regressors.len()).collect();
-        let fixed = design.first.get(always).copied().unwrap_or(design.width);
+        let open: Vec<usize> = (settings..design.regressors.len()).collect();
+        let fixed = design.first.get(settings).copied().unwrap_or(design.width);
         let tries = crate::number(open.len().max(2));
         let price = |effect: &Effect| price(study, effect, samples, tries, waves);
         let prices = design.regressors.iter().map(|regressor| price(&regressor.effect)).collect();
-        let zeroed = zeroed(design, &products, always);
+        let zeroed = zeroed(design, &products, settings);
         let rotations = design.regressors.iter().map(|regressor| rotates(study, &regressor.effect)).collect();
         let plausible =
             design.regressors.iter().map(|regressor| plausible(study, &regressor.effect)).collect();
@@ -351,7 +351,7 @@ fn rotates(study: &Study<'_>, effect: &Effect) -> bool {
 }
 
 /// The products with the zeros of the channels swept in, which effects may shift as they like.
-fn zeroed(design: &Design, products: &DMatrix<f64>, always: usize) -> Swept {
+fn zeroed(design: &Design, products: &DMatrix<f64>, settings: usize) -> Swept {
     let mut swept = Swept::new(products);
     let is_zero = |number: &usize| {
         matches!(
@@ -365,7 +365,7 @@ fn zeroed(design: &Design, products: &DMatrix<f64>, always: usize) -> Swept {
             )
         )
     };
-    for number in (0..always).filter(is_zero) {
+    for number in (0..settings).filter(is_zero) {
         design.columns(number).for_each(|column| {
             swept.take(column);
         });

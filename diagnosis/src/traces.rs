@@ -3,6 +3,7 @@
 //! In: a study, what the calibration alone left and what was found. Out: columns as long as the recordings, for whoever draws, tests or
 //! fits them on: nothing is thinned out, unlike in [`crate::pictures`].
 
+use crate::channel::ChannelAt;
 use crate::engine::Found;
 use crate::pictures::Before;
 use crate::study::Study;
@@ -41,7 +42,8 @@ pub(crate) fn traces(study: &Study<'_>, before: &Before, found: &Found) -> Vec<T
     let mut traces = Vec::new();
     for (number, (scene, (before, after))) in study.scenes.iter().zip(left).enumerate() {
         let held_out: Vec<bool> = scene.fitted_rows().iter().map(|fitted| !fitted).collect();
-        for (channel, (before, after)) in scene.channels.iter().zip(before.iter().zip(after)) {
+        for (place, (before, after)) in before.iter().zip(after).enumerate() {
+            let (at, channel) = (ChannelAt { scene: number, channel: place }, &scene.channels[place]);
             traces.push(Trace {
                 recording: number,
                 channel: channel.name.clone(),
@@ -52,7 +54,7 @@ pub(crate) fn traces(study: &Study<'_>, before: &Before, found: &Found) -> Vec<T
                 before: before.clone(),
                 after,
                 held_out: held_out.clone(),
-                outlier: channel.outliers.clone(),
+                outlier: found.appraisal.weights.outliers.of(at).to_vec(),
             });
         }
     }

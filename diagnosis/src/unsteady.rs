@@ -6,10 +6,11 @@
 
 use crate::appraisal::Appraisal;
 use crate::candidates::simplicity;
+use crate::channel::{ChannelAt, Kind};
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::study::{ChannelAt, Kind, Study};
+use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 
@@ -30,17 +31,17 @@ const LINES: usize = 3;
 const NEAR: f64 = 0.02;
 
 /// Takes oscillations that are not steady out of a model.
-pub(crate) fn take_bands(model: &mut Model, always: usize) -> Vec<Band> {
+pub(crate) fn take_bands(model: &mut Model) -> Vec<Band> {
     let mut bands = Vec::new();
-    while let Some(members) = crowded(model, always) {
-        let motion = model[members[0]].effect.motion().unwrap_or_default();
-        let frequencies = members.iter().filter_map(|number| frequency(&model[*number].effect));
+    while let Some(members) = crowded(model) {
+        let motion = model.effects[members[0]].effect.motion().unwrap_or_default();
+        let frequencies = members.iter().filter_map(|number| frequency(&model.effects[*number].effect));
         let (from, to) =
             frequencies.fold((f64::INFINITY, 0.0), |(from, to), f| (f64::min(from, f), f64::max(to, f)));
-        let squares = members.iter().flat_map(|number| &model[*number].coefficients);
+        let squares = members.iter().flat_map(|number| &model.effects[*number].coefficients);
         let rms = (squares.map(|value| value * value).sum::<f64>() / 2.0).sqrt();
         bands.push(Band { motion, from, to, rms });
-        members.iter().rev().for_each(|number| drop(model.remove(*number)));
+        members.iter().rev().for_each(|number| drop(model.effects.remove(*number)));
     }
     bands
 }
@@ -53,27 +54,29 @@ fn frequency(effect: &Effect) -> Option<f64> {
 }
 
 /// Vibrations of one motion that crowd around one of them, in the order of the model.
-fn crowded(model: &Model, always: usize) -> Option<Vec<usize>> {
-    (always..model.len()).find_map(|center| {
-        let (motion, around) = (model[center].effect.motion(), frequency(&model[center].effect)?);
+fn crowded(model: &Model) -> Option<Vec<usize>> {
+    model.chosen_numbers().find_map(|center| {
+        let (motion, around) =
+            (model.effects[center].effect.motion(), frequency(&model.effects[center].effect)?);
         let near = |number: &usize| {
-            let effect = &model[*number].effect;
+            let effect = &model.effects[*number].effect;
             effect.motion() == motion
                 && frequency(effect).is_some_and(|frequency| (frequency / around - 1.0).abs() < NEAR)
         };
-        let members: Vec<usize> = (always..model.len()).filter(near).collect();
-        (members.len() >= LINES).then(|| with_neighbours(model, always, members))
+        let members: Vec<usize> = model.chosen_numbers().filter(near).collect();
+        (members.len() >= LINES).then(|| with_neighbours(model, members))
     })
 }
 
 /// The members of a band, and what stands as near to one of them as they to one another.
-fn with_neighbours(model: &Model, always: usize, mut members: Vec<usize>) -> Vec<usize> {
+fn with_neighbours(model: &Model, mut members: Vec<usize>) -> Vec<usize> {
     let near = |a: usize, b: usize| {
-        let pair = (frequency(&model[a].effect), frequency(&model[b].effect));
+        let pair = (frequency(&model.effects[a].effect), frequency(&model.effects[b].effect));
         let close = matches!(pair, (Some(a), Some(b)) if (a / b - 1.0).abs() < NEAR);
-        close && model[a].effect.motion() == model[b].effect.motion()
+        close && model.effects[a].effect.motion() == model.effects[b].effect.motion()
     };
-    while let Some(next) = (always..model.len())
+    while let Some(next) = model
+        .chosen_numbers()
         .find(|other| !members.contains(other) && members.iter().any(|known| near(*other, *known)))
     {
         members.push(next);
@@ -142,12 +145,15 @@ pub(crate) fn answers_motion(study: &Study<'_>, appraisal: &Appraisal, model: &M
 }
 
 fn looped(model: &Model, axis: usize) -> bool {
-    model.iter().any(|fitted| matches!(fitted.effect.shape, Shape::Lag { axis: of, .. } if of == axis))
+    model
+        .effects
+        .iter()
+        .any(|fitted| matches!(fitted.effect.shape, Shape::Lag { axis: of, .. } if of == axis))
 }
 
 /// What is left of a channel, without its outliers.
-fn accepted(appraisal: &Appraisal, ChannelAt { scene, channel }: ChannelAt) -> Vec<f64> {
-    let residual = appraisal.residuals[scene][channel].iter().zip(&appraisal.outliers[scene][channel]);
+fn accepted(appraisal: &Appraisal, at: ChannelAt) -> Vec<f64> {
+    let residual = appraisal.residuals[at.scene][at.channel].iter().zip(appraisal.weights.outliers.of(at));
     residual.map(|(value, outlier)| if *outlier { f64::NAN } else { *value }).collect()
 }
 
@@ -198,30 +204,29 @@ pub(crate) struct Suspect {
 /// The plain term that would take most of what remains, were the noise white.
 pub(crate) fn suspect(study: &Study<'_>, found: &Found) -> Option<Suspect> {
     let model = &found.fit.model;
-    let noises = found.appraisal.as_white();
+    let weights = found.appraisal.weights.as_white();
     let plain = |effect: &Effect| {
         matches!(effect.place, Place::Motion { .. }) && effect.shape.columns() <= 2 && !effect.shape.is_wave()
     };
     let others: Vec<Effect> =
         found.pool.iter().map(|kin| kin.effect.clone()).filter(|effect| plain(effect)).collect();
-    let mut regressors: Vec<Regressor> =
-        model.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+    let mut regressors = Regressor::all(&model.effects);
     regressors.extend(others.iter().cloned().map(Regressor::of));
-    let design = Design::new(study, model, &noises, regressors);
+    let design = Design::new(study, model, &weights, regressors);
     let (products, samples) = design.fitted();
     let mut swept = Swept::new(&products);
-    for column in (0..model.len()).flat_map(|number| design.columns(number)) {
+    for column in (0..model.effects.len()).flat_map(|number| design.columns(number)) {
         swept.take(column);
     }
     let remaining = swept.remaining().max(f64::MIN_POSITIVE);
     let share = |number: usize| {
-        let columns: Vec<usize> = design.columns(model.len() + number).collect();
+        let columns: Vec<usize> = design.columns(model.effects.len() + number).collect();
         swept.promise(&columns).0 / remaining
     };
     let worth = |number: usize| share(number) - simplicity(study, &others[number]) / samples.max(1.0);
     let best = (0..others.len()).max_by(|a, b| worth(*a).total_cmp(&worth(*b)))?;
     let share = share(best);
-    let columns: Vec<usize> = design.columns(model.len() + best).collect();
+    let columns: Vec<usize> = design.columns(model.effects.len() + best).collect();
     for column in &columns {
         swept.take(*column);
     }

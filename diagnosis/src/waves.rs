@@ -11,6 +11,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::channel::ChannelAt;
 use crate::course::Course;
 use crate::kinship;
 use crate::model::{Effect, Model, Place};
@@ -18,10 +19,12 @@ use crate::noise::{Noise, Whitening, unwhiten, whiten};
 use crate::observations::{Frame, each_frame, residuals};
 use crate::parallel;
 use crate::ranges::{CYCLES, PERIODS, goes_round, shortest_step};
+use crate::scene::Scene;
 use crate::side::Side;
-use crate::study::{Scene, Study};
+use crate::study::Study;
 use crate::terms::Shape;
 use crate::travel::Travel;
+use crate::weights::Weights;
 use spectrum::{Top, tops};
 
 /// A wave that might be there.
@@ -171,21 +174,20 @@ pub(crate) fn weighted(
     study: &Study<'_>,
     scene: usize,
     model: &Model,
-    noises: &[Noise],
+    weights: &Weights,
     course: &Course,
 ) -> Vec<Weighted> {
-    let channels = &study.scenes[scene].channels;
     let raws = residuals(study, scene, model, course);
     raws.into_iter()
-        .zip(channels)
-        .zip(noises)
-        .map(|((raw, channel), noise)| {
+        .enumerate()
+        .map(|(channel, raw)| {
+            let at = ChannelAt { scene, channel };
             let valid: Vec<bool> = raw
                 .iter()
-                .zip(&channel.outliers)
+                .zip(weights.outliers.of(at))
                 .map(|(value, outlier)| value.is_finite() && !outlier)
                 .collect();
-            let steps = Whitening::new(*noise).steps(&study.scenes[scene].recording.time, &valid);
+            let steps = Whitening::new(weights.noise(at)).steps(&study.scenes[scene].recording.time, &valid);
             let mut white = raw;
             whiten(&steps, &mut [0.0], &mut white);
             let mut weighted = white.clone();
@@ -226,15 +228,14 @@ pub(crate) fn around(
     study: &Study<'_>,
     model: &Model,
     number: usize,
-    noises: &[Vec<Noise>],
+    weights: &Weights,
     travels: &[Travel],
 ) -> Vec<Peak> {
-    let wave = &model[number].effect;
-    let mut without = model.clone();
-    without.remove(number);
+    let wave = &model.effects[number].effect;
+    let without = model.without(number);
     let courses: Vec<Arc<Course>> =
         (0..study.scenes.len()).map(|scene| Course::new(study, scene, &without)).collect();
-    let residuals = all_weighted(study, &without, noises, &courses);
+    let residuals = all_weighted(study, &without, weights, &courses);
     let place = WavePlace::of(wave);
     let (mut peaks, _) = peaks(study, &without, &courses, &residuals, travels, place.as_slice());
     let observed = observed(study);
@@ -281,11 +282,11 @@ const ONE_LINE: f64 = 0.25;
 pub(crate) fn all_weighted(
     study: &Study<'_>,
     model: &Model,
-    noises: &[Vec<Noise>],
+    weights: &Weights,
     courses: &[Arc<Course>],
 ) -> Vec<Vec<Weighted>> {
     let each = courses.iter().enumerate();
-    each.map(|(scene, course)| weighted(study, scene, model, &noises[scene], course)).collect()
+    each.map(|(scene, course)| weighted(study, scene, model, weights, course)).collect()
 }
 
 /// At how many places waves are looked for at a time.
@@ -352,16 +353,16 @@ pub(crate) struct Turns {
 /// Waves whose frequency follows a recorded speed, and how many independent ones were looked at.
 pub(crate) fn over_turns(
     study: &Study<'_>,
-    (model, noises): (&Model, &[Vec<Noise>]),
+    (model, weights): (&Model, &Weights),
     travels: &[Travel],
     turns: &Turns,
 ) -> (Vec<Peak>, f64) {
     let courses: Vec<Arc<Course>> =
         (0..study.scenes.len()).map(|scene| Course::new(study, scene, model)).collect();
-    let residuals = all_weighted(study, model, noises, &courses);
+    let residuals = all_weighted(study, model, weights, &courses);
     let in_time = |place: &WavePlace| place.vibration;
     let places: Vec<WavePlace> =
-        places(study, &courses, noises, travels).into_iter().filter(in_time).collect();
+        places(study, &courses, &weights.noises, travels).into_iter().filter(in_time).collect();
     let all = || turns.turned.iter().flatten();
     let low = all().copied().fold(f64::INFINITY, f64::min);
     let range = all().copied().fold(f64::NEG_INFINITY, f64::max) - low;

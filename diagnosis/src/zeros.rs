@@ -10,14 +10,16 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 
 use crate::appraisal::Appraisal;
+use crate::channel::Kind;
 use crate::course::Course;
 use crate::design::{Design, Regressor};
 use crate::fit;
-use crate::model::{Model, Place};
-use crate::noise::Noise;
+use crate::model::{Fitted, Model, Place};
 use crate::observations;
-use crate::study::{Kind, Scene, Study};
+use crate::scene::Scene;
+use crate::study::Study;
 use crate::terms::{Setting, Shape};
+use crate::weights::Weights;
 
 /// Fits the settings that are always free of every recording of which no row is fitted.
 pub(crate) fn free_held_out(study: &Study<'_>, model: &mut Model) {
@@ -25,34 +27,37 @@ pub(crate) fn free_held_out(study: &Study<'_>, model: &mut Model) {
         if known.blocks.iter().any(|block| !block.held_out) {
             continue;
         }
-        let own: Vec<usize> = (0..model.len())
-            .filter(|number| model[*number].effect.place == Place::Instrument { recording: scene })
-            .filter(|number| !matches!(model[*number].effect.shape, Shape::Instrument(Setting::Clock)))
+        let own: Vec<usize> = (0..model.effects.len())
+            .filter(|number| model.effects[*number].effect.place == Place::Instrument { recording: scene })
+            .filter(|number| {
+                !matches!(model.effects[*number].effect.shape, Shape::Instrument(Setting::Clock))
+            })
             .collect();
-        let regressors = own.iter().map(|number| Regressor::of(model[*number].effect.clone())).collect();
-        let noises = Appraisal::new(study, model).noises;
-        let mut design = Design::new(study, model, &noises, regressors);
-        let settings: Model = own.iter().map(|number| model[*number].clone()).collect();
+        let regressors =
+            own.iter().map(|number| Regressor::of(model.effects[*number].effect.clone())).collect();
+        let weights = Appraisal::new(study, model).weights;
+        let mut design = Design::new(study, model, &weights, regressors);
+        let settings: Vec<Fitted> = own.iter().map(|number| model.effects[*number].clone()).collect();
         design.rebase(&settings);
         let (products, _) = design.sum(|block| block.scene == scene);
         for (number, fitted) in
             own.into_iter().zip(fit::linear(&design, &products, design.regressors.len(), &[]))
         {
-            model[number] = fitted;
+            model.effects[number] = fitted;
         }
     }
 }
 
-/// Fits the first `always` effects, which are settings, to the rows that are fitted, each row for itself; what else the model
+/// Fits the settings that are always fitted to the rows that are fitted, each row for itself; what else the model
 /// holds stays. Where noise wanders, zeros that allow for it may lie far from the mean of those rows, and farther from others.
-pub(crate) fn weigh_plainly(study: &Study<'_>, model: &mut Model, always: usize, noises: &[Vec<Noise>]) {
-    let settings: Model = model[..always].to_vec();
-    let regressors = settings.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
-    let mut design = Design::new(study, model, noises, regressors);
+pub(crate) fn weigh_plainly(study: &Study<'_>, model: &mut Model, weights: &Weights) {
+    let settings: Vec<Fitted> = model.settings().to_vec();
+    let regressors = Regressor::all(&settings);
+    let mut design = Design::new(study, model, weights, regressors);
     design.rebase(&settings);
     let (products, _) = design.fitted();
-    let fitted = fit::linear(&design, &products, always, &[]);
-    model.splice(..always, fitted);
+    let fitted = fit::linear(&design, &products, settings.len(), &[]);
+    model.effects.splice(..settings.len(), fitted);
 }
 
 /// Observed minus predicted of every channel of every recording; where runs have zeros of their own, those of held-out runs
@@ -62,7 +67,8 @@ pub(crate) fn residuals(study: &Study<'_>, model: &Model) -> Vec<Vec<Vec<f64>>> 
     each.map(|(scene, known)| {
         let course = Course::new(study, scene, model);
         let mut residuals = observations::residuals(study, scene, model, &course);
-        let loose = model.iter().any(|fitted| fitted.effect.setting_of(scene).is_some_and(Setting::of_a_run));
+        let loose =
+            model.effects.iter().any(|fitted| fitted.effect.setting_of(scene).is_some_and(Setting::of_a_run));
         if loose {
             for block in known.blocks.iter().filter(|block| block.held_out) {
                 for (channel, residual) in known.channels.iter().zip(&mut residuals) {

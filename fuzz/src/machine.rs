@@ -4,8 +4,8 @@ use model_dsl::codegen;
 use model_dsl::compile;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::{Equations, Names};
-use model_dsl::notation::{self, Format};
 use model_dsl::program::Interpreter;
+use notation::Format;
 
 use super::text::{findings_hold, source};
 

@@ -1,7 +1,7 @@
-//! Abbe's compiler: a machine file becomes its error equations, their notation and Rust code.
+//! Abbe's compiler: a machine file becomes its error equations and Rust code.
 //!
 //! ```text
-//! text -> yaml -> machine -> derivation -> equations -> notation: text, LaTeX, MathML, Maxima, JSON
+//! text -> yaml -> machine -> derivation -> equations -> sheet: what is printed, as text and JSON; others by the crate `notation`
 //!                                             |-> check: against published equations
 //!                                             |-> program -> codegen: tokens, or the interpreter
 //!                                             |-> exact: the product of finite matrices, in numbers
@@ -24,10 +24,10 @@ pub mod exact;
 pub mod expression;
 pub mod fields;
 pub mod machine;
-pub mod notation;
 pub mod program;
 pub mod quantity;
 mod quoted;
+pub mod sheet;
 pub mod source;
 pub mod suggest;
 pub mod yaml;
@@ -57,7 +57,7 @@ pub struct Compiled {
 /// Compiles a machine file. Mistakes and warnings go to `diagnostics`; `None` after an error.
 ///
 /// ```
-/// use abbe_model_dsl::{compile, diagnostic::Diagnostics, notation::infix, source::SourceFile};
+/// use abbe_model_dsl::{compile, diagnostic::Diagnostics, sheet::infix, source::SourceFile};
 /// let file = SourceFile::new("stage.yaml", "abbe: 1\nname: stage\ntopology: FX\n");
 /// let mut diagnostics = Diagnostics::new();
 /// let stage = compile(&file, &mut diagnostics).expect("a valid machine");

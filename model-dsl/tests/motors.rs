@@ -10,8 +10,8 @@ use abbe_model_dsl::algebra::Axis;
 use abbe_model_dsl::compile;
 use abbe_model_dsl::diagnostic::{Diagnostics, render};
 use abbe_model_dsl::equations::Equations;
-use abbe_model_dsl::notation::infix;
 use abbe_model_dsl::program::Interpreter;
+use abbe_model_dsl::sheet::infix;
 use abbe_model_dsl::source::SourceFile;
 use abbe_runtime::Kinematics;
 

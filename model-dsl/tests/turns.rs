@@ -11,7 +11,7 @@ use abbe_model_dsl::derivation::{link_matrix, relative_position};
 use abbe_model_dsl::diagnostic::{Diagnostics, render};
 use abbe_model_dsl::equations::Equations;
 use abbe_model_dsl::machine::Branch;
-use abbe_model_dsl::notation::infix;
+use abbe_model_dsl::sheet::infix;
 use abbe_model_dsl::source::SourceFile;
 use abbe_model_dsl::{compile, compile_word};
 

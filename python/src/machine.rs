@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use model_dsl::equations::{Equations, Names};
-use model_dsl::notation::{self, Format};
 use model_dsl::program::Interpreter;
+use notation::Format;
 use numpy::IntoPyArray;
 use numpy::ndarray::Array3;
 use pyo3::prelude::*;

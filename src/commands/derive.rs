@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use model_dsl::equations;
-use model_dsl::notation;
 use workshop::failure::Failure;
 use workshop::load;
 

@@ -7,7 +7,6 @@ use std::fs;
 
 use abbe_runtime::{Direction, ErrorMotion, Sample, Term, TermState};
 use model_dsl::equations::Names;
-use model_dsl::notation;
 use model_dsl::program::Interpreter;
 use pages::svg::{COLOURS, Drawing, number};
 

@@ -105,7 +105,10 @@ fn table(found: &Value, distances: &[Distance]) -> String {
         rows.push(("unexplained: what".to_owned(), text_of(&unexplained["detail"])));
         let interval = &unexplained["interval"];
         if let (Some(from), Some(to)) = (interval["from"].as_f64(), interval["to"].as_f64()) {
-            let place = format!("{from:.1} to {to:.1} {}", text_of(&interval["unit"]));
+            // Two digits of the width.
+            let tells = |places: &usize| (to - from) * 10_f64.powi(i32::try_from(*places).unwrap()) >= 10.0;
+            let places = (0..12).find(tells).unwrap_or(12);
+            let place = format!("{from:.places$} to {to:.places$} {}", text_of(&interval["unit"]));
             rows.push((format!("unexplained: {}", text_of(&interval["axis"])), place));
         }
     }

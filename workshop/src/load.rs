@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 use model_dsl::check;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Names;
-use model_dsl::notation::{self, Published};
 use model_dsl::source::{SourceFile, Span};
 use model_dsl::suggest::nearest;
 use model_dsl::{Compiled, compile, compile_word};
+use notation::Published;
 
 use crate::failure::Failure;
 use crate::shipped;

@@ -18,7 +18,7 @@ fn weights(bench: &Bench, recordings: [&Recording; 2]) -> [Noise; 2] {
         effect: Effect::setting(recording, Setting::Offset { channel: 0 }),
         coefficients: vec![0.0],
     };
-    let noises = Appraisal::new(&study, &vec![zero(0), zero(1)]).noises;
+    let noises = Appraisal::new(&study, &Model::of([zero(0), zero(1)])).weights.noises;
     [noises[0][0], noises[1][0]]
 }
 

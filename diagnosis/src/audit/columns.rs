@@ -15,7 +15,8 @@ use crate::course::{BATCH, Course, Terms, pieces, plus, weighted_sum};
 use crate::model::{Fitted, Model};
 use crate::observations::{self, Sight};
 use crate::parallel;
-use crate::study::{self, Scene, Study};
+use crate::scene::Scene;
+use crate::study::{self, Study};
 
 /// The most rows of a recording that are compared. A fault as large as the noise then stands 70 standard deviations out, the square
 /// root of this number, and one of a tenth of it 7.

@@ -3,8 +3,10 @@
 //! In: a channel of a position. Out: if it does not follow the programmed path, the one thing of its set-up that would make it follow.
 //! It is off by millimetres then, and no model is needed to tell.
 
+use crate::channel::{Channel, ChannelAt, Kind};
 use crate::diagnosis::{Change, Evidence, WrongFile};
-use crate::study::{Channel, ChannelAt, Kind, Scene, Study};
+use crate::scene::Scene;
+use crate::study::Study;
 
 /// Factors to try: metres, micrometres and inches for millimetres and the other way round, and the wrong sign.
 const FACTORS: [(f64, &str); 5] = [

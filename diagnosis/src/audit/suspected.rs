@@ -9,9 +9,10 @@ use super::columns::{Suspected, Versions};
 use super::fault::{FACTORS, Factor, Fault};
 use super::verdict::Rest;
 use crate::certainty::WIDTH_95;
+use crate::channel::ChannelAt;
 use crate::contest::{Contest, DECISIVE, Outcome};
 use crate::engine::Found;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 
 /// An amount has a name if it differs from that of the name by no more than this share, or if its interval holds it. Effects that were
 /// found with the wrong files bias the amount. Once the files are changed, the interval must be no wider than this on either side. The
@@ -35,7 +36,7 @@ impl<'v> FaultContest<'v> {
         };
         let contest = Contest::new(
             study,
-            (found, &found.fit.model, &found.appraisal.noises),
+            (found, &found.fit.model, &found.appraisal.weights),
             &versions.rows,
             suspected.len(),
             &columns,

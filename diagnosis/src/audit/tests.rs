@@ -12,6 +12,7 @@ use super::changed::Changed;
 use super::columns::Versions;
 use super::fault::{Fault, Scope, TermAt};
 use crate::course::Course;
+use crate::model::Model;
 use crate::observations;
 use crate::recording::Recording;
 use crate::study::Study;
@@ -134,7 +135,7 @@ fn a_column_is_what_the_exact_machine_does_differently() {
     let recording = recorded(&bench, &known);
     let inputs = bench.audited(&known, &recording);
     let study = Study::new(inputs.equations, inputs.calibration, &inputs.recordings);
-    let versions = Versions::new(&study, &Vec::new(), &inputs, catalogue::faults(&inputs));
+    let versions = Versions::new(&study, &Model::default(), &inputs, catalogue::faults(&inputs));
     assert!(versions.suspected.len() > 50, "{}", versions.suspected.len());
     let left = left(&inputs);
     for suspected in &versions.suspected {
@@ -162,8 +163,8 @@ fn a_column_is_what_the_exact_machine_does_differently() {
 /// What the exact machine leaves of every channel.
 fn left(inputs: &Inputs<'_>) -> Vec<Vec<f64>> {
     let study = Study::new(inputs.equations, inputs.calibration, &inputs.recordings);
-    let course = Course::new(&study, 0, &[]);
-    observations::residuals(&study, 0, &Vec::new(), &course)
+    let course = Course::new(&study, 0, &Model::default());
+    observations::residuals(&study, 0, &Model::default(), &course)
 }
 
 #[test]
@@ -205,7 +206,7 @@ fn numbers_that_are_moved_out_of_sight_are_no_suspects() {
     recording.measured[2] = None;
     let inputs = bench.audited(&known, &recording);
     let study = Study::new(inputs.equations, inputs.calibration, &inputs.recordings);
-    let versions = Versions::new(&study, &Vec::new(), &inputs, catalogue::faults(&inputs));
+    let versions = Versions::new(&study, &Model::default(), &inputs, catalogue::faults(&inputs));
     let moved: Vec<&Fault> = versions
         .suspected
         .iter()

@@ -23,7 +23,7 @@ pub(crate) struct Trial<'t, 's> {
 impl Trial<'_, '_> {
     /// How many effects were found.
     fn effects(&self) -> usize {
-        self.found.fit.model.len() - self.found.always
+        self.found.fit.model.chosen().len()
     }
 }
 
@@ -89,17 +89,18 @@ fn is_better(suspect: &Suspect, before: &Trial<'_, '_>, after: &Trial<'_, '_>) -
     let [one, other] = [before, after].map(|trial| &trial.found.appraisal);
     let held_out = |trial: &Trial<'_, '_>| trial.found.appraisal.held_out(trial.study, one);
     let farther = if after.effects() < before.effects() { FARTHER * FARTHER } else { 1.0 };
-    let saved = cost(before, &other.noises) - cost(after, &other.noises) + suspect.chance;
+    let saved = cost(before, &other.weights.noises) - cost(after, &other.weights.noises) + suspect.chance;
     saved > DECISIVE && (one.lacks() || !other.lacks()) && held_out(after) <= farther * held_out(before)
 }
 
 /// The cost of what was found under these noises. Zeros of single runs are part of it.
 fn cost(trial: &Trial<'_, '_>, noises: &[Vec<Noise>]) -> f64 {
     let conditions = trial.found.conditions();
-    let conditions = conditions.under(noises);
+    let weights = trial.found.appraisal.weights.beside(noises.to_vec());
+    let conditions = conditions.under(&weights);
     let fit = conditions.refine(trial.study, trial.found.fit.model.clone());
-    let always = fit.model[..trial.found.always].iter();
-    let zeros: f64 = always.filter_map(|fitted| price_of_a_run(&fitted.effect, fit.samples)).sum();
+    let settings = fit.model.settings().iter();
+    let zeros: f64 = settings.filter_map(|fitted| price_of_a_run(&fitted.effect, fit.samples)).sum();
     zeros + conditions.cost(trial.study, &fit)
 }
 

@@ -5,6 +5,7 @@ use crate::diagnosis::{Estimate, ParameterValue};
 use crate::engine;
 use crate::fit;
 use crate::model::{Model, Place};
+use crate::noise::Noise;
 use crate::parameters::Described;
 use crate::side::Side;
 use crate::testing::{Bench, line, noisy, path, position};
@@ -35,18 +36,15 @@ fn held(
         let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
         let effect = Effect { place, shape: shape.clone() };
         let zero = Effect::setting(0, crate::terms::Setting::Offset { channel: 0 });
-        let model: Model = vec![
-            Fitted { effect: zero, coefficients: vec![0.0] },
-            Fitted { coefficients: vec![0.0; effect.shape.columns()], effect },
-        ];
+        let model = Model::of([Fitted { effect: zero, coefficients: vec![0.0] }, Fitted::unfitted(effect)]);
         let courses = engine::courses(&study, &model);
         let travels = crate::travel::travels(&study, &courses);
-        let noises = vec![vec![Noise::white(1e-3)]];
-        let fit = fit::refine(&study, model, &noises, &travels);
-        let certainty = certainties(&study, &fit, &noises, &travels).remove(1);
+        let weights = Weights::of_all(&study, vec![vec![Noise::white(1e-3)]]);
+        let fit = fit::refine(&study, model, &weights, &travels);
+        let certainty = certainties(&study, &fit, &weights, &travels).remove(1);
         let plain = Certainty { richer: None, ..certainty.clone() };
         for (held, certainty) in held.iter_mut().zip([&certainty, &plain]) {
-            let described = Described::new(&study, &fit.model[1], certainty);
+            let described = Described::new(&study, &fit.model.effects[1], certainty);
             let parameters = described.parameters();
             let value = &parameters.iter().find(|parameter| parameter.name == name).unwrap().value;
             let estimate: &Estimate = match value {

@@ -25,7 +25,7 @@ pub(super) struct Late {
 /// For each loop that was found: a delay in its place, and one beside it. Where nothing is left, only for those beside which something
 /// else follows the motion of the axis.
 pub(super) fn delays(study: &Study<'_>, found: &Found, lacks: bool) -> Vec<Late> {
-    let effects = &found.fit.model[found.always..];
+    let effects = found.fit.model.chosen();
     let is_open = |(axis, _): &(usize, f64)| {
         lacks || effects.iter().any(|fitted| follows_its_motion(&fitted.effect, *axis))
     };
@@ -43,27 +43,27 @@ fn behind(study: &Study<'_>, fitted: &Fitted) -> Option<(usize, f64)> {
 /// What was found, with a delay that takes this share of what a loop stays behind by. What follows the motion of the axis otherwise may
 /// stand in for it, and is left out.
 fn late(found: &Found, axis: usize, time: f64, share: f64) -> Late {
-    let mut model = Model::new();
-    for (number, fitted) in found.fit.model.iter().enumerate() {
+    let mut effects = found.fit.model.settings().to_vec();
+    for fitted in found.fit.model.chosen() {
         if matches!(fitted.effect.shape, Shape::Lag { axis: of, .. } if of == axis) {
             let effect =
                 Effect { place: fitted.effect.place, shape: Shape::Delay { axis, time: share * time } };
             let place = effect.place;
-            model.push(Fitted { effect, coefficients: vec![1.0] });
+            effects.push(Fitted { effect, coefficients: vec![1.0] });
             if share == 1.0 {
                 // Where the feed-forward comes late it may be of the wrong size too; the judge drops it where it is not.
                 let effect = Effect { place, shape: Shape::Acceleration { axis } };
-                model.push(Fitted { effect, coefficients: vec![0.0] });
+                effects.push(Fitted { effect, coefficients: vec![0.0] });
             } else {
                 // A mass in the loop may only have stood in for the delay.
                 let effect = Effect { place: fitted.effect.place, shape: Shape::Lag { axis, inertia: 0.0 } };
-                model.push(Fitted { effect, coefficients: vec![(1.0 - share) * time] });
+                effects.push(Fitted { effect, coefficients: vec![(1.0 - share) * time] });
             }
-        } else if number < found.always || !follows_its_motion(&fitted.effect, axis) {
-            model.push(fitted.clone());
+        } else if !follows_its_motion(&fitted.effect, axis) {
+            effects.push(fitted.clone());
         }
     }
-    Late { model, axis }
+    Late { model: found.fit.model.with_effects(effects), axis }
 }
 
 /// Whether an effect follows the velocity or the acceleration of an axis, or what happens when it turns back.

@@ -7,13 +7,14 @@
 use nalgebra::DMatrix;
 
 use crate::audit::spread;
+use crate::channel::ChannelAt;
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::fit;
 use crate::model::{Effect, Model, Place};
 use crate::ranges::Resolution;
 use crate::search::Choice;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
 
@@ -87,10 +88,11 @@ fn ranked(study: &Study<'_>, found: &Found, places: &[Place], times: &[f64]) -> 
     let model = &found.fit.model;
     let always_there =
         |place: &Place| Regressor::of(Effect { place: *place, shape: Shape::Step { time: f64::MIN } });
-    let known = model.iter().map(|fitted| Regressor::of(fitted.effect.clone()));
+    let known = model.effects.iter().map(|fitted| Regressor::of(fitted.effect.clone()));
     let regressors: Vec<Regressor> = known.chain(places.iter().map(always_there)).collect();
     let columns_of = |effects: &[Regressor]| effects.iter().map(Regressor::columns).sum::<usize>();
-    let (whole, always) = (columns_of(&regressors[..model.len()]), columns_of(&regressors[..found.always]));
+    let (whole, always) =
+        (columns_of(&regressors[..model.effects.len()]), columns_of(&regressors[..model.settings().len()]));
     let mut times = times.to_vec();
     times.sort_by(f64::total_cmp);
     let mut sums = Sums::new(always, places.len(), times.len());
@@ -99,8 +101,8 @@ fn ranked(study: &Study<'_>, found: &Found, places: &[Place], times: &[f64]) -> 
         for channel in 0..known.channels.len() {
             let at = ChannelAt { scene, channel };
             let matrix = Design::columns_in(study, at, model, &regressors, &rows);
-            let response = restored(study, found, &matrix, at, &rows);
-            let weight = 1.0 / found.appraisal.noises[scene][channel].size();
+            let response = restored(found, &matrix, at, &rows);
+            let weight = 1.0 / found.appraisal.weights.noise(at).size();
             let mut row_of = vec![0.0; always + places.len() + 1];
             for (place, row) in rows.iter().enumerate() {
                 let settings = (0..always).chain(whole..whole + places.len());
@@ -174,39 +176,34 @@ impl Sums {
 }
 
 /// What the settings and the steps have to explain: the residual, with what the model takes from it; NaN in rows that do not count.
-fn restored(
-    study: &Study<'_>,
-    found: &Found,
-    matrix: &DMatrix<f64>,
-    at: ChannelAt,
-    rows: &[usize],
-) -> nalgebra::DVector<f64> {
+fn restored(found: &Found, matrix: &DMatrix<f64>, at: ChannelAt, rows: &[usize]) -> nalgebra::DVector<f64> {
     let mut response = matrix.column(matrix.ncols() - 1).into_owned();
-    let coefficients = found.fit.model.iter().flat_map(|fitted| &fitted.coefficients);
+    let coefficients = found.fit.model.effects.iter().flat_map(|fitted| &fitted.coefficients);
     for (column, coefficient) in coefficients.enumerate() {
         response += matrix.column(column) * *coefficient;
     }
-    let outliers = &study.channel(at).outliers;
+    let outliers = found.appraisal.weights.outliers.of(at);
     response.iter_mut().zip(rows).filter(|(_, row)| outliers[**row]).for_each(|(value, _)| *value = f64::NAN);
     response
 }
 
 /// The best set of what was found and of steps at a moment, by linear least squares.
 fn chosen(study: &Study<'_>, found: &Found, time: f64, places: &[Place]) -> Event {
-    let mut effects: Vec<Effect> = found.fit.model.iter().map(|fitted| fitted.effect.clone()).collect();
+    let mut effects: Vec<Effect> =
+        found.fit.model.effects.iter().map(|fitted| fitted.effect.clone()).collect();
     effects.extend(places.iter().map(|place| Effect { place: *place, shape: Shape::Step { time } }));
     let regressors = effects.into_iter().map(Regressor::of).collect();
     // As white noise: a noise that wanders, as it seemed to before, would take the event for one of its steps.
-    let noises = found.appraisal.as_white();
-    let mut design = Design::new(study, &found.fit.model, &noises, regressors);
-    design.rebase(&found.fit.model);
+    let weights = found.appraisal.weights.as_white();
+    let mut design = Design::new(study, &found.fit.model, &weights, regressors);
+    design.rebase(&found.fit.model.effects);
     let (products, samples) = design.fitted();
     let resolution = Resolution::new(study, &found.travels);
-    let waves = found.tries.waves;
-    let choice =
-        Choice::new(study, &design, products.clone(), samples, found.always, waves, resolution).best();
-    let model = fit::linear(&design, &products, found.always, &choice);
-    let steps = model.iter().filter(|fitted| matches!(fitted.effect.shape, Shape::Step { .. })).count();
+    let (settings, waves) = (found.fit.model.settings().len(), found.tries.waves);
+    let choice = Choice::new(study, &design, products.clone(), samples, settings, waves, resolution).best();
+    let model = found.fit.model.with_effects(fit::linear(&design, &products, settings, &choice));
+    let steps =
+        model.effects.iter().filter(|fitted| matches!(fitted.effect.shape, Shape::Step { .. })).count();
     Event { model, steps }
 }
 

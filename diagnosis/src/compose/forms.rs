@@ -153,7 +153,7 @@ fn loops(study: &Study<'_>, found: &Found, atoms: &Atoms) -> Vec<Effect> {
         .flat_map(|place| shapes.iter().map(move |shape| Effect { place, shape: shape.clone() }));
     let model = &found.fit.model;
     let courses: Vec<_> = (0..study.scenes.len()).map(|scene| Course::new(study, scene, model)).collect();
-    let kin = kinship::groups(study, &courses, &found.appraisal.noises, everywhere.collect());
+    let kin = kinship::groups(study, &courses, &found.appraisal.weights.noises, everywhere.collect());
     let own = |effect: &Effect| {
         let axis = effect.shape.factors().first().and_then(Factor::axis);
         axis.is_some_and(|axis| study.own[axis].is_some() && study.own[axis] == effect.motion())
@@ -184,7 +184,7 @@ fn of_effects(found: &Found, atoms: &Atoms) -> Vec<Form> {
             && !fitted.effect.shape.nonlinear_in_coefficient()
             && !matches!(fitted.effect.shape, Shape::Constant | Shape::Vibration { .. } | Shape::Drift { .. })
     };
-    let effects = found.fit.model[found.always..].iter().filter(multiplied);
+    let effects = found.fit.model.chosen().iter().filter(multiplied);
     effects
         .flat_map(|fitted| {
             // A play of the axis is multiplied anyway.
@@ -211,7 +211,10 @@ fn of_effects(found: &Found, atoms: &Atoms) -> Vec<Form> {
 /// Two waves of nearly the same period along one axis, of opposite phases, as one wave that grows along the axis: over less than a beat
 /// they are the same.
 fn beats(found: &Found, atoms: &Atoms) -> Vec<Form> {
-    let waves: Vec<&Fitted> = found.fit.model[found.always..]
+    let waves: Vec<&Fitted> = found
+        .fit
+        .model
+        .chosen()
         .iter()
         .filter(|fitted| matches!(fitted.effect.shape, Shape::Cyclic { .. }))
         .collect();

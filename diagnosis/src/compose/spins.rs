@@ -10,11 +10,11 @@ use crate::contest::DECISIVE;
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::model::{Effect, Model, Place};
-use crate::noise::Noise;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::{self, Shape};
 use crate::waves::{self, Peak, Turns};
+use crate::weights::Weights;
 
 use super::forms::Form;
 
@@ -38,7 +38,7 @@ pub(super) struct Spins {
 pub(super) fn spins(study: &Study<'_>, found: &Found) -> Spins {
     let mut spins = Spins::default();
     for turns in (0..study.loads.len()).filter_map(|load| turns(study, load)) {
-        let model = (&found.fit.model, found.appraisal.noises.as_slice());
+        let model = (&found.fit.model, &found.appraisal.weights);
         let (peaks, tried) = waves::over_turns(study, model, &found.travels, &turns);
         spins.tried += tried;
         // By chance, the highest of this many waves of noise gains twice the logarithm of their number.
@@ -59,7 +59,7 @@ fn turns(study: &Study<'_>, load: usize) -> Option<Turns> {
         return None;
     }
     let of_scene =
-        |scene: &crate::study::Scene<'_>| terms::turned(&scene.given.time, &scene.given.loads[load]);
+        |scene: &crate::scene::Scene<'_>| terms::turned(&scene.given.time, &scene.given.loads[load]);
     let turned: Vec<Vec<f64>> = study.scenes.iter().map(of_scene).collect();
     let mut steps: Vec<f64> =
         turned.iter().flat_map(|turned| turned.windows(2).map(|pair| (pair[1] - pair[0]).abs())).collect();
@@ -110,7 +110,7 @@ fn promising(mut peaks: Vec<Peak>) -> Vec<Peak> {
 struct Polish<'p> {
     study: &'p Study<'p>,
     model: &'p Model,
-    noises: Vec<Vec<Noise>>,
+    weights: Weights,
     place: Place,
     load: usize,
     rate: f64,
@@ -126,7 +126,7 @@ impl<'p> Polish<'p> {
             study,
             model: &found.fit.model,
             // As white noise: one that wanders, as it seemed to before, would take much of the wave for its own.
-            noises: found.appraisal.as_white(),
+            weights: found.appraisal.weights.as_white(),
             place: peak.effect.place,
             load: turns.load,
             rate: spin(&peak.effect.shape).map_or(0.0, |(_, rate, _)| rate),
@@ -164,10 +164,10 @@ impl<'p> Polish<'p> {
     fn swept(&self, rate: f64) -> (Swept, [usize; 2]) {
         let wave = [0.0, FRAC_PI_2]
             .map(|phase| Effect { place: self.place, shape: Shape::spin(self.load, rate, phase) });
-        let found = self.model.iter().map(|fitted| fitted.effect.clone());
+        let found = self.model.effects.iter().map(|fitted| fitted.effect.clone());
         let regressors: Vec<Regressor> = found.chain(wave).map(Regressor::of).collect();
-        let number = self.model.len();
-        let design = Design::new(self.study, self.model, &self.noises, regressors);
+        let number = self.model.effects.len();
+        let design = Design::new(self.study, self.model, &self.weights, regressors);
         let mut swept = Swept::new(&design.fitted().0);
         let wave = [design.first[number], design.first[number + 1]];
         for column in 0..wave[0] {

@@ -5,13 +5,14 @@
 //! it would have found beside it, and without that a form that makes up for both looks better than the right one.
 
 use crate::audit::spread;
+use crate::channel::ChannelAt;
 use crate::contest::{Contest, DECISIVE};
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::model::{Effect, Fitted, Model};
-use crate::noise::Noise;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::terms::Shape;
+use crate::weights::Weights;
 
 use super::forms::{self, Form};
 
@@ -38,7 +39,7 @@ pub(super) struct Trial {
     /// What is fitted beside it, and stays if it stands up.
     pub(super) beside: Option<Effect>,
     /// What is kept of what was found beyond the settings, and names that were missing.
-    pub(super) kept: Model,
+    pub(super) kept: Vec<Fitted>,
 }
 
 /// What forms compete with, and how samples weigh.
@@ -46,7 +47,7 @@ pub(super) struct Trial {
 pub(super) struct Ring<'r> {
     pub(super) study: &'r Study<'r>,
     pub(super) found: &'r Found,
-    pub(super) noises: &'r [Vec<Noise>],
+    pub(super) weights: &'r Weights,
     pub(super) price: &'r FormPrice,
     /// Whether more than noise is left, so that names may be missing too.
     pub(super) lacks: bool,
@@ -89,7 +90,7 @@ pub(super) fn best(ring: Ring<'_>, forms: &[Form]) -> Vec<Trial> {
     let again = lacks.then(|| {
         let names = most_promising(forms, &promises, &price, (forms.len(), &is_name));
         let missing = different(forms, names);
-        model.extend(missing.into_iter().map(|number| forms[number].fitted(0.0)));
+        model.effects.extend(missing.into_iter().map(|number| forms[number].fitted(0.0)));
         let compared: Vec<Form> = compared.iter().map(|number| forms[*number].clone()).collect();
         ring.contest(&model, &compared)
     });
@@ -112,7 +113,7 @@ pub(super) fn best(ring: Ring<'_>, forms: &[Form]) -> Vec<Trial> {
 /// hidden it; of all other names the search has decided.
 fn has_a_form(model: &Model) -> bool {
     let is_form = |shape: &Shape| shape.is_composed() || matches!(shape, Shape::Delay { .. });
-    model.iter().any(|fitted| is_form(&fitted.effect.shape))
+    model.effects.iter().any(|fitted| is_form(&fitted.effect.shape))
 }
 
 /// The wanted forms whose promise exceeds their price most: `count` of them beside all that was found, and as many alone. They come in
@@ -161,7 +162,7 @@ impl Ring<'_> {
         let columns = |chunk: std::ops::Range<usize>, at: ChannelAt| {
             columns(self.study, model, &forms[chunk], at, &rows[at.scene])
         };
-        Contest::new(self.study, (self.found, model, self.noises), &rows, forms.len(), &columns)
+        Contest::new(self.study, (self.found, model, self.weights), &rows, forms.len(), &columns)
     }
 
     /// The forms and what they gain, with a better value of a factor's number where a neighbour on the grid gains more; the best first. A
@@ -200,11 +201,11 @@ impl Ring<'_> {
         let outcomes = (0..variants.len()).map(|number| (number, contest.outcome(Some(number))));
         let best = outcomes.min_by(|(_, a), (_, b)| a.cost.total_cmp(&b.cost));
         let (number, outcome) = best.unwrap_or_else(|| (0, contest.outcome(None)));
-        let kept = outcome.kept.into_iter().filter(|number| *number >= self.found.always);
+        let kept = outcome.kept.into_iter().filter(|number| model.chosen_numbers().contains(number));
         Trial {
             form: variants[number].fitted(outcome.amount),
             beside: form.beside.clone(),
-            kept: kept.map(|number| model[number].clone()).collect(),
+            kept: kept.map(|number| model.effects[number].clone()).collect(),
         }
     }
 }

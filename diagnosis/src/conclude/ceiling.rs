@@ -4,10 +4,12 @@
 //! fitted, one more in each line, with the share that they predict together and what they leave; and the channels of which nothing
 //! comes back.
 
+use crate::channel::{Channel, Kind};
 use crate::diagnosis::{NothingReturns, Returning};
 use crate::parameters::axis_unit;
 use crate::returns::Quantity;
-use crate::study::{Channel, Kind, Scene, Study};
+use crate::scene::Scene;
+use crate::study::Study;
 
 /// The ceiling of every channel of every recording of which anything comes back.
 pub(super) fn ceiling(study: &Study<'_>) -> Vec<Returning> {

@@ -5,13 +5,15 @@
 
 use crate::answers::answers;
 use crate::audit::gross;
+use crate::channel::Channel;
 use crate::course::Course;
 use crate::crossing;
 use crate::diagnosis::Change;
 use crate::model::{Fitted, Model};
 use crate::observations;
 use crate::recording::{Instrument, clamped_anew, turned};
-use crate::study::{Channel, Scene, Study};
+use crate::scene::Scene;
+use crate::study::Study;
 use crate::terms::Setting;
 use crate::zeros;
 
@@ -109,7 +111,7 @@ fn clamped(study: &Study<'_>) -> Option<String> {
         if !plain || !scene.sparse() {
             return None;
         }
-        let course = Course::new(study, number, &[]);
+        let course = Course::new(study, number, &Model::default());
         let turned = turned(&observations::part_readings(study, number, &course))?;
         Some((scene.recording.file.as_str(), turned))
     });
@@ -135,7 +137,7 @@ fn end_points(study: &Study<'_>, scene: &Scene<'_>) -> Option<String> {
 
 /// What cannot be told of axes that cross their plays, and that nothing which was found holds.
 pub(super) fn crossed(study: &Study<'_>, model: &Model) -> Vec<String> {
-    let axes = crossing::crossing_only(study, model).into_iter();
+    let axes = crossing::crossing_only(model).into_iter();
     axes.map(|axis| {
         let letter = &study.equations.axes[axis].letter;
         format!(
@@ -307,7 +309,7 @@ pub(super) fn no_circle(study: &Study<'_>, bare: &Model) -> Option<String> {
         let setting = |fitted: &&Fitted| {
             matches!(fitted.effect.setting_of(number), Some(Setting::Radius | Setting::Eccentricity { .. }))
         };
-        let sizes = bare.iter().filter(setting).flat_map(|fitted| &fitted.coefficients);
+        let sizes = bare.effects.iter().filter(setting).flat_map(|fitted| &fitted.coefficients);
         let largest = sizes.fold(0.0, |most: f64, value| most.max(value.abs()));
         (largest > BAR_READS + BAR_READS_OF_LENGTH * radius).then(|| {
             format!(

@@ -86,18 +86,18 @@ const RESOLVED: f64 = 3.0;
 
 /// The size of each effect that would be found in nine of ten cases, mm or rad; nothing where the recordings do not show it.
 fn sizes(study: &Study<'_>, found: &Found, effects: &[Effect]) -> Vec<Option<f64>> {
-    let always = &found.fit.model[..found.always];
-    let regressors = always.iter().map(|fitted| fitted.effect.clone()).chain(effects.iter().cloned());
+    let settings = found.fit.model.settings();
+    let regressors = settings.iter().map(|fitted| fitted.effect.clone()).chain(effects.iter().cloned());
     let regressors: Vec<Regressor> = regressors.map(Regressor::of).collect();
-    let design = Design::new(study, &found.fit.model, &found.appraisal.noises, regressors);
+    let design = Design::new(study, &found.fit.model, &found.appraisal.weights, regressors);
     let (products, samples) = design.fitted();
     let mut swept = Swept::new(&products);
-    (0..found.always).flat_map(|number| design.columns(number)).for_each(|column| {
+    (0..settings.len()).flat_map(|number| design.columns(number)).for_each(|column| {
         swept.take(column);
     });
     let scale = swept.remaining() / samples.max(1.0);
     let size = |(number, effect): (usize, &Effect)| {
-        let columns: Vec<usize> = design.columns(found.always + number).collect();
+        let columns: Vec<usize> = design.columns(settings.len() + number).collect();
         // Of a wave the mean of sine and cosine.
         let energies = columns.iter().map(|column| swept.energy(&[*column], &[1.0]));
         let energy = energies.sum::<f64>() / crate::number(columns.len().max(1)) / scale;

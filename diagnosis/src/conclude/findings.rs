@@ -31,17 +31,19 @@ pub(super) fn report(
     diagnosis: &mut Diagnosis,
 ) -> Vec<usize> {
     let names = alternatives::find(study, found);
-    let design = judge::design(study, &found.fit.model, &found.appraisal.noises);
+    let design = judge::design(study, &found.fit.model, &found.appraisal.weights);
     let (products, _) = design.fitted();
     let mut swept = Swept::new(&products);
     for column in 0..design.width {
         swept.take(column);
     }
     let shares = shares(study, found, units);
-    let certainties = certainty::certainties(study, &found.fit, &found.appraisal.noises, &found.travels);
-    for (number, fitted) in found.fit.model.iter().enumerate() {
+    let certainties = certainty::certainties(study, &found.fit, &found.appraisal.weights, &found.travels);
+    for (number, fitted) in found.fit.model.effects.iter().enumerate() {
         let described = Described::new(study, fitted, &certainties[number]);
-        let names = number.checked_sub(found.always).map_or(&[] as &[Effect], |place| &names[place]);
+        let names = number
+            .checked_sub(found.fit.model.settings().len())
+            .map_or(&[] as &[Effect], |place| &names[place]);
         let alternatives = told(study, &fitted.effect, names);
         let Some(motion) = fitted.effect.motion() else {
             if let Some(setting) = setting(study, found, number, alternatives) {
@@ -51,7 +53,7 @@ pub(super) fn report(
         };
         let mut reduced = judge::without(&design, &swept, &found.fit.model, number);
         if found.plain_zeros {
-            zeros::weigh_plainly(study, &mut reduced, found.always, &found.appraisal.as_white());
+            zeros::weigh_plainly(study, &mut reduced, &found.appraisal.weights.as_white());
         }
         zeros::free_held_out(study, &mut reduced);
         let known = &study.equations.motions[motion];
@@ -66,7 +68,7 @@ pub(super) fn report(
             parameters,
             share: shares[number],
             location: words::location(study, fitted, names),
-            evidence: evidence(study, units, &fitted.effect, (&found.fit.model, diagnosis.after), &reduced),
+            evidence: evidence(study, units, &fitted.effect, (found, diagnosis.after), &reduced),
             alternatives,
             explanation: fitted.effect.shape.meaning().to_owned(),
             compensable: calibrated.compensable(),
@@ -77,28 +79,30 @@ pub(super) fn report(
     }
     diagnosis.findings.sort_by(|a, b| b.share.total_cmp(&a.share));
     diagnosis.settings = joined(std::mem::take(&mut diagnosis.settings));
-    let model = found.fit.model.iter().enumerate();
+    let model = found.fit.model.effects.iter().enumerate();
     let machine = model.filter(|(_, fitted)| fitted.effect.motion().is_some());
     let mut numbers: Vec<usize> = machine.map(|(number, _)| number).collect();
     numbers.sort_by(|a, b| shares[*b].total_cmp(&shares[*a]));
     numbers
 }
 
-/// What an effect does to held-out data, from the model with it, with what that leaves, and the one without: to what counts
+/// What an effect does to held-out data, from what was found with it, with what that leaves, and the model without: to what counts
 /// throughout; where it acts in a drive beside instruments outside, to that drive's own feedback, which shows it finer.
 fn evidence(
     study: &Study<'_>,
     units: &Units,
     effect: &Effect,
-    (whole, after): (&Model, Residual),
+    (found, after): (&Found, Residual),
     reduced: &Model,
 ) -> Evidence {
     let own = |motion: usize| study.own.iter().position(|own| *own == Some(motion));
     let at_drive = effect.side().is_some_and(Side::at_drive) && units.outside;
     let axis = effect.motion().and_then(own).filter(|axis| at_drive && study.has_drive(*axis));
+    let outliers = &found.appraisal.weights.outliers;
+    let at_drive = |model: &Model, axis: usize| units.at_drive(study, model, outliers, axis);
     let (with, without) = match axis {
-        Some(axis) => (units.at_drive(study, whole, axis), units.at_drive(study, reduced, axis)),
-        None => (after, units.residual(study, reduced)),
+        Some(axis) => (at_drive(&found.fit.model, axis), at_drive(reduced, axis)),
+        None => (after, units.residual(study, reduced, outliers)),
     };
     let drive = axis.map(|axis| study.equations.axes[axis].letter.clone());
     Evidence { with: held_rms(&with), without: held_rms(&without), unit: with.unit, drive }
@@ -108,16 +112,16 @@ fn evidence(
 /// none were): its product with the sum over the square of the sum, zeros of channels left free.
 fn shares(study: &Study<'_>, found: &Found, units: &Units) -> Vec<f64> {
     let model = &found.fit.model;
-    let whole = units.held_out(study, model);
+    let held_out = |model: &Model| units.held_out(study, model, &found.appraisal.weights.outliers);
+    let whole = held_out(model);
     let difference = |number: usize| -> Vec<f64> {
-        if model[number].effect.motion().is_none() {
+        if model.effects[number].effect.motion().is_none() {
             return Vec::new();
         }
-        let mut without = model.clone();
-        without.remove(number);
-        units.held_out(study, &without).iter().zip(&whole).map(|(without, whole)| without - whole).collect()
+        let without = held_out(&model.without(number));
+        without.iter().zip(&whole).map(|(without, whole)| without - whole).collect()
     };
-    let signals: Vec<Vec<f64>> = (0..model.len()).map(difference).collect();
+    let signals: Vec<Vec<f64>> = (0..model.effects.len()).map(difference).collect();
     let sum: Vec<f64> =
         (0..whole.len()).map(|at| signals.iter().filter_map(|signal| signal.get(at)).sum()).collect();
     let product = |signal: &[f64]| signal.iter().zip(&sum).map(|(a, b)| a * b).sum::<f64>();
@@ -154,7 +158,7 @@ fn setting(
     number: usize,
     alternatives: Vec<Alternative>,
 ) -> Option<SettingFinding> {
-    let fitted = &found.fit.model[number];
+    let fitted = &found.fit.model.effects[number];
     let (crate::model::Place::Instrument { recording }, Shape::Instrument(setting)) =
         (fitted.effect.place, &fitted.effect.shape)
     else {
@@ -194,7 +198,7 @@ fn setting(
 /// How the part of a recording is turned: as its readings alone have it, and what the model adds to that, rad.
 fn rotation(study: &Study<'_>, model: &Model, recording: usize) -> Option<[f64; 3]> {
     let mut more = [0.0; 3];
-    for fitted in model {
+    for fitted in &model.effects {
         if let Some(Setting::Rotation { direction }) = fitted.effect.setting_of(recording) {
             more[direction] += fitted.coefficients.first()?;
         }

@@ -5,7 +5,7 @@
 
 use super::decidable::{Misread, astray, impossible, misplaced, misread, no_circle, too_little, undecided};
 use super::units::Units;
-use super::{bare_model, ceiling, fitted_runs, strongest, undecidable, with_known_crossings};
+use super::{Bare, bare_beside, bare_model, ceiling, fitted_runs, strongest, undecidable};
 use crate::audit::Trial;
 use crate::candidates;
 use crate::diagnosis::{Diagnosis, NothingReturns, Residual, Returning};
@@ -14,8 +14,9 @@ use crate::fit;
 use crate::model::{Fitted, Model, Place};
 use crate::pictures;
 use crate::repeats::{self, Scatter};
-use crate::rest;
+use crate::returns;
 use crate::study::Study;
+use crate::weights::Outliers;
 use crate::zeros;
 use crate::{Inputs, Keep, Progress};
 
@@ -47,7 +48,7 @@ impl<'s> Searched<'s> {
         keep: Keep,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<(Self, Opening), Box<Diagnosis>> {
-        let mut study = study(inputs);
+        let study = study(inputs);
         let mut opened = Diagnosis {
             machine: inputs.equations.machine.clone(),
             undecided: undecided(&study),
@@ -56,27 +57,30 @@ impl<'s> Searched<'s> {
         if let Some(Misread { reason, change }) = misread(&study) {
             opened.undecided.clear();
             opened.model.push(change);
-            return Err(Box::new(undecidable(opened, &study, reason)));
+            return Err(Box::new(undecidable(opened, &study, &Outliers::none(&study), reason)));
         }
         if let Some(reason) = too_little(&study).or_else(|| impossible(&study)).or_else(|| misplaced(&study))
         {
-            return Err(Box::new(undecidable(opened, &study, reason)));
+            return Err(Box::new(undecidable(opened, &study, &Outliers::none(&study), reason)));
         }
         let units = Units::new(&study);
-        let bare = bare_model(&mut study);
+        let bare = bare_model(&study, &Model::default());
+        let mut study = returns::told(study, &bare.model, &bare.outliers);
         opened.returns = ceiling::ceiling(&study);
         opened.nothing_returns = ceiling::nothing(&study);
-        if let Some(reason) = astray(&study, &bare).or_else(|| no_circle(&study, &bare)) {
-            return Err(Box::new(undecidable(opened, &study, reason)));
+        if let Some(reason) = astray(&study, &bare.model).or_else(|| no_circle(&study, &bare.model)) {
+            return Err(Box::new(undecidable(opened, &study, &bare.outliers, reason)));
         }
-        let left = |study: &Study<'_>, bare: &Model| {
-            (units.residual(study, bare), (keep != Keep::Nothing).then(|| pictures::Before::new(study, bare)))
+        let left = |study: &Study<'_>, Bare { model, outliers }: &Bare| {
+            let drawn = (keep != Keep::Nothing).then(|| pictures::Before::new(study, model, outliers));
+            (units.residual(study, model, outliers), drawn)
         };
         let (mut before, mut drawn) = left(&study, &bare);
-        let (found, scattered) = search(&mut study, progress);
-        if study.crosses() {
-            (before, drawn) = with_known_crossings(&mut study, &bare, left);
-            found.appraisal.mark(&mut study);
+        let (found, scattered) = search(&study, &bare.outliers, progress);
+        if found.fit.model.crosses() {
+            let bare = bare_beside(&study, &bare, &found.fit.model);
+            (before, drawn) = left(&study, &bare);
+            study = returns::told(study, &bare.model, &bare.outliers);
         }
         let Diagnosis { returns, nothing_returns, undecided, .. } = opened;
         let opening = Opening { before, drawn, keep, returns, nothing_returns, undecided };
@@ -104,10 +108,12 @@ impl<'s> Searched<'s> {
             Some(fitted)
         };
         let Found { fit, appraisal, travels, .. } = &trial.found;
-        let model = fit.model.iter().filter_map(here).collect();
-        let mut model = fit::refine(&self.study, model, &appraisal.noises, travels).model;
+        let model = self.found.fit.model.with_effects(fit.model.effects.iter().filter_map(here));
+        let own = &self.found.appraisal.weights;
+        let weights = own.beside(appraisal.weights.noises.clone());
+        let mut model = fit::refine(&self.study, model, &weights, travels).model;
         zeros::free_held_out(&self.study, &mut model);
-        self.units.residual(&self.study, &model)
+        self.units.residual(&self.study, &model, &own.outliers)
     }
 
     /// The same as the audit takes it.
@@ -118,21 +124,19 @@ impl<'s> Searched<'s> {
 
 fn study<'s>(inputs: &Inputs<'s>) -> Study<'s> {
     let recordings: Vec<_> = inputs.recordings.iter().copied().chain(inputs.holdout).collect();
-    let mut study = Study::new(inputs.equations, inputs.calibration, &recordings);
-    rest::tell(&mut study);
-    if inputs.holdout.is_some()
-        && let Some(scene) = study.scenes.last_mut()
-    {
-        scene.blocks.iter_mut().for_each(|block| block.held_out = true);
-    }
-    study
+    let study = Study::new(inputs.equations, inputs.calibration, &recordings);
+    if inputs.holdout.is_some() { study.with_last_held_out() } else { study }
 }
 
 /// What the engine finds, and the recordings whose runs do not repeat.
-fn search(study: &mut Study<'_>, progress: &mut dyn FnMut(Progress)) -> (Found, Vec<Scatter>) {
+fn search(
+    study: &Study<'_>,
+    outliers: &Outliers,
+    progress: &mut dyn FnMut(Progress),
+) -> (Found, Vec<Scatter>) {
     let mut step = |done: f64| progress(Progress { step: "looking for left-out physics", done: 0.9 * done });
     let always = candidates::always(study);
-    let mut found = engine::find(study, always, &mut step);
+    let mut found = engine::find(study, always, outliers.clone(), &mut step);
     let scattered = repeats::scatter(study, &found.fit.model);
     if !scattered.is_empty() {
         let mut always = candidates::always(study);
@@ -140,7 +144,7 @@ fn search(study: &mut Study<'_>, progress: &mut dyn FnMut(Progress)) -> (Found, 
             let fitted: Vec<i64> = fitted_runs(&study.scenes[scatter.scene]);
             always.extend(repeats::run_zeros(scatter.scene, &study.scenes[scatter.scene], &fitted));
         }
-        found = engine::find(study, always, &mut step);
+        found = engine::find(study, always, found.appraisal.weights.outliers, &mut step);
     }
     (found, scattered)
 }

@@ -1,16 +1,25 @@
 //! Summaries: what a recording held, for the reader of a diagnosis.
 //!
-//! In: a recording in the study. Out: its instrument, its rows and samples, and what of it was held out.
+//! In: a recording in the study, and which of its samples were left out. Out: its instrument, its rows and samples, and what of it was held out.
 
+use crate::channel::ChannelAt;
 use crate::diagnosis::Summary;
 use crate::recording::Instrument;
-use crate::study::Scene;
+use crate::scene::Scene;
+use crate::study::Study;
+use crate::weights::Outliers;
 
-pub(super) fn summary(scene: &Scene<'_>) -> Summary {
+/// The summaries of all recordings, and how many of their samples were left out.
+pub(super) fn summaries(study: &Study<'_>, outliers: &Outliers) -> Vec<Summary> {
+    study.scenes.iter().enumerate().map(|(number, scene)| summary(number, scene, outliers)).collect()
+}
+
+fn summary(number: usize, scene: &Scene<'_>, left_out: &Outliers) -> Summary {
     let recording = scene.recording;
     let (mut samples, mut missing, mut outliers) = (0, 0, 0);
-    for channel in &scene.channels {
-        for (value, outlier) in channel.values.iter().zip(&channel.outliers) {
+    for (channel, known) in scene.channels.iter().enumerate() {
+        let marks = left_out.of(ChannelAt { scene: number, channel });
+        for (value, outlier) in known.values.iter().zip(marks) {
             match (value.is_finite(), outlier) {
                 (false, _) => missing += 1,
                 (true, true) => outliers += 1,

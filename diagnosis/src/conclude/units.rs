@@ -4,11 +4,13 @@
 //! or over the drives' own where there is no other.
 
 use crate::appraisal::Appraisal;
+use crate::channel::{ChannelAt, Kind};
 use crate::diagnosis::{NoiseSummary, Residual};
 use crate::model::Model;
 use crate::noise::Noise;
 use crate::parameters::axis_unit;
-use crate::study::{Kind, Study};
+use crate::study::Study;
+use crate::weights::Outliers;
 use crate::zeros;
 
 /// The unit in which residuals are told, and which channels count.
@@ -37,27 +39,34 @@ impl Units {
     }
 
     /// The size of what a model leaves.
-    pub(super) fn residual(&self, study: &Study<'_>, model: &Model) -> Residual {
-        let unit = self.unit;
-        size(study, model, unit, |kind| self.counts(study, kind))
+    pub(super) fn residual(&self, study: &Study<'_>, model: &Model, outliers: &Outliers) -> Residual {
+        size(study, (model, outliers), self.unit, |kind| self.counts(study, kind))
     }
 
     /// The size of what a model leaves of the drive's own feedback of an axis.
-    pub(super) fn at_drive(&self, study: &Study<'_>, model: &Model, axis: usize) -> Residual {
-        size(study, model, axis_unit(study, axis), |kind| kind == Kind::Drive(axis))
+    pub(super) fn at_drive(
+        &self,
+        study: &Study<'_>,
+        model: &Model,
+        outliers: &Outliers,
+        axis: usize,
+    ) -> Residual {
+        size(study, (model, outliers), axis_unit(study, axis), |kind| kind == Kind::Drive(axis))
     }
 
     /// The residuals of all counted channels on the held-out rows (on all rows where none are), the mean of each channel
     /// taken out.
-    pub(super) fn held_out(&self, study: &Study<'_>, model: &Model) -> Vec<f64> {
+    pub(super) fn held_out(&self, study: &Study<'_>, model: &Model, outliers: &Outliers) -> Vec<f64> {
         let any = study.scenes.iter().any(|scene| scene.blocks.iter().any(|block| block.held_out));
         let mut values = Vec::new();
         for (scene, residuals) in zeros::residuals(study, model).into_iter().enumerate() {
             let fitted = study.scenes[scene].fitted_rows();
-            for (channel, residual) in study.scenes[scene].channels.iter().zip(residuals) {
-                if self.counts(study, channel.kind) {
+            for (channel, residual) in residuals.into_iter().enumerate() {
+                let at = ChannelAt { scene, channel };
+                if self.counts(study, study.channel(at).kind) {
+                    let outliers = outliers.of(at);
                     let chosen = (0..residual.len()).filter(|row| {
-                        residual[*row].is_finite() && !channel.outliers[*row] && !(any && fitted[*row])
+                        residual[*row].is_finite() && !outliers[*row] && !(any && fitted[*row])
                     });
                     let mut of_channel: Vec<f64> = chosen.map(|row| residual[row]).collect();
                     zeros::center(&mut of_channel);
@@ -96,21 +105,22 @@ fn seen(noise: Noise, size: f64) -> Noise {
     Noise { white, wander, ..noise }
 }
 
-/// The size of what a model leaves of the channels that count, in a unit.
+/// The size of what a model leaves of the channels that count, in a unit; outliers are left out.
 fn size(
     study: &Study<'_>,
-    model: &Model,
+    (model, outliers): (&Model, &Outliers),
     (factor, unit): (f64, &'static str),
     counts: impl Fn(Kind) -> bool,
 ) -> Residual {
     let (mut all, mut held) = ((0.0, 0.0), (0.0, 0.0));
     for (scene, residuals) in zeros::residuals(study, model).into_iter().enumerate() {
         let fitted = study.scenes[scene].fitted_rows();
-        for (channel, residual) in study.scenes[scene].channels.iter().zip(residuals) {
-            if !counts(channel.kind) {
+        for (channel, residual) in residuals.into_iter().enumerate() {
+            let at = ChannelAt { scene, channel };
+            if !counts(study.channel(at).kind) {
                 continue;
             }
-            for ((value, outlier), fits) in residual.iter().zip(&channel.outliers).zip(&fitted) {
+            for ((value, outlier), fits) in residual.iter().zip(outliers.of(at)).zip(&fitted) {
                 if value.is_finite() && !outlier {
                     all = (all.0 + value * value, all.1 + 1.0);
                     if !fits {

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::model::{Fitted, Place};
+use crate::noise::Noise;
 use crate::side::Side;
 use crate::terms::Setting;
 use crate::testing::{Bench, line, noisy, path, position};
@@ -18,15 +19,16 @@ fn prices(period: f64, alike: f64) -> [f64; 2] {
     let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
     let shape = Shape::Cyclic { axis: 0, period, center: 150.0 };
     let zero = Effect::setting(0, Setting::Offset { channel: 0 });
-    let model = vec![
+    let model = Model::of([
         Fitted { effect: zero, coefficients: vec![0.0] },
         Fitted { effect: Effect { place, shape }, coefficients: vec![0.0, 0.0] },
-    ];
+    ])
+    .with_settings(1);
     let travels = travels(&study, &crate::engine::courses(&study, &model));
-    let noises = vec![vec![Noise { alike, ..Noise::white(0.01) }]];
+    let weights = Weights::of_all(&study, vec![vec![Noise { alike, ..Noise::white(0.01) }]]);
     let tries = Tries { candidates: 40.0, waves: 300.0 };
-    let conditions = Conditions { always: 1, noises: &noises, travels: &travels, tries };
-    [conditions.prices(&study, &model, 100.0)[1], conditions.price(&study, &model[1].effect, 100.0)]
+    let conditions = Conditions { weights: &weights, travels: &travels, tries };
+    [conditions.prices(&study, &model, 100.0)[1], conditions.price(&study, &model.effects[1].effect, 100.0)]
 }
 
 #[test]

@@ -8,10 +8,10 @@ use nalgebra::DMatrix;
 
 use crate::design::{Design, Regressor};
 use crate::model::{Effect, Model, Place};
-use crate::noise::Noise;
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
+use crate::weights::Weights;
 
 /// A table with as few of these nodes as Schwarz's criterion leaves.
 pub(crate) fn thinned(
@@ -19,14 +19,13 @@ pub(crate) fn thinned(
     kept: &Model,
     (place, axis): (Place, usize),
     all: &[f64],
-    noises: &[Vec<Noise>],
+    weights: &Weights,
 ) -> Option<Shape> {
     let shape = |nodes: Vec<f64>| Shape::Table { axis, nodes, directed: false, repeats: false };
-    let mut regressors: Vec<Regressor> =
-        kept.iter().map(|fitted| Regressor::of(fitted.effect.clone())).collect();
+    let mut regressors = Regressor::all(&kept.effects);
     regressors.push(Regressor::of(Effect { place, shape: shape(all.to_vec()) }));
-    let mut design = Design::new(study, kept, noises, regressors);
-    design.rebase(kept);
+    let mut design = Design::new(study, kept, weights, regressors);
+    design.rebase(&kept.effects);
     let (products, samples) = design.fitted();
     let curve = Curve { first: *design.first.last()?, products, samples };
     let mut nodes: Vec<usize> = (0..all.len()).collect();

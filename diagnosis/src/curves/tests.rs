@@ -8,6 +8,7 @@ use crate::recording::Recording;
 use crate::side::Side;
 use crate::terms::Setting;
 use crate::testing::{Bench, line, noisy, path, position, programmed};
+use crate::weights::Weights;
 use simulation::path::{Shape as PathShape, Stations, Stroke};
 
 fn travel(low: f64, high: f64) -> Travel {
@@ -59,7 +60,7 @@ fn nodes(places: &[f64]) -> Vec<Vec<f64>> {
 
 fn of_recording(bench: &Bench, recording: &Recording) -> Vec<Vec<f64>> {
     let study = Study::new(bench.equations(), None, &[recording]);
-    let travels = crate::travel::travels(&study, &engine::courses(&study, &Model::new()));
+    let travels = crate::travel::travels(&study, &engine::courses(&study, &Model::default()));
     let nodes = |shape: Shape| match shape {
         Shape::Table { axis: 0, nodes, directed: false, repeats: false } => nodes,
         other => panic!("{other:?}"),
@@ -162,20 +163,20 @@ fn tried(bench: &Bench, recording: &Recording, degrees: &[usize]) -> (Model, [f6
     let study = Study::new(bench.equations(), None, &[recording]);
     let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
     let zero = Effect::setting(0, Setting::Offset { channel: 0 });
-    let mut model: Model = vec![Fitted { effect: zero, coefficients: vec![0.0] }];
+    let mut model = Model::of_settings([zero]);
     for degree in degrees {
         let shape = Shape::Polynomial { axis: 0, degree: *degree, center: 160.0, scale: 160.0 };
-        model.push(Fitted { effect: Effect { place, shape }, coefficients: vec![0.0; degree + 1] });
+        model.effects.push(Fitted { effect: Effect { place, shape }, coefficients: vec![0.0; degree + 1] });
     }
     let travels = crate::travel::travels(&study, &engine::courses(&study, &model));
-    let noises = vec![vec![Noise::white(NOISE)]];
+    let weights = Weights::of_all(&study, vec![vec![Noise::white(NOISE)]]);
     let tries = Tries { candidates: 40.0, waves: 40.0 };
-    let conditions = Conditions { always: 1, noises: &noises, travels: &travels, tries };
+    let conditions = Conditions { weights: &weights, travels: &travels, tries };
     let before = conditions.refine(&study, model);
     let costs = conditions.cost(&study, &before);
-    let mut after = try_tables(&study, before, &conditions);
+    let after = try_tables(&study, before, &conditions);
     let costs = [costs, conditions.cost(&study, &after)];
-    (after.model.split_off(1), costs)
+    (after.model.without(0), costs)
 }
 
 /// Values less their mean: the zero of the instrument is free.
@@ -203,7 +204,7 @@ fn a_curve_that_no_cubic_follows_is_a_table_at_the_stations() {
     let errors = "{EXX: [{table: {axis: X, start: 0 mm, step: 40 mm, unit: um, values: [0, 3, -2, 4, 1, -3, 2, -1, 3]}}]}";
     let recording = stepped(&bench, errors, 9);
     let (model, [before, after]) = tried(&bench, &recording, &[3]);
-    let [fitted] = model.as_slice() else { panic!("{model:?}") };
+    let [fitted] = model.effects.as_slice() else { panic!("{model:?}") };
     let Shape::Table { axis: 0, nodes, directed: false, repeats: false } = &fitted.effect.shape else {
         panic!("{fitted:?}")
     };
@@ -230,7 +231,7 @@ fn a_cubic_stays_a_cubic() {
         "{EXX: [{polynomial: {axis: X, per: mm, unit: um, coefficients: [0, 0.06, -6e-4, 1.4e-6]}}]}";
     for count in [9, 30] {
         let (model, [before, after]) = tried(&bench, &stepped(&bench, errors, count), &[3]);
-        let [fitted] = model.as_slice() else { panic!("{model:?}") };
+        let [fitted] = model.effects.as_slice() else { panic!("{model:?}") };
         assert!(matches!(fitted.effect.shape, Shape::Polynomial { degree: 3, .. }), "{fitted:?}");
         assert_eq!(before, after);
     }
@@ -245,7 +246,7 @@ fn a_curve_read_on_the_way_takes_as_few_nodes_as_say_it() {
     way.runs = RUNS;
     let recording = bench.record(&bench.calibration(errors), &noisy(way, position("x"), NOISE, 22));
     let (model, _) = tried(&bench, &recording, &[3]);
-    let [fitted] = model.as_slice() else { panic!("{model:?}") };
+    let [fitted] = model.effects.as_slice() else { panic!("{model:?}") };
     let Shape::Table { nodes, .. } = &fitted.effect.shape else { panic!("{fitted:?}") };
     assert_eq!(nodes.len(), 8);
     let truth = [0.0, 3.0, -2.0, 4.0, 1.0, -3.0, 2.0, -1.0];
@@ -261,10 +262,10 @@ fn one_parabola_is_not_even_tried_and_a_bump_at_one_place_is_no_curve() {
     let recording = stepped(&bench, errors, 9);
     // A parabola is what it is; only two smooth terms or a higher power ask for a table.
     let (model, [before, after]) = tried(&bench, &recording, &[2]);
-    assert!(matches!(model[0].effect.shape, Shape::Polynomial { degree: 2, .. }) && before == after);
+    assert!(matches!(model.effects[0].effect.shape, Shape::Polynomial { degree: 2, .. }) && before == after);
     // From 80 to 160 mm of 320: that is a place, and the cubic that stood for it goes.
     let (model, _) = tried(&bench, &recording, &[3]);
-    assert!(model.is_empty(), "{model:?}");
+    assert!(model.effects.is_empty(), "{model:?}");
 }
 
 #[test]
@@ -300,22 +301,20 @@ fn vibrating(motion: usize, frequency: f64, amplitude: f64) -> Fitted {
 #[test]
 fn vibrations_in_multiples_of_one_are_pulses_unless_one_stands_out() {
     let model = |teeth: &[(f64, f64)]| -> Model {
-        let mut model: Model =
-            teeth.iter().map(|(frequency, amplitude)| vibrating(0, *frequency, *amplitude)).collect();
-        model.push(vibrating(1, 3.0, 1e-3));
-        model
+        let teeth = teeth.iter().map(|(frequency, amplitude)| vibrating(0, *frequency, *amplitude));
+        Model::of(teeth).with(vibrating(1, 3.0, 1e-3))
     };
     let comb = [(1.01, 1e-3), (2.0, 0.9e-3), (3.02, 1.1e-3), (4.97, 0.8e-3)];
     // What else vibrates in that motion goes with them, another motion keeps its own.
     let mut more = comb.to_vec();
     more.push((7.4, 1e-3));
-    assert_eq!(without_combs(&model(&more), 0), Some(model(&[])));
+    assert_eq!(without_combs(&model(&more)), Some(model(&[])));
     // A rotation and its harmonics, and frequencies that have nothing to do with each other.
     let turning = [(1.01, 5e-3), (2.0, 0.9e-3), (3.02, 1.1e-3), (4.97, 0.8e-3)];
     let apart = [(1.0, 1e-3), (1.43, 0.9e-3), (3.33, 1.1e-3), (4.71, 0.8e-3)];
-    assert_eq!(without_combs(&model(&turning), 0), None);
-    assert_eq!(without_combs(&model(&apart), 0), None);
-    assert_eq!(without_combs(&model(&comb[..3]), 0), None);
+    assert_eq!(without_combs(&model(&turning)), None);
+    assert_eq!(without_combs(&model(&apart)), None);
+    assert_eq!(without_combs(&model(&comb[..3])), None);
 }
 
 #[test]
@@ -327,6 +326,6 @@ fn waves_along_an_axis_are_kept_in_multiples_too() {
         },
         coefficients: vec![1e-3, 0.0],
     };
-    let model: Model = [10.0, 5.0, 2.5, 1.25, 1.0].map(wave).to_vec();
-    assert_eq!(without_combs(&model, 0), None);
+    let model = Model::of([10.0, 5.0, 2.5, 1.25, 1.0].map(wave));
+    assert_eq!(without_combs(&model), None);
 }

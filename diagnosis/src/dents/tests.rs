@@ -16,11 +16,11 @@ fn with<T>(errors: &str, asked: impl Fn(&Study<'_>, &Model, &Conditions<'_>) -> 
     let recording = bench.record(&truth, &noisy(there_and_back, position("x"), 0.000_3, 5));
     let study = Study::new(bench.equations(), None, std::slice::from_ref(&&recording));
     let zero = Effect::setting(0, Setting::Offset { channel: 0 });
-    let model = vec![Fitted { effect: zero, coefficients: vec![0.0] }];
+    let model = Model::of_settings([zero]);
     let travels = travels(&study, &courses(&study, &model));
-    let noises = vec![vec![Noise::white(0.000_3)]];
+    let weights = Weights::of_all(&study, vec![vec![Noise::white(0.000_3)]]);
     let tries = Tries { candidates: 40.0, waves: 300.0 };
-    asked(&study, &model, &Conditions { always: 1, noises: &noises, travels: &travels, tries })
+    asked(&study, &model, &Conditions { weights: &weights, travels: &travels, tries })
 }
 
 /// Middle and flank of the dent that is seen, mm.
@@ -38,7 +38,7 @@ fn drawn(errors: &str) -> Option<Vec<(f64, f64)>> {
         let begun = dent.added(study, &beside, conditions)?;
         let fit = dent.drawn(study, conditions.refine(study, begun), conditions);
         assert!(dent.is_in(&fit.model, conditions.travels));
-        let table = fit.model.iter().find(|fitted| dent.is_table(fitted))?;
+        let table = fit.model.effects.iter().find(|fitted| dent.is_table(fitted))?;
         match &table.effect.shape {
             Shape::Table { nodes, .. } => {
                 Some(nodes.iter().copied().zip(table.coefficients.iter().copied()).collect())
@@ -88,4 +88,42 @@ fn a_dent_is_drawn_with_the_nodes_that_it_needs() {
 #[test]
 fn a_play_alone_hides_no_dent() {
     assert_eq!(seen(&format!("{{EXX: [{PLAY}]}}")), None);
+}
+
+/// Bumps of some 10 um that differ from one way to the other, and a dent of this height at 120 mm, um.
+fn bumpy(seed: u64, dent: f64) -> String {
+    let mut state = seed;
+    let mut bumps = |of: &str| {
+        let values = (0..21).map(|node| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let random = crate::number(usize::try_from(state >> 40).unwrap()) / crate::number(1 << 24) - 0.5;
+            let own = if node == 0 { 0.0 } else { 30.0 * random };
+            format!("{:.2}", own + if node == 12 { dent } else { 0.0 })
+        });
+        format!("{of}: [{}]", values.collect::<Vec<_>>().join(", "))
+    };
+    let (up, down) = (bumps("forward"), bumps("reverse"));
+    format!("{{EXX: [{{table: {{start: 0 mm, step: 10 mm, unit: um, {up}, {down}}}}}]}}")
+}
+
+fn outstanding_in(errors: &str) -> Option<(f64, f64)> {
+    with(errors, |study, model, conditions| {
+        let appraisal = Appraisal::new(study, model);
+        outstanding(study, model, &appraisal, conditions).map(|dent| (dent.middle, dent.flank))
+    })
+}
+
+#[test]
+fn a_dent_stands_out_among_bumps_that_differ_from_pass_to_pass() {
+    for seed in 1..8 {
+        let (middle, flank) = outstanding_in(&bumpy(seed, 60.0)).unwrap();
+        assert!((middle - 120.0).abs() <= flank, "seed {seed}: {middle} {flank}");
+    }
+}
+
+#[test]
+fn bumps_that_agree_by_chance_do_not_stand_out() {
+    // Chance lets them once in 30 times: four or more of 30 would be one time in 50.
+    let told = (1..31).filter(|seed| outstanding_in(&bumpy(1000 + seed, 0.0)).is_some()).count();
+    assert!(told < 4, "{told} of 30");
 }

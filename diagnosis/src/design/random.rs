@@ -1,6 +1,6 @@
 //! Random weights. In: the number of a recording and of a channel. Out: weights for its rows, the same in every run.
 
-use crate::study::ChannelAt;
+use crate::channel::ChannelAt;
 
 /// Weights between -1 and 1 that are the same in every run of the program.
 pub(super) struct Random(u64);

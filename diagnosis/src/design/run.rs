@@ -9,6 +9,7 @@ use super::Regressor;
 use super::lower::{Lower, NARROW};
 use super::random::Random;
 use super::shapes::Shapes;
+use crate::channel::{Channel, ChannelAt, Kind};
 use crate::course::{BATCH, Course, STRETCH, pieces};
 use crate::model::{Model, Place};
 use crate::noise::{Noise, Step, Whitening, whiten};
@@ -16,8 +17,9 @@ use crate::observations::{Frame, Passage, acts};
 use crate::parallel;
 use crate::side::Side;
 use crate::states::Rows;
-use crate::study::{Channel, ChannelAt, Kind, Study};
+use crate::study::Study;
 use crate::terms::{Setting, Shape};
+use crate::weights::Outliers;
 
 /// How many rows of so many columns are worked on at a time: as many as stay in a cache, in whole stretches.
 pub(super) fn batch(width: usize) -> usize {
@@ -100,8 +102,8 @@ impl<'r> ChannelRun<'r> {
         self.study.channel(self.at)
     }
 
-    /// Adds the products of the next rows, which these frames hold.
-    pub(super) fn add(&mut self, frames: &[Frame<'_>], course: &Course) {
+    /// Adds the products of the next rows, which these frames hold. Outliers do not count.
+    pub(super) fn add(&mut self, frames: &[Frame<'_>], course: &Course, outliers: &Outliers) {
         let (Some(first), Some(last)) = (frames.first(), frames.last()) else { return };
         let rows = first.first_row()..last.first_row() + last.len();
         let view = course.states(self.channel().kind).rows(rows.clone());
@@ -110,7 +112,7 @@ impl<'r> ChannelRun<'r> {
         let places = self.places();
         let mut columns = self.columns(&sights, &view, &places);
         let mut valid = known(&columns);
-        let outliers = &self.channel().outliers[rows];
+        let outliers = &outliers.of(self.at)[rows];
         valid.iter_mut().zip(outliers).for_each(|(valid, outlier)| *valid &= !outlier);
         let steps = self.whitening.steps(view.time, &valid);
         let mut filters: Vec<f64> = places.iter().map(|place| self.filters[*place]).collect();

@@ -8,10 +8,11 @@ use crate::fit;
 use crate::model::{Fitted, Place};
 use crate::noise::{Whitening, whiten};
 use crate::recording::Recording;
+use crate::scene::Block;
 use crate::side::Side;
-use crate::study::Block;
 use crate::terms::{Setting, Shape};
 use crate::testing::{Bench, ballbar, circle, distance, line, noisy, normals, path, peak, position, warming};
+use crate::weights::Outliers;
 
 const ERRORS: &str = "{EXX: [{polynomial: {axis: X, per: mm, unit: um, coefficients: [3, 0.05]}}], \
     EYY: [{lag: {gain: 25 1/s}}], EBX: [{table: {axis: X, start: -100 mm, step: 40 mm, unit: urad, values: [0, 20, -10, 30, 5, 0]}}], \
@@ -42,7 +43,7 @@ fn machine(study: &Study<'_>, name: &str, side: Side, shape: Shape) -> Effect {
 
 /// A model of some size: terms of the machine with memory, a loop, a clock.
 fn model(study: &Study<'_>, settings: &[(Setting, f64)]) -> Model {
-    let mut model = vec![
+    let mut model = Model::of([
         Fitted {
             effect: machine(study, "EXX", Side::After, Shape::Backlash { axis: 0, wind_up: 5.0 }),
             coefficients: vec![0.01],
@@ -59,8 +60,8 @@ fn model(study: &Study<'_>, settings: &[(Setting, f64)]) -> Model {
             effect: machine(study, "EYY", Side::Drive, Shape::Backlash { axis: 1, wind_up: 0.0 }),
             coefficients: vec![0.004],
         },
-    ];
-    model.extend(
+    ]);
+    model.effects.extend(
         settings.iter().map(|(setting, value)| Fitted {
             effect: Effect::setting(0, *setting),
             coefficients: vec![*value],
@@ -95,9 +96,9 @@ fn columns_are_slopes(study: &Study<'_>, model: &Model, effects: &[Effect], what
                     let mut changed = model.clone();
                     let mut coefficients = vec![0.0; effect.shape.columns()];
                     coefficients[k] = step;
-                    match changed.iter_mut().find(|fitted| fitted.effect == *effect) {
+                    match changed.effects.iter_mut().find(|fitted| fitted.effect == *effect) {
                         Some(fitted) => fitted.coefficients[k] += step,
-                        None => changed.push(Fitted { effect: effect.clone(), coefficients }),
+                        None => changed.effects.push(Fitted { effect: effect.clone(), coefficients }),
                     }
                     left(study, &changed).swap_remove(channel)
                 };
@@ -215,7 +216,7 @@ fn the_clock_s_column_is_how_the_residual_falls_behind_a_loop_too() {
         let recording = recorded(&bench, position("xy"), circle(60.0), true);
         let study = Study::new(bench.equations(), Some(&known), &[&recording]);
         let clock = Effect::setting(0, Setting::Clock);
-        let model = vec![Fitted { effect: clock.clone(), coefficients: vec![0.02] }];
+        let model = Model::of([Fitted { effect: clock.clone(), coefficients: vec![0.02] }]);
         columns_are_slopes(&study, &model, &[clock], errors);
     }
 }
@@ -248,13 +249,13 @@ fn slopes_are_how_the_residual_falls_with_the_nonlinear_parameter() {
         let fitted = Fitted { effect: effect.clone(), coefficients: coefficients.clone() };
         let regressors = [Regressor { effect: effect.clone(), slope: Some(coefficients.clone()) }];
         for channel in 0..3 {
-            let found = columns(&study, channel, &vec![fitted.clone()], &regressors);
+            let found = columns(&study, channel, &Model::of([fitted.clone()]), &regressors);
             let found: Vec<f64> = found.column(0).iter().copied().collect();
             let value = effect.shape.nonlinear().unwrap().value;
             let step = 1e-3 * value;
             let moved = |value: f64| {
                 let effect = Effect { place: effect.place, shape: effect.shape.with_nonlinear(value) };
-                left(&study, &vec![Fitted { effect, coefficients: coefficients.clone() }])
+                left(&study, &Model::of([Fitted { effect, coefficients: coefficients.clone() }]))
                     .swap_remove(channel)
             };
             let (up, down) = (moved(value + step), moved(value - step));
@@ -265,7 +266,7 @@ fn slopes_are_how_the_residual_falls_with_the_nonlinear_parameter() {
     }
 }
 
-/// A recording with gaps, an outlier and uneven blocks, of which some are held out.
+/// A recording with gaps and uneven blocks, of which some are held out.
 fn prepared<'r>(
     bench: &'r Bench,
     known: &'r model_dsl::calibration::Calibration,
@@ -279,7 +280,6 @@ fn prepared<'r>(
         .windows(2)
         .map(|pair| Block { rows: pair[0]..pair[1], run: 1, held_out: pair[0] == 31 })
         .collect();
-    scene.channels[0].outliers[77] = true;
     study
 }
 
@@ -295,6 +295,14 @@ fn gappy(bench: &Bench) -> Recording {
 
 const COLORED: Noise = Noise { white: 1e-3, wander: 2e-3, time_constant: 1.5, alike: 1.0 };
 
+/// Weights beside that noise; a sample of the first channel is an outlier.
+fn colored(study: &Study<'_>) -> Weights {
+    let scene = &study.scenes[0];
+    let mut marks = vec![vec![false; scene.rows()]; scene.channels.len()];
+    marks[0][77] = true;
+    Weights { noises: vec![vec![COLORED; scene.channels.len()]], outliers: Outliers::new(vec![marks]) }
+}
+
 #[test]
 fn products_are_those_of_whitened_columns() {
     let bench = Bench::of("XYFZ");
@@ -303,15 +311,15 @@ fn products_are_those_of_whitened_columns() {
     let study = prepared(&bench, &known, &recording);
     let model = model(&study, &[]);
     let regressors: Vec<Regressor> = effects(&study).into_iter().map(Regressor::of).collect();
-    let noises = vec![vec![COLORED; study.scenes[0].channels.len()]];
-    let design = Design::new(&study, &model, &noises, regressors.clone());
+    let weights = colored(&study);
+    let design = Design::new(&study, &model, &weights, regressors.clone());
     let mut expected = vec![DMatrix::zeros(design.width + 1, design.width + 1); 4];
     let mut samples = [0.0; 4];
     for channel in 0..study.scenes[0].channels.len() {
         let mut columns = columns(&study, channel, &model, &regressors);
         let known = |row: usize| columns.row(row).iter().all(|value| value.is_finite());
         let valid: Vec<bool> = (0..columns.nrows())
-            .map(|row| known(row) && !study.scenes[0].channels[channel].outliers[row])
+            .map(|row| known(row) && !weights.outliers.of(ChannelAt { scene: 0, channel })[row])
             .collect();
         let steps = Whitening::new(COLORED).steps(&recording.time, &valid);
         for mut column in columns.column_iter_mut() {
@@ -359,19 +367,14 @@ fn a_rebased_design_gives_whole_coefficients() {
         ),
         Effect::setting(0, Setting::Offset { channel: 0 }),
     ];
-    let noises = vec![vec![COLORED; study.scenes[0].channels.len()]];
+    let weights = colored(&study);
     let solved = |coefficients: [f64; 4]| {
         let [a, b, c, d] = coefficients;
         let parts = [vec![a], vec![b, c], vec![d]];
-        let model: Model = effects
-            .iter()
-            .cloned()
-            .zip(parts)
-            .map(|(effect, coefficients)| Fitted { effect, coefficients })
-            .collect();
-        let regressors = effects.iter().cloned().map(Regressor::of).collect();
-        let mut design = Design::new(&study, &model, &noises, regressors);
-        design.rebase(&model);
+        let effects = effects.iter().cloned().zip(parts);
+        let model = Model::of(effects.map(|(effect, coefficients)| Fitted { effect, coefficients }));
+        let mut design = Design::new(&study, &model, &weights, Regressor::all(&model.effects));
+        design.rebase(&model.effects);
         let (products, _) = design.fitted();
         let fitted = fit::linear(&design, &products, 0, &[0, 1, 2]);
         fitted.into_iter().flat_map(|fitted| fitted.coefficients).collect::<Vec<f64>>()

@@ -43,16 +43,16 @@ fn every_other_way_to_drive_an_axis_is_tried_once() {
     let study = Study::new(bench.equations(), None, &[&recording]);
     let lag = lag(&bench, 0.02);
     let shapes = loops(&lag, 0.01);
-    let of = |model: &Model| drives(&study, model, 0, 0, &shapes);
-    let alone = vec![lag.clone()];
+    let of = |model: &Model| drives(&study, model, 0, &shapes);
+    let alone = Model::of([lag.clone()]);
     assert_eq!(of(&alone).len(), DAMPINGS.len());
     // With something that imitates ringing: with it and without it.
     let spike = own(&bench, "EXX", Shape::ReversalSpike { axis: 0, decay: 0.1 }, &[1e-3]);
-    assert_eq!(of(&vec![lag.clone(), spike.clone()]).len(), 2 * DAMPINGS.len() + 1);
+    assert_eq!(of(&Model::of([lag.clone(), spike.clone()])).len(), 2 * DAMPINGS.len() + 1);
     // With friction: where it is and inside the loop.
     let friction = own(&bench, "EXX", Shape::Backlash { axis: 0, wind_up: 0.0 }, &[1e-3]);
-    assert_eq!(of(&vec![lag.clone(), friction.clone()]).len(), 2 * DAMPINGS.len() + 1);
-    let all = vec![lag, spike, friction];
+    assert_eq!(of(&Model::of([lag.clone(), friction.clone()])).len(), 2 * DAMPINGS.len() + 1);
+    let all = Model::of([lag, spike, friction]);
     let trials = of(&all);
     assert_eq!(trials.len(), 4 * DAMPINGS.len() + 3);
     for (number, trial) in trials.iter().enumerate() {

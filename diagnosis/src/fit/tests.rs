@@ -3,6 +3,7 @@
 use super::*;
 use crate::engine;
 use crate::model::Place;
+use crate::noise::Noise;
 use crate::side::Side;
 use crate::terms::Setting;
 use crate::testing::{Bench, line, noisy, path, position};
@@ -22,26 +23,26 @@ fn from(frequencies: impl Iterator<Item = f64>) -> Vec<(f64, f64, Fit)> {
     let scenario = noisy(path(line(0, 0.0, 200.0), 50.0, 40.0), position("x"), NOISE, 7);
     let recording = bench.record(&bench.calibration(VIBRATES), &scenario);
     let study = Study::new(bench.equations(), None, &[&recording]);
-    let travels = travels(&study, &engine::courses(&study, &Model::new()));
-    let noises = vec![vec![Noise::white(NOISE)]];
+    let travels = travels(&study, &engine::courses(&study, &Model::default()));
+    let weights = Weights::of_all(&study, vec![vec![Noise::white(NOISE)]]);
     let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
     let fit = |frequency: f64| {
         let zero = Effect::setting(0, Setting::Offset { channel: 0 });
         let vibration = Effect { place, shape: Shape::Vibration { frequency } };
-        let model = vec![
+        let model = Model::of([
             Fitted { effect: zero, coefficients: vec![0.0] },
             Fitted { effect: vibration, coefficients: vec![0.0; 2] },
-        ];
+        ]);
         // Without an amplitude the frequency has no slope: the first step is the linear fit at this frequency.
-        let begin = Linearised::new(&study, model, &noises).stepped(&study, 1.0, &travels);
-        let squares = Linearised::new(&study, begin.clone(), &noises).remaining;
-        (frequency, squares, refine(&study, begin, &noises, &travels))
+        let begin = Linearised::new(&study, model, &weights).stepped(&study, 1.0, &travels);
+        let squares = Linearised::new(&study, begin.clone(), &weights).remaining;
+        (frequency, squares, refine(&study, begin, &weights, &travels))
     };
     frequencies.map(fit).collect()
 }
 
 fn frequency(fit: &Fit) -> f64 {
-    fit.model[1].effect.shape.nonlinear().unwrap().value
+    fit.model.effects[1].effect.shape.nonlinear().unwrap().value
 }
 
 #[test]

@@ -12,12 +12,14 @@ use std::collections::BTreeSet;
 
 use nalgebra::{DMatrix, Matrix2, SymmetricEigen};
 
+use crate::channel::ChannelAt;
 use crate::design::{Design, Lower, Regressor};
 use crate::model::Model;
 use crate::noise::{Noise, Whitening, log_sizes, typical_step, whiten};
 use crate::number;
-use crate::study::{ChannelAt, Study};
+use crate::study::Study;
 use crate::sweep::Swept;
+use crate::weights::Weights;
 
 /// A noise that a channel may have.
 pub(super) struct Possible {
@@ -75,10 +77,10 @@ const FEWEST_LEFT: f64 = 3.0;
 pub(super) fn possible(
     study: &Study<'_>,
     at: ChannelAt,
-    model: &Model,
+    under: (&Model, &Weights),
     columns: (&[Regressor], &[bool]),
 ) -> Vec<Possible> {
-    let seen = Seen::new(study, at, model, columns);
+    let seen = Seen::new(study, at, under, columns);
     let mut around = seen.around();
     around.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let least = around.first().map_or(0.0, |first| first.cost);
@@ -91,15 +93,14 @@ impl Seen {
     fn new(
         study: &Study<'_>,
         at: ChannelAt,
-        model: &Model,
+        (model, weights): (&Model, &Weights),
         (regressors, told): (&[Regressor], &[bool]),
     ) -> Self {
-        let (scene, channel) = (&study.scenes[at.scene], study.channel(at));
+        let (scene, outliers) = (&study.scenes[at.scene], weights.outliers.of(at));
         let rows: Vec<usize> = (0..scene.rows()).collect();
         let all = Design::columns_in(study, at, model, regressors, &rows);
         let is_known = |row: &usize| all.row(*row).iter().all(|value| value.is_finite());
-        let kept: Vec<usize> =
-            rows.into_iter().filter(|row| !channel.outliers[*row]).filter(is_known).collect();
+        let kept: Vec<usize> = rows.into_iter().filter(|row| !outliers[*row]).filter(is_known).collect();
         let all = all.select_rows(&kept);
         let response = all.ncols().saturating_sub(1);
         let acts = |column: usize| told[column] && all.column(column).iter().any(|value| *value != 0.0);
@@ -116,7 +117,7 @@ impl Seen {
             samples: number(kept.len()),
             step,
             span: span.max(step),
-            floor: channel.rounding,
+            floor: study.channel(at).rounding,
             time,
         }
     }
@@ -198,7 +199,8 @@ impl Seen {
         found
     }
 
-    /// The likeliest point, as near as matters, and how far from it the cost rises by little more than one in each direction.
+    /// The likeliest point, as near as matters, and in each direction a width over which the cost rises, by 1.5 at
+    /// most.
     fn likeliest(&self) -> Option<(Weighed, Point)> {
         let starts = self.starts().into_iter().filter_map(|start| self.weighed(start));
         let mut best = starts.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
@@ -334,10 +336,7 @@ const ROUNDED: f64 = 1e-9;
 const RISE: f64 = 1.5;
 /// The widest grid, in e-folds: the form of a noise changes within one.
 const WIDEST: f64 = 1.2;
-/// To which share a width is made narrower at a time: to where the cost would rise by so much if it were a parabola.
-const LEAST_NARROWING: f64 = 0.2;
-const MOST_NARROWING: f64 = 0.95;
-/// The search ends long before: each step goes down, or makes a width narrower.
+/// The search ends long before: each step goes down, or halves a width.
 const MOST_STEPS: usize = 200;
 /// Points with so much more cost are left out: each has a hundredth of the probability of the likeliest.
 const FAR: f64 = 9.0;

@@ -3,6 +3,7 @@
 use super::*;
 use crate::conditions::Tries;
 use crate::model::{Effect, Place};
+use crate::noise::Noise;
 use crate::recording::Recording;
 use crate::side::Side;
 use crate::terms::Setting;
@@ -43,16 +44,15 @@ struct Case<'a> {
 const PLAY: usize = 1;
 
 fn fitted<'a>(bench: &'a Bench, recordings: &[&'a Recording], noise: f64) -> Case<'a> {
-    let mut study = Study::new(bench.equations(), None, recordings);
+    let study = Study::new(bench.equations(), None, recordings);
     let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
     let shape = Shape::Backlash { axis: 0, wind_up: 0.0 };
     let effects = [Effect::setting(0, Setting::Offset { channel: 0 }), Effect { place, shape }];
-    let model = effects.map(|effect| Fitted { effect, coefficients: vec![0.0] }).to_vec();
-    let noises = vec![vec![Noise::white(noise)]; recordings.len()];
-    let fit = crate::fit::refine(&study, model, &noises, &[]);
-    let design = design(&study, &fit.model, &noises);
+    let model = Model::of(effects.map(|effect| Fitted { effect, coefficients: vec![0.0] })).with_settings(1);
+    let weights = Weights::of_all(&study, vec![vec![Noise::white(noise)]; recordings.len()]);
+    let fit = crate::fit::refine(&study, model, &weights, &[]);
+    let design = design(&study, &fit.model, &weights);
     let appraisal = Appraisal::new(&study, &fit.model);
-    appraisal.mark(&mut study);
     Case { study, fit, design, appraisal }
 }
 
@@ -89,7 +89,7 @@ impl Case<'_> {
     fn pays(&self) -> bool {
         let whole = zeros::residuals(&self.study, &self.fit.model);
         let tries = Tries { candidates: 1.0, waves: 1.0 };
-        let conditions = Conditions { always: 1, noises: &self.appraisal.noises, travels: &[], tries };
+        let conditions = Conditions { weights: &self.appraisal.weights, travels: &[], tries };
         let left = (&self.appraisal, &*whole);
         pays(&self.study, &self.design, &swept(&self.design), &self.fit, left, PLAY, &conditions)
     }
@@ -173,7 +173,7 @@ fn an_effect_far_below_the_noise_of_a_sample_does_not_matter() {
         let size = 0.5 * LOST / share;
         let recording = recorded(&bench, |_, _| 1.0, noise * size);
         let mut case = fitted(&bench, &[&recording], QUIET);
-        case.appraisal.noises = vec![vec![Noise::white(size)]];
+        case.appraisal.weights.noises = vec![vec![Noise::white(size)]];
         assert_eq!(case.pays(), matters, "{share}");
     }
 }
@@ -185,7 +185,7 @@ fn what_held_out_rows_cannot_tell_is_not_held_against_an_effect() {
     for (share, passes) in [(0.16, true), (0.3, false)] {
         let recording = recorded(&bench, held(0.0), 0.0);
         let mut case = fitted(&bench, &[&recording], QUIET);
-        case.appraisal.noises = vec![vec![Noise::white(0.5 * LOST / share)]];
+        case.appraisal.weights.noises = vec![vec![Noise::white(0.5 * LOST / share)]];
         assert_eq!(case.pays(), passes, "{share}");
     }
 }
@@ -197,26 +197,27 @@ fn recordings_weigh_by_the_squares_of_their_noise() {
     let recordings = [1.0, -1.0].map(|strength| recorded(&bench, held(strength), QUIET));
     for (ratio, does) in [(1.5, false), (2.0, true)] {
         let mut case = fitted(&bench, &recordings.each_ref(), QUIET);
-        case.appraisal.noises = [QUIET, ratio * QUIET].map(|size| vec![Noise::white(size)]).to_vec();
+        case.appraisal.weights.noises = [QUIET, ratio * QUIET].map(|size| vec![Noise::white(size)]).to_vec();
         assert_eq!(case.pays(), does, "{ratio}");
     }
 }
 
-/// The first effect to fall, of those after the first `always`, where so many candidates were tried that the price of the lost
+/// The first effect to fall, of those behind so many settings, where so many candidates were tried that the price of the lost
 /// motion is this share of what it is worth: in squares, or in likelihood where the noise takes up a part of it.
-fn falls(case: &Case<'_>, always: usize, share: f64) -> Option<usize> {
-    let design = design(&case.study, &case.fit.model, &case.appraisal.noises);
+fn falls(case: &Case<'_>, settings: usize, share: f64) -> Option<usize> {
+    let design = design(&case.study, &case.fit.model, &case.appraisal.weights);
     let (swept, samples) = (swept(&design), design.fitted().1);
     let columns: Vec<usize> = design.columns(PLAY).collect();
     let squares = swept.worth(&columns) * samples / swept.remaining();
     let bare = Appraisal::new(&case.study, &without(&design, &swept, &case.fit.model, PLAY));
     let worth = squares.min(bare.deviance - case.appraisal.deviance);
-    let untried = crate::search::price(&case.study, &case.fit.model[PLAY].effect, samples, 1.0, 1.0);
+    let untried = crate::search::price(&case.study, &case.fit.model.effects[PLAY].effect, samples, 1.0, 1.0);
     assert!(untried < 0.5 * worth, "{untried} {worth}");
     let candidates = (0.5 * (share * worth - untried)).exp();
-    let noises = &case.appraisal.noises;
-    let conditions = Conditions { always, noises, travels: &[], tries: Tries { candidates, waves: 1.0 } };
-    weakest(&case.study, &case.fit, &case.appraisal, &conditions)
+    let weights = &case.appraisal.weights;
+    let conditions = Conditions { weights, travels: &[], tries: Tries { candidates, waves: 1.0 } };
+    let fit = Fit { model: case.fit.model.clone().with_settings(settings), ..case.fit.clone() };
+    weakest(&case.study, &fit, &case.appraisal, &conditions)
 }
 
 #[test]
@@ -226,7 +227,7 @@ fn an_effect_stands_where_it_is_worth_its_price() {
     // Also where the noise was taken for smaller or larger than it is.
     for times in [1.0, 0.5, 2.0] {
         let mut case = fitted(&bench, &[&recording], DOUBTFUL);
-        case.appraisal.noises = vec![vec![Noise::white(times * DOUBTFUL)]];
+        case.appraisal.weights.noises = vec![vec![Noise::white(times * DOUBTFUL)]];
         assert_eq!(falls(&case, PLAY, 0.999), None, "{times}");
         assert_eq!(falls(&case, PLAY, 1.001), Some(PLAY), "{times}");
     }
@@ -253,9 +254,9 @@ fn made_up_for(lost_motions: [f64; 2]) -> [bool; 2] {
         coefficients: vec![lost_motion],
     };
     let zero = Effect::setting(0, Setting::Offset { channel: 0 });
-    let mut model = vec![Fitted { effect: zero, coefficients: vec![0.0] }];
-    model.extend([3.0, 4.0].into_iter().zip(lost_motions).map(play));
-    let design = design(&study, &model, &[vec![Noise::white(QUIET)]]);
+    let mut model = Model::of([Fitted { effect: zero, coefficients: vec![0.0] }]);
+    model.effects.extend([3.0, 4.0].into_iter().zip(lost_motions).map(play));
+    let design = design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(QUIET)]]));
     let beside_settings = beside_settings(&design, &design.fitted().0, 1);
     [1, 2].map(|number| is_made_up_for(&design, &beside_settings, &model, number))
 }

@@ -22,7 +22,7 @@ fn grouped(
     effects: &[(&str, Shape)],
 ) -> Vec<Vec<(String, &'static str)>> {
     let study = Study::new(bench.equations(), None, &[recording]);
-    let courses = [Course::new(&study, 0, &[])];
+    let courses = [Course::new(&study, 0, &Model::default())];
     let noises = vec![vec![
         Noise { white: 1e-3, wander: 0.0, time_constant: 1.0, alike: 1.0 };
         study.scenes[0].channels.len()
@@ -92,7 +92,7 @@ fn a_squareness_is_a_guide_that_leans_and_no_yaw() {
 }
 
 fn groups_of(study: &Study<'_>, noises: &[Vec<Noise>], effects: Vec<Effect>) -> Vec<Kin> {
-    groups(study, &[Course::new(study, 0, &[])], noises, effects)
+    groups(study, &[Course::new(study, 0, &Model::default())], noises, effects)
 }
 
 #[test]

@@ -2,10 +2,11 @@
 //! part lay.
 
 use super::{Frame, along, each_frame};
+use crate::channel::Kind;
 use crate::course::Course;
 use crate::model::Model;
 use crate::recording::PartReading;
-use crate::study::{Kind, Study};
+use crate::study::Study;
 
 /// The readings of a part as the calibration leaves them, evenly from all rows: enough to tell how it lies.
 pub(crate) fn part_readings(study: &Study<'_>, scene: usize, course: &Course) -> Vec<PartReading> {
@@ -15,7 +16,7 @@ pub(crate) fn part_readings(study: &Study<'_>, scene: usize, course: &Course) ->
         let first = frame.first_row().next_multiple_of(stride) - frame.first_row();
         let mut readings = Vec::new();
         for channel in &known.channels {
-            let left = frame.residual(study, scene, channel, &Model::new());
+            let left = frame.residual(study, scene, channel, &Model::default());
             for row in (first..frame.len()).step_by(stride) {
                 let direction = match channel.kind {
                     Kind::Tip(d) => along(d),
@@ -28,7 +29,7 @@ pub(crate) fn part_readings(study: &Study<'_>, scene: usize, course: &Course) ->
         readings
     };
     let mut all = Vec::new();
-    each_frame(study, scene, &Model::new(), course, of_frame, |_, readings| all.extend(readings));
+    each_frame(study, scene, &Model::default(), course, of_frame, |_, readings| all.extend(readings));
     all
 }
 

@@ -4,9 +4,10 @@
 //! ballbar's centre and length, and the clock, act exactly: their columns are how the reading changes with a little more of them.
 
 use super::{Frame, along, at, dot};
+use crate::channel::{Channel, Kind};
 use crate::model::Model;
 use crate::side::Side;
-use crate::study::{Channel, Kind, Study};
+use crate::study::Study;
 use crate::terms::Setting;
 
 impl Frame<'_> {
@@ -110,7 +111,7 @@ impl Frame<'_> {
     /// What the instrument's settings in the model add to the reading of a channel, but for those that act exactly.
     pub(crate) fn settings(&self, study: &Study<'_>, scene: usize, number: usize, model: &Model) -> Vec<f64> {
         let mut sum = vec![0.0; self.len()];
-        for fitted in model {
+        for fitted in &model.effects {
             let setting = fitted.effect.setting_of(scene);
             if let (Some(setting), [coefficient]) = (setting, fitted.coefficients.as_slice())
                 && setting.adds()
@@ -127,7 +128,7 @@ impl Frame<'_> {
 
 /// The true centre and radius of a ballbar under a model.
 pub(super) fn ballbar(scene: usize, model: &Model, mut center: [f64; 3], mut radius: f64) -> ([f64; 3], f64) {
-    for fitted in model {
+    for fitted in &model.effects {
         if let [coefficient] = fitted.coefficients.as_slice() {
             match fitted.effect.setting_of(scene) {
                 Some(Setting::Eccentricity { direction }) => center[direction] += coefficient,

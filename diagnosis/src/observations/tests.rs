@@ -65,9 +65,9 @@ fn worst(
         effect: Effect::setting(0, *setting),
         coefficients: vec![*value],
     };
-    let mut model: Model = settings.iter().map(fitted).collect();
+    let mut model = Model::of(settings.iter().map(fitted));
     if matches!(said, Said::ByModel) {
-        model.append(&mut study.known);
+        model.effects.append(&mut study.known);
     }
     let course = Course::new(&study, 0, &model);
     let mut residuals = residuals(&study, 0, &model, &course);
@@ -134,7 +134,7 @@ fn what_is_not_known_hides_what_it_moves() {
     let recording = bench.record(&truth, &scenario(path(circle(70.0), 30.0, 20.0), position("xyz")));
     let calibration = bench.calibration(&format!("{{{known}, {grown}}}"));
     let study = Study::new(bench.equations(), Some(&calibration), &[&recording]);
-    let left = residuals(&study, 0, &Vec::new(), &Course::new(&study, 0, &[]));
+    let left = residuals(&study, 0, &Model::default(), &Course::new(&study, 0, &Model::default()));
     assert!(peak(&left[0]) < 1e-11 && peak(&left[1]) < 1e-11, "{} {}", peak(&left[0]), peak(&left[1]));
     assert!(left[2].iter().all(|value| value.is_nan()));
 }
@@ -179,10 +179,10 @@ fn read_late(errors: &str, clock: f64) -> [Vec<f64>; 3] {
     let study = Study::new(bench.equations(), Some(&calibration), &[&recording]);
     assert!(study.scenes[0].channels[2].kind == Kind::Drive(0));
     let left = |model: &Model| residuals(&study, 0, model, &Course::new(&study, 0, model));
-    let mut seen =
-        left(&vec![Fitted { effect: Effect::setting(0, Setting::Clock), coefficients: vec![clock] }]);
+    let fitted = Fitted { effect: Effect::setting(0, Setting::Clock), coefficients: vec![clock] };
+    let mut seen = left(&Model::of([fitted]));
     let (outside, drive) = (seen[0].clone(), seen.swap_remove(2));
-    [outside, drive, left(&Vec::new()).swap_remove(0)]
+    [outside, drive, left(&Model::default()).swap_remove(0)]
 }
 
 /// The rows in which the instrument saw what was recorded too.
@@ -225,10 +225,10 @@ fn a_rotary_stage_is_read_in_the_sense_of_its_command() {
         let recording = bench.record(&calibration, &scenario(path(line(0, 0.0, 2.0), 0.2, 20.0), instrument));
         let study = Study::new(bench.equations(), Some(&calibration), &[&recording]);
         assert_eq!(study.scenes[0].channels[0].kind, Kind::Stage(0));
-        let left = residuals(&study, 0, &Vec::new(), &Course::new(&study, 0, &[]));
+        let left = residuals(&study, 0, &Model::default(), &Course::new(&study, 0, &Model::default()));
         assert!(peak(&left[0]) < 1e-8, "{machine}: {}", peak(&left[0]));
         let bare = Study::new(bench.equations(), None, &[&recording]);
-        let left = residuals(&bare, 0, &Vec::new(), &Course::new(&bare, 0, &[]));
+        let left = residuals(&bare, 0, &Model::default(), &Course::new(&bare, 0, &Model::default()));
         assert!(peak(&left[0]) > 60e-6);
     }
 }
@@ -253,7 +253,7 @@ fn drives_see_what_came_in_on_their_side_only() {
         let study = Study::new(bench.equations(), Some(&friction), &[recording]);
         let left = |side: Side| {
             let effect = Effect { place: Place::Motion { motion: 0, side }, shape: shape.clone() };
-            let model = vec![Fitted { effect, coefficients: vec![0.01] }];
+            let model = Model::of([Fitted { effect, coefficients: vec![0.01] }]);
             let residuals = residuals(&study, 0, &model, &Course::new(&study, 0, &model));
             residuals.iter().map(|residual| peak(residual)).fold(0.0, f64::max)
         };
@@ -275,7 +275,7 @@ fn stretches_make_no_difference() {
         place: Place::Motion { motion: bench.motion("EYX"), side: Side::After },
         shape: Shape::Backlash { axis: 0, wind_up: 40.0 },
     };
-    let model = vec![Fitted { effect: wound, coefficients: vec![0.01] }];
+    let model = Model::of([Fitted { effect: wound, coefficients: vec![0.01] }]);
     let course = Course::new(&study, 0, &model);
     let pieces = residuals(&study, 0, &model, &course);
     let moved = Passage::new(&study, 0, &model).moved(&study, &course, 0..recording.time.len());

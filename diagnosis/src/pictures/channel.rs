@@ -4,11 +4,14 @@ use pages::plot::thin::{extremes, spread};
 
 use super::spectrum;
 use super::{AxisTrack, ChannelPicture, RunMean, Samples, Track};
+use crate::channel::{ChannelAt, Kind};
 use crate::course::Course;
 use crate::model::Model;
+use crate::scene::Scene;
 use crate::states::States;
-use crate::study::{Kind, Scene, Study};
+use crate::study::Study;
 use crate::terms::Shape;
+use crate::weights::Outliers;
 
 /// What all channels of a recording are seen with.
 pub(super) struct Sight<'s> {
@@ -16,6 +19,8 @@ pub(super) struct Sight<'s> {
     pub(super) scene: usize,
     pub(super) course: &'s Course,
     pub(super) model: &'s Model,
+    /// Samples that are left out beside the model.
+    pub(super) outliers: &'s Outliers,
     /// How many samples are drawn of a channel.
     pub(super) samples: usize,
 }
@@ -36,11 +41,12 @@ pub(super) fn draw(
 ) -> ChannelPicture {
     let scene = &sight.study.scenes[sight.scene];
     let channel = &scene.channels[number];
+    let outliers = sight.outliers.of(ChannelAt { scene: sight.scene, channel: number });
     let clean = |values: &[f64], outliers: &[bool]| -> Vec<f64> {
         let marked = values.iter().zip(outliers);
         marked.map(|(value, outlier)| if *outlier { f64::NAN } else { *value }).collect()
     };
-    let cleaned = (clean(before, outliers_before), clean(after, &channel.outliers));
+    let cleaned = (clean(before, outliers_before), clean(after, outliers));
     let states = sight.course.states(channel.kind);
     ChannelPicture {
         name: channel.name.clone(),
@@ -48,11 +54,11 @@ pub(super) fn draw(
         unit: if channel.kind.angular(sight.study.equations) { "rad" } else { "mm" },
         counts: counts(channel.kind),
         samples: count(&cleaned.1),
-        outliers: channel.outliers.iter().filter(|outlier| **outlier).count(),
+        outliers: outliers.iter().filter(|outlier| **outlier).count(),
         rms: (rms(&cleaned.0), rms(&cleaned.1)),
         unchanged: unchanged(&cleaned),
         reach: (reach(&cleaned.0), reach(&cleaned.1)),
-        shown: shown(sight, states, (before, after), &cleaned, &channel.outliers),
+        shown: shown(sight, states, (before, after), &cleaned, outliers),
         runs: run_means(scene, &cleaned),
         over_time: spectrum::over_time(sight, &cleaned),
         over_position: spectrum::over_position(sight, states, &cleaned),
@@ -174,8 +180,9 @@ fn range(values: &[f64]) -> f64 {
 /// The sensors that the model reads, then those that change most.
 fn temperatures(sight: &Sight<'_>, rows: &[usize]) -> Vec<Track> {
     let given = &sight.study.scenes[sight.scene].given.temperatures;
-    let reads =
-        |sensor: usize| sight.model.iter().any(|fitted| sensor_of(&fitted.effect.shape) == Some(sensor));
+    let reads = |sensor: usize| {
+        sight.model.effects.iter().any(|fitted| sensor_of(&fitted.effect.shape) == Some(sensor))
+    };
     let mut sensors: Vec<usize> = (0..given.len()).filter(|sensor| range(&given[*sensor]) > WARMER).collect();
     sensors.sort_by(|a, b| {
         reads(*b).cmp(&reads(*a)).then(range(&given[*b]).total_cmp(&range(&given[*a]))).then(a.cmp(b))

@@ -5,9 +5,10 @@ use pages::plot::thin::extremes;
 
 use super::channel::Sight;
 use super::{Circle, Pass};
+use crate::channel::{ChannelAt, Kind};
 use crate::course::Course;
 use crate::observations;
-use crate::study::{Kind, Scene};
+use crate::scene::Scene;
 
 /// How many points are drawn of a pass, and how many passes of each sense at most: the first and the last.
 const POINTS: usize = 500;
@@ -39,7 +40,7 @@ pub(super) fn draw(sight: &Sight<'_>, before: &[Vec<f64>], after: &[Vec<f64>]) -
         return None;
     }
     // What the known calibration predicts, without any setting of the instrument.
-    let none = Vec::new();
+    let none = sight.model.with_effects([]);
     let plain = observations::residuals(study, sight.scene, &none, &Course::new(study, sight.scene, &none));
     let radial = |row: usize, of: &dyn Fn(usize) -> f64| match &seen {
         Seen::Bar { channel, .. } => of(*channel),
@@ -64,7 +65,10 @@ pub(super) fn draw(sight: &Sight<'_>, before: &[Vec<f64>], after: &[Vec<f64>]) -
         })
     };
     let left = |row: usize, residuals: &[Vec<f64>]| radial(row, &|channel| residuals[channel][row]);
-    let outlier = |row: usize| seen.channels().iter().any(|channel| scene.channels[*channel].outliers[row]);
+    let left_out = |channel: &usize, row: usize| {
+        sight.outliers.of(ChannelAt { scene: sight.scene, channel: *channel })[row]
+    };
+    let outlier = |row: usize| seen.channels().iter().any(|channel| left_out(channel, row));
     let point = |row: usize| {
         let [x, y] = spoke(row);
         let known = known(row);

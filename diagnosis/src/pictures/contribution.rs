@@ -1,26 +1,31 @@
 //! Contributions. In: a fitted model. Out: how much each finding adds to the readings.
 
 use super::Contribution;
-use crate::model::Model;
-use crate::study::{Kind, Study};
+use crate::channel::{ChannelAt, Kind};
+use crate::engine::Found;
+use crate::study::Study;
 use crate::zeros;
 
 /// For each of the effects with these numbers what the model leaves without it, minus what it leaves with it.
 pub(super) fn draw(
     study: &Study<'_>,
-    model: &Model,
+    found: &Found,
     after: &[Vec<Vec<f64>>],
     (counts, factor): (&dyn Fn(Kind) -> bool, f64),
     findings: &[usize],
 ) -> Vec<Contribution> {
+    let (model, outliers) = (&found.fit.model, &found.appraisal.weights.outliers);
     let of = |number: &usize| {
-        let mut without = model.clone();
-        without.remove(*number);
+        let without = model.without(*number);
         let (mut squares, mut samples, mut max) = (0.0, 0.0, 0.0_f64);
         for (scene, residuals) in zeros::residuals(study, &without).iter().enumerate() {
-            let channels = study.scenes[scene].channels.iter().zip(residuals).zip(&after[scene]);
-            for ((channel, without), with) in channels.filter(|((channel, _), _)| counts(channel.kind)) {
-                let rows = (0..without.len()).filter(|row| !channel.outliers[*row]);
+            for (channel, (without, with)) in residuals.iter().zip(&after[scene]).enumerate() {
+                let at = ChannelAt { scene, channel };
+                if !counts(study.channel(at).kind) {
+                    continue;
+                }
+                let outliers = outliers.of(at);
+                let rows = (0..without.len()).filter(|row| !outliers[*row]);
                 let mut added: Vec<f64> =
                     rows.map(|row| without[row] - with[row]).filter(|value| value.is_finite()).collect();
                 zeros::center(&mut added);
@@ -31,5 +36,5 @@ pub(super) fn draw(
         }
         Contribution { rms: (squares / f64::max(samples, 1.0)).sqrt() * factor, max: max * factor }
     };
-    findings.iter().filter(|number| **number < model.len()).map(of).collect()
+    findings.iter().filter(|number| **number < model.effects.len()).map(of).collect()
 }

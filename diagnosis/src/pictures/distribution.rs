@@ -2,7 +2,9 @@
 
 use super::channel::reach;
 use super::{Before, Distribution};
-use crate::study::{Kind, Study};
+use crate::channel::{ChannelAt, Kind};
+use crate::study::Study;
+use crate::weights::Outliers;
 
 /// How many classes there are, at least and at most.
 const CLASSES: (usize, usize) = (15, 81);
@@ -11,20 +13,21 @@ const CLASSES: (usize, usize) = (15, 81);
 pub(super) fn draw(
     study: &Study<'_>,
     before: &Before,
-    after: &[Vec<Vec<f64>>],
+    (after, outliers): (&[Vec<Vec<f64>>], &Outliers),
     (counts, factor): (&dyn Fn(Kind) -> bool, f64),
 ) -> Vec<Distribution> {
     let mut samples: [Vec<f64>; 3] = Default::default();
     for (scene, known) in study.scenes.iter().enumerate() {
         let fitted = known.fitted_rows();
-        for (number, channel) in known.channels.iter().enumerate().filter(|(_, channel)| counts(channel.kind))
-        {
+        for (number, _) in known.channels.iter().enumerate().filter(|(_, channel)| counts(channel.kind)) {
+            let at = ChannelAt { scene, channel: number };
+            let [left_out_before, left_out] = [&before.outliers, outliers].map(|outliers| outliers.of(at));
             for (row, fits) in fitted.iter().enumerate() {
                 let (old, new) = (before.residuals[scene][number][row], after[scene][number][row]);
-                if old.is_finite() && !before.outliers[scene][number][row] {
+                if old.is_finite() && !left_out_before[row] {
                     samples[0].push(old * factor);
                 }
-                if new.is_finite() && !channel.outliers[row] {
+                if new.is_finite() && !left_out[row] {
                     samples[1].push(new * factor);
                     if !fits {
                         samples[2].push(new * factor);

@@ -2,16 +2,18 @@
 
 use super::channel::{self, Sight};
 use super::{Picture, Pictures, circle, contribution, distribution};
+use crate::channel::ChannelAt;
 use crate::course::Course;
 use crate::engine::Found;
 use crate::model::Model;
 use crate::study::Study;
+use crate::weights::Outliers;
 use crate::zeros;
 
 /// The residuals of the known calibration, and the samples that were left out then: outliers are judged anew with the findings.
 pub(crate) struct Before {
     pub(crate) residuals: Vec<Vec<Vec<f64>>>,
-    pub(super) outliers: Vec<Vec<Vec<bool>>>,
+    pub(super) outliers: Outliers,
 }
 
 /// How many recordings are drawn.
@@ -23,12 +25,9 @@ const SAMPLES: usize = 2600;
 const OF_A_CHANNEL: (usize, usize) = (120, 1200);
 
 impl Before {
-    /// What a model leaves, with the outliers marked as they are now.
-    pub(crate) fn new(study: &Study<'_>, bare: &Model) -> Self {
-        let marks = |scene: &crate::study::Scene<'_>| {
-            scene.channels.iter().map(|channel| channel.outliers.clone()).collect()
-        };
-        Self { residuals: zeros::residuals(study, bare), outliers: study.scenes.iter().map(marks).collect() }
+    /// What a model leaves, and which samples are left out beside it.
+    pub(crate) fn new(study: &Study<'_>, bare: &Model, outliers: &Outliers) -> Self {
+        Self { residuals: zeros::residuals(study, bare), outliers: outliers.clone() }
     }
 
     /// The pictures. `counts` tells which channels count for the rms, and the factor to its unit; `findings` are the numbers of
@@ -37,10 +36,10 @@ impl Before {
         self,
         study: &Study<'_>,
         found: &Found,
-        counts: (&dyn Fn(crate::study::Kind) -> bool, f64),
+        counts: (&dyn Fn(crate::channel::Kind) -> bool, f64),
         findings: &[usize],
     ) -> Pictures {
-        let model = &found.fit.model;
+        let (model, outliers) = (&found.fit.model, &found.appraisal.weights.outliers);
         let after = zeros::residuals(study, model);
         let drawn = study.scenes.len().min(RECORDINGS);
         let channels: usize = study.scenes[..drawn].iter().map(|scene| scene.channels.len()).sum();
@@ -48,13 +47,14 @@ impl Before {
         let mut free = CHANNELS;
         let recordings = (0..drawn).map(|scene| {
             let course = Course::new(study, scene, model);
-            let sight = Sight { study, scene, course: &course, model, samples };
+            let sight = Sight { study, scene, course: &course, model, outliers, samples };
             let known = &study.scenes[scene].channels;
             let chosen = known.len().min(free);
             free -= chosen;
             let of_channel = |number: usize| {
                 let residuals = (self.residuals[scene][number].as_slice(), after[scene][number].as_slice());
-                channel::draw(&sight, number, residuals, &self.outliers[scene][number], counts.0)
+                let outliers = self.outliers.of(ChannelAt { scene, channel: number });
+                channel::draw(&sight, number, residuals, outliers, counts.0)
             };
             Picture {
                 recording: scene,
@@ -66,8 +66,8 @@ impl Before {
         let recordings = recordings.collect();
         Pictures {
             recordings,
-            contributions: contribution::draw(study, model, &after, counts, findings),
-            distributions: distribution::draw(study, &self, &after, counts),
+            contributions: contribution::draw(study, found, &after, counts, findings),
+            distributions: distribution::draw(study, &self, (&after, outliers), counts),
         }
     }
 }

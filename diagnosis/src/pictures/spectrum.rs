@@ -83,7 +83,7 @@ pub(super) fn over_position(
 impl Sight<'_> {
     /// The waves of the model that `place` picks, with their names.
     fn lines(&self, place: impl Fn(&Shape) -> Option<f64>) -> Vec<(f64, String)> {
-        let effects = self.model.iter().map(|fitted| &fitted.effect);
+        let effects = self.model.effects.iter().map(|fitted| &fitted.effect);
         let of = |effect: &crate::model::Effect| {
             let motion = &self.study.equations.motions[effect.motion()?];
             Some((place(&effect.shape)?, format!("{} of {}", effect.shape.name(), motion.name)))

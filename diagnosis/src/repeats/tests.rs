@@ -26,10 +26,10 @@ fn second_run_off_by(shift: f64) -> Option<Scatter> {
         .filter_map(|axis| axis.command.as_mut())
         .for_each(|command| moved(command, shift));
     recording.measured.iter_mut().flatten().for_each(|read| moved(read, shift + JUMP));
-    let mut study = Study::new(bench.equations(), None, std::slice::from_ref(&&recording));
+    let study = Study::new(bench.equations(), None, std::slice::from_ref(&&recording));
     let zero = Effect::setting(0, Setting::Offset { channel: 0 });
-    let model = vec![Fitted { effect: zero, coefficients: vec![0.01] }];
-    scatter(&mut study, &model).pop()
+    let model = Model::of([Fitted { effect: zero, coefficients: vec![0.01] }]);
+    scatter(&study, &model).pop()
 }
 
 #[test]

@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 
 use super::figure::change;
 use super::told;
-use model_dsl::notation::Formula;
+use notation::Formula;
 
 use crate::diagnosis::{
     Alternative, Change, Denied, Diagnosis, Estimate, Evidence, Finding, Form, Interval, IntervalOf,

@@ -10,7 +10,7 @@ fn with_returns<T>(look: impl FnOnce(&Returns, &States) -> T) -> T {
     (way.runs, way.pause) = (5, 1.0);
     let recording = bench.record(&bench.calibration("{}"), &scenario(way, position("x")));
     let study = Study::new(bench.equations(), None, &[&recording]);
-    let course = Course::new(&study, 0, &[]);
+    let course = Course::new(&study, 0, &Model::default());
     look(&study.scenes[0].returns, &course.shown)
 }
 

@@ -6,6 +6,7 @@ use crate::model::{Fitted, Model, Place};
 use crate::noise::Noise;
 use crate::side::Side;
 use crate::testing::{Bench, circle, path, position, scenario};
+use crate::weights::Weights;
 
 #[test]
 fn each_parameter_costs_the_logarithm_of_the_samples() {
@@ -37,9 +38,8 @@ fn a_set_costs_the_same_by_whatever_way_it_is_reached() {
     );
     let recording = bench.record(&calibration, &scenario(path(circle(40.0), 20.0, 10.0), position("x")));
     let study = Study::new(bench.equations(), None, &[&recording]);
-    let fitted = |effect: Effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect };
-    let model: Vec<Fitted> = effects(&bench).into_iter().map(fitted).collect();
-    let design = judge::design(&study, &model, &[vec![Noise::white(1e-3)]]);
+    let model = Model::of(effects(&bench).into_iter().map(Fitted::unfitted));
+    let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3)]]));
     let (products, samples) = design.fitted();
     let choice = Choice::new(&study, &design, products, samples, 1, 1.0, Resolution::new(&study, &[]));
 
@@ -149,10 +149,8 @@ fn a_drive_leads_only_where_no_clock_does_the_same() {
         let zero = Effect::setting(0, Setting::Offset { channel: 0 });
         let clock = beside_clock.then(|| Effect::setting(0, Setting::Clock));
         let effects = [zero, lag].into_iter().chain(clock);
-        let model: Model = effects
-            .map(|effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect })
-            .collect();
-        let design = judge::design(&study, &model, &[vec![Noise::white(1e-3)]]);
+        let model = Model::of(effects.map(Fitted::unfitted));
+        let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3)]]));
         let (products, samples) = design.fitted();
         let choice = Choice::new(&study, &design, products, samples, 1, 1.0, Resolution::new(&study, &[]));
         let empty = choice.empty();
@@ -186,11 +184,10 @@ fn of_two_that_bend_alike_in_one_place_one_is_enough() {
         on("EXX", wave(5.0)),
         on("EYX", wave(7.3)),
     ];
-    let fitted = |effect: Effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect };
-    let model: Model = effects.into_iter().map(fitted).collect();
-    let design = judge::design(&study, &model, &[vec![Noise::white(1e-3); 2]]);
+    let model = Model::of(effects.into_iter().map(Fitted::unfitted));
+    let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3); 2]]));
     let (products, samples) = design.fitted();
-    let travels = crate::travel::travels(&study, &crate::engine::courses(&study, &Model::new()));
+    let travels = crate::travel::travels(&study, &crate::engine::courses(&study, &Model::default()));
     let resolution = Resolution::new(&study, &travels);
     let choice = Choice::new(&study, &design, products, samples, 0, 1.0, resolution);
     for (a, b, both) in [
@@ -221,9 +218,8 @@ fn outgrown(calibration: &str, effects: &[(&str, Shape)]) -> Vec<bool> {
         place: Place::Motion { motion: bench.motion(motion), side: Side::After },
         shape: shape.clone(),
     });
-    let fitted = |effect: Effect| Fitted { coefficients: vec![0.0; effect.shape.columns()], effect };
-    let model: Model = zeros.chain(effects).map(fitted).collect();
-    let design = judge::design(&study, &model, &[vec![Noise::white(1e-3); 2]]);
+    let model = Model::of(zeros.chain(effects).map(Fitted::unfitted));
+    let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3); 2]]));
     let (products, samples) = design.fitted();
     let choice = Choice::new(&study, &design, products, samples, 2, 1.0, Resolution::new(&study, &[]));
     let all = choice.open.iter().fold(choice.empty(), |set, regressor| choice.with(&set, *regressor));

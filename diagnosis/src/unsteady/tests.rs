@@ -16,6 +16,7 @@ use crate::side::Side;
 use crate::terms::Setting;
 use crate::testing::{Bench, line, noisy, normals, path, position};
 use crate::travel;
+use crate::weights::{Outliers, Weights};
 
 /// The seeds every kind of noise is tried with.
 const SEEDS: std::ops::Range<u64> = 0..20;
@@ -54,15 +55,16 @@ fn lines_that_crowd_become_a_band_with_their_strength_together() {
         // More than 2 % away.
         vibration(2, 32.0, [4e-3, 0.0]),
     ];
-    let mut model: Model = Vec::new();
-    model.extend(others[..3].iter().cloned());
-    model.push(crowd[0].clone());
-    model.push(others[3].clone());
-    model.push(crowd[1].clone());
-    model.extend(others[4..].iter().cloned());
-    model.push(crowd[2].clone());
-    let bands = take_bands(&mut model, 1);
-    assert_eq!(model, others);
+    let mut model = Model::default();
+    model.effects.extend(others[..3].iter().cloned());
+    model.effects.push(crowd[0].clone());
+    model.effects.push(others[3].clone());
+    model.effects.push(crowd[1].clone());
+    model.effects.extend(others[4..].iter().cloned());
+    model.effects.push(crowd[2].clone());
+    let mut model = model.with_settings(1);
+    let bands = take_bands(&mut model);
+    assert_eq!(model.effects, others);
     let [band] = bands.as_slice() else { panic!("{bands:?}") };
     assert_eq!((band.motion, band.from, band.to), (2, 30.0, 30.5));
     // Over 10 s all three lines have whole periods.
@@ -82,28 +84,28 @@ fn lines_that_crowd_become_a_band_with_their_strength_together() {
 fn lines_need_not_be_near_to_each_other_but_to_one_of_them() {
     let of = |frequency: f64| vibration(0, frequency, [1e-3, 0.0]);
     // From the lowest to the highest it is 3 %.
-    let mut model = vec![of(50.0), of(51.5), of(50.7)];
-    let bands = take_bands(&mut model, 0);
+    let mut model = Model::of([of(50.0), of(51.5), of(50.7)]);
+    let bands = take_bands(&mut model);
     assert_eq!((bands[0].from, bands[0].to), (50.0, 51.5));
-    assert!(model.is_empty());
+    assert!(model.effects.is_empty());
     // Neighbours, none of which has both of the others near.
-    let mut model = vec![of(50.0), of(52.0), of(54.0)];
-    assert!(take_bands(&mut model, 0).is_empty());
-    assert_eq!(model.len(), 3);
+    let mut model = Model::of([of(50.0), of(52.0), of(54.0)]);
+    assert!(take_bands(&mut model).is_empty());
+    assert_eq!(model.effects.len(), 3);
 }
 
 #[test]
 fn every_motion_and_every_crowd_has_a_band_of_its_own() {
-    let mut model = Model::new();
+    let mut model = Model::default();
     for (motion, center) in [(0, 20.0), (0, 90.0), (3, 20.0)] {
-        model.extend([0.0, 0.05, 0.1].map(|off| vibration(motion, center + off, [1e-3, 0.0])));
+        model.effects.extend([0.0, 0.05, 0.1].map(|off| vibration(motion, center + off, [1e-3, 0.0])));
     }
     let mut bands: Vec<(usize, f64, f64)> =
-        take_bands(&mut model, 0).iter().map(|band| (band.motion, band.from, band.to)).collect();
+        take_bands(&mut model).iter().map(|band| (band.motion, band.from, band.to)).collect();
     bands.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
     assert_eq!(bands, [(0, 20.0, 20.1), (0, 90.0, 90.1), (3, 20.0, 20.1)]);
-    assert!(model.is_empty());
-    assert!(take_bands(&mut model, 0).is_empty());
+    assert!(model.effects.is_empty());
+    assert!(take_bands(&mut model).is_empty());
 }
 
 fn times(rows: usize) -> Vec<f64> {
@@ -258,15 +260,15 @@ fn stage(errors: &str, leftover: impl Fn(f64) -> f64) -> (Bench, Recording) {
 
 /// What is found where nothing but the zero of the instrument is fitted.
 fn found(study: &Study<'_>) -> Found {
-    let model = vec![zero(0)];
+    let model = Model::of([zero(0)]).with_settings(1);
     let courses = engine::courses(study, &model);
     let travels = travel::travels(study, &courses);
     let noises = vec![vec![Noise::white(1e-3); study.scenes[0].channels.len()]];
     let pool = kinship::groups(study, &courses, &noises, candidates::candidates(study, &travels));
-    let fit = fit::refine(study, model, &noises, &travels);
+    let fit = fit::refine(study, model, &Weights::of_all(study, noises), &travels);
     let appraisal = Appraisal::new(study, &fit.model);
     let tries = Tries { candidates: crate::number(pool.len()), waves: 1.0 };
-    Found { fit, appraisal, pool, travels, bands: Vec::new(), always: 1, tries, plain_zeros: false }
+    Found { fit, appraisal, pool, travels, bands: Vec::new(), tries, plain_zeros: false }
 }
 
 /// The standard deviation of what is left over, mm, and the periods of its sines, s.
@@ -287,14 +289,16 @@ fn seen(recording: &Recording) -> (&[f64], &[f64]) {
 fn play_below_something_smooth_is_suspected_with_its_lost_motion() {
     let (bench, recording) = stage("{EXX: [{backlash: {lost_motion: 6 um}}]}", leftover);
     let study = Study::new(bench.equations(), None, &[&recording]);
-    let suspect = suspect(&study, &found(&study)).unwrap();
+    let found = found(&study);
+    let suspect = suspect(&study, &found).unwrap();
     assert_eq!(suspect.fitted.effect.motion(), Some(bench.motion("EXX")));
     assert_eq!(suspect.fitted.effect.shape, Shape::Backlash { axis: 0, wind_up: 0.0 });
     let [lost] = suspect.fitted.coefficients[..] else { panic!("{:?}", suspect.fitted) };
     // In the mean of a stroke of 4 s a sine leaves at most its period / (pi 4 s); the lost motion is between two means.
     let most: f64 = PERIODS.iter().map(|period| 2.0 * SMOOTH * period / (PI * 4.0)).sum();
     assert!((lost - 6e-3).abs() < most, "{lost} {most}");
-    // Least squares by hand: the means of both directions, and what they leave.
+    // Least squares by hand, without outliers: the means of both directions, and what they leave.
+    let left_out = found.appraisal.weights.outliers.of(ChannelAt { scene: 0, channel: 0 });
     let (command, measured) = seen(&recording);
     let errors: Vec<f64> = command.iter().zip(measured).map(|(command, seen)| seen - command).collect();
     let mut forward = true;
@@ -303,7 +307,9 @@ fn play_below_something_smooth_is_suspected_with_its_lost_motion() {
         if row > 0 && command[row] != command[row - 1] {
             forward = command[row] > command[row - 1];
         }
-        split[usize::from(!forward)].push(*error);
+        if !left_out[row] {
+            split[usize::from(!forward)].push(*error);
+        }
     }
     let mean = |values: &[f64]| values.iter().sum::<f64>() / crate::number(values.len());
     let squares = |values: &[f64]| -> f64 {
@@ -312,7 +318,7 @@ fn play_below_something_smooth_is_suspected_with_its_lost_motion() {
     };
     let [ahead, back] = &split;
     assert!((lost - (mean(back) - mean(ahead))).abs() < 1e-6, "{lost}");
-    let share = 1.0 - (squares(ahead) + squares(back)) / squares(&errors);
+    let share = 1.0 - (squares(ahead) + squares(back)) / squares(&split.concat());
     assert!((suspect.share - share).abs() < 1e-3 && share > COMES_NEAR, "{} {share}", suspect.share);
 }
 
@@ -338,9 +344,9 @@ fn what_is_in_the_model_is_not_suspected_again() {
     let study = Study::new(bench.equations(), None, &[&recording]);
     let mut found = found(&study);
     let play = machine(bench.motion("EXX"), Shape::Backlash { axis: 0, wind_up: 0.0 }, &[0.0]);
-    found.fit.model.push(play);
-    let noises = found.appraisal.as_white();
-    found.fit = fit::refine(&study, found.fit.model.clone(), &noises, &found.travels);
+    found.fit.model.effects.push(play);
+    let weights = found.appraisal.weights.as_white();
+    found.fit = fit::refine(&study, found.fit.model.clone(), &weights, &found.travels);
     found.appraisal = Appraisal::new(&study, &found.fit.model);
     assert!(suspect(&study, &found).is_none());
 }
@@ -358,13 +364,11 @@ fn the_largest_channel_that_moves_is_named_and_outliers_do_not_hide_it() {
     let mut residuals: Vec<Vec<f64>> =
         vec![normals(9, rows).iter().map(|value| 10.0 * value).collect(); channels];
     residuals[0] = smooth.iter().map(|value| 0.5 * value).collect();
-    let none = vec![vec![vec![false; rows]; channels]];
     let noises = vec![vec![Noise::white(1.0); channels]];
     let mut appraisal = Appraisal {
         residuals: vec![residuals],
-        outliers: none,
         floors: noises.clone(),
-        noises,
+        weights: Weights::of_all(&study, noises),
         returning: Vec::new(),
         leftover: Vec::new(),
         deviance: 0.0,
@@ -377,9 +381,11 @@ fn the_largest_channel_that_moves_is_named_and_outliers_do_not_hide_it() {
         appraisal.residuals[0][1][row] += 40.0;
     }
     assert_eq!(moving(&study, &appraisal).unwrap().at.channel, 0, "what jumps does not move smoothly");
+    let mut marks = vec![vec![false; rows]; channels];
     for row in (7..rows).step_by(31) {
-        appraisal.outliers[0][1][row] = true;
+        marks[1][row] = true;
     }
+    appraisal.weights.outliers = Outliers::new(vec![marks]);
     let found = moving(&study, &appraisal).unwrap();
     assert_eq!(found.at, ChannelAt { scene: 0, channel: 1 });
     keeps_on_for(Some((found.time, found.rms)), &sines, "channel 1");

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::model::{Effect, Fitted};
+use crate::noise::Noise;
 use crate::side::Side;
 use crate::testing::{Bench, circle, noisy, path, position};
 
@@ -22,9 +23,10 @@ fn plain_zeros_are_means_beside_effects_that_stay() {
     let play = Fitted { effect: Effect { place, shape }, coefficients: vec![0.007] };
     // Wherever the zeros stood before, and however large the noise is taken to be.
     for (start, size) in [(0.0, 1e-4), (0.05, 3e-3)] {
-        let mut model = vec![zero(0, start), zero(1, -start), play.clone()];
-        weigh_plainly(&study, &mut model, 2, &[vec![Noise::white(size); 2]]);
-        assert_eq!(model[2], play);
+        let mut model = Model::of([zero(0, start), zero(1, -start), play.clone()]).with_settings(2);
+        let weights = Weights::of_all(&study, vec![vec![Noise::white(size); 2]]);
+        weigh_plainly(&study, &mut model, &weights);
+        assert_eq!(model.effects[2], play);
         let fitted = study.scenes[0].fitted_rows();
         for residual in &residuals(&study, &model)[0] {
             let counted = residual.iter().zip(&fitted).filter(|(value, fits)| value.is_finite() && **fits);

@@ -7,8 +7,8 @@ use std::path::Path;
 
 use super::{Calibration, MachineNames, machine_of, read};
 use crate::diagnostic::{Diagnostic, Diagnostics, render};
-use crate::equations::{Equations, Names};
-use crate::notation::{self, Format};
+use crate::equations::Equations;
+use crate::sheet::json;
 use crate::source::{SourceFile, Spanned};
 use crate::{compile, yaml};
 
@@ -31,7 +31,7 @@ impl CompiledIn {
 
     /// The equations as text by which two machines are known to be the same.
     pub fn of_equations(equations: &Equations) -> String {
-        notation::print(equations, Format::Json, Names::Iso)
+        json::object(equations)
     }
 
     /// Reads a calibration of this machine. `folder` is where the file lies.

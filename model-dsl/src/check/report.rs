@@ -2,7 +2,7 @@
 
 use super::{Comparison, Finding, Report, Verdict, differences};
 use crate::algebra::{Axis, Polynomial};
-use crate::notation::infix;
+use crate::sheet::infix;
 
 /// The whole report.
 pub(super) fn text(report: &Report) -> String {

@@ -10,7 +10,7 @@ use crate::Compiled;
 use crate::algebra::{Polynomial, Symbol};
 use crate::diagnostic::Diagnostics;
 use crate::expression::parse;
-use crate::notation::infix;
+use crate::sheet::infix;
 use crate::source::SourceFile;
 
 fn file(path: &str) -> SourceFile {
@@ -343,7 +343,7 @@ fn letters_hold_for_their_section_only() {
 fn factored_equations_agree_with_what_was_derived() {
     for name in ["trunnion-5axis", "head-table-5axis"] {
         let compiled = machine(name);
-        let lines = crate::notation::error_lines(&compiled.equations, crate::equations::Names::Iso);
+        let lines = crate::sheet::error_lines(&compiled.equations, crate::equations::Names::Iso);
         let statement =
             |line: &String| if line.starts_with('L') { format!("let {line}\n") } else { format!("{line}\n") };
         let report = report(&compiled, &lines.iter().map(statement).collect::<String>());
@@ -355,7 +355,7 @@ fn factored_equations_agree_with_what_was_derived() {
 #[test]
 fn an_error_may_be_counted_from_another_axis_where_that_is_the_same() {
     let compiled = crate::compile_word("CFXYZ", &mut Diagnostics::new()).expect("a word");
-    let full = crate::notation::error_lines(&compiled.equations, crate::equations::Names::Iso);
+    let full = crate::sheet::error_lines(&compiled.equations, crate::equations::Names::Iso);
     let with = |name: &str| {
         let lines = full.iter().map(|line| line.replace("EA0C", name));
         lines

@@ -4,7 +4,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use crate::equations::{Equations, Motion, Names, Row};
-use crate::notation::{direction_error_lines, error_lines, infix};
+use crate::sheet::{direction_error_lines, error_lines, infix};
 
 /// Documentation as attributes, one a line, so that it is printed as `///` lines.
 pub(super) fn attributes(text: &str) -> TokenStream {

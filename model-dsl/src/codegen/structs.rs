@@ -7,7 +7,7 @@ use super::body::number;
 use super::docs;
 use super::idents::field;
 use crate::equations::Equations;
-use crate::notation::followed;
+use crate::sheet::followed;
 
 /// All records, and the machine itself.
 pub(super) fn all(equations: &Equations) -> TokenStream {

@@ -10,7 +10,7 @@ use super::words::{exact_length, is_name};
 use crate::algebra::{Axis, Monomial, Polynomial, Rational, Symbol, to_f64};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::expression;
-use crate::notation::infix;
+use crate::sheet::infix;
 use crate::source::{Span, Spanned};
 use crate::suggest::nearest;
 use crate::yaml::{Node, NodeKind};

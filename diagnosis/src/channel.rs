@@ -1,0 +1,135 @@
+//! Channels: what was observed, and in which direction.
+//!
+//! In: a recording. Out: its channels, each a number in each row, with what the instrument behind it shows of the machine.
+
+use model_dsl::equations::Equations;
+
+use crate::noise;
+use crate::recording::{Instrument, Recording};
+use crate::returns::Return;
+use crate::rounded;
+
+/// A channel of a recording, by the numbers of both.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) struct ChannelAt {
+    pub(crate) scene: usize,
+    pub(crate) channel: usize,
+}
+
+/// One observed quantity: a number with a direction in each row.
+#[derive(Clone, Debug)]
+pub(crate) struct Channel<'a> {
+    /// The channel's name in the recording.
+    pub(crate) name: String,
+    pub(crate) kind: Kind,
+    /// mm or rad; NaN where it is missing.
+    pub(crate) values: &'a [f64],
+    /// The standard deviation of the rounding of its values, and of the commands that it is held against.
+    pub(crate) rounding: f64,
+    /// The states of which functions predict what the calibration leaves of it.
+    pub(crate) returning: Vec<Return>,
+}
+
+impl Channel<'_> {
+    /// The step of its display.
+    pub(crate) fn step(&self) -> f64 {
+        rounded::step(self.rounding)
+    }
+}
+
+/// What a channel observes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Kind {
+    /// The tool tip in one direction of the part's frame.
+    Tip(usize),
+    /// The distance of the tool tip from a centre, minus a radius.
+    Radius { center: [f64; 3], radius: f64 },
+    /// The error of the tool tip along a direction.
+    Along([f64; 3]),
+    /// The error of the tool tip along the normal in each row.
+    Normal,
+    /// The rotation of the tool relative to the part about a direction.
+    Turn([f64; 3]),
+    /// The angle of a rotary axis.
+    Stage(usize),
+    /// The drive's own feedback of an axis.
+    Drive(usize),
+}
+
+impl Kind {
+    /// Whether an instrument outside the drive reads it.
+    pub(crate) fn outside(self) -> bool {
+        !matches!(self, Self::Drive(_))
+    }
+
+    /// Whether two channels, of different recordings, read the same: one axis, or one direction of the part's frame, or in any
+    /// direction what one instrument is made for.
+    pub(crate) fn reads_as(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Tip(one), Self::Tip(two))
+            | (Self::Stage(one), Self::Stage(two))
+            | (Self::Drive(one), Self::Drive(two)) => one == two,
+            (Self::Radius { .. }, Self::Radius { .. })
+            | (Self::Along(_), Self::Along(_))
+            | (Self::Normal, Self::Normal)
+            | (Self::Turn(_), Self::Turn(_)) => true,
+            _ => false,
+        }
+    }
+
+    /// Whether it is an angle.
+    pub(crate) fn angular(self, equations: &Equations) -> bool {
+        match self {
+            Self::Turn(_) | Self::Stage(_) => true,
+            Self::Drive(axis) => equations.axes.get(axis).is_some_and(|axis| axis.rotary),
+            _ => false,
+        }
+    }
+}
+
+/// What was observed. `rounded` are the steps of the commands: their rounding is noise of what is predicted.
+pub(crate) fn channels<'a>(
+    recording: &'a Recording,
+    equations: &Equations,
+    rounded: &[f64],
+) -> Vec<Channel<'a>> {
+    let mut channels = Vec::new();
+    let mut add = |name: String, kind: Kind, values: &'a [f64]| {
+        let predicted = rounded.iter().enumerate().filter(|(axis, _)| match kind {
+            Kind::Drive(own) | Kind::Stage(own) => *axis == own,
+            // How far an axis moves the tip depends on the machine; a slide does it one to one.
+            _ => equations.axes.get(*axis).is_some_and(|axis| !axis.rotary) && !kind.angular(equations),
+        });
+        let predicted = predicted.map(|(_, step)| rounded::deviation(*step));
+        let rounding = predicted.fold(noise::rounding(values), f64::hypot);
+        channels.push(Channel { name, kind, values, rounding, returning: Vec::new() });
+    };
+    for (direction, values) in recording.measured.iter().enumerate() {
+        if let Some(values) = values {
+            let letter = ["x", "y", "z"][direction];
+            add(format!("measured.{letter}"), Kind::Tip(direction), values);
+        }
+    }
+    if let Some(values) = &recording.deviation {
+        let kind = match &recording.instrument {
+            Instrument::Position | Instrument::Probe => Kind::Normal,
+            Instrument::Ballbar { center, radius } => Kind::Radius { center: *center, radius: *radius },
+            Instrument::Linear(line) | Instrument::Straightness(line) => Kind::Along(line.direction),
+            Instrument::Angular { about, .. } => Kind::Turn(*about),
+        };
+        add("deviation".to_owned(), kind, values);
+    }
+    for (axis, known) in recording.axes.iter().enumerate() {
+        let letter = equations.axes.get(axis).map(|axis| axis.letter.to_lowercase()).unwrap_or_default();
+        // What an axis was measured by cannot be its position as well.
+        if let Some(values) = &known.measured
+            && (known.command.is_some() || known.actual.is_some())
+        {
+            add(format!("measured.{letter}"), Kind::Stage(axis), values);
+        }
+        if let (Some(values), Some(_)) = (&known.actual, &known.command) {
+            add(format!("actual.{letter}"), Kind::Drive(axis), values);
+        }
+    }
+    channels
+}

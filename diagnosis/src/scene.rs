@@ -1,0 +1,273 @@
+//! Scenes: one recording in the study.
+//!
+//! In: a recording, the machine that was recorded, a calibration where there is one. Out: its channels, its sensors under the numbers of
+//! the study, its blocks of rows, and which of them are held out.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use model_dsl::calibration::{Calibration, SensorReadings};
+use model_dsl::equations::Equations;
+use model_dsl::exact::ExactProduct;
+use model_dsl::program::Interpreter;
+
+use crate::channel::{Channel, Kind, channels};
+use crate::course::LastCourse;
+use crate::legs::GAP;
+use crate::recording::{Instrument, Lie, Recording};
+use crate::returns::Returns;
+use crate::states::{Given, Shared, behind_corners, beside_reversals, unseen_turns};
+use crate::targets::Targets;
+
+/// A machine with the values of its constants while one recording was made.
+pub(crate) struct Built {
+    pub(crate) interpreter: Interpreter,
+    /// The same machine without linearisation, for what the calibration says.
+    pub(crate) exact: ExactProduct,
+}
+
+impl Built {
+    pub(crate) fn new(equations: &Equations, constants: &[f64]) -> Arc<Self> {
+        let interpreter = Interpreter::new(equations, constants);
+        Arc::new(Self { interpreter, exact: ExactProduct::new(equations, constants) })
+    }
+}
+
+/// One recording in the study.
+pub(crate) struct Scene<'a> {
+    pub(crate) recording: &'a Recording,
+    /// The machine that was recorded: recordings with tools of different lengths differ in a constant.
+    pub(crate) built: Arc<Built>,
+    pub(crate) given: Given,
+    pub(crate) channels: Vec<Channel<'a>>,
+    pub(crate) blocks: Vec<Block>,
+    /// How long it was observed, s: gaps and pauses left out.
+    pub(crate) observed: f64,
+    /// Rows that are left out because an axis turned a corner just before, between two rows.
+    pub(crate) corners: Vec<bool>,
+    /// Axes whose command is an end point; the rows in which they are on their way are left out too.
+    pub(crate) targets: Targets,
+    /// Whether the axes are at rest in every row, as far as position loops go: rows far apart, which a calibration with
+    /// loops explains better so.
+    pub(crate) at_rest: bool,
+    /// The directions in which the path leaves the plane of a ballbar's centre; the others a ballbar does not show.
+    pub(crate) leans: [bool; 3],
+    /// How the part lies where it was measured, where that is free.
+    pub(crate) lie: Option<Lie>,
+    /// The course that was worked out last.
+    pub(crate) last_course: LastCourse,
+    /// What may come back in it.
+    pub(crate) returns: Returns,
+}
+
+/// A stretch of rows of one run that is fitted, or held out, as a whole.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Block {
+    pub(crate) rows: Range<usize>,
+    pub(crate) run: i64,
+    pub(crate) held_out: bool,
+}
+
+impl<'a> Scene<'a> {
+    /// A recording; where it lies and what may come back in it is told once the study holds it.
+    pub(crate) fn new(
+        recording: &'a Recording,
+        equations: &Equations,
+        calibration: Option<&Calibration>,
+        (sensors, loads): (&[String], &[(String, String)]),
+        built: Arc<Built>,
+    ) -> Self {
+        let rows = recording.time.len();
+        let loads = loads.iter().map(|(name, _)| column(&recording.loads, name, rows)).collect();
+        let given = Given::new(recording, temperatures(recording, calibration, sensors), loads);
+        let letters: Vec<&str> = equations.axes.iter().map(|axis| axis.letter.as_str()).collect();
+        let targets = Targets::new(recording, &given, &letters);
+        let rounded = Arc::clone(&given.rounded);
+        Self {
+            // Only the rows in which they have arrived are left.
+            at_rest: !targets.axes.is_empty(),
+            targets,
+            last_course: LastCourse::default(),
+            returns: Returns::default(),
+            observed: observed(&given),
+            corners: corners(recording, &given),
+            leans: leans(recording, &given.programmed, &built.interpreter),
+            lie: None,
+            built,
+            recording,
+            given,
+            channels: channels(recording, equations, &rounded),
+            blocks: blocks(recording),
+        }
+    }
+
+    /// How many rows there are.
+    pub(crate) fn rows(&self) -> usize {
+        self.recording.time.len()
+    }
+
+    /// Whether it is read along normals, from one zero.
+    pub(crate) fn is_probed(&self) -> bool {
+        self.channels.iter().any(|channel| channel.kind == Kind::Normal)
+    }
+
+    /// Whether a channel is a drive's own feedback.
+    pub(crate) fn has_drives(&self) -> bool {
+        self.channels.iter().any(|channel| !channel.kind.outside())
+    }
+
+    /// Whether nothing is read off a row, whatever stands in it.
+    pub(crate) fn left_out(&self, row: usize) -> bool {
+        self.corners[row] || self.targets.on_the_way.get(row) == Some(&true)
+    }
+
+    /// Whether rows are so far apart that what a position loop does is over before the next.
+    pub(crate) fn sparse(&self) -> bool {
+        self.given.step > SPARSE
+    }
+
+    /// For each row whether it is fitted, and not held out.
+    pub(crate) fn fitted_rows(&self) -> Vec<bool> {
+        let mut fitted = vec![true; self.rows()];
+        for block in self.blocks.iter().filter(|block| block.held_out) {
+            fitted[block.rows.clone()].fill(false);
+        }
+        fitted
+    }
+
+    /// The runs in order of their first rows.
+    pub(crate) fn run_numbers(&self) -> Vec<i64> {
+        self.recording.run_numbers()
+    }
+}
+
+fn corners(recording: &Recording, given: &Given) -> Vec<bool> {
+    let rows = recording.time.len();
+    let any = |each: &dyn Fn(usize, &[f64]) -> Vec<bool>, most: usize| {
+        let mut marked = vec![false; rows];
+        for (axis, position) in given.programmed.iter().enumerate() {
+            marked.iter_mut().zip(each(axis, position)).for_each(|(mark, here)| *mark |= here);
+        }
+        // A path of such rows only is one that was recorded so; nothing would be left.
+        if marked.iter().filter(|mark| **mark).count() > rows / most { vec![false; rows] } else { marked }
+    };
+    let at_corners = |axis: usize, position: &[f64]| {
+        let of = if given.rounded[axis] > 0.0 { beside_reversals } else { behind_corners };
+        of(&recording.time, &given.legs, position)
+    };
+    let mut corners = any(&at_corners, MOST_CORNERS);
+    if given.step > SPARSE {
+        let turns = any(&|_, position| unseen_turns(&given.legs, position), MOST_TURNS);
+        corners.iter_mut().zip(turns).for_each(|(corner, turn)| *corner |= turn);
+    }
+    corners
+}
+
+/// The time of all steps that are no gaps.
+fn observed(given: &Given) -> f64 {
+    let longest = GAP * given.step;
+    given.time.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step <= longest).sum()
+}
+
+/// One row in so many may lie behind a corner, and one in so many where an axis may have turned unseen.
+const MOST_CORNERS: usize = 20;
+const MOST_TURNS: usize = 3;
+
+/// A ballbar that leans less than this share of its length into a direction shows nothing of it.
+const LEANS: f64 = 0.02;
+
+fn leans(recording: &Recording, programmed: &[Shared], interpreter: &Interpreter) -> [bool; 3] {
+    let Instrument::Ballbar { center, radius } = recording.instrument else { return [true; 3] };
+    let positions: Vec<&[f64]> = programmed.iter().map(|position| &**position).collect();
+    let nominal = interpreter.nominal_columns(&positions);
+    [0, 1, 2].map(|d| nominal[d].iter().any(|place| (place - center[d]).abs() > LEANS * radius))
+}
+
+/// A channel by name with its gaps bridged; NaN everywhere where it was not recorded.
+fn column(channels: &[crate::recording::Named], name: &str, rows: usize) -> Vec<f64> {
+    let channel = channels.iter().find(|channel| channel.name == name);
+    channel.map_or_else(|| vec![f64::NAN; rows], |channel| bridged(&channel.values))
+}
+
+/// Gaps bridged by straight lines over rows, and held at the ends: temperatures and loads change slowly between samples.
+fn bridged(values: &[f64]) -> Vec<f64> {
+    let mut bridged = values.to_vec();
+    let mut last: Option<usize> = None;
+    for row in 0..bridged.len() {
+        if !values[row].is_finite() {
+            continue;
+        }
+        let from = last.map_or(0, |last| last + 1);
+        let start = last.map_or(values[row], |last| values[last]);
+        let span = crate::number(row - from + 1);
+        for (step, gap) in (from..row).enumerate() {
+            bridged[gap] = start + (values[row] - start) * crate::number(step + 1) / span;
+        }
+        last = Some(row);
+    }
+    if let Some(last) = last {
+        let held = values[last];
+        bridged[last..].fill(held);
+    }
+    bridged
+}
+
+/// The temperatures of all sensors of the study, the calibration's derived ones worked out row by row.
+fn temperatures(
+    recording: &Recording,
+    calibration: Option<&Calibration>,
+    sensors: &[String],
+) -> Vec<Vec<f64>> {
+    let rows = recording.time.len();
+    let mut columns: Vec<Vec<f64>> =
+        sensors.iter().map(|name| column(&recording.temperatures, name, rows)).collect();
+    if let Some(calibration) = calibration {
+        let inputs = columns.clone();
+        let mut readings = SensorReadings::new(&calibration.sensors);
+        for row in 0..rows {
+            let now = readings.update(|sensor| inputs[sensor][row]);
+            for (column, value) in columns.iter_mut().zip(now) {
+                column[row] = *value;
+            }
+        }
+    }
+    columns
+}
+
+/// The step between rows, s, from which on a recording is sparse: the slowest loops settle within it.
+const SPARSE: f64 = 0.2;
+
+/// How many blocks the rows that are fitted are cut into, at least.
+const BLOCKS: usize = 12;
+/// The fewest rows of a block.
+const BLOCK_ROWS: usize = 8;
+/// One block in so many is held out where the recording names no runs for it.
+const HELD_OUT_EVERY: usize = 4;
+
+/// Runs cut into blocks; those of held-out runs, or else one of every four blocks, are held out.
+fn blocks(recording: &Recording) -> Vec<Block> {
+    let runs = recording.runs();
+    let several = runs.len() > 1;
+    let pieces = BLOCKS.div_ceil(runs.len().max(1)).max(2);
+    let mut blocks = Vec::new();
+    for (rows, run) in runs {
+        let pieces = pieces.min(rows.len() / BLOCK_ROWS).max(1);
+        let bounds = |piece: usize| rows.start + rows.len() * piece / pieces;
+        blocks.extend((0..pieces).map(|piece| Block {
+            rows: bounds(piece)..bounds(piece + 1),
+            run,
+            held_out: recording.holdout.as_ref().is_some_and(|held| held.contains(&run)),
+        }));
+    }
+    if recording.holdout.is_none() && blocks.len() >= HELD_OUT_EVERY {
+        // Where runs have whole groups of blocks, another one each time: what comes round with every run would hold out the
+        // same quadrant for ever.
+        let turn = usize::from(pieces.is_multiple_of(HELD_OUT_EVERY) && several);
+        for (group, blocks) in blocks.chunks_mut(HELD_OUT_EVERY).enumerate() {
+            if let Some(block) = blocks.get_mut((HELD_OUT_EVERY / 2 + turn * group) % HELD_OUT_EVERY) {
+                block.held_out = true;
+            }
+        }
+    }
+    blocks
+}

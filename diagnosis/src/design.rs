@@ -21,6 +21,7 @@ use crate::parallel;
 use crate::study::Study;
 use crate::weights::Weights;
 
+pub(crate) use lower::Lower;
 pub(crate) use run::ChannelRun;
 
 /// One or more columns: an effect, or how an effect changes with its nonlinear parameter.

@@ -90,7 +90,7 @@ use diagnosis::Diagnosis;
 pub(crate) use ::recording;
 use recording::Recording;
 
-pub use follow::{Followed, Size, follow, is_event, told_by};
+pub use follow::{Followed, Size, Untold, follow, is_event, told_by};
 pub use terms::{look_at, meaning};
 
 /// What a diagnosis starts from.

@@ -180,6 +180,20 @@ impl Step {
     }
 }
 
+/// The logarithm of the determinant of the covariance of noise that these steps make white.
+pub(crate) fn log_sizes(steps: &[Step]) -> f64 {
+    // One logarithm for many factors, as long as their product is far from both ends of the numbers.
+    let (mut sum, mut product) = (0.0, 1.0_f64);
+    for step in steps.iter().filter(|step| step.weight > 0.0) {
+        product *= step.weight;
+        if !(1e-100..1e100).contains(&product) {
+            sum -= 2.0 * product.ln();
+            product = 1.0;
+        }
+    }
+    sum - 2.0 * product.ln()
+}
+
 /// The transpose of [`whiten`] over a whole recording, in place: white numbers become weights of the samples.
 pub(crate) fn unwhiten(steps: &[Step], column: &mut [f64]) {
     let mut s = 0.0;

@@ -12,6 +12,8 @@ pub(crate) struct Swept {
     matrix: DMatrix<f64>,
     lengths: Vec<f64>,
     taken: Vec<bool>,
+    /// The logarithm of the determinant of the products of the columns that are in.
+    log_determinant: f64,
 }
 
 /// The share of a column's length that must be left beside the others for it to be taken in.
@@ -32,7 +34,7 @@ impl Swept {
         let scale = |column: usize| if column == response { 1.0 } else { inverse(column) };
         let matrix =
             DMatrix::from_fn(size, size, |row, column| products[(row, column)] * scale(row) * scale(column));
-        Self { matrix, lengths, taken: vec![false; size] }
+        Self { matrix, lengths, taken: vec![false; size], log_determinant: 0.0 }
     }
 
     fn response(&self) -> usize {
@@ -59,6 +61,7 @@ impl Swept {
         if self.taken[column] || self.matrix[(column, column)] <= INDEPENDENT {
             return false;
         }
+        self.log_determinant += self.log_square(column);
         self.pivot(column, 1.0);
         self.taken[column] = true;
         true
@@ -69,7 +72,18 @@ impl Swept {
         if self.taken[column] {
             self.pivot(column, -1.0);
             self.taken[column] = false;
+            self.log_determinant -= self.log_square(column);
         }
+    }
+
+    /// The logarithm of the squared length of a column, as far as the swept ones leave it.
+    fn log_square(&self, column: usize) -> f64 {
+        self.matrix[(column, column)].ln() + 2.0 * self.lengths[column].ln()
+    }
+
+    /// The logarithm of the determinant of the products of the columns that have been swept in.
+    pub(crate) fn log_determinant(&self) -> f64 {
+        self.log_determinant
     }
 
     fn pivot(&mut self, pivot: usize, sign: f64) {

@@ -227,6 +227,7 @@ mod tests {
             parameter: "lost_motion".to_owned(),
             unit: "mm".to_owned(),
             points: points.collect(),
+            untold: Vec::new(),
         }
     }
 

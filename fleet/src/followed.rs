@@ -3,7 +3,7 @@
 //! The names of error motions and the numbers of a term are those of the recording's own machine file, so that a recording of another
 //! machine under the same name has no such motion, and no row.
 
-use diagnosis::{Followed, Inputs, Size, follow};
+use diagnosis::{Followed, Inputs, Size, Untold, follow};
 use model_dsl::calibration;
 use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::Equations;
@@ -48,7 +48,8 @@ pub(crate) fn run(
     Ok(None)
 }
 
-fn sizes(recorded: &Recorded, effects: &[Effect]) -> Vec<Vec<Size>> {
+/// The sizes of effects, or why the recording does not tell one; nothing of a motion that its machine does not have.
+fn sizes(recorded: &Recorded, effects: &[Effect]) -> Vec<Option<Result<Vec<Size>, Untold>>> {
     let inputs = Inputs {
         equations: &recorded.equations,
         calibration: recorded.calibration.as_ref().map(|known| &known.calibration),
@@ -61,7 +62,7 @@ fn sizes(recorded: &Recorded, effects: &[Effect]) -> Vec<Vec<Size>> {
         effects.iter().map(|effect| followed(&recorded.equations, effect)).collect();
     let known: Vec<Followed> = read.iter().flatten().cloned().collect();
     let mut sizes = follow(&inputs, &known).into_iter();
-    read.iter().map(|read| read.as_ref().and_then(|_| sizes.next()).unwrap_or_default()).collect()
+    read.iter().map(|read| read.as_ref().and_then(|_| sizes.next())).collect()
 }
 
 /// The effect in the numbers of a machine; nothing where that has no such motion.
@@ -78,19 +79,30 @@ fn followed(equations: &Equations, effect: &Effect) -> Option<Followed> {
         at_drive: effect.at_drive,
         inside_loop: listed.is_inside_loop(0),
         sensors: term.sensors().filter_map(name).collect(),
+        share: effect.share(),
         term,
     })
 }
 
-fn rows(job: &Job, effect: &Effect, sizes: Vec<Size>) -> Vec<Vec<Cell>> {
-    let claimed = effect.found_in.contains(&job.place.id);
-    let row = |Size { name, estimate }: Size| {
-        let mut row = vec![Cell::from(&*job.key), Cell::from(&*job.place.label), moment(job.time)];
-        row.extend([&effect.name, &effect.motion, &effect.term].map(|text| Cell::from(text.as_str())));
-        row.extend([Cell::Text(name), Cell::from(estimate.value)]);
-        row.extend([estimate.ci95.0, estimate.ci95.1].map(Cell::from));
-        row.extend([Cell::Text(estimate.unit), Cell::from(claimed)]);
-        row
+/// The rows of an effect: one for each of its numbers, or one without a number that says why there is none.
+fn rows(job: &Job, effect: &Effect, sizes: Option<Result<Vec<Size>, Untold>>) -> Vec<Vec<Cell>> {
+    let claimed = Cell::from(effect.found_in.contains(&job.place.id));
+    let mut head = vec![Cell::from(&*job.key), Cell::from(&*job.place.label), moment(job.time)];
+    head.extend([&effect.name, &effect.motion, &effect.term].map(|text| Cell::from(text.as_str())));
+    let row = |numbers: Vec<Cell>, untold: Cell| {
+        head.iter().cloned().chain(numbers).chain([claimed.clone(), untold]).collect()
     };
-    sizes.into_iter().map(row).collect()
+    let told = |Size { name, estimate }: Size| {
+        let numbers = [estimate.value, estimate.ci95.0, estimate.ci95.1].map(Cell::from);
+        let unit = [Cell::Text(estimate.unit)];
+        row([Cell::Text(name)].into_iter().chain(numbers).chain(unit).collect(), Cell::None)
+    };
+    match sizes {
+        Some(Ok(sizes)) => sizes.into_iter().map(told).collect(),
+        Some(Err(untold)) => vec![row(vec![Cell::None; NUMBERS], Cell::from(untold.why()))],
+        None => Vec::new(),
+    }
 }
+
+/// The columns of a number: its name, the value, the ends of its interval and the unit.
+const NUMBERS: usize = 5;

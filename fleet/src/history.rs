@@ -13,7 +13,7 @@ use workshop::told::Listener;
 
 pub use crate::between::{Own, Range};
 pub use crate::change::Change;
-pub use crate::series::{Point, Series};
+pub use crate::series::{Point, Series, Untold};
 pub use alarm::{Alarm, BOUND};
 
 use crate::file::Fleet;

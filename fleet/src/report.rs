@@ -83,8 +83,15 @@ fn brief(followed: &Followed) -> String {
         true => format!("{:.2} times", change.size.exp()),
         false => format!("{} +- {}", number(change.size, &series.unit), number(change.half, &series.unit)),
     };
+    let silent = match (series.untold.len(), series.points.len()) {
+        (0, _) => String::new(),
+        (1, told) => format!("; 1 recording of {} does not resolve it", told.saturating_add(1)),
+        (silent, told) => {
+            format!("; {silent} recordings of {} do not resolve it", told.saturating_add(silent))
+        }
+    };
     match followed.alarm {
-        true => format!("{name}: {} of {size}", change.kind),
-        false => format!("{name}: no reported change ({} of {size})", change.kind),
+        true => format!("{name}: {} of {size}{silent}", change.kind),
+        false => format!("{name}: no reported change ({} of {size}){silent}", change.kind),
     }
 }

@@ -109,6 +109,7 @@ impl Table {
                 ("high", Kind::Number),
                 ("unit", Kind::Text),
                 ("claimed", Kind::Flag),
+                ("untold", Kind::Text),
             ],
         }
     }

@@ -18,6 +18,20 @@ pub struct Series {
     pub unit: String,
     /// Where it was told.
     pub points: Vec<Point>,
+    /// Where it was not.
+    pub untold: Vec<Untold>,
+}
+
+/// A recording that says nothing of a number.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Untold {
+    /// When it was recorded.
+    #[serde(serialize_with = "as_text")]
+    pub time: Moment,
+    /// The recording.
+    pub recording: String,
+    /// Why, a clause.
+    pub why: String,
 }
 
 /// What a recording says of a number.

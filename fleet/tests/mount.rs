@@ -4,6 +4,7 @@
 use std::fs;
 use std::path::Path;
 
+use abbe_fleet::history::Point;
 use abbe_fleet::{file, run};
 use recording::Moment;
 
@@ -32,14 +33,38 @@ fn a_mount_whose_worm_stays_raises_no_alarm() {
         effect.starts_with("ECC cyclic") && period.is_some_and(|period| (period - 2.0).abs() < 0.05)
     };
     let worm = history.machines[0].series.iter().find(|followed| is_worm(&followed.series.effect)).unwrap();
-    assert_eq!(worm.series.points.len(), 23, "it is followed in every session");
-    // Both ends of the series are what its owner's logs give, 2.0 to 2.6 arcsec, with the scatter from session to session, and no end
-    // might as well be nothing.
+    // What was read of sessions in which stars were seen for less than three turns may be too little to tell it from noise.
+    let (points, untold) = (&worm.series.points, &worm.series.untold);
+    assert_eq!(points.len() + untold.len(), 23, "it is followed in every session");
+    assert!(
+        points.len() >= 20
+            && untold.iter().all(|untold| SHORT.iter().any(|short| untold.recording.contains(short))),
+        "{untold:#?}"
+    );
+    // Of intervals of 95 %, fewer than 19 of 23 hold the truth once in 200 times.
+    let holds = |point: &&Point| 3600.0 * point.low <= TRUTH.1 && 3600.0 * point.high >= TRUTH.0;
+    let missed: Vec<_> = points
+        .iter()
+        .filter(|point| !holds(point))
+        .map(|point| (&point.recording, point.low * 3600.0, point.high * 3600.0))
+        .collect();
+    assert!(missed.len() <= 4, "{missed:#?}");
+    // Both ends of the series are what its owner's logs give, with the scatter from session to session, and no end might as well be nothing.
     let change = worm.change.as_ref().unwrap();
     for (value, half) in [change.before, change.after].map(|(value, half)| (3600.0 * value, 3600.0 * half)) {
-        assert!(half < value && value - half <= 2.6 && value + half >= 2.0, "{value} +- {half} arcsec");
+        assert!(
+            half < value && value - half <= TRUTH.1 && value + half >= TRUTH.0,
+            "{value} +- {half} arcsec"
+        );
     }
-    let mut sizes: Vec<f64> = worm.series.points.iter().map(|point| 3600.0 * point.value).collect();
+    let mut sizes: Vec<f64> = points.iter().map(|point| 3600.0 * point.value).collect();
     sizes.sort_by(f64::total_cmp);
-    assert!((2.0..=2.6).contains(&sizes[11]), "the middle of all sessions: {} arcsec", sizes[11]);
+    let middle = sizes[sizes.len() / 2];
+    assert!((TRUTH.0..=TRUTH.1).contains(&middle), "the middle of all sessions: {middle} arcsec");
 }
+
+/// What its owner's logs give, arcsec: between these in every night.
+const TRUTH: (f64, f64) = (2.0, 2.6);
+
+/// The sessions in which stars were seen for less than three turns.
+const SHORT: [&str; 4] = ["2026-08-08_021150", "2026-08-16_011042", "2026-08-16_021050", "2026-08-02_013355"];

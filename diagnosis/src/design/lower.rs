@@ -12,7 +12,7 @@ use crate::course::{STRETCH, pieces};
 use crate::parallel;
 
 /// Sums of products.
-pub(super) struct Lower {
+pub(crate) struct Lower {
     /// The products of all columns, but for those of the present ones.
     whole: DMatrix<f64>,
     /// The places of the columns that come at present.
@@ -35,12 +35,12 @@ pub(super) const NARROW: usize = 5;
 
 impl Lower {
     /// Nothing added yet.
-    pub(super) fn new(size: usize) -> Self {
+    pub(crate) fn new(size: usize) -> Self {
         Self { whole: DMatrix::zeros(size, size), places: Vec::new(), strips: Vec::new() }
     }
 
     /// Adds the products of some rows of the columns at these places, in their order, one stretch after another.
-    pub(super) fn add(&mut self, columns: &DMatrix<f64>, places: &[usize]) {
+    pub(crate) fn add(&mut self, columns: &DMatrix<f64>, places: &[usize]) {
         if self.places != places {
             self.put_back();
             self.pick(places);
@@ -60,7 +60,7 @@ impl Lower {
     }
 
     /// The whole matrix; sums begin anew.
-    pub(super) fn take(&mut self) -> DMatrix<f64> {
+    pub(crate) fn take(&mut self) -> DMatrix<f64> {
         self.put_back();
         let size = self.whole.nrows();
         let mut taken = std::mem::replace(&mut self.whole, DMatrix::zeros(size, size));

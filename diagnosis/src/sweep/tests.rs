@@ -167,3 +167,28 @@ fn energy_is_the_length_of_a_sum_as_far_as_the_swept_columns_leave_it() {
     let left = &sum - &base * base.clone().svd(true, true).solve(&sum, 1e-14).unwrap();
     assert!(near(swept.energy(&of, &coefficients), left.norm_squared()));
 }
+
+#[test]
+fn the_determinant_is_that_of_the_columns_that_are_in() {
+    let all = columns();
+    let mut swept = swept();
+    assert_eq!(swept.log_determinant(), 0.0);
+    let of = |columns: &[usize]| {
+        let chosen = all.select_columns(columns);
+        let lengths: Vec<f64> = chosen.column_iter().map(|column| column.norm()).collect();
+        let unit =
+            DMatrix::from_fn(ROWS, columns.len(), |row, column| chosen[(row, column)] / lengths[column]);
+        let sizes: f64 = lengths.iter().map(|length| 2.0 * length.ln()).sum();
+        (unit.transpose() * unit).determinant().ln() + sizes
+    };
+    for column in [0, 1, 3] {
+        swept.take(column);
+    }
+    assert!(near(swept.log_determinant(), of(&[0, 1, 3])));
+    swept.drop(1);
+    assert!(near(swept.log_determinant(), of(&[0, 3])));
+    // A column that the others hold is not taken in.
+    swept.take(2);
+    swept.take(5);
+    assert!(near(swept.log_determinant(), of(&[0, 2, 3])));
+}

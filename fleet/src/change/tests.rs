@@ -22,6 +22,7 @@ fn series(term: &str, values: &[f64], half: f64) -> Series {
         parameter: "lost_motion".to_owned(),
         unit: "mm".to_owned(),
         points: points.collect(),
+        untold: Vec::new(),
     }
 }
 

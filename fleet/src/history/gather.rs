@@ -12,7 +12,7 @@ use crate::file::Fleet;
 use crate::jobs::places;
 use crate::name::Name;
 use crate::results::{Filed, Table};
-use crate::series::{NOISE, Point, Series};
+use crate::series::{NOISE, Point, Series, Untold};
 use crate::shelf::{Current, Known, machines as filed_machines, read};
 
 /// The machines of a fleet, with what was recorded until a moment.
@@ -133,10 +133,15 @@ fn series(followed: &[(Moment, Known)], listed: &BTreeSet<&str>, until: Moment) 
         found.entry(names.today(known.row.text("effect"))).or_insert(*time);
     }
     let mut all: BTreeMap<(&str, &str), Series> = BTreeMap::new();
+    let mut untold: BTreeMap<&str, Vec<Untold>> = BTreeMap::new();
     for (time, Known { row, .. }) in followed.iter().filter(|(time, _)| *time <= until) {
         let effect = names.today(row.text("effect"));
         if found.get(effect).is_some_and(|found| *found > until) {
             continue;
+        }
+        if !row.text("untold").is_empty() {
+            let (recording, why) = (row.text("recording").to_owned(), row.text("untold").to_owned());
+            untold.entry(effect).or_default().push(Untold { time: *time, recording, why });
         }
         let Some((value, low, high)) = row
             .number("value")
@@ -153,6 +158,7 @@ fn series(followed: &[(Moment, Known)], listed: &BTreeSet<&str>, until: Moment) 
             parameter: row.text("parameter").to_owned(),
             unit: row.text("unit").to_owned(),
             points: Vec::new(),
+            untold: Vec::new(),
         });
         if series.unit == row.text("unit") {
             let recording = row.text("recording").to_owned();
@@ -166,7 +172,11 @@ fn series(followed: &[(Moment, Known)], listed: &BTreeSet<&str>, until: Moment) 
             });
         }
     }
-    all.into_values().collect()
+    let with_untold = |((effect, _), series): ((&str, &str), Series)| {
+        let untold = untold.get(effect).cloned().unwrap_or_default();
+        Series { untold, ..series }
+    };
+    all.into_iter().map(with_untold).collect()
 }
 
 /// The noise of each recording, apart by its unit: a machine may be measured by instruments of length and of angle.
@@ -181,6 +191,7 @@ fn noise(verdicts: &[(Moment, Known)]) -> Vec<Series> {
             parameter: NOISE.to_owned(),
             unit: row.text("unit").to_owned(),
             points: Vec::new(),
+            untold: Vec::new(),
         });
         let recording = row.text("recording").to_owned();
         series.points.push(Point { time: *time, recording, value, low: value, high: value, claimed: true });

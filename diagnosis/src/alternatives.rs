@@ -162,7 +162,7 @@ fn speed(study: &Study<'_>, axis: usize) -> Option<f64> {
     (time > 0.0 && way > 0.0).then(|| way / time)
 }
 
-/// In so many strides a recording is walked through: single rows may be read unevenly.
+/// The number of strides in which a recording is walked through: single rows may be read unevenly.
 const STRIDES: usize = 400;
 
 /// The design of the model and of everything that could stand in for it, the present model's response restored.

@@ -204,7 +204,7 @@ impl Estimate {
     }
 }
 
-/// What comes back must be so many times what does not for every sample to weigh the same: from there on it is most of it.
+/// Every sample weighs the same where what comes back is more than this many times what does not: it is most of it then.
 const MOSTLY: f64 = 1.0;
 
 /// Floor and weights of a channel; `like` are weights with which these are to be compared.

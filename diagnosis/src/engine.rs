@@ -279,7 +279,7 @@ impl Search {
         self.model = model;
     }
 
-    /// Goes on with so many settings: whatever else was always fitted is chosen like all others.
+    /// Keeps the first `settings` effects as settings, which are always fitted. All others pay the BIC penalty from here on.
     fn price_all_but(&mut self, settings: usize) {
         self.model = std::mem::take(&mut self.model).with_settings(settings);
         for model in &mut self.richer {

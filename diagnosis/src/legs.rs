@@ -9,9 +9,10 @@ use std::ops::Range;
 use crate::noise::typical_step;
 use crate::states::Shared;
 
-/// A step of time so many times as long as the typical one is a gap: no clock of a recorder wanders so far.
+/// A step of time that is this many times the typical one is a gap: no clock of a recorder wanders so far.
 pub(crate) const GAP: f64 = 20.0;
-/// From one run to the next a step so many times as long is a pause: a number that changes in motion leaves out no row.
+/// Between two runs, a step of time that is this many times the typical one is a pause: where the number of the run changes in motion, no
+/// row is missing.
 const PAUSE: f64 = 1.5;
 
 /// The last row of a run may be one step from its very end, and the first row of the next one from its beginning.

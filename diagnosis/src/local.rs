@@ -42,7 +42,7 @@ impl Feature {
     }
 }
 
-/// The mean residual at its highest must stand so many standard deviations above nothing; there are many places.
+/// How many standard deviations the mean residual at its highest place must be above zero. There are many places to choose from.
 const SURE: f64 = 6.0;
 /// It must be this share of the noise of a single sample, at least.
 const MATERIAL: f64 = 0.7;

@@ -61,7 +61,7 @@ impl Model {
         model.with_settings(count)
     }
 
-    /// The same of which the first so many effects are always fitted.
+    /// The same model, whose first `settings` effects are always fitted.
     pub(crate) fn with_settings(self, settings: usize) -> Self {
         Self { settings: settings.min(self.effects.len()), ..self }
     }

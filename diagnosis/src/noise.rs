@@ -126,7 +126,7 @@ impl Whitening {
     }
 }
 
-/// Whether steps of time are the same but for the rounding of a clock, which a file gives with so many digits: what is left of a
+/// Whether steps of time are the same but for the rounding of a clock, which a file gives with a few digits: what is left of a
 /// wandering after them then is the same within a ten-thousandth of what it loses.
 fn same_step(step: f64, known: f64) -> bool {
     (step - known).abs() <= 1e-4 * step

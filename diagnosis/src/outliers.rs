@@ -11,7 +11,7 @@ const FAR: f64 = 6.0;
 const NEIGHBOURS: usize = 2;
 /// In how many rows around a reading the scatter is looked at: where an axis moves it is another than where it stands.
 const AROUND: usize = 32;
-/// One reading in so many may be an outlier; where more are marked the rule is wrong for these readings, and none is.
+/// At most one reading in 20 may be an outlier. Where the rule marks more, it is wrong for these readings, and none is marked.
 const MOST: usize = 20;
 
 /// Marks the outliers of a residual. `step` is that of the display; `apart` says of a row and a distance whether it lies as far

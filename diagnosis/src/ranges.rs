@@ -17,7 +17,8 @@ pub(crate) const PERIODS: f64 = 1.6;
 const DECAY: f64 = 0.3;
 /// A play may be taken up over this share of the travel.
 const WIND_UP: f64 = 0.8;
-/// A settling may last so many times as long as the recording.
+/// The longest time constant of a settling, as a multiple of the recording: less than a sixth of a longer one is seen, and that is
+/// a straight line within 2 %.
 const SETTLING: f64 = 6.0;
 
 /// The range of the nonlinear parameter of a shape, in mm, rad, s or Hz.
@@ -117,7 +118,7 @@ pub(crate) fn holds(table: &Shape, other: &Shape) -> bool {
     }
 }
 
-/// Waves longer than so many steps from node to node may be what a table leaves at its corners.
+/// A wave shorter than this many steps between nodes cannot be what a table leaves at its corners.
 const SMOOTHED: f64 = 1.5;
 
 /// The shortest typical step of time of all recordings.

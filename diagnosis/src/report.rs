@@ -38,7 +38,7 @@ pub use text::{Terminal, text, text_on};
 
 use crate::diagnosis::{Alternative, Diagnosis};
 
-/// A list of everything names nothing: so many other names at most.
+/// The most other names that are told. A list of everything names nothing.
 const ALTERNATIVES: usize = 4;
 
 /// The verdict in one line of plain words, without the end of the sentence.

@@ -68,13 +68,13 @@ pub(crate) struct Return {
     pub(crate) left: f64,
 }
 
-/// Curves are fitted to so many rows at most: enough for a thousand nodes.
+/// The most rows that curves are fitted to: enough for a thousand nodes.
 const FITTED: usize = 6000;
 /// How many nodes a curve may have; the number that predicts best is taken.
 const NODES: [usize; 4] = [8, 32, 128, 512];
 /// The rows of a unit that a node needs, at least.
 const ROWS_OF_A_NODE: usize = 2;
-/// Units are left out in so many groups at most.
+/// The most groups in which units are left out.
 const FOLDS: usize = 12;
 /// The most states that predict together.
 const MOST: usize = 4;

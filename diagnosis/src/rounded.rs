@@ -19,7 +19,7 @@ const SHOWN: f64 = 0.5;
 /// What differs by less of the travel is the same number, worked out twice.
 const ALIKE: f64 = 1e-9;
 
-/// The widest line goes through so many rows on both sides.
+/// The widest line goes through this many rows on each side.
 const WIDEST: usize = 64;
 
 /// A line fits rounded rows that leave no more than their rounding, a step over the root of twelve; this much more by chance.

@@ -25,8 +25,8 @@ const MOST: usize = 10;
 /// A set may cost so much more than the best and still be carried along: two effects may only make sense together.
 const PATIENCE: f64 = 12.0;
 
-/// What an effect must take from the cost to be chosen: each parameter what it could gain by chance in so many samples,
-/// and what the best of so many tries would gain by chance; and a little for a complicated name.
+/// What an effect must take from the cost to be chosen: for each parameter what it could gain by chance in `samples` samples,
+/// what the best of `tries` would gain by chance, and a little for a complicated name.
 pub(crate) fn price(study: &Study<'_>, effect: &Effect, samples: f64, tries: f64, waves: f64) -> f64 {
     // The period of a wave is no further parameter: it was looked for among all waves of all motions, which their number counts.
     let wave = effect.shape.is_wave();

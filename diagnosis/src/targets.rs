@@ -22,10 +22,10 @@ const WHILE_STANDING: f64 = 0.5;
 /// rounding. A dead time of two rows leaves a quarter.
 const EXPLAINED: f64 = 0.15;
 
-/// Time constants of loops that are tried: from a part of the step between rows to so many steps, by this factor.
+/// Time constants of loops that are tried: from a tenth of the step between rows to 100 steps, each longer than the last by this factor.
 const LOOPS: (f64, f64, f64) = (0.1, 100.0, 1.2);
 
-/// A target is reached within so many standard deviations of what is read, half a step of its display: an axis that creeps its
+/// A target is reached within three standard deviations of what is read, or half a step of its display: an axis that creeps its
 /// last step does not stand. And within this share of the longest way: a loop never quite arrives.
 const REACHED: (f64, f64, f64) = (3.0, 0.5, 1e-3);
 

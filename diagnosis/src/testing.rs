@@ -256,7 +256,7 @@ pub(crate) fn noisy(path: Path, instrument: Reads, sigma: f64, seed: u64) -> Sce
     scenario
 }
 
-/// A sensor that warms up from 20 degC by so many degC with a time constant, s.
+/// A sensor that warms up from 20 degC by `by`, degC, with a time constant, s.
 pub(crate) fn warming(name: &str, by: f64, time_constant: f64) -> Temperature {
     let start = 20.0;
     Temperature {

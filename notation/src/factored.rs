@@ -83,9 +83,24 @@ fn maxima_statements(batch: &str) -> Vec<(String, String)> {
     let assignments = joined.split('$').map(str::trim).filter(|text| !text.is_empty());
     let assignment = |text: &str| {
         let (left, right) = text.split_once(" : ").expect("an assignment");
-        (left.to_owned(), right.to_owned())
+        (left.to_owned(), in_degrees(right))
     };
     assignments.map(assignment).collect()
+}
+
+/// An expression for Maxima with its angles in degrees: `cos(1/4*%pi)` is `cos(45 deg)`.
+fn in_degrees(expression: &str) -> String {
+    let (angles, last) = expression.rsplit_once("*%pi").unwrap_or(("", expression));
+    let in_degrees = |part: &str| {
+        let before = part.trim_end_matches(|letter: char| letter.is_ascii_digit() || letter == '/');
+        let turns = part.strip_prefix(before).unwrap_or_default();
+        let (numerator, denominator) = turns.split_once('/').unwrap_or((turns, "1"));
+        let [numerator, denominator] =
+            [numerator, denominator].map(|number| number.parse::<f64>().expect("a number of half turns"));
+        format!("{before}{} deg", 180.0 * numerator / denominator)
+    };
+    let parts = angles.split("*%pi").filter(|part| !part.is_empty()).map(in_degrees);
+    parts.chain([last.to_owned()]).collect()
 }
 
 fn assert_same(equations: &Equations, point: u64) {

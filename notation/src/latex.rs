@@ -1,11 +1,8 @@
 //! LaTeX. In: a sheet. Out: a document with the equations, the lists of motions and of constants.
 
-use model_dsl::sheet::Number;
-use model_dsl::sheet::{Angle, Function};
-use model_dsl::sheet::{Base, Letter};
-use model_dsl::sheet::{Sheet, Statement};
-use model_dsl::sheet::{Signs, Writer, pieces};
-use model_dsl::sheet::{text::Plain, wrap};
+use model_dsl::sheet::{
+    Angle, Base, Function, Letter, Number, Sheet, Signs, Statement, Writer, pieces, text::Plain, wrap,
+};
 
 /// The widest line of an equation, measured in characters of plain text.
 const WIDTH: usize = 84;

@@ -6,13 +6,10 @@ use std::collections::BTreeMap;
 
 use pages::text::escape;
 
-use model_dsl::sheet::Number;
-use model_dsl::sheet::Statement;
-use model_dsl::sheet::text::Plain;
-use model_dsl::sheet::wrap;
-use model_dsl::sheet::{Angle, Expression, Function};
-use model_dsl::sheet::{Base, Letter};
-use model_dsl::sheet::{Signs, Writer, line, pieces};
+use model_dsl::sheet::{
+    Angle, Base, Expression, Function, Letter, Number, Signs, Statement, Writer, line, pieces, text::Plain,
+    wrap,
+};
 
 /// The widest line of an equation, measured in characters of plain text.
 const EQUATION_WIDTH: usize = 84;

@@ -3,12 +3,7 @@
 //!
 //! Numbers are exact fractions, and a name that Maxima keeps for itself gets an underscore.
 
-use model_dsl::sheet::Letter;
-use model_dsl::sheet::Number;
-use model_dsl::sheet::wrap;
-use model_dsl::sheet::{Angle, Function};
-use model_dsl::sheet::{Sheet, Statement};
-use model_dsl::sheet::{Signs, Writer, pieces};
+use model_dsl::sheet::{Angle, Function, Letter, Number, Sheet, Signs, Statement, Writer, pieces, wrap};
 
 /// Words that mean something to Maxima, or whose assignment would change how it works.
 const RESERVED: [&str; 44] = [
@@ -62,12 +57,11 @@ struct Maxima;
 
 impl Writer for Maxima {
     fn signs(&self) -> &'static Signs {
-        &Signs { plus: " + ", minus: " - ", leading_minus: "-", times: "*", open: "(", close: ")" }
+        &Signs::PLAIN
     }
 
     fn letter(&self, letter: &Letter) -> String {
-        let underscore = if RESERVED.contains(&letter.plain.as_str()) { "_" } else { "" };
-        format!("{}{underscore}", letter.plain)
+        letter.unless_reserved(&RESERVED)
     }
 
     fn number(&self, number: &Number) -> String {

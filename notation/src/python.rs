@@ -1,12 +1,9 @@
 //! Equations for Python. In: a sheet. Out: a module without dependencies, whose functions take numbers, NumPy
 //! arrays or SymPy symbols: whoever checks a machine in a notebook has its nominal position, its error and its lever arms.
 
-use model_dsl::sheet::Letter;
-use model_dsl::sheet::Number;
-use model_dsl::sheet::wrap;
-use model_dsl::sheet::{Angle, Expression, Function};
-use model_dsl::sheet::{Sheet, Statement};
-use model_dsl::sheet::{Signs, Writer, pieces};
+use model_dsl::sheet::{
+    Angle, Expression, Function, Letter, Number, Sheet, Signs, Statement, Writer, pieces, wrap,
+};
 
 /// Keywords of Python, and the names that the functions of the module use.
 const RESERVED: [&str; 41] = [
@@ -57,12 +54,11 @@ struct Python;
 
 impl Writer for Python {
     fn signs(&self) -> &'static Signs {
-        &Signs { plus: " + ", minus: " - ", leading_minus: "-", times: "*", open: "(", close: ")" }
+        &Signs::PLAIN
     }
 
     fn letter(&self, letter: &Letter) -> String {
-        let underscore = if RESERVED.contains(&letter.plain.as_str()) { "_" } else { "" };
-        format!("{}{underscore}", letter.plain)
+        letter.unless_reserved(&RESERVED)
     }
 
     fn number(&self, number: &Number) -> String {

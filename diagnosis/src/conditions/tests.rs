@@ -9,7 +9,7 @@ use crate::testing::{Bench, line, noisy, path, position};
 use crate::travel::travels;
 
 /// The prices of a wave of this period along X in a study whose machine has one of 9 mm and 2 um under a slope that has no name,
-/// where so many samples count for one: what it has to pay, and what it would without that noise.
+/// where `alike` samples count for one: what it has to pay, and what it would without that noise.
 fn prices(period: f64, alike: f64) -> [f64; 2] {
     let bench = Bench::of("FX");
     let truth = bench.calibration("{EXX: [{cyclic: {period: 9 mm, amplitude: 2 um, phase: 40 deg}}, {polynomial: {axis: X, per: mm, unit: um, coefficients: [0, 0.1]}}]}");

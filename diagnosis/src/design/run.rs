@@ -21,7 +21,7 @@ use crate::study::Study;
 use crate::terms::{Setting, Shape};
 use crate::weights::Outliers;
 
-/// How many rows of so many columns are worked on at a time: as many as stay in a cache, in whole stretches.
+/// How many rows of `width` columns are worked on at a time: as many as stay in a cache, in whole stretches.
 pub(super) fn batch(width: usize) -> usize {
     (CACHED / (width + 1) / STRETCH * STRETCH).clamp(STRETCH, BATCH)
 }
@@ -268,7 +268,7 @@ impl<'r> ChannelRun<'r> {
         }
     }
 
-    /// Fills the columns of one regressor, which are zero, with so many rows each.
+    /// Fills the columns of one regressor, which are zero, with `rows` rows each.
     fn fill(&self, number: usize, sights: &[Sight], rows: usize, target: &mut [f64]) {
         let mut from = 0;
         for sight in sights {

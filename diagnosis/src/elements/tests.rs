@@ -10,7 +10,7 @@ const SCREW: Element = Element { kind: ElementKind::Screw, period: 10.0 };
 const MOTOR: Element = Element { kind: ElementKind::Motor, period: 5.0 };
 const TABLE: Element = Element { kind: ElementKind::Axis, period: TAU };
 
-/// A worm wheel of so many teeth.
+/// A worm wheel with this number of teeth.
 fn worm(teeth: u32) -> Element {
     Element { kind: ElementKind::Worm { teeth }, period: TAU / f64::from(teeth) }
 }

@@ -70,7 +70,7 @@ impl Case<'_> {
         self.returns_beside(1.0)
     }
 
-    /// Beside a noise of so many times the variance that it was taken for.
+    /// Where the variance of the noise is `scale` times what it was taken for.
     fn returns_beside(&self, scale: f64) -> bool {
         returns(&self.design, &swept(&self.design), PLAY, scale)
     }
@@ -202,8 +202,8 @@ fn recordings_weigh_by_the_squares_of_their_noise() {
     }
 }
 
-/// The first effect to fall, of those behind so many settings, where so many candidates were tried that the price of the lost
-/// motion is this share of what it is worth: in squares, or in likelihood where the noise takes up a part of it.
+/// The first effect to fall after `settings` that are always fitted. So many candidates were tried that the price of the lost motion is
+/// `share` of what it is worth: in squares, or in likelihood where the noise takes up a part of it.
 fn falls(case: &Case<'_>, settings: usize, share: f64) -> Option<usize> {
     let design = design(&case.study, &case.fit.model, &case.appraisal.weights);
     let (swept, samples) = (swept(&design), design.fitted().1);

@@ -178,7 +178,7 @@ fn exponent(value: f64) -> Option<i32> {
     format!("{value:e}").rsplit('e').next()?.parse().ok()
 }
 
-/// A number with so many significant digits, at least its whole digits as far as four.
+/// A number with `digits` significant digits. Its whole digits are all shown, up to four.
 pub(crate) fn significant(value: f64, digits: i32) -> String {
     match exponent(value) {
         _ if !value.is_finite() => "unknown".to_owned(),
@@ -191,7 +191,7 @@ pub(crate) fn significant(value: f64, digits: i32) -> String {
     }
 }
 
-/// A number with so many decimal places; negative ones round to tens and hundreds. A number that would need too many is
+/// A number with `places` decimal places. Negative places round to tens and hundreds. A number that would need too many is
 /// written with a power of ten; a zero has no sign.
 fn fixed(value: f64, places: i32) -> String {
     if places > 9 || value.abs() >= 1e9 {

@@ -1,4 +1,4 @@
-//! The report for a terminal. In: a diagnosis, and how wide the terminal is. Out: text of at most so many columns; only a word
+//! The report for a terminal. In: a diagnosis, and how wide the terminal is. Out: text no wider than that; only a word
 //! that is longer, such as the path of a file, stands out.
 
 use super::brief;

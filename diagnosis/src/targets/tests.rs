@@ -35,7 +35,7 @@ fn targets(command: &[f64], actual: Vec<f64>) -> Targets {
     Targets::new(&recording, &given, &["A"])
 }
 
-/// Between two targets, so many rows each.
+/// Between two targets, with this number of rows at each.
 fn steps(rows: usize) -> Vec<f64> {
     (0..12 * rows).map(|row| if (row / rows).is_multiple_of(2) { 0.0 } else { 9.0 }).collect()
 }

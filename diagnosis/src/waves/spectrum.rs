@@ -152,7 +152,7 @@ fn levels(spectrum: &[Line]) -> Vec<f64> {
     let mut at = 1;
     while at < count {
         let place = crate::number(at);
-        // The factor f by which f - 1/f times the place is so many lines.
+        // The factor f for which f - 1/f times the place is that number of lines.
         let half = 0.5 * AROUND / place;
         let factor = (half + half.hypot(1.0)).clamp(FACTORS.0, FACTORS.1);
         let bound = |line: f64| crate::index(line).unwrap_or_default().clamp(1, count - 1);

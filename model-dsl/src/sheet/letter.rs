@@ -73,6 +73,12 @@ impl Letter {
         Self { plain: plain.to_owned(), difference: false, base, subscript }
     }
 
+    /// The name in a language that keeps some words for itself: such a word gets an underscore behind it.
+    pub fn unless_reserved(&self, reserved: &[&str]) -> String {
+        let underscore = if reserved.contains(&self.plain.as_str()) { "_" } else { "" };
+        format!("{}{underscore}", self.plain)
+    }
+
     /// An error motion by the chosen name: E with a subscript for a name of ISO 230-1, delta or epsilon
     /// with a subscript for the sources' `dxz` and `eyz`, otherwise as any name.
     pub fn motion(motion: &Motion, names: Names) -> Self {

@@ -12,7 +12,7 @@ pub struct Plain;
 
 impl Writer for Plain {
     fn signs(&self) -> &'static Signs {
-        &Signs { plus: " + ", minus: " - ", leading_minus: "-", times: "*", open: "(", close: ")" }
+        &Signs::PLAIN
     }
 
     fn letter(&self, letter: &Letter) -> String {

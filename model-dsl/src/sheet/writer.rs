@@ -21,6 +21,12 @@ pub struct Signs {
     pub close: &'static str,
 }
 
+impl Signs {
+    /// Those of plain text and of every language of programs.
+    pub const PLAIN: Self =
+        Self { plus: " + ", minus: " - ", leading_minus: "-", times: "*", open: "(", close: ")" };
+}
+
 /// How a language spells the parts of the tree. A writer spells; it does not choose.
 pub trait Writer {
     /// Its signs.

@@ -9,8 +9,7 @@ use crate::example::Example;
 use crate::mathml::{letter, worked};
 use model_dsl::algebra::Axis;
 use model_dsl::equations::Equations;
-use model_dsl::sheet::Brackets;
-use model_dsl::sheet::Sheet;
+use model_dsl::sheet::{Brackets, Sheet};
 
 /// The part of the page.
 pub(super) fn section(sheet: &Sheet, equations: &Equations, example: &Example) -> String {

@@ -4,13 +4,13 @@
 //! how far the tool really is from where it was wanted, and from the way that it was to point. Both must be of second order in the
 //! errors, but for what the compensator says that it leaves.
 
-use abbe_runtime::{GREATEST_AMPLIFICATION, Kinematics, Refusal, Term};
+use abbe_runtime::{GREATEST_AMPLIFICATION, Kinematics, Limits, Refusal, Term};
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
 use proptest::prelude::*;
 
 use crate::agreement::asking;
-use crate::compensation::{Answer, Trial, asked, constants, length, less, on_file};
+use crate::compensation::{Answer, Trial, asked, asked_within, constants, length, less, on_file};
 use crate::oracle::{ErrorMotion, Kind, Link, Machine, Shape, Sizes, State, draw, exact};
 use crate::random::{machines, of_word, state};
 use crate::shipped::SHIPPED;
@@ -293,4 +293,40 @@ fn what_is_to_be_left_is_left() {
         let left = asking(&text.replace(&line, &format!("{line}      corrects: false\n")));
         assert_eq!(command(&left), (axes(moved), true));
     }
+}
+
+/// In front of the singular pose axes would turn further than their limit. They turn up to it, and no position is refused for that.
+#[test]
+fn a_limit_cuts_what_axes_turn_for_the_direction_and_refuses_nothing() {
+    const LIMIT: f64 = 3e-4;
+    let trunnion = SHIPPED.iter().find(|shipped| shipped.name == "trunnion-5axis").unwrap();
+    let (machine, text) = ((trunnion.described)(), asking(&trunnion.text()));
+    // An axis whose own angle is right turns for the direction alone, up to the very limit.
+    let tilts = |equations: &Equations, seed: u64| {
+        let mut terms = constants(equations, seed);
+        equations.turning().iter().for_each(|own| terms[own.motion].clear());
+        terms
+    };
+    let turned = |seed| {
+        let limits = Limits { rotation: Some(LIMIT), ..Limits::default() };
+        let place = near_zero(&machine, seed);
+        on_file(
+            &machine,
+            &text,
+            |equations| tilts(equations, seed),
+            place,
+            |trial, interpreter| {
+                let Answer { outcome, command, .. } = asked_within(interpreter, trial, limits);
+                outcome.unwrap_or_else(|refusal| panic!("{refusal} at {:?}", trial.wanted()));
+                let axes = trial.equations.axes.iter().zip(command.iter().zip(trial.wanted()));
+                let rotary = axes.filter(|(axis, _)| axis.rotary);
+                rotary.map(|(_, (command, wanted))| (command - wanted).powi(2)).sum::<f64>().sqrt()
+            },
+        )
+    };
+    let turned: Vec<f64> = (0..200).map(turned).collect();
+    // An angle of up to pi is rounded by 4e-16 rad.
+    assert!(turned.iter().all(|turned| *turned <= LIMIT + 1e-14), "{turned:?}");
+    let cut = turned.iter().filter(|turned| **turned > LIMIT - 1e-9).count();
+    assert!(cut > 20, "{cut} of 200 are cut: {turned:?}");
 }

@@ -4,8 +4,8 @@
 //! keeps from where it was wanted, off and on. On, it must be of second order in the errors.
 
 use abbe_runtime::{
-    Compensator, Direction, DirectionOutcome, ErrorMotion, Input, Kinematics, Outcome, Refusal, Sample,
-    Table, Term, TermState, Values, Work, states_needed,
+    Compensator, Direction, DirectionOutcome, ErrorMotion, Input, Kinematics, Limits, Outcome, Refusal,
+    Sample, Table, Term, TermState, Values, Work, states_needed,
 };
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
@@ -147,13 +147,22 @@ pub(crate) struct Answer {
 }
 
 pub(crate) fn asked<K: Kinematics>(machine: &K, trial: &Trial<'_>, enabled: bool) -> Answer {
+    answer(machine, trial, enabled, Limits::default())
+}
+
+/// The answer of a compensator that is switched on and has these limits.
+pub(crate) fn asked_within<K: Kinematics>(machine: &K, trial: &Trial<'_>, limits: Limits) -> Answer {
+    answer(machine, trial, true, limits)
+}
+
+fn answer<K: Kinematics>(machine: &K, trial: &Trial<'_>, enabled: bool, limits: Limits) -> Answer {
     let mut states = vec![TermState::default(); states_needed(trial.motions)];
     let mut directions = vec![[0.0; 3]; machine.axes()];
     let mut values = vec![0.0; machine.motions()];
     let mut travel = vec![0.0; machine.travels().len()];
     let work = Work { directions: &mut directions, motions: &mut values, travel: &mut travel };
     let mut compensator = Compensator::new(machine, trial.motions, &mut states, work).unwrap();
-    compensator.enabled = enabled;
+    (compensator.enabled, compensator.limits) = (enabled, limits);
     let wanted = trial.wanted();
     let mut command = vec![f64::NAN; wanted.len()];
     let outcome = compensator.compensate(&trial.sample(&wanted), &mut command);

@@ -44,6 +44,8 @@ struct Step {
     angles: [Real; AXES],
     /// Where they stand then, and at which commands.
     posed: Posed,
+    /// How far they turn to correct their own angles, over all of them: rad.
+    own: Real,
     /// Error of the tip in the pose before, with all slides at their targets: mm.
     tip: [Real; 3],
     /// `A^+` of it, of which each slide has its share.
@@ -103,7 +105,8 @@ impl<K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'_, K, M> {
             self.prediction.let_motors_follow(sample.position, out);
             step = next;
             if gone.is_settled(&self.convergence) {
-                self.limits.check_rotation(step.posed.commands.correction(sample.position))?;
+                // What they turn for the direction is cut to what is left of the limit.
+                self.limits.check_rotation(step.own)?;
                 let by_motors = self.prediction.by_motors_squared();
                 self.limits.check(|| sqrt(pose.reach.distance_squared(step.tip) + by_motors))?;
                 let step = step.behind_ramp(&mut self.prediction, sample, out)?;
@@ -177,13 +180,15 @@ impl Pose {
         let made = target.tilts.turned(step.angles);
         let whole = add_scaled(add_scaled(seen.lean, 1.0, self.direction), -1.0, made);
         // What the own angles take is no room for others.
-        let most = limits.rotation.map_or(Real::INFINITY, |limit| (limit - seen.own.length()).max(0.0));
+        let own = seen.own.length();
+        let most = limits.rotation.map_or(Real::INFINITY, |limit| (limit - own).max(0.0));
         let found = target.tilts.angles(whole, most).map(|angle| -angle);
         let angles = convergence.kept(step.angles, found);
         let posed = Posed::turned(prediction.kinematics.aiming(), angles, sample);
         Ok(Step {
             angles,
             posed: posed.with_own(&seen.own, sample),
+            own,
             tip,
             pull: self.reach.apply(tip),
             lean: add_scaled(whole, 1.0, target.tilts.turned(angles)),
@@ -195,7 +200,8 @@ impl Step {
     /// All axes at their targets.
     fn first(aiming: &[usize], sample: &Sample<'_>) -> Self {
         let (angles, zero) = ([0.0; AXES], [0.0; 3]);
-        Self { angles, posed: Posed::turned(aiming, angles, sample), tip: zero, pull: zero, lean: zero }
+        let posed = Posed::turned(aiming, angles, sample);
+        Self { angles, posed, own: 0.0, tip: zero, pull: zero, lean: zero }
     }
 
     /// How far it is to the next one, `by_motors` of it by what motors correct themselves, mm^2, `out` holding the commands of this one.

@@ -75,6 +75,65 @@ fn an_error_motion_that_is_not_small_is_no_error_motion() {
     assert_eq!(run.err.matches("error[E0430]").count(), 2, "{}", run.err);
 }
 
+/// What grows beyond what is small within any 20 mm or 20 degC is refused where it is read; a long machine's curve about a far place, whose
+/// coefficients are large at its zero, is not.
+#[test]
+fn an_error_motion_that_does_not_stay_small_is_none_either() {
+    let of = |errors: &str| {
+        let known = format!(
+            "calibration: 1\nmachine: FXYZ\nconstants: {{Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}}\nerrors:\n{errors}"
+        );
+        compensated(&files("growing", &[("known.yaml", &known)]), "x,y,z,T_s\n5600,2,3,21\n", &[])
+    };
+    for large in [
+        "  EBX: [{polynomial: {axis: X, unit: deg, per: mm, coefficients: [0, 1]}}]\n",
+        "  EBX: [{polynomial: {axis: X, unit: deg, per: mm, coefficients: [3, 0]}}]\n",
+        "  EBX: [{coupling: {axis: Y, unit: rad, per: mm, coefficients: [0.01]}}]\n",
+        "  EBX: [{growth: {sensor: s, coefficient: 1 deg/K, reference: 20 degC, time_constant: 10 s}}]\n",
+        // 12 um/m with the unit of its coefficient forgotten.
+        "  EXX: [{polynomial: {axis: X, unit: mm, per: mm, coefficients: [0, 12]}}]\n",
+    ] {
+        let run = of(large);
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{large}");
+        assert_eq!(run.err.matches("error[E0430]").count(), 1, "{}", run.err);
+    }
+    // 10 um ((x - 5500 mm)/500 mm)^5, written about zero.
+    let far = "  EXX: [{polynomial: {axis: X, unit: um, per: mm, coefficients: \
+               [-1610510, 1464.1, -0.5324, 9.68e-5, -8.8e-9, 3.2e-13]}}]\n";
+    let run = of(far);
+    assert!(run.status == 0 && !run.err.contains("small"), "{}", run.err);
+    assert!((column(&run.out, "error_x")[0] - 0.01 * 0.2_f64.powi(5)).abs() < 1e-8, "{}", run.out);
+}
+
+/// A rotation that is small where it is read and grows with the place is told of by rows: it is 12 mrad at 120 mm.
+#[test]
+fn rows_where_an_error_motion_is_not_small_are_counted() {
+    let known = "calibration: 1\nmachine: FXYZ\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}\nerrors:\n  \
+                 EBX: [{polynomial: {axis: X, unit: mrad, per: mm, coefficients: [0, 0.1]}}]\n";
+    let known = files("rows", &[("known.yaml", known)]);
+    let run = compensated(&known, "x,y,z\n10,0,0\n110,0,0\n120,0,0\n", &[]);
+    let told =
+        "warning: EBX is up to 12.0 mrad in 2 rows; the equations are of first order, for up to 10 mrad";
+    assert!(run.status == 0 && run.err.contains(told), "{}", run.err);
+    let inside = compensated(&known, "x,y,z\n99,0,0\n", &[]);
+    assert_eq!((inside.status, inside.err.as_str()), (0, ""));
+}
+
+/// With the tool along C, C turns its direction nowhere: what stays of that error is told. Tilted by 30 degrees nothing stays.
+#[test]
+fn a_direction_that_stays_wrong_is_told() {
+    let machine = fs::read_to_string(crate::shipped::root().join("machines/trunnion-5axis.yaml")).unwrap();
+    let known = "calibration: 1\nmachine: m.yaml\nconstants: {Ya: 0 mm, Za: 0 mm, Xc: 0 mm, Yc: 0 mm, Zc: 0 mm, Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\nerrors:\n  EAX: 20 urad\n  EBX: 30 urad\n";
+    let known =
+        files("parallel", &[("known.yaml", known), ("m.yaml", &format!("{machine}orientation: true\n"))]);
+    let at = |a: &str| compensated(&known, &format!("x,y,z,a,c\n0,0,0,{a},0\n"), &[]);
+    let parallel = at("0");
+    let told =
+        "warning: the rotary axes leave up to 6.2 arcsec of the error of the tool's direction in 1 row";
+    assert!(parallel.status == 0 && parallel.err.contains(told), "{}", parallel.err);
+    assert!(!at("30").err.contains("direction"), "{}", at("30").err);
+}
+
 #[test]
 fn what_no_term_reads_stops_no_row() {
     let known = "calibration: 1\nmachine: FX\nsensors:\n  body: {mean: [a, b]}\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\nerrors: {EXX: 3 um}\n";

@@ -24,7 +24,7 @@ use self::prediction::{FIRST, Prediction};
 use self::setup::Needs;
 use super::math::{add_scaled, all_finite, sqrt};
 use super::real::Real;
-use super::{ErrorMotion, ErrorMotions, Kinematics, Sample, Share, Sines, TermState};
+use super::{ErrorMotion, ErrorMotions, Kinematics, MotionReader, Sample, Share, Sines, TermState};
 
 pub use self::report::{
     Convergence, DirectionOutcome, GREATEST_AMPLIFICATION, Limits, Outcome, Refusal, SetupError, Work,
@@ -146,6 +146,13 @@ impl<'a, K: Kinematics + ?Sized, M: ErrorMotions + ?Sized> Compensator<'a, K, M>
     /// the error itself that is not finite.
     pub fn error(&mut self, sample: &Sample<'_>) -> Result<[Real; 3], Refusal> {
         self.prediction.begin(sample)
+    }
+
+    /// The error motions at the position of the sample, in the order of the kinematics: mm or rad. Terms remember what the last cycle has
+    /// left. None where the sample is not of such a machine.
+    pub fn motions(&mut self, sample: &Sample<'_>) -> Option<M::Values<'_>> {
+        let Prediction { motions, states, values, .. } = &mut self.prediction;
+        motions.read(MotionReader::new(sample, sample.position, states), values)
     }
 
     /// One cycle: writes to `out` the command c that puts the tool tip where the position of the sample would put it on a

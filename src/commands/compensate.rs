@@ -195,6 +195,7 @@ impl<'s, 'c> Rows<'s, 'c> {
             warn(&format!("warning: {skipped} bad {rows} left out"));
         }
         answering.reach.told().for_each(|outside| warn(&outside));
+        answering.doubts.told(answering.machine.equations()).iter().for_each(|doubt| warn(doubt));
         if let Some(summary) = &answering.summary {
             warn(&summary.to_string());
         }

@@ -3,7 +3,8 @@
 //! In: a term as it was read. Out: a diagnostic where a number of it says that it is not.
 
 use super::parameters::Context;
-use super::term::CalibratedTerm;
+use super::term::{CalibratedTerm, SeriesInput};
+use super::{MachineNames, MotionName};
 use crate::diagnostic::Diagnostic;
 use crate::source::Spanned;
 
@@ -14,29 +15,82 @@ pub const LARGEST_ANGLE: f64 = 0.010;
 /// The largest displacement of an error motion, mm. An axis that is off by more than this has not been set up.
 pub const LARGEST_DISPLACEMENT: f64 = 10.0;
 
-/// Refuses a term whose own number says that it is no small error. The angle of a rotary axis itself may be large: an encoder may count
+/// The travel over which a term that grows is judged: mm for a slide, deg for a rotary axis, degC for a sensor. Every machine travels
+/// further and gets warmer in its life.
+const TRAVEL: f64 = 20.0;
+
+/// Refuses a term whose own numbers say that it is no small error. The angle of a rotary axis itself may be large: an encoder may count
 /// from another zero.
 pub(super) fn refuse_large(term: &Spanned<CalibratedTerm>, context: &mut Context<'_>) {
     if context.motion.angular && context.motion.own {
         return;
     }
-    let (largest, unit, per_unit) =
-        if context.motion.angular { (LARGEST_ANGLE, "mrad", 1e3) } else { (LARGEST_DISPLACEMENT, "mm", 1.0) };
     let size = term.value.told_size();
-    if size <= largest {
-        return;
+    if size > largest(context.motion.angular) {
+        let message = format!("{} is not a small error", told(size, context.motion.angular));
+        refuse(term, context, message);
+    } else if let Some((size, over)) = least_over(&term.value, context.names)
+        && size > largest(context.motion.angular)
+    {
+        let told = told(size, context.motion.angular);
+        refuse(term, context, format!("an error that reaches {told} within any {over} is not small"));
     }
-    let name = &context.motion.name;
-    let message = format!("{} {unit} is not a small error", short(size * per_unit));
-    let reason = if context.motion.angular {
+}
+
+fn refuse(term: &Spanned<CalibratedTerm>, context: &mut Context<'_>, message: String) {
+    let MotionName { name, angular, .. } = context.motion;
+    let reason = if *angular {
         "the equations are of first order and neglect half the square of an angle"
     } else {
         "no axis of a working machine is displaced this far"
     };
     let mistake = Diagnostic::error("E0430", term.span, message)
-        .label(format!("{name} may be {} {unit} at most", short(largest * per_unit)))
+        .label(format!("{name} may be {} at most", told(largest(*angular), *angular)))
         .help(format!("check the unit: {reason}"));
     context.diagnostics.push(mistake);
+}
+
+/// The largest error motion, mm or rad.
+fn largest(angular: bool) -> f64 {
+    if angular { LARGEST_ANGLE } else { LARGEST_DISPLACEMENT }
+}
+
+/// A size with its unit.
+fn told(size: f64, angular: bool) -> String {
+    let (unit, per_unit) = if angular { ("mrad", 1e3) } else { ("mm", 1.0) };
+    format!("{} {unit}", short(size * per_unit))
+}
+
+/// The size, mm or rad, that a term which grows reaches at least, somewhere within any [`TRAVEL`] of what it grows with; and that travel
+/// in words. None where it does not grow, or where states of the machine say how far.
+///
+/// A polynomial whose highest coefficient is c, of power n, is nowhere smaller over a travel T than 2 c (T/4)^n at its largest (Chebyshev):
+/// all others can cancel it no further. Those others are large by themselves where an axis travels far from its zero.
+fn least_over(term: &CalibratedTerm, names: &MachineNames) -> Option<(f64, String)> {
+    let of_axis = |axis: usize| {
+        let rotary = names.axes.get(axis).is_some_and(|axis| axis.rotary);
+        if rotary { (TRAVEL.to_radians(), format!("{TRAVEL} deg")) } else { (TRAVEL, format!("{TRAVEL} mm")) }
+    };
+    let of_sensor = || (TRAVEL, format!("{TRAVEL} degC"));
+    let (highest, power, (travel, over)) = match term {
+        CalibratedTerm::Polynomial { input, coefficients } => {
+            let over = match input {
+                SeriesInput::Axis(axis) => of_axis(*axis),
+                SeriesInput::Sensor(_) => of_sensor(),
+            };
+            let power = coefficients.iter().rposition(|coefficient| *coefficient != 0.0)?;
+            (coefficients.get(power)?, power, over)
+        }
+        CalibratedTerm::Coupling { axis, coefficients } => {
+            let place = coefficients.iter().rposition(|coefficient| *coefficient != 0.0)?;
+            (coefficients.get(place)?, place.saturating_add(1), of_axis(*axis))
+        }
+        CalibratedTerm::Growth { coefficient, .. } => (coefficient, 1, of_sensor()),
+        _ => return None,
+    };
+    let at_most = |power: i32| 2.0 * (travel / 4.0).powi(power);
+    let times = if power == 0 { 1.0 } else { at_most(i32::try_from(power).ok()?) };
+    Some((highest.abs() * times, over))
 }
 
 /// A number with three significant digits at least.

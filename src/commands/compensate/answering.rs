@@ -16,7 +16,7 @@ use super::CAPACITY;
 use super::lines::{self, Lines};
 use super::separator::Separator;
 use crate::map::Map;
-use crate::positions::{Column, Layout, Reach, Summary};
+use crate::positions::{Column, Doubts, Layout, Reach, Summary};
 
 /// The number of rows that are computed at once. They are 32 pieces, so that each of 16 processors has two and seldom waits for the last
 /// one, and they take a few MB.
@@ -53,7 +53,7 @@ type Answered<'c> = (Batch<'c>, Vec<Lines<'c>>);
 /// Those who answer: the machine, and all that hears of its answers.
 pub(super) struct Answering<'s, 'c> {
     scope: &'s Scope<'c>,
-    machine: &'c rows::Answering<'c>,
+    pub(super) machine: &'c rows::Answering<'c>,
     motions: &'c [ErrorMotion<'c>],
     /// The position of each axis that a program moves, in a row.
     axes: Arc<[Column]>,
@@ -72,6 +72,8 @@ pub(super) struct Answering<'s, 'c> {
     pub(super) skipped: u64,
     /// The rows beyond what was measured.
     pub(super) reach: Reach,
+    /// What must be known beside the answers.
+    pub(super) doubts: Doubts,
     /// What the answers come to, where it is asked for.
     pub(super) summary: Option<Summary>,
     /// What a map is drawn from, where one is asked for.
@@ -105,6 +107,7 @@ impl<'s, 'c> Answering<'s, 'c> {
             skip_bad,
             skipped: 0,
             reach: Reach::new(&calibrated.equations, &calibrated.calibration),
+            doubts: Doubts::default(),
             summary: None,
             map: None,
             begun: 0,
@@ -233,6 +236,7 @@ impl<'s, 'c> Answering<'s, 'c> {
                 map.take(sample.position, sample.temperature.to_vec());
             }
         }
+        self.doubts.add(&piece.doubts);
         self.summary.iter_mut().for_each(|summary| summary.add(&piece.summary));
         let failure = piece.failure;
         self.show(&lines::text(piece.writer)?)?;

@@ -10,7 +10,7 @@ use workshop::rows::Answer;
 
 use super::separator::Separator;
 use crate::decimal::Decimal;
-use crate::positions::{Column, Summary, quoted};
+use crate::positions::{Column, Doubts, Summary, quoted};
 
 /// The lines of rows that follow each other.
 pub(super) struct Lines<'l> {
@@ -20,6 +20,7 @@ pub(super) struct Lines<'l> {
     number: Decimal,
     pub(super) writer: csv::Writer<Vec<u8>>,
     pub(super) summary: Summary,
+    pub(super) doubts: Doubts,
     /// The rows that were answered.
     pub(super) answered: Vec<usize>,
     /// How many rows were left out.
@@ -43,6 +44,7 @@ impl<'l> Lines<'l> {
             number: Decimal::default(),
             writer: writer(separator),
             summary: Summary::default(),
+            doubts: Doubts::default(),
             answered: Vec::new(),
             skipped: 0,
             failure: None,
@@ -54,6 +56,7 @@ impl<'l> Lines<'l> {
         match &answer.outcome {
             Ok(outcome) => {
                 self.summary.take(outcome, answer.lean.as_ref());
+                self.doubts.take(answer);
                 self.answered.push(row);
                 let written = self.write(&record.0, outcome.error, answer);
                 self.failure = written.err().map(|error| failed(&error));

@@ -4,7 +4,11 @@
 //! What rows remember of the rows before them is taken along first, row by row ([`Samples`]); then pieces are answered side by side, each
 //! from what is remembered where it begins.
 
-use abbe_runtime::{Compensator, ErrorMotion, Exchanged, Outcome, Refusal, TermState, Work};
+use abbe_runtime::math::length;
+use abbe_runtime::{
+    Compensator, ErrorMotion, Exchanged, Kinematics, Outcome, Refusal, Sample, TermState, Work,
+};
+use model_dsl::calibration::{LARGEST_ANGLE, LARGEST_DISPLACEMENT};
 use model_dsl::equations::Equations;
 use model_dsl::program::Interpreter;
 use rayon::prelude::*;
@@ -33,6 +37,10 @@ pub struct Answer<'a> {
     pub command: &'a [f64],
     /// The error of the tool's direction, where it is derived.
     pub lean: Option<Lean>,
+    /// Whether rotary axes correct that error.
+    pub aimed: bool,
+    /// The error motion that is the farthest from small, by its number, and its value: mm or rad. None where all are.
+    pub large: Option<(usize, f64)>,
 }
 
 impl<'c> Answering<'c> {
@@ -114,11 +122,38 @@ impl<'c> Answering<'c> {
             if let (Some(lean), Some(direction)) = (&mut lean, compensator.direction()) {
                 lean.with = direction.remaining;
             }
-            if !take(row, &Answer { outcome, command: &command, lean }) {
+            let aimed = self.compensated && compensator.direction().is_some();
+            let shows = outcome.as_ref().is_ok_and(|outcome| length(outcome.error) > SHOWS);
+            let large = if shows { self.large(&mut compensator, &sample) } else { None };
+            if !take(row, &Answer { outcome, command: &command, lean, aimed, large }) {
                 break;
             }
         }
         Ok(())
+    }
+}
+
+/// The error of the tip, mm, from which on it is asked whether all error motions are small: that of the largest angle at a lever arm of
+/// 10 mm, the length of a short tool.
+const SHOWS: f64 = 10.0 * LARGEST_ANGLE;
+
+impl Answering<'_> {
+    /// The error motion that is the farthest above the largest that equations of first order are for. The angle of a rotary axis itself may
+    /// be any.
+    fn large<K: Kinematics + ?Sized>(
+        &self,
+        compensator: &mut Compensator<'_, K>,
+        sample: &Sample<'_>,
+    ) -> Option<(usize, f64)> {
+        let values = compensator.motions(sample)?;
+        let times = |number: usize, value: f64| {
+            let motion = self.equations().motions.get(number)?;
+            let largest = if motion.angular { LARGEST_ANGLE } else { LARGEST_DISPLACEMENT };
+            let own = motion.angular && self.equations().own_axis(motion).is_some();
+            (!own && value.abs() > largest).then_some((number, value, value.abs() / largest))
+        };
+        let large = values.iter().enumerate().filter_map(|(number, value)| times(number, *value));
+        large.max_by(|a, b| a.2.total_cmp(&b.2)).map(|(number, value, _)| (number, value))
     }
 }
 
@@ -146,7 +181,7 @@ impl Room {
     /// # Errors
     ///
     /// A calibration that cannot be run.
-    pub fn compensator<'r, K: abbe_runtime::Kinematics + ?Sized>(
+    pub fn compensator<'r, K: Kinematics + ?Sized>(
         &'r mut self,
         machine: &'r K,
         motions: &'r [ErrorMotion<'r>],

@@ -66,6 +66,68 @@ fn every_format_writes_files_and_tells_what_they_lose() {
     }
 }
 
+/// A machine and its calibration in a folder of the test's own, written in a format: X, Y and Z go from 0 to 300 mm.
+fn exported_motors(test: &str, [machine, errors]: [&str; 2], format: &str) -> Run {
+    let folder = folder(test).join(format);
+    fs::create_dir_all(&folder).unwrap();
+    let calibration = folder.join("known.yaml");
+    fs::write(folder.join("motors.yaml"), machine).unwrap();
+    let constants =
+        if machine.contains("topology") { "constants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\n" } else { "" };
+    fs::write(&calibration, format!("calibration: 1\nmachine: motors.yaml\n{constants}errors: {errors}\n"))
+        .unwrap();
+    let (calibration, out) = (calibration.to_str().unwrap(), folder.to_str().unwrap());
+    let ranges = ["--range", "X=0:300", "--range", "Y=0:300", "--range", "Z=0:300"];
+    abbe(&[&["export", format, calibration, "--output", out], &ranges[..]].concat(), "")
+}
+
+/// Tables of one drive know nothing of crossed belts, whose motors move two axes each. What corrects the tip has nothing to do with motors.
+#[test]
+fn crossed_belts_have_files_where_a_controller_corrects_the_tip() {
+    let corexy =
+        ["abbe: 1\nname: corexy\ntopology: ZFYX\ntransmission: {A: X + Y, B: X - Y}\n", "{EC0Y: 500 urad}"];
+    for format in ["isg", "etalon", "marlin", "klipper", "reprap"] {
+        let run = exported_motors("crossed", corexy, format);
+        assert_eq!((run.status, run.err.as_str()), (0, ""), "{format}");
+        assert!(
+            rms(&run.out, "without") > 40.0 && rms(&run.out, "with these") < 0.1,
+            "{format}: {}",
+            run.out
+        );
+        assert!(!run.out.contains("A 0 to 0"), "{format}: {}", run.out);
+    }
+    for format in ["linuxcnc", "sinumerik", "heidenhain", "pmac"] {
+        let run = exported_motors("crossed", corexy, format);
+        let told = "A moves several axes together, but these tables correct a drive that moves one";
+        assert!(
+            run.status == 2 && run.err.contains(told) && run.err.contains("abbe compensate"),
+            "{}",
+            run.err
+        );
+    }
+}
+
+/// Two motors of a beam that get one command: a table of the slide is a table of both joints.
+#[test]
+fn two_joints_of_one_slide_have_one_file() {
+    let gantry = "abbe: 1\nname: gantry\nchain:\n  tool:\n    - {slide: Y, along: +Y, drives: {Y1: {x: -400 mm}, Y2: {x: 600 mm}}, corrects: false}\n    - {slide: X, along: +X}\n    - {slide: Z, along: +Z}\n    - {tool: tip, offset: [0, 30, -100]}\n";
+    let errors = "{EYY: [{polynomial: {per: mm, unit: um, coefficients: [0, 0.1]}}]}";
+    for format in ["linuxcnc", "isg"] {
+        let run = exported_motors("gantry", [gantry, errors], format);
+        assert_eq!((run.status, run.err.as_str()), (0, ""), "{format}");
+        assert!(
+            rms(&run.out, "without") > 8.0 && rms(&run.out, "with these") < 0.1,
+            "{format}: {}",
+            run.out
+        );
+        assert!(
+            format == "isg" || run.out.contains("[JOINT_n] of Y1 and of Y2: COMP_FILE = y.comp"),
+            "{}",
+            run.out
+        );
+    }
+}
+
 #[test]
 fn a_file_that_is_there_is_replaced_only_when_asked() {
     let folder = folder("there");

@@ -12,7 +12,7 @@ pub enum UpdateError {
         /// The sensor: `T10` of the channel `temperature.T10`.
         sensor: String,
     },
-    /// The instrument of a recording measures no points of a part.
+    /// The instrument of a recording measures no points of a part, nor lengths between them.
     Instrument {
         /// The recording, by its place among those given.
         recording: usize,
@@ -33,7 +33,7 @@ impl fmt::Display for UpdateError {
                 "the calibration reads the sensor {sensor}, but the recording has no channel `temperature.{sensor}`"
             ),
             Self::Instrument { .. } => {
-                formatter.write_str("only the instruments `probe` and `position` measure points of a part")
+                formatter.write_str("only the instruments `probe`, `position` and `ballbar` measure points of a part")
             }
             Self::NoPoints => {
                 formatter.write_str("the recordings have no point with a reading and a position")

@@ -61,7 +61,11 @@ impl Machine<'_> {
     pub(crate) fn points(&self, recordings: &[&Recording]) -> Result<Points, UpdateError> {
         let mut all = Points { points: Vec::new(), parts: Vec::new(), settings: Vec::new() };
         for (number, recording) in recordings.iter().enumerate() {
-            if !matches!(recording.instrument, Instrument::Probe | Instrument::Position) {
+            let is_read = matches!(
+                recording.instrument,
+                Instrument::Probe | Instrument::Position | Instrument::Ballbar { .. }
+            );
+            if !is_read {
                 return Err(UpdateError::Instrument { recording: number });
             }
             let constants = recording.constants(&self.calibration.constants);
@@ -308,11 +312,14 @@ impl States<'_> {
 
 /// The readings of a row: a direction and the deviation along it, mm. Cells without a sample are no readings.
 fn readings(recording: &Recording, row: usize, nominal: [f64; 3]) -> Vec<([f64; 3], f64)> {
+    let deviation = recording.deviation.as_ref().map_or(f64::NAN, |column| cell(column, row));
+    if let Instrument::Ballbar { center, radius } = recording.instrument {
+        return length_reading(deviation, minus(nominal, center), radius).into_iter().collect();
+    }
     if recording.instrument == Instrument::Probe {
         let normal = recording.normal.as_ref().map_or([f64::NAN; 3], |normal| {
             [0, 1, 2].map(|part| normal.get(part).map_or(f64::NAN, |column| cell(column, row)))
         });
-        let deviation = recording.deviation.as_ref().map_or(f64::NAN, |column| cell(column, row));
         // A normal is a unit vector or is missing as a whole.
         let normal = if dot(normal, normal).is_finite() { normal } else { [f64::NAN; 3] };
         return if deviation.is_finite() { vec![(normal, deviation)] } else { Vec::new() };
@@ -326,6 +333,14 @@ fn readings(recording: &Recording, row: usize, nominal: [f64; 3]) -> Vec<([f64; 
         }
     }
     found
+}
+
+/// A length from a centre to the tip, read as longer than nominal, as a displacement of the tip along it: `arm` is the way from the centre to
+/// where the tip was told to be. Across it, a displacement of 0.1 mm makes 100 mm longer by 0.05 um.
+fn length_reading(deviation: f64, arm: [f64; 3], radius: f64) -> Option<([f64; 3], f64)> {
+    let length = dot(arm, arm).sqrt();
+    let read = deviation - (length - radius);
+    (length > 0.0 && read.is_finite()).then(|| (arm.map(|part| part / length), read))
 }
 
 /// The channel of every sensor that is an input of a term, gaps held from the sample before.

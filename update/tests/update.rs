@@ -174,6 +174,57 @@ fn one_wrong_coefficient_is_found_by_select_and_met_by_all() {
     }
 }
 
+/// The same points as lengths from a centre, which is somewhat elsewhere than declared: a ballbar, or calipers over a part.
+fn lengths(points: &Recording, center: [f64; 3], declared: [f64; 3]) -> Recording {
+    const RADIUS: f64 = 100.0;
+    let [x, y, z] = points.measured.each_ref().map(|column| column.clone().unwrap());
+    let length = |row: usize| {
+        let arm = [x[row] - center[0], y[row] - center[1], z[row] - center[2]];
+        arm.iter().map(|part| part * part).sum::<f64>().sqrt()
+    };
+    Recording {
+        instrument: Instrument::Ballbar { center: declared, radius: RADIUS },
+        deviation: Some((0..x.len()).map(|row| length(row) - RADIUS).collect()),
+        measured: Default::default(),
+        ..points.clone()
+    }
+}
+
+/// Lengths from three places around the room tell scales and squarenesses, wherever these places really are.
+#[test]
+fn lengths_tell_scales_and_squarenesses() {
+    let bench = Bench::new();
+    let text = |scales: [f64; 3], square: [f64; 3]| {
+        let [x, y, z] = scales;
+        let [c0y, a0z, b0z] = square;
+        format!(
+            "calibration: 1\nmachine: XYFZ\nconstants: {{Xt: 0 mm, Yt: 0 mm, Zt: 50 mm}}\nerrors:\n  EXX: [{{polynomial: {{per: mm, unit: um, coefficients: [0, {x}]}}}}]\n  EYY: [{{polynomial: {{per: mm, unit: um, coefficients: [0, {y}]}}}}]\n  EZZ: [{{polynomial: {{per: mm, unit: um, coefficients: [0, {z}]}}}}]\n  EC0Y: {c0y} urad\n  EA0Z: {a0z} urad\n  EB0Z: {b0z} urad\n"
+        )
+    };
+    let (scales, square) = ([0.05, -0.08, 0.03], [60.0, -40.0, 25.0]);
+    let truth = bench.read(&text(scales, square));
+    let known = bench.read(&text([0.01; 3], [10.0; 3]));
+    let recordings: Vec<Recording> = [[-80.0, -60.0, 40.0], [290.0, 200.0, 60.0], [100.0, -90.0, -180.0]]
+        .into_iter()
+        .zip(20..)
+        .map(|(center, seed)| {
+            let declared = [center[0] + 0.005, center[1] - 0.003, center[2] + 0.004];
+            lengths(&bench.measured(&truth, 0.0, seed), center, declared)
+        })
+        .collect();
+    let recordings: Vec<&Recording> = recordings.iter().collect();
+    let updated = bench.update(&known, &recordings, Options::default()).unwrap();
+    let names = ["EXX", "EYY", "EZZ"].map(|name| format!("{name}.polynomial[1]"));
+    let squares = ["EC0Y", "EA0Z", "EB0Z"].map(|name| format!("{name}.constant"));
+    let expected = scales.map(|scale| scale * 1e-3).into_iter().chain(square.map(|square| square * 1e-6));
+    for (name, expected) in names.iter().chain(&squares).zip(expected) {
+        let change = updated.changes.iter().find(|change| change.name == *name).unwrap();
+        // What is across a length of 100 mm, 10 um of it, makes it longer by less than a nm: some 1e-3 of these errors.
+        assert!((change.after - expected).abs() < 2e-3 * expected.abs(), "{change:?} {expected}");
+    }
+    assert!(rms(&updated)[1] < 1e-6 && rms(&updated)[0] > 1e-3, "{:?}", rms(&updated));
+}
+
 #[test]
 fn a_table_is_moved_as_a_whole_and_its_zeros_stand() {
     let bench = Bench::new();
@@ -342,9 +393,9 @@ fn what_cannot_serve_is_refused() {
     let mut cold = recording.clone();
     cold.temperatures.remove(1);
     assert_eq!(refused(&truth, &cold), UpdateError::NoTemperature { recording: 0, sensor: "T2".to_owned() });
-    let ball = Instrument::Ballbar { center: [0.0; 3], radius: 100.0 };
-    let ballbar = Recording { instrument: ball, ..recording.clone() };
-    assert_eq!(refused(&truth, &ballbar), UpdateError::Instrument { recording: 0 });
+    let level = Instrument::Angular { axis: None, about: [0.0, 0.0, 1.0] };
+    let angular = Recording { instrument: level, ..recording.clone() };
+    assert_eq!(refused(&truth, &angular), UpdateError::Instrument { recording: 0 });
     let mut empty = recording.clone();
     for column in empty.measured.iter_mut().flatten() {
         column.fill(f64::NAN);

@@ -135,8 +135,7 @@ fn refused(error: &UpdateError, parts: &[Recorded]) -> Failure {
             (*recording, "E0626", "channels", help)
         }
         UpdateError::Instrument { recording } => {
-            let help =
-                "use abbe diagnose for other instruments; a part is measured as positions or along normals";
+            let help = "use abbe diagnose for other instruments; a part is measured as positions, along normals, or as lengths (ballbar)";
             (*recording, "E0627", "instrument", help.to_owned())
         }
         _ => return Failure::no(format!("error: {error}")),

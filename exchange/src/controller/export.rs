@@ -36,6 +36,29 @@ pub struct Checked {
     pub lost: Lost,
 }
 
+/// Refuses a machine whose motors no table of the format corrects.
+fn refuse_motors(geometry: &Geometry<'_>, format: Format) -> Result<(), Refused> {
+    refuse_beam(geometry)?;
+    match format {
+        Format::LinuxCnc | Format::Sinumerik | Format::Heidenhain | Format::Pmac => refuse_crossed(geometry),
+        // Such controllers correct the tip, and find the positions of motors behind that.
+        Format::Isg | Format::Etalon | Format::Marlin | Format::Klipper | Format::RepRap => Ok(()),
+    }
+}
+
+/// Refuses crossed drives: a table of one axis alone corrects its drive, and no motor there moves one axis alone.
+fn refuse_crossed(geometry: &Geometry<'_>) -> Result<(), Refused> {
+    let mut motors = geometry.equations.axes.iter().filter(|axis| axis.follows.len() > 1);
+    let Some(motor) = motors.next() else { return Ok(()) };
+    Err(Refused::new(
+        format!(
+            "{} moves several axes together, but these tables correct a drive that moves one",
+            motor.letter
+        ),
+        "use `abbe compensate`, the C interface or the component of LinuxCNC: each gives every motor its own command",
+    ))
+}
+
 /// Refuses a machine whose motors turn their beam back: the tables of all formats correct an axis, which has one command.
 fn refuse_beam(geometry: &Geometry<'_>) -> Result<(), Refused> {
     let mut motors = geometry.equations.axes.iter().filter(|axis| !axis.squares.is_empty());
@@ -60,7 +83,7 @@ pub fn export(
     format: Format,
     options: &Options,
 ) -> Result<Export, Refused> {
-    refuse_beam(geometry)?;
+    refuse_motors(geometry, format)?;
     let job = Job { geometry, space, options };
     let Written { files, loading, left_out } = match format {
         Format::LinuxCnc => linuxcnc::written(&job),

@@ -33,6 +33,15 @@ impl Pose {
         moved
     }
 
+    /// The pose of the first axes alone.
+    pub(super) fn of_first(&self, axes: usize) -> Self {
+        let Self { position, direction } = self;
+        Self {
+            position: position.iter().take(axes).copied().collect(),
+            direction: direction.iter().take(axes).copied().collect(),
+        }
+    }
+
     /// The pose with motors where their axes put them.
     fn with_motors(&self, machine: &Interpreter) -> Self {
         let mut placed = self.clone();

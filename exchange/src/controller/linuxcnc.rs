@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 use abbe_runtime::Direction;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
-use model_dsl::equations::AxisInfo;
+use model_dsl::equations::{AxisInfo, Equations};
 use model_dsl::source::{SourceFile, Span};
 
 use super::decimal::decimal;
@@ -249,11 +249,11 @@ pub(super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
             Kind::Actual => 0,
             Kind::Trim => 1,
         };
+        let joints = joints(geometry.equations, axis);
         written.loading.push(format!(
-            "[JOINT_n] of {}: COMP_FILE = {name} and COMP_FILE_TYPE = {kind}, and no BACKLASH beside them",
-            info.letter
+            "[JOINT_n] of {joints}: COMP_FILE = {name} and COMP_FILE_TYPE = {kind}, and no BACKLASH beside them"
         ));
-        let about = format!("{} triplets for the joint of {}", nodes.len(), info.letter);
+        let about = format!("{} triplets for the joint of {joints}", nodes.len());
         written.files.push(File {
             name,
             axis: Some(axis),
@@ -262,4 +262,14 @@ pub(super) fn written(job: &Job<'_, '_>) -> Result<Written, Refused> {
         });
     }
     Ok(written)
+}
+
+/// The joint of an axis in words; the joints of both motors where two carry its beam.
+fn joints(equations: &Equations, axis: usize) -> String {
+    let is_of = |motor: &&AxisInfo| motor.follows.iter().any(|(followed, _)| *followed == axis);
+    let motors: Vec<&str> = equations.axes.iter().filter(is_of).map(|motor| motor.letter.as_str()).collect();
+    match equations.axes.get(axis) {
+        Some(info) if motors.is_empty() => info.letter.clone(),
+        _ => motors.join(" and of "),
+    }
 }

@@ -83,7 +83,7 @@ fn axes(job: &Job<'_, '_>) -> Result<[usize; 3], Refused> {
     let Job { geometry, .. } = job;
     let [x, y, z] = [0, 1, 2].map(|direction| saved::slide(geometry, direction));
     let axes = [x?, y?, z?];
-    if geometry.equations.axes.len() == axes.len() {
+    if geometry.equations.axes.iter().filter(|axis| !axis.is_motor()).count() == axes.len() {
         return Ok(axes);
     }
     let what = format!("{} has more axes than the slides X, Y, Z", geometry.equations.machine);

@@ -58,7 +58,7 @@ fn verdict(lost: &Lost) -> Option<String> {
 
 fn workspace(geometry: &Geometry<'_>, space: &Space) -> String {
     let axes = geometry.equations.axes.iter().zip(space.ranges.iter().zip(&space.reference));
-    let axes = axes.map(|(axis, ([low, high], at))| {
+    let axes = axes.filter(|(axis, _)| !axis.is_motor()).map(|(axis, ([low, high], at))| {
         let (unit, name) = if axis.rotary { (1_f64.to_degrees(), "deg") } else { (1.0, "mm") };
         let [low, high, at] = [low, high, at].map(|place| short(place * unit));
         format!("{} {low} to {high} {name} (reference {at})", axis.letter)

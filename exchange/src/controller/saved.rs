@@ -125,7 +125,8 @@ pub fn saved_terms(
     let Some(form) = saved_form(source.text()) else {
         let message = "this is not a correction file of a controller";
         let help = "Abbe reads Klipper's printer.cfg, RepRapFirmware's heightmap.csv, commands and printed meshes of \
-                    Marlin and RepRapFirmware, LinuxCNC's COMP_FILE";
+                    Marlin and RepRapFirmware, LinuxCNC's COMP_FILE; no public document gives the signs in tables of Mach or Centroid: \
+                    write their numbers as a plain table of positions and errors (`data:` with `columns:`)";
         diagnostics.push(Diagnostic::error("E0802", Span::default(), message).help(help));
         return Ok(Vec::new());
     };

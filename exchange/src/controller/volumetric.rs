@@ -70,10 +70,11 @@ impl Volumetric {
     /// model has no such motion, or one that does something else.
     pub(super) fn sign(&self, geometry: &Geometry<'_>, motion: usize) -> Option<f64> {
         // No axis at zero: the lever of an alignment error is a travel.
-        let position: Vec<f64> = geometry.equations.axes.iter().map(|_| 1.0).collect();
+        let position = vec![1.0; geometry.equations.axes.len()];
+        let own_position = vec![1.0; self.equations.axes.len()];
         let name = &geometry.equations.motions.get(motion)?.name;
         let own = self.equations.motions.iter().position(|motion| motion.name == *name)?;
-        let (theirs, ours) = (geometry.senses(&position), senses(&self.machine, &position));
+        let (theirs, ours) = (geometry.senses(&position), senses(&self.machine, &own_position));
         let alike: f64 = theirs.get(motion)?.iter().zip(ours.get(own)?).map(|(one, other)| one * other).sum();
         (alike != 0.0).then_some(alike.signum())
     }
@@ -92,7 +93,11 @@ impl Target for Volumetric {
         let values = self.motions(&pose.position);
         let terms: Vec<Vec<Term<'_>>> =
             values.into_iter().map(|value| vec![Term::Constant { value }]).collect();
-        correction(&self.machine, &terms, pose)
+        // Motors follow behind what the controller corrects.
+        let axes = self.equations.axes.len();
+        let mut correction = correction(&self.machine, &terms, &pose.of_first(axes))?;
+        correction.resize(pose.position.len(), 0.0);
+        Ok(correction)
     }
 }
 
@@ -137,7 +142,8 @@ fn write_slide(text: &mut String, letter: char, sign: char) {
 
 /// The topology word of a machine of three slides X, Y, Z, read from part to tool.
 fn word(equations: &Equations) -> Option<String> {
-    let letters: Vec<&str> = equations.axes.iter().map(|axis| axis.letter.as_str()).collect();
+    let axes = equations.axes.iter().filter(|axis| !axis.is_motor());
+    let letters: Vec<&str> = axes.map(|axis| axis.letter.as_str()).collect();
     if letters != ["X", "Y", "Z"] {
         return None;
     }

@@ -109,11 +109,18 @@ fn distinct(links: &[DraftedLink<'_>], diagnostics: &mut Diagnostics) {
             earlier.clone().find(|first| link.is_axis() && first.kind.letter() == link.kind.letter())
         {
             let letter = link.kind.letter().unwrap_or_default();
+            let help = match link.kind {
+                LinkKind::Rotary(_) => {
+                    "a machine has one rotary axis about each of X, Y and Z: A, B, C; for arms of six axes see \"what a machine file \
+                     cannot say\" in docs/reference/machine-file.md"
+                }
+                _ => "name a second slide in the same direction U, V or W",
+            };
             diagnostics.push(
                 Diagnostic::error("E0123", link.span, format!("axis {letter} occurs twice in the chain"))
                     .label("again here")
                     .also(first.span, "first here")
-                    .help("name a second slide in the same direction U, V or W"),
+                    .help(help),
             );
         } else if let Some(first) = earlier.find(|first| first.id == link.id) {
             diagnostics.push(

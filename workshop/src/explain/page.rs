@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use textwrap::{Options, fill};
+use textwrap::{Options, WordSplitter, fill};
 
 use model_dsl::calibration::factor::vocabulary::{FactorEntry, FactorHolds, Measure};
 
@@ -30,7 +30,9 @@ pub(super) fn overview(
         line(&mut text, code.name, 7, code.title);
     }
     text.push_str("\nWords of the glossary\n---------------------\n\n");
-    put(&mut text, &fill(&words.join(", "), WIDTH));
+    // A word is found by its whole name, and so none is broken at a hyphen.
+    let whole = Options::new(WIDTH).word_splitter(WordSplitter::NoHyphenation);
+    put(&mut text, &fill(&words.join(", "), whole));
     text.push_str("\n`abbe explain NAME` tells more of each, of an error motion by its name, such as EX0C or EA(0Y)C, of a\n\
          topology word such as XYFZ, and of each word of the guide's glossary, such as squareness.\n");
     text

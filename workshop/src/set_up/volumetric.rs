@@ -11,7 +11,7 @@ use model_dsl::source::SourceFile;
 use crate::failure::Failure;
 use crate::load;
 use crate::recorded::unusable;
-use crate::told::Listener;
+use crate::told::{Listener, Words};
 
 /// Takes the file over, where the set-up names one; what is wrong in it stands at its place there, below the place of its name
 /// (E0914).
@@ -34,6 +34,7 @@ pub(super) fn take(
     if findings.has_errors() {
         return Err(not(Failure::marked(&file, &findings)));
     }
+    listener.hear(&Words::marked(&file, &findings));
     setup.take(&terms, name.span, equations, diagnostics);
     listener.hear(&format!("{} terms of error motions from {}", terms.len(), file.name()).into());
     Ok(())

@@ -115,11 +115,7 @@ fn two_joints_of_one_slide_have_one_file() {
     for format in ["linuxcnc", "isg"] {
         let run = exported_motors("gantry", [gantry, errors], format);
         assert_eq!((run.status, run.err.as_str()), (0, ""), "{format}");
-        assert!(
-            rms(&run.out, "without") > 8.0 && rms(&run.out, "with these") < 0.1,
-            "{format}: {}",
-            run.out
-        );
+        assert!(rms(&run.out, "without") > 8.0 && rms(&run.out, "with these") < 0.1, "{format}: {}", run.out);
         assert!(
             format == "isg" || run.out.contains("[JOINT_n] of Y1 and of Y2: COMP_FILE = y.comp"),
             "{}",

@@ -119,10 +119,46 @@ impl Recording {
         constants
     }
 
+    /// Whether another one has the same rows, to the last bit: a copy of it. Two measurements differ in their noise, unless all readings are
+    /// one number.
+    #[must_use]
+    pub fn is_copy_of(&self, other: &Self) -> bool {
+        let alike = |(own, other): (Option<&Vec<f64>>, Option<&Vec<f64>>)| same_bits(own, other);
+        let varies = |column: &Vec<f64>| column.windows(2).any(|pair| (pair[1] - pair[0]).abs() > 0.0);
+        self.time.len() == other.time.len()
+            && self.run == other.run
+            && same_bits(Some(&self.time), Some(&other.time))
+            && self.columns().count() == other.columns().count()
+            && self.columns().zip(other.columns()).all(alike)
+            && self.readings().flatten().any(varies)
+    }
+
+    /// What was read, by the instrument.
+    fn readings(&self) -> impl Iterator<Item = Option<&Vec<f64>>> {
+        let of_axes = self.axes.iter().map(|axis| axis.measured.as_ref());
+        self.measured.iter().map(Option::as_ref).chain([self.deviation.as_ref()]).chain(of_axes)
+    }
+
+    /// What was read, and where the axes were.
+    fn columns(&self) -> impl Iterator<Item = Option<&Vec<f64>>> {
+        let of_axes = self.axes.iter().flat_map(|axis| [axis.command.as_ref(), axis.actual.as_ref()]);
+        self.readings().chain(of_axes)
+    }
+
     /// A calibration with the constants of the machine while it was recorded.
     #[must_use]
     pub fn calibrated(&self, known: &Calibration) -> Calibration {
         Calibration { constants: self.constants(&known.constants), ..known.clone() }
+    }
+}
+
+/// Whether columns hold the same numbers, gaps too.
+fn same_bits(one: Option<&Vec<f64>>, other: Option<&Vec<f64>>) -> bool {
+    let same = |(one, other): (&f64, &f64)| one.to_bits() == other.to_bits();
+    match (one, other) {
+        (None, None) => true,
+        (Some(one), Some(other)) => one.len() == other.len() && one.iter().zip(other).all(same),
+        _ => false,
     }
 }
 

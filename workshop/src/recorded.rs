@@ -167,10 +167,14 @@ pub fn read_all(paths: &[PathBuf], listener: &dyn Listener) -> Result<Vec<Record
     Ok(all)
 }
 
-/// Adds a recording to others of one machine with one calibration; refuses one of another.
+/// Adds a recording to others of one machine with one calibration; refuses one of another, and one that is there already: twice as many
+/// readings of the same noise make intervals too narrow, and noise that repeats looks like physics.
 pub fn add(all: &mut Vec<Recorded>, mut recorded: Recorded) -> Result<(), Failure> {
     if let Some(first) = all.first() {
         first.take_other(&mut recorded)?;
+    }
+    if let Some(copy) = all.iter().find(|known| recorded.recording.is_copy_of(&known.recording)) {
+        return Err(copy.refuse_copy(&recorded));
     }
     all.push(recorded);
     Ok(())
@@ -255,6 +259,18 @@ fn differing(known: &[f64], own: &[f64]) -> Vec<(usize, f64)> {
 }
 
 impl Recorded {
+    /// A recording whose rows are those of this one (E0625).
+    fn refuse_copy(&self, copy: &Self) -> Failure {
+        let [name, own] = [copy, self].map(|recorded| recorded.source.name());
+        let message = if name == own {
+            format!("{name} is given twice")
+        } else {
+            format!("{name} has the same rows as {own}, to the last digit")
+        };
+        let mistake = Diagnostic::error("E0625", copy.named.machine, message);
+        one(&copy.source, mistake.help("give each recording once: no two measurements have the same noise"))
+    }
+
     /// Reports a recording that is of another machine, or counts on another calibration (E0625). Calibrations that differ in constants
     /// alone are one calibration with other tools: the recording then tells what its own are.
     fn take_other(&self, other: &mut Self) -> Result<(), Failure> {
@@ -352,8 +368,31 @@ mod tests {
         assert!(recorded.calibration.is_some());
         assert_eq!(recorded.recording.time, [0.0, 1.0]);
         assert_eq!(recorded.recording.file, folder.join("r.yaml").display().to_string());
-        let both = read_all(&[folder.join("r.yaml"), folder.join("r.yaml")], &()).ok().unwrap();
-        assert_eq!(both.len(), 2);
+    }
+
+    #[test]
+    fn a_recording_counts_once() {
+        let text = recording("machine: stage.yaml");
+        let (still, other) = (text.replace("d.csv", "still.csv"), text.replace("d.csv", "other.csv"));
+        let files = [
+            ("r.yaml", text.as_str()),
+            ("copy.yaml", &text),
+            ("still.yaml", &still),
+            ("again.yaml", &still),
+            ("apart.yaml", &other),
+            ("still.csv", "t,x\n5,1\n6,1\n"),
+            ("other.csv", "t,x\n5,1\n6,2.000001\n"),
+        ];
+        let folder = folder("once", &files);
+        let together = |names: [&str; 2]| read_all(&names.map(|name| folder.join(name)), &());
+        let said = wrong(together(["r.yaml", "r.yaml"]));
+        assert!(said.contains("E0625") && said.contains("given twice"), "{said}");
+        let said = wrong(together(["r.yaml", "copy.yaml"]));
+        assert!(said.contains("E0625") && said.contains("the same rows as"), "{said}");
+        // Another reading; and readings that are one number, as of a machine that stands still.
+        for names in [["r.yaml", "apart.yaml"], ["still.yaml", "again.yaml"]] {
+            assert_eq!(together(names).ok().unwrap().len(), 2, "{names:?}");
+        }
     }
 
     #[test]

@@ -262,8 +262,11 @@ fn bench(code: &str) -> PathBuf {
     write("known.yaml", &complete("calibration", "errors: {EXX: 3 um}"));
     let warm = "errors: {EXX: [{backlash: {lost_motion: 5 um}}, {growth: {sensor: motor, coefficient: 1 um/K, reference: 20 degC}}]}";
     write("warm.yaml", &complete("calibration", warm));
-    write("first.yaml", &complete("recording", ""));
-    write("data.csv", "t,n,xc,yc,xm,dev,T\n0,1,0,0,0,1,20\n1,1,1,0,1,2,20\n2,3,2,0,2,1,20\n3,3,1,1,1,0,20\n");
+    let rows = "t,n,xc,yc,xm,dev,T\n0,1,0,0,0,1,20\n1,1,1,0,1,2,20\n2,3,2,0,2,1,20\n3,3,1,1,1,0,20\n";
+    write("data.csv", rows);
+    // Measured once more, with a last row of its own.
+    write("first.yaml", &complete("recording", "data: first.csv\n"));
+    write("first.csv", &rows.replace("3,3,1,1,1,0", "3,3,1,1,1.001,0"));
     let table = |head: &str, unit: &str, rows: &str| format!("{head}\n{unit}{rows}");
     write("x.csv", &table("target,deviation,angle", "#unit,mm,um,urad\n", "0,1,0\n100,2,3\n200,4,1\n"));
     write("two.csv", &table("target,deviation", "#unit,mm,um\n", "0,1\n100,2\n"));

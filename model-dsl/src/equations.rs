@@ -298,7 +298,7 @@ impl Equations {
         const MOST_TERMS: usize = 100;
         let effects: Vec<_> = self.axes.iter().filter_map(|axis| axis.effect.as_ref()).collect();
         let mut parts = effects.iter().flat_map(|effect| effect.iter());
-        let varies = parts.clone().any(|part| part.as_number().is_none());
+        let varies = parts.clone().any(|part| part.as_fixed().is_none());
         if !varies || parts.any(|part| part.size() > MOST_TERMS) {
             return None;
         }
@@ -309,7 +309,7 @@ impl Equations {
         if !beside.into_iter().all(|(row, column)| entry(row, column).is_zero()) {
             return None;
         }
-        let [x, y, z] = [0, 1, 2].map(|place| entry(place, place).as_number().map(|square| to_f64(&square)));
+        let [x, y, z] = [0, 1, 2].map(|place| entry(place, place).as_fixed());
         Some([x?, y?, z?])
     }
 

@@ -78,6 +78,12 @@ impl Polynomial {
         }
     }
 
+    /// The value, where the polynomial is made of numbers, and of sines and cosines of angles that never change.
+    pub fn as_fixed(&self) -> Option<f64> {
+        let is_fixed = self.symbols().iter().all(|symbol| symbol.fixed_value().is_some());
+        is_fixed.then(|| self.evaluate(|_| f64::NAN))
+    }
+
     /// Every symbol that occurs, in canonical order, once.
     pub fn symbols(&self) -> std::collections::BTreeSet<Symbol> {
         let factors = self.0.keys().flat_map(Monomial::factors);

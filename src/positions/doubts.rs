@@ -87,8 +87,8 @@ impl Counted {
     fn told_left(&self) -> String {
         let (rows, largest) = (self.rows(), self.largest.to_degrees() * 3600.0);
         format!(
-            "warning: the rotary axes leave up to {largest:.1} arcsec of the error of the tool's direction {rows}: one of them is nearly \
-             parallel to the tool, or they would exceed their limit"
+            "warning: the rotary axes leave up to {largest:.1} arcsec of the error of the tool's direction {rows}: no axis turns the tool \
+             that way there, or their limit is too low"
         )
     }
 }

@@ -13,7 +13,7 @@ use crate::jobs::places;
 use crate::name::Name;
 use crate::results::{Filed, Table};
 use crate::series::{NOISE, Point, Series, Untold};
-use crate::shelf::{Current, Known, machines as filed_machines, read};
+use crate::shelf::{Current, Known, check, machines as filed_machines, read};
 
 /// The machines of a fleet, with what was recorded until a moment.
 pub(super) fn machines(
@@ -23,12 +23,13 @@ pub(super) fn machines(
 ) -> Result<Vec<Machine>, Failure> {
     let mut hear = |why: String| listener.hear(&why.into());
     let places = places(fleet, &());
-    let listed: BTreeSet<&str> = places.iter().map(|place| place.id.as_str()).collect();
+    let listed: BTreeSet<&str> = places.found.iter().map(|place| place.id.as_str()).collect();
     let current = Current::of(&fleet.results, None, &listed)?;
     let mut rows =
         |table| Ok::<_, Failure>(by_machine(read(&fleet.results, table, (None, &current), &mut hear)?));
     let (mut verdicts, mut recordings) = (rows(Table::Verdicts)?, rows(Table::Recordings)?);
     let mut followed = rows(Table::Followed)?;
+    check(&fleet.results, Table::Parameters, (None, &current), &mut hear)?;
     let named: BTreeSet<&str> = fleet.machines.iter().map(|machine| machine.name.as_str()).collect();
     for name in filed_machines(&fleet.results)? {
         if !named.contains(name.as_str()) {

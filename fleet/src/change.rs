@@ -37,7 +37,10 @@ const FEWEST_BESIDE: usize = 2;
 pub struct Change {
     /// `trend` or `step`.
     pub kind: &'static str,
-    /// The change from the first recording to the last along a trend, or over the step; of a noise of its logarithm.
+    /// What `size`, `half`, `per_week`, `before` and `after` are of: `value`, in the unit of the series; `logarithm`, the natural one of the
+    /// values in that unit, of a noise. There `size` is the logarithm of the factor, and `exp(before)` is a level in the unit.
+    pub scale: &'static str,
+    /// The change from the first recording to the last along a trend, or over the step.
     pub size: f64,
     /// Half of its 95 % interval.
     pub half: f64,
@@ -101,7 +104,9 @@ pub(crate) fn change(series: &Series) -> Option<Change> {
     let trend = trend(&points, first, last);
     let step = step(&points);
     // Both were looked for, and either might have been plain by chance (Bonferroni): whichever is told, its probability is twice its own.
-    let doubled = |change: Change| Change { probability: (2.0 * change.probability).min(1.0), ..change };
+    let scale = if series.is_noise() { "logarithm" } else { "value" };
+    let doubled =
+        |change: Change| Change { probability: (2.0 * change.probability).min(1.0), scale, ..change };
     match (
         trend.map(|(change, left)| (doubled(change), left)),
         step.map(|(change, left)| (doubled(change), left)),
@@ -163,6 +168,7 @@ fn told(lines: &Lines, kind: &'static str, from: usize) -> Change {
     );
     Change {
         kind,
+        scale: "value",
         size: slope.0,
         half: slope.1,
         per_week: 0.0,

@@ -11,6 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use rayon::prelude::*;
+use recording::Moment;
 use serde::Serialize;
 use workshop::failure::Failure;
 use workshop::told::Listener;
@@ -456,6 +457,25 @@ pub fn pending(fleet: &Fleet, shard: Option<Shard>, listener: &dyn Listener) -> 
         }
     }
     Ok(Listed { jobs: pending, put_off: plan.put_off.len() })
+}
+
+/// How many recordings of each machine, by its number, were made until a moment and have no whole result of what they hold now. The listener
+/// hears of what cannot be read now.
+pub(crate) fn undone(
+    fleet: &Fleet,
+    places: Places,
+    until: Moment,
+    listener: &dyn Listener,
+) -> Result<BTreeMap<usize, usize>, Failure> {
+    let plan = Plan::of(fleet, places, None)?;
+    for PutOff { label, why } in &plan.put_off {
+        listener.hear(&format!("warning: {label} is shown as its last result has it: {why}").into());
+    }
+    let mut undone = BTreeMap::new();
+    for (job, _) in plan.known().filter(|(job, state)| job.time <= until && !state.is_whole()) {
+        *undone.entry(job.place.machine).or_default() += 1;
+    }
+    Ok(undone)
 }
 
 /// Does one job by its name, as [`pending`] tells it: of a diagnosis nothing is looked at but its recording and the names of the results of

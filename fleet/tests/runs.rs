@@ -519,3 +519,54 @@ fn a_folder_that_cannot_be_read_is_postponed() {
     fs::set_permissions(&stage, fs::Permissions::from_mode(0o755)).unwrap();
     assert_eq!(all(&fleet).put_off, 0);
 }
+
+#[test]
+fn a_history_says_what_is_wrong_and_what_is_pending() {
+    let (folder, fleet) = fleet("open");
+    let shown = || {
+        let history = abbe_fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
+        let pages = abbe_fleet::report::pages(&history, "abbe", &|_| None);
+        let (_, index) = pages.files.into_iter().find(|(name, _)| name == "index.html").unwrap();
+        let json: serde_json::Value = serde_json::from_str(&abbe_fleet::report::json(&history)).unwrap();
+        (abbe_fleet::report::text(&history, 200), index, json)
+    };
+    let (text, index, _) = shown();
+    assert!(text.contains("stage 1/b: no result yet, 3 pending") && index.contains("3 pending"), "{text}");
+    fs::write(folder.0.join(format!("a stage/{}.csv", DAYS[0])), "nothing").unwrap();
+    all(&fleet);
+    record(&folder.0.join("a stage"), DAYS[2], 9.0);
+    let (text, index, json) = shown();
+    assert!(text.contains("3 recordings, 1 with errors, 1 pending"), "{text}");
+    assert!(index.contains("1 with errors, 1 pending"), "{index}");
+    assert_eq!((&json["schema"], &json["machines"][0]["pending"]), (&"abbe-fleet/1".into(), &1.into()));
+    // Measured after the moment that is asked for, it is not waited for.
+    let before = abbe_fleet::history(&fleet, Moment::read("2026-02-01").unwrap(), &()).ok().unwrap();
+    assert_eq!((before.machines[0].errors(), before.machines[0].pending), (1, 0));
+    all(&fleet);
+    let (text, ..) = shown();
+    assert!(text.contains("3 recordings, 1 with errors;"), "{text}");
+}
+
+#[test]
+fn the_change_of_a_noise_says_that_it_is_of_logarithms() {
+    let (folder, fleet) = fleet("logarithm");
+    for day in 3..10 {
+        record(&folder.0.join("a stage"), &format!("2026-02-{day:02}"), 4.0);
+    }
+    all(&fleet);
+    let history = abbe_fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
+    let mut scales = BTreeMap::new();
+    for followed in &history.machines[0].series {
+        let (series, change) = (&followed.series, followed.change.as_ref().unwrap());
+        scales.insert(series.effect.clone(), change.scale);
+        // The level at the beginning is one of the values, in the unit or as its logarithm.
+        let level = if change.scale == "logarithm" { change.before.0.exp() } else { change.before.0 };
+        let ends =
+            |of: fn(f64, f64) -> f64, from| series.points.iter().map(|point| point.value).fold(from, of);
+        assert!(
+            level > 0.5 * ends(f64::min, f64::MAX) && level < 2.0 * ends(f64::max, 0.0),
+            "{level} in {series:?}"
+        );
+    }
+    assert_eq!((scales["noise"], scales["EXX backlash"]), ("logarithm", "value"));
+}

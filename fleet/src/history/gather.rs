@@ -39,7 +39,8 @@ pub(super) fn machines(
             listener.hear(&text.into());
         }
     }
-    let machine = |machine: &crate::file::Machine| {
+    let pending = crate::run::undone(fleet, places.clone(), until, listener)?;
+    let machine = |(number, machine): (usize, &crate::file::Machine)| {
         let of = |rows: &mut BTreeMap<String, Vec<(Moment, Known)>>| {
             rows.remove(&machine.name).unwrap_or_default()
         };
@@ -50,6 +51,7 @@ pub(super) fn machines(
         Machine {
             name: machine.name.clone(),
             kind: machine.kind.clone(),
+            pending: pending.get(&number).copied().unwrap_or_default(),
             recordings: entries(fleet, &verdicts, &recordings, &listed),
             series: series
                 .into_iter()
@@ -57,7 +59,7 @@ pub(super) fn machines(
                 .collect(),
         }
     };
-    Ok(fleet.machines.iter().map(machine).collect())
+    Ok(fleet.machines.iter().enumerate().map(machine).collect())
 }
 
 /// The rows of each machine in the order of time; of one moment in that of the paths.

@@ -503,7 +503,7 @@ fn a_folder_that_cannot_be_read_is_postponed() {
     all(&fleet);
     let whole = files(&fleet.results);
     let stage = folder.0.join("a stage");
-    fs::set_permissions(&stage, fs::Permissions::from_mode(0)).unwrap();
+    fs::set_permissions(&stage, fs::Permissions::from_mode(0o000)).unwrap();
     if is_bound(&stage) {
         let heard = Heard::default();
         let listed = run::pending(&fleet, None, &heard).ok().unwrap();

@@ -59,13 +59,13 @@ pub struct Change {
 /// The correlations of neighbours that are tried. From 0.9 on a series is one drift, of which no number of points says more.
 const ALIKE: [f64; 7] = [0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9];
 
-/// The correlation up to which the bound holds whatever a series seems to say: at 0.6 a month's recordings, one a week, still have a
-/// tenth in common. One that is set up anew each month has less.
+/// The correlation up to which the bound holds whatever a series seems to say. Where it is 0.6 from week to week, recordings a month apart
+/// still have an eighth in common (0.6^4): more than a machine that is set up anew once a month.
 const GUARDED: f64 = 0.6;
 
 /// How probable a correlation is beforehand, up to a factor: a weak prior, with a mean of 1/4. Machines are mostly set up anew between two
 /// recordings; a season or a warm week is the exception.
-fn before(alike: f64) -> f64 {
+fn prior(alike: f64) -> f64 {
     (1.0 - alike).powi(2)
 }
 
@@ -216,7 +216,7 @@ fn lines(points: &[(f64, f64, f64)], column: &[f64]) -> Option<Lines> {
     let tried = if points.len() < FEWEST { ALIKE.get(..1) } else { ALIKE.get(..) };
     let all = tried?.iter().map(|alike| line(points, column, *alike)).collect::<Option<Vec<Line>>>()?;
     let most = all.iter().map(|line| line.likelihood).fold(f64::NEG_INFINITY, f64::max);
-    let share = |line: &Line| before(line.alike) * (line.likelihood - most).exp();
+    let share = |line: &Line| prior(line.alike) * (line.likelihood - most).exp();
     let sum: f64 = all.iter().map(share).sum();
     Some(Lines(all.into_iter().map(|line| (share(&line) / sum, line)).collect()))
 }

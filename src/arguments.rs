@@ -12,8 +12,8 @@ use clap_complete::Shell;
 use workshop::updated::{Datum, datum};
 
 pub(crate) use choices::{
-    CalibrateFormat, Color, EvaluationFormat, ExportFormat, ExportValue, Format, LimitsFormat, LinearUnit,
-    Names, ReportFormat, UpdateFormat, UpdateMethod, VerdictName,
+    CalibrateFormat, Color, EvaluationFormat, ExportFormat, ExportValue, FleetFormat, Format, LimitsFormat,
+    LinearUnit, Names, ReportFormat, UpdateFormat, UpdateMethod, VerdictName,
 };
 pub(crate) use fleet::{Fleet, FleetAdd, FleetCommand, FleetRun, FleetShow};
 use values::{name, non_negative, place, range};

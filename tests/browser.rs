@@ -36,6 +36,7 @@ const measure = () => ({
   width: window.innerWidth,
   scroll: document.documentElement.scrollWidth,
   wider: all('main *').filter((own) => !own.closest('.wide') && !own.closest('svg') && box(own).right > window.innerWidth + 1).map(name),
+  cut: all('table.recordings th, table.recordings td').filter((own) => box(own).right > window.innerWidth + 1).map(name),
   formulas: all('main math').length,
   emptyFormulas: all('main math').filter(empty).map(name),
   letters: all('main math mi').length,
@@ -189,6 +190,7 @@ fn every_page_is_laid_out_on_a_telephone_and_asks_nobody() {
         assert!(count("scroll") <= count("width"), "{name} is wider than its window: {seen:#}");
         for none in [
             "wider",
+            "cut",
             "emptyFormulas",
             "emptyLetters",
             "unstacked",
@@ -218,12 +220,13 @@ fn what_is_wrong_with_a_page_is_seen() {
         <div class=\"wide\" style=\"overflow-x: auto\"><div style=\"width: 900px\">may be wide</div></div>\
         <math style=\"display: none\"><mi>x</mi></math>\
         <math><mfrac style=\"display: flex\"><mi>a</mi><mi>b</mi></mfrac></math>\
+        <div class=\"wide\"><table class=\"recordings\"><tr><td style=\"min-width: 900px\">cut</td></tr></table></div>\
         <svg width=\"100\" height=\"50\"><text x=\"90\" y=\"20\">beyond its edge</text></svg>\
         <svg width=\"0\" height=\"0\"></svg><img src=\"http://abbe.invalid/x.png\">\
         <script>console.error('complaint')</script></main></body></html>";
     let (seen, complaints) = opened(browser, &folder, page);
     assert!(complaints.iter().any(|line| line.contains("complaint")), "{complaints:?}");
-    for fault in ["emptyFormulas", "unstacked", "emptyDrawings", "bare", "outside", "fetched"] {
+    for fault in ["cut", "emptyFormulas", "unstacked", "emptyDrawings", "bare", "outside", "fetched"] {
         assert_ne!(seen[fault].as_array().map(Vec::len), Some(0), "{fault}: {seen:#}");
     }
     let wider: Vec<&str> = seen["wider"].as_array().unwrap().iter().filter_map(Value::as_str).collect();

@@ -29,6 +29,7 @@ mod experiments;
 mod explain;
 mod export;
 mod files;
+mod fleet;
 mod found;
 mod generated;
 mod guide;

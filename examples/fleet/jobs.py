@@ -13,9 +13,13 @@ ABBE = os.environ.get("ABBE", "abbe")
 
 
 def listed(fleet):
-    """The jobs that are still to be done: those that diagnose, then those that follow what was found."""
-    told = subprocess.run([ABBE, "fleet", "run", fleet, "--list"], check=True, capture_output=True, text=True)
-    return [json.loads(line) for line in told.stdout.splitlines()]
+    """The jobs that are still to be done: those that diagnose, then those that follow what was found; and why others cannot be done now,
+    empty where there are none."""
+    told = subprocess.run([ABBE, "fleet", "run", fleet, "--list"], capture_output=True, text=True)
+    # Status 1: some recordings cannot be read now, and are not in the list.
+    if told.returncode not in (0, 1):
+        raise RuntimeError(told.stderr.strip())
+    return [json.loads(line) for line in told.stdout.splitlines()], told.stderr.strip() if told.returncode else ""
 
 
 def do(fleet, job):
@@ -28,10 +32,13 @@ def do(fleet, job):
 
 def rounds(fleet):
     """The jobs in rounds: what is followed is known when all recordings of a machine are diagnosed, so the list is read anew after
-    each round, until nothing is left."""
+    each round, until nothing is left. Raises at the end where recordings are missing."""
     before = None
     while True:
-        names = [job["job"] for job in listed(fleet)]
+        left, missing = listed(fleet)
+        names = [job["job"] for job in left]
+        if not names and missing:
+            raise RuntimeError(missing)
         if not names:
             return
         if names == before:

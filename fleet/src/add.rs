@@ -11,9 +11,8 @@ use workshop::told::Listener;
 
 use crate::file::Fleet;
 use crate::jobs::{Job, job, places};
-use crate::results::{Filed, Table, write_file};
+use crate::results::{Filed, Table, sound, write_file};
 use crate::shelf::{Shelf, files};
-use crate::table;
 
 /// What was added.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,14 +21,14 @@ pub struct Added {
     pub taken: usize,
     /// Results that were here already.
     pub known: usize,
-    /// Results of no recording of this fleet as it is now.
+    /// Results of no recording of this fleet as it is now, or whose files are missing, cannot be read or are of another result.
     pub refused: usize,
 }
 
 /// Takes the results in folders over, each a `results` folder of the same fleet elsewhere. Only what was made from the recordings as they
 /// are here is taken; the listener hears of the others.
 pub fn add(fleet: &Fleet, folders: &[PathBuf], listener: &dyn Listener) -> Result<Added, Failure> {
-    let jobs = places(fleet, &()).into_iter().filter_map(|place| job(fleet, place).ok());
+    let jobs = places(fleet, &()).found.into_iter().filter_map(|place| job(fleet, place).ok());
     let jobs: BTreeMap<String, Job> = jobs.map(|job| (job.result(), job)).collect();
     let shelf = Shelf::of(&fleet.results, None)?;
     let mut added = Added::default();
@@ -65,8 +64,17 @@ fn take(
     };
     let Some(machine) = fleet.machines.get(job.place.machine) else { return Ok(()) };
     let filed = Filed { machine: &machine.name, time: job.time, id: &job.place.id, key: &job.key };
-    if filed.path(&fleet.results, Table::Recordings).is_file() {
+    let is_whole = |results: &Path| {
+        let file = |table| sound(&filed.path(results, table), table, &job.key).map(drop);
+        Table::OF_DIAGNOSIS.into_iter().try_for_each(file)
+    };
+    if is_whole(&fleet.results).is_ok() {
         added.known += 1;
+        return Ok(());
+    }
+    if let Err(why) = is_whole(folder) {
+        added.refused += 1;
+        listener.hear(&format!("warning: the result of {} is not added: {why}", job.place.label).into());
         return Ok(());
     }
     // The table of recordings last, since it says that the others are there.
@@ -79,9 +87,6 @@ fn take(
 }
 
 fn copy(from: &Path, to: &Path) -> Result<(), Failure> {
-    if let Err(why) = table::read(from) {
-        return Err(Failure::no(format!("error: {} cannot be read: {why}", from.display())));
-    }
     let cannot = |error: io::Error| Failure::io(&format!("cannot read {}", from.display()), &error);
     let bytes = fs::read(from).map_err(cannot)?;
     write_file(to, &bytes)

@@ -14,7 +14,7 @@ use workshop::failure::Failure;
 use workshop::recorded;
 
 use crate::file::Fleet;
-use crate::jobs::{Job, PutOff, job as job_of};
+use crate::jobs::{Job, PutOff, endless, job as job_of};
 use crate::results::{Filed, Table, moment, write, write_file};
 use crate::shelf::Shelf;
 use crate::table::Cell;
@@ -80,6 +80,12 @@ fn words(why: &Failure) -> String {
 }
 
 fn diagnosis_of(path: &Path, pictured: bool) -> Result<(Equations, Diagnosis), Failure> {
+    if let Some(endless) = endless(path) {
+        return Err(Failure::wrong(format!(
+            "error: cannot read {}: it is a pipe or a device, not a file\nhelp: a recording of a fleet, and what it names, must be files",
+            endless.display()
+        )));
+    }
     let recorded = [recorded::read(path, &())?];
     let keep = if pictured { Keep::Pictures } else { Keep::Nothing };
     let diagnosis = diagnose(&recorded, None, keep, &mut |_| {})?;

@@ -216,7 +216,7 @@ mod tests {
         let own = format!("{}-{:?}", std::process::id(), std::thread::current().id());
         let path = std::env::temp_dir().join(format!("abbe-effects-{own}.parquet"));
         std::fs::write(&path, written(Table::Parameters.columns(), &rows).unwrap()).unwrap();
-        let read = read(&path).unwrap();
+        let read = read(&path, Table::Parameters.columns()).unwrap();
         std::fs::remove_file(&path).unwrap();
         let known =
             |row: Row| Known { machine: "mount".to_owned(), id: row.text("recording").to_owned(), row };

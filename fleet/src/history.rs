@@ -16,14 +16,18 @@ pub use crate::change::Change;
 pub use crate::series::{Point, Series, Untold};
 pub use alarm::{Alarm, BOUND};
 
+use crate::diagnosed::ERROR;
 use crate::file::Fleet;
 use crate::series::as_text;
+
+/// The name and the version of a history as JSON.
+pub const SCHEMA: &str = "abbe-fleet/1";
 
 /// Machines over time.
 #[derive(Clone, Debug, Serialize)]
 pub struct History {
-    /// The version of this form.
-    pub fleet: u8,
+    /// The name and the version of this form: [`SCHEMA`].
+    pub schema: &'static str,
     /// The moment up to which it is told.
     #[serde(serialize_with = "as_text")]
     pub until: Moment,
@@ -46,6 +50,8 @@ pub struct Machine {
     pub kind: Option<String>,
     /// Its recordings, in the order of time.
     pub recordings: Vec<Entry>,
+    /// How many recordings until the moment have no result of what they hold now: they are not diagnosed yet, or have changed since.
+    pub pending: usize,
     /// Its numbers over time: what was found in any recording, then the noise.
     pub series: Vec<Followed>,
 }
@@ -81,6 +87,12 @@ pub struct Entry {
 }
 
 impl Machine {
+    /// How many of its recordings are wrong.
+    #[must_use]
+    pub fn errors(&self) -> usize {
+        self.recordings.iter().filter(|entry| entry.verdict == ERROR).count()
+    }
+
     /// The recording that was made last.
     #[must_use]
     pub fn last(&self) -> Option<&Entry> {
@@ -102,5 +114,5 @@ pub fn history(fleet: &Fleet, until: Moment, listener: &dyn Listener) -> Result<
     });
     let ranges = crate::between::ranges(numbers);
     let (alarms, questions) = alarm::alarms(&mut machines, &ranges);
-    Ok(History { fleet: 1, until, alarms, questions, machines, ranges })
+    Ok(History { schema: SCHEMA, until, alarms, questions, machines, ranges })
 }

@@ -40,13 +40,29 @@ pub(crate) struct Job {
     pub(crate) key: String,
 }
 
-/// A recording that cannot be read now, and may be the next time: nothing is filed about it.
+/// A recording, or a folder of them, that cannot be read now, and may be the next time: nothing is filed about it.
 #[derive(Clone, Debug)]
 pub(crate) struct PutOff {
     /// Its path from the fleet's folder.
     pub(crate) label: String,
     /// Why, in words.
     pub(crate) why: String,
+}
+
+impl PutOff {
+    /// The line that says so.
+    pub(crate) fn line(&self) -> String {
+        format!("warning: {} is postponed to the next run: {}", self.label, self.why)
+    }
+}
+
+/// What is found where a fleet looks for recordings.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Places {
+    /// The recordings, in the order of machines and paths.
+    pub(crate) found: Vec<Place>,
+    /// The folders that cannot be read now.
+    pub(crate) unread: Vec<PutOff>,
 }
 
 impl Job {
@@ -71,7 +87,7 @@ pub(crate) fn named(fleet: &Fleet, name: &str) -> Option<(Place, String)> {
     let fits = known.1.recordings.iter().any(|pattern| fits(pattern, label));
     let is_own = fits && own.label == label && is_recording(fleet, &own.path);
     // A pattern that names a folder in a roundabout way is looked up.
-    let found = || places_of(fleet, known, &()).into_iter().find(|place| place.label == label);
+    let found = || places_of(fleet, known, &()).found.into_iter().find(|place| place.label == label);
     let place = if is_own { Some(own) } else { found() };
     Some((place?, key.to_owned()))
 }
@@ -82,10 +98,15 @@ pub(crate) fn machine_named<'f>(fleet: &'f Fleet, name: &str) -> Option<(usize, 
     fleet.machines.iter().enumerate().find(|(_, machine)| machine.name == name)
 }
 
-/// The recordings that are there, in the order of machines and paths; the listener hears of paths that match none.
-pub(crate) fn places(fleet: &Fleet, listener: &dyn Listener) -> Vec<Place> {
-    let machines = fleet.machines.iter().enumerate();
-    machines.flat_map(|machine| places_of(fleet, machine, listener)).collect()
+/// The recordings that are there; the listener hears of paths that match none.
+pub(crate) fn places(fleet: &Fleet, listener: &dyn Listener) -> Places {
+    let mut places = Places::default();
+    for machine in fleet.machines.iter().enumerate() {
+        let own = places_of(fleet, machine, listener);
+        places.found.extend(own.found);
+        places.unread.extend(own.unread);
+    }
+    places
 }
 
 /// Those of one machine.
@@ -93,18 +114,19 @@ pub(crate) fn places_of(
     fleet: &Fleet,
     (number, machine): (usize, &Machine),
     listener: &dyn Listener,
-) -> Vec<Place> {
-    let mut places = Vec::new();
+) -> Places {
+    let mut places = Places::default();
     for pattern in &machine.recordings {
-        let found = matching(fleet, pattern);
-        if found.is_empty() {
+        let (found, unread) = matching(fleet, pattern);
+        if found.is_empty() && unread.is_empty() {
             let text = format!("warning: no file matches `{pattern}` of the machine `{}`", machine.name);
             listener.hear(&text.into());
         }
-        places.extend(found.into_iter().map(|path| place(fleet, (number, machine), path)));
+        places.found.extend(found.into_iter().map(|path| place(fleet, (number, machine), path)));
+        places.unread.extend(unread);
     }
-    places.sort();
-    places.dedup();
+    places.found.sort();
+    places.found.dedup();
     places
 }
 
@@ -117,7 +139,8 @@ fn fits(pattern: &str, label: &str) -> bool {
     Glob::new(pattern).is_ok_and(|pattern| pattern.matches_with(label, OPTIONS))
 }
 
-fn matching(fleet: &Fleet, pattern: &str) -> Vec<PathBuf> {
+/// The recordings that fit a pattern, and the folders that cannot be read.
+fn matching(fleet: &Fleet, pattern: &str) -> (Vec<PathBuf>, Vec<PutOff>) {
     let own = Path::new(pattern).is_absolute();
     let folder = fleet.folder.to_string_lossy();
     let whole = match folder.as_ref() {
@@ -125,25 +148,43 @@ fn matching(fleet: &Fleet, pattern: &str) -> Vec<PathBuf> {
         "" => pattern.to_owned(),
         folder => format!("{}/{pattern}", Glob::escape(folder)),
     };
-    let found = glob_with(&whole, OPTIONS).into_iter().flatten().filter_map(Result::ok);
-    found.filter(|path| is_recording(fleet, path)).collect()
+    let (mut found, mut unread) = (Vec::new(), Vec::new());
+    for path in glob_with(&whole, OPTIONS).into_iter().flatten() {
+        match path {
+            Ok(path) if is_recording(fleet, &path) => found.push(path),
+            Ok(_) => {}
+            Err(error) if error.path().starts_with(&fleet.results) => {}
+            Err(error) => {
+                let why = format!("the folder cannot be read now: {}", error.error());
+                unread.push(PutOff { label: label(fleet, error.path()), why });
+            }
+        }
+    }
+    (found, unread)
 }
 
-/// Whether a path that fits is a recording: a file, and none of the results.
+/// Whether a path that fits is a recording: anything but a folder, and none of the results. What is no file, such as a link to nothing or a
+/// named pipe, is a recording that is wrong, and is not passed over.
 fn is_recording(fleet: &Fleet, path: &Path) -> bool {
-    path.is_file() && !path.starts_with(&fleet.results)
+    let is_there = path.symlink_metadata().is_ok() && !path.is_dir();
+    is_there && !path.starts_with(&fleet.results)
+}
+
+/// A path from the fleet's folder, with `/` between folders.
+fn label(fleet: &Fleet, path: &Path) -> String {
+    path.strip_prefix(&fleet.folder).unwrap_or(path).to_string_lossy().replace('\\', "/")
 }
 
 fn place(fleet: &Fleet, (number, machine): (usize, &Machine), path: PathBuf) -> Place {
-    let inside = path.strip_prefix(&fleet.folder).unwrap_or(&path);
-    let label = inside.to_string_lossy().replace('\\', "/");
+    let label = label(fleet, &path);
     let id = of_texts(&[&machine.name, &label]);
     Place { machine: number, label, path, id }
 }
 
 /// What a recording holds now.
 pub(crate) fn job(fleet: &Fleet, place: Place) -> Result<Job, PutOff> {
-    let source = load::read(&place.path).ok();
+    // A pipe would wait for somebody who writes.
+    let source = place.path.is_file().then(|| load::read(&place.path).ok()).flatten();
     let time = time(fleet, &place, source.as_ref());
     match key(&place.path, source.as_ref(), time) {
         Ok(key) => Ok(Job { place, time, key }),
@@ -173,15 +214,32 @@ fn key(path: &Path, source: Option<&SourceFile>, time: Moment) -> Result<String,
     let add = |sum: Sum, file: &Path| sum.file(file).map_err(|error| (file.to_owned(), error));
     let sum = add(Sum::versioned().text(&time.to_string()), path)?;
     let Some(source) = source else { return Ok(sum.digits()) };
+    // What is no file is a name that the version of Abbe knows, and stands in the file that names it.
+    let mut named = named_files(source, path).into_iter().skip(1);
+    Ok(named.try_fold(sum, |sum, file| add(sum, &file))?.digits())
+}
+
+/// A recording and all files that it names.
+fn named_files(source: &SourceFile, path: &Path) -> Vec<PathBuf> {
     let files = Files::named_in(source, path);
     let known = files.calibration.as_deref().and_then(machine_of_calibration);
-    // What is no file is a name that the version of Abbe knows, and stands in the file that names it.
-    let mut named = files.all(known.as_deref()).into_iter().skip(1);
-    Ok(named.try_fold(sum, |sum, file| add(sum, &file))?.digits())
+    files.all(known.as_deref())
+}
+
+/// The first of a recording and the files that it names which is neither a file nor a folder: a named pipe, a socket, or a device. To
+/// read one may take for ever, and what it gives is no recording of a fleet.
+pub(crate) fn endless(path: &Path) -> Option<PathBuf> {
+    let is_endless = |path: &Path| path.metadata().is_ok_and(|there| !there.is_file() && !there.is_dir());
+    if is_endless(path) {
+        return Some(path.to_owned());
+    }
+    let source = load::read(path).ok()?;
+    named_files(&source, path).into_iter().find(|file| is_endless(file))
 }
 
 /// The machine as a calibration names it.
 fn machine_of_calibration(path: &Path) -> Option<String> {
+    let path = Some(path).filter(|path| path.is_file())?;
     let source = load::read(path).ok()?;
     let root = yaml::read(&source, &mut Diagnostics::new())?;
     root.get("machine")?.text().map(str::to_owned)

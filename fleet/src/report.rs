@@ -62,14 +62,22 @@ fn most(machine: &Machine) -> String {
     }
 }
 
-/// How many recordings a machine has, and how many of them are where the fleet file looks no more.
+/// How many recordings a machine has, how many of them are where the fleet file looks no more, and what is open about them.
 fn count(machine: &Machine) -> String {
     let all = machine.recordings.len();
-    let recordings = if all == 1 { "1 recording".to_owned() } else { format!("{all} recordings") };
+    let mut parts = vec![if all == 1 { "1 recording".to_owned() } else { format!("{all} recordings") }];
     match machine.recordings.iter().filter(|entry| !entry.listed).count() {
-        0 => recordings,
-        gone => format!("{recordings}, {gone} of them missing"),
+        0 => {}
+        gone => parts.push(format!("{gone} of them missing")),
     }
+    parts.extend(open(machine));
+    parts.join(", ")
+}
+
+/// What is open about the recordings of a machine: how many are wrong, and how many are still to be diagnosed.
+fn open(machine: &Machine) -> Vec<String> {
+    let parts = [(machine.errors(), "with errors"), (machine.pending, "pending")];
+    parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect()
 }
 
 /// A change in a few words; that it is no more than chance gives, where there is no alarm about it.

@@ -1,7 +1,8 @@
 //! Results on the disk. In: the rows of one job. Out: files under the name of the job, a folder for each table, machine and month.
 //!
 //! `results/verdicts/machine=mill-07/month=2026-07/<id>-<key>.parquet`: readers of Parquet take the parts of the path as columns. The
-//! table of recordings is written last: its file says that a job is done, and whoever finds it finds the others. A result that another one
+//! table of recordings is written last: who finds its file finds the others, unless something else has removed or spoilt them. So a result
+//! counts only if all its files can be read and bear its key. A result that another one
 //! replaces (the recording was measured anew, or Abbe has another version) goes when the new one is there; until then readers take the
 //! newer of both.
 
@@ -13,7 +14,7 @@ use recording::Moment;
 use workshop::failure::Failure;
 use workshop::written;
 
-use crate::table::{self, Cell, Columns, Kind};
+use crate::table::{self, Cell, Columns, Kind, Row};
 
 /// A table of the results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -34,6 +35,11 @@ impl Table {
 
     /// Those of the first stage of a job, in the order in which they are written: that which says that it is done comes last.
     pub(crate) const OF_DIAGNOSIS: [Self; 3] = [Self::Parameters, Self::Verdicts, Self::Recordings];
+
+    /// Whether every recording has a row in it.
+    fn is_of_one_row(self) -> bool {
+        matches!(self, Self::Recordings | Self::Verdicts)
+    }
 
     /// Its folder.
     pub(crate) fn name(self) -> &'static str {
@@ -140,6 +146,24 @@ impl Filed<'_> {
         let folder = results.join(folder).join(of_machine(self.machine)).join(month);
         folder.join(format!("{}-{}.{end}", self.id, self.key))
     }
+}
+
+/// The rows of a result in a file of a table; why they are none: the file is missing, cannot be read, or holds rows of another result.
+/// `key` is that of the recording, which the rows of each table bear.
+pub(crate) fn sound(path: &Path, table: Table, key: &str) -> Result<Vec<Row>, String> {
+    match fs::symlink_metadata(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            return Err(format!("{} is missing", path.display()));
+        }
+        _ => {}
+    }
+    let rows = table::read(path, table.columns())
+        .map_err(|why| format!("{} cannot be read: {why}", path.display()))?;
+    let own = rows.iter().filter(|row| row.text("key") == key).count();
+    if own != rows.len() || (rows.is_empty() && table.is_of_one_row()) {
+        return Err(format!("{} holds rows of another result", path.display()));
+    }
+    Ok(rows)
 }
 
 /// The folder of the pages.

@@ -5,11 +5,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZero;
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use rayon::prelude::*;
+use recording::Moment;
 use serde::Serialize;
 use workshop::failure::Failure;
 use workshop::told::Listener;
@@ -18,9 +20,9 @@ use crate::diagnosed;
 use crate::effects::{Effect, effects, key};
 use crate::file::{Fleet, Machine};
 use crate::followed;
-use crate::jobs::{Job, Place, PutOff, job, machine_named, named, places, places_of};
+use crate::jobs::{Job, Places, PutOff, job, machine_named, named, places, places_of};
 use crate::key::of_texts;
-use crate::results::{Filed, Table, encoded};
+use crate::results::{Filed, Table, encoded, sound};
 use crate::shelf::{Current, Known, Shelf, read, tidy};
 
 /// One of several parts into which jobs are shared, counted from 1.
@@ -37,8 +39,10 @@ pub struct Shard {
 pub struct Done {
     /// Recordings that are there.
     pub recordings: usize,
-    /// Recordings that were diagnosed.
+    /// Recordings that were diagnosed, without those that cannot be.
     pub diagnosed: usize,
+    /// Recordings that are wrong: their result says why. Those of earlier runs are among them.
+    pub errors: usize,
     /// Recordings in which what was found was followed.
     pub followed: usize,
     /// Machines that wait until all of their recordings are diagnosed.
@@ -108,9 +112,65 @@ struct Plan<'f> {
     jobs: Vec<Job>,
     /// What cannot be read now.
     put_off: Vec<PutOff>,
+    /// How many recordings there are, those that cannot be read now among them.
+    recordings: usize,
     /// The machine, where it is of one alone.
     machine: Option<&'f str>,
     shelf: Shelf,
+    /// What there is of each job, in their order.
+    states: Vec<State>,
+}
+
+/// What there is of a job's result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum State {
+    /// Nothing yet.
+    None,
+    /// All its files, with what they must hold; whether the recording is wrong.
+    Whole { wrong: bool },
+    /// Not all of them, or they cannot be read: why.
+    Broken(String),
+}
+
+impl State {
+    /// Looks at the tables of a diagnosis.
+    fn of_diagnosis(results: &Path, shelf: &Shelf, filed: &Filed<'_>) -> Self {
+        if !shelf.holds(results, filed, Table::Recordings) {
+            return Self::None;
+        }
+        let mut wrong = false;
+        for table in Table::OF_DIAGNOSIS {
+            match sound(&filed.path(results, table), table, filed.key) {
+                Ok(rows) => {
+                    wrong |=
+                        table == Table::Recordings && rows.iter().any(|row| !row.text("error").is_empty())
+                }
+                Err(why) => return Self::Broken(why),
+            }
+        }
+        Self::Whole { wrong }
+    }
+
+    /// Looks at the table of followed effects; its rows bear the key of the recording.
+    fn of_followed(results: &Path, shelf: &Shelf, filed: &Filed<'_>, recording: &str) -> Self {
+        if !shelf.holds(results, filed, Table::Followed) {
+            return Self::None;
+        }
+        match sound(&filed.path(results, Table::Followed), Table::Followed, recording) {
+            Ok(_) => Self::Whole { wrong: false },
+            Err(why) => Self::Broken(why),
+        }
+    }
+
+    fn is_whole(&self) -> bool {
+        matches!(self, Self::Whole { .. })
+    }
+
+    /// The line about a result that is made again.
+    fn line(&self, label: &str) -> Option<String> {
+        let Self::Broken(why) = self else { return None };
+        Some(format!("warning: the result of {label} is computed again: {why}"))
+    }
 }
 
 impl<'f> Plan<'f> {
@@ -122,23 +182,35 @@ impl<'f> Plan<'f> {
         Self::of(fleet, places_of(fleet, (number, machine), &()), Some(&machine.name))
     }
 
-    fn of(fleet: &'f Fleet, places: Vec<Place>, machine: Option<&'f str>) -> Result<Self, Failure> {
-        let read: Vec<Result<Job, PutOff>> = places.into_par_iter().map(|place| job(fleet, place)).collect();
-        let (mut jobs, mut put_off) = (Vec::new(), Vec::new());
+    fn of(fleet: &'f Fleet, places: Places, machine: Option<&'f str>) -> Result<Self, Failure> {
+        let Places { found, unread: mut put_off } = places;
+        let recordings = found.len();
+        let read: Vec<Result<Job, PutOff>> = found.into_par_iter().map(|place| job(fleet, place)).collect();
+        let mut jobs = Vec::new();
         for read in read {
             match read {
                 Ok(job) => jobs.push(job),
                 Err(why) => put_off.push(why),
             }
         }
-        let shelf = Shelf::of(&fleet.results, machine)?;
-        Ok(Self { fleet, jobs, put_off, machine, shelf })
+        let mut plan =
+            Self { fleet, jobs, put_off, recordings, machine, shelf: Shelf::default(), states: Vec::new() };
+        plan.look()?;
+        Ok(plan)
     }
 
     /// Looks anew which results are there.
     fn look(&mut self) -> Result<(), Failure> {
         self.shelf = Shelf::of(&self.fleet.results, self.machine)?;
+        let state =
+            |job: &Job| State::of_diagnosis(&self.fleet.results, &self.shelf, &self.filed(job, &job.key));
+        self.states = self.jobs.par_iter().map(state).collect();
         Ok(())
+    }
+
+    /// Each job with what there is of its result.
+    fn known(&self) -> impl Iterator<Item = (&Job, &State)> {
+        self.jobs.iter().zip(&self.states)
     }
 
     fn filed<'j>(&'j self, job: &'j Job, key: &'j str) -> Filed<'j> {
@@ -146,34 +218,36 @@ impl<'f> Plan<'f> {
         Filed { machine, time: job.time, id: &job.place.id, key }
     }
 
-    fn is_diagnosed(&self, job: &Job) -> bool {
-        self.shelf.holds(&self.fleet.results, &self.filed(job, &job.key), Table::Recordings)
-    }
-
-    fn is_followed(&self, follow: &Follow<'_>) -> bool {
-        self.shelf.holds(&self.fleet.results, &self.filed(follow.job, &follow.key), Table::Followed)
+    fn followed(&self, follow: &Follow<'_>) -> State {
+        let filed = self.filed(follow.job, &follow.key);
+        State::of_followed(&self.fleet.results, &self.shelf, &filed, &follow.job.key)
     }
 
     /// The jobs of one part or of all.
-    fn own(&self, shard: Option<Shard>) -> impl Iterator<Item = &Job> {
-        self.jobs.iter().filter(move |job| shard.is_none_or(|shard| shard.has(&job.place.id)))
+    fn own(&self, shard: Option<Shard>) -> impl Iterator<Item = (&Job, &State)> {
+        self.known().filter(move |(job, _)| shard.is_none_or(|shard| shard.has(&job.place.id)))
     }
 
-    /// What is to be diagnosed, of one part or of all.
-    fn undiagnosed(&self, shard: Option<Shard>) -> Vec<&Job> {
-        self.own(shard).filter(|job| !self.is_diagnosed(job)).collect()
+    /// What is to be diagnosed, of one part or of all; the listener hears of what has a result that is of no use.
+    fn undiagnosed(&self, shard: Option<Shard>, listener: &dyn Listener) -> Vec<&Job> {
+        let pending: Vec<(&Job, &State)> = self.own(shard).filter(|(_, state)| !state.is_whole()).collect();
+        for line in pending.iter().filter_map(|(job, state)| state.line(&job.place.label)) {
+            listener.hear(&line.into());
+        }
+        pending.into_iter().map(|(job, _)| job).collect()
     }
 
     /// What is diagnosed and has no page.
     fn undrawn(&self, shard: Option<Shard>) -> Vec<&Job> {
         let has_page = |job: &Job| self.shelf.holds_page(&self.fleet.results, &self.filed(job, &job.key));
-        self.own(shard).filter(|job| self.is_diagnosed(job) && !has_page(job)).collect()
+        let undrawn = self.own(shard).filter(|(job, state)| state.is_whole() && !has_page(job));
+        undrawn.map(|(job, _)| job).collect()
     }
 
     /// Takes away what runs that were killed have left beside what replaces it, and what is of recordings that were moved.
     fn clear(&self) -> Result<(), Failure> {
         let mut known = BTreeMap::new();
-        for job in self.jobs.iter().filter(|job| self.is_diagnosed(job)) {
+        for (job, _) in self.known().filter(|(_, state)| state.is_whole()) {
             let filed = self.filed(job, &job.key);
             self.shelf.replace(&self.fleet.results, &filed)?;
             known.insert(job.key.as_str(), filed.machine);
@@ -191,33 +265,30 @@ impl<'f> Plan<'f> {
     }
 
     /// The second stage of all machines of which all is diagnosed; and how many others there are.
-    fn follows(&self) -> Result<(Vec<Follow<'_>>, usize), Failure> {
+    fn follows(&self, listener: &dyn Listener) -> Result<(Vec<Follow<'_>>, usize), Failure> {
         let (mut follows, mut waiting) = (Vec::new(), 0);
+        let undone: BTreeSet<usize> =
+            self.known().filter(|(_, state)| !state.is_whole()).map(|(job, _)| job.place.machine).collect();
         for jobs in self.jobs.chunk_by(|one, next| one.place.machine == next.place.machine) {
-            match jobs.iter().all(|job| self.is_diagnosed(job)) {
-                true => follows.extend(self.follow_of(jobs)?),
-                false => waiting += 1,
+            match jobs.first().is_some_and(|job| undone.contains(&job.place.machine)) {
+                false => follows.extend(self.follow_of(jobs, listener)?),
+                true => waiting += 1,
             }
         }
         Ok((follows, waiting))
     }
 
     /// The second stage of the jobs of a machine.
-    fn follow_of<'j>(&self, jobs: &'j [Job]) -> Result<Vec<Follow<'j>>, Failure> {
+    fn follow_of<'j>(&self, jobs: &'j [Job], listener: &dyn Listener) -> Result<Vec<Follow<'j>>, Failure> {
         let machine = jobs.first().and_then(|job| self.fleet.machines.get(job.place.machine));
         let Some(machine) = machine.map(|machine| machine.name.as_str()) else { return Ok(Vec::new()) };
         let listed: BTreeSet<&str> = jobs.iter().map(|job| job.place.id.as_str()).collect();
         let current = Current::of(&self.fleet.results, Some(machine), &listed)?;
-        let mut broken = Vec::new();
-        let mut rows =
-            |table| read(&self.fleet.results, table, (Some(machine), &current), &mut |why| broken.push(why));
+        // What is to be diagnosed is whole, as was seen above. Other results are of recordings that are gone, or cannot be read now: nobody
+        // can make them again, and the machine goes on without them.
+        let mut broken = |why: String| listener.hear(&why.into());
+        let mut rows = |table| read(&self.fleet.results, table, (Some(machine), &current), &mut broken);
         let (parameters, verdicts) = (rows(Table::Parameters)?, rows(Table::Verdicts)?);
-        if let Some(why) = broken.first() {
-            return Err(Failure::no(
-                why.replacen("warning", "error", 1)
-                    + "\nhelp: remove it and the file of the same name in `recordings`; the next run makes them again",
-            ));
-        }
         let is_unfit = |known: &&Known| is_unfit(known.row.text("verdict"), known.row.count("changes"));
         let unfit: BTreeSet<&str> = verdicts.iter().filter(is_unfit).map(|known| known.id.as_str()).collect();
         let fit = parameters.iter().filter(|known| !unfit.contains(known.id.as_str()));
@@ -270,39 +341,46 @@ pub fn all(
     let mut plan = Plan::new(fleet, listener)?;
     plan.clear()?;
     let told = |step: &'static str| move |done| progress(Step { step, done });
-    let pending = plan.undiagnosed(shard);
+    let pending = plan.undiagnosed(shard, listener);
     let mut put_off =
         each(&pending, told("diagnosing"), |job| diagnosed::run(fleet, job, pages, &plan.shelf))?;
-    let diagnosed = pending.len().saturating_sub(put_off.len());
+    let diagnosed: BTreeSet<String> = pending.iter().map(|job| job.result()).collect();
     if pages {
         let pending = plan.undrawn(shard);
         each(&pending, told("drawing"), |job| diagnosed::draw(fleet, job).map(|()| None))?;
     }
     plan.look()?;
-    let (follows, waiting) = plan.follows()?;
+    let (follows, waiting) = plan.follows(listener)?;
+    let states: Vec<State> = follows.par_iter().map(|follow| plan.followed(follow)).collect();
     let mut pending = Vec::new();
-    for follow in &follows {
-        match plan.is_followed(follow) {
+    for (follow, state) in follows.iter().zip(&states) {
+        if state.is_whole() {
             // What a run that was killed has left beside it.
-            true => plan.shelf.replace_in(
-                &fleet.results,
-                &plan.filed(follow.job, &follow.key),
-                Table::Followed,
-            )?,
-            false if shard.is_none_or(|shard| shard.has(&follow.job.place.id)) => pending.push(follow),
-            false => {}
+            let filed = plan.filed(follow.job, &follow.key);
+            plan.shelf.replace_in(&fleet.results, &filed, Table::Followed)?;
+        } else if shard.is_none_or(|shard| shard.has(&follow.job.place.id)) {
+            if let Some(line) = state.line(&follow.job.place.label) {
+                listener.hear(&line.into());
+            }
+            pending.push(follow);
         }
     }
     let later = each(&pending, told("following"), |follow| follow.run(fleet, &plan.shelf))?;
     let followed = pending.len().saturating_sub(later.len());
     put_off.extend(later);
     put_off.extend(plan.put_off.iter().cloned());
-    for PutOff { label, why } in &put_off {
-        listener.hear(&format!("warning: {label} is postponed to the next run: {why}").into());
+    for put_off in &put_off {
+        listener.hear(&put_off.line().into());
     }
+    let wrong = |state: &&State| matches!(state, State::Whole { wrong: true });
+    let right = |(job, state): &(&Job, &State)| {
+        **state == State::Whole { wrong: false } && diagnosed.contains(&job.result())
+    };
+    let diagnosed = plan.known().filter(right).count();
     Ok(Done {
-        recordings: plan.jobs.len().saturating_add(plan.put_off.len()),
+        recordings: plan.recordings,
         diagnosed,
+        errors: plan.states.iter().filter(wrong).count(),
         followed,
         waiting,
         put_off: put_off.len(),
@@ -344,16 +422,24 @@ fn each<T: Sync>(
     failed.map_or(Ok(put_off), Err)
 }
 
-/// What is still to be done.
-pub fn pending(
-    fleet: &Fleet,
-    shard: Option<Shard>,
-    listener: &dyn Listener,
-) -> Result<Vec<Pending>, Failure> {
+/// What is still to be done, and what cannot be done now.
+#[derive(Clone, Debug, Default)]
+pub struct Listed {
+    /// The jobs.
+    pub jobs: Vec<Pending>,
+    /// How many recordings, or folders of them, cannot be read now and are not among the jobs.
+    pub put_off: usize,
+}
+
+/// What is still to be done; the listener hears why a recording that cannot be read now is not among it.
+pub fn pending(fleet: &Fleet, shard: Option<Shard>, listener: &dyn Listener) -> Result<Listed, Failure> {
     let plan = Plan::new(fleet, listener)?;
+    for put_off in &plan.put_off {
+        listener.hear(&put_off.line().into());
+    }
     let name =
         |job: &Job| fleet.machines.get(job.place.machine).map_or("", |machine| &machine.name).to_owned();
-    let first = plan.undiagnosed(shard).into_iter().map(|job| Pending {
+    let first = plan.undiagnosed(shard, listener).into_iter().map(|job| Pending {
         job: job.name(fleet),
         stage: "diagnose",
         machine: name(job),
@@ -361,16 +447,35 @@ pub fn pending(
         time: Some(job.time.to_string()),
     });
     let mut pending: Vec<Pending> = first.collect();
-    let (follows, _) = plan.follows()?;
+    let (follows, _) = plan.follows(listener)?;
     for follows in follows.chunk_by(|one, next| one.job.place.machine == next.job.place.machine) {
         let machine = follows.first().map(|follow| name(follow.job)).unwrap_or_default();
         let own = shard.is_none_or(|shard| shard.has(&of_texts(&[&machine])));
-        if own && follows.iter().any(|follow| !plan.is_followed(follow)) {
+        if own && follows.iter().any(|follow| !plan.followed(follow).is_whole()) {
             let job = name_of(&machine, follows);
             pending.push(Pending { job, stage: "follow", machine, recording: None, time: None });
         }
     }
-    Ok(pending)
+    Ok(Listed { jobs: pending, put_off: plan.put_off.len() })
+}
+
+/// How many recordings of each machine, by its number, were made until a moment and have no whole result of what they hold now. The listener
+/// hears of what cannot be read now.
+pub(crate) fn undone(
+    fleet: &Fleet,
+    places: Places,
+    until: Moment,
+    listener: &dyn Listener,
+) -> Result<BTreeMap<usize, usize>, Failure> {
+    let plan = Plan::of(fleet, places, None)?;
+    for PutOff { label, why } in &plan.put_off {
+        listener.hear(&format!("warning: {label} is shown as its last result has it: {why}").into());
+    }
+    let mut undone = BTreeMap::new();
+    for (job, _) in plan.known().filter(|(job, state)| job.time <= until && !state.is_whole()) {
+        *undone.entry(job.place.machine).or_default() += 1;
+    }
+    Ok(undone)
 }
 
 /// Does one job by its name, as [`pending`] tells it: of a diagnosis nothing is looked at but its recording and the names of the results of
@@ -397,11 +502,11 @@ pub fn one(fleet: &Fleet, name: &str, pages: bool) -> Result<(), Failure> {
 /// The second stage of a machine.
 fn follow_all(fleet: &Fleet, (number, machine): (usize, &Machine), name: &str) -> Result<(), Failure> {
     let plan = Plan::of_machine(fleet, (number, machine))?;
-    let (follows, waiting) = plan.follows()?;
+    let (follows, waiting) = plan.follows(&())?;
     if waiting > 0 || name_of(&machine.name, &follows) != name {
         return Err(changed(&format!("the machine {}", machine.name)));
     }
-    for follow in follows.iter().filter(|follow| !plan.is_followed(follow)) {
+    for follow in follows.iter().filter(|follow| !plan.followed(follow).is_whole()) {
         follow.run(fleet, &plan.shelf)?.map_or(Ok(()), |put_off| Err(later(put_off)))?;
     }
     Ok(())

@@ -9,7 +9,7 @@ use std::time::{Duration, SystemTime};
 
 use workshop::failure::Failure;
 
-use crate::results::{Filed, MACHINE, PAGES, Table, decoded, of_machine};
+use crate::results::{Filed, MACHINE, PAGES, Table, decoded, of_machine, sound};
 use crate::table::{self, Row};
 
 /// Where files of results are: those of a table, or the pages.
@@ -170,7 +170,7 @@ fn remove_others(there: &There, id: &str, own: Option<&Path>) -> Result<(), Fail
 /// Which result of each recording counts. A run that is killed may leave two of them, the one that it has made and the one that this
 /// replaces: the newer one counts, and the next run takes the other away. Of results of one machine that were made from the very same, as
 /// those of a recording that was moved, one counts: that which is still listed.
-pub(crate) struct Current(BTreeMap<String, String>);
+pub(crate) struct Current(BTreeMap<String, (String, PathBuf)>);
 
 impl Current {
     /// Looks at what is diagnosed, of all machines or of one; `listed` are the recordings that are at their places.
@@ -180,7 +180,7 @@ impl Current {
         listed: &BTreeSet<&str>,
     ) -> Result<Self, Failure> {
         let there = There::of(results, Drawer::of(Table::Recordings), machine)?;
-        let mut of_key: BTreeMap<(PathBuf, &str), (bool, &str)> = BTreeMap::new();
+        let mut of_key: BTreeMap<(PathBuf, &str), (bool, &str, &Path)> = BTreeMap::new();
         for (id, keys) in &there.0 {
             let Some((key, path)) =
                 newest(keys.iter().flat_map(|(key, paths)| paths.iter().map(move |path| (key, path))))
@@ -188,18 +188,16 @@ impl Current {
                 continue;
             };
             let folder = path.parent().map(Path::to_owned).unwrap_or_default();
-            let own = (listed.contains(id.as_str()), id.as_str());
+            let own = (listed.contains(id.as_str()), id.as_str(), path);
             let known = of_key.entry((folder, key)).or_insert(own);
             if own.0 && !known.0 {
                 *known = own;
             }
         }
-        Ok(Self(of_key.into_iter().map(|((_, key), (_, id))| (id.to_owned(), key.to_owned())).collect()))
-    }
-
-    /// The key of the result of a recording that counts.
-    fn key(&self, id: &str) -> Option<&str> {
-        self.0.get(id).map(String::as_str)
+        let of_id = |((_, key), (_, id, path)): ((PathBuf, &str), (bool, &str, &Path))| {
+            (id.to_owned(), (key.to_owned(), path.to_owned()))
+        };
+        Ok(Self(of_key.into_iter().map(of_id).collect()))
     }
 }
 
@@ -249,26 +247,67 @@ pub(crate) fn read(
     (machine, current): (Option<&str>, &Current),
     broken: &mut dyn FnMut(String),
 ) -> Result<Vec<Known>, Failure> {
-    let there = There::of(results, Drawer::of(table), machine)?;
     let mut rows = Vec::new();
-    for (id, keys) in &there.0 {
-        let Some(key) = current.key(id) else { continue };
-        let all = keys.iter().flat_map(|(key, paths)| paths.iter().map(move |path| (key, path)));
+    each(results, table, (machine, current), broken, &mut |id, path, read| {
+        let machine = machine_of(path).unwrap_or_default();
+        rows.extend(read.into_iter().map(|row| Known { machine: machine.clone(), id: id.to_owned(), row }));
+    })?;
+    Ok(rows)
+}
+
+/// Tells `broken` what of a table is missing or cannot be read, and keeps no rows.
+pub(crate) fn check(
+    results: &Path,
+    table: Table,
+    (machine, current): (Option<&str>, &Current),
+    broken: &mut dyn FnMut(String),
+) -> Result<(), Failure> {
+    each(results, table, (machine, current), broken, &mut |_, _, _| {})
+}
+
+/// Gives the rows of each recording that counts to `found`, and what is missing or cannot be read to `broken`.
+fn each(
+    results: &Path,
+    table: Table,
+    (machine, current): (Option<&str>, &Current),
+    broken: &mut dyn FnMut(String),
+    found: &mut dyn FnMut(&str, &Path, Vec<Row>),
+) -> Result<(), Failure> {
+    let there = There::of(results, Drawer::of(table), machine)?;
+    for (id, (key, recording)) in &current.0 {
+        let keys = there.0.get(id).into_iter().flatten();
+        let all = keys.flat_map(|(key, paths)| paths.iter().map(move |path| (key, path)));
         // A table of followed effects has its own key.
         let own = |(of, _): &(&String, &PathBuf)| table == Table::Followed || of.as_str() == key;
-        let Some((_, path)) = newest(all.filter(own)) else { continue };
-        match table::read(path) {
-            Ok(read) => {
-                let machine = machine_of(path).unwrap_or_default();
-                let read = read.into_iter().filter(|row| row.text("key") == key);
-                rows.extend(read.map(|row| Known { machine: machine.clone(), id: id.clone(), row }));
+        let Some((_, path)) = newest(all.filter(own)) else {
+            // What is followed comes later than the rest, and has its turn with the next run.
+            if table != Table::Followed && recording.exists() {
+                let path = beside(results, recording, table);
+                broken(format!("warning: {} is missing", path.display()));
             }
+            continue;
+        };
+        let read = match table {
+            // Rows of a recording as it was before are of no result that counts, and no fault.
+            Table::Followed => table::read(path, table.columns())
+                .map(|rows| rows.into_iter().filter(|row| row.text("key") == key).collect())
+                .map_err(|why| format!("{} cannot be read: {why}", path.display())),
+            _ => sound(path, table, key),
+        };
+        match read {
+            Ok(read) => found(id, path, read),
             // Another run has replaced it since the folder was read.
             Err(_) if !path.exists() => {}
-            Err(why) => broken(format!("warning: {} cannot be read: {why}", path.display())),
+            Err(why) => broken(format!("warning: {why}")),
         }
     }
-    Ok(rows)
+    Ok(())
+}
+
+/// The file of a table that belongs to a file of the table of recordings.
+fn beside(results: &Path, recording: &Path, table: Table) -> PathBuf {
+    let folder = results.join(Table::Recordings.name());
+    results.join(table.name()).join(recording.strip_prefix(folder).unwrap_or(recording))
 }
 
 /// The machines of which there are results.

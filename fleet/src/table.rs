@@ -179,16 +179,24 @@ fn write_values<'c, T: DataType>(
     column.close()
 }
 
-/// The rows of a file; why it cannot be read.
-pub(crate) fn read(path: &Path) -> Result<Vec<Row>, String> {
-    let file = File::open(path).map_err(|error| error.to_string())?;
-    let reader = SerializedFileReader::new(file).map_err(|error| error.to_string())?;
+fn rows(reader: &SerializedFileReader<File>) -> Result<Vec<Row>, String> {
     let rows = reader.get_row_iter(None).map_err(|error| error.to_string())?;
     let row = |row: Result<parquet::record::Row, ParquetError>| {
         let row = row.map_err(|error| error.to_string())?;
         Ok(Row(row.into_columns().into_iter().collect()))
     };
     rows.map(row).collect()
+}
+
+/// The rows of a file that must have these columns; why it cannot be read.
+pub(crate) fn read(path: &Path, columns: Columns) -> Result<Vec<Row>, String> {
+    let file = File::open(path).map_err(|error| error.to_string())?;
+    let reader = SerializedFileReader::new(file).map_err(|error| error.to_string())?;
+    let schema = reader.metadata().file_metadata().schema_descr().columns().iter();
+    if !schema.map(|column| column.name()).eq(columns.iter().map(|(name, _)| *name)) {
+        return Err("its columns are others than those of this table".to_owned());
+    }
+    rows(&reader)
 }
 
 #[cfg(test)]
@@ -213,7 +221,7 @@ mod tests {
         assert_eq!(bytes, written(COLUMNS, &rows).unwrap());
         let path = std::env::temp_dir().join(format!("abbe-table-{}.parquet", std::process::id()));
         std::fs::write(&path, bytes).unwrap();
-        let read = read(&path).unwrap();
+        let read = read(&path, COLUMNS).unwrap();
         std::fs::remove_file(&path).unwrap();
         assert_eq!(read.len(), 2);
         assert_eq!(
@@ -231,10 +239,10 @@ mod tests {
     fn no_rows_are_a_file_too_and_no_file_is_a_reason() {
         let path = std::env::temp_dir().join(format!("abbe-table-empty-{}.parquet", std::process::id()));
         std::fs::write(&path, written(COLUMNS, &[]).unwrap()).unwrap();
-        assert!(read(&path).unwrap().is_empty());
+        assert!(read(&path, COLUMNS).unwrap().is_empty());
         std::fs::write(&path, "PAR1").unwrap();
-        assert!(read(&path).is_err());
+        assert!(read(&path, COLUMNS).is_err());
         std::fs::remove_file(&path).unwrap();
-        assert!(read(&path).is_err());
+        assert!(read(&path, COLUMNS).is_err());
     }
 }

@@ -110,7 +110,7 @@ fn a_recording_that_is_measured_anew_replaces_its_result() {
 #[test]
 fn jobs_by_name_give_what_a_run_gives_and_old_names_are_refused() {
     let (folder, fleet) = fleet("jobs");
-    let listed = run::pending(&fleet, None, &()).ok().unwrap();
+    let listed = run::pending(&fleet, None, &()).ok().unwrap().jobs;
     assert!(listed.iter().all(|job| job.stage == "diagnose") && listed.len() == 3);
     assert!(listed[0].job.ends_with("/stage%201%2Fb/a stage/2026-01-31.yaml"), "{}", listed[0].job);
     record(&folder.0.join("a stage"), DAYS[0], 5.0);
@@ -127,13 +127,13 @@ fn jobs_by_name_give_what_a_run_gives_and_old_names_are_refused() {
     }
     assert!(refused("follow-00/stage%201%2Fb").contains("has changed since it was listed"));
     let stages = ["diagnose", "follow"].map(|stage| {
-        let listed = run::pending(&fleet, None, &()).ok().unwrap();
+        let listed = run::pending(&fleet, None, &()).ok().unwrap().jobs;
         assert!(listed.iter().all(|job| job.stage == stage), "{stage}");
         listed.iter().for_each(|job| run::one(&fleet, &job.job, false).ok().unwrap());
         listed.len()
     });
     assert_eq!(stages, [3, 1], "a machine is followed by one job");
-    assert!(run::pending(&fleet, None, &()).ok().unwrap().is_empty());
+    assert!(run::pending(&fleet, None, &()).ok().unwrap().jobs.is_empty());
     let by_name = files(&fleet.results);
     fs::rename(&fleet.results, folder.0.join("elsewhere")).unwrap();
     all(&fleet);
@@ -143,6 +143,27 @@ fn jobs_by_name_give_what_a_run_gives_and_old_names_are_refused() {
     record(&folder.0.join("a stage"), DAYS[2], 5.0);
     let elsewhere = [folder.0.join("elsewhere")];
     let taken = |taken, known, refused| add::Added { taken, known, refused };
+    // A file that is spoilt, or of another result, ends nothing: it is refused with a line, and the rest is taken.
+    let there = files(&folder.0.join("elsewhere"));
+    let of = |part: &str| there.keys().find(|path| path.to_string_lossy().contains(part)).unwrap();
+    let (one, two) = (
+        of("parameters/machine=stage%201%2Fb/month=2026-01"),
+        of("verdicts/machine=stage%201%2Fb/month=2026-01"),
+    );
+    for (path, bytes) in
+        [(one, b"PAR1".to_vec()), (two, there[of("verdicts/machine=stage%201%2Fb/month=2026-02")].clone())]
+    {
+        fs::write(path, bytes).unwrap();
+        let heard = Heard::default();
+        assert_eq!(add::add(&fleet, &elsewhere, &heard).ok().unwrap().refused, 2);
+        let told = |text: &&String| {
+            text.contains("the result of a stage/2026-01-31.yaml is not added")
+                && text.contains(path.to_str().unwrap())
+        };
+        assert_eq!(heard.0.borrow().iter().filter(told).count(), 1, "{:?}", heard.0);
+        fs::write(path, &there[path]).unwrap();
+    }
+    fs::remove_dir_all(&fleet.results).unwrap();
     assert_eq!(add::add(&fleet, &elsewhere, &()).ok().unwrap(), taken(2, 0, 1));
     assert_eq!(add::add(&fleet, &elsewhere, &()).ok().unwrap(), taken(0, 2, 1));
     assert!(add::add(&fleet, &[folder.0.join("nothing")], &()).is_err());
@@ -152,7 +173,7 @@ fn jobs_by_name_give_what_a_run_gives_and_old_names_are_refused() {
 #[test]
 fn a_job_by_name_looks_at_its_own_recording_alone() {
     let (folder, fleet) = fleet("alone");
-    let listed = run::pending(&fleet, None, &()).ok().unwrap();
+    let listed = run::pending(&fleet, None, &()).ok().unwrap().jobs;
     // Nothing but the recording itself can be read.
     for day in DAYS.iter().skip(1) {
         fs::remove_file(folder.0.join(format!("a stage/{day}.yaml"))).unwrap();
@@ -257,7 +278,13 @@ fn what_cannot_be_read_now_is_put_off_and_what_is_wrong_is_filed() {
     fs::write(data(DAYS[2]), "nothing").unwrap();
     let heard = Heard::default();
     let done = run::all(&fleet, (None, false), &heard, &|_| {}).ok().unwrap();
-    assert_eq!((done.recordings, done.diagnosed, done.put_off), (3, 2, 1));
+    assert_eq!((done.recordings, done.diagnosed, done.errors, done.put_off), (3, 0, 2, 1));
+    let listed = run::pending(&fleet, None, &heard).ok().unwrap();
+    assert_eq!((listed.jobs.iter().filter(|job| job.stage == "diagnose").count(), listed.put_off), (0, 1));
+    assert_eq!(
+        heard.0.borrow().iter().filter(|text| text.contains("2026-01-31.yaml is postponed")).count(),
+        2
+    );
     let put_off = |text: &String| text.contains("2026-01-31.yaml is postponed to the next run");
     assert!(heard.0.borrow().iter().any(put_off), "{:?}", heard.0);
     let known = |of: &str| {
@@ -351,17 +378,195 @@ fn a_broken_result_is_told_and_nothing_panics() {
             let history =
                 abbe_fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &heard).ok().unwrap();
             let heard = heard.0.into_inner();
-            // A history reads no tables of parameters: `run` does, when it follows effects.
-            let is_read = !path.to_string_lossy().contains("/parameters/");
             let told =
                 |text: &String| text.contains(path.to_str().unwrap()) && text.contains("cannot be read");
-            assert_eq!(heard.iter().filter(|text| told(text)).count(), usize::from(is_read), "{heard:?}");
+            assert_eq!(heard.iter().filter(|text| told(text)).count(), 1, "{heard:?}");
             let entries = history.machines[0].recordings.len();
-            assert_eq!(
-                entries,
-                DAYS.len() - usize::from(is_read && !path.to_string_lossy().contains("/followed/"))
-            );
+            let is_entry =
+                ["/recordings/", "/verdicts/"].iter().any(|of| path.to_string_lossy().contains(of));
+            assert_eq!(entries, DAYS.len() - usize::from(is_entry));
         }
+        fs::remove_file(path).unwrap();
+        let heard = Heard::default();
+        abbe_fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &heard).ok().unwrap();
+        let is_of_recording =
+            ["/parameters/", "/verdicts/"].iter().any(|of| path.to_string_lossy().contains(of));
+        let told = |text: &&String| text.contains(path.to_str().unwrap()) && text.contains("is missing");
+        assert_eq!(
+            heard.0.borrow().iter().filter(told).count(),
+            usize::from(is_of_recording),
+            "{:?}",
+            heard.0
+        );
         fs::write(path, bytes).unwrap();
     }
+}
+
+#[test]
+fn a_result_that_is_spoilt_is_made_again() {
+    let (_folder, fleet) = fleet("spoilt");
+    all(&fleet);
+    let whole = files(&fleet.results);
+    let of = |path: &Path| path.strip_prefix(&fleet.results).unwrap().iter().next().unwrap().to_owned();
+    for (path, bytes) in &whole {
+        // That of the same table of another recording.
+        let other = whole.keys().find(|other| *other != path && of(other) == of(path)).unwrap();
+        let half = bytes.get(..bytes.len() / 2).unwrap();
+        let spoilt =
+            [Some(&b""[..]), Some(b"garbage that is no table"), Some(half), Some(&whole[other]), None];
+        for bytes in spoilt {
+            match bytes {
+                Some(bytes) => fs::write(path, bytes).unwrap(),
+                None => fs::remove_file(path).unwrap(),
+            }
+            let listed = run::pending(&fleet, None, &()).ok().unwrap().jobs;
+            let is_followed = of(path) == "followed";
+            let stage = if is_followed { "follow" } else { "diagnose" };
+            assert_eq!(listed.iter().map(|job| job.stage).collect::<Vec<_>>(), [stage], "{}", path.display());
+            let heard = Heard::default();
+            let done = run::all(&fleet, (None, false), &heard, &|_| {}).ok().unwrap();
+            assert_eq!((done.diagnosed, done.followed), if is_followed { (0, 1) } else { (1, 0) });
+            // What says that a result is there was taken away: nothing is wrong, and there is much to do.
+            let is_undone = bytes.is_none() && (is_followed || of(path) == "recordings");
+            let told =
+                |text: &&String| text.contains("is computed again") && text.contains(path.to_str().unwrap());
+            assert_eq!(
+                heard.0.borrow().iter().filter(told).count(),
+                usize::from(!is_undone),
+                "{:?}",
+                heard.0
+            );
+            assert!(files(&fleet.results) == whole, "{} is made again", path.display());
+        }
+    }
+}
+
+#[test]
+fn a_spoilt_result_of_a_recording_that_is_gone_does_not_stop_its_machine_nor_others() {
+    let (folder, fleet) = fleet("gone");
+    all(&fleet);
+    fs::remove_file(folder.0.join("a stage/2026-01-31.yaml")).unwrap();
+    let gone = files(&fleet.results);
+    for table in ["verdicts", "parameters"] {
+        let path = gone.keys().find(|path| {
+            let path = path.to_string_lossy();
+            path.contains(table) && path.contains("month=2026-01")
+        });
+        fs::write(path.unwrap(), "garbage").unwrap();
+    }
+    record(&folder.0.join("a stage"), DAYS[1], 9.0);
+    let heard = Heard::default();
+    let done = run::all(&fleet, (None, false), &heard, &|_| {}).ok().unwrap();
+    assert_eq!((done.diagnosed, done.followed), (1, 2));
+    let told = |text: &&String| text.contains("month=2026-01") && text.contains("cannot be read");
+    assert_eq!(heard.0.borrow().iter().filter(told).count(), 2, "{:?}", heard.0);
+}
+
+#[test]
+#[cfg(unix)]
+fn what_is_no_file_is_a_recording_that_is_wrong() {
+    let (folder, fleet) = fleet("no-file");
+    let stage = folder.0.join("a stage");
+    // A link to nothing, a recording that is a pipe, and one whose data are: nobody ever writes into either.
+    std::os::unix::fs::symlink(stage.join("nothing"), stage.join("2-link.yaml")).unwrap();
+    for pipe in ["2-pipe.yaml", "2026-01-31.csv"] {
+        let _ = fs::remove_file(stage.join(pipe));
+        assert!(std::process::Command::new("mkfifo").arg(stage.join(pipe)).status().unwrap().success());
+    }
+    let done = all(&fleet);
+    assert_eq!((done.recordings, done.diagnosed, done.errors, done.put_off), (5, 2, 3, 0));
+    let history = abbe_fleet::history(&fleet, Moment::read("9999-01-01").unwrap(), &()).ok().unwrap();
+    let wrong: BTreeMap<&str, &str> = history.machines[0]
+        .recordings
+        .iter()
+        .filter(|entry| entry.verdict == "error")
+        .map(|entry| (entry.recording.as_str(), entry.sentence.as_str()))
+        .collect();
+    assert!(wrong["a stage/2-link.yaml"].contains("cannot read"), "{wrong:?}");
+    for pipe in ["a stage/2-pipe.yaml", "a stage/2026-01-31.yaml"] {
+        assert!(wrong[pipe].contains("a pipe or a device"), "{wrong:?}");
+    }
+    assert_eq!(all(&fleet).errors, 3);
+}
+
+/// Whether the rights of files bind this process: they do not bind root.
+#[cfg(unix)]
+fn is_bound(folder: &Path) -> bool {
+    fs::read_dir(folder).is_err()
+}
+
+#[test]
+#[cfg(unix)]
+fn a_folder_that_cannot_be_read_is_postponed() {
+    use std::os::unix::fs::PermissionsExt;
+    let (folder, fleet) = fleet("locked");
+    all(&fleet);
+    let whole = files(&fleet.results);
+    let stage = folder.0.join("a stage");
+    fs::set_permissions(&stage, fs::Permissions::from_mode(0o000)).unwrap();
+    if is_bound(&stage) {
+        let heard = Heard::default();
+        let listed = run::pending(&fleet, None, &heard).ok().unwrap();
+        assert_eq!((listed.jobs.len(), listed.put_off), (0, 1));
+        let done = run::all(&fleet, (None, false), &heard, &|_| {}).ok().unwrap();
+        assert_eq!((done.recordings, done.put_off), (0, 1));
+        let told = |text: &&String| {
+            text.contains("a stage is postponed to the next run: the folder cannot be read now")
+        };
+        assert_eq!(heard.0.borrow().iter().filter(told).count(), 2, "{:?}", heard.0);
+        assert!(files(&fleet.results) == whole, "what is there stays");
+    }
+    fs::set_permissions(&stage, fs::Permissions::from_mode(0o755)).unwrap();
+    assert_eq!(all(&fleet).put_off, 0);
+}
+
+#[test]
+fn a_history_says_what_is_wrong_and_what_is_pending() {
+    let (folder, fleet) = fleet("open");
+    let shown = || {
+        let history = abbe_fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
+        let pages = abbe_fleet::report::pages(&history, "abbe", &|_| None);
+        let (_, index) = pages.files.into_iter().find(|(name, _)| name == "index.html").unwrap();
+        let json: serde_json::Value = serde_json::from_str(&abbe_fleet::report::json(&history)).unwrap();
+        (abbe_fleet::report::text(&history, 200), index, json)
+    };
+    let (text, index, _) = shown();
+    assert!(text.contains("stage 1/b: no result yet, 3 pending") && index.contains("3 pending"), "{text}");
+    fs::write(folder.0.join(format!("a stage/{}.csv", DAYS[0])), "nothing").unwrap();
+    all(&fleet);
+    record(&folder.0.join("a stage"), DAYS[2], 9.0);
+    let (text, index, json) = shown();
+    assert!(text.contains("3 recordings, 1 with errors, 1 pending"), "{text}");
+    assert!(index.contains("1 with errors, 1 pending"), "{index}");
+    assert_eq!((&json["schema"], &json["machines"][0]["pending"]), (&"abbe-fleet/1".into(), &1.into()));
+    // Measured after the moment that is asked for, it is not waited for.
+    let before = abbe_fleet::history(&fleet, Moment::read("2026-02-01").unwrap(), &()).ok().unwrap();
+    assert_eq!((before.machines[0].errors(), before.machines[0].pending), (1, 0));
+    all(&fleet);
+    let (text, ..) = shown();
+    assert!(text.contains("3 recordings, 1 with errors;"), "{text}");
+}
+
+#[test]
+fn the_change_of_a_noise_says_that_it_is_of_logarithms() {
+    let (folder, fleet) = fleet("logarithm");
+    for day in 3..10 {
+        record(&folder.0.join("a stage"), &format!("2026-02-{day:02}"), 4.0);
+    }
+    all(&fleet);
+    let history = abbe_fleet::history(&fleet, Moment::read("2026-03-01").unwrap(), &()).ok().unwrap();
+    let mut scales = BTreeMap::new();
+    for followed in &history.machines[0].series {
+        let (series, change) = (&followed.series, followed.change.as_ref().unwrap());
+        scales.insert(series.effect.clone(), change.scale);
+        // The level at the beginning is one of the values, in the unit or as its logarithm.
+        let level = if change.scale == "logarithm" { change.before.0.exp() } else { change.before.0 };
+        let ends =
+            |of: fn(f64, f64) -> f64, from| series.points.iter().map(|point| point.value).fold(from, of);
+        assert!(
+            level > 0.5 * ends(f64::min, f64::MAX) && level < 2.0 * ends(f64::max, 0.0),
+            "{level} in {series:?}"
+        );
+    }
+    assert_eq!((scales["noise"], scales["EXX backlash"]), ("logarithm", "value"));
 }

@@ -105,6 +105,16 @@ pub(crate) enum UpdateFormat {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum FleetFormat {
+    /// For a person at a terminal.
+    Text,
+    /// The schema abbe-fleet/1.
+    Json,
+    /// One self-contained page.
+    Html,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum LimitsFormat {
     /// For a person at a terminal.
     Text,

@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use fleet::run::Shard;
 use recording::Moment;
 
-use super::{LimitsFormat, examples};
+use super::{FleetFormat, examples};
 
 #[derive(Args)]
 pub(crate) struct Fleet {
@@ -66,8 +66,8 @@ pub(crate) struct FleetShow {
     #[arg(default_value = "fleet.yaml")]
     pub(crate) fleet: PathBuf,
     /// How to write the report.
-    #[arg(long, value_enum, default_value_t = LimitsFormat::Text)]
-    pub(crate) format: LimitsFormat,
+    #[arg(long, value_enum, default_value_t = FleetFormat::Text)]
+    pub(crate) format: FleetFormat,
     /// Write the page of the fleet and a page for each machine into this folder.
     #[arg(long, value_name = "FOLDER", conflicts_with = "format")]
     pub(crate) output: Option<PathBuf>,

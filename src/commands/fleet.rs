@@ -26,7 +26,7 @@ fn read(path: &Path) -> Result<Known, Failure> {
     file::read(path, &Person::default())
 }
 
-/// Does jobs, or lists them. Status 1 where a job is not what it was when it was listed.
+/// Does jobs, or lists them. Status 1 where a job is not what it was when it was listed, and where the list is not whole.
 fn run_jobs(arguments: &FleetRun) -> Result<(), Failure> {
     let fleet = read(&arguments.fleet)?;
     if !arguments.job.is_empty() {
@@ -34,7 +34,13 @@ fn run_jobs(arguments: &FleetRun) -> Result<(), Failure> {
     }
     if arguments.list {
         let listed = pending(&fleet, arguments.shard, &Person::default())?;
-        return listed.iter().try_for_each(|job| print(&job.line()));
+        listed.jobs.iter().try_for_each(|job| print(&job.line()))?;
+        return match listed.put_off {
+            0 => Ok(()),
+            some => Err(Failure::no(format!(
+                "error: {some} cannot be read now, and not in the list\nhelp: list the jobs again later"
+            ))),
+        };
     }
     let progress = Progress::new(arguments.quiet, "looking for recordings");
     let show = |step: Step<'_>| {
@@ -52,7 +58,8 @@ fn run_jobs(arguments: &FleetRun) -> Result<(), Failure> {
 }
 
 fn told(done: Done) -> String {
-    let Done { recordings, diagnosed, followed, waiting, put_off } = done;
+    let Done { recordings, diagnosed, errors, followed, waiting, put_off } = done;
+    let errors = if errors == 0 { String::new() } else { format!(", {errors} with errors") };
     let waiting = match waiting {
         0 => String::new(),
         1 => {
@@ -66,7 +73,9 @@ fn told(done: Done) -> String {
         0 => String::new(),
         some => format!("; {some} postponed to the next run"),
     };
-    format!("{recordings} recordings: {diagnosed} diagnosed, {followed} followed again{waiting}{put_off}")
+    format!(
+        "{recordings} recordings: {diagnosed} diagnosed{errors}, {followed} followed again{waiting}{put_off}"
+    )
 }
 
 fn take_over(arguments: &FleetAdd) -> Result<(), Failure> {

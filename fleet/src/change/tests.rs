@@ -1,6 +1,6 @@
 //! Changes of series whose truth is known, and how often chance makes one.
 
-use super::{change, freed, mean};
+use super::{change, mean};
 use crate::chance::{bounds, normals};
 use crate::series::{Point, Series};
 use recording::Moment;
@@ -70,36 +70,84 @@ fn quiet_series_change_as_often_as_chance_has_it() {
     }
 }
 
+/// A first-order process of a standard deviation of 1.
+fn process(seed: u64, count: usize, part: f64) -> Vec<f64> {
+    alike(seed, count, part).into_iter().map(|value| value * (1.0 - part * part).sqrt()).collect()
+}
+
+/// How often a quiet series passes bounds of 1 % and of 0.1 %, in so many series: a scatter whose neighbours are alike, with intervals that
+/// are right for the scatter of the readings, which is `error` in standard deviations of the other.
+fn passed(cases: u64, (count, part, error): (usize, f64, f64)) -> (usize, usize) {
+    let one = |seed: u64| {
+        let readings = normals(seed + 1_000_003, count);
+        let values = process(seed, count, part).into_iter().zip(readings);
+        let values: Vec<f64> = values.map(|(scatter, reading)| scatter + error * reading).collect();
+        change(&series("backlash", &values, 1.96 * error)).map_or(1.0, |change| change.probability)
+    };
+    let told: Vec<f64> = (1..=cases).map(one).collect();
+    let below = |bound: f64| told.iter().filter(|probability| **probability < bound).count();
+    (below(0.01), below(0.001))
+}
+
 #[test]
-fn neighbours_that_are_alike_are_known_roughly_from_few_recordings() {
-    // Nothing tells from a dozen recordings how alike neighbours are: three in a hundred in place of one.
-    for count in [8, 12, 26] {
-        let chance = changed(2000, |seed| series("backlash", &alike(seed, count, 0.4), 0.1));
-        let (_, most) = bounds(2000, 0.03);
-        assert!(chance <= most, "{chance} of 2000, of which {most} may be, of {count}");
+fn the_bound_holds_whatever_neighbours_have_in_common() {
+    // From the fewest recordings on, alone and under readings that scatter as much.
+    for count in [5, 6, 8, 12, 20, 30] {
+        for (part, error) in [(0.0, 0.01), (0.3, 0.01), (0.6, 0.01), (0.0, 1.0), (0.3, 1.0), (0.6, 1.0)] {
+            let (of_hundred, of_thousand) = passed(500, (count, part, error));
+            let most = (bounds(500, 0.01).1, bounds(500, 0.001).1);
+            assert!(
+                of_hundred <= most.0 && of_thousand <= most.1,
+                "{of_hundred} and {of_thousand} of 500, of which {most:?} may be, of {count} recordings, {part} alike"
+            );
+        }
     }
 }
 
 #[test]
-fn a_fit_takes_nothing_from_how_alike_neighbours_are() {
-    // The mean of 4000 series, of a standard error of 0.006; read from the residuals it is lower by (2 + 4 r) / 12, which is 0.17 and 0.27.
-    for truth in [0.0, 0.3] {
-        let all: f64 = (1..=4000).map(|seed| freed(of_residuals(&alike(seed, 12, truth)), 12.0, 2.0)).sum();
-        assert!((all / 4000.0 - truth).abs() < 0.06, "{} for {truth}", all / 4000.0);
+fn more_than_is_guarded_against_is_mostly_seen() {
+    // A drift from neighbour to neighbour passes as chance less often than once in seven.
+    for count in [8, 12, 20, 30] {
+        let (told, _) = passed(500, (count, 0.9, 0.01));
+        assert!(told < bounds(500, 0.14).1, "{told} of 500, of {count}");
     }
 }
 
-/// The products of neighbours over the squares beside a line, by the textbook.
-fn of_residuals(values: &[f64]) -> f64 {
-    let count = f64::from(u32::try_from(values.len()).unwrap());
-    let places: Vec<f64> = (0..values.len()).map(|place| f64::from(u32::try_from(place).unwrap())).collect();
-    let middle = |of: &[f64]| of.iter().sum::<f64>() / count;
-    let (x, y) = (middle(&places), middle(values));
-    let slope = places.iter().zip(values).map(|(a, b)| (a - x) * (b - y)).sum::<f64>()
-        / places.iter().map(|a| (a - x).powi(2)).sum::<f64>();
-    let left: Vec<f64> = places.iter().zip(values).map(|(a, b)| b - y - slope * (a - x)).collect();
-    let squares: f64 = left.iter().map(|left| left * left).sum();
-    left.windows(2).map(|pair| pair.iter().product::<f64>()).sum::<f64>() / squares
+/// A bound for each of a hundred series: what an alarm of a fleet is held against.
+const OF_FLEET: f64 = 1e-4;
+
+/// Whether there is an alarm after each week from the fifth on, about wear of so much a week, in standard deviations of the scatter.
+fn alarms(seed: u64, wear: f64, (part, error): (f64, f64)) -> Vec<bool> {
+    let readings = normals(seed + 1_000_003, 26);
+    let worn =
+        |((scatter, reading), week): ((f64, f64), i32)| scatter + error * reading + wear * f64::from(week);
+    let values: Vec<f64> = process(seed, 26, part).into_iter().zip(readings).zip(0..).map(worn).collect();
+    let after = |count: usize| change(&series("backlash", &values[..count], 1.96 * error));
+    (5..=26).map(|count| after(count).is_some_and(|change| change.probability < OF_FLEET)).collect()
+}
+
+#[test]
+fn an_alarm_about_wear_that_goes_on_stays() {
+    // Of the runs, one in ten loses its alarm in any week at a wear of one standard deviation a week, one in thirty at three times that.
+    for kind in [(0.0, 0.01), (0.6, 0.01)] {
+        for (wear, share) in [(1.0, 0.1), (3.0, 1.0 / 30.0)] {
+            let runs: Vec<Vec<bool>> = (1..=100).map(|seed| alarms(seed, wear, kind)).collect();
+            assert!(runs.iter().all(|weeks| weeks[17]), "an alarm in all runs by week 22");
+            let loses = |weeks: &&Vec<bool>| weeks.windows(2).any(|pair| pair[0] && !pair[1]);
+            let lost = runs.iter().filter(loses).count();
+            assert!(lost <= bounds(100, share).1, "{lost} of 100 runs at {wear} a week, {kind:?}");
+        }
+    }
+}
+
+#[test]
+fn wear_that_is_plain_to_the_eye_is_told_from_six_recordings() {
+    for values in [[6.00, 7.96, 10.06, 12.00, 13.97, 15.95], [6.0, 8.0, 10.0, 12.0, 14.0, 16.0]] {
+        for count in [5, 6] {
+            let found = change(&series("backlash", &values[..count], 0.08)).unwrap();
+            assert!(found.kind == "trend" && found.probability < 1e-4, "{found:?}");
+        }
+    }
 }
 
 #[test]
@@ -173,4 +221,15 @@ fn a_mean_scatters_as_its_values_do() {
     // The variance of the values is 4/3, that of their mean a fourth of it, with three degrees of freedom.
     assert!((mean.value - 2.0).abs() < 1e-9 && (mean.variance - 1.0 / 3.0).abs() < 1e-3, "{mean:?}");
     assert!((mean.scatter - 4.0 / 3.0).abs() < 1e-3 && (mean.freedom - 3.0).abs() < 1e-6, "{mean:?}");
+}
+
+#[test]
+fn values_without_intervals_scatter_as_they_do() {
+    // Levels of noise: without a scatter beside nothing, any two would differ.
+    for seed in 1..=20 {
+        let noise = normals(seed, 23);
+        let values: Vec<f64> = noise.iter().map(|noise| (0.2 * noise).exp()).collect();
+        let found = change(&series("", &values, 0.0)).unwrap();
+        assert!(found.probability > 1e-3, "{found:?}");
+    }
 }

@@ -143,8 +143,18 @@ fn of_change(machine: &str, series: &Series, change: &Change) -> Option<Alarm> {
     let appears = before.0.abs() <= before.1 && after.0.abs() > after.1;
     let interval = |(value, half): (f64, f64)| format!("{} +- {}", number(value, unit), number(half, unit));
     let sizes = format!("from {} to {}", interval(before), interval(after));
-    let claimed = series.points.iter().filter(|point| point.claimed).count();
-    let rests = format!("{} recordings show it, {claimed} of them on their own", series.points.len());
+    // Of what appears, the recordings before do not show it.
+    let since = if appears { series.points.get(change.from..)? } else { series.points.as_slice() };
+    let claimed = since.iter().filter(|point| point.claimed).count();
+    let of = if since.len() < series.points.len() {
+        format!("the {} from then on", since.len())
+    } else {
+        "them".to_owned()
+    };
+    let rests = format!(
+        "it is followed in {} recordings, and {claimed} of {of} find it on their own",
+        series.points.len()
+    );
     alarm.reason = match change.kind {
         "trend" => {
             let goes = if change.size * after.0 < 0.0 { "falls" } else { "grows" };
@@ -182,5 +192,54 @@ fn unlike(range: &Range, own: &Own) -> Alarm {
         unit: unit.clone(),
         probability: own.probability,
         recordings: Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use recording::Moment;
+
+    use super::of_change;
+    use crate::change::change;
+    use crate::series::{Point, Series};
+
+    /// A squareness in 20 weeks, which some recordings find on their own.
+    fn alarm(values: impl Fn(i64) -> f64, claimed: impl Fn(i64) -> bool) -> String {
+        let point = |week: i64| {
+            let value = values(week) + if week % 2 == 0 { 0.1 } else { -0.1 };
+            let time = Moment::new(week * 604_800).unwrap();
+            let (recording, claimed) = (format!("{week}.yaml"), claimed(week));
+            Point { time, recording, value, low: value - 0.2, high: value + 0.2, claimed }
+        };
+        let series = Series {
+            effect: "EC0Y constant".to_owned(),
+            motion: "EC0Y".to_owned(),
+            term: "constant".to_owned(),
+            parameter: "value".to_owned(),
+            unit: "rad".to_owned(),
+            points: (0..20).map(point).collect(),
+            untold: Vec::new(),
+        };
+        of_change("mill", &series, &change(&series).unwrap()).unwrap().reason
+    }
+
+    #[test]
+    fn what_appears_rests_on_the_recordings_from_then_on() {
+        // Found once before by chance, and once not after.
+        let appears = alarm(|week| if week < 12 { 0.0 } else { 8.0 }, |week| week == 3 || week > 12);
+        assert!(appears.contains(" appears between "), "{appears}");
+        let rests = "; it is followed in 20 recordings, and 7 of the 8 from then on find it on their own.";
+        assert!(appears.ends_with(rests), "{appears}");
+        let steps = alarm(|week| if week < 12 { 5.0 } else { 8.0 }, |week| week > 1);
+        assert!(steps.contains(" steps between "), "{steps}");
+        assert!(
+            steps.ends_with("; it is followed in 20 recordings, and 18 of them find it on their own."),
+            "{steps}"
+        );
+        let grows = alarm(|week| 5.0 + f64::from(i32::try_from(week).unwrap()), |_| true);
+        assert!(
+            grows.contains(" grows by ") && grows.ends_with("and 20 of them find it on their own."),
+            "{grows}"
+        );
     }
 }

@@ -13,7 +13,7 @@ use crate::jobs::places;
 use crate::name::Name;
 use crate::results::{Filed, Table};
 use crate::series::{NOISE, Point, Series, Untold};
-use crate::shelf::{Current, Known, machines as filed_machines, read};
+use crate::shelf::{Current, Known, check, machines as filed_machines, read};
 
 /// The machines of a fleet, with what was recorded until a moment.
 pub(super) fn machines(
@@ -23,12 +23,13 @@ pub(super) fn machines(
 ) -> Result<Vec<Machine>, Failure> {
     let mut hear = |why: String| listener.hear(&why.into());
     let places = places(fleet, &());
-    let listed: BTreeSet<&str> = places.iter().map(|place| place.id.as_str()).collect();
+    let listed: BTreeSet<&str> = places.found.iter().map(|place| place.id.as_str()).collect();
     let current = Current::of(&fleet.results, None, &listed)?;
     let mut rows =
         |table| Ok::<_, Failure>(by_machine(read(&fleet.results, table, (None, &current), &mut hear)?));
     let (mut verdicts, mut recordings) = (rows(Table::Verdicts)?, rows(Table::Recordings)?);
     let mut followed = rows(Table::Followed)?;
+    check(&fleet.results, Table::Parameters, (None, &current), &mut hear)?;
     let named: BTreeSet<&str> = fleet.machines.iter().map(|machine| machine.name.as_str()).collect();
     for name in filed_machines(&fleet.results)? {
         if !named.contains(name.as_str()) {
@@ -38,7 +39,8 @@ pub(super) fn machines(
             listener.hear(&text.into());
         }
     }
-    let machine = |machine: &crate::file::Machine| {
+    let pending = crate::run::undone(fleet, places.clone(), until, listener)?;
+    let machine = |(number, machine): (usize, &crate::file::Machine)| {
         let of = |rows: &mut BTreeMap<String, Vec<(Moment, Known)>>| {
             rows.remove(&machine.name).unwrap_or_default()
         };
@@ -49,6 +51,7 @@ pub(super) fn machines(
         Machine {
             name: machine.name.clone(),
             kind: machine.kind.clone(),
+            pending: pending.get(&number).copied().unwrap_or_default(),
             recordings: entries(fleet, &verdicts, &recordings, &listed),
             series: series
                 .into_iter()
@@ -56,7 +59,7 @@ pub(super) fn machines(
                 .collect(),
         }
     };
-    Ok(fleet.machines.iter().map(machine).collect())
+    Ok(fleet.machines.iter().enumerate().map(machine).collect())
 }
 
 /// The rows of each machine in the order of time; of one moment in that of the paths.

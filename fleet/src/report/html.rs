@@ -6,7 +6,7 @@ use std::path::Path;
 use pages::plot::RULES;
 use pages::text::{escape, printed};
 
-use super::{age, brief, chart, count, most, worst};
+use super::{age, brief, chart, count, most, open, worst};
 use crate::history::{Alarm, BOUND, History, Machine};
 use crate::results::encoded;
 
@@ -18,6 +18,8 @@ const STYLE: &str = "\
 .alarm .source { overflow-wrap: anywhere; }
 td svg { min-width: 10.5rem; }
 td.name { white-space: nowrap; }
+table.recordings td { overflow-wrap: anywhere; min-width: 7rem; }
+table.recordings td.name { min-width: 0; }
 ";
 
 /// The pages of a fleet as files.
@@ -118,8 +120,12 @@ fn row(history: &History, machine: &Machine, links: &Links<'_>) -> String {
         Some(last) => (last.verdict.as_str(), most(machine)),
         None => ("no result yet", String::new()),
     };
+    let open = match open(machine).as_slice() {
+        [] => String::new(),
+        open => format!("<br><span class=\"source\">{}</span>", open.join(", ")),
+    };
     format!(
-        "<tr><td class=\"name\"><a href=\"{}\">{}</a></td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+        "<tr><td class=\"name\"><a href=\"{}\">{}</a></td><td>{}{open}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
         escape(&(links.machine)(&machine.name)),
         escape(&machine.name),
         escape(verdict),
@@ -202,7 +208,7 @@ fn of_machine(history: &History, machine: &Machine, links: &Links<'_>) -> String
         .collect();
     let head = "<tr><th>Made</th><th>Recording</th><th>Diagnosis</th></tr>";
     body += &format!(
-        "<h2>Recordings</h2>\n<div class=\"wide\"><table>\n<thead>{head}</thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n</section>\n"
+        "<h2>Recordings</h2>\n<table class=\"recordings\">\n<thead>{head}</thead>\n<tbody>\n{rows}</tbody>\n</table>\n</section>\n"
     );
     body
 }

@@ -1,6 +1,6 @@
 //! The report as text. In: a history. Out: alarms, then a line a machine.
 
-use super::{age, count, most};
+use super::{age, count, most, open};
 use crate::history::{BOUND, History};
 
 /// The report for a terminal that is so many columns wide.
@@ -38,7 +38,8 @@ pub fn text(history: &History, columns: usize) -> String {
     text += "\n";
     for machine in &history.machines {
         let Some(last) = machine.last() else {
-            text += &paragraph(&format!("{}: no result yet", machine.name), "  ");
+            let parts: Vec<String> = ["no result yet".to_owned()].into_iter().chain(open(machine)).collect();
+            text += &paragraph(&format!("{}: {}", machine.name, parts.join(", ")), "  ");
             continue;
         };
         let age = age(history, machine).unwrap_or_default();

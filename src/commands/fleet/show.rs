@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use fleet::file::Fleet;
 use fleet::history::{History, history};
 use fleet::report::{json, page, pages, text};
 use recording::Moment;
@@ -12,7 +13,7 @@ use workshop::named::relative;
 use workshop::origin::word;
 use workshop::written;
 
-use crate::arguments::{FleetShow, LimitsFormat};
+use crate::arguments::{FleetFormat, FleetShow};
 use crate::output::{Person, print, terminal};
 
 /// Runs the command. Status 1 where there is no result at all.
@@ -20,6 +21,15 @@ pub(super) fn run(arguments: &FleetShow) -> Result<(), Failure> {
     let fleet = super::read(&arguments.fleet)?;
     let known = history(&fleet, arguments.until.unwrap_or_else(now), &Person::default())?;
     if known.machines.iter().all(|machine| machine.recordings.is_empty()) {
+        if let Some(until) = arguments.until
+            && let Some(first) = first(&fleet)?
+        {
+            let help = "help: name a later day";
+            let text = format!(
+                "error: no recording with a result was made until {until}; the first is of {first}\n{help}"
+            );
+            return Err(Failure::no(text));
+        }
         let help = "help: `abbe fleet run` diagnoses the recordings first";
         return Err(Failure::no(format!("error: {} contains no result\n{help}", fleet.results.display())));
     }
@@ -28,10 +38,17 @@ pub(super) fn run(arguments: &FleetShow) -> Result<(), Failure> {
         return write(&known, folder, &command);
     }
     print(&match arguments.format {
-        LimitsFormat::Text => text(&known, terminal().columns),
-        LimitsFormat::Json => json(&known),
-        LimitsFormat::Html => page(&known, &command),
+        FleetFormat::Text => text(&known, terminal().columns),
+        FleetFormat::Json => json(&known),
+        FleetFormat::Html => page(&known, &command),
     })
+}
+
+/// When the first recording that has a result was made; nothing where none has.
+fn first(fleet: &Fleet) -> Result<Option<Moment>, Failure> {
+    let Some(end) = Moment::read("9999-12-31T23:59:59") else { return Ok(None) };
+    let all = history(fleet, end, &())?.machines;
+    Ok(all.iter().filter_map(|machine| machine.recordings.first()).map(|entry| entry.time).min())
 }
 
 /// The moment it is; the last one that is known of a clock that is not set.

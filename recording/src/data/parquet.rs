@@ -35,7 +35,13 @@ fn names_of(schema: &SchemaDescriptor) -> Vec<String> {
 }
 
 fn broken(name: &str, error: &ParquetError) -> DataError {
-    DataError::new(name, format!("it cannot be read: {error}"))
+    let told = error.to_string();
+    let broken = DataError::new(name, format!("it cannot be read: {told}"));
+    // The reader knows this packing and was built without it.
+    if told.contains("Disabled feature") {
+        return broken.help("write it with zstd, snappy, gzip or lz4, or without compression");
+    }
+    broken
 }
 
 impl Header {

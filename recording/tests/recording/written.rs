@@ -58,6 +58,13 @@ fn parquet_in_every_packing() {
     }
 }
 
+/// A packing that is not built in is told with those that are.
+#[test]
+fn parquet_packed_otherwise() {
+    let error = read("pyarrow-brotli.parquet", "x", &with_x("{column: t, unit: s}")).unwrap_err().to_string();
+    assert!(error.contains("brotli") && error.contains("write it with zstd, snappy, gzip or lz4"), "{error}");
+}
+
 #[test]
 fn parquet_of_other_writers() {
     for name in ["pyarrow-pages-2.parquet", "pyarrow-int96.parquet", "duckdb.parquet", "fastparquet.parquet"]

@@ -42,6 +42,7 @@ pandas_frame.to_parquet(
     folder / "pyarrow-pages-2.parquet", compression="zstd", data_page_version="2.0", index=False, row_group_size=16
 )
 # Dates as Spark wrote them once, in 96 bits.
+pandas_frame.to_parquet(folder / "pyarrow-brotli.parquet", compression="brotli", index=False)
 pandas_frame.drop(columns="ns").to_parquet(
     folder / "pyarrow-int96.parquet", use_deprecated_int96_timestamps=True, index=False
 )

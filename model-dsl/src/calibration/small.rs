@@ -67,29 +67,15 @@ fn told(size: f64, angular: bool) -> String {
 /// A polynomial whose highest coefficient is c, of power n, is nowhere smaller over a travel T than 2 c (T/4)^n at its largest (Chebyshev):
 /// all others can cancel it no further. Those others are large by themselves where an axis travels far from its zero.
 fn least_over(term: &CalibratedTerm, names: &MachineNames) -> Option<(f64, String)> {
-    let of_axis = |axis: usize| {
-        let rotary = names.axes.get(axis).is_some_and(|axis| axis.rotary);
-        if rotary { (TRAVEL.to_radians(), format!("{TRAVEL} deg")) } else { (TRAVEL, format!("{TRAVEL} mm")) }
-    };
-    let of_sensor = || (TRAVEL, format!("{TRAVEL} degC"));
-    let (highest, power, (travel, over)) = match term {
-        CalibratedTerm::Polynomial { input, coefficients } => {
-            let over = match input {
-                SeriesInput::Axis(axis) => of_axis(*axis),
-                SeriesInput::Sensor(_) => of_sensor(),
-            };
-            let power = coefficients.iter().rposition(|coefficient| *coefficient != 0.0)?;
-            (coefficients.get(power)?, power, over)
+    let (highest, power, input) = term.growth()?;
+    let (travel, over) = match input {
+        SeriesInput::Axis(axis) if names.axes.get(axis).is_some_and(|axis| axis.rotary) => {
+            (TRAVEL.to_radians(), format!("{TRAVEL} deg"))
         }
-        CalibratedTerm::Coupling { axis, coefficients } => {
-            let place = coefficients.iter().rposition(|coefficient| *coefficient != 0.0)?;
-            (coefficients.get(place)?, place.saturating_add(1), of_axis(*axis))
-        }
-        CalibratedTerm::Growth { coefficient, .. } => (coefficient, 1, of_sensor()),
-        _ => return None,
+        SeriesInput::Axis(_) => (TRAVEL, format!("{TRAVEL} mm")),
+        SeriesInput::Sensor(_) => (TRAVEL, format!("{TRAVEL} degC")),
     };
-    let at_most = |power: i32| 2.0 * (travel / 4.0).powi(power);
-    let times = if power == 0 { 1.0 } else { at_most(i32::try_from(power).ok()?) };
+    let times = if power == 0 { 1.0 } else { 2.0 * (travel / 4.0).powi(i32::try_from(power).ok()?) };
     Some((highest.abs() * times, over))
 }
 

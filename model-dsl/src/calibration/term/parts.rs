@@ -263,6 +263,21 @@ impl CalibratedTerm {
         told.into_iter().map(f64::abs).fold(0.0, f64::max)
     }
 
+    /// How it grows with an axis or a sensor: its highest coefficient that is not zero, mm or rad for each power of mm, rad or degC, that
+    /// power, and what it grows with. None where it does not grow, or where other states say how far.
+    pub fn growth(&self) -> Option<(f64, usize, SeriesInput)> {
+        let highest = |coefficients: &[f64], least: usize, input: SeriesInput| {
+            let place = coefficients.iter().rposition(|coefficient| *coefficient != 0.0)?;
+            Some((*coefficients.get(place)?, place.saturating_add(least), input))
+        };
+        match self {
+            Self::Polynomial { input, coefficients } => highest(coefficients, 0, *input),
+            Self::Coupling { axis, coefficients } => highest(coefficients, 1, SeriesInput::Axis(*axis)),
+            Self::Growth { sensor, coefficient, .. } => Some((*coefficient, 1, SeriesInput::Sensor(*sensor))),
+            _ => None,
+        }
+    }
+
     /// The term reading another sensor, where it reads one. Its factors stay.
     #[must_use]
     pub fn with_sensor(mut self, number: usize) -> Self {

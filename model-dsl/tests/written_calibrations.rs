@@ -247,11 +247,13 @@ fn plain_term() -> impl Strategy<Value = (usize, CalibratedTerm)> {
                 14 => CalibratedTerm::Step { time: b, size: a },
                 _ => CalibratedTerm::Compliance { load, coefficient: a },
             };
-            // Error motions are small.
-            if term.told_size() > LARGEST_ANGLE {
+            // Error motions are small, and stay small over 20 mm and 20 degC: a polynomial reaches at most 2 c (20/4)^n.
+            let power = term.growth().map(|(_, power, _)| i32::try_from(power).unwrap());
+            let most = power.map_or(LARGEST_ANGLE, |power| LARGEST_ANGLE / (2.0 * 5.0_f64.powi(power)));
+            if power.is_some() || term.told_size() > most {
                 let numbers = term.linear_mut().into_iter().flat_map(|(_, numbers)| numbers);
                 // A rest may be a zero below zero.
-                numbers.for_each(|number| *number = *number % LARGEST_ANGLE + 0.0);
+                numbers.for_each(|number| *number = *number % most + 0.0);
             }
             (motion, term)
         },

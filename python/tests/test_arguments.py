@@ -18,6 +18,12 @@ T = np.arange(50) * 0.01
 TABLE = {"time": T, "command.x": 10 * np.sin(T), "measured.x": 10 * np.sin(T) + 1e-3}
 
 
+def placed(value: object) -> abbe.Calibration:
+    """A stage with a curve that ends at a place, which may be any."""
+    curve = {"axis": "X", "per": "mm", "unit": "um", "at": [0, value], "values": [0, 1]}
+    return abbe.Calibration({"calibration": 1, "machine": "FX", "errors": {"EXX": [{"table": curve}]}})
+
+
 def scaled(value: object) -> abbe.Calibration:
     """A stage whose error grows by so many um a mm."""
     curve = {"axis": "X", "per": "mm", "unit": "um", "coefficients": [0, value]}
@@ -47,8 +53,8 @@ def record(table: object = TABLE, **more: object) -> abbe.Recording:
     ids=lambda value: f"{type(value).__name__} {value}",
 )
 def test_any_number_is_that_number(value: object, number: float) -> None:
-    assert f"coefficients: [0, {number!r}]" in scaled(value).text or f"coefficients: [0, {value}]" in scaled(value).text
-    assert scaled(value).error([[1.0]])[0, 0] == scaled(number).error([[1.0]])[0, 0] != 0
+    assert f"at: [0, {number!r}]" in placed(value).text or f"at: [0, {value}]" in placed(value).text
+    assert placed(value).error([[1.0]])[0, 0] == placed(number).error([[1.0]])[0, 0] != 0
 
 
 def test_arrays_flags_and_whole_numbers_of_numpy() -> None:

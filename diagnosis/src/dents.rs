@@ -36,12 +36,13 @@ const HIDES: f64 = 0.1;
 /// sure are known to a quarter each; two that are equal differ by more than half once in six times.
 const ALIKE: f64 = 0.5;
 
-/// How many times the usual height of hats elsewhere a dent must be in each direction to stand out among them. Of the 192 hats some 90 are
-/// independent; chance gives one of them so much in both directions with one sign once in 30 times.
+/// A dent stands out if it is this many times as high, in each direction, as hats elsewhere usually are. Of the 192 hats some 90 are
+/// independent. By chance, one of them is that high in both directions, with one sign, in one recording of 30.
 const OUTSTANDING: f64 = 2.2;
 /// The median of the size of a normal variable, in standard deviations.
 const NORMAL_MEDIAN: f64 = 0.6745;
-/// The fewest heights that tell what is usual: half of all hats of the widest kind, in both directions.
+/// The fewest heights that show what is usual: half of all hats of the widest kind, in both directions. The median of 24 that are
+/// independent is known to a quarter.
 const FEWEST: usize = 24;
 
 /// Dents that may hide what else there is, each with the model beside which it takes most: the settings alone, and all that was found.

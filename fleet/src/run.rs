@@ -3,27 +3,23 @@
 //! Jobs have two stages. Each recording is diagnosed; when all of a machine are, what was found in any of them is followed in each. A
 //! machine whose effects have changed since is followed anew, which takes a small part of the time.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::num::NonZero;
-use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use rayon::prelude::*;
-use recording::Moment;
 use serde::Serialize;
 use workshop::failure::Failure;
 use workshop::told::Listener;
 
 use crate::diagnosed;
-use crate::effects::{Effect, effects, key};
 use crate::file::{Fleet, Machine};
-use crate::followed;
-use crate::jobs::{Job, Places, PutOff, job, machine_named, named, places, places_of};
+use crate::jobs::{Job, PutOff, job, machine_named, named};
 use crate::key::of_texts;
-use crate::results::{Filed, Table, encoded, sound};
-use crate::shelf::{Current, Known, Shelf, read, tidy};
+use crate::plan::{FOLLOW, Follow, Plan, State, name_of};
+use crate::shelf::{Shelf, tidy};
 
 /// One of several parts into which jobs are shared, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,9 +81,6 @@ impl Pending {
     }
 }
 
-/// Before the name of a job that follows.
-const FOLLOW: &str = "follow-";
-
 impl Shard {
     /// Reads `3/16`.
     #[must_use]
@@ -98,235 +91,11 @@ impl Shard {
     }
 
     /// Whether a job is of this part: by the sum of its name, so that a recording more moves no other.
-    fn has(self, id: &str) -> bool {
+    pub(crate) fn has(self, id: &str) -> bool {
         let digits = id.get(id.len().saturating_sub(8)..).unwrap_or_default();
         let number = usize::try_from(u32::from_str_radix(digits, 16).unwrap_or_default()).unwrap_or_default();
         number.checked_rem(self.of) == Some(self.part.saturating_sub(1))
     }
-}
-
-/// The recordings of a fleet, or of one machine of it, with what is there of them.
-struct Plan<'f> {
-    fleet: &'f Fleet,
-    /// In the order of machines.
-    jobs: Vec<Job>,
-    /// What cannot be read now.
-    put_off: Vec<PutOff>,
-    /// How many recordings there are, those that cannot be read now among them.
-    recordings: usize,
-    /// The machine, where it is of one alone.
-    machine: Option<&'f str>,
-    shelf: Shelf,
-    /// What there is of each job, in their order.
-    states: Vec<State>,
-}
-
-/// What there is of a job's result.
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum State {
-    /// Nothing yet.
-    None,
-    /// All its files, with what they must hold; whether the recording is wrong.
-    Whole { wrong: bool },
-    /// Not all of them, or they cannot be read: why.
-    Broken(String),
-}
-
-impl State {
-    /// Looks at the tables of a diagnosis.
-    fn of_diagnosis(results: &Path, shelf: &Shelf, filed: &Filed<'_>) -> Self {
-        if !shelf.holds(results, filed, Table::Recordings) {
-            return Self::None;
-        }
-        let mut wrong = false;
-        for table in Table::OF_DIAGNOSIS {
-            match sound(&filed.path(results, table), table, filed.key) {
-                Ok(rows) => {
-                    wrong |=
-                        table == Table::Recordings && rows.iter().any(|row| !row.text("error").is_empty())
-                }
-                Err(why) => return Self::Broken(why),
-            }
-        }
-        Self::Whole { wrong }
-    }
-
-    /// Looks at the table of followed effects; its rows bear the key of the recording.
-    fn of_followed(results: &Path, shelf: &Shelf, filed: &Filed<'_>, recording: &str) -> Self {
-        if !shelf.holds(results, filed, Table::Followed) {
-            return Self::None;
-        }
-        match sound(&filed.path(results, Table::Followed), Table::Followed, recording) {
-            Ok(_) => Self::Whole { wrong: false },
-            Err(why) => Self::Broken(why),
-        }
-    }
-
-    fn is_whole(&self) -> bool {
-        matches!(self, Self::Whole { .. })
-    }
-
-    /// The line about a result that is made again.
-    fn line(&self, label: &str) -> Option<String> {
-        let Self::Broken(why) = self else { return None };
-        Some(format!("warning: the result of {label} is computed again: {why}"))
-    }
-}
-
-impl<'f> Plan<'f> {
-    fn new(fleet: &'f Fleet, listener: &dyn Listener) -> Result<Self, Failure> {
-        Self::of(fleet, places(fleet, listener), None)
-    }
-
-    fn of_machine(fleet: &'f Fleet, (number, machine): (usize, &'f Machine)) -> Result<Self, Failure> {
-        Self::of(fleet, places_of(fleet, (number, machine), &()), Some(&machine.name))
-    }
-
-    fn of(fleet: &'f Fleet, places: Places, machine: Option<&'f str>) -> Result<Self, Failure> {
-        let Places { found, unread: mut put_off } = places;
-        let recordings = found.len();
-        let read: Vec<Result<Job, PutOff>> = found.into_par_iter().map(|place| job(fleet, place)).collect();
-        let mut jobs = Vec::new();
-        for read in read {
-            match read {
-                Ok(job) => jobs.push(job),
-                Err(why) => put_off.push(why),
-            }
-        }
-        let mut plan =
-            Self { fleet, jobs, put_off, recordings, machine, shelf: Shelf::default(), states: Vec::new() };
-        plan.look()?;
-        Ok(plan)
-    }
-
-    /// Looks anew which results are there.
-    fn look(&mut self) -> Result<(), Failure> {
-        self.shelf = Shelf::of(&self.fleet.results, self.machine)?;
-        let state =
-            |job: &Job| State::of_diagnosis(&self.fleet.results, &self.shelf, &self.filed(job, &job.key));
-        self.states = self.jobs.par_iter().map(state).collect();
-        Ok(())
-    }
-
-    /// Each job with what there is of its result.
-    fn known(&self) -> impl Iterator<Item = (&Job, &State)> {
-        self.jobs.iter().zip(&self.states)
-    }
-
-    fn filed<'j>(&'j self, job: &'j Job, key: &'j str) -> Filed<'j> {
-        let machine = self.fleet.machines.get(job.place.machine).map_or("", |machine| &machine.name);
-        Filed { machine, time: job.time, id: &job.place.id, key }
-    }
-
-    fn followed(&self, follow: &Follow<'_>) -> State {
-        let filed = self.filed(follow.job, &follow.key);
-        State::of_followed(&self.fleet.results, &self.shelf, &filed, &follow.job.key)
-    }
-
-    /// The jobs of one part or of all.
-    fn own(&self, shard: Option<Shard>) -> impl Iterator<Item = (&Job, &State)> {
-        self.known().filter(move |(job, _)| shard.is_none_or(|shard| shard.has(&job.place.id)))
-    }
-
-    /// What is to be diagnosed, of one part or of all; the listener hears of what has a result that is of no use.
-    fn undiagnosed(&self, shard: Option<Shard>, listener: &dyn Listener) -> Vec<&Job> {
-        let pending: Vec<(&Job, &State)> = self.own(shard).filter(|(_, state)| !state.is_whole()).collect();
-        for line in pending.iter().filter_map(|(job, state)| state.line(&job.place.label)) {
-            listener.hear(&line.into());
-        }
-        pending.into_iter().map(|(job, _)| job).collect()
-    }
-
-    /// What is diagnosed and has no page.
-    fn undrawn(&self, shard: Option<Shard>) -> Vec<&Job> {
-        let has_page = |job: &Job| self.shelf.holds_page(&self.fleet.results, &self.filed(job, &job.key));
-        let undrawn = self.own(shard).filter(|(job, state)| state.is_whole() && !has_page(job));
-        undrawn.map(|(job, _)| job).collect()
-    }
-
-    /// Takes away what runs that were killed have left beside what replaces it, and what is of recordings that were moved.
-    fn clear(&self) -> Result<(), Failure> {
-        let mut known = BTreeMap::new();
-        for (job, _) in self.known().filter(|(_, state)| state.is_whole()) {
-            let filed = self.filed(job, &job.key);
-            self.shelf.replace(&self.fleet.results, &filed)?;
-            known.insert(job.key.as_str(), filed.machine);
-        }
-        // Where something is put off, nobody knows what else is not to be seen now.
-        match self.put_off.is_empty() {
-            true => self.shelf.clear_moved(&known, &self.listed()),
-            false => Ok(()),
-        }
-    }
-
-    /// The recordings that are at their places.
-    fn listed(&self) -> BTreeSet<&str> {
-        self.jobs.iter().map(|job| job.place.id.as_str()).collect()
-    }
-
-    /// The second stage of all machines of which all is diagnosed; and how many others there are.
-    fn follows(&self, listener: &dyn Listener) -> Result<(Vec<Follow<'_>>, usize), Failure> {
-        let (mut follows, mut waiting) = (Vec::new(), 0);
-        let undone: BTreeSet<usize> =
-            self.known().filter(|(_, state)| !state.is_whole()).map(|(job, _)| job.place.machine).collect();
-        for jobs in self.jobs.chunk_by(|one, next| one.place.machine == next.place.machine) {
-            match jobs.first().is_some_and(|job| undone.contains(&job.place.machine)) {
-                false => follows.extend(self.follow_of(jobs, listener)?),
-                true => waiting += 1,
-            }
-        }
-        Ok((follows, waiting))
-    }
-
-    /// The second stage of the jobs of a machine.
-    fn follow_of<'j>(&self, jobs: &'j [Job], listener: &dyn Listener) -> Result<Vec<Follow<'j>>, Failure> {
-        let machine = jobs.first().and_then(|job| self.fleet.machines.get(job.place.machine));
-        let Some(machine) = machine.map(|machine| machine.name.as_str()) else { return Ok(Vec::new()) };
-        let listed: BTreeSet<&str> = jobs.iter().map(|job| job.place.id.as_str()).collect();
-        let current = Current::of(&self.fleet.results, Some(machine), &listed)?;
-        // What is to be diagnosed is whole, as was seen above. Other results are of recordings that are gone, or cannot be read now: nobody
-        // can make them again, and the machine goes on without them.
-        let mut broken = |why: String| listener.hear(&why.into());
-        let mut rows = |table| read(&self.fleet.results, table, (Some(machine), &current), &mut broken);
-        let (parameters, verdicts) = (rows(Table::Parameters)?, rows(Table::Verdicts)?);
-        let is_unfit = |known: &&Known| is_unfit(known.row.text("verdict"), known.row.count("changes"));
-        let unfit: BTreeSet<&str> = verdicts.iter().filter(is_unfit).map(|known| known.id.as_str()).collect();
-        let fit = parameters.iter().filter(|known| !unfit.contains(known.id.as_str()));
-        let effects: Arc<[Effect]> = effects(&fit.cloned().collect::<Vec<_>>()).into();
-        let follow = |job: &'j Job| Follow {
-            job,
-            key: key((&job.key, &job.place.id), &effects),
-            unfit: unfit.contains(job.place.id.as_str()),
-            effects: Arc::clone(&effects),
-        };
-        Ok(jobs.iter().map(follow).collect())
-    }
-}
-
-/// Whether nothing of a recording is followed: it could not be read, tells nothing, or its files are wrong.
-fn is_unfit(verdict: &str, changes: Option<i64>) -> bool {
-    verdict == diagnosed::ERROR || verdict == "undecided" || changes.unwrap_or_default() > 0
-}
-
-/// The second stage of a job.
-struct Follow<'j> {
-    job: &'j Job,
-    key: String,
-    unfit: bool,
-    effects: Arc<[Effect]>,
-}
-
-impl Follow<'_> {
-    fn run(&self, fleet: &Fleet, shelf: &Shelf) -> Result<Option<PutOff>, Failure> {
-        followed::run(fleet, self.job, (&self.effects, &self.key), self.unfit, shelf)
-    }
-}
-
-/// The name of the job that follows the effects of a machine: the hash of what it is made from, and the machine. It is one job, since what
-/// is followed depends on all recordings of the machine.
-fn name_of(machine: &str, follows: &[Follow<'_>]) -> String {
-    let keys: Vec<&str> = follows.iter().map(|follow| follow.key.as_str()).collect();
-    format!("{FOLLOW}{}/{}", of_texts(&keys), encoded(machine))
 }
 
 /// Does all jobs that are not done, on all processors; those of a part where one is given. `pages` writes the page of each diagnosis
@@ -351,20 +120,7 @@ pub fn all(
     }
     plan.look()?;
     let (follows, waiting) = plan.follows(listener)?;
-    let states: Vec<State> = follows.par_iter().map(|follow| plan.followed(follow)).collect();
-    let mut pending = Vec::new();
-    for (follow, state) in follows.iter().zip(&states) {
-        if state.is_whole() {
-            // What a run that was killed has left beside it.
-            let filed = plan.filed(follow.job, &follow.key);
-            plan.shelf.replace_in(&fleet.results, &filed, Table::Followed)?;
-        } else if shard.is_none_or(|shard| shard.has(&follow.job.place.id)) {
-            if let Some(line) = state.line(&follow.job.place.label) {
-                listener.hear(&line.into());
-            }
-            pending.push(follow);
-        }
-    }
+    let pending = unfollowed(&plan, &follows, shard, listener)?;
     let later = each(&pending, told("following"), |follow| follow.run(fleet, &plan.shelf))?;
     let followed = pending.len().saturating_sub(later.len());
     put_off.extend(later);
@@ -385,6 +141,28 @@ pub fn all(
         waiting,
         put_off: put_off.len(),
     })
+}
+
+/// What is not followed yet, of one part or of all. Beside what is, a run that was killed may have left what it replaces: that is removed.
+fn unfollowed<'j>(
+    plan: &Plan<'_>,
+    follows: &'j [Follow<'j>],
+    shard: Option<Shard>,
+    listener: &dyn Listener,
+) -> Result<Vec<&'j Follow<'j>>, Failure> {
+    let states: Vec<State> = follows.par_iter().map(|follow| plan.followed(follow)).collect();
+    let mut pending = Vec::new();
+    for (follow, state) in follows.iter().zip(&states) {
+        if state.is_whole() {
+            plan.clear_beside(follow)?;
+        } else if shard.is_none_or(|shard| shard.has(&follow.job.place.id)) {
+            if let Some(line) = state.line(&follow.job.place.label) {
+                listener.hear(&line.into());
+            }
+            pending.push(follow);
+        }
+    }
+    Ok(pending)
 }
 
 /// Runs jobs on all processors, one at a time on each: what a job shares out itself goes to the common pool, whose threads do not begin
@@ -457,25 +235,6 @@ pub fn pending(fleet: &Fleet, shard: Option<Shard>, listener: &dyn Listener) -> 
         }
     }
     Ok(Listed { jobs: pending, put_off: plan.put_off.len() })
-}
-
-/// How many recordings of each machine, by its number, were made until a moment and have no whole result of what they hold now. The listener
-/// hears of what cannot be read now.
-pub(crate) fn undone(
-    fleet: &Fleet,
-    places: Places,
-    until: Moment,
-    listener: &dyn Listener,
-) -> Result<BTreeMap<usize, usize>, Failure> {
-    let plan = Plan::of(fleet, places, None)?;
-    for PutOff { label, why } in &plan.put_off {
-        listener.hear(&format!("warning: {label} is shown as its last result has it: {why}").into());
-    }
-    let mut undone = BTreeMap::new();
-    for (job, _) in plan.known().filter(|(job, state)| job.time <= until && !state.is_whole()) {
-        *undone.entry(job.place.machine).or_default() += 1;
-    }
-    Ok(undone)
 }
 
 /// Does one job by its name, as [`pending`] tells it: of a diagnosis nothing is looked at but its recording and the names of the results of

@@ -10,8 +10,8 @@
 //! # What it loses
 //!
 //! A position of 32 bits has steps: 61 nm between 512 and 1024 mm, half of that between 256 and 512 mm. An error and a correction are
-//! small numbers, known to far less than a nanometre. So what is lost is the rounding of the command: half a step, 31 nm below a metre;
-//! the commands of rotary axes are rounded by up to 0.24 urad within a turn. `docs/performance.md` has what was measured.
+//! small numbers, known to far less than a nanometre. Only the command is rounded, by half a step: 31 nm below a metre. Commands of rotary
+//! axes are rounded by up to 0.24 urad within a turn. `docs/performance.md` has what was measured.
 //!
 //! # What to mind
 //!

@@ -202,8 +202,8 @@ fn recordings_weigh_by_the_squares_of_their_noise() {
     }
 }
 
-/// The first effect to fall after `settings` that are always fitted. So many candidates were tried that the price of the lost motion is
-/// `share` of what it is worth: in squares, or in likelihood where the noise takes up a part of it.
+/// The first effect that does not pay its penalty, after `settings` that are always fitted. The number of candidates is chosen so that the
+/// penalty of the lost motion is `share` of what it is worth: in squares, or in likelihood where the noise takes up a part of it.
 fn falls(case: &Case<'_>, settings: usize, share: f64) -> Option<usize> {
     let design = design(&case.study, &case.fit.model, &case.appraisal.weights);
     let (swept, samples) = (swept(&design), design.fitted().1);

@@ -75,8 +75,8 @@ fn process(seed: u64, count: usize, part: f64) -> Vec<f64> {
     alike(seed, count, part).into_iter().map(|value| value * (1.0 - part * part).sqrt()).collect()
 }
 
-/// How often a quiet series passes bounds of 1 % and of 0.1 %, in so many series: a scatter whose neighbours are alike, with intervals that
-/// are right for the scatter of the readings, which is `error` in standard deviations of the other.
+/// How many of `cases` quiet series pass a bound of 1 %, and one of 0.1 %. Each has `count` recordings, whose neighbours correlate by `part`.
+/// Their readings have errors of `error` standard deviations of that scatter, and intervals that are right for these errors.
 fn passed(cases: u64, (count, part, error): (usize, f64, f64)) -> (usize, usize) {
     let one = |seed: u64| {
         let readings = normals(seed + 1_000_003, count);

@@ -39,7 +39,7 @@ pub(super) fn machines(
             listener.hear(&text.into());
         }
     }
-    let pending = crate::run::undone(fleet, places.clone(), until, listener)?;
+    let pending = crate::plan::undone(fleet, places.clone(), until, listener)?;
     let machine = |(number, machine): (usize, &crate::file::Machine)| {
         let of = |rows: &mut BTreeMap<String, Vec<(Moment, Known)>>| {
             rows.remove(&machine.name).unwrap_or_default()

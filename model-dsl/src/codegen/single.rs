@@ -1,8 +1,8 @@
 //! Generated code over numbers of 32 bits.
 //!
 //! In: the tokens of generated code. Out: the same tokens with `f32` in place of `f64`, the runtime's module of such numbers in place of
-//! the runtime, and each number rounded once. It exists as a step behind the generator, so that there is one generator, and so that no
-//! place of it can be forgotten.
+//! the runtime, and each number rounded once. It works on what the generator has written, so that there is one generator for both kinds of
+//! numbers.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! A crate that asks for numbers that there are not.
+//! A crate that asks for numbers of 16 bits, which Abbe does not generate.
 
 /// The machine.
 pub mod machine {

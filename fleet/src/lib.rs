@@ -7,7 +7,8 @@
 //! not harm each other, and another engine may hand out the same jobs.
 //!
 //! ```text
-//! fleet file -> file, time -> jobs (key) -> plan: what is there already -> run -> diagnosed: rows of each recording -> results, shelf: tables of each month (table)
+//! fleet file -> file, time -> jobs (key) -> plan: what is there already -> run
+//!      -> diagnosed: rows of each recording -> results, shelf: tables of each month (table)
 //!      -> effects: each once for a machine (name) -> followed: how large it is in every recording of it
 //! results -> history (series) -> change, student: trends and steps; between: machines against each other -> alarms -> report
 //! ```

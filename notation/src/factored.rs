@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use proptest::prelude::*;
 
-use crate::tests::{MACHINES, equations};
+use crate::tests::{equations, machines};
 use crate::{Format, print};
 use model_dsl::algebra::{Axis, Polynomial, Symbol};
 use model_dsl::diagnostic::Diagnostics;
@@ -138,8 +138,8 @@ fn assert_same(equations: &Equations, point: u64) {
 
 #[test]
 fn shipped_machines_print_what_was_derived() {
-    for name in MACHINES {
-        let equations = equations(name);
+    for name in machines() {
+        let equations = equations(&name);
         (0..20).for_each(|point| assert_same(&equations, point));
     }
 }
@@ -188,9 +188,9 @@ fn lengths_stand_together_and_brackets_have_names() {
 
 #[test]
 fn a_machine_of_slides_has_no_names_for_brackets() {
-    let slides = |name: &&str| equations(name).axes.iter().all(|axis| !axis.rotary);
-    for name in MACHINES.into_iter().filter(slides) {
-        let equations = equations(name);
+    let slides = |name: &String| equations(name).axes.iter().all(|axis| !axis.rotary);
+    for name in machines().into_iter().filter(slides) {
+        let equations = equations(&name);
         assert!(!print(&equations, Format::Json, Names::Iso).contains("factored"), "{name}");
         assert_eq!(error_lines(&equations, Names::Iso).len(), equations.rows.len(), "{name}");
     }

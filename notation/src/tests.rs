@@ -10,25 +10,16 @@ use model_dsl::source::SourceFile;
 const FORMATS: [Format; 6] =
     [Format::Text, Format::Latex, Format::Html, Format::Json, Format::Maxima, Format::Python];
 
-/// All shipped machines.
-pub(super) const MACHINES: [&str; 16] = [
-    "excello-921",
-    "nist-turning-center",
-    "postech-mill",
-    "fxyz-mill",
-    "xfyz-mill",
-    "xyfz-mill",
-    "xyzf-mill",
-    "msl-moving-bridge",
-    "msl-moving-table",
-    "printer-skew",
-    "cai-wafer-grinder",
-    "linuxcnc-xyzac-trt",
-    "linuxcnc-xyzbc-trt",
-    "trunnion-5axis",
-    "head-table-5axis",
-    "nutating-head-5axis",
-];
+/// The names of all shipped machines.
+pub(super) fn machines() -> Vec<String> {
+    let folder = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../machines")).expect("a folder");
+    let files = folder.map(|entry| entry.expect("a file").path());
+    let machines = files.filter(|path| path.extension().is_some_and(|extension| extension == "yaml"));
+    let name = |path: std::path::PathBuf| path.file_stem().expect("a name").to_string_lossy().into_owned();
+    let names: Vec<String> = machines.map(name).collect();
+    assert!(names.len() > 10, "{names:?}");
+    names
+}
 
 /// The equations of a shipped machine.
 pub(super) fn equations(name: &str) -> Equations {
@@ -61,11 +52,11 @@ fn a_symbol_counted_against_iso_has_the_opposite_arm_of_its_name() {
 
 #[test]
 fn every_format_prints_every_machine() {
-    for name in MACHINES {
-        let equations = equations(name);
+    for name in machines() {
+        let equations = equations(&name);
         for format in FORMATS {
             let text = print(&equations, format, Names::Iso);
-            assert!(text.contains(name), "{name} as {format:?}");
+            assert!(text.contains(&name), "{name} as {format:?}");
             assert_eq!(text, print(&equations, format, Names::Iso), "{name} as {format:?} is the same twice");
         }
     }
@@ -73,8 +64,8 @@ fn every_format_prints_every_machine() {
 
 #[test]
 fn the_page_stands_alone_and_its_elements_close() {
-    for name in MACHINES {
-        let page = print(&equations(name), Format::Html, Names::Symbols);
+    for name in machines() {
+        let page = print(&equations(&name), Format::Html, Names::Symbols);
         for forbidden in ["<script", "http", "src=", "href=", "@import", "url("] {
             assert!(!page.contains(forbidden), "{name} holds {forbidden}");
         }

@@ -366,3 +366,31 @@ fn the_way_between_rows_is_an_arc_and_no_corner() {
     let corner = times.map(|time| if time < 0.25 { 0.0 } else { time - 0.25 });
     assert_eq!([2, 3, 4].map(|row| steady_acceleration(&times, &corner, row)), [0.0; 3]);
 }
+
+/// A recording that begins on the way is taken where its feedback begins. One whose feedback shows more than where the axis is, a
+/// vibration, a wave or a play, is taken at rest on its command: none of these fades with the loop.
+#[test]
+fn an_axis_begins_away_from_its_command_where_its_way_back_is_seen() {
+    let (lag, speed) = (0.02, 50.0);
+    let time: Vec<f64> = (0..400).map(|row| 0.001 * f64::from(row)).collect();
+    let command: Vec<f64> = time.iter().map(|t| speed * (t - 0.1).max(0.0)).collect();
+    let at_rest = axis(&time, &command, lag).position;
+    let fading: Vec<f64> = time.iter().map(|t| 0.4 * (-t / lag).exp()).collect();
+    let shown = |more: &dyn Fn(f64) -> f64| {
+        let noise = normals(5, time.len()).into_iter().map(|noise| 1e-3 * noise);
+        let rows = time.iter().zip(at_rest.iter()).zip(noise);
+        let actual = rows.map(|((t, position), noise)| position + more(*t) + noise).collect();
+        let mut recording = programmed(&time, &[command.clone()]);
+        recording.axes[0].actual = Some(actual);
+        let given = Given::new(&recording, Vec::new(), Vec::new());
+        States::new(&recording, &given, &[behind(lag)], 0.0).axes.remove(0).position
+    };
+    let away: Vec<f64> = at_rest.iter().zip(&fading).map(|(position, fading)| position + fading).collect();
+    // The start is one reading, with its noise.
+    assert!(distance(&shown(&|t| 0.4 * (-t / lag).exp()), &away) < 5e-3);
+    for frequency in [7.0, 23.0, 83.0, 300.0] {
+        let vibration = |t: f64| 0.4 * (std::f64::consts::TAU * frequency * t + 1.0).sin();
+        assert!(distance(&shown(&vibration), &at_rest) < 1e-12, "{frequency} Hz");
+    }
+    assert!(distance(&shown(&|_| -0.4), &at_rest) < 1e-12);
+}

@@ -380,7 +380,7 @@ fn an_axis_begins_away_from_its_command_where_its_way_back_is_seen() {
         let noise = normals(5, time.len()).into_iter().map(|noise| 1e-3 * noise);
         let rows = time.iter().zip(at_rest.iter()).zip(noise);
         let actual = rows.map(|((t, position), noise)| position + more(*t) + noise).collect();
-        let mut recording = programmed(&time, &[command.clone()]);
+        let mut recording = programmed(&time, std::slice::from_ref(&command));
         recording.axes[0].actual = Some(actual);
         let given = Given::new(&recording, Vec::new(), Vec::new());
         States::new(&recording, &given, &[behind(lag)], 0.0).axes.remove(0).position

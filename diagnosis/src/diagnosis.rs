@@ -237,6 +237,8 @@ pub struct Finding {
     pub term: &'static str,
     /// The parameters, named as in calibration files.
     pub parameters: Vec<Parameter>,
+    /// How far it goes over the travel, where no single parameter says that.
+    pub over_travel: Option<OverTravel>,
     /// Its part of the explainable held-out variance.
     pub share: f64,
     /// Where it acts.
@@ -299,6 +301,15 @@ pub struct Repeats {
     pub unit: &'static str,
     /// How often the wave comes in that: 1, 2, ...
     pub harmonic: u32,
+}
+
+/// How far an effect goes over the travel of an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OverTravel {
+    /// The letter of the axis.
+    pub axis: String,
+    /// From its lowest to its highest value, never below zero; the interval allows for what the coefficients have in common.
+    pub range: Estimate,
 }
 
 /// One parameter of a finding.

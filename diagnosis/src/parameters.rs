@@ -5,6 +5,7 @@
 //! are functions of what was fitted; their variances follow to first order.
 
 mod calibrated;
+mod over_travel;
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 

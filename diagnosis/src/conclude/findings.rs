@@ -64,6 +64,7 @@ pub(super) fn report(
             motion_number: motion,
             motion_meaning: known.meaning.clone(),
             term: fitted.effect.shape.name(),
+            over_travel: described.over_travel(&found.travels),
             repeats_with: elements::repeating(study, &found.travels, &fitted.effect.shape, &parameters),
             parameters,
             share: shares[number],

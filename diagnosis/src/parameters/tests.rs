@@ -12,6 +12,7 @@ use crate::states::Driven;
 use crate::states::States;
 use crate::terms::{Memory, known};
 use crate::testing::{Bench, normals, peak, programmed, uneven};
+use crate::travel::Travel;
 
 fn recording(axes: usize) -> Recording {
     let time = uneven(51, 90, 0.1);
@@ -306,4 +307,33 @@ fn a_power_that_the_free_zero_holds_is_not_told() {
     assert_eq!((told[0].value, told[0].ci95), (0.0, (0.0, 0.0)));
     assert!((told[1].value - 1e-4).abs() < 1e-15);
     assert!((told[1].ci95.1 - told[1].ci95.0 - 2.0 * 1.96e-6).abs() < 1e-9);
+}
+
+/// 3 (q/10)^2 um over -20 to 20 mm goes from 0 to 12 um, wherever the powers are taken from. What its numbers have in common counts: the
+/// square alone is as uncertain.
+#[test]
+fn a_polynomial_goes_as_far_as_its_highest_and_lowest_value_are_apart() {
+    let bench = Bench::of("FX");
+    let recording = recording(1);
+    let study = Study::new(bench.equations(), None, &[&recording]);
+    let travels = [Travel { low: -20.0, high: 20.0, moves: true, ..Travel::default() }];
+    let over = |center: f64, coefficients: &[f64], covariance: DMatrix<f64>| {
+        let shape = Shape::Polynomial { axis: 0, degree: 2, center, scale: 10.0 };
+        let fitted = fitted(&study, "EXX", shape, coefficients);
+        let certainty = Certainty { covariance, nonlinear: None, richer: None };
+        Described::new(&study, &fitted, &certainty).over_travel(&travels).unwrap()
+    };
+    let alone = DMatrix::from_fn(3, 3, |row, column| if row == 2 && column == 2 { 1e-8 } else { 0.0 });
+    let over_zero = over(0.0, &[0.0, 0.0, 3e-3], alone);
+    assert!((over_zero.range.value - 12e-3).abs() < 1e-15, "{:?}", over_zero.range);
+    let half = (over_zero.range.ci95.1 - over_zero.range.ci95.0) / 2.0;
+    assert!((half - WIDTH_95 * 4e-4).abs() < 1e-12, "{half}");
+    assert_eq!(over_zero.axis, "X");
+    // The same curve about 1 m away: 3 (x + 100)^2.
+    let together = [1e4, 200.0, 1.0].map(|share| 1e-4 * share);
+    let covariance = DMatrix::from_fn(3, 3, |row, column| together[row] * together[column]);
+    let far = over(1000.0, &[30.0, 0.6, 3e-3], covariance);
+    assert!((far.range.value - 12e-3).abs() < 1e-9, "{:?}", far.range);
+    let half = (far.range.ci95.1 - far.range.ci95.0) / 2.0;
+    assert!((half - WIDTH_95 * 4e-4).abs() < 1e-9, "{half}");
 }

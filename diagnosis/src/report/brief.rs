@@ -62,6 +62,9 @@ fn row(finding: &Finding) -> Row {
 
 /// The main parameter in a few words.
 fn amount(finding: &Finding) -> String {
+    if finding.over_travel.is_some() {
+        return parameter::of_finding(finding).swap_remove(0);
+    }
     let named = |name: &&str| finding.parameters.iter().find(|parameter| parameter.name == *name);
     let fitted = |parameter: &&Parameter| {
         matches!(parameter.value, ParameterValue::Fitted(_) | ParameterValue::List(_))

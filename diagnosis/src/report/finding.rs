@@ -29,7 +29,7 @@ fn item(finding: &Finding) -> Item {
             ("where", vec![place(&finding.location)]),
             ("form", form(finding)),
             ("what", vec![what(finding)]),
-            ("how much", parameter::lines(&finding.parameters, finding.kind().first_power())),
+            ("how much", parameter::of_finding(finding)),
             ("evidence", vec![evidence(&finding.evidence)]),
             ("or else", alternatives(&finding.alternatives)),
             ("compensation", vec![removed.trim_end().to_owned()]),

@@ -10,8 +10,8 @@ use notation::Formula;
 
 use crate::diagnosis::{
     Alternative, Change, Denied, Diagnosis, Estimate, Evidence, Finding, Form, Interval, IntervalOf,
-    NoiseSummary, Parameter, ParameterValue, Repeatability, Repeats, Residual, Returning, SettingFinding,
-    Summary, Unexplained,
+    NoiseSummary, OverTravel, Parameter, ParameterValue, Repeatability, Repeats, Residual, Returning,
+    SettingFinding, Summary, Unexplained,
 };
 
 /// The diagnosis as one JSON object with the schema `abbe-diagnosis/1`.
@@ -112,6 +112,8 @@ struct FindingJson<'d> {
     meaning: &'d str,
     term: &'static str,
     parameters: Parameters<'d>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    over_travel: Option<OverTravelJson<'d>>,
     share: f64,
     r#where: WhereJson<'d>,
     evidence: String,
@@ -123,6 +125,14 @@ struct FindingJson<'d> {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     repeats_with: Vec<RepeatsJson>,
     indistinguishable_from: Vec<AlternativeJson<'d>>,
+}
+
+/// How far a finding goes over the travel of an axis.
+#[derive(Serialize)]
+struct OverTravelJson<'d> {
+    axis: &'d str,
+    #[serde(flatten)]
+    range: EstimateJson<'d>,
 }
 
 /// The form of a finding that has no name of its own.
@@ -346,6 +356,7 @@ fn finding(finding: &Finding) -> FindingJson<'_> {
         meaning: &finding.motion_meaning,
         term: finding.term,
         parameters: Parameters(&finding.parameters),
+        over_travel: finding.over_travel.as_ref().map(over_travel),
         share: finding.share,
         r#where: WhereJson {
             link: Some(&location.link),
@@ -362,6 +373,10 @@ fn finding(finding: &Finding) -> FindingJson<'_> {
         repeats_with: finding.repeats_with.iter().map(repeats).collect(),
         indistinguishable_from: alternatives(&finding.alternatives),
     }
+}
+
+fn over_travel(over: &OverTravel) -> OverTravelJson<'_> {
+    OverTravelJson { axis: &over.axis, range: estimate(&over.range) }
 }
 
 fn form(form: &Form) -> FormJson<'_> {

@@ -59,6 +59,7 @@ fn finding(recorded: &Recorded, motion: &str, calibrated: CalibratedTerm, sensor
         motion_meaning: String::new(),
         term: calibrated.name(),
         parameters: Vec::new(),
+        over_travel: None,
         share: 0.5,
         location: Location::default(),
         evidence: Evidence::default(),

@@ -12,6 +12,7 @@ fn finding(with: f64, without: f64, parameters: Vec<Parameter>) -> Finding {
         motion_meaning: String::new(),
         term: "cyclic",
         parameters,
+        over_travel: None,
         share: 0.5,
         location: crate::diagnosis::Location::default(),
         evidence: Evidence { with, without, unit: "mm", drive: None },

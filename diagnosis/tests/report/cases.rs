@@ -80,6 +80,7 @@ pub(crate) fn backlash(side: &'static str) -> Finding {
         explanation:
             "The axis stops short of each position by half of the lost motion, on the side it comes from."
                 .to_owned(),
+        over_travel: None,
         repeats_with: Vec::new(),
         compensable: true,
         calibrated: CalibratedTerm::Backlash { axis: 1, lost_motion: 0.0098, wind_up: 0.0 },
@@ -116,6 +117,7 @@ pub(crate) fn expansion() -> Finding {
         evidence: Evidence { with: 0.0006, without: 0.0012, unit: "mm", drive: None },
         alternatives: names.map(other).to_vec(),
         explanation: "The scale of X grows with its temperature.".to_owned(),
+        over_travel: None,
         repeats_with: Vec::new(),
         compensable: true,
         calibrated: CalibratedTerm::Expansion { axis: 0, sensor: 0, coefficient: 7.18e-6, reference: 20.0 },

@@ -4,6 +4,7 @@
 //! clock. Out: for each axis position, velocity, acceleration, direction and time since the last reversal, behind the loop
 //! where the axis has one; and views of stretches of rows.
 
+mod beginning;
 mod corners;
 mod motion;
 
@@ -13,10 +14,11 @@ use std::sync::Arc;
 use crate::legs::{legs, stretches};
 use crate::noise::typical_step;
 use crate::parallel;
-use crate::position_loop::{Follower, PositionLoop, Stand};
+use crate::position_loop::{PositionLoop, Stand};
 use crate::recording::{AxisChannels, Recording};
 use crate::rounded::unrounded;
 use crate::way::Way;
+use beginning::beginning;
 use motion::{Motion, followed};
 
 pub(crate) use corners::{behind_corners, beside_reversals, unseen_turns};
@@ -320,8 +322,10 @@ fn axis_states(
 ) -> AxisStates {
     let way = Way::new(&given.time, programmed, &given.legs);
     let mut states = if driven.position_loop.acts() {
-        let starts: Vec<Option<Stand>> =
-            way.stretches().map(|rows| start(&given.time, axis, programmed, &way, driven, rows)).collect();
+        let starts: Vec<Option<Stand>> = way
+            .stretches()
+            .map(|rows| beginning(&given.time, axis, programmed, &way, driven, rows))
+            .collect();
         behind_loop(given, &way, driven, &starts, clock, resolution)
     } else if driven.position_loop.leads() {
         ahead(given, programmed, driven.position_loop, clock, resolution)
@@ -404,61 +408,6 @@ fn ahead(
 
 /// The relative step by which the slopes with time constant and inertia are taken.
 const LOOP_STEP: f64 = 1e-4;
-
-/// Where an axis stands in the first of these rows, a leg, as its drive's own feedback says, where that does not begin at rest: it
-/// is then further from its command than friction leaves it, and its way back is seen. The speed is that of the rows within the
-/// loop's time.
-fn start(
-    time: &[f64],
-    axis: &AxisChannels,
-    programmed: &[f64],
-    way: &Way<'_>,
-    driven: Driven,
-    rows: Range<usize>,
-) -> Option<Stand> {
-    let (time, actual) = (&time[rows.clone()], axis.actual.as_ref()?.get(rows.clone())?);
-    let programmed = &programmed[rows];
-    let first = *actual.first().filter(|first| first.is_finite())?;
-    let early =
-        time.iter().zip(actual).take_while(|(at, _)| **at - time[0] <= driven.position_loop.time_constant);
-    let (mut moved, mut squares) = (0.0, 0.0);
-    for (at, position) in early.filter(|(_, position)| position.is_finite()) {
-        moved += (at - time[0]) * (position - first);
-        squares += (at - time[0]) * (at - time[0]);
-    }
-    let velocity = if squares > 0.0 { moved / squares } else { 0.0 };
-    let stand = Stand { position: first - driven.zero, velocity };
-    let lag = driven.position_loop.time_constant * way.fastest();
-    let is_away = (stand.position - programmed[0]).abs() > AWAY * lag;
-    (is_away && is_way_seen(time, actual, programmed, driven, stand)).then_some(stand)
-}
-
-/// The share of the lag at the highest speed beyond which an axis does not begin at rest.
-const AWAY: f64 = 0.05;
-
-/// Whether the rows behind the first show the way from a stand. What the feedback shows in the first row beyond where the axis is, a
-/// vibration or a play, stays or comes back, and does not fade with the loop. Where no row is near enough nothing speaks against it.
-fn is_way_seen(time: &[f64], actual: &[f64], programmed: &[f64], driven: Driven, stand: Stand) -> bool {
-    let within = |at: &f64| *at - time[0] <= SETTLED * driven.position_loop.time_constant;
-    let near = time.iter().take_while(|at| within(at)).count();
-    let missed = |start: Option<Stand>| -> f64 {
-        let mut follower = Follower::from(start);
-        let rows = time.iter().zip(programmed).zip(actual).take(near);
-        let left = rows.map(|((at, command), actual)| {
-            let stands = driven.position_loop.follow(&mut follower, *at, *command);
-            actual - driven.zero - stands.position
-        });
-        left.skip(1).filter(|left| left.is_finite()).map(|left| left * left).sum()
-    };
-    missed(Some(stand)) <= UNSEEN * missed(None)
-}
-
-/// After this many time constants less than 1 % of the distance from the command is left.
-const SETTLED: f64 = 5.0;
-
-/// The share of the squares beside a start at rest that the way from elsewhere may leave. A constant that is taken for such a start
-/// leaves 0.7 of them, a vibration more; what is none leaves the noise.
-const UNSEEN: f64 = 0.5;
 
 fn behind_loop(
     given: &Given,

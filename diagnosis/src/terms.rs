@@ -31,7 +31,7 @@ pub(crate) use known::known;
 pub use look::look_at;
 pub use meaning::meaning;
 pub(crate) use plausible::{Range, oddity, plausible};
-pub(crate) use polynomial::in_position as polynomial_in_position;
+pub(crate) use polynomial::{fill as polynomial_powers, in_position as polynomial_in_position};
 
 use model_dsl::calibration::{Factor, TermKind};
 

@@ -62,8 +62,8 @@ fn row(finding: &Finding) -> Row {
 
 /// The main parameter in a few words.
 fn amount(finding: &Finding) -> String {
-    if finding.over_travel.is_some() {
-        return parameter::of_finding(finding).swap_remove(0);
+    if let Some(over) = &finding.over_travel {
+        return parameter::over_travel(over);
     }
     let named = |name: &&str| finding.parameters.iter().find(|parameter| parameter.name == *name);
     let fitted = |parameter: &&Parameter| {

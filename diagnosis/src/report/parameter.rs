@@ -1,14 +1,17 @@
 //! Parameters with their intervals. In: the parameters of a term or of a setting. Out: a line each.
 
 use super::figure::{Kind, Scale, arcseconds, estimate, given};
-use crate::diagnosis::{Estimate, Finding, Parameter, ParameterValue};
+use crate::diagnosis::{Estimate, Finding, OverTravel, Parameter, ParameterValue};
 
 /// The parameters of a finding; first how far it goes over the travel, where none of them says that.
 pub(super) fn of_finding(finding: &Finding) -> Vec<String> {
-    let over = finding.over_travel.as_ref();
-    let first =
-        over.map(|over| format!("{} over the travel of {}", estimate(&over.range, Kind::Error), over.axis));
+    let first = finding.over_travel.as_ref().map(over_travel);
     first.into_iter().chain(lines(&finding.parameters, finding.kind().first_power())).collect()
+}
+
+/// How far a finding goes over the travel.
+pub(super) fn over_travel(over: &OverTravel) -> String {
+    format!("{} over the travel of {}", estimate(&over.range, Kind::Error), over.axis)
 }
 
 /// One line for each number; the coefficients of a polynomial are numbered from the power `first`.

@@ -375,7 +375,7 @@ fn an_axis_begins_away_from_its_command_where_its_way_back_is_seen() {
     let time: Vec<f64> = (0..400).map(|row| 0.001 * f64::from(row)).collect();
     let command: Vec<f64> = time.iter().map(|t| speed * (t - 0.1).max(0.0)).collect();
     let at_rest = axis(&time, &command, lag).position;
-    let fading: Vec<f64> = time.iter().map(|t| 0.4 * (-t / lag).exp()).collect();
+    let fading = |t: f64| 0.4 * (-t / lag).exp();
     let shown = |more: &dyn Fn(f64) -> f64| {
         let noise = normals(5, time.len()).into_iter().map(|noise| 1e-3 * noise);
         let rows = time.iter().zip(at_rest.iter()).zip(noise);
@@ -385,12 +385,15 @@ fn an_axis_begins_away_from_its_command_where_its_way_back_is_seen() {
         let given = Given::new(&recording, Vec::new(), Vec::new());
         States::new(&recording, &given, &[behind(lag)], 0.0).axes.remove(0).position
     };
-    let away: Vec<f64> = at_rest.iter().zip(&fading).map(|(position, fading)| position + fading).collect();
+    let away: Vec<f64> = at_rest.iter().zip(&time).map(|(position, t)| position + fading(*t)).collect();
     // The start is one reading, with its noise.
-    assert!(distance(&shown(&|t| 0.4 * (-t / lag).exp()), &away) < 5e-3);
-    for frequency in [7.0, 23.0, 83.0, 300.0] {
-        let vibration = |t: f64| 0.4 * (std::f64::consts::TAU * frequency * t + 1.0).sin();
-        assert!(distance(&shown(&vibration), &at_rest) < 1e-12, "{frequency} Hz");
+    assert!(distance(&shown(&fading), &away) < 5e-3);
+    for frequency in [0.3, 1.0, 3.0, 4.5, 7.0, 23.0, 83.0, 300.0] {
+        for eighths in 0..16_u8 {
+            let phase = f64::from(eighths) * std::f64::consts::FRAC_PI_8;
+            let vibration = |t: f64| 0.4 * (std::f64::consts::TAU * frequency * t + phase).sin();
+            assert!(distance(&shown(&vibration), &at_rest) < 1e-12, "{frequency} Hz, {phase} rad");
+        }
     }
     assert!(distance(&shown(&|_| -0.4), &at_rest) < 1e-12);
 }

@@ -1,6 +1,6 @@
 //! The object `abbe-diagnosis/1`, read back and held against its contract.
 
-use abbe_diagnosis::diagnosis::{Diagnosis, Interval, IntervalOf, Parameter, ParameterValue};
+use abbe_diagnosis::diagnosis::{Diagnosis, Interval, IntervalOf, OverTravel, Parameter, ParameterValue};
 use abbe_diagnosis::report;
 use serde_json::{Value, json};
 
@@ -211,4 +211,17 @@ fn the_manual_shows_every_key() {
     shown.sort();
     written.sort();
     assert_eq!(shown, written);
+}
+
+#[test]
+fn the_range_over_the_travel_is_a_fitted_number_of_an_axis() {
+    let mut diagnosis = cases::two_findings();
+    assert!(parsed(&diagnosis)["findings"][0].get("over_travel").is_none());
+    diagnosis.findings[0].over_travel =
+        Some(OverTravel { axis: "Y".to_owned(), range: cases::estimate(0.0098, 0.0011, "mm") });
+    holds(
+        &parsed(&diagnosis)["findings"][0],
+        &json!({"over_travel": {"axis": "Y", "value": 0.0098, "ci95": [0.0087, 0.0109], "unit": "mm"}}),
+        "finding",
+    );
 }

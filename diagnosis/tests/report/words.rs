@@ -1,6 +1,6 @@
 //! The text for a terminal: what must stand in it, and the whole of each case, pinned after it was read.
 
-use abbe_diagnosis::diagnosis::{Diagnosis, Estimate, Parameter, ParameterValue, Repeats};
+use abbe_diagnosis::diagnosis::{Diagnosis, Estimate, OverTravel, Parameter, ParameterValue, Repeats};
 use abbe_diagnosis::report;
 use model_dsl::calibration::{CalibratedTerm, SeriesInput};
 use model_dsl::machine::ElementKind;
@@ -227,4 +227,19 @@ fn numbers_that_are_none_are_said_to_be_unknown() {
         !text.contains("NaN")
             && text.contains("rms (nothing could be held out) falls from 12.3 um to 0.50 um")
     );
+}
+
+/// Coefficients of a curve far from zero show nobody its size: the table has its range alone, the finding both.
+#[test]
+fn a_curve_is_told_by_its_range_over_the_travel() {
+    let mut diagnosis = cases::two_findings();
+    let coefficients = [(-38.4, 7.8, ""), (1.94, 0.39, "1/mm")];
+    let list = coefficients.map(|(value, half, unit)| cases::estimate(value, half, unit)).to_vec();
+    let curve = &mut diagnosis.findings[0];
+    curve.parameters = vec![Parameter { name: "coefficients", value: ParameterValue::List(list) }];
+    curve.over_travel =
+        Some(OverTravel { axis: "Y".to_owned(), range: cases::estimate(0.0098, 0.0011, "mm") });
+    let text = flat(&diagnosis);
+    assert_eq!(text.matches("9.8 +- 1.1 um over the travel of Y").count(), 2, "{text}");
+    assert_eq!(text.matches("c_1 ").count(), 1, "{text}");
 }

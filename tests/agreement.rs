@@ -327,7 +327,7 @@ pub(crate) fn asking(text: &str) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn random_chains(machine in machines(), declare in any::<bool>(), seed in any::<u64>()) {

@@ -311,7 +311,7 @@ fn own_angles(equations: &Equations, seed: u64) -> Vec<Vec<Term<'static>>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Any chain with any errors: what is left is of second order, rotary axes included.
     #[test]

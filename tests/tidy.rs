@@ -1,5 +1,6 @@
-//! House rules that no compiler checks. In: every source file of the workspace. Out: the files that break one.
+//! House rules that no compiler checks. In: every source file of the workspace, and its lock files. Out: the files that break one.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -52,4 +53,54 @@ fn lints_are_expected_and_never_allowed() {
     let (attribute, writer) = (["#[al", "low("].concat(), root().join("model-dsl/src/codegen.rs"));
     let broken = breaking(|path, text| path == writer || !text.contains(&attribute));
     assert!(broken.is_empty(), "write #[expect(lint, reason = \"...\")] in {broken:#?}");
+}
+
+/// The crates outside the workspace are built where it is: another version of a crate that both lock would be compiled a second time.
+#[test]
+fn the_lock_files_lock_the_same_versions() {
+    let workspace = locked(&root());
+    let outside =
+        ["benches", "examples/c-controller", "examples/controller", "examples/integrator", "fuzz", "python"];
+    let mut differing = Vec::new();
+    for folder in outside {
+        for (name, versions) in locked(&root().join(folder)) {
+            let Some(known) = workspace.get(&name) else { continue };
+            let other = |version: &&String| {
+                !known.contains(*version)
+                    && known.iter().any(|known| compatible(known) == compatible(version))
+            };
+            differing.extend(versions.iter().filter(other).map(|version| {
+                format!("{folder}: {name} {version}, where the workspace has {}", known.join(", "))
+            }));
+        }
+    }
+    assert!(differing.is_empty(), "`cargo update --precise` mends these: {differing:#?}");
+}
+
+/// The versions of each crate that the lock file of a folder takes from a registry.
+fn locked(folder: &Path) -> BTreeMap<String, Vec<String>> {
+    let mut found: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let text = fs::read_to_string(folder.join("Cargo.lock")).unwrap();
+    for package in text.split("[[package]]").filter(|package| package.contains("\nsource = ")) {
+        let value = |key: &str| {
+            let mut values = package.lines().filter_map(|line| line.strip_prefix(key)?.strip_prefix(" = "));
+            values.next().unwrap().trim_matches('"').to_owned()
+        };
+        found.entry(value("name")).or_default().push(value("version"));
+    }
+    found
+}
+
+/// What versions have in common that may stand for each other: the first number that is not zero, and what is before it.
+fn compatible(version: &str) -> &str {
+    let zeros = version.len() - version.trim_start_matches("0.").len();
+    let end = version[zeros..].find('.').map_or(version.len(), |end| zeros + end);
+    &version[..end]
+}
+
+#[test]
+fn versions_that_may_stand_for_each_other() {
+    assert_eq!(compatible("1.12.1"), "1");
+    assert_eq!(compatible("0.13.5"), "0.13");
+    assert_eq!(compatible("0.0.3"), "0.0.3");
 }

@@ -3,6 +3,7 @@
 //! In: how samples weigh, how far the axes travel, and how much was looked through. Out: fits, what they cost, and the cheapest of several
 //! trials. Models are compared under the same conditions, so that a cost is always a cost beside another one.
 
+use crate::crossing;
 use crate::curves::LONG;
 use crate::fit::{self, Fit};
 use crate::model::{Effect, Fitted, Model};
@@ -62,7 +63,7 @@ impl<'c> Conditions<'c> {
             .zip(&prices[chosen])
             .map(|(fitted, price)| price + odd(study, fitted))
             .sum();
-        fit.samples * (fit.remaining / fit.samples).ln() + paid
+        fit.samples * (fit.remaining / fit.samples).ln() + paid + crossing::price(&fit.model, fit.samples)
     }
 
     /// The price of an effect in a fit to this number of samples.

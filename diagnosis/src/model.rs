@@ -1,9 +1,10 @@
-//! Models: which effects act, where, and how strongly, and over which ways axes cross their plays.
+//! Models: which effects act, where, and how strongly, and how the plays of axes act after a reversal.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::side::Side;
+use crate::states::Crossing;
 use crate::terms::{Setting, Shape};
 
 /// One effect: a term at a place.
@@ -43,9 +44,9 @@ pub(crate) struct Model {
     pub(crate) effects: Vec<Fitted>,
     /// How many of the effects are such settings.
     settings: usize,
-    /// How far the drive of an axis goes until it has crossed its play, mm or rad; the plays of all other axes act at once.
-    /// Whatever of the axis jumps behind the drive, a reversal of its yaw too, goes with it.
-    crossings: BTreeMap<usize, f64>,
+    /// How the plays of an axis act after a reversal; those of all other axes act at once. Whatever of the axis jumps, a reversal of
+    /// its yaw too, goes with it.
+    crossings: BTreeMap<usize, Crossing>,
 }
 
 impl Model {
@@ -127,27 +128,27 @@ impl Model {
         Self { crossings: BTreeMap::new(), ..self }
     }
 
-    /// How far the drive of an axis goes until it has crossed its play, mm or rad; 0 where that acts at once.
-    pub(crate) fn crossing(&self, axis: usize) -> f64 {
+    /// How the plays of an axis act after a reversal.
+    pub(crate) fn crossing(&self, axis: usize) -> Crossing {
         self.crossings.get(&axis).copied().unwrap_or_default()
     }
 
-    /// Whether any axis crosses its play.
+    /// Whether the plays of any axis do not act at once.
     pub(crate) fn crosses(&self) -> bool {
         !self.crossings.is_empty()
     }
 
-    /// The axes that cross their plays.
+    /// The axes whose plays do not act at once.
     pub(crate) fn crossing_axes(&self) -> Vec<usize> {
         self.crossings.keys().copied().collect()
     }
 
-    /// Lets an axis cross its play over a way, mm or rad; one of 0 or less acts at once.
-    pub(crate) fn cross(&mut self, axis: usize, way: f64) {
-        if way > 0.0 {
-            self.crossings.insert(axis, way);
-        } else {
+    /// Lets the plays of an axis act so after a reversal.
+    pub(crate) fn cross(&mut self, axis: usize, crossing: Crossing) {
+        if crossing == Crossing::AtOnce {
             self.crossings.remove(&axis);
+        } else {
+            self.crossings.insert(axis, crossing);
         }
     }
 }

@@ -44,7 +44,7 @@ pub(crate) fn untold_price(columns: usize, samples: f64) -> f64 {
 }
 
 /// What one more parameter must take from the cost: Schwarz's criterion.
-fn parameter_price(samples: f64) -> f64 {
+pub(crate) fn parameter_price(samples: f64) -> f64 {
     samples.max(2.0).ln()
 }
 

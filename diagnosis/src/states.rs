@@ -80,9 +80,26 @@ pub(crate) struct Driven {
     pub(crate) position_loop: PositionLoop,
     /// What the drive's own feedback shows beyond where the axis is: its zero.
     pub(crate) zero: f64,
-    /// How far the drive goes after a reversal until it has crossed its play and takes the axis along, mm or rad; 0: the play
-    /// acts at once.
-    pub(crate) crossing: f64,
+    pub(crate) crossing: Crossing,
+}
+
+/// How the plays of an axis act after a reversal.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Crossing {
+    /// At once, as a controller corrects them.
+    #[default]
+    AtOnce,
+    /// While its drive goes so far, mm or rad, the body stands: so wide are the plays together.
+    Over(f64),
+    /// All at once, when the axis has gone back so far, mm or rad: it sticks, and lets go.
+    After(f64),
+}
+
+impl Crossing {
+    /// Over the width of plays, mm or rad; at once where that is 0 or less.
+    pub(crate) fn over(width: f64) -> Self {
+        if width > 0.0 { Self::Over(width) } else { Self::AtOnce }
+    }
 }
 
 /// The states of all rows of one recording.
@@ -107,6 +124,9 @@ pub(crate) struct AxisStates {
     pub(crate) since_reversal: Shared,
     /// At which flank of its play the axis is, from -1 to 1: that of its direction, or on the way there where it crosses.
     pub(crate) flank: Shared,
+    /// Which way it jumped last where a jump does not come from a play behind the drive: its direction, or that which it had until it
+    /// has gone back so far.
+    pub(crate) jumped: Shared,
     /// Its position loop.
     pub(crate) position_loop: PositionLoop,
     /// How the position changes with the time constant of the loop.
@@ -146,6 +166,7 @@ pub(crate) struct AxisRows<'s> {
     displaced: &'s [bool],
     pub(crate) since_reversal: &'s [f64],
     pub(crate) flank: &'s [f64],
+    pub(crate) jumped: &'s [f64],
     pub(crate) lag_slope: &'s [f64],
     inertia_slope: Option<&'s [f64]>,
 }
@@ -181,6 +202,7 @@ impl<'s> Rows<'s> {
             displaced: axis.displaced.get(rows.clone()).unwrap_or_default(),
             since_reversal: &axis.since_reversal[rows.clone()],
             flank: &axis.flank[rows.clone()],
+            jumped: &axis.jumped[rows.clone()],
             lag_slope: &axis.lag_slope[rows.clone()],
             inertia_slope: axis.inertia_slope.as_ref().map(|slope| &slope[rows]),
         }
@@ -299,6 +321,7 @@ impl Standing {
             displaced: Arc::default(),
             since_reversal: self.never.clone(),
             flank: self.forward.clone(),
+            jumped: self.forward.clone(),
             position_loop: PositionLoop::default(),
             lag_slope: self.zero.clone(),
             inertia_slope: None,
@@ -332,11 +355,21 @@ fn axis_states(
     } else {
         as_programmed(given, &way, programmed, clock, resolution)
     };
-    // From flank to flank the axis stands while its drive goes as far as the play is wide.
-    if driven.crossing > 0.0 {
-        let (position, direction) = (&states.position, &states.direction);
-        let mut play = Play::default();
-        states.flank = followed(position, direction, &states.displaced, &mut play, driven.crossing).into();
+    match driven.crossing {
+        Crossing::AtOnce => {}
+        // From flank to flank the axis stands while its drive goes as far as the play is wide.
+        Crossing::Over(width) => {
+            let (position, direction) = (&states.position, &states.direction);
+            let mut play = Play::default();
+            states.flank = followed(position, direction, &states.displaced, &mut play, width).into();
+        }
+        // Less than so far back is no reversal.
+        Crossing::After(way) => {
+            let position = &states.position;
+            let motion = Motion::of(&given.time, &given.legs, programmed, position, way.max(resolution));
+            states.flank = motion.direction.clone();
+            states.jumped = motion.direction;
+        }
     }
     states
 }
@@ -377,6 +410,7 @@ fn as_programmed(
         velocity,
         acceleration,
         flank: direction.clone(),
+        jumped: direction.clone(),
         direction,
         displaced,
         since_reversal,
@@ -439,6 +473,7 @@ fn behind_loop(
         velocity: velocity.into(),
         acceleration: acceleration.into(),
         flank: direction.clone(),
+        jumped: direction.clone(),
         direction,
         displaced,
         since_reversal,

@@ -322,8 +322,8 @@ impl Shape {
         }
     }
 
-    /// Fills its columns as they come in on a side: behind the position loop that answers them, where one does; a play behind the
-    /// drive as far as it is crossed.
+    /// Fills its columns as they come in on a side: behind the position loop that answers them, where one does; a play as far as it is
+    /// crossed.
     pub(crate) fn fill_on(&self, side: Side, rows: &Rows<'_>, memory: &mut Memory, out: &mut [Vec<f64>]) {
         self.fill_crossed(side, rows, memory, out);
         let position_loop = side.answered_by().map(|axis| rows.position_loop(axis));
@@ -337,11 +337,11 @@ impl Shape {
         }
     }
 
-    /// Fills its columns, a play behind the drive as far as it is crossed.
+    /// Fills its columns, a play as far as it is crossed.
     fn fill_crossed(&self, side: Side, rows: &Rows<'_>, memory: &mut Memory, out: &mut [Vec<f64>]) {
         match (side, self) {
-            (Side::After, Self::Backlash { axis, wind_up: 0.0 }) => {
-                one(out, |out| backlash::fill_crossed(rows, *axis, out));
+            (side, Self::Backlash { axis, wind_up: 0.0 }) => {
+                one(out, |out| backlash::fill_crossed(rows, *axis, side, out));
             }
             (_, Self::Times { core, factors }) => {
                 core.fill_crossed(side, rows, memory, out);

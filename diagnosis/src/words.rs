@@ -1,6 +1,6 @@
 //! Words: where a finding acts and how it shows.
 //!
-//! In: an effect. Out: link, side, state and a sentence.
+//! In: an effect of a model. Out: link, side, state and a sentence.
 
 use model_dsl::calibration::Factor;
 use model_dsl::calibration::vocabulary::State;
@@ -8,14 +8,15 @@ use model_dsl::calibration::vocabulary::State;
 use crate::alternatives::{factor_state, listed, state};
 use crate::curves::active;
 use crate::diagnosis::{Interval, IntervalOf, Location};
-use crate::model::{Effect, Fitted};
+use crate::model::{Effect, Fitted, Model};
 use crate::parameters::axis_unit;
 use crate::side::Side;
+use crate::states::Crossing;
 use crate::study::Study;
 use crate::terms::Shape;
 
 /// Where an effect acts. `others` are the names that could stand for it: a side is only told where all agree.
-pub(crate) fn location(study: &Study<'_>, fitted: &Fitted, others: &[Effect]) -> Location {
+pub(crate) fn location(study: &Study<'_>, model: &Model, fitted: &Fitted, others: &[Effect]) -> Location {
     let effect = &fitted.effect;
     let Some(motion) = effect.motion() else { return Location::default() };
     let own = side(study, effect);
@@ -25,7 +26,7 @@ pub(crate) fn location(study: &Study<'_>, fitted: &Fitted, others: &[Effect]) ->
         link: study.equations.motions[motion].link.clone(),
         side: if agreed { own } else { "unknown" },
         state: state_word(&effect.shape),
-        detail: detail(study, effect),
+        detail: detail(study, model, effect),
         interval: interval(study, fitted),
         at_drive: effect.side().is_some_and(Side::at_drive),
         inside_loop: effect.side().is_some_and(|side| side.answered_by().is_some()),
@@ -81,15 +82,15 @@ fn factor_word(factor: &Factor<usize>) -> &'static str {
     }
 }
 
-fn detail(study: &Study<'_>, effect: &Effect) -> String {
-    let shown = bare_detail(study, effect);
+fn detail(study: &Study<'_>, model: &Model, effect: &Effect) -> String {
+    let shown = bare_detail(study, model, effect);
     match effect.side().and_then(Side::answered_by) {
         Some(_) => format!("{shown}, as far as the position loop allows"),
         None => shown,
     }
 }
 
-fn bare_detail(study: &Study<'_>, effect: &Effect) -> String {
+fn bare_detail(study: &Study<'_>, model: &Model, effect: &Effect) -> String {
     let name = |axis: usize| study.equations.axes[axis].letter.to_lowercase();
     match &effect.shape {
         Shape::Constant => format!("follows {}", state(study, effect)),
@@ -103,7 +104,13 @@ fn bare_detail(study: &Study<'_>, effect: &Effect) -> String {
             let (factor, unit) = axis_unit(study, *axis);
             format!("builds up over {:.3} {unit} after every reversal of {}", wind_up * factor, name(*axis))
         }
-        Shape::Backlash { axis, .. } => format!("jumps at every reversal of {}", name(*axis)),
+        Shape::Backlash { axis, .. } => match model.crossing(*axis) {
+            Crossing::After(way) => {
+                let (factor, unit) = axis_unit(study, *axis);
+                format!("jumps {:.3} {unit} after every reversal of {}", way * factor, name(*axis))
+            }
+            Crossing::AtOnce | Crossing::Over(_) => format!("jumps at every reversal of {}", name(*axis)),
+        },
         Shape::ReversalSpike { axis, decay } => {
             format!("a spike at every reversal of {}, gone within {}", name(*axis), seconds(3.0 * decay))
         }
@@ -137,7 +144,8 @@ fn bare_detail(study: &Study<'_>, effect: &Effect) -> String {
             match **core {
                 Shape::Constant => format!("follows the product of {states}"),
                 ref core => {
-                    let core = bare_detail(study, &Effect { place: effect.place, shape: core.clone() });
+                    let core =
+                        bare_detail(study, model, &Effect { place: effect.place, shape: core.clone() });
                     format!("{core}, by an amount that follows {states}")
                 }
             }

@@ -11,8 +11,10 @@ use crate::crossing;
 use crate::diagnosis::Change;
 use crate::model::{Fitted, Model};
 use crate::observations;
+use crate::parameters::axis_unit;
 use crate::recording::{Instrument, clamped_anew, turned};
 use crate::scene::Scene;
+use crate::states::Crossing;
 use crate::study::Study;
 use crate::terms::Setting;
 use crate::zeros;
@@ -140,9 +142,16 @@ pub(super) fn crossed(study: &Study<'_>, model: &Model) -> Vec<String> {
     let axes = crossing::crossing_only(model).into_iter();
     axes.map(|axis| {
         let letter = &study.equations.axes[axis].letter;
+        let lost_motion = match model.crossing(axis) {
+            Crossing::After(way) => {
+                let (factor, unit) = axis_unit(study, axis);
+                format!("lost motion that comes when {letter} has gone {:.3} {unit} back", way * factor)
+            }
+            Crossing::AtOnce | Crossing::Over(_) => format!("the lost motion that {letter} crosses before it moves"),
+        };
         format!(
-            "This recording cannot show whether friction also holds {letter} for a moment after a reversal, because the lost \
-             motion that {letter} crosses before it moves explains what is seen there."
+            "This recording cannot show whether friction also holds {letter} for a moment after a reversal, because {lost_motion} \
+             explains what is seen there."
         )
     })
     .collect()

@@ -68,7 +68,7 @@ pub(super) fn report(
             repeats_with: elements::repeating(study, &found.travels, &fitted.effect.shape, &parameters),
             parameters,
             share: shares[number],
-            location: words::location(study, fitted, names),
+            location: words::location(study, &found.fit.model, fitted, names),
             evidence: evidence(study, units, &fitted.effect, (found, diagnosis.after), &reduced),
             alternatives,
             explanation: fitted.effect.shape.meaning().to_owned(),

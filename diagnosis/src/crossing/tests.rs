@@ -7,6 +7,7 @@ use crate::noise::Noise;
 use crate::recording::Recording;
 use crate::testing::{Bench, circle, distance, noisy, path, peak, position, together};
 use crate::weights::Weights;
+use crate::words;
 use crate::zeros;
 
 /// Lost motion of X and of Y, mm.
@@ -30,13 +31,17 @@ fn at_once(bench: &Bench, axis: usize, lost: f64) -> Fitted {
 
 /// A model whose first axes cross their plays over these ways.
 fn crossing(mut model: Model, ways: [f64; 2]) -> Model {
-    ways.into_iter().enumerate().for_each(|(axis, way)| model.cross(axis, way));
+    ways.into_iter().enumerate().for_each(|(axis, way)| model.cross(axis, Crossing::over(way)));
     model
 }
 
-/// The ways over which the first axes of a model cross their plays.
+/// The ways over which the first axes of a model cross their plays; 0 where they act at once.
 fn ways(model: &Model) -> [f64; 2] {
-    [0, 1].map(|axis| model.crossing(axis))
+    [0, 1].map(|axis| match model.crossing(axis) {
+        Crossing::Over(way) => way,
+        Crossing::AtOnce => 0.0,
+        Crossing::After(way) => panic!("it comes after {way}"),
+    })
 }
 
 #[test]
@@ -148,4 +153,79 @@ fn plays_that_are_known_and_found_are_one_way_to_cross() {
     let study = Study::new(bench.equations(), Some(&whole), &[&recording]);
     assert!((play(&study, &Model::default(), 0) - LOST[0]).abs() < 1e-12);
     assert!((play(&study, &Model::of([at_once(&bench, 0, 0.001)]), 0) - 0.010).abs() < 1e-12);
+}
+
+/// A slow circle of a machine whose X loses motion so far back after each reversal, mm, all at once.
+fn circled_late(bench: &Bench, way: f64) -> Recording {
+    let scenario = noisy(path(circle(90.0), 20.0, 100.0), position("xy"), 0.0002, 1);
+    let mut recording = bench.record(&bench.calibration("{}"), &scenario);
+    let lost = bench.record(&bench.calibration("{EXX: [{backlash: {lost_motion: 9 um}}]}"), &scenario);
+    let command = recording.axes[0].command.clone().unwrap();
+    // Which way it goes, and how far it came that way.
+    let (mut direction, mut furthest) = (1.0, command[0]);
+    let turned: Vec<f64> = command
+        .iter()
+        .map(|place| {
+            if direction * (furthest - place) > way {
+                direction = -direction;
+                furthest = *place;
+            }
+            if direction * (place - furthest) > 0.0 {
+                furthest = *place;
+            }
+            direction
+        })
+        .collect();
+    let (read, shifted) = (recording.measured[0].as_mut().unwrap(), lost.measured[0].as_ref().unwrap());
+    // Both have turned at the end.
+    let half = (shifted[read.len() - 1] - read[read.len() - 1]) / turned[read.len() - 1];
+    read.iter_mut().zip(turned).for_each(|(read, direction)| *read += half * direction);
+    recording
+}
+
+#[test]
+fn a_play_that_comes_late_is_told_from_one_that_is_crossed() {
+    let bench = Bench::of("XFY");
+    let tries = Tries { candidates: 50.0, waves: 100.0 };
+    for way in [0.05, 0.4, 2.0] {
+        let recording = circled_late(&bench, way);
+        let study = Study::new(bench.equations(), None, &[&recording]);
+        let weights = Weights::of_all(&study, vec![vec![Noise::white(2e-4); 2]]);
+        let travels = crate::travel::travels(&study, &crate::engine::courses(&study, &Model::default()));
+        let conditions = Conditions { weights: &weights, travels: &travels, tries };
+        let spike = own(&bench, 0, Shape::ReversalSpike { axis: 0, decay: 0.05 }, 0.003);
+        let spiked = Model::of([spike, at_once(&bench, 0, 0.005)]);
+        let chosen = try_plays(&study, &spiked, &conditions).unwrap();
+        let Crossing::After(found) = chosen.crossing(0) else { panic!("{way}: {:?}", chosen.crossing(0)) };
+        // Between two rows the axis goes so far there.
+        let step = (2.0 * 90.0 * way).sqrt() * 20.0 / 100.0 / 90.0;
+        assert!((found - way).abs() < step + 0.01 * way, "{way}: {found}");
+        assert_eq!(chosen.effects.len(), 1, "{way}: the spike stays");
+        assert!((chosen.effects[0].coefficients[0] - LOST[0]).abs() < 5e-5, "{way}: {:?}", chosen.effects);
+        assert_eq!(crossing_only(&chosen), [0]);
+        let detail = words::location(&study, &chosen, &chosen.effects[0], &[]).detail;
+        assert_eq!(detail, format!("jumps {found:.3} mm after every reversal of x"));
+        // It goes with the last jump of the axis.
+        let mut none = chosen.with_effects([]);
+        assert!(follow(&study, &mut none) && !none.crosses());
+        let mut same = chosen.clone();
+        assert!(!follow(&study, &mut same) && same == chosen);
+    }
+}
+
+#[test]
+fn a_way_that_is_a_parameter_has_its_price() {
+    let mut model = Model::default();
+    model.cross(0, Crossing::Over(0.01));
+    assert_eq!(price(&model, 1000.0), 0.0);
+    model.cross(1, Crossing::After(0.01));
+    assert!((price(&model, 1000.0) - 1000.0_f64.ln() - VERY_STRONG).abs() < 1e-12);
+}
+
+#[test]
+fn the_golden_section_finds_the_valley() {
+    for place in [-1.9, -0.3, 0.0, 1.2, 1.99] {
+        let found = golden_section(-2.0, 2.0, |at| (at - place).abs());
+        assert!((found - place).abs() < 0.02, "{place}: {found}");
+    }
 }

@@ -7,7 +7,7 @@ fn model() -> Model {
     let settings = (0..2).map(|channel| Effect::setting(0, Setting::Offset { channel }));
     let mut model =
         effects().into_iter().fold(Model::of_settings(settings), |model, fitted| model.with(fitted));
-    model.cross(0, 0.008);
+    model.cross(0, Crossing::Over(0.008));
     model
 }
 
@@ -53,7 +53,7 @@ fn ways_are_crossed_beside_other_effects_too_until_they_are_given_up() {
         model.with_effects(effects()),
         model.clone().with_settings(0),
     ] {
-        assert_eq!((other.crossing(0), other.crossing(1)), (0.008, 0.0));
+        assert_eq!((other.crossing(0), other.crossing(1)), (Crossing::Over(0.008), Crossing::AtOnce));
     }
     let at_once = model.clone().uncrossed();
     assert!(model.crosses() && !at_once.crosses());
@@ -62,7 +62,7 @@ fn ways_are_crossed_beside_other_effects_too_until_they_are_given_up() {
     // A way of nothing, or of less, is none.
     for way in [0.0, -0.001] {
         let mut given_up = model.clone();
-        given_up.cross(0, way);
+        given_up.cross(0, Crossing::over(way));
         assert_eq!(given_up, at_once);
     }
 }

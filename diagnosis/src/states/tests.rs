@@ -297,10 +297,29 @@ fn a_play_begins_anew_where_an_axis_was_displaced() {
     let (all, alone) = sweeps();
     let stands = |recording: &Recording| {
         let given = Given::new(recording, Vec::new(), Vec::new());
-        let driven = Driven { crossing: 4.0, ..Driven::default() };
-        States::new(recording, &given, &[driven], 0.0).axes.remove(0).flank
+        let driven = |crossing| Driven { crossing, ..Driven::default() };
+        let flank = |crossing| States::new(recording, &given, &[driven(crossing)], 0.0).axes.remove(0).flank;
+        [Crossing::Over(4.0), Crossing::After(4.0)].map(flank)
     };
-    assert!(distance(&stands(&all)[300..], &stands(&alone)) < 1e-12);
+    for (all, alone) in stands(&all).iter().zip(&stands(&alone)) {
+        assert!(distance(&all[300..], alone) < 1e-12);
+    }
+}
+
+#[test]
+fn a_play_that_comes_late_comes_when_the_axis_has_gone_so_far_back() {
+    // There and back twice, the second time by less than the way.
+    let command = [0.0, 3.0, 6.0, 5.0, 4.0, 3.0, 2.0, 3.0, 4.0, 3.0, 2.0, 1.0];
+    let time: Vec<f64> = (0..command.len()).map(|row| row as f64).collect();
+    let recording = programmed(&time, &[command.to_vec()]);
+    let given = Given::new(&recording, Vec::new(), Vec::new());
+    let driven = Driven { crossing: Crossing::After(2.5), ..Driven::default() };
+    let axis = States::new(&recording, &given, &[driven], 0.0).axes.remove(0);
+    let forward = [1.0; 5];
+    assert_eq!(*axis.flank, [&forward[..], &[-1.0; 7]].concat());
+    // The direction itself is that of the motion.
+    let directions = [1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, -1.0];
+    assert_eq!(*axis.direction, directions);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 use super::Memory;
 use super::plausible::{Body, Range};
+use crate::side::Side;
 use crate::states::Rows;
 
 /// What it is, physically, and how large it may well be.
@@ -30,7 +31,10 @@ pub(super) fn fill(rows: &Rows<'_>, axis: usize, wind_up: f64, memory: &mut Memo
     }
 }
 
-/// That of a play which acts at once, or which the axis crosses: -u/2 of where it is between its flanks.
-pub(super) fn fill_crossed(rows: &Rows<'_>, axis: usize, out: &mut Vec<f64>) {
-    out.extend(rows.axis(axis).flank.iter().map(|flank| -0.5 * flank));
+/// That of a play which comes in on a side, at once or as the axis crosses it: -u/2 of where it is between its flanks, or of which way
+/// it jumped last.
+pub(super) fn fill_crossed(rows: &Rows<'_>, axis: usize, side: Side, out: &mut Vec<f64>) {
+    let axis = rows.axis(axis);
+    let stands = if side == Side::After { axis.flank } else { axis.jumped };
+    out.extend(stands.iter().map(|stands| -0.5 * stands));
 }

@@ -5,7 +5,7 @@
 //! instead until its drive has gone through it; and one that sticks and lets go, or whose controller waits until it takes a reversal
 //! for one, jumps when it has gone some way back. Where rows are dense against that time, what is missing meanwhile looks like
 //! something that holds the slide and lets go. So wherever such a thing was chosen, the play of that axis is tried as one that is
-//! crossed over its own length, which takes no parameter, and as one that comes all at once after a way back, which is one.
+//! crossed over its own length, which takes no parameter, and as one that comes all at once after a way back, which takes one.
 
 use crate::channel::ChannelAt;
 use crate::conditions::Conditions;

@@ -11,6 +11,11 @@ const SKIPPED: [&str; 3] = ["target", ".git", "corpus"];
 
 /// All Rust files under a folder, in order.
 pub(crate) fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    files(folder, ".rs")
+}
+
+/// All files under a folder whose names end so, in order.
+fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut entries: Vec<PathBuf> =
         fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -18,8 +23,8 @@ pub(crate) fn rust_files(folder: &Path) -> Vec<PathBuf> {
     for path in entries {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if path.is_dir() && !SKIPPED.contains(&name.as_str()) {
-            found.extend(rust_files(&path));
-        } else if name.ends_with(".rs") {
+            found.extend(files(&path, ending));
+        } else if name.ends_with(ending) {
             found.push(path);
         }
     }
@@ -58,29 +63,34 @@ fn lints_are_expected_and_never_allowed() {
 /// The crates outside the workspace are built where it is: another version of a crate that both lock would be compiled a second time.
 #[test]
 fn the_lock_files_lock_the_same_versions() {
-    let workspace = locked(&root());
-    let outside =
-        ["benches", "examples/c-controller", "examples/controller", "examples/integrator", "fuzz", "python"];
-    let mut differing = Vec::new();
-    for folder in outside {
-        for (name, versions) in locked(&root().join(folder)) {
-            let Some(known) = workspace.get(&name) else { continue };
-            let other = |version: &&String| {
-                !known.contains(*version)
-                    && known.iter().any(|known| compatible(known) == compatible(version))
-            };
-            differing.extend(versions.iter().filter(other).map(|version| {
-                format!("{folder}: {name} {version}, where the workspace has {}", known.join(", "))
-            }));
-        }
-    }
+    let workspace = root().join("Cargo.lock");
+    let known = locked(&workspace);
+    let outside: Vec<PathBuf> =
+        files(&root(), "Cargo.lock").into_iter().filter(|file| *file != workspace).collect();
+    assert!(!outside.is_empty());
+    let differing: Vec<String> = outside.iter().flat_map(|file| differing(&known, file)).collect();
     assert!(differing.is_empty(), "`cargo update --precise` mends these: {differing:#?}");
 }
 
-/// The versions of each crate that the lock file of a folder takes from a registry.
-fn locked(folder: &Path) -> BTreeMap<String, Vec<String>> {
+/// What a lock file locks in another version than those that are known, where one of them may stand for it.
+fn differing(known: &BTreeMap<String, Vec<String>>, file: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    for (name, versions) in locked(file) {
+        let Some(known) = known.get(&name) else { continue };
+        for version in versions.iter().filter(|version| !known.contains(version)) {
+            if known.iter().any(|known| compatible(known) == compatible(version)) {
+                let known = known.join(", ");
+                found.push(format!("{}: {name} {version}, where the workspace has {known}", file.display()));
+            }
+        }
+    }
+    found
+}
+
+/// The versions of each crate that a lock file takes from a registry.
+fn locked(file: &Path) -> BTreeMap<String, Vec<String>> {
     let mut found: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    let text = fs::read_to_string(folder.join("Cargo.lock")).unwrap();
+    let text = fs::read_to_string(file).unwrap();
     for package in text.split("[[package]]").filter(|package| package.contains("\nsource = ")) {
         let value = |key: &str| {
             let mut values = package.lines().filter_map(|line| line.strip_prefix(key)?.strip_prefix(" = "));

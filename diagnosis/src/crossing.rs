@@ -28,7 +28,7 @@ const AGREED: f64 = 0.01;
 const WAYS: (f64, f64) = (1e-5, 0.02);
 /// How many of them are tried at first: each is 1.8 times the one before, so that the best of them lies next to the right one.
 const TRIED: i32 = 14;
-/// How often the stretch between its neighbours is then divided by the golden section: down to a hundredth of the way.
+/// How often the stretch between its neighbours is then divided by the golden section: 2 ln 1.8 times 0.618^10 is a hundredth of the way.
 const DIVISIONS: usize = 10;
 
 /// What a way after which something jumps must say beyond a build-up, which the calibration can hold: twice the logarithm of the odds
@@ -180,20 +180,20 @@ fn without_holds(study: &Study<'_>, model: &Model, axis: usize) -> Vec<Model> {
     models
 }
 
-/// A model without the spikes after reversals of an axis, where what builds up after them jumps instead, and where something jumps
-/// besides. Each of them once.
+/// A model without the spikes after reversals of an axis: one in which what builds up after them jumps instead, and one in which
+/// something jumps besides.
 fn in_jumps(study: &Study<'_>, model: &Model, axis: usize) -> Vec<Model> {
     let free = model.keeping(|fitted| !is_spike(&fitted.effect, axis));
     let built_up = |fitted: &&Fitted| holds(&fitted.effect, axis);
     let Some(built_up) = free.chosen().iter().find(built_up).cloned() else { return vec![free] };
     let jump = Effect { shape: Shape::Backlash { axis, wind_up: 0.0 }, ..built_up.effect };
     let jump = Fitted { effect: jump, coefficients: built_up.coefficients };
-    let mut instead = free.keeping(|fitted| !holds(&fitted.effect, axis));
+    let without = free.keeping(|fitted| !holds(&fitted.effect, axis));
     if jumps(study, &free, axis) {
-        return vec![instead, free];
+        return vec![without, free];
     }
-    instead = instead.with(jump.clone());
-    vec![instead, free.with(Fitted::unfitted(jump.effect))]
+    let besides = free.with(Fitted::unfitted(jump.effect.clone()));
+    vec![without.with(jump), besides]
 }
 
 /// Whether an effect seems to hold an axis after a reversal, for a time or over some way.

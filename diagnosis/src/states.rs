@@ -7,6 +7,7 @@
 mod beginning;
 mod corners;
 mod motion;
+mod plays;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -19,10 +20,11 @@ use crate::recording::{AxisChannels, Recording};
 use crate::rounded::unrounded;
 use crate::way::Way;
 use beginning::beginning;
-use motion::{Motion, followed};
+use motion::Motion;
+use plays::followed;
 
 pub(crate) use corners::{behind_corners, beside_reversals, unseen_turns};
-pub(crate) use motion::Play;
+pub(crate) use plays::{Crossing, Play};
 
 /// A column of one entry a row, held once wherever it is needed: a recording has many rows.
 pub(crate) type Shared = Arc<[f64]>;
@@ -81,25 +83,6 @@ pub(crate) struct Driven {
     /// What the drive's own feedback shows beyond where the axis is: its zero.
     pub(crate) zero: f64,
     pub(crate) crossing: Crossing,
-}
-
-/// How the plays of an axis act after a reversal.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) enum Crossing {
-    /// At once, as a controller corrects them.
-    #[default]
-    AtOnce,
-    /// While its drive goes so far, mm or rad, the body stands: so wide are the plays together.
-    Over(f64),
-    /// All at once, when the axis has gone back so far, mm or rad: it sticks, and lets go.
-    After(f64),
-}
-
-impl Crossing {
-    /// Over the width of plays, mm or rad; at once where that is 0 or less.
-    pub(crate) fn over(width: f64) -> Self {
-        if width > 0.0 { Self::Over(width) } else { Self::AtOnce }
-    }
 }
 
 /// The states of all rows of one recording.
@@ -355,22 +338,7 @@ fn axis_states(
     } else {
         as_programmed(given, &way, programmed, clock, resolution)
     };
-    match driven.crossing {
-        Crossing::AtOnce => {}
-        // From flank to flank the axis stands while its drive goes as far as the play is wide.
-        Crossing::Over(width) => {
-            let (position, direction) = (&states.position, &states.direction);
-            let mut play = Play::default();
-            states.flank = followed(position, direction, &states.displaced, &mut play, width).into();
-        }
-        // Less than so far back is no reversal.
-        Crossing::After(way) => {
-            let position = &states.position;
-            let motion = Motion::of(&given.time, &given.legs, programmed, position, way.max(resolution));
-            states.flank = motion.direction.clone();
-            states.jumped = motion.direction;
-        }
-    }
+    plays::cross(given, programmed, driven.crossing, resolution, &mut states);
     states
 }
 

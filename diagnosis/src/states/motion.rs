@@ -1,7 +1,6 @@
 //! Motion: which way an axis went, and when it turned.
 //!
-//! In: times, legs and positions of the rows. Out: the direction of the last real motion, the time since the last reversal, and
-//! where plays stand. How an axis came to the place where a leg begins elsewhere than the last one ended, nobody knows: that is
+//! In: times, legs and positions of the rows. Out: the direction of the last real motion, and the time since the last reversal. How an axis came to the place where a leg begins elsewhere than the last one ended, nobody knows: that is
 //! no motion and no reversal, and its direction there is that of the leg's own first motion.
 
 use std::sync::Arc;
@@ -97,47 +96,4 @@ impl Motion {
 fn first_motion(mut known: impl Iterator<Item = f64>, resolution: f64) -> Option<f64> {
     let first = known.next()?;
     known.map(|position| position - first).find(|gone| gone.abs() > resolution)
-}
-
-/// Where a play stands in each row.
-pub(super) fn followed(
-    position: &[f64],
-    direction: &[f64],
-    displaced: &[bool],
-    play: &mut Play,
-    width: f64,
-) -> Vec<f64> {
-    let anew = |row: usize| displaced.get(row) == Some(&true);
-    let rows = position.iter().zip(direction).enumerate();
-    rows.map(|(row, (position, direction))| {
-        if anew(row) {
-            *play = Play::default();
-        }
-        play.follow(*position, *direction, width)
-    })
-    .collect()
-}
-
-/// The play operator: where within [-1, 1] something stands that follows a position by 2 dq / width.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Play {
-    /// The last position that is known, and where it stood there.
-    last: Option<(f64, f64)>,
-}
-
-impl Play {
-    /// Where it stands at the next position; before anything is known, where the direction leaves it.
-    pub(crate) fn follow(&mut self, position: f64, direction: f64, width: f64) -> f64 {
-        let stands = match self.last {
-            None => direction,
-            Some((last, stood)) if position.is_finite() => {
-                (stood + 2.0 * (position - last) / width).clamp(-1.0, 1.0)
-            }
-            Some((_, stood)) => stood,
-        };
-        if position.is_finite() {
-            self.last = Some((position, stands));
-        }
-        stands
-    }
 }

@@ -1,6 +1,8 @@
 //! States against closed solutions, fine integration, and the histories of the exact machine.
 
 use super::*;
+use crate::side::Side;
+use crate::terms::Memory;
 use crate::testing::{Bench, commands, distance, normals, path, peak, programmed, scenario, uneven};
 use simulation::path::Shape;
 
@@ -315,11 +317,26 @@ fn a_play_that_comes_late_comes_when_the_axis_has_gone_so_far_back() {
     let given = Given::new(&recording, Vec::new(), Vec::new());
     let driven = Driven { crossing: Crossing::After(2.5), ..Driven::default() };
     let axis = States::new(&recording, &given, &[driven], 0.0).axes.remove(0);
-    let forward = [1.0; 5];
-    assert_eq!(*axis.flank, [&forward[..], &[-1.0; 7]].concat());
+    let late = [&[1.0; 5][..], &[-1.0; 7]].concat();
+    assert_eq!((&*axis.flank, &*axis.jumped), (&*late, &*late));
     // The direction itself is that of the motion.
     let directions = [1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, -1.0];
     assert_eq!(*axis.direction, directions);
+    // What comes in on either side of the drive's feedback comes late. A play that is crossed is one behind the drive.
+    let column = |crossing, side| {
+        let driven = Driven { crossing, ..Driven::default() };
+        let states = States::new(&recording, &given, &[driven], 0.0);
+        let mut columns = [Vec::new()];
+        let backlash = crate::terms::Shape::Backlash { axis: 0, wind_up: 0.0 };
+        backlash.fill_on(side, &states.rows(0..command.len()), &mut Memory::default(), &mut columns);
+        columns.concat()
+    };
+    let halves = |jumped: &[f64]| jumped.iter().map(|jumped| -0.5 * jumped).collect::<Vec<f64>>();
+    for side in [Side::After, Side::Drive] {
+        assert_eq!(column(Crossing::After(2.5), side), halves(&late));
+    }
+    assert_eq!(column(Crossing::Over(2.0), Side::Drive), halves(&directions));
+    assert_ne!(column(Crossing::Over(2.0), Side::After), halves(&directions));
 }
 
 #[test]

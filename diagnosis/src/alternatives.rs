@@ -121,17 +121,18 @@ fn elsewhere(study: &Study<'_>, effect: &Effect) -> Vec<Effect> {
 /// A wave in time as waves along the axes that it may be, and a wave along an axis as one in time: at a constant speed they are
 /// the same.
 fn other_guise(study: &Study<'_>, effect: &Effect) -> Vec<Effect> {
+    let as_vibration = |(axis, period): (usize, f64)| {
+        Some((axis, Shape::Vibration { frequency: speed(study, axis)? / period }))
+    };
     let shapes: Vec<(usize, Shape)> = match effect.shape {
         Shape::Vibration { frequency } => {
             let axes = (0..study.own.len()).filter_map(|axis| Some((axis, speed(study, axis)?)));
-            axes.map(|(axis, speed)| (axis, Shape::Cyclic { axis, period: speed / frequency, center: 0.0 }))
-                .collect()
+            axes.map(|(axis, speed)| {
+                (axis, Shape::Cyclic { axis, period: speed / frequency, order: 1, center: 0.0 })
+            })
+            .collect()
         }
-        Shape::Cyclic { axis, period, .. } => speed(study, axis)
-            .map(|speed| (axis, Shape::Vibration { frequency: speed / period }))
-            .into_iter()
-            .collect(),
-        _ => Vec::new(),
+        ref shape => shape.wave_along().and_then(as_vibration).into_iter().collect(),
     };
     let at_home = |axis: usize| {
         effect.motion().is_some_and(|motion| study.equations.motions[motion].axis == Some(axis))

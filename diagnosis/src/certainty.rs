@@ -9,6 +9,7 @@ use nalgebra::DMatrix;
 use crate::candidates;
 use crate::design::{Design, Regressor};
 use crate::fit::Fit;
+use crate::harmonics;
 use crate::model::{Effect, Fitted};
 use crate::parallel;
 use crate::study::Study;
@@ -52,9 +53,14 @@ pub(crate) fn certainties(
     weights: &Weights,
     travels: &[Travel],
 ) -> Vec<Certainty> {
+    let groups = harmonics::sharing(&fit.model.effects);
+    let intervals = parallel::counted(groups.len(), study.rows() * fit.model.effects.len(), |number| {
+        interval(study, fit, weights, &groups[number])
+    });
+    let of = |number: usize| groups.iter().zip(&intervals).find(|(group, _)| group.contains(&number));
     parallel::counted(fit.model.effects.len(), study.rows() * fit.model.effects.len(), |number| {
         let mut certainty = Certainty::linear(fit.covariances[number].clone());
-        if let Some(interval) = interval(study, fit, weights, number) {
+        if let Some(interval) = of(number).and_then(|(_, interval)| *interval) {
             widen(&mut certainty.covariance, &fit.model.effects[number].effect.shape, interval);
             certainty.nonlinear = Some(interval);
         }
@@ -71,8 +77,9 @@ const REACH: f64 = 6.0;
 /// Where twice the log-likelihood falls by this much, a 95 % interval ends.
 const FALL_95: f64 = WIDTH_95 * WIDTH_95;
 
-/// The interval of the nonlinear parameter of an effect.
-fn interval(study: &Study<'_>, fit: &Fit, weights: &Weights, number: usize) -> Option<(f64, f64)> {
+/// The interval of the nonlinear parameter that the effects of a group share.
+fn interval(study: &Study<'_>, fit: &Fit, weights: &Weights, group: &[usize]) -> Option<(f64, f64)> {
+    let number = *group.first()?;
     let shape = &fit.model.effects[number].effect.shape;
     // The inertia of a loop acts on the states, not on columns of its own.
     if shape.nonlinear_in_coefficient() {
@@ -101,7 +108,7 @@ fn interval(study: &Study<'_>, fit: &Fit, weights: &Weights, number: usize) -> O
         if places.is_empty() {
             break;
         }
-        let falls = falls(study, fit, weights, number, &places);
+        let falls = falls(study, fit, weights, group, &places);
         known.extend(places.into_iter().zip(falls));
         scale *= REACH;
     }
@@ -170,15 +177,16 @@ fn teeth(study: &Study<'_>, shape: &Shape) -> Vec<f64> {
         .collect()
 }
 
-/// How far twice the log-likelihood falls when the nonlinear parameter of an effect stands at each of these places, everything
+/// How far twice the log-likelihood falls when the nonlinear parameter of a group of effects stands at each of these places, everything
 /// else fitted again.
-fn falls(study: &Study<'_>, fit: &Fit, weights: &Weights, number: usize, places: &[f64]) -> Vec<f64> {
-    let own = &fit.model.effects[number].effect;
-    let forms =
-        places.iter().map(|place| Effect { place: own.place, shape: own.shape.with_nonlinear(*place) });
-    let beside = Beside::new(study, fit, weights, number, forms.collect());
-    let found = beside.with(number).0;
-    (0..places.len()).map(|form| (beside.with_form(form).0 - found) / beside.scale(number)).collect()
+fn falls(study: &Study<'_>, fit: &Fit, weights: &Weights, group: &[usize], places: &[f64]) -> Vec<f64> {
+    let at = |place: &f64| {
+        let own = group.iter().map(|number| &fit.model.effects[*number].effect);
+        own.map(|own| Effect { place: own.place, shape: own.shape.with_nonlinear(*place) }).collect()
+    };
+    let beside = Beside::new(study, fit, weights, group, places.iter().map(at).collect());
+    let found = beside.as_fitted().0;
+    (0..places.len()).map(|form| (beside.with_form(form).0 - found) / beside.scale()).collect()
 }
 
 /// The richer form of an effect that lowers the sum of squares by more than twice its further parameters: what Akaike's
@@ -201,15 +209,16 @@ fn richer(
             |shape: &Shape| crate::number(shape.columns() + usize::from(shape.nonlinear().is_some()));
         parameters(&effect.shape) - parameters(&own.shape)
     };
-    let beside = Beside::new(study, fit, weights, number, effects.clone());
-    let (scale, found) = (beside.scale(number), beside.with(number).0);
+    let forms = effects.iter().map(|effect| vec![effect.clone()]).collect();
+    let beside = Beside::new(study, fit, weights, &[number], forms);
+    let (scale, found) = (beside.scale(), beside.as_fitted().0);
     let gain = |form: usize| (found - beside.with_form(form).0) / scale - 2.0 * further(&effects[form]);
     let best = (0..effects.len()).max_by(|a, b| gain(*a).total_cmp(&gain(*b)))?;
     if gain(best) <= 0.0 {
         return None;
     }
     let (_, swept) = beside.with_form(best);
-    let columns: Vec<usize> = beside.design.columns(beside.forms + best).collect();
+    let columns: Vec<usize> = beside.columns(&beside.forms[best]);
     let coefficients = columns.iter().map(|column| swept.coefficient(*column)).collect();
     let covariance = DMatrix::from_fn(columns.len(), columns.len(), |row, column| {
         scale * swept.covariance(columns[row], columns[column])
@@ -218,59 +227,66 @@ fn richer(
     Some(Richer { fitted, certainty: Certainty::linear(covariance) })
 }
 
-/// One design that holds a fit and other forms of one of its effects.
+/// One design that holds a fit and other forms of some of its effects.
 struct Beside {
     design: Design,
     /// All other effects, their slopes included, swept in.
     others: Swept,
     samples: f64,
-    /// The number of the first form.
-    forms: usize,
+    /// The regressors of the effects as they were fitted, and of each of their other forms.
+    own: Vec<usize>,
+    forms: Vec<Vec<usize>>,
 }
 
 impl Beside {
-    fn new(study: &Study<'_>, fit: &Fit, weights: &Weights, number: usize, forms: Vec<Effect>) -> Self {
+    fn new(study: &Study<'_>, fit: &Fit, weights: &Weights, own: &[usize], other: Vec<Vec<Effect>>) -> Self {
         let mut regressors = Regressor::all(&fit.model.effects);
-        let bent = fit
-            .model
-            .effects
-            .iter()
-            .enumerate()
-            .filter(|(other, fitted)| *other != number && fitted.effect.shape.nonlinear().is_some());
-        regressors.extend(bent.map(|(_, fitted)| Regressor {
-            effect: fitted.effect.clone(),
-            slope: Some(fitted.coefficients.clone()),
-        }));
+        let groups = harmonics::sharing(&fit.model.effects).into_iter();
+        let bent = groups.filter(|group| !group.iter().any(|number| own.contains(number)));
+        regressors.extend(bent.map(|group| Regressor::slope(&fit.model.effects, &group)));
         let first_form = regressors.len();
-        regressors.extend(forms.into_iter().map(Regressor::of));
+        let mut forms = Vec::new();
+        for form in other {
+            forms.push((regressors.len()..regressors.len() + form.len()).collect());
+            regressors.extend(form.into_iter().map(Regressor::of));
+        }
         let mut design = Design::new(study, &fit.model, weights, regressors);
         design.rebase(&fit.model.effects);
         let (products, samples) = design.fitted();
         let mut others = Swept::new(&products);
-        for other in (0..first_form).filter(|other| *other != number) {
+        for other in (0..first_form).filter(|other| !own.contains(other)) {
             design.columns(other).for_each(|column| {
                 others.take(column);
             });
         }
-        Self { design, others, samples, forms: first_form }
+        Self { design, others, samples, own: own.to_vec(), forms }
     }
 
-    /// The sum of squares that is left with a regressor beside the others.
-    fn with(&self, regressor: usize) -> (f64, Swept) {
+    /// The columns of some regressors.
+    fn columns(&self, regressors: &[usize]) -> Vec<usize> {
+        regressors.iter().flat_map(|regressor| self.design.columns(*regressor)).collect()
+    }
+
+    /// The sum of squares that is left with some regressors beside the others.
+    fn with(&self, regressors: &[usize]) -> (f64, Swept) {
         let mut swept = self.others.clone();
-        for column in self.design.columns(regressor) {
+        for column in self.columns(regressors) {
             swept.take(column);
         }
         (swept.remaining(), swept)
     }
 
+    fn as_fitted(&self) -> (f64, Swept) {
+        self.with(&self.own)
+    }
+
     fn with_form(&self, form: usize) -> (f64, Swept) {
-        self.with(self.forms + form)
+        self.with(&self.forms[form])
     }
 
     /// What one unit of twice the log-likelihood is in sums of squares.
-    fn scale(&self, number: usize) -> f64 {
-        (self.with(number).0 / self.samples.max(1.0)).max(f64::MIN_POSITIVE)
+    fn scale(&self) -> f64 {
+        (self.as_fitted().0 / self.samples.max(1.0)).max(f64::MIN_POSITIVE)
     }
 }
 

@@ -24,8 +24,10 @@ use crate::channel::ChannelAt;
 use crate::contest::DECISIVE;
 use crate::engine::{self, Found};
 use crate::fit::Fit;
+use crate::judge;
 use crate::model::{Fitted, Model};
 use crate::noise;
+use crate::search::rivals;
 use crate::study::Study;
 use crate::terms::Shape;
 use crate::unsteady;
@@ -181,7 +183,8 @@ fn take_model(
     let conditions = found.conditions();
     let fit = conditions.refine(study, model);
     let (fit, appraisal) = engine::upheld(study, fit, &conditions);
-    let simpler = fit.model.effects.len() + SIMPLER <= found.fit.model.effects.len();
+    let simpler = fit.model.effects.len() + SIMPLER <= found.fit.model.effects.len()
+        && stands_for_what_went(study, &found.fit.model, &fit.model, &appraisal.weights);
     let is_needed = if is_composed {
         takes_most(study, &found.appraisal, &appraisal)
     } else {
@@ -201,6 +204,24 @@ fn take_model(
 /// How many effects fewer make a model simpler. Such a form need not take more of the residual than they did. With two, products of
 /// positions come out a little farther from the noise, and nothing else changes.
 const SIMPLER: usize = 1;
+
+/// Whether names that went imitated what came in their place: beside it they take less than half of what they took. Names that take as
+/// much are missing beside it; it only makes another noise, under which they do not stand up.
+fn stands_for_what_went(study: &Study<'_>, old: &Model, new: &Model, weights: &Weights) -> bool {
+    let stays = |fitted: &Fitted| {
+        let is_same = |other: &Fitted| fitted.effect == other.effect || rivals(&fitted.effect, &other.effect);
+        new.effects.iter().any(is_same)
+    };
+    let gone: Vec<usize> = old.chosen_numbers().filter(|number| !stays(&old.effects[*number])).collect();
+    let with_them = gone.iter().fold(new.clone(), |model, number| model.with(old.effects[*number].clone()));
+    let beside: Vec<usize> = (new.effects.len()..with_them.effects.len()).collect();
+    let took = judge::worth_in(study, old, weights, &gone);
+    let keeps = judge::worth_in(study, &with_them, weights, &beside);
+    keeps < IMITATED * took
+}
+
+/// The share of what a name takes that it keeps at most beside what it imitates.
+const IMITATED: f64 = 0.5;
 
 /// The share of what is left above white noise that a form must take. What takes less leaves the better part without a name, and may be a
 /// piece of that. At three quarters the first step of a crash and the first of two parts of a wave are refused, at a quarter nothing more is
@@ -281,3 +302,6 @@ fn gain(study: &Study<'_>, found: &Found, fit: &Fit, (weights, price): (&Weights
     };
     cost(&found.fit.model) - cost(&fit.model)
 }
+
+#[cfg(test)]
+mod tests;

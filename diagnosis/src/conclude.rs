@@ -20,6 +20,7 @@ use crate::crossing;
 use crate::diagnosis::{Change, Diagnosis, Mended, NoiseSummary, Residual, SettingFinding, Verdict};
 use crate::engine::{self, Found};
 use crate::fit;
+use crate::harmonics;
 use crate::local::{self, Feature};
 use crate::model::Model;
 use crate::places;
@@ -212,7 +213,8 @@ fn piece_of_the_rest(study: &Study<'_>, found: &Found, numbers: &[usize]) -> Opt
     let model = &found.fit.model;
     let waves = numbers.iter().rev().copied().filter(|number| model.effects[*number].effect.shape.is_wave());
     waves.into_iter().find(|number| {
-        let rest = fit::refine(study, model.without(*number), &found.appraisal.weights, &found.travels);
+        let rest = model.without_all(&harmonics::together(model, *number));
+        let rest = fit::refine(study, rest, &found.appraisal.weights, &found.travels);
         let without = Appraisal::beside(study, &rest.model, &found.appraisal);
         !revise::stands_apart(study, &without, &found.appraisal)
     })

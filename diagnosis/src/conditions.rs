@@ -112,10 +112,10 @@ impl<'c> Conditions<'c> {
     /// never judged so: its neighbours may be parts of the same curve.
     fn own_noise_counts(&self, study: &Study<'_>, shape: &Shape) -> bool {
         let alike = self.weights.noises.iter().flatten().any(|noise| noise.alike > 1.0);
+        let along = |(axis, period): (usize, f64)| self.travels[axis].range() / period;
         let cycles = match shape {
-            Shape::Cyclic { axis, period, .. } => self.travels[*axis].range() / period,
             Shape::Vibration { frequency } => frequency * waves::observed(study),
-            _ => 0.0,
+            shape => shape.wave_along().map_or(0.0, along),
         };
         alike && cycles * LONG > 1.0
     }

@@ -8,6 +8,7 @@ pub(crate) mod nodes;
 use crate::conditions::Conditions;
 use crate::fit::Fit;
 use crate::model::{Effect, Fitted, Model, Place};
+use crate::scene::Scene;
 use crate::study::Study;
 use crate::terms::Shape;
 use crate::travel::Travel;
@@ -205,10 +206,10 @@ fn median_along(nodes: &[f64], values: &[f64]) -> Option<f64> {
 
 /// The axis along which an effect is a smooth curve.
 fn smooth(effect: &Effect, travels: &[Travel]) -> Option<usize> {
+    let long = |(axis, period): &(usize, f64)| *period > LONG * travels[*axis].range();
     match effect.shape {
         Shape::Polynomial { axis, .. } | Shape::Table { axis, .. } => Some(axis),
-        Shape::Cyclic { axis, period, .. } if period > LONG * travels[axis].range() => Some(axis),
-        _ => None,
+        ref shape => shape.wave_along().filter(long).map(|(axis, _)| axis),
     }
 }
 
@@ -227,17 +228,16 @@ const MANY: usize = 4;
 /// One stands out that has more than half of what all of them have.
 const STANDS_OUT: f64 = 0.5;
 
-/// Tables of an axis: with nodes at its stations, where it stands at a few; else at equal steps, as long as there is something
-/// at every node.
+/// Tables of an axis: with nodes at its stations, where it stands at a few; else at equal steps, as long as there is something to fit
+/// at every node. A node of which only held-out samples know could have any value.
 fn tables(study: &Study<'_>, axis: usize, travel: &Travel) -> Vec<Shape> {
-    let places = places(study, axis);
-    let nodes = match at_few(&places, travel) {
+    let nodes = match stations(study, axis, travel) {
         Some(stations) => vec![stations],
-        None => NODES
-            .map(|count| even(travel.low, travel.high, count))
-            .into_iter()
-            .filter(|n| held(n, &places))
-            .collect(),
+        None => {
+            let fitted = places(study, axis, |scene| scene.fitted_rows());
+            let even = NODES.map(|count| even(travel.low, travel.high, count));
+            even.into_iter().filter(|nodes| held(nodes, &fitted)).collect()
+        }
     };
     nodes.into_iter().map(|nodes| Shape::Table { axis, nodes, directed: false, repeats: false }).collect()
 }
@@ -248,13 +248,15 @@ pub(crate) fn even(from: f64, to: f64, count: usize) -> Vec<f64> {
     (0..count).map(at).collect()
 }
 
-/// The programmed positions of an axis in the rows in which something was observed, in order.
-fn places(study: &Study<'_>, axis: usize) -> Vec<f64> {
+/// The programmed positions of an axis in those of some rows in which something was observed, in order.
+fn places(study: &Study<'_>, axis: usize, rows: impl Fn(&Scene) -> Vec<bool>) -> Vec<f64> {
     let mut places = Vec::new();
     for scene in &study.scenes {
+        let of_these = rows(scene);
         let observed = |row: usize| scene.channels.iter().any(|channel| channel.values[row].is_finite());
         let known = scene.given.programmed[axis].iter().enumerate();
-        places.extend(known.filter(|(row, q)| q.is_finite() && observed(*row)).map(|(_, q)| *q));
+        let used = known.filter(|(row, q)| q.is_finite() && of_these[*row] && observed(*row));
+        places.extend(used.map(|(_, q)| *q));
     }
     places.sort_by(f64::total_cmp);
     places
@@ -262,7 +264,7 @@ fn places(study: &Study<'_>, axis: usize) -> Vec<f64> {
 
 /// The stations of an axis, where it was observed at a few places.
 pub(crate) fn stations(study: &Study<'_>, axis: usize, travel: &Travel) -> Option<Vec<f64>> {
-    at_few(&places(study, axis), travel)
+    at_few(&places(study, axis, |scene| vec![true; scene.rows()]), travel)
 }
 
 /// These places, where they are few: within a thousandth of the travel a place is the same.
@@ -283,7 +285,7 @@ fn at_few(places: &[f64], travel: &Travel) -> Option<Vec<f64>> {
 const FEWEST_STATIONS: usize = 4;
 const MOST_STATIONS: usize = 40;
 
-/// Whether something was observed nearer to every node than to its neighbours.
+/// Whether one of some places is nearer to every node than to its neighbours.
 fn held(nodes: &[f64], places: &[f64]) -> bool {
     let half = nodes.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min) / 2.0;
     nodes.iter().all(|node| {

@@ -19,6 +19,7 @@ use crate::noise::Noise;
 use crate::observations::{Frame, Passage};
 use crate::parallel;
 use crate::study::Study;
+use crate::terms::Shape;
 use crate::weights::Weights;
 
 pub(crate) use lower::Lower;
@@ -28,14 +29,24 @@ pub(crate) use run::ChannelRun;
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct Regressor {
     pub(crate) effect: Effect,
-    /// Where it is set: one column, the change of the effect with these coefficients for each unit of the parameter.
-    pub(crate) slope: Option<Vec<f64>>,
+    /// Where it is set: one column, the change of these terms at its place, with their coefficients, for each unit of the nonlinear
+    /// parameter that they share.
+    pub(crate) slope: Option<Vec<(Shape, Vec<f64>)>>,
 }
 
 impl Regressor {
     /// The effect itself.
     pub(crate) fn of(effect: Effect) -> Self {
         Self { effect, slope: None }
+    }
+
+    /// How effects of a model change with the nonlinear parameter that they share. `group` has their numbers, one at least.
+    pub(crate) fn slope(effects: &[Fitted], group: &[usize]) -> Self {
+        let part = |number: &usize| {
+            let Fitted { effect, coefficients } = &effects[*number];
+            (effect.shape.clone(), coefficients.clone())
+        };
+        Self { effect: effects[group[0]].effect.clone(), slope: Some(group.iter().map(part).collect()) }
     }
 
     /// Effects, each for itself.

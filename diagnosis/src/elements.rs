@@ -35,7 +35,7 @@ pub(crate) fn repeating(
     shape: &Shape,
     parameters: &[Parameter],
 ) -> Vec<Repeats> {
-    let Shape::Cyclic { axis, period, .. } = *shape else { return Vec::new() };
+    let Some((axis, period)) = shape.wave_along() else { return Vec::new() };
     let Some(travel) = travels.get(axis) else { return Vec::new() };
     let (factor, unit) = axis_unit(study, axis);
     let round = goes_round(study, axis, travel);

@@ -16,6 +16,7 @@ use crate::dents::{self, Dent};
 use crate::design::{Design, Regressor};
 use crate::dynamics;
 use crate::fit::{self, Fit};
+use crate::harmonics;
 use crate::judge;
 use crate::kinship::{self, Kin};
 use crate::model::{Effect, Fitted, Model};
@@ -315,6 +316,7 @@ impl Search {
             progress(crate::number(round + 1) / crate::number(ROUNDS + 2));
             let next = self.choose(study);
             let mut next = self.conditions().refine(study, next).model;
+            next = harmonics::try_harmonics(study, next, &self.conditions());
             let mut settled = same_effects(&self.model, &next);
             if settled || round + 1 == ROUNDS {
                 next = dynamics::try_loops(study, next, &self.conditions());
@@ -353,18 +355,20 @@ impl Search {
     /// The best set of effects under the present noise, by linear least squares.
     fn choose(&mut self, study: &Study<'_>) -> Model {
         let residuals = waves::all_weighted(study, &self.model, &self.weights, &self.courses);
-        let (peaks, waves) =
+        let (mut peaks, waves) =
             waves::peaks(study, &self.model, &self.courses, &residuals, &self.travels, &self.places);
         self.tries.waves = self.tries.waves.max(waves);
-        let others = other_peaks(study, &self.model, &self.conditions());
+        let mut others = other_peaks(study, &self.model, &self.conditions());
+        let resolution = Resolution::new(study, &self.travels);
+        peaks.retain(|peak| !harmonics::stands_for(&self.model, &resolution, &peak.effect));
+        others.retain(|other| !harmonics::stands_for(&self.model, &resolution, &other.effect));
         // One course of states at a time is enough for the memory.
         drop((std::mem::take(&mut self.courses), residuals));
-        let mut regressors = regressors(study, &self.model, &self.pool, peaks);
+        let mut regressors = regressors(study, &self.model, &self.pool, &self.travels, peaks);
         regressors.extend(others);
         let mut design = Design::new(study, &self.model, &self.weights, regressors);
         design.rebase(&self.model.effects);
         let (products, samples) = design.fitted();
-        let resolution = Resolution::new(study, &self.travels);
         let settings = self.model.settings().len();
         let waves = self.tries.waves;
         let choice =
@@ -434,9 +438,16 @@ fn first_noises(study: &Study<'_>, model: &Model, courses: &[Arc<Course>]) -> Ve
 }
 
 /// The effects of the present model as they stand, the candidates, and waves.
-fn regressors(study: &Study<'_>, model: &Model, pool: &[Kin], peaks: Vec<waves::Peak>) -> Vec<Regressor> {
+fn regressors(
+    study: &Study<'_>,
+    model: &Model,
+    pool: &[Kin],
+    travels: &[Travel],
+    peaks: Vec<waves::Peak>,
+) -> Vec<Regressor> {
     let mut effects: Vec<Effect> = model.effects.iter().map(|fitted| fitted.effect.clone()).collect();
     effects.extend(open_candidates(model.chosen(), pool));
+    effects.extend(harmonics::open(study, model, travels));
     effects.extend(highest(study, peaks).into_iter().map(|peak| peak.effect));
     effects.into_iter().map(Regressor::of).collect()
 }

@@ -5,6 +5,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::design::{Design, Products, Regressor};
+use crate::harmonics;
 use crate::model::{Effect, Fitted, Model};
 use crate::ranges::range;
 use crate::study::Study;
@@ -50,10 +51,11 @@ const DONE: f64 = 1e-7;
 
 /// Fits all parameters of a model, from where it stands, by Gauss-Newton steps that never make it worse.
 pub(crate) fn refine(study: &Study<'_>, model: Model, weights: &Weights, travels: &[Travel]) -> Fit {
-    let mut best = Linearised::new(study, model, weights);
+    let groups = harmonics::sharing(&model.effects);
+    let mut best = Linearised::new(study, model, weights, &groups);
     let mut size = 1.0;
     for _ in 0..STEPS {
-        let next = Linearised::new(study, best.stepped(study, size, travels), weights);
+        let next = Linearised::new(study, best.stepped(study, size, travels), weights, &groups);
         let fall = (best.remaining - next.remaining) / best.remaining;
         if fall >= 0.0 {
             best = next;
@@ -68,28 +70,40 @@ pub(crate) fn refine(study: &Study<'_>, model: Model, weights: &Weights, travels
     best.fit()
 }
 
+/// The standard deviation of the nonlinear parameter of one effect of a fitted model, as far as this effect alone shows it: others that
+/// share it keep theirs.
+pub(crate) fn deviation_alone(
+    study: &Study<'_>,
+    model: &Model,
+    weights: &Weights,
+    number: usize,
+) -> Option<f64> {
+    let mut groups = harmonics::sharing(&model.effects);
+    *groups.iter_mut().find(|group| group.contains(&number))? = vec![number];
+    let fit = Linearised::new(study, model.clone(), weights, &groups).fit();
+    fit.covariances[number].diagonal().iter().next_back().map(|variance| variance.sqrt())
+}
+
 /// A model with its design, slopes included.
-struct Linearised {
+struct Linearised<'g> {
     model: Model,
     design: Design,
-    /// For each effect the regressor of its slope, where it has one.
+    /// For each effect the regressor of its slope, where it has one. Harmonics of one wave have one together.
     slopes: Vec<Option<usize>>,
+    /// The numbers of the effects that share a nonlinear parameter.
+    groups: &'g [Vec<usize>],
     swept: Swept,
     remaining: f64,
     samples: f64,
 }
 
-impl Linearised {
-    fn new(study: &Study<'_>, model: Model, weights: &Weights) -> Self {
+impl<'g> Linearised<'g> {
+    fn new(study: &Study<'_>, model: Model, weights: &Weights, groups: &'g [Vec<usize>]) -> Self {
         let mut regressors = Regressor::all(&model.effects);
-        let mut slopes = Vec::new();
-        for fitted in &model.effects {
-            let slope = fitted.effect.shape.nonlinear().map(|_| {
-                let slope = Some(fitted.coefficients.clone());
-                regressors.push(Regressor { effect: fitted.effect.clone(), slope });
-                regressors.len() - 1
-            });
-            slopes.push(slope);
+        let mut slopes = vec![None; model.effects.len()];
+        for group in groups {
+            group.iter().for_each(|number| slopes[*number] = Some(regressors.len()));
+            regressors.push(Regressor::slope(&model.effects, group));
         }
         let design = Design::new(study, &model, weights, regressors);
         let (products, samples) = design.fitted();
@@ -98,11 +112,12 @@ impl Linearised {
         for column in 0..design.width {
             swept.take(column);
         }
-        Self { model, design, slopes, swept, remaining, samples }
+        Self { model, design, slopes, groups, swept, remaining, samples }
     }
 
     /// The model after a step of this size (1: the whole step) towards the least squares.
     fn stepped(&self, study: &Study<'_>, size: f64, travels: &[Travel]) -> Model {
+        let parameters = self.parameters(study, size, travels);
         let step = |(number, fitted): (usize, &Fitted)| {
             let change = |column: usize| size * self.swept.coefficient(column);
             let coefficients: Vec<f64> = fitted
@@ -118,19 +133,31 @@ impl Linearised {
                 }
                 _ => coefficients,
             };
-            let moved = self.slopes[number].zip(fitted.effect.shape.nonlinear()).map(|(slope, parameter)| {
-                let change = change(self.design.first[slope]);
-                let most = furthest(&fitted.effect.shape, travels);
-                let change = change.clamp(-most, most).clamp(-0.5 * parameter.value, parameter.value);
-                let (least, most) = range(study, travels, &fitted.effect.shape);
-                let value = (parameter.value + change).max(least.min(parameter.value));
-                fitted.effect.shape.with_nonlinear(value.min(most.max(parameter.value)))
-            });
+            let moved = parameters[number].map(|value| fitted.effect.shape.with_nonlinear(value));
             let shape = moved.unwrap_or_else(|| fitted.effect.shape.clone());
             let (shape, coefficients) = timed(shape, coefficients);
             Fitted { effect: Effect { place: fitted.effect.place, shape }, coefficients }
         };
         self.model.with_effects(self.model.effects.iter().enumerate().map(step))
+    }
+
+    /// The nonlinear parameter of each effect after a step of this size. One that several share goes as far as all of them may.
+    fn parameters(&self, study: &Study<'_>, size: f64, travels: &[Travel]) -> Vec<Option<f64>> {
+        let mut parameters = vec![None; self.model.effects.len()];
+        for group in self.groups {
+            let shapes = || group.iter().map(|number| &self.model.effects[*number].effect.shape);
+            let moved = shapes().zip(group).filter_map(|(shape, number)| {
+                let (slope, now) = (self.slopes[*number]?, shape.nonlinear()?.value);
+                let change = size * self.swept.coefficient(self.design.first[slope]);
+                let most = furthest(shape, travels);
+                let change = change.clamp(-most, most).clamp(-0.5 * now, now);
+                let (least, most) = range(study, travels, shape);
+                Some((now, (now + change).max(least.min(now)).min(most.max(now))))
+            });
+            let nearest = moved.min_by(|a, b| (a.1 - a.0).abs().total_cmp(&(b.1 - b.0).abs()));
+            group.iter().for_each(|number| parameters[*number] = nearest.map(|(_, value)| value));
+        }
+        parameters
     }
 
     fn fit(self) -> Fit {
@@ -204,7 +231,11 @@ const STUDENT: f64 = 1.5;
 /// How far a nonlinear parameter may go in one step: a wave must not slip by a cycle.
 fn furthest(shape: &Shape, travels: &[Travel]) -> f64 {
     match shape.core() {
-        Shape::Cyclic { axis, period, .. } => 0.3 * period * period / travels[*axis].range().max(*period),
+        // A harmonic slips by a cycle first.
+        Shape::Cyclic { axis, period, order, .. } => {
+            let cycles = f64::from(*order) * (travels[*axis].range() / period).max(1.0);
+            0.3 * period / cycles
+        }
         _ => f64::INFINITY,
     }
 }

@@ -231,9 +231,8 @@ fn read(study: &Study<'_>, courses: &[Arc<Course>]) -> Vec<f64> {
 /// How often a wave comes round where something was read. A part of a turn is any curve.
 fn turns(study: &Study<'_>, read: &[f64], shape: &Shape) -> Option<f64> {
     match *shape.core() {
-        Shape::Cyclic { axis, period, .. } => read.get(axis).map(|range| range / period),
         Shape::Vibration { frequency } => Some(waves::observed(study) * frequency),
-        _ => None,
+        ref along => along.wave_along().and_then(|(axis, period)| Some(read.get(axis)? / period)),
     }
 }
 
@@ -270,7 +269,9 @@ fn about(shape: Shape, travels: &[Travel]) -> Shape {
             let (center, scale) = middle(axis);
             Shape::Polynomial { axis, degree, center, scale }
         }
-        Shape::Cyclic { axis, period, .. } => Shape::Cyclic { axis, period, center: middle(axis).0 },
+        Shape::Cyclic { axis, period, order, .. } => {
+            Shape::Cyclic { axis, period, order, center: middle(axis).0 }
+        }
         other => other,
     }
 }

@@ -10,6 +10,7 @@ use crate::channel::ChannelAt;
 use crate::conditions::Conditions;
 use crate::design::{Design, Products, Regressor};
 use crate::fit::Fit;
+use crate::harmonics;
 use crate::model::{Fitted, Model};
 use crate::parallel;
 use crate::rounded;
@@ -126,10 +127,10 @@ fn pays(
 ) -> bool {
     let (appraisal, whole) = left;
     let bare = fit.model.without(number);
-    let others = followed(study, without(design, swept, &fit.model, number), fit, number, conditions);
+    let others = followed(study, without(design, swept, &fit.model, &[number]), fit, number, conditions);
     let [bare, others] = [&bare, &others].map(|model| zeros::residuals(study, model));
     let (mut gained, mut expected, mut peak) = (0.0, 0.0, 0.0_f64);
-    let (mut taken, mut returning) = (0.0, 0.0);
+    let mut returning = 0.0;
     let mut told = !fit.model.effects[number].effect.shape.is_wave();
     for (scene, known) in study.scenes.iter().enumerate() {
         let fitted = known.fitted_rows();
@@ -147,7 +148,6 @@ fn pays(
             peak = peak.max(highest);
             told |= highest * size > rounded::beat(known.channels[channel].rounding, size);
             let nearer = |row: usize| (others[row] * others[row] - left[row] * left[row]) / (size * size);
-            taken += rows.iter().map(|row| nearer(*row)).sum::<f64>();
             returning += appraisal.returning[scene][channel] / (size * size);
             let held = || rows.iter().copied().filter(|row| !fitted[*row]);
             let mut signal: Vec<f64> = held().map(effect).collect();
@@ -156,12 +156,39 @@ fn pays(
             gained += held().map(nearer).sum::<f64>();
         }
     }
-    told && peak > MATERIAL && (expected < TELLING || gained > 0.0) && taken > APART * returning
+    let together = || {
+        let harmonics = harmonics::together(&fit.model, number);
+        harmonics.len() > 1 && {
+            let others = zeros::residuals(study, &without(design, swept, &fit.model, &harmonics));
+            taken(study, &others, left) > APART * returning
+        }
+    };
+    told && peak > MATERIAL
+        && (expected < TELLING || gained > 0.0)
+        && (taken(study, &others, left) > APART * returning || together())
 }
 
 /// What an effect takes from the sum of squares must be at least this share of what still comes back without a name: less may be a
-/// piece of that.
+/// piece of that. The harmonics of a wave are one thing, and take it together.
 const APART: f64 = 1.0;
+
+/// What is taken from the sum of squares of all samples, in units of their noise, from residuals of a model without some effects to those
+/// of the whole.
+fn taken(
+    study: &Study<'_>,
+    without: &[Vec<Vec<f64>>],
+    (appraisal, whole): (&Appraisal, &[Vec<Vec<f64>>]),
+) -> f64 {
+    let of_channel = |at: ChannelAt| -> f64 {
+        let (others, left) = (&without[at.scene][at.channel], &whole[at.scene][at.channel]);
+        let outliers = appraisal.weights.outliers.of(at);
+        let rows = others.iter().zip(left).zip(outliers);
+        let used = rows.filter(|((value, _), outlier)| value.is_finite() && !**outlier);
+        let taken = used.map(|((others, left), _)| others * others - left * left).sum::<f64>();
+        taken / appraisal.weights.noise(at).size().powi(2)
+    };
+    study.channels().map(of_channel).sum()
+}
 
 /// Whether a wave in time is a piece of a function of a state, which strokes of equal length bring back at equal times: most of it
 /// goes where a state takes what comes back with it, and as much comes back beside it. A wave that is all that comes back is one.
@@ -234,7 +261,7 @@ fn noise_explains(
     number: usize,
     price: f64,
 ) -> bool {
-    let without = without(design, swept, &fit.model, number);
+    let without = without(design, swept, &fit.model, &[number]);
     let bare = Appraisal::beside(study, &without, appraisal);
     // A walk draws any curve along a single pass. It knows nothing of reversals, speeds and temperatures.
     let curve =
@@ -262,13 +289,13 @@ pub(crate) fn worth_in(study: &Study<'_>, model: &Model, weights: &Weights, effe
     swept.worth(&columns) / scale
 }
 
-/// The model without one effect, the linear coefficients of the others fitted again.
-pub(crate) fn without(design: &Design, swept: &Swept, model: &Model, number: usize) -> Model {
+/// The model without some effects, the linear coefficients of the others fitted again.
+pub(crate) fn without(design: &Design, swept: &Swept, model: &Model, numbers: &[usize]) -> Model {
     let mut reduced = swept.clone();
-    for column in design.columns(number) {
+    for column in numbers.iter().flat_map(|number| design.columns(*number)) {
         reduced.drop(column);
     }
-    let kept = model.effects.iter().enumerate().filter(|(other, _)| *other != number);
+    let kept = model.effects.iter().enumerate().filter(|(other, _)| !numbers.contains(other));
     model.with_effects(kept.map(|(other, fitted)| Fitted {
         effect: fitted.effect.clone(),
         coefficients: match fitted.effect.shape.nonlinear_in_coefficient() {

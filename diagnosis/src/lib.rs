@@ -40,6 +40,7 @@ mod engine;
 mod fit;
 mod follow;
 mod form;
+mod harmonics;
 mod judge;
 mod kinship;
 mod legs;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use crate::harmonics;
 use crate::side::Side;
 use crate::states::Crossing;
 use crate::terms::{Setting, Shape};
@@ -69,7 +70,7 @@ impl Model {
 
     /// Other effects, of which as many are settings, with plays that are crossed as in this model.
     pub(crate) fn with_effects(&self, effects: impl IntoIterator<Item = Fitted>) -> Self {
-        Self::of(effects).with_settings(self.settings).crossed_as(self)
+        Self::of(effects).with_settings(self.settings).crossed_as(self).without_bare_harmonics()
     }
 
     /// The same with one effect more.
@@ -84,6 +85,21 @@ impl Model {
         let mut rest = self.clone();
         rest.effects.remove(number);
         rest.settings -= usize::from(number < self.settings);
+        rest.without_bare_harmonics()
+    }
+
+    /// The same, in which a harmonic without its fundamental is a wave by itself.
+    fn without_bare_harmonics(mut self) -> Self {
+        harmonics::set_free(&mut self.effects);
+        self
+    }
+
+    /// The same without some of its effects.
+    pub(crate) fn without_all(&self, numbers: &[usize]) -> Self {
+        let mut rest = self.clone();
+        let mut descending = numbers.to_vec();
+        descending.sort_unstable_by(|a, b| b.cmp(a));
+        descending.into_iter().for_each(|number| rest = rest.without(number));
         rest
     }
 

@@ -230,9 +230,10 @@ impl<'f> Described<'f> {
             Shape::ReversalSpike { .. } => {
                 vec![plain("height", 0), Parameter::fitted("decay", self.nonlinear(1.0, "s"))]
             }
-            Shape::Cyclic { axis, .. } => {
+            Shape::Cyclic { axis, order, .. } => {
                 let (axis_factor, axis_unit) = axis_unit(study, *axis);
-                let period = Parameter::fitted("period", self.nonlinear(axis_factor, axis_unit));
+                let own = axis_factor / f64::from(*order);
+                let period = Parameter::fitted("period", self.nonlinear(own, axis_unit));
                 [vec![period], self.wave()].concat()
             }
             Shape::Vibration { .. } => {
@@ -325,7 +326,10 @@ impl<'f> Described<'f> {
         let (factor, unit) = self.motion_unit;
         // Calibrations count the phase from position 0, where the period has gone on from the middle of the travel.
         let (back, turning) = match *self.fitted.effect.shape.core() {
-            Shape::Cyclic { period, center, .. } => (TAU * center / period, TAU * center / (period * period)),
+            Shape::Cyclic { period, order, center, .. } => {
+                let turns = TAU * center * f64::from(order) / period;
+                (turns, turns / period)
+            }
             _ => (0.0, 0.0),
         };
         vec![

@@ -31,7 +31,12 @@ pub(crate) fn range(study: &Study<'_>, travels: &[Travel], shape: &Shape) -> (f6
         Shape::ReversalSpike { .. } => (0.3 * step, DECAY * travel.between),
         // A part of a turn is a part of a turn: it is not fitted.
         Shape::Cyclic { axis, period, .. } if goes_round(study, *axis, &travel) => (*period, *period),
-        Shape::Cyclic { axis, .. } => periods(study, *axis, &travel),
+        // Of a harmonic it is the period of its fundamental that is fitted.
+        Shape::Cyclic { axis, order, .. } => {
+            let (shortest, longest) = periods(study, *axis, &travel);
+            let order = f64::from(*order);
+            (order * shortest, order * longest)
+        }
         Shape::Vibration { .. } => (CYCLES / observed, 0.5 / step),
         Shape::Drift { .. } => (5.0 * step, SETTLING * observed),
         Shape::Growth { .. } => (step, SETTLING * observed),
@@ -99,10 +104,9 @@ impl Resolution {
             (Shape::Vibration { frequency: a }, Shape::Vibration { frequency: b }) => {
                 (a - b).abs() < self.frequency
             }
-            (Shape::Cyclic { axis, period: a, .. }, Shape::Cyclic { axis: other, period: b, .. }) => {
-                axis == other && (1.0 / a - 1.0 / b).abs() < self.along[*axis]
-            }
-            _ => false,
+            _ => a.wave_along().zip(b.wave_along()).is_some_and(|((axis, a), (other, b))| {
+                axis == other && (1.0 / a - 1.0 / b).abs() < self.along[axis]
+            }),
         }
     }
 }
@@ -113,8 +117,9 @@ pub(crate) fn holds(table: &Shape, other: &Shape) -> bool {
     let spacing = nodes.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
     match other {
         Shape::Polynomial { axis, .. } => axis == along,
-        Shape::Cyclic { axis, period, .. } => axis == along && *period > SMOOTHED * spacing,
-        _ => false,
+        other => {
+            other.wave_along().is_some_and(|(axis, period)| axis == *along && period > SMOOTHED * spacing)
+        }
     }
 }
 

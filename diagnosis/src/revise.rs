@@ -11,6 +11,7 @@ use crate::conditions::Conditions;
 use crate::design::{Design, Regressor};
 use crate::engine::{self, courses};
 use crate::fit::Fit;
+use crate::harmonics;
 use crate::judge;
 use crate::kinship::Kin;
 use crate::model::{Effect, Fitted, Model};
@@ -88,8 +89,27 @@ impl Revision<'_> {
         let (count, more) =
             (fitted.model.effects.len(), fitted.model.effects.len() > fit.model.effects.len());
         let (kept, left) = judge::uphold(study, fitted, &self.conditions);
-        let stands = kept.model.effects.len() == count && (!more || stands_apart(study, appraisal, &left));
+        let stands = kept.model.effects.len() == count
+            && (!more || self.stands_apart_together(study, &kept.model, (appraisal, &left)));
         stands.then_some((kept, left))
+    }
+
+    /// Whether the last effect of a model stands apart, or the harmonics of a wave do together of which it is one. `without` and `with` are
+    /// the appraisals without it and with it.
+    fn stands_apart_together(
+        &self,
+        study: &Study<'_>,
+        model: &Model,
+        (without, with): (&Appraisal, &Appraisal),
+    ) -> bool {
+        if stands_apart(study, without, with) {
+            return true;
+        }
+        let together = harmonics::together(model, model.effects.len() - 1);
+        together.len() > 1 && {
+            let rest = self.conditions.under(&with.weights).refine(study, model.without_all(&together));
+            stands_apart(study, &Appraisal::beside(study, &rest.model, with), with)
+        }
     }
 
     /// Models with another effect in the place of one, and with one more, the most promising first.
@@ -155,6 +175,7 @@ impl Revision<'_> {
         let candidates = engine::open_candidates(model.chosen(), self.pool);
         let candidates = candidates
             .into_iter()
+            .chain(harmonics::open(study, model, conditions.travels))
             .map(|effect| Open { price: conditions.price(study, &effect, samples), effect });
         let waves = engine::highest(study, peaks);
         let waves = waves

@@ -10,6 +10,7 @@ use nalgebra::DMatrix;
 
 use crate::candidates::simplicity;
 use crate::design::Design;
+use crate::harmonics::HIGHEST;
 use crate::model::Effect;
 use crate::ranges::{Resolution, holds};
 use crate::study::Study;
@@ -32,7 +33,12 @@ pub(crate) fn price(study: &Study<'_>, effect: &Effect, samples: f64, tries: f64
     let wave = effect.shape.is_wave();
     let searched = effect.shape.nonlinear().is_some() && !wave;
     let parameters = effect.shape.columns() + usize::from(searched) + effect.shape.searched_factors();
-    let tried = if wave { waves.max(1.0).ln() } else { tries.ln() };
+    let tried = match effect.shape {
+        // A harmonic was looked for among those of its wave.
+        Shape::Cyclic { order, .. } if order > 1 => f64::from(HIGHEST).ln(),
+        _ if wave => waves.max(1.0).ln(),
+        _ => tries.ln(),
+    };
     (crate::number(parameters) - FIRST_SAVES) * parameter_price(samples)
         + 2.0 * tried
         + simplicity(study, effect)
@@ -208,14 +214,13 @@ impl<'d> Choice<'d> {
         apart && (!positive(&effect.shape) || sign() > 0.0 || self.may_lead(set, regressor))
     }
 
-    /// Whether a lag may be below zero: its drive then leads. A clock that does the same is likelier than a feed-forward that is
-    /// too large.
+    /// Whether a lag or an acceleration may be below zero: its drive then leads. A clock that does the same is likelier than a
+    /// feed-forward that is too large.
     fn may_lead(&self, set: &Set, regressor: usize) -> bool {
         let shape = |number: usize| &self.design.regressors[number].effect.shape;
         let clock = |other: &usize| *shape(*other) == Shape::Instrument(Setting::Clock);
         let mut clocks = (0..self.design.regressors.len()).filter(clock);
-        matches!(shape(regressor), Shape::Lag { inertia: 0.0, .. })
-            && !clocks.any(|clock| self.alike(set, regressor, clock))
+        leads(shape(regressor)) && !clocks.any(|clock| self.alike(set, regressor, clock))
     }
 
     fn cost_with(&self, set: &Set, regressor: usize) -> f64 {
@@ -297,8 +302,9 @@ impl<'d> Choice<'d> {
 
     fn impossible(&self, set: &Set, regressor: usize) -> bool {
         let effect = &self.design.regressors[regressor].effect;
-        let leads = matches!(effect.shape, Shape::Lag { inertia: 0.0, .. });
-        positive(&effect.shape) && !leads && set.swept.coefficient(self.design.first[regressor]) <= 0.0
+        positive(&effect.shape)
+            && !leads(&effect.shape)
+            && set.swept.coefficient(self.design.first[regressor]) <= 0.0
             || self.outgrows(set, regressor)
     }
 
@@ -384,7 +390,10 @@ pub(crate) fn rivals(a: &Effect, b: &Effect) -> bool {
     }
     match (&a.shape, &b.shape) {
         // Several waves may run along one axis.
-        (Shape::Cyclic { period: a, .. }, Shape::Cyclic { period: b, .. }) => (a / b - 1.0).abs() < 0.02,
+        (Shape::Cyclic { .. }, Shape::Cyclic { .. }) => {
+            let lengths = a.shape.wave_along().zip(b.shape.wave_along());
+            lengths.is_some_and(|((_, a), (_, b))| (a / b - 1.0).abs() < 0.02)
+        }
         (Shape::Vibration { frequency: a }, Shape::Vibration { frequency: b }) => (a / b - 1.0).abs() < 0.001,
         (Shape::Coupling { axis: a, .. }, Shape::Coupling { axis: b, .. }) => a == b,
         (Shape::Expansion { sensor: a, .. }, Shape::Expansion { sensor: b, .. })
@@ -396,6 +405,11 @@ pub(crate) fn rivals(a: &Effect, b: &Effect) -> bool {
         (Shape::Times { .. }, _) | (_, Shape::Times { .. }) => false,
         _ => true,
     }
+}
+
+/// Whether a coefficient below zero is one of a drive that leads, as too large a feed-forward makes it.
+fn leads(shape: &Shape) -> bool {
+    matches!(shape, Shape::Lag { inertia: 0.0, .. } | Shape::Acceleration { .. })
 }
 
 /// Whether a coefficient below zero would mean nothing.

@@ -58,8 +58,9 @@ pub(crate) enum Shape {
     Backlash { axis: usize, wind_up: f64 },
     /// -d exp(-(t - t_reversal) / decay).
     ReversalSpike { axis: usize, decay: f64 },
-    /// Sine and cosine of 2 pi (q - center) / period: far from the travel a little of the period is much of the phase.
-    Cyclic { axis: usize, period: f64, center: f64 },
+    /// Sine and cosine of 2 pi order (q - center) / period: far from the travel a little of the period is much of the phase. Of a
+    /// harmonic, `period` is that of its fundamental, which all harmonics of one wave share; a wave by itself has the order 1.
+    Cyclic { axis: usize, period: f64, order: u32, center: f64 },
     /// The change of the position behind the position loop with its time constant 1/K, which is the coefficient; of second
     /// order where it has an inertia 1/w^2, s^2.
     Lag { axis: usize, inertia: f64 },
@@ -250,6 +251,14 @@ impl Shape {
         shape
     }
 
+    /// The axis that a wave runs along, and its length.
+    pub(crate) fn wave_along(&self) -> Option<(usize, f64)> {
+        match *self {
+            Self::Cyclic { axis, period, order, .. } => Some((axis, period / f64::from(order))),
+            _ => None,
+        }
+    }
+
     /// Whether it is a wave along an axis or in time.
     pub(crate) fn is_wave(&self) -> bool {
         matches!(self, Self::Cyclic { .. } | Self::Vibration { .. })
@@ -299,7 +308,9 @@ impl Shape {
             Self::ReversalSpike { axis, decay } => {
                 one(out, |out| reversal_spike::fill(rows, *axis, *decay, out))
             }
-            Self::Cyclic { axis, period, center } => cyclic::fill(rows, *axis, *period, *center, out),
+            Self::Cyclic { axis, period, order, center } => {
+                cyclic::fill(rows, *axis, period / f64::from(*order), *center, out);
+            }
             Self::Lag { axis, .. } => one(out, |out| lag::fill(rows, *axis, out)),
             Self::Acceleration { axis } => one(out, |out| acceleration::fill(rows, *axis, out)),
             Self::Expansion { axis, sensor, reference } => {

@@ -84,7 +84,7 @@ pub(crate) fn places(
                 let period = travels[axis].range() / 3.7;
                 samples.push(Effect {
                     place,
-                    shape: Shape::Cyclic { axis, period, center: travels[axis].center() },
+                    shape: Shape::Cyclic { axis, period, order: 1, center: travels[axis].center() },
                 });
             }
             // A wave in time of a motor of a beam is one of its slide.
@@ -262,13 +262,13 @@ fn longest(study: &Study<'_>, of: impl Fn(&Scene<'_>) -> f64) -> f64 {
 /// By how many cycles two waves differ over the range of their axis, or over this time.
 fn cycles_apart(a: &Shape, b: &Shape, travels: &[Travel], time: f64) -> Option<f64> {
     match (a, b) {
-        (Shape::Cyclic { axis, period: a, .. }, Shape::Cyclic { axis: along, period: b, .. })
-            if axis == along =>
-        {
-            Some((1.0 / a - 1.0 / b).abs() * travels[*axis].range())
-        }
         (Shape::Vibration { frequency: a }, Shape::Vibration { frequency: b }) => Some((a - b).abs() * time),
-        _ => None,
+        _ => match (a.wave_along()?, b.wave_along()?) {
+            ((axis, a), (along, b)) if axis == along => {
+                Some((1.0 / a - 1.0 / b).abs() * travels[axis].range())
+            }
+            _ => None,
+        },
     }
 }
 
@@ -318,7 +318,7 @@ fn along(
     let found = tops(&source.spectrum(&positions, low, range, shortest), longest, OF_A_PLACE);
     let peak = |top: Top| {
         let period = turned(study, axis, &travels[axis], 1.0 / top.frequency);
-        let shape = Shape::Cyclic { axis, period, center: travels[axis].center() };
+        let shape = Shape::Cyclic { axis, period, order: 1, center: travels[axis].center() };
         Peak { effect: effect(source, shape), gain: top.gain, local: top.local }
     };
     Some(LookedAt { peaks: found.into_iter().map(peak).collect(), tried: range / shortest })

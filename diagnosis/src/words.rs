@@ -96,9 +96,14 @@ fn bare_detail(study: &Study<'_>, model: &Model, effect: &Effect) -> String {
         Shape::Constant => format!("follows {}", state(study, effect)),
         Shape::Polynomial { axis, .. } => format!("changes smoothly along {}", name(*axis)),
         Shape::Table { axis, .. } => format!("follows a curve along {}", name(*axis)),
-        Shape::Cyclic { axis, period, .. } => {
+        Shape::Cyclic { axis, period, order, .. } => {
             let (factor, unit) = axis_unit(study, *axis);
-            format!("repeats every {:.4} {unit} of {}", period * factor, name(*axis))
+            let own = period * factor / f64::from(*order);
+            let harmonic = match order {
+                1 => String::new(),
+                order => format!(", harmonic {order} of {:.4} {unit}", period * factor),
+            };
+            format!("repeats every {own:.4} {unit} of {}{harmonic}", name(*axis))
         }
         Shape::Backlash { axis, wind_up } if *wind_up > 0.0 => {
             let (factor, unit) = axis_unit(study, *axis);

@@ -66,7 +66,7 @@ fn keeps_its_promise(share: f64) -> bool {
 #[test]
 fn a_faint_wave_keeps_its_period_and_amplitude_in_their_intervals() {
     let errors = "{EXX: [{cyclic: {period: 8 mm, amplitude: 0.4 um, phase: 40 deg}}]}";
-    let shape = Shape::Cyclic { axis: 0, period: 8.01, center: 0.0 };
+    let shape = Shape::Cyclic { axis: 0, period: 8.01, order: 1, center: 0.0 };
     for (name, truth) in [("period", 8.0), ("amplitude", 4e-4)] {
         let [share, _] = held(errors, &shape, 2, 1.0, name, 0, truth);
         assert!(keeps_its_promise(share), "{name}: {share}");

@@ -226,11 +226,9 @@ fn beats(found: &Found, atoms: &Atoms) -> Vec<Form> {
 
 /// The wave that grows along its axis of which two waves are made; `None` where they are two.
 fn beat(one: &Fitted, other: &Fitted, travels: &[Travel], atoms: &Atoms) -> Option<Form> {
-    let (&Shape::Cyclic { axis, period, center }, &Shape::Cyclic { axis: of, period: second, .. }) =
-        (&one.effect.shape, &other.effect.shape)
-    else {
-        return None;
-    };
+    let &Shape::Cyclic { center, .. } = &one.effect.shape else { return None };
+    let ((axis, period), (of, second)) =
+        one.effect.shape.wave_along().zip(other.effect.shape.wave_along())?;
     let (near, same) = ((1.0 / period - 1.0 / second).abs(), one.effect.place == other.effect.place);
     if axis != of || !same || near * travels[axis].range() > 1.0 {
         return None;
@@ -240,7 +238,7 @@ fn beat(one: &Fitted, other: &Fitted, travels: &[Travel], atoms: &Atoms) -> Opti
         _ => None,
     };
     let between = 0.5 * (phase(one)? + phase(other)?);
-    let shape = Shape::Cyclic { axis, period: 2.0 / (1.0 / period + 1.0 / second), center };
+    let shape = Shape::Cyclic { axis, period: 2.0 / (1.0 / period + 1.0 / second), order: 1, center };
     let along = |factor: &&Factor<usize>| factor.axis() == Some(axis);
     let position = atoms.positions.iter().find(along)?.clone();
     let place = one.effect.place;

@@ -55,7 +55,7 @@ fn waves(study: &Study<'_>, found: &Found) -> Vec<Effect> {
         let period = travel.range() / WAVES;
         let (shortest, longest) = periods(study, axis, travel);
         let resolved = travel.moves && period > RESOLVED * shortest && period < longest;
-        resolved.then_some(Shape::Cyclic { axis, period, center: travel.center() })
+        resolved.then_some(Shape::Cyclic { axis, period, order: 1, center: travel.center() })
     };
     let of_axis = |axis: usize| -> Vec<Effect> {
         let motion = study.own.get(axis).copied().flatten();
@@ -121,13 +121,10 @@ fn told(study: &Study<'_>, effect: &Effect, size: f64) -> Option<Denied> {
     Some(Denied {
         motion: study.equations.motions[motion].name.clone(),
         term: effect.shape.name(),
-        period: match effect.shape {
-            Shape::Cyclic { axis, period, .. } => {
-                let (factor, unit) = crate::parameters::axis_unit(study, axis);
-                Some((period * factor, unit))
-            }
-            _ => None,
-        },
+        period: effect.shape.wave_along().map(|(axis, period)| {
+            let (factor, unit) = crate::parameters::axis_unit(study, axis);
+            (period * factor, unit)
+        }),
         above: size * factor,
         unit,
     })

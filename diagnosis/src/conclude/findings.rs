@@ -51,7 +51,7 @@ pub(super) fn report(
             }
             continue;
         };
-        let mut reduced = judge::without(&design, &swept, &found.fit.model, number);
+        let mut reduced = judge::without(&design, &swept, &found.fit.model, &[number]);
         if found.plain_zeros {
             zeros::weigh_plainly(study, &mut reduced, &found.appraisal.weights.as_white());
         }

@@ -17,7 +17,7 @@ fn prices(period: f64, alike: f64) -> [f64; 2] {
     let recording = bench.record(&truth, &noisy(there_and_back, position("x"), 0.000_3, 5));
     let study = Study::new(bench.equations(), None, std::slice::from_ref(&&recording));
     let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
-    let shape = Shape::Cyclic { axis: 0, period, center: 150.0 };
+    let shape = Shape::Cyclic { axis: 0, period, order: 1, center: 150.0 };
     let zero = Effect::setting(0, Setting::Offset { channel: 0 });
     let model = Model::of([
         Fitted { effect: zero, coefficients: vec![0.0] },

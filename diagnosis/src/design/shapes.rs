@@ -33,12 +33,17 @@ enum Use {
         place: usize,
     },
     Slope {
-        low: usize,
-        high: usize,
-        step: f64,
-        coefficients: Vec<f64>,
+        parts: Vec<Difference>,
         place: usize,
     },
+}
+
+/// How a term with its coefficients changes with its nonlinear parameter: the difference between two values of it.
+struct Difference {
+    low: usize,
+    high: usize,
+    step: f64,
+    coefficients: Vec<f64>,
 }
 
 /// The relative step by which slopes are taken.
@@ -53,15 +58,15 @@ impl Shapes {
             // What an instrument does comes in behind everything.
             let side = regressor.effect.side().unwrap_or(Side::After);
             let place = shapes.slopes.len();
-            let usage = match (&regressor.slope, shape.nonlinear()) {
-                (Some(_), Some(_)) if let Shape::Lag { axis, .. } = *shape => Use::Inertia { axis, place },
-                (Some(coefficients), Some(parameter)) => {
-                    let step = parameter.value * SLOPE_STEP;
-                    let low = shapes.number(shape.with_nonlinear(parameter.value - step), side);
-                    let high = shapes.number(shape.with_nonlinear(parameter.value + step), side);
-                    Use::Slope { low, high, step: 2.0 * step, coefficients: coefficients.clone(), place }
+            let usage = match &regressor.slope {
+                Some(_) if let Shape::Lag { axis, .. } = *shape => Use::Inertia { axis, place },
+                Some(terms) => {
+                    let parts = terms.iter().filter_map(|(shape, coefficients)| {
+                        shapes.difference(shape, side, coefficients.clone())
+                    });
+                    Use::Slope { parts: parts.collect(), place }
                 }
-                _ => Use::Shape(shapes.number(shape.clone(), side)),
+                None => Use::Shape(shapes.number(shape.clone(), side)),
             };
             if !matches!(usage, Use::Shape(_)) {
                 shapes.slopes.push(vec![Vec::new()]);
@@ -69,6 +74,14 @@ impl Shapes {
             shapes.of.push(usage);
         }
         shapes
+    }
+
+    fn difference(&mut self, shape: &Shape, side: Side, coefficients: Vec<f64>) -> Option<Difference> {
+        let value = shape.nonlinear()?.value;
+        let step = value * SLOPE_STEP;
+        let low = self.number(shape.with_nonlinear(value - step), side);
+        let high = self.number(shape.with_nonlinear(value + step), side);
+        Some(Difference { low, high, step: 2.0 * step, coefficients })
     }
 
     fn number(&mut self, shape: Shape, side: Side) -> usize {
@@ -91,13 +104,16 @@ impl Shapes {
             match usage {
                 Use::Shape(_) => {}
                 Use::Inertia { axis, place } => self.slopes[*place][0] = view.axis(*axis).inertia_slope(),
-                Use::Slope { low, high, step, coefficients, place } => {
-                    let sum = |number: usize, row: usize| -> f64 {
+                Use::Slope { parts, place } => {
+                    let sum = |number: usize, coefficients: &[f64], row: usize| -> f64 {
                         let columns = self.different[number].columns.iter().zip(coefficients);
                         columns.map(|(column, coefficient)| column[row] * coefficient).sum()
                     };
+                    let change = |Difference { low, high, step, coefficients }: &Difference, row: usize| {
+                        (sum(*high, coefficients, row) - sum(*low, coefficients, row)) / step
+                    };
                     self.slopes[*place][0] =
-                        (0..view.len()).map(|row| (sum(*high, row) - sum(*low, row)) / step).collect();
+                        (0..view.len()).map(|row| parts.iter().map(|part| change(part, row)).sum()).collect();
                 }
             }
         }

@@ -53,7 +53,12 @@ fn model(study: &Study<'_>, settings: &[(Setting, f64)]) -> Model {
             coefficients: vec![0.03],
         },
         Fitted {
-            effect: machine(study, "EBX", Side::After, Shape::Cyclic { axis: 0, period: 30.0, center: 0.0 }),
+            effect: machine(
+                study,
+                "EBX",
+                Side::After,
+                Shape::Cyclic { axis: 0, period: 30.0, order: 1, center: 0.0 },
+            ),
             coefficients: vec![2e-5, 1e-5],
         },
         Fitted {
@@ -229,7 +234,12 @@ fn slopes_are_how_the_residual_falls_with_the_nonlinear_parameter() {
     let study = Study::new(bench.equations(), Some(&known), &[&recording]);
     let cases = [
         (
-            machine(&study, "EXX", Side::After, Shape::Cyclic { axis: 0, period: 13.0, center: 0.0 }),
+            machine(
+                &study,
+                "EXX",
+                Side::After,
+                Shape::Cyclic { axis: 0, period: 13.0, order: 1, center: 0.0 },
+            ),
             vec![0.01, -0.02],
         ),
         (machine(&study, "EYX", Side::After, Shape::ReversalSpike { axis: 0, decay: 0.5 }), vec![0.03]),
@@ -245,23 +255,31 @@ fn slopes_are_how_the_residual_falls_with_the_nonlinear_parameter() {
             vec![1e-4],
         ),
     ];
-    for (effect, coefficients) in cases {
-        let fitted = Fitted { effect: effect.clone(), coefficients: coefficients.clone() };
-        let regressors = [Regressor { effect: effect.clone(), slope: Some(coefficients.clone()) }];
+    let alone = cases.map(|(effect, coefficients)| vec![Fitted { effect, coefficients }]);
+    let wave = |order: u32, coefficients: [f64; 2]| {
+        let shape = Shape::Cyclic { axis: 0, period: 13.0, order, center: 0.0 };
+        Fitted { effect: machine(&study, "EXX", Side::After, shape), coefficients: coefficients.to_vec() }
+    };
+    let harmonics = vec![wave(1, [0.01, -0.02]), wave(2, [0.004, 0.003]), wave(5, [-0.002, 0.001])];
+    for sharing in alone.into_iter().chain([harmonics]) {
+        let numbers: Vec<usize> = (0..sharing.len()).collect();
+        let regressors = [Regressor::slope(&sharing, &numbers)];
         for channel in 0..3 {
-            let found = columns(&study, channel, &Model::of([fitted.clone()]), &regressors);
+            let found = columns(&study, channel, &Model::of(sharing.clone()), &regressors);
             let found: Vec<f64> = found.column(0).iter().copied().collect();
-            let value = effect.shape.nonlinear().unwrap().value;
+            let value = sharing[0].effect.shape.nonlinear().unwrap().value;
             let step = 1e-3 * value;
             let moved = |value: f64| {
-                let effect = Effect { place: effect.place, shape: effect.shape.with_nonlinear(value) };
-                left(&study, &Model::of([Fitted { effect, coefficients: coefficients.clone() }]))
-                    .swap_remove(channel)
+                let at = |Fitted { effect, coefficients }: &Fitted| Fitted {
+                    effect: Effect { place: effect.place, shape: effect.shape.with_nonlinear(value) },
+                    coefficients: coefficients.clone(),
+                };
+                left(&study, &Model::of(sharing.iter().map(at))).swap_remove(channel)
             };
             let (up, down) = (moved(value + step), moved(value - step));
             let slope: Vec<f64> =
                 up.iter().zip(&down).map(|(up, down)| -(up - down) / (2.0 * step)).collect();
-            assert!(apart(&found, &slope) <= 2e-3 * peak(&slope) + 1e-9, "{effect:?} {channel}");
+            assert!(apart(&found, &slope) <= 2e-3 * peak(&slope) + 1e-9, "{sharing:?} {channel}");
         }
     }
 }

@@ -33,9 +33,10 @@ fn from(frequencies: impl Iterator<Item = f64>) -> Vec<(f64, f64, Fit)> {
             Fitted { effect: zero, coefficients: vec![0.0] },
             Fitted { effect: vibration, coefficients: vec![0.0; 2] },
         ]);
+        let groups = harmonics::sharing(&model.effects);
         // Without an amplitude the frequency has no slope: the first step is the linear fit at this frequency.
-        let begin = Linearised::new(&study, model, &weights).stepped(&study, 1.0, &travels);
-        let squares = Linearised::new(&study, begin.clone(), &weights).remaining;
+        let begin = Linearised::new(&study, model, &weights, &groups).stepped(&study, 1.0, &travels);
+        let squares = Linearised::new(&study, begin.clone(), &weights, &groups).remaining;
         (frequency, squares, refine(&study, begin, &weights, &travels))
     };
     frequencies.map(fit).collect()
@@ -78,7 +79,7 @@ fn a_fit_that_begins_within_half_a_turn_comes_to_the_vibration() {
 fn a_wave_slips_by_less_than_half_a_cycle_in_one_step() {
     for (low, high, period) in [(0.0, 300.0, 8.0), (-400.0, 400.0, 2.0), (0.0, 50.0, 40.0)] {
         let travel = Travel { low, high, step: 0.1, moves: true, between: high - low, ..Travel::default() };
-        let most = furthest(&Shape::Cyclic { axis: 0, period, center: 0.0 }, &[travel]);
+        let most = furthest(&Shape::Cyclic { axis: 0, period, order: 1, center: 0.0 }, &[travel]);
         let cycles = |period: f64| (high - low) / period;
         for slipped in [cycles(period - most) - cycles(period), cycles(period) - cycles(period + most)] {
             assert!((0.2..0.5).contains(&slipped), "{period} mm: {slipped} cycles");

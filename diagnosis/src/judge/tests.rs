@@ -209,7 +209,7 @@ fn falls(case: &Case<'_>, settings: usize, share: f64) -> Option<usize> {
     let (swept, samples) = (swept(&design), design.fitted().1);
     let columns: Vec<usize> = design.columns(PLAY).collect();
     let squares = swept.worth(&columns) * samples / swept.remaining();
-    let bare = Appraisal::new(&case.study, &without(&design, &swept, &case.fit.model, PLAY));
+    let bare = Appraisal::new(&case.study, &without(&design, &swept, &case.fit.model, &[PLAY]));
     let worth = squares.min(bare.deviance - case.appraisal.deviance);
     let untried = crate::search::price(&case.study, &case.fit.model.effects[PLAY].effect, samples, 1.0, 1.0);
     assert!(untried < 0.5 * worth, "{untried} {worth}");

@@ -59,9 +59,10 @@ impl Described<'_> {
             Shape::ReversalSpike { axis, decay } => {
                 CalibratedTerm::ReversalSpike { axis: *axis, height: first, decay: *decay }
             }
-            Shape::Cyclic { axis, period, center } => {
+            Shape::Cyclic { axis, period, order, center } => {
+                let period = period / f64::from(*order);
                 let phase = turned(phase - TAU * center / period);
-                CalibratedTerm::Cyclic { axis: *axis, period: *period, amplitude, phase }
+                CalibratedTerm::Cyclic { axis: *axis, period, amplitude, phase }
             }
             Shape::Lag { axis, inertia } => {
                 CalibratedTerm::Lag { axis: *axis, gain: 1.0 / first, frequency: natural(*inertia) }

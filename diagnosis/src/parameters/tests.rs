@@ -84,7 +84,7 @@ fn cases(study: &Study<'_>) -> Vec<Fitted> {
         fitted("EXX", Shape::Backlash { axis: 0, wind_up: 0.0 }, &[0.01]),
         fitted("EXX", Shape::Backlash { axis: 0, wind_up: 4.0 }, &[0.01]),
         fitted("EXX", Shape::ReversalSpike { axis: 0, decay: 0.2 }, &[0.01]),
-        fitted("EXX", Shape::Cyclic { axis: 0, period: 9.0, center: 0.0 }, &[0.003, -0.004]),
+        fitted("EXX", Shape::Cyclic { axis: 0, period: 9.0, order: 1, center: 0.0 }, &[0.003, -0.004]),
         fitted("EBX", Shape::Vibration { frequency: 2.2 }, &[-3e-5, 1e-5]),
         fitted("EXX", Shape::Lag { axis: 0, inertia: 0.0 }, &[0.03]),
         fitted("EXX", Shape::Acceleration { axis: 0 }, &[0.002]),
@@ -220,7 +220,12 @@ fn waves_have_an_amplitude_and_a_phase_and_loops_a_gain() {
     let bench = Bench::of("XYFZ");
     let recording = recording(3);
     let study = Study::new(bench.equations(), None, &[&recording]);
-    let wave = fitted(&study, "EXX", Shape::Cyclic { axis: 0, period: 9.0, center: 0.0 }, &[-0.003, 0.004]);
+    let wave = fitted(
+        &study,
+        "EXX",
+        Shape::Cyclic { axis: 0, period: 9.0, order: 1, center: 0.0 },
+        &[-0.003, 0.004],
+    );
     let told =
         estimates(&Described::new(&study, &wave, &Certainty::linear(DMatrix::zeros(3, 3))).parameters());
     // A sin(x + f) = A cos f sin x + A sin f cos x.
@@ -248,7 +253,7 @@ fn angles_of_a_rotary_axis_are_told_in_the_unit_of_the_recording() {
     let wave = fitted(
         &study,
         "ECC",
-        Shape::Cyclic { axis: 0, period: 30.0 * degree, center: 0.0 },
+        Shape::Cyclic { axis: 0, period: 30.0 * degree, order: 1, center: 0.0 },
         &[1e-3 * degree, 0.0],
     );
     let told =

@@ -42,10 +42,7 @@ pub(super) fn over_position(
     cleaned: &(Vec<f64>, Vec<f64>),
 ) -> Vec<PositionSpectrum> {
     let found = |axis: usize| {
-        sight.lines(|shape| match shape {
-            Shape::Cyclic { axis: of, period, .. } if *of == axis => Some(*period),
-            _ => None,
-        })
+        sight.lines(|shape| shape.wave_along().filter(|(of, _)| *of == axis).map(|(_, period)| period))
     };
     let moving = || (0..states.axes.len()).filter(|axis| states.axes[*axis].moves);
     let mut axes: Vec<usize> = moving().filter(|axis| !found(*axis).is_empty()).collect();

@@ -56,7 +56,7 @@ fn assert_near(found: f64, expected: f64) {
 
 const SPIKE: Shape = Shape::ReversalSpike { axis: 0, decay: 1.0 };
 const PLAY: Shape = Shape::Backlash { axis: 0, wind_up: 1.0 };
-const WAVE: Shape = Shape::Cyclic { axis: 0, period: 1.0, center: 0.0 };
+const WAVE: Shape = Shape::Cyclic { axis: 0, period: 1.0, order: 1, center: 0.0 };
 const VIBRATION: Shape = Shape::Vibration { frequency: 1.0 };
 const DRIFT: Shape = Shape::Drift { time_constant: 1.0 };
 const GROWTH: Shape = Shape::Growth { sensor: 0, reference: 20.0, time_constant: 1.0 };
@@ -191,7 +191,7 @@ fn vibration(frequency: f64) -> Shape {
 }
 
 fn wave(axis: usize, period: f64) -> Shape {
-    Shape::Cyclic { axis, period, center: 0.0 }
+    Shape::Cyclic { axis, period, order: 1, center: 0.0 }
 }
 
 #[test]

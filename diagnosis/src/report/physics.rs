@@ -59,7 +59,7 @@ pub(super) fn friction(finding: &Finding) -> Option<&'static str> {
     )
 }
 
-/// What a lost motion, or the gain of a position loop, below zero means; nothing for other findings.
+/// What a lost motion, or the gain of a lag or of an acceleration, below zero means; nothing for other findings.
 pub(super) fn ahead(finding: &Finding) -> Option<&'static str> {
     let below = |name: &str| {
         let parameter = finding.parameters.iter().find(|parameter| parameter.name == name);
@@ -69,6 +69,12 @@ pub(super) fn ahead(finding: &Finding) -> Option<&'static str> {
         return below("gain").then_some(
             "Its value is negative: the drive leads its command by velocity over gain. Its feed-forward is too large, or the \
              loop is faster than the calibration says.",
+        );
+    }
+    if finding.kind() == TermKind::Acceleration {
+        return below("gain").then_some(
+            "Its value is negative: the axis is ahead of its command by acceleration over gain. The drive's feed-forward of the \
+             acceleration is too large.",
         );
     }
     below("lost_motion").then_some(

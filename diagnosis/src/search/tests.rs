@@ -4,6 +4,7 @@ use super::*;
 use crate::judge;
 use crate::model::{Fitted, Model, Place};
 use crate::noise::Noise;
+use crate::recording::Recording;
 use crate::side::Side;
 use crate::testing::{Bench, circle, path, position, scenario};
 use crate::weights::Weights;
@@ -24,7 +25,7 @@ fn effects(bench: &Bench) -> Vec<Effect> {
         Shape::Constant,
         Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 40.0 },
         Shape::Backlash { axis: 0, wind_up: 0.0 },
-        Shape::Cyclic { axis: 0, period: 7.0, center: 0.0 },
+        Shape::Cyclic { axis: 0, period: 7.0, order: 1, center: 0.0 },
     ];
     let others = shapes.map(|shape| Effect { place, shape });
     std::iter::once(Effect::setting(0, Setting::Offset { channel: 0 })).chain(others).collect()
@@ -75,7 +76,7 @@ fn what_is_one_piece_of_physics_stands_once() {
         place: Place::Motion { motion: bench.motion(motion), side: Side::After },
         shape,
     };
-    let wave = |period| on("EXX", Shape::Cyclic { axis: 0, period, center: 0.0 });
+    let wave = |period| on("EXX", Shape::Cyclic { axis: 0, period, order: 1, center: 0.0 });
     let vibration = |frequency| on("EXX", Shape::Vibration { frequency });
     let coupling = |axis, degree| on("EXX", Shape::Coupling { axis, degree, scale: 1.0 });
     let play = |wind_up| on("EXX", Shape::Backlash { axis: 0, wind_up });
@@ -131,34 +132,53 @@ fn only_what_turns_a_body_is_held_to_small_turns() {
 #[test]
 fn a_drive_leads_only_where_no_clock_does_the_same() {
     let bench = Bench::of("XFY");
+    let [late, ahead] = late_and_ahead(&bench, "lag: {gain: 40 1/s}");
+    let lag = || Shape::Lag { axis: 0, inertia: 0.0 };
+    for (recording, beside_clock, possible) in
+        [(&late, true, true), (&late, false, true), (&ahead, true, false), (&ahead, false, true)]
+    {
+        assert_eq!(is_chosen(&bench, recording, lag(), beside_clock), possible);
+    }
+}
+
+/// A feed-forward of the acceleration that is too large takes an axis ahead, where a missing one leaves it behind. No clock does either.
+#[test]
+fn an_acceleration_takes_an_axis_ahead_or_leaves_it_behind() {
+    let bench = Bench::of("XFY");
+    for recording in late_and_ahead(&bench, "acceleration: {gain: 40 1/s^2}") {
+        assert!(is_chosen(&bench, &recording, Shape::Acceleration { axis: 0 }, true));
+    }
+}
+
+/// A circle of a stage whose X has this term, and of one that has as much of it below zero.
+fn late_and_ahead(bench: &Bench, term: &str) -> [Recording; 2] {
     let scenario = scenario(path(circle(40.0), 20.0, 10.0), position("x"));
     let true_machine = bench.record(&bench.calibration("{}"), &scenario);
-    let late = bench.record(&bench.calibration("{EXX: [{lag: {gain: 40 1/s}}]}"), &scenario);
+    let late = bench.record(&bench.calibration(&format!("{{EXX: [{{{term}}}]}}")), &scenario);
     let mut ahead = late.clone();
     let (Some(read), Some(exact)) = (&mut ahead.measured[0], &true_machine.measured[0]) else { panic!() };
     for (read, exact) in read.iter_mut().zip(exact) {
         *read = 2.0 * exact - *read;
     }
+    [late, ahead]
+}
 
-    for (recording, beside_clock, possible) in
-        [(&late, true, true), (&late, false, true), (&ahead, true, false), (&ahead, false, true)]
-    {
-        let study = Study::new(bench.equations(), None, &[recording]);
-        let place = Place::Motion { motion: bench.motion("EXX"), side: Side::Drive };
-        let lag = Effect { place, shape: Shape::Lag { axis: 0, inertia: 0.0 } };
-        let zero = Effect::setting(0, Setting::Offset { channel: 0 });
-        let clock = beside_clock.then(|| Effect::setting(0, Setting::Clock));
-        let effects = [zero, lag].into_iter().chain(clock);
-        let model = Model::of(effects.map(Fitted::unfitted));
-        let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3)]]));
-        let (products, samples) = design.fitted();
-        let choice = Choice::new(&study, &design, products, samples, 1, 1.0, Resolution::new(&study, &[]));
-        let empty = choice.empty();
-        assert_eq!(choice.fits(&empty, 1), possible);
-        let with = choice.with(&empty, 1);
-        assert!(with.cost < empty.cost, "it would explain what is seen");
-        assert_eq!(choice.best().contains(&1), possible);
-    }
+/// Whether this shape of EXX, which explains what is seen, may be chosen and is.
+fn is_chosen(bench: &Bench, recording: &Recording, shape: Shape, beside_clock: bool) -> bool {
+    let study = Study::new(bench.equations(), None, &[recording]);
+    let place = Place::Motion { motion: bench.motion("EXX"), side: Side::Drive };
+    let zero = Effect::setting(0, Setting::Offset { channel: 0 });
+    let clock = beside_clock.then(|| Effect::setting(0, Setting::Clock));
+    let effects = [zero, Effect { place, shape }].into_iter().chain(clock);
+    let model = Model::of(effects.map(Fitted::unfitted));
+    let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3)]]));
+    let (products, samples) = design.fitted();
+    let choice = Choice::new(&study, &design, products, samples, 1, 1.0, Resolution::new(&study, &[]));
+    let empty = choice.empty();
+    assert!(choice.with(&empty, 1).cost < empty.cost, "it would explain what is seen");
+    let fits = choice.fits(&empty, 1);
+    assert_eq!(choice.best().contains(&1), fits);
+    fits
 }
 
 #[test]
@@ -174,7 +194,7 @@ fn of_two_that_bend_alike_in_one_place_one_is_enough() {
     let nodes = vec![-40.0, -20.0, 0.0, 20.0, 40.0];
     let table = Shape::Table { axis: 0, nodes, directed: false, repeats: false };
     let bow = Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 40.0 };
-    let wave = |period| Shape::Cyclic { axis: 0, period, center: 0.0 };
+    let wave = |period| Shape::Cyclic { axis: 0, period, order: 1, center: 0.0 };
     let effects = [
         on("EXX", table),
         on("EXX", bow.clone()),
@@ -233,7 +253,7 @@ fn two_effects_that_nearly_cancel_have_outgrown_what_they_explain() {
     let (period, bow) = (400.0, 0.04 / 1600.0);
     let bent = [
         ("EXX", Shape::Polynomial { axis: 0, degree: 2, center: 0.0, scale: 40.0 }),
-        ("EXX", Shape::Cyclic { axis: 0, period, center: 0.0 }),
+        ("EXX", Shape::Cyclic { axis: 0, period, order: 1, center: 0.0 }),
     ];
     for (left, outgrow) in [(0.5, false), (0.25, false), (0.1, true)] {
         // The wave is turned up at 0, and bends downwards there by half its amplitude times the square of its angle.

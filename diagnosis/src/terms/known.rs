@@ -29,7 +29,7 @@ pub(crate) fn known(
             (Shape::ReversalSpike { axis: *axis, decay: *decay }, vec![*height])
         }
         CalibratedTerm::Cyclic { axis, period, amplitude, phase } => {
-            (Shape::Cyclic { axis: *axis, period: *period, center: 0.0 }, wave(*amplitude, *phase))
+            (Shape::Cyclic { axis: *axis, period: *period, order: 1, center: 0.0 }, wave(*amplitude, *phase))
         }
         CalibratedTerm::Lag { axis, gain, frequency } => {
             (Shape::Lag { axis: *axis, inertia: inertia(*frequency) }, vec![1.0 / gain])

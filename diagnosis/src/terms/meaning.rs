@@ -60,7 +60,7 @@ mod tests {
             Shape::Table { axis: 0, nodes: vec![0.0, 1.0], directed: false, repeats: false },
             Shape::Backlash { axis: 0, wind_up: 0.0 },
             Shape::ReversalSpike { axis: 0, decay: 1.0 },
-            Shape::Cyclic { axis: 0, period: 1.0, center: 0.0 },
+            Shape::Cyclic { axis: 0, period: 1.0, order: 1, center: 0.0 },
             Shape::Lag { axis: 0, inertia: 0.0 },
             Shape::Acceleration { axis: 0 },
             Shape::Expansion { axis: 0, sensor: 0, reference: 20.0 },

@@ -315,7 +315,7 @@ fn the_nonlinear_parameter_is_read_and_set() {
     let shapes = [
         Shape::Backlash { axis: 0, wind_up: 2.0 },
         Shape::ReversalSpike { axis: 0, decay: 2.0 },
-        Shape::Cyclic { axis: 0, period: 2.0, center: 0.0 },
+        Shape::Cyclic { axis: 0, period: 2.0, order: 1, center: 0.0 },
         Shape::Growth { sensor: 0, reference: 20.0, time_constant: 2.0 },
         Shape::Drift { time_constant: 2.0 },
         Shape::Vibration { frequency: 2.0 },

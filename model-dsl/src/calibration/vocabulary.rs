@@ -245,12 +245,13 @@ pub const VOCABULARY: [Entry; 17] = [
     Entry {
         kind: TermKind::Acceleration,
         name: "acceleration",
-        physics: "missing feed-forward",
+        physics: "feed-forward that is missing, or too large",
         state: State::Acceleration,
         form: Form::Plain,
         keys: &[
             quantity("gain", Kind { of: Base::Position, per: &[Base::Motion, Base::Time, Base::Time] })
-                .bound(Bound::Positive),
+                // Below zero the axis runs ahead: the feed-forward is too large.
+                .bound(Bound::NotZero),
             OWN_AXIS,
         ],
         not_compensable: Some("the correction would itself accelerate the axis"),

@@ -154,7 +154,7 @@ fn signs_are_checked() {
     refused("EXX: [{lag: {gain: 0 1/s}}]", &[("E0419", "0 1/s")]);
     // A drive that leads has no natural frequency.
     refused("EXX: [{lag: {gain: -1 1/s, frequency: 5 Hz}}]", &[("E0419", "-1 1/s")]);
-    refused("EXX: [{acceleration: {gain: -1 1/s/s}}]", &[("E0419", "-1 1/s/s")]);
+    refused("EXX: [{acceleration: {gain: 0 1/s/s}}]", &[("E0419", "0 1/s/s")]);
     refused("EXX: [{reversal-spike: {height: 1 um, decay: 0 s}}]", &[("E0419", "0 s")]);
     refused("EXX: [{drift: {amplitude: 1 um, time_constant: -5 s}}]", &[("E0419", "-5 s")]);
     refused("EXX: [{vibration: {frequency: 0 Hz, amplitude: 1 um, phase: 0 rad}}]", &[("E0419", "0 Hz")]);

@@ -156,6 +156,7 @@ fn every_other_term_is_read() {
         ("EXX: [{lag: {gain: 16.28 1/s}}]", CalibratedTerm::Lag { axis: 0, gain: 16.28, frequency: 0.0 }),
         ("EXX: [{lag: {gain: -80 1/s}}]", CalibratedTerm::Lag { axis: 0, gain: -80.0, frequency: 0.0 }),
         ("EXX: [{acceleration: {gain: 400 1/s^2}}]", CalibratedTerm::Acceleration { axis: 0, gain: 400.0 }),
+        ("EXX: [{acceleration: {gain: -400 1/s^2}}]", CalibratedTerm::Acceleration { axis: 0, gain: -400.0 }),
         (
             "EXX: [{drift: {amplitude: 2 um, time_constant: 10 min}}]",
             CalibratedTerm::Drift { amplitude: 0.002, time_constant: 600.0 },

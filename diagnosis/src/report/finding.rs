@@ -77,7 +77,8 @@ fn what(finding: &Finding) -> String {
         ahead(finding).unwrap_or_default(),
         pushed(finding).unwrap_or_default(),
     ];
-    sentences.join(" ").trim().to_owned()
+    let said: Vec<&str> = sentences.into_iter().filter(|sentence| !sentence.is_empty()).collect();
+    said.join(" ")
 }
 
 fn evidence(evidence: &Evidence) -> String {

@@ -217,10 +217,11 @@ fn stands_for_what_went(study: &Study<'_>, old: &Model, new: &Model, weights: &W
     let beside: Vec<usize> = (new.effects.len()..with_them.effects.len()).collect();
     let took = judge::worth_in(study, old, weights, &gone);
     let keeps = judge::worth_in(study, &with_them, weights, &beside);
-    keeps < IMITATED * took
+    keeps <= IMITATED * took
 }
 
-/// The share of what a name takes that it keeps at most beside what it imitates.
+/// The share of what names take that they keep at most beside what they imitate. On simulated and real recordings imitations keep less
+/// than a hundredth, and names that only got lost two thirds and more; from 0.02 to 0.5 nothing that is found changes.
 const IMITATED: f64 = 0.5;
 
 /// The share of what is left above white noise that a form must take. What takes less leaves the better part without a name, and may be a

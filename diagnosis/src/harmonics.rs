@@ -195,7 +195,8 @@ fn with_those_that_pay(
         };
         harmonics.iter().any(blurs)
     };
-    let kept = model.keeping(|fitted| !is_one(&fitted.effect) && !imitates_one(&fitted.effect));
+    let stays = |effect: &Effect| effect == wave || !is_one(effect) && !imitates_one(effect);
+    let kept = model.keeping(|fitted| stays(&fitted.effect));
     let paying = paying(study, &kept, harmonics.to_vec(), conditions);
     if paying.is_empty() {
         return None;

@@ -139,7 +139,9 @@ pub(super) fn left(finding: &Finding) -> &'static str {
             "Changes after the measurement remain."
         }
         TermKind::ReversalSpike => "Use friction compensation in the drive.",
-        TermKind::Acceleration => "Use acceleration feed-forward in the drive, or gentler motion.",
+        TermKind::Acceleration => {
+            "Set the feed-forward of the acceleration in the drive anew, or use gentler motion."
+        }
         TermKind::Drift => "Warm up the machine, or place a sensor at the heat source.",
         TermKind::Vibration => "Balance, damp or isolate its source.",
         TermKind::Compliance => "Use a stiffer set-up or less force.",

@@ -136,6 +136,37 @@ fn a_lost_motion_below_zero_sends_to_the_sign_of_the_sensor() {
 }
 
 #[test]
+fn an_acceleration_below_zero_is_said_to_be_too_much_feed_forward() {
+    let said = |gain: f64| {
+        let mut found = cases::backlash("drive");
+        (found.term, found.location.state) = ("acceleration", "acceleration");
+        found.calibrated = CalibratedTerm::Acceleration { axis: 1, gain };
+        let value = ParameterValue::Fitted(Estimate {
+            value: gain,
+            ci95: (gain - 9.0, gain + 9.0),
+            unit: "1/s^2".to_owned(),
+        });
+        found.parameters = vec![Parameter { name: "gain", value }];
+        report::text(&Diagnosis { findings: vec![found], ..cases::two_findings() })
+    };
+    let sentence = "the axis is ahead of its command by acceleration over gain";
+    let flat = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(flat(said(-400.0)).contains(sentence) && !flat(said(400.0)).contains(sentence));
+}
+
+#[test]
+fn sentences_of_a_finding_follow_each_other_with_one_space() {
+    // Behind the explanation a sentence on friction, and none between.
+    let text = report::text(&Diagnosis { findings: vec![cases::backlash("drive")], ..cases::two_findings() });
+    let what = text.split("   what ").nth(1).unwrap().split("   how much").next().unwrap();
+    let lines = what.lines().map(str::trim);
+    assert!(
+        lines.clone().any(|line| line.contains(". ")) && lines.clone().all(|line| !line.contains("  ")),
+        "{what}"
+    );
+}
+
+#[test]
 fn numbers_are_rounded_to_their_uncertainty_and_stand_in_units_that_people_use() {
     let cases = [
         ("lost_motion", 0.009_83, 0.000_31, "mm", "lost motion 9.83 +- 0.31 um"),

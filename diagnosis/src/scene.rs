@@ -14,7 +14,7 @@ use model_dsl::program::Interpreter;
 use crate::channel::{Channel, Kind, channels};
 use crate::course::LastCourse;
 use crate::legs::GAP;
-use crate::recording::{Instrument, Lie, Recording};
+use crate::recording::{Instrument, Lie, Recording, Turned};
 use crate::returns::Returns;
 use crate::states::{Given, Shared, behind_corners, beside_reversals, unseen_turns};
 use crate::targets::Targets;
@@ -54,6 +54,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) leans: [bool; 3],
     /// How the part lies where it was measured, where that is free.
     pub(crate) lie: Option<Lie>,
+    /// The rotation for which that is free, where the recording says nothing of it.
+    pub(crate) turned: Option<Turned>,
     /// The course that was worked out last.
     pub(crate) last_course: LastCourse,
     /// What may come back in it.
@@ -93,6 +95,7 @@ impl<'a> Scene<'a> {
             corners: corners(recording, &given),
             leans: leans(recording, &given.programmed, &built.interpreter),
             lie: None,
+            turned: None,
             built,
             recording,
             given,

@@ -13,7 +13,7 @@ use crate::channel::{Channel, ChannelAt, Kind};
 use crate::course::{Course, LastCourse};
 use crate::model::{Effect, Fitted, Model, Place};
 use crate::observations;
-use crate::recording::{Lie, Recording};
+use crate::recording::{Instrument, Lie, PartDatum, Recording, Turned, turned};
 use crate::rest;
 use crate::returns::{Return, Returns};
 use crate::scene::{Built, Scene};
@@ -81,10 +81,9 @@ impl<'a> Study<'a> {
         // What is told of a scene follows from its course, which needs the study: so it is made in steps.
         for scene in 0..study.scenes.len() {
             let course = Course::new(&study, scene, &Model::default());
-            if study.scenes[scene].recording.free_datum {
-                let readings = observations::part_readings(&study, scene, &course);
-                study.scenes[scene].lie = Some(Lie::of(&readings, study.scenes[scene].is_probed()));
-            }
+            let (lie, turned) = how_it_lies(&study, scene, &course);
+            study.scenes[scene].lie = lie;
+            study.scenes[scene].turned = turned;
             study.scenes[scene].returns = Returns::new(&study, scene, &course.shown);
             study.scenes[scene].last_course = LastCourse::default();
         }
@@ -127,6 +126,26 @@ impl<'a> Study<'a> {
         let mut channels = self.scenes.iter().flat_map(|scene| &scene.channels);
         channels.any(|channel| channel.kind == Kind::Drive(axis))
     }
+}
+
+/// How the part of a recording lies where that is free: where the recording says so, and where it says nothing and a rotation explains
+/// most of what was read, which is then told too. Only points that were taken at rest are those of parts: on the way round a circle, what
+/// a loop lags behind is a rotation.
+fn how_it_lies(study: &Study<'_>, number: usize, course: &Course) -> (Option<Lie>, Option<Turned>) {
+    let scene = &study.scenes[number];
+    let readings = || observations::part_readings(study, number, course);
+    let turned = match scene.recording.datum {
+        PartDatum::Fixed => return (None, None),
+        PartDatum::Free => None,
+        PartDatum::Unsaid => {
+            let may_be_turned = scene.recording.instrument == Instrument::Position && scene.sparse();
+            let Some(turned) = may_be_turned.then(|| turned(&readings())).flatten() else {
+                return (None, None);
+            };
+            Some(turned)
+        }
+    };
+    (Some(Lie::of(&readings(), scene.is_probed())), turned)
 }
 
 fn constants(equations: &Equations, calibration: Option<&Calibration>) -> Vec<f64> {

@@ -18,7 +18,7 @@ use simulation::{
     Channel, Commands, Instrument as Reads, Measurement, Path, Plant, Scenario, Simulated, Temperature,
 };
 
-use crate::recording::{AxisChannels, Instrument, Line, Named, Recording};
+use crate::recording::{AxisChannels, Instrument, Line, Named, PartDatum, Recording};
 use crate::{Chains, Inputs};
 
 /// A machine that can be calibrated and recorded.
@@ -166,7 +166,7 @@ pub(crate) fn recording(simulated: Simulated) -> Recording {
     let mut recording = Recording {
         file: "test.yaml".to_owned(),
         instrument: set_up(&simulated.instrument),
-        free_datum: simulated.free_datum,
+        datum: PartDatum::free_where(simulated.free_datum),
         holdout: (!simulated.holdout.is_empty()).then(|| simulated.holdout.clone()),
         normal: simulated.normals,
         time: simulated.time,

@@ -1,6 +1,6 @@
 //! Recordings that are made. In: what the simulation drove and read. Out: the recording as if it had been read from its file.
 
-use recording::{AxisChannels, Instrument, Line, Named, Recording};
+use recording::{AxisChannels, Instrument, Line, Named, PartDatum, Recording};
 use simulation::{Channel, Column, Instrument as Reader, Simulated};
 
 /// A simulated recording as if it had been read from its file. Nothing where the instrument cannot be told in a recording: a ballbar
@@ -12,7 +12,7 @@ pub(crate) fn recording(simulated: Simulated, file: &str) -> Option<Recording> {
         file: file.to_owned(),
         title: simulated.title,
         instrument,
-        free_datum: simulated.free_datum,
+        datum: PartDatum::free_where(simulated.free_datum),
         time: simulated.time,
         run: simulated.run,
         axes: axes

@@ -66,7 +66,7 @@ impl Move {
         let simulated = simulate(&plant, &scenario).ok()?;
         let mut recording = made::recording(simulated, &self.words)?;
         // What was clamped anew once is clamped anew again.
-        recording.free_datum |= base.recording.free_datum;
+        recording.datum = base.recording.datum;
         read_by_drives(base, &mut recording);
         Base::new(&self.words, base.compiled.clone(), base.calibration.clone(), recording).ok()
     }

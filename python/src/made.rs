@@ -213,7 +213,7 @@ pub(crate) fn update(
         recorded::add(&mut parts, one.get().recorded().clone()).map_err(|failure| raised(py, &failure))?;
     }
     if datum.turned {
-        parts.iter_mut().for_each(|part| part.recording.free_datum = true);
+        parts.iter_mut().for_each(|part| part.recording.datum = ::recording::PartDatum::Free);
     }
     let calibration = Calibration::taken(calibration)?;
     let one = calibration.get();

@@ -11,7 +11,6 @@ use model_dsl::quantity::{self, Dimension};
 use model_dsl::source::Spanned;
 use model_dsl::yaml::Node;
 
-use super::Instrument;
 use super::channel::{Channel, Channels, read_channels, warn_shared_columns};
 use super::date::{Moment, check_date, date_of};
 use super::form::{Form, read_data};
@@ -19,6 +18,7 @@ use super::place::check_runs;
 use super::setup::{Kind, read_setup};
 use super::suited::check_suited;
 use super::words::{FORM, first_key, keys, near_or_all, word};
+use super::{Instrument, PartDatum};
 
 const KEYS: [&str; 12] = [
     "recording",
@@ -50,8 +50,8 @@ pub struct Header {
     pub constants: Vec<(usize, f64)>,
     /// What measured, and how it was set up.
     pub instrument: Instrument,
-    /// Whether the part lies with a displacement and a rotation of its own.
-    pub free_datum: bool,
+    /// What is said of how the part lies where it was measured.
+    pub datum: PartDatum,
     /// The direction of all readings of a probe, where the set-up gives it in place of channels: a unit vector.
     pub normal: Option<[f64; 3]>,
     /// The file of the data, a path from the recording's own folder.
@@ -181,7 +181,7 @@ fn read_all(root: &Node, equations: &Equations, diagnostics: &mut Diagnostics) -
         calibration,
         constants,
         instrument: setup.instrument,
-        free_datum: setup.free_datum,
+        datum: setup.datum,
         normal: setup.normal,
         data,
         form,

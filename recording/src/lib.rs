@@ -65,7 +65,7 @@ pub use date::{Moment, date_of};
 pub use direction::own_direction;
 pub use form::{Form, Names, Separator};
 pub use header::{Extra, Header, calibration_of, machine_of, read_header};
-pub use lie::{Lie, PartReading, Turned, clamped_anew, turned};
+pub use lie::{Lie, PartDatum, PartReading, Turned, clamped_anew, taken_as_free, turned};
 
 /// One recording, in mm, rad, s, degC and the units of its loads. All columns have one entry a row.
 #[derive(Clone, Debug, Default)]
@@ -78,8 +78,8 @@ pub struct Recording {
     pub date: Option<Moment>,
     /// What measured, and how it was set up.
     pub instrument: Instrument,
-    /// Whether the part was clamped anew where it was measured, so that it lies there with a displacement and a rotation of its own.
-    pub free_datum: bool,
+    /// What is said of how the part lies where it was measured.
+    pub datum: PartDatum,
     /// Time since the first row, s; strictly increasing.
     pub time: Vec<f64>,
     /// The repeat that each row belongs to; 1 everywhere where the recording does not tell.

@@ -9,6 +9,18 @@
 
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector3};
 
+/// What a recording says of how the part lies where it is measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PartDatum {
+    /// Nothing.
+    #[default]
+    Unsaid,
+    /// As its frame says (`datum: fixed`): it stayed clamped as it was made.
+    Fixed,
+    /// With a displacement and a rotation of its own (`datum: free`): it was clamped anew.
+    Free,
+}
+
 /// One reading of a part: mm, part frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PartReading {
@@ -61,6 +73,14 @@ const STEPS: usize = 30;
 
 /// A step by a smaller angle ends them, rad: it moves a metre by 0.1 nm, and what is left after it is its square.
 const DONE: f64 = 1e-10;
+
+impl PartDatum {
+    /// Free, or nothing said.
+    #[must_use]
+    pub fn free_where(is_free: bool) -> Self {
+        if is_free { Self::Free } else { Self::Unsaid }
+    }
+}
 
 impl Lie {
     /// How a part lay of which these are the readings. `constant` says whether a constant of all readings is free besides, as the zero
@@ -268,18 +288,25 @@ impl Side {
 /// What to say of parts that seem to have been clamped anew, each by its file; nothing where there is none.
 #[must_use]
 pub fn clamped_anew(parts: &[(&str, Turned)]) -> Option<String> {
+    let advice = "If the part was measured on another machine than the one that made it, write `setup: {datum: free}` in its recording.";
+    (!parts.is_empty()).then(|| format!("{} {advice}", rotations(parts)))
+}
+
+/// What to say of the same parts where their datum is taken as free; nothing where there is none.
+#[must_use]
+pub fn taken_as_free(parts: &[(&str, Turned)]) -> Option<String> {
+    let advice = "In one clamping it cannot be told from an error that rotates all points alike, so the datum is free. Write `setup: \
+                  {datum: free}` in its recording to confirm this, or `setup: {datum: fixed}` if the part stayed clamped as it was made.";
+    (!parts.is_empty()).then(|| format!("{} {advice}", rotations(parts)))
+}
+
+fn rotations(parts: &[(&str, Turned)]) -> String {
     let one = |(file, turned): &(&str, Turned)| {
         let Turned { about, angle, share } = turned;
         format!("{:.4} deg about {about} in {file} ({:.0} %)", angle.to_degrees(), (100.0 * share).floor())
     };
     let all: Vec<String> = parts.iter().map(one).collect();
-    (!all.is_empty()).then(|| {
-        format!(
-            "A rotation of the part explains most of the measured deviations: {}. If the part was measured on another machine \
-             than the one that made it, write `setup: {{datum: free}}` in its recording.",
-            all.join(", ")
-        )
-    })
+    format!("A rotation of the part explains most of the measured deviations: {}.", all.join(", "))
 }
 
 /// A count as a number.

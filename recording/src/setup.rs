@@ -13,7 +13,7 @@ use model_dsl::yaml::Node;
 use super::channel::{ChannelKind, Channels, insensitive, no_axis};
 use super::direction::{dot, own_direction, read_direction};
 use super::words::{FORM, keys, word};
-use super::{Instrument, Line};
+use super::{Instrument, Line, PartDatum};
 
 /// The instruments by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,8 +66,8 @@ pub(super) struct Setup {
     pub(super) instrument: Instrument,
     /// The direction of all readings of a probe, where no channels give it.
     pub(super) normal: Option<[f64; 3]>,
-    /// Whether the part lies with a displacement and a rotation of its own.
-    pub(super) free_datum: bool,
+    /// What is said of how the part lies where it was measured.
+    pub(super) datum: PartDatum,
 }
 
 /// What the set-up of each instrument is read from.
@@ -96,15 +96,15 @@ pub(super) fn read_setup(
     let place = entry.map_or(instrument.span, |(key, _)| key.span);
     let context = Context { instrument, fields, place, equations, channels };
     context.refuse_foreign(entry.map(|(_, node)| node), diagnostics);
-    let free_datum = context.free_datum(diagnostics)?;
-    let plain = |instrument| Some(Setup { instrument, normal: None, free_datum });
+    let datum = context.datum(diagnostics)?;
+    let plain = |instrument| Some(Setup { instrument, normal: None, datum });
     match instrument.value {
         Kind::Position => plain(Instrument::Position),
         Kind::Ballbar => plain(context.ballbar(diagnostics)?),
         Kind::Linear => plain(Instrument::Linear(context.linear(diagnostics)?)),
         Kind::Straightness => plain(Instrument::Straightness(context.straightness(diagnostics)?)),
         Kind::Angular => plain(context.angular(diagnostics)?),
-        Kind::Probe => context.probe(free_datum, diagnostics),
+        Kind::Probe => context.probe(datum, diagnostics),
     }
 }
 
@@ -137,17 +137,21 @@ impl<'c> Context<'c> {
         diagnostics.push(Diagnostic::error("E0615", self.place, message).help(help));
     }
 
-    /// Whether the part was clamped anew (`datum: free`); nothing at all after a finding.
-    fn free_datum(&self, diagnostics: &mut Diagnostics) -> Option<bool> {
+    /// How the part lies (`datum: free` or `fixed`); nothing at all after a finding.
+    fn datum(&self, diagnostics: &mut Diagnostics) -> Option<PartDatum> {
         let own = self.instrument.value.keys().contains(&"datum");
-        let Some(node) = self.get("datum").filter(|_| own) else { return Some(false) };
+        let Some(node) = self.get("datum").filter(|_| own) else { return Some(PartDatum::Unsaid) };
         let written = word(node, "`datum`", diagnostics)?;
-        if written.value != "free" {
-            let message = format!("`datum` must be `free`, found `{}`", written.value);
-            let help = "write `datum: free`, or leave `datum` out if the part stayed clamped as it was made";
-            diagnostics.push(Diagnostic::error(FORM, written.span, message).help(help));
-            return None;
-        }
+        let datum = match written.value.as_str() {
+            "free" => PartDatum::Free,
+            "fixed" => PartDatum::Fixed,
+            other => {
+                let message = format!("`datum` must be `free` or `fixed`, found `{other}`");
+                let help = "write `datum: free` if the part was clamped anew, or `datum: fixed` if it stayed clamped as it was made";
+                diagnostics.push(Diagnostic::error(FORM, written.span, message).help(help));
+                return None;
+            }
+        };
         let places = |channel: &ChannelKind| matches!(channel, ChannelKind::Measured(_));
         let seen = self.instrument.value == Kind::Probe
             || self.channels.known.iter().any(|channel| places(&channel.kind));
@@ -158,7 +162,7 @@ impl<'c> Context<'c> {
                 .push(mistake.help("add the channel `measured.x`, `.y` or `.z`, or leave `datum` out"));
             return None;
         }
-        Some(true)
+        Some(datum)
     }
 
     fn ballbar(&self, diagnostics: &mut Diagnostics) -> Option<Instrument> {
@@ -250,7 +254,7 @@ impl<'c> Context<'c> {
     }
 
     /// A probe's direction: from channels or from the set-up, and not from both.
-    fn probe(&self, free_datum: bool, diagnostics: &mut Diagnostics) -> Option<Setup> {
+    fn probe(&self, datum: PartDatum, diagnostics: &mut Diagnostics) -> Option<Setup> {
         self.axis(diagnostics)?;
         let direction = self.direction(diagnostics)?;
         let normals =
@@ -258,7 +262,7 @@ impl<'c> Context<'c> {
         let first = normals.into_iter().next();
         // What is there wrongly is not missing.
         let named = |name: &str| self.channels.names.iter().any(|known| known == name);
-        let setup = |normal| Some(Setup { instrument: Instrument::Probe, normal, free_datum });
+        let setup = |normal| Some(Setup { instrument: Instrument::Probe, normal, datum });
         match (direction, first) {
             (Some(direction), Some(normal)) => {
                 let message = "a probe has both a `direction` and channels such as `normal.x`";

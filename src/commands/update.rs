@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use recording::PartDatum;
 use update::{Method, Options, Update, report};
 use workshop::calibrated::{self, Calibrated};
 use workshop::failure::Failure;
@@ -18,7 +19,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let known = calibrated::read(&arguments.calibration, &Person::default())?;
     let mut parts = recorded::read_all(&arguments.measurements, &Person::new(arguments.quiet))?;
     if arguments.datum.turned {
-        parts.iter_mut().for_each(|part| part.recording.free_datum = true);
+        parts.iter_mut().for_each(|part| part.recording.datum = PartDatum::Free);
     }
     let person = Person::new(arguments.quiet);
     updated::check_machine((&known, &arguments.calibration), &parts, &person)?;

@@ -5,7 +5,7 @@
 //! each part that turned. A part is turned before anything is solved, so that what is solved for is of first order, however it was clamped.
 
 use nalgebra::{DMatrix, DVector};
-use recording::{Instrument, Lie, PartReading, Recording, Turned, turned};
+use recording::{Instrument, Lie, PartDatum, PartReading, Recording, Turned, turned};
 
 use crate::points::{Point, Points};
 use crate::solution::Solution;
@@ -40,9 +40,9 @@ pub struct Rotation {
 
 impl Setting {
     pub(crate) fn of(recording: &Recording, (number, run): (usize, i64), readings: &[PartReading]) -> Self {
-        let free = recording.free_datum;
+        let free = recording.datum == PartDatum::Free;
         // Readings along normals show what the surface is, and it is not known how far along it they lie.
-        let plain = !free && recording.instrument == Instrument::Position;
+        let plain = recording.datum == PartDatum::Unsaid && recording.instrument == Instrument::Position;
         Self {
             recording: number,
             run,

@@ -12,7 +12,7 @@ use model_dsl::diagnostic::Diagnostics;
 use model_dsl::source::SourceFile;
 use model_dsl::{Compiled, compile_word, yaml};
 use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
-use recording::{AxisChannels, Instrument, Recording};
+use recording::{AxisChannels, Instrument, PartDatum, Recording};
 use simulation::noise::Source;
 use simulation::{Commands, Plant};
 
@@ -69,7 +69,7 @@ impl Bench {
         Recording {
             file: format!("part{seed}.yaml"),
             instrument: Instrument::Position,
-            free_datum: true,
+            datum: PartDatum::Free,
             axes: commands.positions.iter().map(axis).collect(),
             measured: measured.map(Some),
             time: commands.time,
@@ -209,7 +209,7 @@ fn what_turns_the_machine_as_a_whole_is_not_told_from_the_part() {
     }
     // A part that was not clamped anew tells it.
     let mut clamped = plates.clone();
-    clamped[1].free_datum = false;
+    clamped[1].datum = PartDatum::Unsaid;
     let updated = bench.update(&known, &clamped, Options::default());
     assert!(updated.relations.is_empty(), "{:?}", updated.relations);
 }
@@ -219,7 +219,7 @@ fn what_turns_the_machine_as_a_whole_is_not_told_from_the_part() {
 fn a_free_datum_frees_the_zero_too() {
     let bench = Bench::new();
     let mut plates = [bench.plate(5e-4, 41), bench.plate(-2e-4, 42)];
-    plates[1].free_datum = false;
+    plates[1].datum = PartDatum::Unsaid;
     let options = Options { datum: [false; 3], ..Options::default() };
     let updated = bench.update(&bench.read(KNOWN), &plates, options);
     assert_eq!((updated.zeros, updated.rotations.len()), (2, 1));
@@ -263,7 +263,7 @@ fn heights_alone_show_a_tilt_and_normals_all_of_it() {
 #[test]
 fn a_part_that_was_turned_and_does_not_say_so_is_told() {
     let bench = Bench::new();
-    let silent = |angle: f64, seed: u64| Recording { free_datum: false, ..bench.plate(angle, seed) };
+    let silent = |angle: f64, seed: u64| Recording { datum: PartDatum::Unsaid, ..bench.plate(angle, seed) };
     let updated = bench.update(&bench.read(KNOWN), &[silent(2e-3, 61), silent(0.0, 62)], Options::default());
     let [hint] = updated.hints.as_slice() else { panic!("{:?}", updated.hints) };
     // 2 mrad are 0.1146 deg; the squareness of 0.12 mrad turns one side a little more.

@@ -6,13 +6,11 @@
 use crate::answers::answers;
 use crate::audit::gross;
 use crate::channel::Channel;
-use crate::course::Course;
 use crate::crossing;
 use crate::diagnosis::Change;
 use crate::model::{Fitted, Model};
-use crate::observations;
 use crate::parameters::axis_unit;
-use crate::recording::{Instrument, clamped_anew, turned};
+use crate::recording::{Instrument, Turned, taken_as_free};
 use crate::scene::Scene;
 use crate::states::Crossing;
 use crate::study::Study;
@@ -88,8 +86,12 @@ fn unturned(scene: &Scene<'_>) -> Option<String> {
     })
 }
 
-/// What the free rotations of all parts leave open of the machine: what it turns alike wherever its axes stand.
+/// What the free rotations of all parts leave open of the machine: what it turns alike wherever its axes stand. Where none of them says
+/// that it is free, [`clamped`] says it.
 fn turned_alike(study: &Study<'_>) -> Option<String> {
+    if study.scenes.iter().all(|scene| scene.turned.is_some()) {
+        return None;
+    }
     let free = |scene: &Scene<'_>, about: usize| scene.lie.as_ref().is_some_and(|lie| lie.rotations[about]);
     let about = ["X", "Y", "Z"].into_iter().enumerate();
     let about: Vec<&str> = about
@@ -105,19 +107,11 @@ fn turned_alike(study: &Study<'_>) -> Option<String> {
     })
 }
 
-/// What is said of parts that a rotation explains and whose recordings do not speak of one. Points that were taken at rest are those of
-/// parts: on the way round a circle, what a loop lags behind is a rotation too.
-fn clamped(study: &Study<'_>) -> Option<String> {
-    let parts = study.scenes.iter().enumerate().filter_map(|(number, scene)| {
-        let plain = scene.lie.is_none() && scene.recording.instrument == Instrument::Position;
-        if !plain || !scene.sparse() {
-            return None;
-        }
-        let course = Course::new(study, number, &Model::default());
-        let turned = turned(&observations::part_readings(study, number, &course))?;
-        Some((scene.recording.file.as_str(), turned))
-    });
-    clamped_anew(&parts.collect::<Vec<_>>())
+/// What is said of parts whose datum is free only because a rotation explains them.
+fn clamped<'s>(study: &'s Study<'_>) -> Option<String> {
+    let of_its_file = |scene: &'s Scene<'_>| Some((scene.recording.file.as_str(), scene.turned?));
+    let parts: Vec<(&str, Turned)> = study.scenes.iter().filter_map(of_its_file).collect();
+    taken_as_free(&parts)
 }
 
 /// What commands that are end points leave open.

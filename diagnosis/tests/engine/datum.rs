@@ -8,7 +8,7 @@ use simulation::noise::{Noise, Source};
 use simulation::{Commands, Datum, Instrument as Reads, Measurement, Normal, replay};
 
 use crate::common::*;
-use crate::recording::Recording;
+use crate::recording::{PartDatum, Recording};
 use crate::testing::*;
 
 /// Standard deviation of the noise, mm.
@@ -153,20 +153,37 @@ fn a_probed_part_lies_displaced_too() {
     }
 }
 
+/// All that is claimed of the machine and of the instruments' settings, with its values.
+fn claimed(diagnosis: &Diagnosis) -> Vec<(&str, &[Parameter])> {
+    let findings =
+        diagnosis.findings.iter().map(|finding| (finding.motion.as_str(), &finding.parameters[..]));
+    let settings = diagnosis.settings.iter().map(|setting| (setting.term, &setting.parameters[..]));
+    findings.chain(settings).collect()
+}
+
 #[test]
-fn a_part_that_was_turned_and_does_not_say_so_is_told() {
+fn the_datum_of_a_part_that_a_rotation_explains_is_free_and_told() {
     let bench = Bench::of("XYFZ");
-    let free = plate(&bench, "{}", Some(2e-3), 41);
-    let silent = Recording { free_datum: false, ..free.clone() };
     let hint = |diagnosis: &Diagnosis| {
-        diagnosis.undecided.iter().find(|sentence| sentence.contains("`setup: {datum: free}`")).cloned()
+        diagnosis.undecided.iter().find(|sentence| sentence.contains("`setup: {datum: fixed}`")).cloned()
     };
-    let sentence = hint(&told(&bench, &[silent])).unwrap();
+    for (errors, number) in [("{}", 41), (SQUARENESS, 43)] {
+        let free = plate(&bench, errors, Some(2e-3), number);
+        let saying = |datum| told(&bench, &[Recording { datum, ..free.clone() }]);
+        let (silent, free) = (saying(PartDatum::Unsaid), saying(PartDatum::Free));
+        let sentence = hint(&silent).unwrap();
+        assert!(sentence.contains("about Z in part") && hint(&free).is_none(), "{sentence}");
+        assert_eq!((silent.verdict, claimed(&silent)), (free.verdict, claimed(&free)));
+        // As its frame says, the machine must have rotated it.
+        let fixed = saying(PartDatum::Fixed);
+        assert_eq!((hint(&fixed), fixed.verdict, fixed.settings.len()), (None, Verdict::LeftOutPhysics, 0));
+    }
     // 2 mrad are 0.1146 deg.
-    assert!(sentence.contains("0.114") && sentence.contains("about Z in part41.yaml"), "{sentence}");
-    assert_eq!(hint(&told(&bench, &[free])), None);
+    let turned = Recording { datum: PartDatum::Unsaid, ..plate(&bench, "{}", Some(2e-3), 41) };
+    let sentence = hint(&told(&bench, &[turned])).unwrap();
+    assert!(sentence.contains("0.114") && sentence.contains("in part41.yaml"), "{sentence}");
     // A squareness turns one side alone.
-    let square = Recording { free_datum: false, ..plate(&bench, SQUARENESS, None, 42) };
+    let square = Recording { datum: PartDatum::Unsaid, ..plate(&bench, SQUARENESS, None, 42) };
     let diagnosis = told(&bench, &[square]);
     assert_eq!((hint(&diagnosis), diagnosis.verdict), (None, Verdict::LeftOutPhysics));
 }

@@ -27,7 +27,7 @@ pub(super) fn settle(
         title: header.title.clone(),
         date: header.date,
         instrument: header.instrument.clone(),
-        free_datum: header.free_datum,
+        datum: header.datum,
         axes: vec![AxisChannels::default(); header.axes.len()],
         constants: header.constants.clone(),
         holdout: header.holdout.clone(),

@@ -246,7 +246,7 @@ fn set_ups() {
 #[test]
 fn datums() {
     let of = |value: &str| format!("setup: {{datum: {value}}}\nholdout");
-    refused(POSITION, "holdout", &of("fixed"), "E0604", "fixed", "leave `datum` out");
+    refused(POSITION, "holdout", &of("turned"), "E0604", "turned", "`datum: fixed` if it stayed clamped");
     refused(POSITION, "holdout", &of("[free]"), "E0604", "[free]", "");
     refused(
         BALLBAR,

@@ -1,6 +1,6 @@
 //! Instruments as they were set up, and what is derived where it is evident.
 
-use abbe_recording::{Header, Instrument, Line};
+use abbe_recording::{Header, Instrument, Line, PartDatum};
 
 use crate::common::{header, recording};
 
@@ -118,10 +118,11 @@ fn the_datum_of_a_part_is_free_where_it_says_so() {
             "recording: 1\nmachine: XYFZ\ninstrument: position\ndata: d.csv\nchannels:\n  time: {{column: t, unit: s}}\n  \
              command.x: {{column: x, unit: mm}}\n  measured.x: {{column: mx, unit: mm}}\n{setup}"
         );
-        recording(&text, "t,x,mx\n0,1,2\n").unwrap().free_datum
+        recording(&text, "t,x,mx\n0,1,2\n").unwrap().datum
     };
-    assert!(part("setup: {datum: free}\n"));
-    assert!(!part("setup: {}\n") && !part(""));
+    assert_eq!(part("setup: {datum: free}\n"), PartDatum::Free);
+    assert_eq!(part("setup: {datum: fixed}\n"), PartDatum::Fixed);
+    assert_eq!([part("setup: {}\n"), part("")], [PartDatum::Unsaid; 2]);
     let probed = with("XYFZ", "x y z", "probe", "um", "{direction: Z, datum: free}");
-    assert!(probed.free_datum && probed.normal == Some([0.0, 0.0, 1.0]));
+    assert!(probed.datum == PartDatum::Free && probed.normal == Some([0.0, 0.0, 1.0]));
 }

@@ -25,6 +25,7 @@ mod audit;
 mod candidates;
 mod certainty;
 mod channel;
+mod clamping;
 mod compose;
 mod conclude;
 mod conditions;

@@ -10,10 +10,10 @@ use model_dsl::calibration::Calibration;
 use model_dsl::equations::Equations;
 
 use crate::channel::{Channel, ChannelAt, Kind};
+use crate::clamping;
 use crate::course::{Course, LastCourse};
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::observations;
-use crate::recording::{Instrument, Lie, PartDatum, Recording, Turned, turned};
+use crate::recording::{Recording, Turned};
 use crate::rest;
 use crate::returns::{Return, Returns};
 use crate::scene::{Built, Scene};
@@ -61,6 +61,16 @@ impl<'a> Study<'a> {
         calibration: Option<&'a Calibration>,
         recordings: &[&'a Recording],
     ) -> Self {
+        Self::with_turned(equations, calibration, recordings, &[])
+    }
+
+    /// The same, in which these recordings, by number, are of parts that are known to be turned.
+    pub(crate) fn with_turned(
+        equations: &'a Equations,
+        calibration: Option<&'a Calibration>,
+        recordings: &[&'a Recording],
+        turned: &[(usize, Turned)],
+    ) -> Self {
         let constants = constants(equations, calibration);
         let sensors = sensor_names(calibration, recordings);
         let loads = load_names(recordings);
@@ -81,9 +91,9 @@ impl<'a> Study<'a> {
         // What is told of a scene follows from its course, which needs the study: so it is made in steps.
         for scene in 0..study.scenes.len() {
             let course = Course::new(&study, scene, &Model::default());
-            let (lie, turned) = how_it_lies(&study, scene, &course);
-            study.scenes[scene].lie = lie;
-            study.scenes[scene].turned = turned;
+            let known = turned.iter().find(|(number, _)| *number == scene).map(|(_, turned)| *turned);
+            study.scenes[scene].turned = known.or_else(|| clamping::turned_as_read(&study, scene, &course));
+            study.scenes[scene].lie = clamping::lie(&study, scene, &course);
             study.scenes[scene].returns = Returns::new(&study, scene, &course.shown);
             study.scenes[scene].last_course = LastCourse::default();
         }
@@ -126,26 +136,6 @@ impl<'a> Study<'a> {
         let mut channels = self.scenes.iter().flat_map(|scene| &scene.channels);
         channels.any(|channel| channel.kind == Kind::Drive(axis))
     }
-}
-
-/// How the part of a recording lies where that is free: where the recording says so, and where it says nothing and a rotation explains
-/// most of what was read, which is then told too. Only points that were taken at rest are those of parts: on the way round a circle, what
-/// a loop lags behind is a rotation.
-fn how_it_lies(study: &Study<'_>, number: usize, course: &Course) -> (Option<Lie>, Option<Turned>) {
-    let scene = &study.scenes[number];
-    let readings = || observations::part_readings(study, number, course);
-    let turned = match scene.recording.datum {
-        PartDatum::Fixed => return (None, None),
-        PartDatum::Free => None,
-        PartDatum::Unsaid => {
-            let may_be_turned = scene.recording.instrument == Instrument::Position && scene.sparse();
-            let Some(turned) = may_be_turned.then(|| turned(&readings())).flatten() else {
-                return (None, None);
-            };
-            Some(turned)
-        }
-    };
-    (Some(Lie::of(&readings(), scene.is_probed())), turned)
 }
 
 fn constants(equations: &Equations, calibration: Option<&Calibration>) -> Vec<f64> {

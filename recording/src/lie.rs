@@ -2,7 +2,7 @@
 //!
 //! In: what was read of a part, each reading beside the place at which it is expected. Out: a [`Lie`]: the rotation of the part that
 //! brings the one to the other, and about which axes the readings show a rotation at all; or, of a part whose recording says nothing,
-//! that a rotation explains what was read. It exists because a part that is clamped anew stands at an angle that says nothing of the
+//! whether they show one. It exists because a part that is clamped anew stands at an angle that says nothing of the
 //! machine it was made on.
 //!
 //! The rotation is exact, and not of first order: half a degree over 300 mm makes 11 um of second order.
@@ -222,66 +222,154 @@ impl PartReading {
 /// The fewest readings along each of two directions of which a rotation is told: of fewer, chance makes one too often.
 const FEWEST: usize = 6;
 
-/// The share that a rotation must explain to be told. A squareness alone is half a rotation over a part as wide as it is long.
-const MOST: f64 = 0.75;
+/// The most stretches of readings from whose scatter the deviation of a turn is told. A stretch must be longer than what holds its noise
+/// together.
+const STRETCHES: usize = 8;
 
-/// How far the turns of the two sides of a part may lie apart, as a share of their mean: a squareness turns one side alone, and its
-/// sides lie 2 apart.
+/// Each side of the part must show a turn of so many deviations. By chance one of eight stretches does so in one of fifty cases, and both,
+/// in the same sense, in one of 5000.
+const SHOWN: f64 = 3.0;
+
+/// How far the turns of the two sides of a part may lie apart, as a share of their mean, beside twice the deviation of that: a squareness
+/// turns one side alone, and its sides lie 2 apart.
 const ALIKE: f64 = 0.25;
 
-/// The rotation that explains most of what readings along the directions of the frame show of a part; nothing where none explains it. It
-/// turns the two sides of a part alike, as no squareness does.
+/// The rotation that readings along the directions of the frame show of a part, of several the one that explains most; nothing where they
+/// show none. It turns the two sides of a part alike, as no squareness does.
 #[must_use]
 pub fn turned(readings: &[PartReading]) -> Option<Turned> {
     let planes = [("X", 1, 2), ("Y", 2, 0), ("Z", 0, 1)];
     let found = planes.into_iter().filter_map(|(about, first, second)| {
-        let along = |axis: usize| -> Vec<PartReading> {
-            let own =
-                |reading: &&PartReading| reading.direction.get(axis) == Some(&1.0) && reading.is_known();
-            readings.iter().filter(own).copied().collect()
-        };
-        let (one, other) = (Side::of(&along(first), second)?, Side::of(&along(second), first)?);
-        // A rotation moves the first direction against the second coordinate.
-        let (turn, back) = (-one.slope, other.slope);
-        let angle = (one.weight * turn + other.weight * back) / (one.weight + other.weight);
-        let left = one.left(-angle) + other.left(angle);
-        let share = 1.0 - left / (one.total + other.total);
-        let alike = (turn - back).abs() < ALIKE * angle.abs();
-        (alike && share > MOST).then_some(Turned { about, angle, share })
+        let sides = [Side::of(readings, first, second)?, Side::of(readings, second, first)?];
+        turned_about(about, &sides)
     });
     found.max_by(|one, other| one.share.total_cmp(&other.share))
 }
 
-/// What is read along one direction against one coordinate, both from their means.
+fn turned_about(about: &'static str, sides: &[Side; 2]) -> Option<Turned> {
+    let [one, other] = sides;
+    let (whole, deviations) = (Turns::of(one.all, other.all), deviations(sides));
+    let [turn, back] = whole.sides;
+    let is_shown = turn.abs() > SHOWN * deviations.sides[0] && back.abs() > SHOWN * deviations.sides[1];
+    let apart = (turn - back).abs();
+    let is_alike = turn * back > 0.0 && apart < ALIKE * whole.mean.abs() + 2.0 * deviations.apart;
+    let left = one.all.left(-whole.mean) + other.all.left(whole.mean);
+    let share = 1.0 - left / (one.all.total() + other.all.total());
+    (is_shown && is_alike).then_some(Turned { about, angle: whole.mean, share })
+}
+
+/// By how much the two sides of a part are turned, rad.
+struct Turns {
+    sides: [f64; 2],
+    /// Of both together, by least squares.
+    mean: f64,
+    /// The first less the second.
+    apart: f64,
+}
+
+impl Turns {
+    /// A rotation moves the first direction against the second coordinate.
+    fn of(one: Sums, other: Sums) -> Self {
+        let sides = [-one.slope(), other.slope()];
+        let [turn, back] = sides;
+        let (first, second) = (one.weight(), other.weight());
+        Self { sides, mean: (first * turn + second * back) / (first + second), apart: turn - back }
+    }
+}
+
+/// The deviations of the turns, by the jackknife over stretches of readings: noise that wanders moves whole stretches.
+fn deviations(sides: &[Side; 2]) -> Turns {
+    let [one, other] = sides;
+    let without = |stretch: usize| Turns::of(one.without(stretch), other.without(stretch));
+    let all: Vec<Turns> = (0..one.stretches.len().max(other.stretches.len())).map(without).collect();
+    let of = |what: fn(&Turns) -> f64| {
+        let count = number(all.len());
+        let mean = all.iter().map(what).sum::<f64>() / count;
+        let squares: f64 = all.iter().map(|turns| (what(turns) - mean).powi(2)).sum();
+        (squares * (count - 1.0) / count).sqrt()
+    };
+    Turns {
+        sides: [of(|turns| turns.sides[0]), of(|turns| turns.sides[1])],
+        mean: of(|turns| turns.mean),
+        apart: of(|turns| turns.apart),
+    }
+}
+
+/// What is read along one direction against one coordinate.
 struct Side {
-    slope: f64,
-    /// The squares of the coordinate.
-    weight: f64,
-    /// The squares of what was read.
-    total: f64,
+    all: Sums,
+    stretches: Vec<Sums>,
 }
 
 impl Side {
     /// Nothing where readings are few, or where there is no slope to see.
-    fn of(readings: &[PartReading], coordinate: usize) -> Option<Self> {
-        let count = number(readings.len().max(1));
-        let place = |reading: &PartReading| reading.place.get(coordinate).copied().unwrap_or(f64::NAN);
-        let middle = readings.iter().map(place).sum::<f64>() / count;
-        let mean = readings.iter().map(|reading| reading.deviation).sum::<f64>() / count;
-        let (mut weight, mut total, mut product) = (0.0, 0.0, 0.0);
-        for reading in readings {
-            let (arm, read) = (place(reading) - middle, reading.deviation - mean);
-            weight += arm * arm;
-            total += read * read;
-            product += arm * read;
+    fn of(readings: &[PartReading], direction: usize, coordinate: usize) -> Option<Self> {
+        let is_along = |reading: &&PartReading| reading.direction.get(direction) == Some(&1.0);
+        let own = readings.iter().filter(is_along).filter(|reading| reading.is_known());
+        let pairs = own.filter_map(|reading| Some((*reading.place.get(coordinate)?, reading.deviation)));
+        let pairs: Vec<(f64, f64)> = pairs.collect();
+        let stretches: Vec<Sums> = pairs
+            .chunks(pairs.len().div_ceil(STRETCHES).max(1))
+            .map(|stretch| Sums::of(stretch, pairs[0]))
+            .collect();
+        let all = stretches.iter().fold(Sums::default(), |all, stretch| all.and(*stretch, 1.0));
+        (pairs.len() >= FEWEST && all.slope().is_finite()).then_some(Self { all, stretches })
+    }
+
+    fn without(&self, stretch: usize) -> Sums {
+        self.stretches.get(stretch).map_or(self.all, |stretch| self.all.and(*stretch, -1.0))
+    }
+}
+
+/// Sums over readings, each of its coordinate and of what was read, both from those of the first reading.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    count: f64,
+    arm: f64,
+    read: f64,
+    arms: f64,
+    reads: f64,
+    both: f64,
+}
+
+impl Sums {
+    fn of(readings: &[(f64, f64)], first: (f64, f64)) -> Self {
+        readings.iter().fold(Self::default(), |sums, (place, deviation)| {
+            let (arm, read) = (place - first.0, deviation - first.1);
+            let one = Self { count: 1.0, arm, read, arms: arm * arm, reads: read * read, both: arm * read };
+            sums.and(one, 1.0)
+        })
+    }
+
+    /// With others, so many times.
+    fn and(self, other: Self, times: f64) -> Self {
+        Self {
+            count: self.count + times * other.count,
+            arm: self.arm + times * other.arm,
+            read: self.read + times * other.read,
+            arms: self.arms + times * other.arms,
+            reads: self.reads + times * other.reads,
+            both: self.both + times * other.both,
         }
-        let slope = product / weight;
-        (readings.len() >= FEWEST && slope.is_finite()).then_some(Self { slope, weight, total })
+    }
+
+    /// The squares of the coordinate, from its mean.
+    fn weight(self) -> f64 {
+        self.arms - self.arm * self.arm / self.count
+    }
+
+    /// The squares of what was read, from its mean.
+    fn total(self) -> f64 {
+        self.reads - self.read * self.read / self.count
+    }
+
+    fn slope(self) -> f64 {
+        (self.both - self.arm * self.read / self.count) / self.weight()
     }
 
     /// The squares that a slope leaves.
-    fn left(&self, slope: f64) -> f64 {
-        self.total - slope * (2.0 * self.slope - slope) * self.weight
+    fn left(self, slope: f64) -> f64 {
+        self.total() - slope * (2.0 * self.slope() - slope) * self.weight()
     }
 }
 
@@ -303,10 +391,14 @@ pub fn taken_as_free(parts: &[(&str, Turned)]) -> Option<String> {
 fn rotations(parts: &[(&str, Turned)]) -> String {
     let one = |(file, turned): &(&str, Turned)| {
         let Turned { about, angle, share } = turned;
-        format!("{:.4} deg about {about} in {file} ({:.0} %)", angle.to_degrees(), (100.0 * share).floor())
+        format!(
+            "{:.4} deg about {about} in {file}, which explains {:.0} % of them",
+            angle.to_degrees(),
+            (100.0 * share).floor()
+        )
     };
     let all: Vec<String> = parts.iter().map(one).collect();
-    format!("A rotation of the part explains most of the measured deviations: {}.", all.join(", "))
+    format!("The measured deviations show a rotation of the part: {}.", all.join(", "))
 }
 
 /// A count as a number.

@@ -267,9 +267,9 @@ fn a_part_that_was_turned_and_does_not_say_so_is_told() {
     let updated = bench.update(&bench.read(KNOWN), &[silent(2e-3, 61), silent(0.0, 62)], Options::default());
     let [hint] = updated.hints.as_slice() else { panic!("{:?}", updated.hints) };
     // 2 mrad are 0.1146 deg; the squareness of 0.12 mrad turns one side a little more.
-    assert!(hint.contains(" deg about Z in part61.yaml (") && !hint.contains("part62"), "{hint}");
+    assert!(hint.contains(" deg about Z in part61.yaml,") && !hint.contains("part62"), "{hint}");
     assert!(hint.contains("0.11") && hint.contains("`setup: {datum: free}`"), "{hint}");
-    assert!(report::text(&updated).contains("A rotation of the part explains"));
+    assert!(report::text(&updated).contains("The measured deviations show a rotation of the part"));
     // Where it says so there is nothing to tell, and the report has the angle.
     let free = bench.update(&bench.read(KNOWN), &[bench.plate(2e-3, 61)], Options::default());
     assert!(free.hints.is_empty());

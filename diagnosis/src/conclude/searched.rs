@@ -8,11 +8,13 @@ use super::units::Units;
 use super::{Bare, bare_beside, bare_model, ceiling, fitted_runs, strongest, undecidable};
 use crate::audit::Trial;
 use crate::candidates;
+use crate::clamping;
 use crate::diagnosis::{Diagnosis, NothingReturns, Residual, Returning};
 use crate::engine::{self, Found};
 use crate::fit;
 use crate::model::{Fitted, Model, Place};
 use crate::pictures;
+use crate::recording::Turned;
 use crate::repeats::{self, Scatter};
 use crate::returns;
 use crate::study::Study;
@@ -42,15 +44,29 @@ pub(super) struct Opening {
 }
 
 impl<'s> Searched<'s> {
-    /// Searches recordings; the whole diagnosis where nothing can be decided from them.
+    /// Searches recordings; the whole diagnosis where nothing can be decided from them. What turns out to be the rotation of a part is
+    /// none of the machine's: then the search begins anew with a free datum.
     pub(super) fn new(
         inputs: &Inputs<'s>,
         keep: Keep,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<(Self, Opening), Box<Diagnosis>> {
-        let study = study(inputs);
+        let (searched, opening) = Self::of(study(inputs, &[]), keep, progress)?;
+        let turned = clamping::turned_as_found(&searched.study, &searched.found.fit.model);
+        if turned.is_empty() {
+            return Ok((searched, opening));
+        }
+        Self::of(study(inputs, &turned), keep, progress)
+    }
+
+    /// Searches a study.
+    fn of(
+        study: Study<'s>,
+        keep: Keep,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<(Self, Opening), Box<Diagnosis>> {
         let mut opened = Diagnosis {
-            machine: inputs.equations.machine.clone(),
+            machine: study.equations.machine.clone(),
             undecided: undecided(&study),
             ..Diagnosis::default()
         };
@@ -122,9 +138,10 @@ impl<'s> Searched<'s> {
     }
 }
 
-fn study<'s>(inputs: &Inputs<'s>) -> Study<'s> {
+/// The study of the files, some of whose parts are known to be turned.
+fn study<'s>(inputs: &Inputs<'s>, turned: &[(usize, Turned)]) -> Study<'s> {
     let recordings: Vec<_> = inputs.recordings.iter().copied().chain(inputs.holdout).collect();
-    let study = Study::new(inputs.equations, inputs.calibration, &recordings);
+    let study = Study::with_turned(inputs.equations, inputs.calibration, &recordings, turned);
     if inputs.holdout.is_some() { study.with_last_held_out() } else { study }
 }
 

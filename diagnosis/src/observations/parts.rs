@@ -8,15 +8,20 @@ use crate::model::Model;
 use crate::recording::PartReading;
 use crate::study::Study;
 
-/// The readings of a part as the calibration leaves them, evenly from all rows: enough to tell how it lies.
-pub(crate) fn part_readings(study: &Study<'_>, scene: usize, course: &Course) -> Vec<PartReading> {
+/// The readings of a part as the calibration and a model leave them, evenly from all rows: enough to tell how it lies.
+pub(crate) fn part_readings(
+    study: &Study<'_>,
+    scene: usize,
+    course: &Course,
+    model: &Model,
+) -> Vec<PartReading> {
     let known = &study.scenes[scene];
     let stride = known.rows().div_ceil(MOST_READINGS).max(1);
     let of_frame = |frame: &Frame<'_>| {
         let first = frame.first_row().next_multiple_of(stride) - frame.first_row();
         let mut readings = Vec::new();
-        for channel in &known.channels {
-            let left = frame.residual(study, scene, channel, &Model::default());
+        for (number, channel) in known.channels.iter().enumerate() {
+            let left = frame.left(study, scene, (number, channel), model);
             for row in (first..frame.len()).step_by(stride) {
                 let direction = match channel.kind {
                     Kind::Tip(d) => along(d),
@@ -29,7 +34,7 @@ pub(crate) fn part_readings(study: &Study<'_>, scene: usize, course: &Course) ->
         readings
     };
     let mut all = Vec::new();
-    each_frame(study, scene, &Model::default(), course, of_frame, |_, readings| all.extend(readings));
+    each_frame(study, scene, model, course, of_frame, |_, readings| all.extend(readings));
     all
 }
 

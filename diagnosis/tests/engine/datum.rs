@@ -188,6 +188,18 @@ fn the_datum_of_a_part_that_a_rotation_explains_is_free_and_told() {
     assert_eq!((hint(&diagnosis), diagnosis.verdict), (None, Verdict::LeftOutPhysics));
 }
 
+/// Among points in no order, 0.3 mm of backlash hide what 0.4 mrad do, 0.1 mm: only beside it the part shows its rotation.
+#[test]
+fn the_rotation_of_a_part_is_told_beneath_a_larger_effect() {
+    let bench = Bench::of("XYFZ");
+    let errors = "{EXX: [{backlash: {axis: X, lost_motion: 0.3 mm}}]}";
+    let turned = Recording { datum: PartDatum::Unsaid, ..plate(&bench, errors, Some(4e-4), 61) };
+    let diagnosis = told(&bench, &[turned]);
+    assert_eq!(found(&diagnosis), ["EXX backlash"], "{diagnosis:#?}");
+    assert!(off(&setting(&diagnosis.settings, "datum", "c"), 4e-4) < FAR);
+    assert!(diagnosis.undecided.iter().any(|sentence| sentence.contains("`setup: {datum: fixed}`")));
+}
+
 #[test]
 fn a_line_of_points_that_shows_no_rotation_says_so() {
     let bench = Bench::of("XYFZ");

@@ -145,3 +145,39 @@ fn a_rotation_is_told_and_a_squareness_or_a_scale_is_not() {
     assert_eq!(turned(&read(&places, about_z(angle), [0.0; 3], &[0])), None);
     assert_eq!(turned(&read(&places[..5], about_z(angle), [0.0; 3], &[0, 1])), None);
 }
+
+/// Points in lines along X, each read in X and Y, beside what `noise` adds to the readings one after the other.
+fn walk(angle: f64, mut noise: impl FnMut() -> f64) -> Vec<PartReading> {
+    let lines = (0..10).flat_map(|line| (0..10).map(move |step| [f64::from(step), f64::from(line)]));
+    let places: Vec<[f64; 3]> = lines.map(|[x, y]| [30.0 * x, 20.0 * y, 0.0]).collect();
+    let mut readings = read(&places, about_z(angle), [0.0; 3], &[0, 1]);
+    readings.iter_mut().for_each(|reading| reading.deviation += noise());
+    readings
+}
+
+/// Even numbers from -1 to 1, each from the one before.
+fn scatter(mut state: u64) -> impl FnMut() -> f64 {
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        2.0 * f64::from(u32::try_from(state >> 32).unwrap()) / f64::from(u32::MAX) - 1.0
+    }
+}
+
+#[test]
+fn a_rotation_below_the_scatter_is_told_and_what_wanders_is_none() {
+    // 1 mrad, up to 0.14 mm from the middle, below 0.2 mm of scatter: the angle to 0.11 mrad.
+    let mut even = scatter(1);
+    let found = turned(&walk(1e-3, || 0.2 * even())).unwrap();
+    assert!((found.angle - 1e-3).abs() < 3.3e-4 && found.share < 0.5, "{found:?}");
+    // Sums of scatter go far from zero, one way here and the other there.
+    let told = (2..402).filter(|seed| {
+        let (mut even, mut sum) = (scatter(*seed), 0.0);
+        let wandering = || {
+            sum += even();
+            sum
+        };
+        turned(&walk(0.0, wandering)).is_some()
+    });
+    let told = told.count();
+    assert!(told <= 4, "{told} of 400");
+}

@@ -55,8 +55,7 @@ fn rests(study: &Study<'_>, model: &Model) -> Vec<Model> {
     each.chain(all).collect()
 }
 
-/// Whether a rotation of the part may be told: its recording says nothing of one, and its points were taken at rest. On the way round a
-/// circle, what a loop lags behind is a rotation too.
+/// Whether a rotation of the part may be told: its recording says nothing of one, and its points stand for themselves.
 fn may_be_turned(study: &Study<'_>, number: usize) -> bool {
     let scene = &study.scenes[number];
     let is_unsaid = scene.recording.datum == PartDatum::Unsaid && scene.lie.is_none();

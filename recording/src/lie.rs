@@ -234,6 +234,10 @@ const SHOWN: f64 = 3.0;
 /// turns one side alone, and its sides lie 2 apart.
 const ALIKE: f64 = 0.25;
 
+/// The share of a side's lever arms that its way may explain. On the way round a circle the one is the other, and what a position loop lags
+/// behind is a rotation; points in lines have less than a tenth of it.
+const ROUND: f64 = 0.5;
+
 /// The rotation that readings along the directions of the frame show of a part, of several the one that explains most; nothing where they
 /// show none. It turns the two sides of a part alike, as no squareness does.
 #[must_use]
@@ -255,7 +259,8 @@ fn turned_about(about: &'static str, sides: &[Side; 2]) -> Option<Turned> {
     let is_alike = turn * back > 0.0 && apart < ALIKE * whole.mean.abs() + 2.0 * deviations.apart;
     let left = one.all.left(-whole.mean) + other.all.left(whole.mean);
     let share = 1.0 - left / (one.all.total() + other.all.total());
-    (is_shown && is_alike).then_some(Turned { about, angle: whole.mean, share })
+    let goes_round = one.way > ROUND && other.way > ROUND;
+    (is_shown && is_alike && !goes_round).then_some(Turned { about, angle: whole.mean, share })
 }
 
 /// By how much the two sides of a part are turned, rad.
@@ -299,26 +304,44 @@ fn deviations(sides: &[Side; 2]) -> Turns {
 struct Side {
     all: Sums,
     stretches: Vec<Sums>,
+    /// The share of the coordinate that the way along the direction explains, from the reading before to the one after.
+    way: f64,
 }
 
 impl Side {
     /// Nothing where readings are few, or where there is no slope to see.
     fn of(readings: &[PartReading], direction: usize, coordinate: usize) -> Option<Self> {
         let is_along = |reading: &&PartReading| reading.direction.get(direction) == Some(&1.0);
-        let own = readings.iter().filter(is_along).filter(|reading| reading.is_known());
-        let pairs = own.filter_map(|reading| Some((*reading.place.get(coordinate)?, reading.deviation)));
+        let own: Vec<&PartReading> =
+            readings.iter().filter(is_along).filter(|reading| reading.is_known()).collect();
+        let pairs =
+            own.iter().filter_map(|reading| Some((*reading.place.get(coordinate)?, reading.deviation)));
         let pairs: Vec<(f64, f64)> = pairs.collect();
         let stretches: Vec<Sums> = pairs
             .chunks(pairs.len().div_ceil(STRETCHES).max(1))
             .map(|stretch| Sums::of(stretch, pairs[0]))
             .collect();
         let all = stretches.iter().fold(Sums::default(), |all, stretch| all.and(*stretch, 1.0));
-        (pairs.len() >= FEWEST && all.slope().is_finite()).then_some(Self { all, stretches })
+        let way = way(&own, direction, coordinate);
+        (pairs.len() >= FEWEST && all.slope().is_finite()).then_some(Self { all, stretches, way })
     }
 
     fn without(&self, stretch: usize) -> Sums {
         self.stretches.get(stretch).map_or(self.all, |stretch| self.all.and(*stretch, -1.0))
     }
+}
+
+/// The share of one coordinate that is explained by how far another goes from the reading before to the one after.
+fn way(readings: &[&PartReading], direction: usize, coordinate: usize) -> f64 {
+    let of = |reading: &PartReading, axis: usize| reading.place.get(axis).copied().unwrap_or(f64::NAN);
+    let steps = readings.windows(3).filter_map(|three| {
+        let [before, here, after] = three else { return None };
+        Some((of(after, direction) - of(before, direction), of(here, coordinate)))
+    });
+    let steps: Vec<(f64, f64)> = steps.collect();
+    let Some(first) = steps.first() else { return 0.0 };
+    let sums = Sums::of(&steps, *first);
+    1.0 - sums.left(sums.slope()) / sums.total()
 }
 
 /// Sums over readings, each of its coordinate and of what was read, both from those of the first reading.

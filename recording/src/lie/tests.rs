@@ -181,3 +181,16 @@ fn a_rotation_below_the_scatter_is_told_and_what_wanders_is_none() {
     let told = told.count();
     assert!(told <= 4, "{told} of 400");
 }
+
+#[test]
+fn what_lags_behind_on_the_way_round_a_circle_is_no_rotation() {
+    let places = (0..40).map(|step| {
+        let angle = f64::from(step) * 0.2;
+        [100.0 * angle.cos(), 100.0 * angle.sin(), 0.0]
+    });
+    let places: Vec<[f64; 3]> = places.collect();
+    assert_eq!(turned(&read(&places, about_z(1e-3), [0.0; 3], &[0, 1])), None);
+    // The same points in another order are no way round.
+    let mixed: Vec<[f64; 3]> = (0..40).map(|step| places[step * 17 % 40]).collect();
+    assert!(turned(&read(&mixed, about_z(1e-3), [0.0; 3], &[0, 1])).is_some());
+}

@@ -7,6 +7,7 @@ pub(crate) mod nodes;
 
 use crate::conditions::Conditions;
 use crate::fit::Fit;
+use crate::harmonics;
 use crate::model::{Effect, Fitted, Model, Place};
 use crate::scene::Scene;
 use crate::study::Study;
@@ -64,14 +65,18 @@ struct Imitation {
 }
 
 impl Imitation {
-    fn holds(&self, fitted: &Fitted, travels: &[Travel]) -> bool {
+    /// Whether it holds an effect of a model. A wave with harmonics that comes again is no curve: what one turn of a screw does, the next
+    /// does too, and a table would have to say it anew for each turn.
+    fn holds(&self, model: &Model, fitted: &Fitted, travels: &[Travel]) -> bool {
         fitted.effect.place == self.place
+            && !harmonics::comes_again(model, &fitted.effect, travels)
             && (smooth(&fitted.effect, travels) == Some(self.axis) || self.waving && waves(fitted, self.axis))
     }
 
     /// Whether there is enough of it for a table to be tried.
     fn is_tried(&self, model: &Model, travels: &[Travel]) -> bool {
-        let parts: Vec<&Fitted> = model.effects.iter().filter(|fitted| self.holds(fitted, travels)).collect();
+        let parts: Vec<&Fitted> =
+            model.effects.iter().filter(|fitted| self.holds(model, fitted, travels)).collect();
         let winding =
             |fitted: &&Fitted| matches!(fitted.effect.shape, Shape::Polynomial { degree, .. } if degree > 2);
         let unnamed = parts.is_empty() && travels[self.axis].is_known_at_stations_alone();
@@ -89,7 +94,7 @@ impl Imitation {
             return fit;
         }
         let travel = &travels[self.axis];
-        let kept = fit.model.keeping(|fitted| !self.holds(fitted, travels));
+        let kept = fit.model.keeping(|fitted| !self.holds(&fit.model, fitted, travels));
         let mut shapes = tables(study, self.axis, travel);
         if self.waving {
             let fine = even(travel.low, travel.high, FINE);

@@ -46,6 +46,17 @@ fn are_of_one_wave(one: &Effect, other: &Effect) -> bool {
     one.place == other.place && base(one).is_some() && base(one) == base(other)
 }
 
+/// Whether an effect is part of a wave with harmonics that comes at least twice along its axis.
+pub(crate) fn comes_again(model: &Model, effect: &Effect, travels: &[Travel]) -> bool {
+    let Shape::Cyclic { axis, period, .. } = effect.shape else { return false };
+    let is_other = |fitted: &&Fitted| fitted.effect != *effect;
+    let mut others = model.effects.iter().filter(is_other);
+    TWICE * period <= travels[axis].range() && others.any(|other| are_of_one_wave(&other.effect, effect))
+}
+
+/// Twice, but for what may be missing at the ends of the travel.
+const TWICE: f64 = 1.9;
+
 /// An effect of a model and, where it is a harmonic from the second on, those of the same wave beside it, by their numbers.
 pub(crate) fn together(model: &Model, number: usize) -> Vec<usize> {
     let own = &model.effects[number].effect;

@@ -2,10 +2,13 @@
 //!
 //! In: a recording. Out: its channels, each a number in each row, with what the instrument behind it shows of the machine.
 
+use std::borrow::Cow;
+
 use model_dsl::equations::Equations;
 
+use crate::coarse::{self, Coarse};
 use crate::noise;
-use crate::recording::{Instrument, Recording};
+use crate::recording::{AngleUnit, Instrument, Recording};
 use crate::returns::Return;
 use crate::rounded;
 
@@ -22,8 +25,10 @@ pub(crate) struct Channel<'a> {
     /// The channel's name in the recording.
     pub(crate) name: String,
     pub(crate) kind: Kind,
-    /// mm or rad; NaN where it is missing.
-    pub(crate) values: &'a [f64],
+    /// mm or rad; NaN where it is missing, and where it is coarse.
+    pub(crate) values: Cow<'a, [f64]>,
+    /// Readings that are left out because the display shows them coarser than the others.
+    pub(crate) coarse: Option<Coarse>,
     /// The standard deviation of the rounding of its values, and of the commands that it is held against.
     pub(crate) rounding: f64,
     /// The states of which functions predict what the calibration leaves of it.
@@ -94,6 +99,10 @@ pub(crate) fn channels<'a>(
     rounded: &[f64],
 ) -> Vec<Channel<'a>> {
     let mut channels = Vec::new();
+    let angle = match recording.angle_unit {
+        AngleUnit::Degree => 1f64.to_radians(),
+        AngleUnit::Radian => 1.0,
+    };
     let mut add = |name: String, kind: Kind, values: &'a [f64]| {
         let predicted = rounded.iter().enumerate().filter(|(axis, _)| match kind {
             Kind::Drive(own) | Kind::Stage(own) => *axis == own,
@@ -101,8 +110,14 @@ pub(crate) fn channels<'a>(
             _ => equations.axes.get(*axis).is_some_and(|axis| !axis.rotary) && !kind.angular(equations),
         });
         let predicted = predicted.map(|(_, step)| rounded::deviation(*step));
-        let rounding = predicted.fold(noise::rounding(values), f64::hypot);
-        channels.push(Channel { name, kind, values, rounding, returning: Vec::new() });
+        let unit = if kind.angular(equations) { angle } else { 1.0 };
+        let coarse = coarse::coarse(values, unit);
+        let values = match &coarse {
+            Some(coarse) => Cow::Owned(coarse::without(values, coarse)),
+            None => Cow::Borrowed(values),
+        };
+        let rounding = predicted.fold(noise::rounding(&values), f64::hypot);
+        channels.push(Channel { name, kind, values, coarse, rounding, returning: Vec::new() });
     };
     for (direction, values) in recording.measured.iter().enumerate() {
         if let Some(values) = values {

@@ -26,6 +26,7 @@ mod candidates;
 mod certainty;
 mod channel;
 mod clamping;
+mod coarse;
 mod compose;
 mod conclude;
 mod conditions;

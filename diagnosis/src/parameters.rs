@@ -38,7 +38,7 @@ pub(crate) fn axis_unit(study: &Study<'_>, axis: usize) -> (f64, &'static str) {
 }
 
 /// The unit in which the recordings speak of angles of rotary axes.
-fn angle_unit(study: &Study<'_>) -> (f64, &'static str) {
+pub(crate) fn angle_unit(study: &Study<'_>) -> (f64, &'static str) {
     let degrees = study.scenes.iter().any(|scene| scene.recording.angle_unit == AngleUnit::Degree);
     if degrees { (180.0 / std::f64::consts::PI, "deg") } else { (1.0, "rad") }
 }

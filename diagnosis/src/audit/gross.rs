@@ -36,7 +36,7 @@ pub(crate) fn change(study: &Study<'_>, at: ChannelAt, slack: f64) -> Option<Cha
     let Kind::Tip(direction) = observed.kind else { return None };
     let positions: Vec<&[f64]> = known.given.programmed.iter().map(|position| &position[..]).collect();
     let nominal = &known.built.interpreter.nominal_columns(&positions)[direction];
-    let before = typical_distance(observed.values, nominal).filter(|before| *before > slack)?;
+    let before = typical_distance(&observed.values, nominal).filter(|before| *before > slack)?;
     // A channel that stands still follows a path that stands still, and anything divided by a thousand stands still.
     let slack = slack.min(FOLLOWS * typical_distance(nominal, &vec![0.0; nominal.len()])?);
     let off = |way: Way| Some((typical_distance(&way.readings, nominal)?, way));

@@ -6,10 +6,11 @@
 use crate::answers::answers;
 use crate::audit::gross;
 use crate::channel::Channel;
+use crate::coarse::Coarse;
 use crate::crossing;
 use crate::diagnosis::Change;
 use crate::model::{Fitted, Model};
-use crate::parameters::axis_unit;
+use crate::parameters::{angle_unit, axis_unit};
 use crate::recording::{Instrument, Turned, taken_as_free};
 use crate::scene::Scene;
 use crate::states::Crossing;
@@ -55,6 +56,7 @@ pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
              side it came the second time."
         ));
     }
+    sentences.extend(study.scenes.iter().flat_map(|scene| coarse_readings(study, scene)));
     sentences.extend(study.scenes.iter().filter_map(|scene| end_points(study, scene)));
     sentences.extend(study.scenes.iter().filter_map(unturned));
     sentences.extend(turned_alike(study));
@@ -112,6 +114,26 @@ fn clamped<'s>(study: &'s Study<'_>) -> Option<String> {
     let of_its_file = |scene: &'s Scene<'_>| Some((scene.recording.file.as_str(), scene.turned?));
     let parts: Vec<(&str, Turned)> = study.scenes.iter().filter_map(of_its_file).collect();
     taken_as_free(&parts)
+}
+
+/// What is left out because a display shows it coarser than the rest.
+fn coarse_readings(study: &Study<'_>, scene: &Scene<'_>) -> Vec<String> {
+    let of_channel = |channel: &Channel<'_>| {
+        let coarse = channel.coarse.as_ref()?;
+        let is_angle = channel.kind.angular(study.equations);
+        let (scale, unit) = if is_angle { angle_unit(study) } else { (1.0, "mm") };
+        let shown = |value: f64| format!("{} {unit}", (value * scale * 1e9).round() / 1e9);
+        let Coarse { from, step, fine, count } = *coarse;
+        Some(format!(
+            "{} readings of {} are left out. From {} on it is displayed to {} only, and below to {}.",
+            count,
+            channel.name,
+            shown(from),
+            shown(step),
+            shown(fine)
+        ))
+    };
+    scene.channels.iter().filter_map(of_channel).collect()
 }
 
 /// What commands that are end points leave open.

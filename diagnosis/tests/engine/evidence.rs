@@ -57,9 +57,14 @@ fn lengths_of_a_square_show_its_squareness_and_its_scale_and_no_impossible_play(
 }
 
 /// A recording whose readings and commands were kept to a step.
-fn rounded(mut recording: Recording, step: f64) -> Recording {
-    let keep =
-        |values: &mut Vec<f64>| values.iter_mut().for_each(|value| *value = (*value / step).round() * step);
+fn rounded(recording: Recording, step: f64) -> Recording {
+    rounded_to(recording, |_| step)
+}
+
+/// The same, each position to a step of its own.
+fn rounded_to(mut recording: Recording, step: impl Fn(f64) -> f64) -> Recording {
+    let shown = |value: f64| (value / step(value)).round() * step(value);
+    let keep = |values: &mut Vec<f64>| values.iter_mut().for_each(|value| *value = shown(*value));
     for axis in &mut recording.axes {
         axis.command.iter_mut().chain(&mut axis.actual).for_each(keep);
     }
@@ -80,6 +85,25 @@ fn the_beat_of_a_display_is_no_wave_of_the_machine() {
         // At one speed a loop, a clock and play are one.
         assert!(["EXX lag", "EXX backlash"].contains(&&*names[0]), "{names:?}");
     }
+}
+
+/// Three significant digits show 99.9 mm, and then 100 mm.
+#[test]
+fn what_three_digits_show_coarser_neither_hides_a_loop_nor_bends_it() {
+    let bench = Bench::of("FX");
+    let truth = bench.calibration("{EXX: [{lag: {gain: 100 1/s}}]}");
+    let three_digits = |value: f64| if value.abs() < 99.95 { 0.1 } else { 1.0 };
+    let shown = |feed: f64| {
+        let strokes = Path { runs: 3, pause: 0.5, ..path(line(0, 52.3, 123.7), feed, 10.0) };
+        rounded_to(bench.record(&truth, &scenario(strokes, position("x"))), three_digits)
+    };
+    let recordings = [31.3, 17.9, 43.7].map(shown);
+    let diagnosis = alone(&bench, &recordings.each_ref());
+    assert_eq!(found(&diagnosis), ["EXX lag"], "{diagnosis:#?}");
+    let gain = &numbers(&diagnosis.findings[0], "gain")[0];
+    assert!(gain.ci95.0 < 100.0 && 100.0 < gain.ci95.1 && gain.ci95.1 - gain.ci95.0 < 20.0, "{gain:?}");
+    let coarse = "From 100 mm on it is displayed to 1 mm only, and below to 0.1 mm.";
+    assert_eq!(diagnosis.undecided.iter().filter(|sentence| sentence.ends_with(coarse)).count(), 3);
 }
 
 #[test]

@@ -1,0 +1,115 @@
+//! Coarse readings: those that a display of a few significant digits shows ten times coarser than the others.
+//!
+//! In: the readings of a channel. Out: from which magnitude on they are coarse, where they are, and the readings without them. It exists
+//! because such a display shows 99.9 mm and then 100 mm: among the others the coarse readings would be a noise of their own, a hundred times
+//! as large in squares, that comes and goes with the place.
+
+use crate::noise::display_step;
+
+/// Readings that are coarser than the others.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Coarse {
+    /// From which magnitude on, mm or rad.
+    pub(crate) from: f64,
+    /// The step of their display.
+    pub(crate) step: f64,
+    /// That of the others.
+    pub(crate) fine: f64,
+    /// How many there are.
+    pub(crate) count: usize,
+}
+
+/// The powers of ten that are tried, in units of the display.
+const POWERS: std::ops::RangeInclusive<i32> = -3..=5;
+
+/// So many different readings must be coarse. That one of a fine display is shown by chance as a coarse one would be is one of ten: that all
+/// of six are, one of a million.
+const FEWEST: usize = 6;
+
+/// So many of the readings must be left: where most are coarse, they are what there is.
+const LEFT: f64 = 0.5;
+
+/// The coarse readings among some, where there are any. `unit` is that of the display: mm, or a degree in rad.
+pub(crate) fn coarse(values: &[f64], unit: f64) -> Option<Coarse> {
+    let found = POWERS.filter_map(|power| coarse_from(values, unit * 10f64.powi(power)));
+    found.min_by(|one, other| one.from.total_cmp(&other.from))
+}
+
+/// The readings without the coarse ones.
+pub(crate) fn without(values: &[f64], coarse: &Coarse) -> Vec<f64> {
+    values.iter().map(|value| if coarse.holds(*value) { f64::NAN } else { *value }).collect()
+}
+
+impl Coarse {
+    fn holds(&self, value: f64) -> bool {
+        value.abs() >= self.from * (1.0 - 1e-9)
+    }
+}
+
+fn coarse_from(values: &[f64], from: f64) -> Option<Coarse> {
+    let known = values.iter().copied().filter(|value| value.is_finite());
+    let mut coarse = Coarse { from, step: 0.0, fine: 0.0, count: 0 };
+    let (above, below): (Vec<f64>, Vec<f64>) = known.partition(|value| coarse.holds(*value));
+    let most = crate::number(below.len()) >= LEFT * crate::number(above.len() + below.len());
+    if !most || different(&above) < FEWEST {
+        return None;
+    }
+    coarse.step = display_step(&above);
+    coarse.fine = display_step(&below);
+    coarse.count = above.len();
+    let digits = (coarse.step / coarse.fine).log10();
+    (digits > 0.99 && digits < 2.01 && (digits - digits.round()).abs() < 0.01).then_some(coarse)
+}
+
+/// How many different numbers there are, up to the fewest that count.
+fn different(values: &[f64]) -> usize {
+    let mut seen: Vec<f64> = Vec::new();
+    for value in values {
+        if seen.len() < FEWEST && !seen.contains(value) {
+            seen.push(*value);
+        }
+    }
+    seen.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a display of three significant digits shows of a value from 10 to 1000.
+    fn shown(value: f64) -> f64 {
+        let step = if value < 99.95 { 0.1 } else { 1.0 };
+        (value / step).round() * step
+    }
+
+    fn way(from: f64, to: f64) -> Vec<f64> {
+        (0..200).map(|row| from + (to - from) * f64::from(row) / 199.0 + 0.013).collect()
+    }
+
+    #[test]
+    fn readings_of_three_digits_are_coarse_from_a_power_of_ten_on() {
+        for (unit, name) in [(1.0, "mm"), (std::f64::consts::PI / 180.0, "deg")] {
+            let values: Vec<f64> = way(40.0, 130.0).iter().map(|value| shown(*value) * unit).collect();
+            let found = coarse(&values, unit).unwrap();
+            let near = |one: f64, other: f64| (one / other - 1.0).abs() < 1e-6;
+            assert!(near(found.from, 100.0 * unit) && near(found.step, unit), "{name} {found:?}");
+            assert!(near(found.fine, 0.1 * unit), "{name} {found:?}");
+            let left = without(&values, &found);
+            assert_eq!(left.iter().filter(|value| value.is_nan()).count(), found.count);
+            assert!(left.iter().all(|value| value.is_nan() || value.abs() < 100.0 * unit));
+        }
+    }
+
+    #[test]
+    fn a_display_of_one_step_and_one_that_is_mostly_coarse_have_no_coarse_readings() {
+        let even: Vec<f64> = way(40.0, 130.0).iter().map(|value| (value * 10.0).round() / 10.0).collect();
+        assert_eq!(coarse(&even, 1.0), None);
+        assert_eq!(coarse(&way(40.0, 130.0), 1.0), None);
+        let mostly: Vec<f64> = way(80.0, 300.0).iter().map(|value| shown(*value)).collect();
+        assert_eq!(coarse(&mostly, 1.0), None);
+        // Stations at whole millimetres, of which three lie beyond 100 mm.
+        let stations: Vec<f64> =
+            (0..130).map(|row| f64::from(row / 10 * 10) + 0.2 * f64::from(u8::from(row < 90))).collect();
+        assert_eq!(coarse(&stations, 1.0), None);
+    }
+}

@@ -40,6 +40,7 @@ mod limits;
 mod machine_files;
 mod macro_errors;
 mod manuals;
+mod mirrored;
 mod odd_machines;
 mod oracle;
 mod page;

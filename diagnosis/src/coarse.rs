@@ -19,7 +19,7 @@ pub(crate) struct Coarse {
     pub(crate) count: usize,
 }
 
-/// The powers of ten that are tried, in units of the display.
+/// The powers of ten that are tried, in units of the display: from what a probe reads to the longest travel.
 const POWERS: std::ops::RangeInclusive<i32> = -3..=5;
 
 /// So many different readings must be coarse. That one of a fine display is shown by chance as a coarse one would be is one of ten: that all

@@ -103,7 +103,8 @@ pub(crate) fn channels<'a>(
         AngleUnit::Degree => 1f64.to_radians(),
         AngleUnit::Radian => 1.0,
     };
-    let mut add = |name: String, kind: Kind, values: &'a [f64]| {
+    // `position` is where the axis was whose position is read; nothing where an error is.
+    let mut add = |name: String, kind: Kind, values: &'a [f64], position: Option<&[f64]>| {
         let predicted = rounded.iter().enumerate().filter(|(axis, _)| match kind {
             Kind::Drive(own) | Kind::Stage(own) => *axis == own,
             // How far an axis moves the tip depends on the machine; a slide does it one to one.
@@ -111,7 +112,7 @@ pub(crate) fn channels<'a>(
         });
         let predicted = predicted.map(|(_, step)| rounded::deviation(*step));
         let unit = if kind.angular(equations) { angle } else { 1.0 };
-        let coarse = coarse::coarse(values, unit);
+        let coarse = position.and_then(|position| coarse::coarse(values, position, unit));
         let values = match &coarse {
             Some(coarse) => Cow::Owned(coarse::without(values, coarse)),
             None => Cow::Borrowed(values),
@@ -121,8 +122,10 @@ pub(crate) fn channels<'a>(
     };
     for (direction, values) in recording.measured.iter().enumerate() {
         if let Some(values) = values {
-            let letter = ["x", "y", "z"][direction];
-            add(format!("measured.{letter}"), Kind::Tip(direction), values);
+            let letter = ["X", "Y", "Z"][direction];
+            let axis = equations.axes.iter().position(|axis| axis.letter == letter);
+            let position = axis.and_then(|axis| recording.axes.get(axis)?.position());
+            add(format!("measured.{}", letter.to_lowercase()), Kind::Tip(direction), values, position);
         }
     }
     if let Some(values) = &recording.deviation {
@@ -132,7 +135,7 @@ pub(crate) fn channels<'a>(
             Instrument::Linear(line) | Instrument::Straightness(line) => Kind::Along(line.direction),
             Instrument::Angular { about, .. } => Kind::Turn(*about),
         };
-        add("deviation".to_owned(), kind, values);
+        add("deviation".to_owned(), kind, values, None);
     }
     for (axis, known) in recording.axes.iter().enumerate() {
         let letter = equations.axes.get(axis).map(|axis| axis.letter.to_lowercase()).unwrap_or_default();
@@ -140,10 +143,10 @@ pub(crate) fn channels<'a>(
         if let Some(values) = &known.measured
             && (known.command.is_some() || known.actual.is_some())
         {
-            add(format!("measured.{letter}"), Kind::Stage(axis), values);
+            add(format!("measured.{letter}"), Kind::Stage(axis), values, known.position());
         }
         if let (Some(values), Some(_)) = (&known.actual, &known.command) {
-            add(format!("actual.{letter}"), Kind::Drive(axis), values);
+            add(format!("actual.{letter}"), Kind::Drive(axis), values, known.position());
         }
     }
     channels

@@ -10,8 +10,8 @@ use crate::observations::part_readings;
 use crate::recording::{Instrument, Lie, PartDatum, Turned, turned};
 use crate::study::Study;
 
-/// The share that a rotation must explain of what an effect stands for. A squareness alone is half a rotation over a part as wide as it is
-/// long.
+/// The share that a rotation must explain of what an effect stands for: half way from a squareness, half of which a rotation explains over
+/// a part as wide as it is long, to a rotation alone.
 const MOST: f64 = 0.75;
 
 /// How the part of a scene lies where that is free.

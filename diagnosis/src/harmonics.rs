@@ -19,6 +19,9 @@ use crate::travel::Travel;
 /// below 1 % of the fundamental.
 pub(crate) const HIGHEST: u32 = 12;
 
+/// A wave comes again where the travel holds this many of its cycles: two, but for what the rows leave out at the ends of the travel.
+const TWICE: f64 = 1.9;
+
 /// The effects that have a nonlinear parameter, by their numbers: those together that have the same one.
 pub(crate) fn sharing(effects: &[Fitted]) -> Vec<Vec<usize>> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
@@ -53,9 +56,6 @@ pub(crate) fn comes_again(model: &Model, effect: &Effect, travels: &[Travel]) ->
     let mut others = model.effects.iter().filter(is_other);
     TWICE * period <= travels[axis].range() && others.any(|other| are_of_one_wave(&other.effect, effect))
 }
-
-/// Twice, but for what may be missing at the ends of the travel.
-const TWICE: f64 = 1.9;
 
 /// An effect of a model and, where it is a harmonic from the second on, those of the same wave beside it, by their numbers.
 pub(crate) fn together(model: &Model, number: usize) -> Vec<usize> {

@@ -4,8 +4,8 @@
 //! located, named, fitted, tested on held-out data, and written as terms that the compiler takes.
 //!
 //! ```text
-//! recordings -> study: scenes with channels, sensors, blocks of rows (legs, targets, rounded, rest) -> states: what every axis did (way,
-//!   position_loop) -> observations: residual and gain of every channel (course, travel) -> noise: the filter that whitens it
+//! recordings -> study: scenes with channels (coarse), sensors, blocks of rows (legs, targets, rounded, rest), parts that were clamped anew
+//!   (clamping) -> states: what every axis did (way, position_loop) -> observations: residual and gain of every channel (course, travel) -> noise: the filter that whitens it
 //! terms -> candidates, waves -> design: products of their columns -> search: the cheapest set (model, sweep) -> fit -> judge -> revise
 //!   -> engine: the rounds through all of this; harmonics: waves of one period; dynamics, curves, dents, crossing, answers: what imitates
 //!   or hides something else

@@ -222,20 +222,20 @@ impl PartReading {
 /// The fewest readings along each of two directions of which a rotation is told: of fewer, chance makes one too often.
 const FEWEST: usize = 6;
 
-/// The most stretches of readings from whose scatter the deviation of a turn is told. A stretch must be longer than what holds its noise
-/// together.
+/// The deviation of a turn is told from this many stretches of readings, one left out at a time. With fewer it would not be known; with
+/// more, a stretch would be shorter than noise that wanders stays on one side.
 const STRETCHES: usize = 8;
 
-/// Each side of the part must show a turn of so many deviations. By chance one of eight stretches does so in one of fifty cases, and both,
-/// in the same sense, in one of 5000.
+/// Each side of the part must show a turn of so many deviations, which are known from eight stretches. By chance one side does so in one of
+/// fifty cases, and both sides in the same sense in one of 5000.
 const SHOWN: f64 = 3.0;
 
-/// How far the turns of the two sides of a part may lie apart, as a share of their mean, beside twice the deviation of that: a squareness
-/// turns one side alone, and its sides lie 2 apart.
+/// The turns of the two sides may differ by this share of their mean, and by twice the deviation of their difference besides. A squareness
+/// turns one side alone: its sides differ by twice their mean.
 const ALIKE: f64 = 0.25;
 
-/// The share of a side's lever arms that its way may explain. On the way round a circle the one is the other, and what a position loop lags
-/// behind is a rotation; points in lines have less than a tenth of it.
+/// The way along a direction may explain at most this share of the coordinate across. Round a circle it explains all of it, and a position
+/// loop that lags behind turns the circle. Along lines it explains at most 6 %.
 const ROUND: f64 = 0.5;
 
 /// The rotation that readings along the directions of the frame show of a part, of several the one that explains most; nothing where they
@@ -252,52 +252,72 @@ pub fn turned(readings: &[PartReading]) -> Option<Turned> {
 
 fn turned_about(about: &'static str, sides: &[Side; 2]) -> Option<Turned> {
     let [one, other] = sides;
-    let (whole, deviations) = (Turns::of(one.all, other.all), deviations(sides));
-    let [turn, back] = whole.sides;
-    let is_shown = turn.abs() > SHOWN * deviations.sides[0] && back.abs() > SHOWN * deviations.sides[1];
-    let apart = (turn - back).abs();
-    let is_alike = turn * back > 0.0 && apart < ALIKE * whole.mean.abs() + 2.0 * deviations.apart;
-    let left = one.all.left(-whole.mean) + other.all.left(whole.mean);
-    let share = 1.0 - left / (one.all.total() + other.all.total());
+    let (turns, deviations) = (Turns::of(one.all, other.all), Deviations::of(sides));
+    let angle = weighted(one.all.weight(), turns.turn, other.all.weight(), turns.back);
+    let is_shown = turns.turn.abs() > SHOWN * deviations.turn && turns.back.abs() > SHOWN * deviations.back;
+    let is_in_one_sense = turns.turn * turns.back > 0.0;
+    let is_alike = turns.apart().abs() < ALIKE * angle.abs() + 2.0 * deviations.apart;
     let goes_round = one.way > ROUND && other.way > ROUND;
-    (is_shown && is_alike && !goes_round).then_some(Turned { about, angle: whole.mean, share })
+    let left = one.all.left(-angle) + other.all.left(angle);
+    let share = 1.0 - left / (one.all.total() + other.all.total());
+    (is_shown && is_in_one_sense && is_alike && !goes_round).then_some(Turned { about, angle, share })
+}
+
+/// The mean of two numbers by their weights.
+fn weighted(weight: f64, one: f64, other_weight: f64, other: f64) -> f64 {
+    (weight * one + other_weight * other) / (weight + other_weight)
 }
 
 /// By how much the two sides of a part are turned, rad.
+#[derive(Clone, Copy, Debug)]
 struct Turns {
-    sides: [f64; 2],
-    /// Of both together, by least squares.
-    mean: f64,
-    /// The first less the second.
-    apart: f64,
+    /// The side that is read along the first direction.
+    turn: f64,
+    /// The side that is read along the second.
+    back: f64,
 }
 
 impl Turns {
     /// A rotation moves the first direction against the second coordinate.
     fn of(one: Sums, other: Sums) -> Self {
-        let sides = [-one.slope(), other.slope()];
-        let [turn, back] = sides;
-        let (first, second) = (one.weight(), other.weight());
-        Self { sides, mean: (first * turn + second * back) / (first + second), apart: turn - back }
+        Self { turn: -one.slope(), back: other.slope() }
+    }
+
+    fn apart(&self) -> f64 {
+        self.turn - self.back
     }
 }
 
-/// The deviations of the turns, by the jackknife over stretches of readings: noise that wanders moves whole stretches.
-fn deviations(sides: &[Side; 2]) -> Turns {
-    let [one, other] = sides;
-    let without = |stretch: usize| Turns::of(one.without(stretch), other.without(stretch));
-    let all: Vec<Turns> = (0..one.stretches.len().max(other.stretches.len())).map(without).collect();
-    let of = |what: fn(&Turns) -> f64| {
-        let count = number(all.len());
-        let mean = all.iter().map(what).sum::<f64>() / count;
-        let squares: f64 = all.iter().map(|turns| (what(turns) - mean).powi(2)).sum();
-        (squares * (count - 1.0) / count).sqrt()
-    };
-    Turns {
-        sides: [of(|turns| turns.sides[0]), of(|turns| turns.sides[1])],
-        mean: of(|turns| turns.mean),
-        apart: of(|turns| turns.apart),
+/// The standard deviations of turns, rad.
+#[derive(Clone, Copy, Debug)]
+struct Deviations {
+    turn: f64,
+    back: f64,
+    /// Of the difference of the two.
+    apart: f64,
+}
+
+impl Deviations {
+    /// By the jackknife over stretches of readings: noise that wanders moves whole stretches.
+    fn of(sides: &[Side; 2]) -> Self {
+        let [one, other] = sides;
+        let stretches = one.stretches.len().max(other.stretches.len());
+        let without = |stretch: usize| Turns::of(one.without(stretch), other.without(stretch));
+        let all: Vec<Turns> = (0..stretches).map(without).collect();
+        Self {
+            turn: jackknifed(all.iter().map(|turns| turns.turn)),
+            back: jackknifed(all.iter().map(|turns| turns.back)),
+            apart: jackknifed(all.iter().map(Turns::apart)),
+        }
     }
+}
+
+/// The standard deviation of an estimate, from what it is without each of the stretches.
+fn jackknifed(estimates: impl ExactSizeIterator<Item = f64> + Clone) -> f64 {
+    let count = number(estimates.len());
+    let mean = estimates.clone().sum::<f64>() / count;
+    let squares: f64 = estimates.map(|estimate| (estimate - mean).powi(2)).sum();
+    (squares * (count - 1.0) / count).sqrt()
 }
 
 /// What is read along one direction against one coordinate.
@@ -321,13 +341,13 @@ impl Side {
             .chunks(pairs.len().div_ceil(STRETCHES).max(1))
             .map(|stretch| Sums::of(stretch, pairs[0]))
             .collect();
-        let all = stretches.iter().fold(Sums::default(), |all, stretch| all.and(*stretch, 1.0));
+        let all = stretches.iter().fold(Sums::default(), |all, stretch| all.plus(*stretch, 1.0));
         let way = way(&own, direction, coordinate);
         (pairs.len() >= FEWEST && all.slope().is_finite()).then_some(Self { all, stretches, way })
     }
 
     fn without(&self, stretch: usize) -> Sums {
-        self.stretches.get(stretch).map_or(self.all, |stretch| self.all.and(*stretch, -1.0))
+        self.stretches.get(stretch).map_or(self.all, |stretch| self.all.plus(*stretch, -1.0))
     }
 }
 
@@ -360,12 +380,12 @@ impl Sums {
         readings.iter().fold(Self::default(), |sums, (place, deviation)| {
             let (arm, read) = (place - first.0, deviation - first.1);
             let one = Self { count: 1.0, arm, read, arms: arm * arm, reads: read * read, both: arm * read };
-            sums.and(one, 1.0)
+            sums.plus(one, 1.0)
         })
     }
 
-    /// With others, so many times.
-    fn and(self, other: Self, times: f64) -> Self {
+    /// With those of other readings, `times` times: -1 takes them away.
+    fn plus(self, other: Self, times: f64) -> Self {
         Self {
             count: self.count + times * other.count,
             arm: self.arm + times * other.arm,

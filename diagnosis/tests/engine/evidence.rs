@@ -106,6 +106,31 @@ fn what_three_digits_show_coarser_neither_hides_a_loop_nor_bends_it() {
     assert_eq!(diagnosis.undecided.iter().filter(|sentence| sentence.ends_with(coarse)).count(), 3);
 }
 
+/// Two significant digits show errors of 0.098 mm, and then 0.10 mm: what is written coarser is the large error itself.
+#[test]
+fn large_errors_that_are_written_with_few_digits_are_not_left_out() {
+    let bench = Bench::of("FX");
+    let there: Vec<f64> = (0..=20_i32).map(|station| 25.0 * f64::from(station)).collect();
+    let x: Vec<f64> = (0..3).flat_map(|_| there.iter().chain(there.iter().rev()).copied()).collect();
+    // A scale of 3e-4, beside noise of 5 um: less, and the rounding would come back at each station.
+    let error = |x: f64| 3e-4 * x;
+    let noise = normals(5, x.len());
+    let two_digits = |value: f64| {
+        let step = 10f64.powf(value.abs().max(1e-9).log10().floor() - 1.0);
+        (value / step).round() * step
+    };
+    let read = x.iter().zip(noise).map(|(x, noise)| two_digits(error(*x) + 5e-3 * noise));
+    let read: Vec<f64> = read.collect();
+    let time: Vec<f64> = (0..126_i32).map(|row| 5.0 * f64::from(row)).collect();
+    let mut recording = programmed(&time, &[x]);
+    recording.instrument = Instrument::Linear(Line { axis: Some(0), direction: [1.0, 0.0, 0.0] });
+    recording.deviation = Some(read);
+    recording.run = (0..126).map(|row| 1 + row / 42).collect();
+    let diagnosis = alone(&bench, &[&recording]);
+    assert_eq!(found(&diagnosis), ["EXX polynomial"], "{diagnosis:#?}");
+    assert!(diagnosis.undecided.iter().all(|sentence| !sentence.contains("is displayed to")));
+}
+
 #[test]
 fn a_station_that_is_off_in_every_approach_is_a_place() {
     let bench = Bench::of("FX");

@@ -11,6 +11,7 @@
 
 mod agreement;
 mod aiming;
+mod altered;
 mod beside;
 mod bounded;
 mod browser;
@@ -40,7 +41,6 @@ mod limits;
 mod machine_files;
 mod macro_errors;
 mod manuals;
-mod mirrored;
 mod odd_machines;
 mod oracle;
 mod page;

@@ -246,7 +246,8 @@ const FEWEST_APART: f64 = 12.0;
 
 /// The noise of a channel with the greatest likelihood, and minus twice the logarithm of that.
 ///
-/// `floor` is the least standard deviation of the white part: that of the rounding of the data.
+/// `floor` is the least standard deviation of the white part: that of the rounding of the data. Where the residual is quieter, as on an
+/// axis that stands between two steps of its display, the likelihood is that of this floor.
 pub(crate) fn estimate(time: &[f64], residual: &[f64], valid: &[bool], floor: f64) -> (Noise, f64) {
     let step = typical_step(time);
     let span = span(time);
@@ -271,14 +272,16 @@ pub(crate) fn estimate(time: &[f64], residual: &[f64], valid: &[bool], floor: f6
         None => (f64::INFINITY, [0.0, 0.0]),
     };
     // Two more parameters must be worth more than chance.
-    if value < white.0 - WORTH {
-        let (ratio, time_constant) = (point[0].clamp(-12.0, 12.0).exp(), point[1].exp());
-        let scale = alone(unit(ratio, time_constant)).1.sqrt();
-        let wander = ratio * scale;
-        let noise = Noise { white: scale.max(floor), wander, time_constant, alike: 1.0 };
-        return (Noise { white: noise.white.max(noise.least_white(span)), ..noise }, value);
-    }
-    (Noise { white: white.1.sqrt().max(floor), time_constant: span, ..Noise::white(1.0) }, white.0)
+    let (value, variance, shape) = if value < white.0 - WORTH {
+        let shape = at(point);
+        (value, alone(shape).1, shape)
+    } else {
+        (white.0, white.1, Noise { time_constant: span, ..Noise::white(1.0) })
+    };
+    let scale = variance.sqrt();
+    let noise = Noise { white: scale.max(floor), wander: shape.wander * scale, ..shape };
+    let value = if scale < floor { deviance(time, residual, valid, &noise) } else { value };
+    (Noise { white: noise.white.max(noise.least_white(span)), ..noise }, value)
 }
 
 /// How long a recording lasts, s; one step at least.

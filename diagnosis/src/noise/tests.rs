@@ -296,6 +296,35 @@ fn estimates_see_through_gaps() {
     assert!((0.5..2.0).contains(&noise.time_constant), "{noise:?}");
 }
 
+/// Of a residual that is quieter than the rounding allows, the likelihood is that of the noise that is told; a larger one beside it is less
+/// likely, and not more.
+#[test]
+fn what_is_quieter_than_the_rounding_is_as_likely_as_that_allows() {
+    let time: Vec<f64> = (0..400).map(f64::from).collect();
+    let wandering = Correlated { sigma: 1e-3, time_constant: 8.0 };
+    let kinds = [Drawn::white(1e-3), Drawn { white: 1e-3, correlated: Some(wandering), ..Drawn::default() }];
+    for kind in kinds {
+        let quiet = drawn(kind, &time, 9);
+        let mut moved = quiet.clone();
+        moved.iter_mut().enumerate().filter(|(row, _)| row % 40 < 4).for_each(|(_, value)| *value += 0.08);
+        let [(_, quiet), (_, moved)] = [quiet, moved].map(|values| {
+            let (noise, found) = estimate(&time, &values, &all(&time), 0.029);
+            let dense = deviance_of(&time, &values, noise);
+            assert!((found - dense).abs() < 1e-6 * dense.abs(), "{found} {dense}");
+            (noise, found)
+        });
+        assert!(moved > quiet, "{moved} {quiet}");
+    }
+}
+
+/// By the covariance matrix.
+fn deviance_of(time: &[f64], values: &[f64], noise: Noise) -> f64 {
+    let valid = all(time);
+    let root = covariance(noise, time, &valid).cholesky().unwrap();
+    let values = kept(values, &valid);
+    2.0 * root.l().diagonal().iter().map(|entry| entry.ln()).sum::<f64>() + values.dot(&root.solve(&values))
+}
+
 #[test]
 fn noise_is_never_below_the_rounding() {
     let time: Vec<f64> = (0..100).map(f64::from).collect();

@@ -10,14 +10,14 @@ use crate::beside::shared;
 use crate::cli::abbe;
 
 /// What is found in a recording whose rows were altered; nothing where there is no such recording.
-fn findings(name: &str, alter: fn(Vec<&str>) -> Vec<String>) -> Option<Vec<Value>> {
+fn findings(name: &str, alter: fn(&str, Vec<&str>) -> Vec<String>) -> Option<Vec<Value>> {
     let from = shared(&format!("recordings/{name}"))?;
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("altered").join(name);
     drop(fs::remove_dir_all(&folder));
     fs::create_dir_all(&folder).unwrap();
     let table = fs::read_to_string(from.join("data.csv")).unwrap();
     let (head, rows) = table.split_once('\n').unwrap();
-    let rows = alter(rows.lines().collect()).join("\n");
+    let rows = alter(head, rows.lines().collect()).join("\n");
     fs::write(folder.join("data.csv"), format!("{head}\n{rows}\n")).unwrap();
     let recording = folder.join("recording.yaml");
     fs::copy(from.join("recording.yaml"), &recording).unwrap();
@@ -27,22 +27,25 @@ fn findings(name: &str, alter: fn(Vec<&str>) -> Vec<String>) -> Option<Vec<Value
     Some(found["findings"].as_array().unwrap().clone())
 }
 
-/// All columns from the third on in a mirror: a machine does not know which of its directions is called positive.
-fn mirrored(rows: Vec<&str>) -> Vec<String> {
-    let cell = |(column, cell): (usize, &str)| match (column, cell) {
-        (0 | 1, _) | (_, "") => cell.to_owned(),
-        _ => cell.strip_prefix('-').map_or_else(|| format!("-{cell}"), str::to_owned),
+/// All columns but time and run in a mirror: a machine does not know which of its directions is called positive.
+fn mirrored(head: &str, rows: Vec<&str>) -> Vec<String> {
+    let stays: Vec<bool> = head.split(',').map(|name| ["t", "time_s", "run"].contains(&name)).collect();
+    let cell = |(column, cell): (usize, &str)| {
+        if stays[column] || cell.is_empty() {
+            return cell.to_owned();
+        }
+        cell.strip_prefix('-').map_or_else(|| format!("-{cell}"), str::to_owned)
     };
     let row = |row: &str| row.split(',').enumerate().map(cell).collect::<Vec<_>>().join(",");
     rows.into_iter().map(row).collect()
 }
 
-fn as_it_stands(rows: Vec<&str>) -> Vec<String> {
+fn as_it_stands(_: &str, rows: Vec<&str>) -> Vec<String> {
     rows.into_iter().map(str::to_owned).collect()
 }
 
 /// The last four fifths: the recorder was switched on later.
-fn begun_later(rows: Vec<&str>) -> Vec<String> {
+fn begun_later(_: &str, rows: Vec<&str>) -> Vec<String> {
     rows[rows.len() / 5..].iter().map(|row| (*row).to_owned()).collect()
 }
 
@@ -57,6 +60,15 @@ fn the_wave_of_a_slit_is_a_wave_in_a_mirror_too() {
     assert!(findings.iter().all(|finding| finding["term"] != "table"), "{findings:#?}");
     let wave = findings.iter().find(|finding| finding["term"] == "cyclic").unwrap();
     assert!((value(wave, "period") - 0.25).abs() < 0.0025, "{wave:#}");
+}
+
+/// A telescope mount that goes one way: in a mirror it goes the negative way from the first row on, and has no play for that.
+#[test]
+fn the_worm_of_a_mount_is_a_wave_in_a_mirror_too() {
+    let Some(findings) = findings("mount-avx-e", mirrored) else { return };
+    let wave = findings.iter().find(|finding| finding["term"] == "cyclic").unwrap();
+    let (period, unit) = (value(wave, "period"), &wave["parameters"]["period"]["unit"]);
+    assert!(unit == "deg" && (period - 2.5).abs() < 0.06, "{wave:#}");
 }
 
 /// The mill mostly stands in Z, where its display of 0.1 mm shows nothing. That rest says nothing of what Z does while it moves: two position

@@ -166,7 +166,9 @@ fn along(study: &Study<'_>, motion: usize, axis: usize, travel: &Travel, grids: 
         shapes.push(Shape::Lag { axis, inertia: 0.0 });
     }
     let (center, scale) = ((travel.low + travel.high) / 2.0, travel.range() / 2.0);
-    shapes.push(Shape::Backlash { axis, wind_up: 0.0 });
+    if travel.turns {
+        shapes.push(Shape::Backlash { axis, wind_up: 0.0 });
+    }
     // What is smooth along a beam is told of its slide. Its two motors could say the same in other names, and would then share what one
     // table tells.
     let powers = if study.equations.motions[motion].shares_beam() { 0 } else { HIGHEST_POWER };
@@ -197,6 +199,9 @@ pub(crate) fn richer(shape: &Shape, travels: &[Travel]) -> Vec<Shape> {
 
 /// Plays that are taken up over part of the travel.
 fn wind_ups(axis: usize, travel: &Travel) -> Vec<Shape> {
+    if !travel.turns {
+        return Vec::new();
+    }
     let wind_ups = geometric(3.0 * travel.step, 0.4 * travel.range(), 2.0);
     wind_ups.into_iter().map(|wind_up| Shape::Backlash { axis, wind_up }).collect()
 }

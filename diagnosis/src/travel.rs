@@ -18,6 +18,8 @@ pub(crate) struct Travel {
     /// The typical step between rows while it moves; 0 where it is known at stations alone.
     pub(crate) step: f64,
     pub(crate) moves: bool,
+    /// Whether it moves both ways. Only then it shows a play: of an axis that never turns, the direction is a constant.
+    pub(crate) turns: bool,
     /// The mean time from reversal to reversal, s; 0 where there is none.
     pub(crate) between: f64,
     /// The highest speed and the highest acceleration, without their signs.
@@ -71,5 +73,60 @@ fn travel(courses: &[Arc<Course>], axis: usize, observed: f64) -> Travel {
     let moves = axes().any(|axis| axis.moves) && high > low;
     let fastest = highest(axes().flat_map(|axis| axis.velocity.iter()));
     let hardest = highest(axes().flat_map(|axis| axis.acceleration.iter()));
-    Travel { low, high, step, moves, between, fastest, hardest }
+    let turns = turns(axes());
+    Travel { low, high, step, moves, turns, between, fastest, hardest }
+}
+
+/// Whether an axis moves both ways: within a recording, or one way in one of them and the other way in another.
+fn turns<'s>(mut axes: impl Iterator<Item = &'s AxisStates> + Clone) -> bool {
+    let moved = axes.clone().filter(|axis| axis.moves);
+    let mut directions = moved.filter_map(|axis| axis.direction.last());
+    let first = directions.next();
+    axes.any(turns_within) || directions.any(|other| Some(other) != first)
+}
+
+/// Whether an axis moves both ways in a recording. Before its first motion the direction is +1 by convention; a first motion the other way
+/// is no reversal.
+fn turns_within(axis: &AxisStates) -> bool {
+    let other_way = |row: usize| {
+        let is_reversal = axis.since_reversal[row] == 0.0 || axis.displaced.get(row) == Some(&true);
+        is_reversal && (axis.direction[row] - axis.direction[row - 1]).abs() > 0.0
+    };
+    (1..axis.direction.len()).any(other_way)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NEVER: f64 = f64::INFINITY;
+
+    fn axis(direction: &[f64], since_reversal: &[f64], displaced: &[bool]) -> AxisStates {
+        AxisStates {
+            direction: direction.into(),
+            since_reversal: since_reversal.into(),
+            displaced: displaced.into(),
+            moves: true,
+            ..AxisStates::default()
+        }
+    }
+
+    #[test]
+    fn an_axis_turns_where_it_moves_both_ways_and_not_where_it_begins_to_move() {
+        let forward = axis(&[1.0, 1.0, 1.0], &[NEVER; 3], &[]);
+        let back = axis(&[1.0, -1.0, -1.0], &[NEVER; 3], &[]);
+        let there_and_back = axis(&[1.0, 1.0, -1.0], &[NEVER, NEVER, 0.0], &[]);
+        let strokes = axis(&[1.0, 1.0, -1.0, -1.0], &[NEVER; 4], &[false, false, true, false]);
+        let same_strokes = axis(&[1.0, -1.0, -1.0, -1.0], &[NEVER; 4], &[false, false, true, false]);
+        for (axes, both_ways) in [
+            (vec![&forward], false),
+            (vec![&back], false),
+            (vec![&back, &same_strokes], false),
+            (vec![&there_and_back], true),
+            (vec![&strokes], true),
+            (vec![&forward, &back], true),
+        ] {
+            assert_eq!(turns(axes.iter().copied()), both_ways, "{axes:?}");
+        }
+    }
 }

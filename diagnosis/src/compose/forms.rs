@@ -136,7 +136,7 @@ fn names(found: &Found) -> Vec<Form> {
 /// clock. What follows the speed is neither, but a loop whose gain differs from one direction to the other; of an axis that never turns
 /// the two are the same.
 fn loops(study: &Study<'_>, found: &Found, atoms: &Atoms) -> Vec<Effect> {
-    let turns = |axis: usize| found.travels[axis].between > 0.0;
+    let turns = |axis: usize| found.travels[axis].turns;
     let follows = |factor: &&Factor<usize>| match factor {
         Factor::Velocity { .. } => true,
         Factor::Speed { axis, .. } => !turns(*axis),
@@ -256,7 +256,7 @@ fn times(core: Shape, factors: Vec<Factor<usize>>) -> Shape {
 /// Plays of the motion's axis whose size follows a state.
 fn plays(study: &Study<'_>, motion: usize, travels: &[Travel], atoms: &Atoms) -> Vec<Shape> {
     let known = &study.equations.motions[motion];
-    let Some(axis) = known.axis.filter(|axis| travels[*axis].moves && !known.alignment) else {
+    let Some(axis) = known.axis.filter(|axis| travels[*axis].turns && !known.alignment) else {
         return Vec::new();
     };
     let play = || Shape::Backlash { axis, wind_up: 0.0 };

@@ -78,17 +78,10 @@ impl Units {
     }
 
     pub(super) fn noise(&self, study: &Study<'_>, appraisal: &Appraisal) -> NoiseSummary {
-        let channels = study
-            .scenes
-            .iter()
-            .zip(appraisal.floors.iter().zip(&appraisal.leftover))
-            .flat_map(|(scene, (floors, left))| scene.channels.iter().zip(floors.iter().zip(left)));
-        let counted: Vec<_> = channels
-            .filter(|(channel, _)| self.counts(study, channel.kind))
-            .map(|(channel, (floor, left))| seen(*floor, left.max(channel.rounding)))
-            .collect();
+        let channels = study.channels().filter(|at| self.counts(study, study.channel(*at).kind));
+        let counted: Vec<Noise> = channels.map(|at| seen(study, appraisal, at)).collect();
         let count = crate::number(counted.len()).max(1.0);
-        let mean = |part: &dyn Fn(&crate::noise::Noise) -> f64| {
+        let mean = |part: &dyn Fn(&Noise) -> f64| {
             (counted.iter().map(|noise| part(noise) * part(noise)).sum::<f64>() / count).sqrt() * self.unit.0
         };
         let (white, wander) = (mean(&|noise| noise.white), mean(&|noise| noise.wander));
@@ -98,11 +91,20 @@ impl Units {
     }
 }
 
-/// A noise no larger than what was seen of it: one that wanders for longer than a recording lasts gets only so far.
-fn seen(noise: Noise, size: f64) -> Noise {
-    let white = noise.white.min(size);
-    let wander = noise.wander.min((size * size - white * white).max(0.0).sqrt());
-    Noise { white, wander, ..noise }
+/// The noise of a channel, no larger than what was seen of it: one that wanders for longer than a recording lasts gets only so far, and the
+/// rows that are held out may be quieter than the others.
+fn seen(study: &Study<'_>, appraisal: &Appraisal, at: ChannelAt) -> Noise {
+    let (floor, left) = (appraisal.floors[at.scene][at.channel], appraisal.leftover[at.scene][at.channel]);
+    let residual = appraisal.residuals[at.scene][at.channel].iter().zip(appraisal.weights.outliers.of(at));
+    let counted = residual.filter(|(value, outlier)| value.is_finite() && !**outlier);
+    let mut everywhere: Vec<f64> = counted.map(|(value, _)| *value).collect();
+    zeros::center(&mut everywhere);
+    let squares: f64 = everywhere.iter().map(|value| value * value).sum();
+    let in_all_rows = (squares / crate::number(everywhere.len()).max(1.0)).sqrt();
+    let size = left.min(in_all_rows).max(study.channel(at).rounding);
+    let white = floor.white.min(size);
+    let wander = floor.wander.min((size * size - white * white).max(0.0).sqrt());
+    Noise { white, wander, ..floor }
 }
 
 /// The size of what a model leaves of the channels that count, in a unit; outliers are left out.

@@ -6,8 +6,7 @@
 //! the next recording.
 //!
 //! ```text
-//! cargo run --release --example concealed-sweep -- [--count N] [--quiet-count M] [--seed S] [--only TERM]
-//!     [--case K] [--dump FOLDER] [--minutes T] [-v]
+//! cargo run --release --example concealed-sweep -- --help
 //! ```
 
 #![expect(
@@ -35,6 +34,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Instant;
 
+use clap::Parser;
+use clap::builder::PossibleValuesParser;
 use diagnosis::{Inputs, diagnose};
 use model_dsl::calibration::write;
 
@@ -42,27 +43,41 @@ use case::{Case, QUIET};
 use report::Line;
 use score::{How, Score};
 
-/// What the command line asks for.
+/// Diagnoses many simulated machines with concealed effects, and counts what is found and what is made up.
+#[derive(clap::Parser)]
 struct Options {
+    /// How many cases have one to three effects
+    #[arg(long, value_name = "N", default_value_t = 360)]
     count: usize,
-    quiet: usize,
+    /// How many cases have none
+    #[arg(long, value_name = "N", default_value_t = 120)]
+    quiet_count: usize,
+    /// One seed is one set of cases
+    #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Conceal this term in every case
+    #[arg(long, value_name = "TERM", value_parser = PossibleValuesParser::new(effect::TERMS.map(|(term, _)| term)))]
     only: Option<String>,
+    /// Show this case alone: what is true beside what is found
+    #[arg(long, value_name = "NUMBER")]
     case: Option<usize>,
+    /// Write the files of that case to this folder
+    #[arg(long, value_name = "FOLDER", requires = "case")]
     dump: Option<PathBuf>,
+    /// Begin no further case after so many minutes
+    #[arg(long, default_value_t = 15.0)]
     minutes: f64,
+    /// Name the cases that fail
+    #[arg(short, long)]
     verbose: bool,
 }
 
 fn main() {
-    let options = options().unwrap_or_else(|error| {
-        eprintln!("{error}");
-        std::process::exit(2);
-    });
+    let options = Options::parse();
     if let Some(number) = options.case {
         return alone(&options, number);
     }
-    let numbers: Vec<usize> = interleaved(options.count, options.quiet);
+    let numbers: Vec<usize> = interleaved(options.count, options.quiet_count);
     let (next, lines, begun) = (AtomicUsize::new(0), Mutex::new(Vec::new()), Instant::now());
     let cores = thread::available_parallelism().map_or(2, usize::from);
     thread::scope(|scope| {
@@ -84,45 +99,6 @@ fn main() {
     let minutes = begun.elapsed().as_secs_f64() / 60.0;
     println!("# Concealed effects: {} cases, seed {}, {minutes:.1} min\n", lines.len(), options.seed);
     println!("{}", report::markdown(&lines));
-}
-
-fn options() -> Result<Options, String> {
-    let mut options = Options {
-        count: 360,
-        quiet: 120,
-        seed: 1,
-        only: None,
-        case: None,
-        dump: None,
-        minutes: 15.0,
-        verbose: false,
-    };
-    let mut arguments = std::env::args().skip(1);
-    while let Some(key) = arguments.next() {
-        if key == "-v" {
-            options.verbose = true;
-            continue;
-        }
-        let value = arguments.next().ok_or(format!("{key} needs a value"))?;
-        let bad = |error: std::num::ParseIntError| format!("{key} {value}: {error}");
-        match key.as_str() {
-            "--count" => options.count = value.parse().map_err(bad)?,
-            "--quiet-count" => options.quiet = value.parse().map_err(bad)?,
-            "--seed" => options.seed = value.parse().map_err(bad)?,
-            "--case" => options.case = Some(value.parse().map_err(bad)?),
-            "--minutes" => {
-                options.minutes = value.parse().map_err(|error| format!("{key} {value}: {error}"))?
-            }
-            "--only" if effect::TERMS.iter().any(|(term, _)| *term == value) => options.only = Some(value),
-            "--dump" => options.dump = Some(PathBuf::from(value)),
-            _ => {
-                return Err(format!(
-                    "{key} {value} is not understood; see the head of the example's main.rs"
-                ));
-            }
-        }
-    }
-    Ok(options)
 }
 
 /// Cases with effects and without, mixed, so that a sweep that is stopped has some of both.

@@ -5,11 +5,10 @@
 //! too; and the power of the rows with which they grow. It exists so that "linear" is a figure and no opinion.
 //!
 //! ```text
-//! cargo run --release --example diagnosis-growth -- [--rows 1000000] [--folder FOLDER] [--only rows|channels|candidates]
-//! cargo run --release --example diagnosis-growth -- --in-a-row 20 [--rows 1000000] [--folder FOLDER]
+//! cargo run --release --example diagnosis-growth -- --help
 //! ```
 //!
-//! The second diagnoses so many recordings of one size, which differ in their noise, one after the other in one process: the
+//! `--in-a-row` diagnoses so many recordings of one size, which differ in their noise, one after the other in one process: the
 //! memory that each of them needs, and what is left of it behind each.
 //!
 //! One processor: `RAYON_NUM_THREADS=1` before it.
@@ -19,7 +18,6 @@
     clippy::expect_used,
     clippy::panic,
     clippy::print_stdout,
-    clippy::print_stderr,
     reason = "a program for the terminal, whose cases are its own"
 )]
 
@@ -28,15 +26,32 @@ mod measure;
 
 use std::path::PathBuf;
 
+use clap::Parser;
+
 use case::{Case, SEED};
 use measure::{Figures, measured};
 
-/// What the command line asks for.
+/// Measures how the time and the memory of a diagnosis grow with rows, channels and candidates.
+#[derive(clap::Parser)]
 struct Options {
+    /// The most rows of a case, or those of every case of `--in-a-row`
+    #[arg(long, default_value_t = 1_000_000)]
     rows: usize,
-    folder: PathBuf,
+    /// Where the simulated recordings are written [default: a folder for temporary files]
+    #[arg(long)]
+    folder: Option<PathBuf>,
+    /// Measure the growth with this alone
+    #[arg(long, value_parser = ["rows", "channels", "candidates"])]
     only: Option<String>,
+    /// Diagnose so many recordings one after the other in one process
+    #[arg(long, value_name = "COUNT")]
     in_a_row: Option<u64>,
+}
+
+impl Options {
+    fn folder(&self) -> PathBuf {
+        self.folder.clone().unwrap_or_else(|| std::env::temp_dir().join("abbe-diagnosis-growth"))
+    }
 }
 
 /// Rows of the cases that have more channels or candidates.
@@ -49,10 +64,7 @@ fn main() {
         Some("--diagnose-in-a-row") => return measure::diagnose_in_a_row(arguments),
         _ => {}
     }
-    let options = options().unwrap_or_else(|error| {
-        eprintln!("{error}");
-        std::process::exit(2);
-    });
+    let options = Options::parse();
     if let Some(count) = options.in_a_row {
         return in_a_row(count, &options);
     }
@@ -61,34 +73,9 @@ fn main() {
     for (name, cases) in families {
         if options.only.as_ref().is_none_or(|only| only == name) {
             println!("\nGrowth with {name}\n");
-            table(&cases, &options.folder);
+            table(&cases, &options.folder());
         }
     }
-}
-
-fn options() -> Result<Options, String> {
-    let folder = std::env::temp_dir().join("abbe-diagnosis-growth");
-    let mut options = Options { rows: 1_000_000, folder, only: None, in_a_row: None };
-    let mut arguments = std::env::args().skip(1);
-    while let Some(key) = arguments.next() {
-        let value = arguments.next().ok_or(format!("{key} needs a value"))?;
-        match key.as_str() {
-            "--rows" => options.rows = value.parse().map_err(|error| format!("{key} {value}: {error}"))?,
-            "--in-a-row" => {
-                options.in_a_row = Some(value.parse().map_err(|error| format!("{key} {value}: {error}"))?)
-            }
-            "--folder" => options.folder = PathBuf::from(value),
-            "--only" if ["rows", "channels", "candidates"].contains(&value.as_str()) => {
-                options.only = Some(value)
-            }
-            _ => {
-                return Err(format!(
-                    "{key} {value} is not understood; see the head of the example's main.rs"
-                ));
-            }
-        }
-    }
-    Ok(options)
 }
 
 /// Ten thousand rows and three times as many again and again.
@@ -113,7 +100,7 @@ fn by_sensors() -> Vec<Case> {
 fn in_a_row(count: u64, options: &Options) {
     let recorded = |seed: u64| {
         let case = Case { rows: options.rows, channels: 2, sensors: 0, seed };
-        case.recorded(&options.folder)
+        case.recorded(&options.folder())
     };
     let recordings: Vec<PathBuf> = (0..count).map(|number| recorded(SEED + number)).collect();
     println!("\n{count} recordings of {} rows in one process\n", options.rows);

@@ -6,11 +6,8 @@
 //! the unknown physics are those of a real machine, and one truth is certain.
 //!
 //! ```text
-//! cargo run --release --example injected -- FOLDER [--seed 1] [--sizes 0.5,1,3] [--kinds backlash,lag]
-//!     [--only NAME] [--most CASES] [--markdown | --json]
+//! cargo run --release --example injected -- --help
 //! ```
-//!
-//! `--only` takes recordings whose name holds the word; `--most` draws so many of all cases. One seed is one set of cases.
 
 #![expect(
     clippy::unwrap_used,
@@ -31,6 +28,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Instant;
 
+use clap::Parser;
 use diagnosis::diagnosis::Diagnosis;
 use recording::Recording;
 
@@ -42,10 +40,7 @@ use options::{Form, Options};
 use report::Line;
 
 fn main() {
-    let options = Options::read(std::env::args().skip(1)).unwrap_or_else(|error| {
-        eprintln!("{error}");
-        std::process::exit(2);
-    });
+    let options = Options::parse();
     let bases = bases(&options);
     let cases = cases(&bases, &options);
     if cases.is_empty() {
@@ -53,7 +48,7 @@ fn main() {
         std::process::exit(1);
     }
     let lines = judged(&bases, &cases);
-    match options.form {
+    match options.form() {
         Form::Json => println!("{:#}", report::json(&lines, options.seed)),
         form => print!("{}", report::text(&lines, &options.sizes, form == Form::Markdown)),
     }

@@ -18,7 +18,7 @@ pub(crate) struct Travel {
     /// The typical step between rows while it moves; 0 where it is known at stations alone.
     pub(crate) step: f64,
     pub(crate) moves: bool,
-    /// Whether it moves both ways. Only then it shows a play: of an axis that never turns, the direction is a constant.
+    /// Whether it moves both ways. Only such an axis shows backlash: if an axis never reverses, its direction is a constant.
     pub(crate) turns: bool,
     /// The mean time from reversal to reversal, s; 0 where there is none.
     pub(crate) between: f64,

@@ -46,28 +46,28 @@ use score::{How, Score};
 /// Diagnoses many simulated machines with concealed effects, and counts what is found and what is made up.
 #[derive(clap::Parser)]
 struct Options {
-    /// How many cases have one to three effects
+    /// Number of cases with one to three concealed effects
     #[arg(long, value_name = "N", default_value_t = 360)]
     count: usize,
-    /// How many cases have none
+    /// Number of cases with no concealed effect
     #[arg(long, value_name = "N", default_value_t = 120)]
     quiet_count: usize,
-    /// One seed is one set of cases
+    /// Seed of the cases: the same seed gives the same cases
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Conceal this term in every case
+    /// Conceal this term in every case that conceals something
     #[arg(long, value_name = "TERM", value_parser = PossibleValuesParser::new(effect::TERMS.map(|(term, _)| term)))]
     only: Option<String>,
-    /// Show this case alone: what is true beside what is found
+    /// Run only this case, and show the truth beside the diagnosis
     #[arg(long, value_name = "NUMBER")]
     case: Option<usize>,
     /// Write the files of that case to this folder
     #[arg(long, value_name = "FOLDER", requires = "case")]
     dump: Option<PathBuf>,
-    /// Begin no further case after so many minutes
+    /// Start no new case after this number of minutes
     #[arg(long, default_value_t = 15.0)]
     minutes: f64,
-    /// Name the cases that fail
+    /// Report each case that fails
     #[arg(short, long)]
     verbose: bool,
 }

@@ -8,8 +8,8 @@
 //! cargo run --release --example diagnosis-growth -- --help
 //! ```
 //!
-//! `--in-a-row` diagnoses so many recordings of one size, which differ in their noise, one after the other in one process: the
-//! memory that each of them needs, and what is left of it behind each.
+//! With `--in-a-row`, one process diagnoses several recordings of the same size, one after another. They differ only in their noise.
+//! The table shows how much memory each diagnosis needs, and how much stays allocated after it.
 //!
 //! One processor: `RAYON_NUM_THREADS=1` before it.
 
@@ -34,24 +34,18 @@ use measure::{Figures, measured};
 /// Measures how the time and the memory of a diagnosis grow with rows, channels and candidates.
 #[derive(clap::Parser)]
 struct Options {
-    /// The most rows of a case, or those of every case of `--in-a-row`
+    /// The largest number of rows of a case; with `--in-a-row`, the number of rows of every recording
     #[arg(long, default_value_t = 1_000_000)]
     rows: usize,
-    /// Where the simulated recordings are written [default: a folder for temporary files]
-    #[arg(long)]
-    folder: Option<PathBuf>,
-    /// Measure the growth with this alone
+    /// Where the simulated recordings are written
+    #[arg(long, default_value_os_t = std::env::temp_dir().join("abbe-diagnosis-growth"))]
+    folder: PathBuf,
+    /// Measure only the growth with this
     #[arg(long, value_parser = ["rows", "channels", "candidates"])]
     only: Option<String>,
-    /// Diagnose so many recordings one after the other in one process
+    /// Instead, diagnose this number of recordings in one process, one after another
     #[arg(long, value_name = "COUNT")]
     in_a_row: Option<u64>,
-}
-
-impl Options {
-    fn folder(&self) -> PathBuf {
-        self.folder.clone().unwrap_or_else(|| std::env::temp_dir().join("abbe-diagnosis-growth"))
-    }
 }
 
 /// Rows of the cases that have more channels or candidates.
@@ -73,7 +67,7 @@ fn main() {
     for (name, cases) in families {
         if options.only.as_ref().is_none_or(|only| only == name) {
             println!("\nGrowth with {name}\n");
-            table(&cases, &options.folder());
+            table(&cases, &options.folder);
         }
     }
 }
@@ -100,7 +94,7 @@ fn by_sensors() -> Vec<Case> {
 fn in_a_row(count: u64, options: &Options) {
     let recorded = |seed: u64| {
         let case = Case { rows: options.rows, channels: 2, sensors: 0, seed };
-        case.recorded(&options.folder())
+        case.recorded(&options.folder)
     };
     let recordings: Vec<PathBuf> = (0..count).map(|number| recorded(SEED + number)).collect();
     println!("\n{count} recordings of {} rows in one process\n", options.rows);

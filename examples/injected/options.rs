@@ -13,26 +13,26 @@ pub(crate) enum Form {
     Json,
 }
 
-/// Injects known effects into recordings of real machines, and counts what of them a diagnosis finds.
+/// Injects known effects into recordings of real machines, and counts how many of them the diagnosis finds.
 #[derive(Clone, Debug, PartialEq, clap::Parser)]
 pub(crate) struct Options {
-    /// The folder of the recordings: each is a folder with `recording.yaml` and its table
+    /// Folder with one subfolder per recording, each with `recording.yaml` and its table
     #[arg(value_parser = folder)]
     pub(crate) folder: PathBuf,
-    /// One seed is one set of cases
+    /// Seed of the cases: the same seed gives the same cases
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Largest values of effects over what a straight line leaves
+    /// Sizes of the injected effects: peak over the residual of a straight line
     #[arg(long, value_delimiter = ',', default_value = "0.5,1,3")]
     pub(crate) sizes: Vec<f64>,
-    /// The kinds that are injected
+    /// Kinds of effect to inject; all by default
     #[arg(long, value_delimiter = ',', default_values = Kind::names(), hide_default_value = true,
         value_parser = PossibleValuesParser::new(Kind::names()))]
     pub(crate) kinds: Vec<String>,
-    /// Take recordings whose name holds this word
+    /// Use only recordings whose name contains this word
     #[arg(long, value_name = "WORD")]
     pub(crate) only: Option<String>,
-    /// Draw so many of all cases
+    /// Run at most this number of cases, drawn at random
     #[arg(long, value_name = "CASES", default_value_t = usize::MAX, hide_default_value = true)]
     pub(crate) most: usize,
     /// Print tables in Markdown
@@ -61,7 +61,7 @@ impl Options {
 
 fn folder(name: &str) -> Result<PathBuf, String> {
     let folder = PathBuf::from(name);
-    if folder.is_dir() { Ok(folder) } else { Err("it is no folder".to_owned()) }
+    if folder.is_dir() { Ok(folder) } else { Err("not a folder".to_owned()) }
 }
 
 #[cfg(test)]

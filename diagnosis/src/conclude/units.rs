@@ -91,8 +91,8 @@ impl Units {
     }
 }
 
-/// The noise of a channel, no larger than what was seen of it: one that wanders for longer than a recording lasts gets only so far, and the
-/// rows that are held out may be quieter than the others.
+/// The noise of a channel, no larger than the residual that was observed. A noise that wanders for longer than the recording lasts shows
+/// only part of its size, and the rows that are held out may be quieter than the others.
 fn seen(study: &Study<'_>, appraisal: &Appraisal, at: ChannelAt) -> Noise {
     let (floor, left) = (appraisal.floors[at.scene][at.channel], appraisal.leftover[at.scene][at.channel]);
     let residual = appraisal.residuals[at.scene][at.channel].iter().zip(appraisal.weights.outliers.of(at));

@@ -330,3 +330,39 @@ fn a_limit_cuts_what_axes_turn_for_the_direction_and_refuses_nothing() {
     let cut = turned.iter().filter(|turned| **turned > LIMIT - 1e-9).count();
     assert!(cut > 20, "{cut} of 200 are cut: {turned:?}");
 }
+
+/// One rotary axis with errors of a few urad: less is left of the second order than of the search, which ends at a step in rad. The tip is
+/// 113 mm away from the axis. It was left 1.6e-8 mm off.
+#[test]
+fn the_end_of_the_search_is_an_angle_at_a_lever() {
+    let motion = |axis| ErrorMotion {
+        shape: Shape::Angular,
+        axis,
+        opposite: false,
+        symbol: None,
+        travel: None,
+        rotates: false,
+    };
+    let fixed = Link {
+        kind: Kind::Tool,
+        id: "tip".to_owned(),
+        along: 2,
+        backwards: false,
+        origin: [vec![], vec![], vec![]],
+        turned: [0; 3],
+        bed: None,
+        errors: None,
+    };
+    let table = Link {
+        kind: Kind::Rotary('C'),
+        id: "C1".to_owned(),
+        origin: [vec![], vec![(-112.5, None)], vec![(1.0, Some("K1".to_owned()))]],
+        turned: [-300, 0, 0],
+        errors: Some(vec![motion(2), motion(0)]),
+        ..fixed.clone()
+    };
+    let (sensitive, workpiece, tool) = ([true; 3], vec![table], vec![fixed]);
+    let machine = Machine { sensitive, relative: false, pointing: true, bed: false, workpiece, tool };
+    let (text, seed) = (yaml::text(&machine, true), 15_863_794_132_309_529_462);
+    on_file(&machine, &text, |equations| waves(equations, seed), state(&machine, seed), judged).unwrap();
+}

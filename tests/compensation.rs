@@ -127,10 +127,13 @@ impl Trial<'_> {
     }
 
     /// What the first order may leave: half the bound of the second derivative of the exact tip along the errors (see
-    /// `Sizes`), and what the search leaves, which ends at steps of 1e-10 mm.
+    /// `Sizes`), and what the search leaves: ten of the steps at which it ends, 1e-10 mm or rad. A rotary axis moves the tip by its step
+    /// times a lever, which is no longer than all lengths together.
     pub(crate) fn second_order(&self, command: &[f64]) -> f64 {
         let sizes = Sizes::of(self.machine, &self.real(command));
-        sizes.second() / 2.0 + sizes.rounding() + 1e-9
+        let turns = self.equations.axes.iter().any(|axis| axis.rotary);
+        let lever = if turns { sizes.lengths } else { 0.0 };
+        sizes.second() / 2.0 + sizes.rounding() + 1e-9 * (1.0 + lever)
     }
 }
 

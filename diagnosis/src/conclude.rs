@@ -38,7 +38,7 @@ use decidable::crossed;
 use findings::report;
 use searched::{Opening, Searched};
 use summary::summaries;
-use units::Units;
+use units::{Left, Units, lies_farther};
 
 /// Finds what the model leaves out; with the numbers behind plots of it, or all numbers, where `keep` says so.
 pub(crate) fn diagnose(inputs: &Inputs<'_>, keep: Keep, progress: &mut dyn FnMut(Progress)) -> Diagnosis {
@@ -106,7 +106,7 @@ fn concluded(
     diagnosis.machine = study.equations.machine.clone();
     (diagnosis.before, diagnosis.undecided) = (opening.before, opening.undecided);
     (diagnosis.returns, diagnosis.nothing_returns) = (opening.returns, opening.nothing_returns);
-    stand_or_fall(&study, &units, &mut found, before.holdout_rms);
+    stand_or_fall(&study, &units, &mut found, &before);
     compose::compose(&study, &mut found);
     let mut feature = explain_locally(&study, &mut found);
     progress(Progress { step: "comparing with other names", done: 0.95 });
@@ -122,7 +122,8 @@ fn concluded(
     }
     diagnosis.undecided.extend(crossed(&study, &found.fit.model));
     diagnosis.undecided.extend(diagnosis.model.iter().map(decidable::since_when));
-    let moving = if feature.is_none() { unsteady::moving(&study, &found.appraisal) } else { None };
+    let moving =
+        if feature.is_none() { unsteady::moving(&study, &found.appraisal, units.outside) } else { None };
     let quiet = feature.as_ref().and_then(|feature| places::beside(&study, &found, feature));
     diagnosis.noise = units.noise(&study, quiet.as_ref().unwrap_or(&found.appraisal));
     let counts = |kind| units.counts(&study, kind);
@@ -131,15 +132,16 @@ fn concluded(
         _ => Vec::new(),
     };
     diagnosis.pictures =
-        opening.drawn.map(|before| before.draw(&study, &found, (&counts, units.unit.0), &numbers));
+        opening.drawn.map(|before| before.draw(&study, &found, (&counts, units.unit().0), &numbers));
     diagnosis.unexplained = match feature {
-        Some(feature) => Some(unexplained::feature(&study, &found, &feature, &units)),
-        None => unexplained::unsteady(&study, &found, moving, &units)
-            .or_else(|| unexplained::returning(&study, &found, &units)),
+        Some(feature) => Some(unexplained::feature(&study, &found, &feature)),
+        None => {
+            unexplained::unsteady(&study, &found, moving).or_else(|| unexplained::returning(&study, &found))
+        }
     };
     diagnosis.unexplained = diagnosis.unexplained.or_else(|| unexplained::on_the_way(&study));
     let told = scattered.iter().find(|scatter| scatter.is_told);
-    diagnosis.repeatability = told.map(|scatter| repeats::describe(&study, scatter, units.unit));
+    diagnosis.repeatability = told.map(|scatter| repeats::describe(&study, scatter, units.unit()));
     diagnosis.verdict = verdict(&diagnosis);
     if diagnosis.verdict == Verdict::Adequate {
         diagnosis.denied = denied::denied(&study, &found);
@@ -165,20 +167,19 @@ fn verdict(diagnosis: &Diagnosis) -> Verdict {
     }
 }
 
-/// What a model leaves of held-out rows, the zeros of recordings that are held out as a whole left free; `None` where nothing is
-/// held out.
-fn held_out(study: &Study<'_>, units: &Units, model: &Model, outliers: &Outliers) -> Option<f64> {
+/// What a model leaves of each measure, the zeros of recordings that are held out as a whole left free.
+fn left(study: &Study<'_>, units: &Units, model: &Model, outliers: &Outliers) -> Vec<Left> {
     let mut model = model.clone();
     zeros::free_held_out(study, &mut model);
-    units.residual(study, &model, outliers).holdout_rms
+    units.left(study, &model, outliers)
 }
 
 /// Keeps what was found only where held-out rows lie no farther with it than the calibration leaves them, `before`: what makes
 /// them lie farther is no explanation, however well it fitted. Where it is only that zeros allow for a noise that wanders, they are
 /// weighed as those of the calibration are.
-fn stand_or_fall(study: &Study<'_>, units: &Units, found: &mut Found, before: Option<f64>) {
+fn stand_or_fall(study: &Study<'_>, units: &Units, found: &mut Found, before: &[Left]) {
     let outliers = &found.appraisal.weights.outliers;
-    let farther = |model: &Model| held_out(study, units, model, outliers) > before;
+    let farther = |model: &Model| lies_farther(&left(study, units, model, outliers), before);
     if !found.claims() || !farther(&found.fit.model) {
         return;
     }

@@ -105,18 +105,23 @@ const FAR: f64 = 0.05;
 /// its direction.
 const KEEPS: f64 = 0.8;
 
-/// The channel whose residual moves smoothly, the largest of them.
-pub(crate) fn moving(study: &Study<'_>, appraisal: &Appraisal) -> Option<Moving> {
-    let mut found: Option<Moving> = None;
-    for at in study.channels() {
+/// The channel whose residual moves smoothly; of several, the one that is largest beside its noise. `outside` tells whether instruments
+/// outside the drives count, or the drives' own feedback.
+pub(crate) fn moving(study: &Study<'_>, appraisal: &Appraisal, outside: bool) -> Option<Moving> {
+    let counted = study.channels().filter(|at| study.channel(*at).kind.outside() == outside);
+    let moving = counted.filter_map(|at| {
         let known = &study.scenes[at.scene];
-        if let Some((lag, rms)) = keeps_on(&known.recording.time, &accepted(appraisal, at), known.given.step)
-            && found.is_none_or(|found| found.rms < rms)
-        {
-            found = Some(Moving { at, rms, time: lag });
-        }
-    }
-    found
+        let (time, rms) = keeps_on(&known.recording.time, &accepted(appraisal, at), known.given.step)?;
+        Some(Moving { at, rms, time })
+    });
+    largest(appraisal, moving)
+}
+
+/// The largest beside the noise of its channel: lengths and angles cannot be compared.
+fn largest(appraisal: &Appraisal, moving: impl Iterator<Item = Moving>) -> Option<Moving> {
+    let beside_noise =
+        |moving: &Moving| moving.rms / appraisal.floors[moving.at.scene][moving.at.channel].size();
+    moving.max_by(|one, other| beside_noise(one).total_cmp(&beside_noise(other)))
 }
 
 /// The channel of which more comes back than does not, although nothing in it moves smoothly: stations far apart, say. The largest of
@@ -132,7 +137,7 @@ pub(crate) fn returning(study: &Study<'_>, appraisal: &Appraisal) -> Option<Movi
         let time = study.scenes[scene].given.step;
         (returning > alone).then(|| Moving { at, rms: (returning / count).sqrt(), time })
     });
-    rest.max_by(|one, other| one.rms.total_cmp(&other.rms))
+    largest(appraisal, rest)
 }
 
 /// Whether what is left of a channel is the drive's own feedback behind a loop that was found, and moves smoothly: that is the

@@ -3,7 +3,7 @@
 //! In: what the engine found. Out: a finding for each effect of the machine, with its parameters, its share, its evidence
 //! on held-out data and its other names; and the settings of instruments that the data demand.
 
-use super::units::Units;
+use super::units::{Left, Units};
 use crate::alternatives;
 use crate::certainty::{self, WIDTH_95};
 use crate::diagnosis::{Alternative, Diagnosis, Evidence, Finding, Parameter, Residual, SettingFinding};
@@ -37,7 +37,8 @@ pub(super) fn report(
     for column in 0..design.width {
         swept.take(column);
     }
-    let shares = shares(study, found, units);
+    let left = units.left(study, &found.fit.model, &found.appraisal.weights.outliers);
+    let shares = shares(study, found, units, &left);
     let certainties = certainty::certainties(study, &found.fit, &found.appraisal.weights, &found.travels);
     for (number, fitted) in found.fit.model.effects.iter().enumerate() {
         let described = Described::new(study, fitted, &certainties[number]);
@@ -69,7 +70,7 @@ pub(super) fn report(
             parameters,
             share: shares[number],
             location: words::location(study, &found.fit.model, fitted, names),
-            evidence: evidence(study, units, &fitted.effect, (found, diagnosis.after), &reduced),
+            evidence: evidence(study, units, &fitted.effect, (found, &left), &reduced),
             alternatives,
             explanation: fitted.effect.shape.meaning().to_owned(),
             compensable: calibrated.compensable(),
@@ -87,13 +88,13 @@ pub(super) fn report(
     numbers
 }
 
-/// What an effect does to held-out data, from what was found with it, with what that leaves, and the model without: to what counts
-/// throughout; where it acts in a drive beside instruments outside, to that drive's own feedback, which shows it finer.
+/// What an effect does to held-out data, from what was found with it, with what that leaves, and the model without: to lengths or angles,
+/// whichever it changes more; where it acts in a drive beside instruments outside, to that drive's own feedback, which shows it finer.
 fn evidence(
     study: &Study<'_>,
     units: &Units,
     effect: &Effect,
-    (found, after): (&Found, Residual),
+    (found, left): (&Found, &[Left]),
     reduced: &Model,
 ) -> Evidence {
     let own = |motion: usize| study.own.iter().position(|own| *own == Some(motion));
@@ -101,19 +102,20 @@ fn evidence(
     let axis = effect.motion().and_then(own).filter(|axis| at_drive && study.has_drive(*axis));
     let outliers = &found.appraisal.weights.outliers;
     let at_drive = |model: &Model, axis: usize| units.at_drive(study, model, outliers, axis);
-    let (with, without) = match axis {
-        Some(axis) => (at_drive(&found.fit.model, axis), at_drive(reduced, axis)),
-        None => (after, units.residual(study, reduced, outliers)),
+    let [with, without] = match axis {
+        Some(axis) => [&found.fit.model, reduced].map(|model| at_drive(model, axis)),
+        None => units.most_apart(left, &units.left(study, reduced, outliers)),
     };
     let drive = axis.map(|axis| study.equations.axes[axis].letter.clone());
     Evidence { with: held_rms(&with), without: held_rms(&without), unit: with.unit, drive }
 }
 
 /// The part of each effect in what all effects of the machine do together to the data that were held out (to all data, where
-/// none were): its product with the sum over the square of the sum, zeros of channels left free.
-fn shares(study: &Study<'_>, found: &Found, units: &Units) -> Vec<f64> {
+/// none were): its product with the sum over the square of the sum, zeros of channels left free. `left` is what the whole
+/// model leaves.
+fn shares(study: &Study<'_>, found: &Found, units: &Units, left: &[Left]) -> Vec<f64> {
     let model = &found.fit.model;
-    let held_out = |model: &Model| units.held_out(study, model, &found.appraisal.weights.outliers);
+    let held_out = |model: &Model| units.held_out(study, model, &found.appraisal.weights.outliers, left);
     let whole = held_out(model);
     let difference = |number: usize| -> Vec<f64> {
         if model.effects[number].effect.motion().is_none() {

@@ -4,8 +4,8 @@
 //! or the whole diagnosis where nothing can be decided.
 
 use super::decidable::{Misread, astray, impossible, misplaced, misread, no_circle, too_little, undecided};
-use super::units::Units;
-use super::{Bare, bare_beside, bare_model, ceiling, fitted_runs, strongest, undecidable};
+use super::units::{Left, Units};
+use super::{Bare, bare_beside, bare_model, ceiling, fitted_runs, left, strongest, undecidable};
 use crate::audit::Trial;
 use crate::candidates;
 use crate::clamping;
@@ -29,8 +29,8 @@ pub(super) struct Searched<'s> {
     pub(super) found: Found,
     /// The recordings whose runs do not repeat.
     pub(super) scattered: Vec<Scatter>,
-    /// What the files leave.
-    pub(super) before: Residual,
+    /// What the files leave of each measure.
+    pub(super) before: Vec<Left>,
 }
 
 /// What is told of recordings before anything is found in them.
@@ -79,27 +79,37 @@ impl<'s> Searched<'s> {
         {
             return Err(Box::new(undecidable(opened, &study, &Outliers::none(&study), reason)));
         }
-        let units = Units::new(&study);
-        let bare = bare_model(&study, &Model::default());
+        let mut bare = bare_model(&study, &Model::default());
         let mut study = returns::told(study, &bare.model, &bare.outliers);
         opened.returns = ceiling::ceiling(&study);
         opened.nothing_returns = ceiling::nothing(&study);
         if let Some(reason) = astray(&study, &bare.model).or_else(|| no_circle(&study, &bare.model)) {
             return Err(Box::new(undecidable(opened, &study, &bare.outliers, reason)));
         }
-        let left = |study: &Study<'_>, Bare { model, outliers }: &Bare| {
-            let drawn = (keep != Keep::Nothing).then(|| pictures::Before::new(study, model, outliers));
-            (units.residual(study, model, outliers), drawn)
+        let drawn = |study: &Study<'_>, Bare { model, outliers }: &Bare| {
+            (keep != Keep::Nothing).then(|| pictures::Before::new(study, model, outliers))
         };
-        let (mut before, mut drawn) = left(&study, &bare);
+        let mut drawn_before = drawn(&study, &bare);
         let (found, scattered) = search(&study, &bare.outliers, progress);
         if found.fit.model.crosses() {
-            let bare = bare_beside(&study, &bare, &found.fit.model);
-            (before, drawn) = left(&study, &bare);
+            bare = bare_beside(&study, &bare, &found.fit.model);
+            drawn_before = drawn(&study, &bare);
             study = returns::told(study, &bare.model, &bare.outliers);
         }
+        let units = Units::new(&study);
+        let before = units.left(&study, &bare.model, &bare.outliers);
+        let after = left(&study, &units, &found.fit.model, &found.appraisal.weights.outliers);
+        let units = units.told_where_nearest(&before, &after);
+        let before = units.left(&study, &bare.model, &bare.outliers);
         let Diagnosis { returns, nothing_returns, undecided, .. } = opened;
-        let opening = Opening { before, drawn, keep, returns, nothing_returns, undecided };
+        let opening = Opening {
+            before: units.told(&before),
+            drawn: drawn_before,
+            keep,
+            returns,
+            nothing_returns,
+            undecided,
+        };
         Ok((Self { study, units, found, scattered, before }, opening))
     }
 

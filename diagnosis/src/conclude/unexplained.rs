@@ -4,11 +4,11 @@
 //! where it shows, how large it is, and what comes nearest to it.
 
 use super::ceiling;
-use super::units::Units;
+use super::units::unit_at;
 use nalgebra::DMatrix;
 
 use crate::certainty::Certainty;
-use crate::channel::{Channel, Kind};
+use crate::channel::{Channel, ChannelAt, Kind};
 use crate::dents;
 use crate::diagnosis::{Interval, IntervalOf, ParameterValue, Unexplained};
 use crate::engine::Found;
@@ -22,8 +22,9 @@ use crate::unsteady::{self, Band, Moving, Suspect};
 use crate::words;
 
 /// What stays at one place of an axis.
-pub(super) fn feature(study: &Study<'_>, found: &Found, feature: &Feature, units: &Units) -> Unexplained {
-    let channel = &study.scenes[feature.scene].channels[feature.channel];
+pub(super) fn feature(study: &Study<'_>, found: &Found, feature: &Feature) -> Unexplained {
+    let at = ChannelAt { scene: feature.scene, channel: feature.channel };
+    let (channel, of_channel) = (study.channel(at), unit_at(study, at));
     let axis = &study.equations.axes[feature.axis];
     let (factor, unit) = axis_unit(study, feature.axis);
     let (from, to) = (feature.from * factor, feature.to * factor);
@@ -40,8 +41,8 @@ pub(super) fn feature(study: &Study<'_>, found: &Found, feature: &Feature, units
         direction: channel.name.clone(),
         state: "position",
         interval: Some(Interval { of: IntervalOf::Axis(axis.letter.clone()), from, to, unit }),
-        rms: feature.rms * units.unit.0,
-        unit: units.unit.1,
+        rms: feature.rms * of_channel.0,
+        unit: of_channel.1,
         detail: format!(
             "comes back in every pass of {} from {from:.digits$} to {to:.digits$} {unit}, {which}; no term of the vocabulary has this form",
             axis.letter
@@ -51,18 +52,9 @@ pub(super) fn feature(study: &Study<'_>, found: &Found, feature: &Feature, units
 }
 
 /// What is left of a band of frequencies, or moves smoothly; nothing where only noise is left.
-pub(super) fn unsteady(
-    study: &Study<'_>,
-    found: &Found,
-    moving: Option<Moving>,
-    units: &Units,
-) -> Option<Unexplained> {
-    let counted = |moving: &Moving| {
-        let channel = study.channel(moving.at);
-        units.counts(study, channel.kind) && above_display(study, moving)
-    };
-    match moving.filter(counted) {
-        Some(moving) => Some(smoothly(study, found, moving, units)),
+pub(super) fn unsteady(study: &Study<'_>, found: &Found, moving: Option<Moving>) -> Option<Unexplained> {
+    match moving.filter(|moving| above_display(study, moving)) {
+        Some(moving) => Some(smoothly(study, found, moving)),
         None => found.bands.iter().max_by(|a, b| a.rms.total_cmp(&b.rms)).map(|band| of_band(study, *band)),
     }
 }
@@ -118,9 +110,9 @@ fn state_of_what_is_left(study: &Study<'_>, found: &Found, moving: &Moving) -> O
 }
 
 /// What comes back with a state although no effect was found for it, where nothing moves smoothly: a model that leaves it is not adequate.
-pub(super) fn returning(study: &Study<'_>, found: &Found, units: &Units) -> Option<Unexplained> {
+pub(super) fn returning(study: &Study<'_>, found: &Found) -> Option<Unexplained> {
     let rest = unsteady::returning(study, &found.appraisal)?;
-    if above_display(study, &rest) { by_state(study, found, &rest, units) } else { None }
+    if above_display(study, &rest) { by_state(study, found, &rest) } else { None }
 }
 
 /// Whether more is left than rounding leaves, which comes back wherever an axis passes the steps of a display alike.
@@ -129,16 +121,17 @@ fn above_display(study: &Study<'_>, moving: &Moving) -> bool {
 }
 
 /// What is left, with the state that takes most of it; `None` where no state does.
-fn by_state(study: &Study<'_>, found: &Found, moving: &Moving, units: &Units) -> Option<Unexplained> {
+fn by_state(study: &Study<'_>, found: &Found, moving: &Moving) -> Option<Unexplained> {
     let (quantity, share) = state_of_what_is_left(study, found, moving)?;
     let state = ceiling::words(study, quantity);
+    let of_channel = unit_at(study, moving.at);
     Some(Unexplained {
         link: quantity.axis().map(|axis| study.equations.axes[axis].letter.clone()),
         direction: study.channel(moving.at).name.clone(),
         state: quantity.state(),
         interval: None,
-        rms: moving.rms * units.unit.0,
-        unit: units.unit.1,
+        rms: moving.rms * of_channel.0,
+        unit: of_channel.1,
         detail: format!(
             "a function of the {state} predicts {:.0} % of it on data that was not fitted; no term of the vocabulary has this \
              form",
@@ -150,19 +143,19 @@ fn by_state(study: &Study<'_>, found: &Found, moving: &Moving, units: &Units) ->
 
 /// What is left, with the place of an axis at which it stands out; `None` where there is no such place. A table over it was not upheld:
 /// with few passes, what is left elsewhere may look like it.
-fn at_a_dent(study: &Study<'_>, found: &Found, moving: &Moving, units: &Units) -> Option<Unexplained> {
+fn at_a_dent(study: &Study<'_>, found: &Found, moving: &Moving) -> Option<Unexplained> {
     let dent = dents::outstanding(study, &found.fit.model, &found.appraisal, &found.conditions())?;
     let axis = &study.equations.axes[dent.axis].letter;
     let (factor, unit) = axis_unit(study, dent.axis);
     let (from, to) = (factor * (dent.middle - dent.flank), factor * (dent.middle + dent.flank));
-    let digits = digits_of(to - from);
+    let (digits, of_channel) = (digits_of(to - from), unit_at(study, moving.at));
     Some(Unexplained {
         link: Some(axis.clone()),
         direction: study.channel(moving.at).name.clone(),
         state: "position",
         interval: Some(Interval { of: IntervalOf::Axis(axis.clone()), from, to, unit }),
-        rms: moving.rms * units.unit.0,
-        unit: units.unit.1,
+        rms: moving.rms * of_channel.0,
+        unit: of_channel.1,
         detail: format!(
             "stands out at one place of {axis}, from {from:.digits$} to {to:.digits$} {unit}, in both directions of motion: a bump there takes \
              {:.0} % of it, but the tests do not uphold a table",
@@ -177,13 +170,11 @@ fn digits_of(width: f64) -> usize {
     crate::index((1.0 - width.abs().log10().floor()).clamp(0.0, 12.0)).unwrap_or_default()
 }
 
-fn smoothly(study: &Study<'_>, found: &Found, moving: Moving, units: &Units) -> Unexplained {
-    if let Some(known) =
-        by_state(study, found, &moving, units).or_else(|| at_a_dent(study, found, &moving, units))
-    {
+fn smoothly(study: &Study<'_>, found: &Found, moving: Moving) -> Unexplained {
+    if let Some(known) = by_state(study, found, &moving).or_else(|| at_a_dent(study, found, &moving)) {
         return known;
     }
-    let channel = study.channel(moving.at);
+    let (channel, of_channel) = (study.channel(moving.at), unit_at(study, moving.at));
     let nearest = unsteady::suspect(study, found);
     let link = nearest.as_ref().and_then(|suspect| suspect.fitted.effect.motion());
     let near = nearest.as_ref().map_or_else(String::new, |suspect| near(study, suspect));
@@ -192,8 +183,8 @@ fn smoothly(study: &Study<'_>, found: &Found, moving: Moving, units: &Units) -> 
         direction: channel.name.clone(),
         state: "time",
         interval: None,
-        rms: moving.rms * units.unit.0,
-        unit: units.unit.1,
+        rms: moving.rms * of_channel.0,
+        unit: of_channel.1,
         detail: format!(
             "keeps its direction for {} and more, unlike the noise of a sensor: something in the machine is still missing from the model{near}",
             words::seconds(moving.time)

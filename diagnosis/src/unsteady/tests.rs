@@ -375,18 +375,18 @@ fn the_largest_channel_that_moves_is_named_and_outliers_do_not_hide_it() {
         wandering: 0.0,
     };
     // The larger channel is white.
-    assert_eq!(moving(&study, &appraisal).unwrap().at.channel, 0);
+    assert_eq!(moving(&study, &appraisal, true).unwrap().at.channel, 0);
     appraisal.residuals[0][1] = smooth.clone();
     for row in (7..rows).step_by(31) {
         appraisal.residuals[0][1][row] += 40.0;
     }
-    assert_eq!(moving(&study, &appraisal).unwrap().at.channel, 0, "what jumps does not move smoothly");
+    assert_eq!(moving(&study, &appraisal, true).unwrap().at.channel, 0, "what jumps does not move smoothly");
     let mut marks = vec![vec![false; rows]; channels];
     for row in (7..rows).step_by(31) {
         marks[1][row] = true;
     }
     appraisal.weights.outliers = Outliers::new(vec![marks]);
-    let found = moving(&study, &appraisal).unwrap();
+    let found = moving(&study, &appraisal, true).unwrap();
     assert_eq!(found.at, ChannelAt { scene: 0, channel: 1 });
     keeps_on_for(Some((found.time, found.rms)), &sines, "channel 1");
 }

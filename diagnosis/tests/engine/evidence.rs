@@ -2,8 +2,8 @@
 //!
 //! In: recordings made here, by the exact machine or by hand. Out: what is claimed of them, and what is not.
 
-use abbe_diagnosis::diagnosis::{Diagnosis, Verdict};
-use simulation::Path;
+use abbe_diagnosis::diagnosis::{Diagnosis, Evidence, Verdict};
+use simulation::{Instrument as Reads, Path};
 
 use crate::common::*;
 use crate::recording::{Instrument, Line, Recording};
@@ -266,4 +266,57 @@ fn waves_of_like_size_along_one_axis_are_all_told() {
             assert!((told / period - 1.0).abs() < 5e-3, "{seed}: {told} {period}");
         }
     }
+}
+
+/// What an angle meter does not see is found beside it, and what it alone sees is found too, whichever recording comes first.
+#[test]
+fn lengths_and_angles_have_sizes_of_their_own() {
+    let bench = Bench::of("fxyz-mill");
+    let truth = bench.calibration(
+        "{EXX: [{cyclic: {axis: X, period: 12 mm, amplitude: 4 um, phase: 40 deg}}], \
+          ECX: [{cyclic: {axis: X, period: 70 mm, amplitude: 20 urad, phase: 0 deg}}]}",
+    );
+    let strokes = |at: f64| Path {
+        at: vec![vec![], vec![at], vec![-40.0]],
+        runs: 4,
+        ..path(line(0, 40.0, 300.0), 20.0, 8.0)
+    };
+    let laser = bench.record(&truth, &noisy(strokes(150.0), position("x"), 0.001, 3));
+    let about_z = Reads::Angular { axis: Some(0), about: [0.0, 0.0, 1.0] };
+    let level = bench.record(&truth, &noisy(strokes(40.0), about_z, 1e-6, 4));
+    for recordings in [[&laser, &level], [&level, &laser]] {
+        let diagnosis = alone(&bench, &recordings);
+        let mut told = found(&diagnosis);
+        told.sort();
+        assert_eq!(told, ["ECX cyclic", "EXX cyclic"], "{:?}", diagnosis.verdict);
+        let [wave, yaw] = ["EXX cyclic", "ECX cyclic"].map(|name| called(&diagnosis, name));
+        assert_eq!((wave.evidence.unit, yaw.evidence.unit), ("mm", "rad"));
+        // What each takes is the rms of a sine of 4 um, or of 20 urad.
+        for (finding, amplitude) in [(wave, 0.004), (yaw, 2e-5)] {
+            let Evidence { with, without, .. } = finding.evidence;
+            let taken = (without * without - with * with).sqrt() * 2.0_f64.sqrt();
+            assert!((taken / amplitude - 1.0).abs() < 0.05, "{:?}", finding.evidence);
+        }
+    }
+}
+
+/// The unit of what no term explains is that of the instrument that sees it.
+#[test]
+fn what_no_term_explains_is_told_in_the_unit_of_its_instrument() {
+    let bench = Bench::of("fxyz-mill");
+    let nothing = bench.calibration("{}");
+    let strokes = || Path { runs: 4, ..path(line(0, 40.0, 300.0), 20.0, 8.0) };
+    let laser = bench.record(&nothing, &noisy(strokes(), position("x"), 0.001, 5));
+    let about_z = Reads::Angular { axis: Some(0), about: [0.0, 0.0, 1.0] };
+    let mut level = bench.record(&nothing, &noisy(strokes(), about_z, 1e-6, 6));
+    // A pitch that rises all the time: no vibration, no drift.
+    let of_time = |time: &f64| 2e-5 * (time / 4.0).powf(1.5).sin();
+    let rising: Vec<f64> = level.time.iter().map(of_time).collect();
+    let readings = level.deviation.iter_mut().flatten().zip(&rising);
+    readings.for_each(|(reading, more)| *reading += more);
+    let diagnosis = alone(&bench, &[&laser, &level]);
+    assert_eq!(diagnosis.verdict, Verdict::Unexplained, "{:?}", found(&diagnosis));
+    let unexplained = diagnosis.unexplained.unwrap();
+    assert_eq!((unexplained.unit, unexplained.direction.as_str()), ("rad", "deviation"));
+    assert!((unexplained.rms - 2e-5 / 2.0_f64.sqrt()).abs() < 2e-6, "{unexplained:?}");
 }

@@ -187,6 +187,47 @@ fn mistakes_end_with_status_two_and_write_nothing() {
     }
 }
 
+#[test]
+fn a_simulation_goes_over_no_file_that_it_reads() {
+    let folder = folder("over");
+    let machine = write(&folder, "stage.yaml", "abbe: 1\nname: stage\ntopology: FX\n");
+    let of_stage = |text: &str| text.replace("xyfz-mill", "stage.yaml").replace("at: {Y: 100 mm}\n", "");
+    let calibration = write(&folder, "full.yaml", &of_stage(CALIBRATION));
+    let known = write(&folder, "known.yaml", &of_stage(KNOWN));
+    let path = write(&folder, "path.yaml", &of_stage(PATH));
+    let measured = folder.join("measured");
+    let at = |name: &str| measured.join(name).to_str().unwrap().to_owned();
+    let made = ["simulate", &calibration, &path, "--output", measured.to_str().unwrap(), "--known", &known];
+    assert_eq!(abbe(&made, "").status, 0);
+    let (recording, data) = (at("recording.yaml"), at("data.csv"));
+    let link = folder.join("link.yaml").to_str().unwrap().to_owned();
+    #[cfg(unix)]
+    std::os::unix::fs::symlink(&calibration, &link).unwrap();
+    let all = [&machine, &calibration, &known, &path, &recording, &data];
+    let texts = || all.map(|file| fs::read_to_string(file).unwrap());
+    let before = texts();
+    for (driven, output) in [
+        (&path, &calibration),
+        (&path, &machine),
+        (&path, &known),
+        (&path, &path),
+        (&path, &link),
+        (&recording, &recording),
+        (&recording, &measured.to_str().unwrap().to_owned()),
+        // A recording of this name would have the data beside it.
+        (&recording, &at("data.yaml")),
+    ] {
+        if !Path::new(output).exists() && *output == link {
+            continue;
+        }
+        let arguments = ["simulate", &calibration, driven, "--output", output, "--force", "--known", &known];
+        let run = abbe(&arguments, "");
+        assert_eq!(run.status, 2, "{driven} to {output}: {}", run.err);
+        assert!(run.err.contains("is one of the files that this command reads"), "{}", run.err);
+        assert_eq!(texts(), before, "{driven} to {output}");
+    }
+}
+
 /// Recordings from another simulation of the same page, in `../shared/concealed`: what its truth adds to its calibration
 /// must leave nothing but the noise that the truth states.
 #[test]

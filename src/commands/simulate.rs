@@ -24,15 +24,12 @@ pub(crate) fn run(command: &Simulate) -> Result<(), Failure> {
     let known = command.known.as_deref();
     let known = known.map(|known| known_calibration(known, &names, &Person::default())).transpose()?;
     let output = Output::of(&command.output);
-    output.check(command.force)?;
     let source = load::read(&command.path)?;
+    let read = read_files(command, &calibrated, &source);
+    output.check(&read, command.force)?;
     if let Some(plot) = &command.plot {
-        written::check_picture(
-            plot,
-            "--plot",
-            &others(command, &calibrated, &source, &output),
-            command.force,
-        )?;
+        let others = [read, vec![output.recording.clone(), output.data_path()]].concat();
+        written::check_picture(plot, "--plot", &others, command.force)?;
     }
     let simulated = match is_recording(&source) {
         true => replayed(&recording(command)?, (&calibrated, &command.calibration), &person)?,
@@ -58,13 +55,12 @@ pub(crate) fn run(command: &Simulate) -> Result<(), Failure> {
     Ok(())
 }
 
-/// All other files that the command reads and writes: a picture is none of them.
-fn others(command: &Simulate, calibrated: &Calibrated, source: &SourceFile, output: &Output) -> Vec<PathBuf> {
+/// All files that the command reads: it writes over none of them.
+fn read_files(command: &Simulate, calibrated: &Calibrated, source: &SourceFile) -> Vec<PathBuf> {
     let machine = command.calibration.with_file_name(&calibrated.calibration.machine.value);
     let read = [command.calibration.clone(), machine].into_iter().chain(command.known.clone());
     // A path names no other file; a recording names its data.
-    let read = read.chain(Files::named_in(source, &command.path).all(None));
-    read.chain([output.recording.clone(), output.data_path()]).collect()
+    read.chain(Files::named_in(source, &command.path).all(None)).collect()
 }
 
 /// The recording that is to be replayed.

@@ -72,14 +72,7 @@ pub fn check_new(
     if target.file_name().is_none() || target.is_dir() {
         return wrong("is a folder", &name);
     }
-    // A folder that is still to be made holds no file of that name.
-    let new = |file: &Path| Some(folder(file).canonicalize().ok()?.join(file.file_name()?));
-    // What a link leads to is what would be written over.
-    let place = |file: &Path| file.canonicalize().ok().or_else(|| new(file));
-    if others
-        .iter()
-        .any(|other| other == target || place(other).is_some_and(|other| place(target) == Some(other)))
-    {
+    if is_one_of(target, others) {
         return wrong("is one of the files that this command reads or writes", &name);
     }
     if target.exists() && !force {
@@ -89,6 +82,16 @@ pub fn check_new(
         );
     }
     Ok(())
+}
+
+/// Whether a file is one of some others, by whatever names and links.
+pub fn is_one_of(file: &Path, others: &[PathBuf]) -> bool {
+    // A folder that is still to be made holds no file of that name.
+    let new = |file: &Path| Some(folder(file).canonicalize().ok()?.join(file.file_name()?));
+    // What a link leads to is what would be written over.
+    let place = |file: &Path| file.canonicalize().ok().or_else(|| new(file));
+    let own = place(file);
+    others.iter().any(|other| other == file || own.is_some() && place(other) == own)
 }
 
 /// Refuses a place whose folder is not there.

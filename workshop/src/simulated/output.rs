@@ -38,12 +38,19 @@ impl Output {
         self.recording.with_file_name(&self.data)
     }
 
-    /// Refuses to replace a file, unless `force` does.
+    /// Refuses to replace a file, unless `force` does, and in any case one of those that are read.
     ///
     /// # Errors
     ///
     /// The file that is there already.
-    pub fn check(&self, force: bool) -> Result<(), Failure> {
+    pub fn check(&self, read: &[PathBuf], force: bool) -> Result<(), Failure> {
+        let own = [self.recording.clone(), self.data_path()];
+        if let Some(path) = own.into_iter().find(|path| written::is_one_of(path, read)) {
+            return Err(Failure::wrong(format!(
+                "error: {} is one of the files that this command reads\nhelp: give --output another folder or name",
+                path.display()
+            )));
+        }
         let there = [self.recording.clone(), self.data_path()].into_iter().find(|path| path.exists());
         match there.filter(|_| !force) {
             Some(path) => Err(Failure::wrong(format!(

@@ -8,6 +8,7 @@ mod denied;
 mod findings;
 mod refuted;
 mod searched;
+mod set_up;
 mod summary;
 mod unexplained;
 mod units;
@@ -142,8 +143,15 @@ fn concluded(
     diagnosis.unexplained = diagnosis.unexplained.or_else(|| unexplained::on_the_way(&study));
     let told = scattered.iter().find(|scatter| scatter.is_told);
     diagnosis.repeatability = told.map(|scatter| repeats::describe(&study, scatter, units.unit()));
+    let zeros_or_places = decidable::zeros_or_places(&study, &scattered);
+    diagnosis.undecided.extend(zeros_or_places.clone());
     diagnosis.verdict = verdict(&diagnosis);
     if diagnosis.verdict == Verdict::Adequate {
+        diagnosis.undecidable = zeros_or_places.or_else(|| decidable::shows_nothing(&study));
+    }
+    if diagnosis.undecidable.is_some() {
+        diagnosis.verdict = Verdict::Undecided;
+    } else if diagnosis.verdict == Verdict::Adequate {
         diagnosis.denied = denied::denied(&study, &found);
     }
     diagnosis.candidates = found.pool.len();

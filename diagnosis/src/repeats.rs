@@ -24,8 +24,10 @@ pub(crate) struct Scatter {
     /// For each zero, for each run: its value against the first run's.
     pub(crate) zeros: Vec<Vec<f64>>,
     pub(crate) runs: Vec<i64>,
+    /// The channel in which they scatter most beside its noise.
+    pub(crate) channel: usize,
     /// Whether runs went to the same places. Of others an error that depends on the place may be what they differ by: they have zeros
-    /// of their own in the fit, and nothing is said of it.
+    /// of their own in the fit, and which of both it is cannot be decided.
     pub(crate) is_told: bool,
     pub(crate) between: f64,
     pub(crate) within: f64,
@@ -116,13 +118,24 @@ fn of_scene(study: &Study<'_>, scene: usize, model: &Model) -> Option<Scatter> {
 
 /// Whether a run went where the first one did.
 fn at_same_places(scene: &Scene<'_>) -> bool {
-    let ranges = |run: i64| -> Vec<Range> {
-        let positions = scene.given.programmed.iter();
-        positions.map(|position| Range::of(position, &scene.recording.run, run)).collect()
-    };
-    let mut runs = scene.run_numbers().into_iter().map(ranges);
-    let Some(first) = runs.next() else { return false };
-    runs.any(|run| run.iter().zip(&first).all(|(range, first)| range.shares(first)))
+    let axes = 0..scene.given.programmed.len();
+    later_runs(scene).any(|run| axes.clone().all(|axis| shares_with_first(scene, run, axis)))
+}
+
+/// The axes that were elsewhere in some run than in the first one.
+pub(crate) fn elsewhere(scene: &Scene<'_>) -> Vec<usize> {
+    let axes = 0..scene.given.programmed.len();
+    axes.filter(|axis| later_runs(scene).any(|run| !shares_with_first(scene, run, *axis))).collect()
+}
+
+fn later_runs(scene: &Scene<'_>) -> impl Iterator<Item = i64> {
+    scene.run_numbers().into_iter().skip(1)
+}
+
+fn shares_with_first(scene: &Scene<'_>, run: i64, axis: usize) -> bool {
+    let Some(first) = scene.run_numbers().first().copied() else { return false };
+    let range = |run: i64| Range::of(&scene.given.programmed[axis], &scene.recording.run, run);
+    range(run).shares(&range(first))
 }
 
 /// Where an axis was in a run, mm or rad; from infinity to minus infinity where that is not known.
@@ -176,19 +189,19 @@ fn measure(study: &Study<'_>, scene: usize, free: &Model, after: &Appraisal, run
             .sum()
     };
     let mut zeros = Vec::new();
-    let (mut between, mut within) = (0.0_f64, 0.0_f64);
+    let (mut between, mut within, mut channel) = (0.0_f64, 0.0_f64, 0);
     for zero in zeros_of(&study.scenes[scene]) {
         let of_runs: Vec<f64> = runs.iter().map(|run| value(zero, *run)).collect();
         let noise = after.weights.noises[scene][zero.channel()];
         let spread = deviation(&of_runs);
         let size = noise.size();
         if spread * within.max(f64::MIN_POSITIVE) >= between * size {
-            (between, within) = (spread, size);
+            (between, within, channel) = (spread, size, zero.channel());
         }
         zeros.push(of_runs);
     }
     let is_told = at_same_places(&study.scenes[scene]);
-    Scatter { scene, zeros, runs, is_told, between, within }
+    Scatter { scene, channel, zeros, runs, is_told, between, within }
 }
 
 /// The standard deviation of a few numbers.

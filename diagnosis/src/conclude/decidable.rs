@@ -1,22 +1,22 @@
 //! What can be decided at all.
 //!
-//! In: a study, and what the instruments' settings alone leave. Out: sentences about what its recordings cannot tell, and
-//! the reason why nothing can be claimed from them, where that is so.
+//! In: a study. Out: sentences about what its recordings cannot tell, and the reason why they are too few to claim anything, where that
+//! is so.
 
+use super::units::unit_at;
 use crate::answers::answers;
-use crate::audit::gross;
-use crate::channel::Channel;
+use crate::channel::{Channel, ChannelAt};
 use crate::coarse::Coarse;
 use crate::crossing;
 use crate::diagnosis::Change;
-use crate::model::{Fitted, Model};
+use crate::model::Model;
 use crate::parameters::{angle_unit, axis_unit};
-use crate::recording::{Instrument, Turned, taken_as_free};
+use crate::recording::{Turned, taken_as_free};
+use crate::repeats::{self, Scatter};
+use crate::report::figure::size;
 use crate::scene::Scene;
 use crate::states::Crossing;
 use crate::study::Study;
-use crate::terms::Setting;
-use crate::zeros;
 
 /// The fewest samples from which anything is claimed.
 const FEWEST: usize = 24;
@@ -181,6 +181,39 @@ pub(super) fn since_when(change: &Change) -> String {
     )
 }
 
+/// What is left open by runs that differ and went to different places, where there are such.
+pub(super) fn zeros_or_places(study: &Study<'_>, scattered: &[Scatter]) -> Option<String> {
+    let scatter = scattered.iter().find(|scatter| !scatter.is_told)?;
+    let at = ChannelAt { scene: scatter.scene, channel: scatter.channel };
+    let (scene, (factor, unit)) = (&study.scenes[scatter.scene], unit_at(study, at));
+    let axes = repeats::elsewhere(scene);
+    let letters: Vec<&str> = axes.iter().map(|axis| study.equations.axes[*axis].letter.as_str()).collect();
+    Some(format!(
+        "The runs of {} differ by {} (standard deviation of their means) in {}, but the noise gives only {}. They went to different \
+         places of {}, so it cannot be decided whether the zero of the instrument has changed between runs or an error depends on \
+         the place.",
+        scene.recording.file,
+        size(scatter.between * factor, unit),
+        study.channel(at).name,
+        size(scatter.within * factor, unit),
+        letters.join(" and ")
+    ))
+}
+
+/// Why recordings in which nothing is found do not show that the model is adequate, where that is so.
+pub(super) fn shows_nothing(study: &Study<'_>) -> Option<String> {
+    let shows = |scene: &Scene<'_>| {
+        let recording = scene.recording;
+        let has_position = recording.axes.iter().any(|axis| axis.position().is_some());
+        has_position || !recording.temperatures.is_empty() || !recording.loads.is_empty()
+    };
+    (!study.scenes.iter().any(shows)).then(|| {
+        "Nothing systematic is above the noise, but no recording has the position of an axis, a temperature or a load: they cannot \
+         show anything that depends on these."
+            .to_owned()
+    })
+}
+
 /// Why nothing at all can be claimed, where that is so.
 pub(super) fn too_little(study: &Study<'_>) -> Option<String> {
     let mut fitted = 0;
@@ -208,155 +241,4 @@ pub(super) fn too_little(study: &Study<'_>) -> Option<String> {
         return None;
     };
     Some(because)
-}
-
-/// Why nothing can be claimed: a channel is read wrongly.
-pub(super) struct Misread {
-    pub(super) reason: String,
-    /// The change that would make it follow its path.
-    pub(super) change: Change,
-}
-
-/// A channel that lies far off its path and would follow it if one thing of its set-up were changed. This is asked first: an axis that
-/// seems to move while its command stands may be another axis.
-pub(super) fn misread(study: &Study<'_>) -> Option<Misread> {
-    study.channels().find_map(|at| {
-        let channel = study.channel(at);
-        let change = gross::change(study, at, far_off(study, at.scene, channel))?;
-        let file = &study.scenes[at.scene].recording.file;
-        let reason = format!(
-            "`{}` of {file} does not follow the programmed path, and it seems that {}",
-            channel.name, change.fault
-        );
-        Some(Misread { reason, change })
-    })
-}
-
-/// Why what was observed cannot be this machine on this path, where that is so: half of the samples of a channel lie far off,
-/// against the travel. No error of a machine is as large; a wrong unit, a wrong column and a wrong axis are.
-pub(super) fn astray(study: &Study<'_>, bare: &Model) -> Option<String> {
-    for (scene, residuals) in zeros::residuals(study, bare).into_iter().enumerate() {
-        for (channel, residual) in study.scenes[scene].channels.iter().zip(residuals) {
-            let mut sizes: Vec<f64> =
-                residual.iter().map(|value| value.abs()).filter(|size| size.is_finite()).collect();
-            sizes.sort_by(f64::total_cmp);
-            let median = sizes.get(sizes.len() / 2).copied().unwrap_or_default();
-            if median > far_off(study, scene, channel) {
-                return Some(format!(
-                    "`{}` of {} does not follow the programmed path: half of its samples deviate by more than {median:.3}; check \
-                     its column, its unit and the axes",
-                    channel.name, study.scenes[scene].recording.file
-                ));
-            }
-        }
-    }
-    None
-}
-
-/// How far off is too far for an error of a machine, mm or rad.
-fn far_off(study: &Study<'_>, scene: usize, channel: &Channel<'_>) -> f64 {
-    let axes = study.scenes[scene].recording.axes.iter();
-    let travel = axes.filter_map(|axis| axis.command.as_deref()).map(range).fold(0.0, f64::max);
-    let slack = if channel.kind.angular(study.equations) { FAR_OFF.1 } else { FAR_OFF.0 };
-    slack + FAR_OFF_OF_TRAVEL * travel
-}
-
-/// Why no machine can have gone the programmed path, where that is so: farther or faster than any axis goes. Metres for millimetres
-/// and milliseconds for seconds do that.
-pub(super) fn impossible(study: &Study<'_>) -> Option<String> {
-    for scene in &study.scenes {
-        for (axis, position) in study.equations.axes.iter().zip(scene.given.programmed.iter()) {
-            let (farthest, fastest, unit) =
-                if axis.rotary { (f64::INFINITY, FASTEST.1, "rad") } else { (FARTHEST, FASTEST.0, "mm") };
-            let (travel, speed) = (range(position), speed(&scene.given.time, position));
-            if travel <= farthest && speed <= fastest {
-                continue;
-            }
-            let does = if travel > farthest {
-                format!("goes {:.0} m", 1e-3 * travel)
-            } else {
-                format!("moves at {speed:.0} {unit}/s")
-            };
-            return Some(format!(
-                "the command of {} in {} {does}, which no machine does; check the units of its column and of time",
-                axis.letter, scene.recording.file
-            ));
-        }
-    }
-    None
-}
-
-/// The speed of an axis in the middle of the rows in which it moves. A single jump says nothing of it.
-fn speed(time: &[f64], position: &[f64]) -> f64 {
-    let steps = time.windows(2).zip(position.windows(2));
-    let mut speeds: Vec<f64> = steps
-        .map(|(time, place)| ((place[1] - place[0]) / (time[1] - time[0])).abs())
-        .filter(|speed| speed.is_finite() && *speed > 0.0)
-        .collect();
-    speeds.sort_by(f64::total_cmp);
-    speeds.get(speeds.len() / 2).copied().unwrap_or_default()
-}
-
-/// The longest travel, mm: the beds of the longest gantry mills have a hundred metres.
-const FARTHEST: f64 = 2e5;
-/// The highest speed, mm/s and rad/s: linear motors reach 5 m/s, a lathe's spindle as an axis 10 000 turns a minute.
-const FASTEST: (f64, f64) = (1e4, 2e3);
-
-/// Why a ballbar cannot have stood where its set-up says, where that is so: the programmed path keeps another distance from its
-/// centre than the bar is long, by more than bars can read.
-pub(super) fn misplaced(study: &Study<'_>) -> Option<String> {
-    for scene in &study.scenes {
-        let Instrument::Ballbar { center, radius } = scene.recording.instrument else { continue };
-        let positions: Vec<&[f64]> = scene.given.programmed.iter().map(|position| &position[..]).collect();
-        let tip = scene.built.interpreter.nominal_columns(&positions);
-        let distance = |row: usize| (0..3).map(|d| (tip[d][row] - center[d]).powi(2)).sum::<f64>().sqrt();
-        let mut distances: Vec<f64> = (0..scene.rows()).map(distance).filter(|far| far.is_finite()).collect();
-        distances.sort_by(f64::total_cmp);
-        let Some(median) = distances.get(distances.len() / 2) else { continue };
-        if (median - radius).abs() > BAR_READS + BAR_READS_OF_LENGTH * radius {
-            let center = center.map(|value| format!("{value:.3}")).join(", ");
-            return Some(format!(
-                "the ballbar of {} is {radius:.3} mm long, and the programmed path is {median:.3} mm from its centre ({center}) \
-                 mm; check the centre, which is that of the nominal tip with the tool's offset, the radius, and the machine's \
-                 constants",
-                scene.recording.file
-            ));
-        }
-    }
-    None
-}
-
-/// Why the path cannot be the circle that a ballbar was set up for, where that is so: fitted to it, the bar is longer or shorter
-/// than bars can read, or its ball stood elsewhere. Exchanged columns and wrong units do that.
-pub(super) fn no_circle(study: &Study<'_>, bare: &Model) -> Option<String> {
-    study.scenes.iter().enumerate().find_map(|(number, scene)| {
-        let Instrument::Ballbar { radius, .. } = scene.recording.instrument else { return None };
-        let setting = |fitted: &&Fitted| {
-            matches!(fitted.effect.setting_of(number), Some(Setting::Radius | Setting::Eccentricity { .. }))
-        };
-        let sizes = bare.effects.iter().filter(setting).flat_map(|fitted| &fitted.coefficients);
-        let largest = sizes.fold(0.0, |most: f64, value| most.max(value.abs()));
-        (largest > BAR_READS + BAR_READS_OF_LENGTH * radius).then(|| {
-            format!(
-                "the readings of {} are not a circle about the declared centre: a fit gives a centre or length of the bar that \
-                 differs by {largest:.1} mm; check the columns of the axes, which may be swapped, and their signs and units",
-                scene.recording.file
-            )
-        })
-    })
-}
-
-/// How much longer or shorter than its nominal length a ballbar reads, mm, and as a share of its length.
-const BAR_READS: f64 = 1.0;
-const BAR_READS_OF_LENGTH: f64 = 0.01;
-
-/// How far off, mm and rad, and as a share of the travel, is too far for an error of a machine.
-const FAR_OFF: (f64, f64) = (0.5, 0.01);
-const FAR_OFF_OF_TRAVEL: f64 = 0.05;
-
-fn range(values: &[f64]) -> f64 {
-    let known = values.iter().filter(|value| value.is_finite());
-    let (low, high) =
-        known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), q| (low.min(*q), high.max(*q)));
-    (high - low).max(0.0)
 }

@@ -3,7 +3,8 @@
 //! In: what the user gives. Out: the study with what the engine found in it, and what is told of the recordings before anything is found;
 //! or the whole diagnosis where nothing can be decided.
 
-use super::decidable::{Misread, astray, impossible, misplaced, misread, no_circle, too_little, undecided};
+use super::decidable::{too_little, undecided};
+use super::set_up::{Misread, astray, doubtful, misread, mistake, no_circle};
 use super::units::{Left, Units};
 use super::{Bare, bare_beside, bare_model, ceiling, fitted_runs, left, strongest, undecidable};
 use crate::audit::Trial;
@@ -75,8 +76,7 @@ impl<'s> Searched<'s> {
             opened.model.push(change);
             return Err(Box::new(undecidable(opened, &study, &Outliers::none(&study), reason)));
         }
-        if let Some(reason) = too_little(&study).or_else(|| impossible(&study)).or_else(|| misplaced(&study))
-        {
+        if let Some(reason) = too_little(&study).or_else(|| mistake(&study)) {
             return Err(Box::new(undecidable(opened, &study, &Outliers::none(&study), reason)));
         }
         let mut bare = bare_model(&study, &Model::default());
@@ -86,6 +86,7 @@ impl<'s> Searched<'s> {
         if let Some(reason) = astray(&study, &bare.model).or_else(|| no_circle(&study, &bare.model)) {
             return Err(Box::new(undecidable(opened, &study, &bare.outliers, reason)));
         }
+        opened.undecided.extend(doubtful(&study, &bare.model));
         let drawn = |study: &Study<'_>, Bare { model, outliers }: &Bare| {
             (keep != Keep::Nothing).then(|| pictures::Before::new(study, model, outliers))
         };

@@ -59,7 +59,7 @@ pub(super) fn sheet(diagnosis: &Diagnosis) -> Sheet {
     let open = [
         list("What to measure next", remains::next_measurements(diagnosis)),
         list("What these recordings cannot decide", diagnosis.undecided.clone()),
-        items("Figures", if diagnosis.undecidable.is_some() { Vec::new() } else { data::figures(diagnosis) }),
+        items("Figures", if diagnosis.after.rms.is_nan() { Vec::new() } else { data::figures(diagnosis) }),
         items("Recordings", data::recordings(diagnosis)),
     ];
     Sheet {

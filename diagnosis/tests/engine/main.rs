@@ -22,6 +22,7 @@ mod invariances;
 mod large;
 mod motors;
 mod pictures;
+mod set_up;
 #[path = "../../src/testing.rs"]
 mod testing;
 mod verdicts;

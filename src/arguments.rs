@@ -64,7 +64,7 @@ pub(crate) enum Command {
     /// Update the coefficients of a calibration from measured parts.
     #[command(after_help = examples::UPDATE)]
     Update(Update),
-    /// Compute the standard figures of positioning and circles from a recording (ISO 230-2, ISO 230-4).
+    /// Compute the standard figures of positioning and circles from a recording (ISO 230-2, ISO 230-4, ISO 230-6).
     #[command(after_help = examples::EVALUATE)]
     Evaluate(Evaluate),
     /// Diagnose the recordings of many machines over years, each of them once, and report what changed.

@@ -71,7 +71,7 @@ pub(crate) fn loads<'py>(py: Python<'py>, json: &str) -> PyResult<Bound<'py, PyA
     py.import("json")?.call_method1("loads", (json,))
 }
 
-/// The standard figures of positioning and of circles in a recording (ISO 230-2, ISO 230-4), as `abbe evaluate` gives them.
+/// The standard figures of positioning and of circles in a recording (ISO 230-2, ISO 230-4, ISO 230-6), as `abbe evaluate` gives them.
 ///
 /// >>> import abbe, numpy as np
 /// >>> x = np.tile(np.repeat([0.0, 50.0, 100.0, 100.0, 50.0, 0.0], 3), 5)

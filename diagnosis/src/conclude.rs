@@ -39,7 +39,7 @@ use decidable::crossed;
 use findings::report;
 use searched::{Opening, Searched};
 use summary::summaries;
-use units::{Left, Units, lies_farther};
+use units::{Left, Units, lies_farther, unit_at};
 
 /// Finds what the model leaves out; with the numbers behind plots of it, or all numbers, where `keep` says so.
 pub(crate) fn diagnose(inputs: &Inputs<'_>, keep: Keep, progress: &mut dyn FnMut(Progress)) -> Diagnosis {
@@ -142,7 +142,8 @@ fn concluded(
     };
     diagnosis.unexplained = diagnosis.unexplained.or_else(|| unexplained::on_the_way(&study));
     let told = scattered.iter().find(|scatter| scatter.is_told);
-    diagnosis.repeatability = told.map(|scatter| repeats::describe(&study, scatter, units.unit()));
+    diagnosis.repeatability =
+        told.map(|scatter| repeats::describe(&study, scatter, unit_at(&study, scatter.at())));
     let zeros_or_places = decidable::zeros_or_places(&study, &scattered);
     diagnosis.undecided.extend(zeros_or_places.clone());
     diagnosis.verdict = verdict(&diagnosis);

@@ -4,7 +4,7 @@
 //! noise that runs on from one run to the next; a wandering sensor does not jump between runs.
 
 use crate::appraisal::Appraisal;
-use crate::channel::Kind;
+use crate::channel::{ChannelAt, Kind};
 use crate::design::{Design, Regressor};
 use crate::diagnosis::Repeatability;
 use crate::fit;
@@ -24,13 +24,19 @@ pub(crate) struct Scatter {
     /// For each zero, for each run: its value against the first run's.
     pub(crate) zeros: Vec<Vec<f64>>,
     pub(crate) runs: Vec<i64>,
-    /// The channel in which they scatter most beside its noise.
-    pub(crate) channel: usize,
+    channel: usize,
     /// Whether runs went to the same places. Of others an error that depends on the place may be what they differ by: they have zeros
     /// of their own in the fit, and which of both it is cannot be decided.
     pub(crate) is_told: bool,
     pub(crate) between: f64,
     pub(crate) within: f64,
+}
+
+impl Scatter {
+    /// The channel in which they scatter most beside its noise.
+    pub(crate) fn at(&self) -> ChannelAt {
+        ChannelAt { scene: self.scene, channel: self.channel }
+    }
 }
 
 /// A zero of every channel for every run but the first that is fitted; of a ballbar the centre, which a part or a ball that was

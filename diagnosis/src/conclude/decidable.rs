@@ -5,7 +5,7 @@
 
 use super::units::unit_at;
 use crate::answers::answers;
-use crate::channel::{Channel, ChannelAt};
+use crate::channel::Channel;
 use crate::coarse::Coarse;
 use crate::crossing;
 use crate::diagnosis::Change;
@@ -184,7 +184,7 @@ pub(super) fn since_when(change: &Change) -> String {
 /// What is left open by runs that differ and went to different places, where there are such.
 pub(super) fn zeros_or_places(study: &Study<'_>, scattered: &[Scatter]) -> Option<String> {
     let scatter = scattered.iter().find(|scatter| !scatter.is_told)?;
-    let at = ChannelAt { scene: scatter.scene, channel: scatter.channel };
+    let at = scatter.at();
     let (scene, (factor, unit)) = (&study.scenes[scatter.scene], unit_at(study, at));
     let axes = repeats::elsewhere(scene);
     let letters: Vec<&str> = axes.iter().map(|axis| study.equations.axes[*axis].letter.as_str()).collect();

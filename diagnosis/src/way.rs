@@ -130,6 +130,21 @@ impl<'w> Way<'w> {
     fn straight(&self, from: usize, share: f64) -> f64 {
         self.command[from] + share * (self.command[from + 1] - self.command[from])
     }
+
+    /// The way in the step that begins at a row, if the corner of the path lies within it: along the line of the step before, and from
+    /// where it meets that of the step behind along that one.
+    fn around_corner(&self, from: usize, share: f64) -> Option<f64> {
+        let of_one_leg = from > 0 && from + 2 < self.time.len() && self.legs[from - 1] == self.legs[from + 2];
+        let (step, _) = self.chord(from);
+        let (before, behind) = of_one_leg.then(|| (self.chord(from - 1).1, self.chord(from + 1).1))?;
+        let [first, last] = [self.command[from], self.command[from + 1]];
+        let meet = (last - behind * step - first) / ((before - behind) * step);
+        let is_within = (0.0..=1.0).contains(&meet);
+        is_within.then(|| match share < meet {
+            true => first + before * share * step,
+            false => last - behind * (1.0 - share) * step,
+        })
+    }
 }
 
 impl Curve<'_> {
@@ -141,10 +156,13 @@ impl Curve<'_> {
         self.way.each_earlier(clock, |from, share| self.between(from, share))
     }
 
-    /// The cubic with the slopes at both rows; a straight line where one of them is a corner.
+    /// The cubic with the slopes at both rows; straight lines where one of them is a corner.
     fn between(&self, from: usize, share: f64) -> f64 {
         if share == 0.0 {
             return self.way.command[from];
+        }
+        if self.corners[from] && self.corners[from + 1] {
+            return self.way.around_corner(from, share).unwrap_or_else(|| self.way.straight(from, share));
         }
         if self.corners[from] || self.corners[from + 1] {
             return self.way.straight(from, share);

@@ -103,6 +103,21 @@ fn the_clock_shows_what_was_so_much_earlier() {
 }
 
 #[test]
+fn a_clock_sees_the_way_on_both_sides_of_a_corner_between_two_rows() {
+    let time: Vec<f64> = (0..40).map(|row| 0.1 * f64::from(row)).collect();
+    // There at 8 mm/s and back at 5 mm/s; the corner lies between two rows, or at one.
+    for corner in [1.93, 2.0] {
+        let way = |t: f64| if t < corner { 8.0 * t } else { 8.0 * corner - 5.0 * (t - corner) };
+        let command: Vec<f64> = time.iter().map(|t| way(*t)).collect();
+        for clock in [-0.02, -0.06, 0.02, 0.06] {
+            let shown = states(&time, &command, 0.0, clock).axes.remove(0);
+            let seen: Vec<f64> = time.iter().map(|t| way((t - clock).clamp(time[0], time[39]))).collect();
+            assert!(distance(&shown.position, &seen) < 1e-9, "{corner} {clock}");
+        }
+    }
+}
+
+#[test]
 fn directions_are_of_the_last_real_motion() {
     let nan = f64::NAN;
     let position = [5.0, 5.0, 4.0, 4.0, 4.0, 3.0, nan, nan, 2.0, 2.0, 2.5, 3.0, 3.0, 2.9, 2.0];

@@ -3,7 +3,7 @@
 //! In: recordings made here. Out: the verdict, and the sentence that says what is wrong or open.
 
 use abbe_diagnosis::diagnosis::{Diagnosis, Verdict};
-use simulation::{Instrument as Reads, Path};
+use simulation::Path;
 
 use crate::common::*;
 use crate::recording::{Instrument, Line, Recording};

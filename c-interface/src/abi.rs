@@ -246,7 +246,7 @@ pub unsafe extern "C" fn abbe_restart(handle: *const Abbe) -> Status {
 }
 
 /// How far an axis must move back before its direction counts as turned: mm, or rad for a rotary axis. Until it is called,
-/// 0.001 mm or 0.001 deg.
+/// 0.001 mm or 0.001 deg. The axis forgets its motion: its direction starts again as positive.
 ///
 /// # Safety
 /// `handle` is null or from `abbe_open` and not closed.

@@ -1,7 +1,7 @@
-//! How parts lie that were measured.
+//! The position and the rotation of measured parts.
 //!
-//! In: a scene of points at rest, and what was found of the machine. Out: how the part lies there, where that is free; and the rotation for
-//! which it is free, where the recording says nothing of it. It exists because a part that was clamped anew stands at an angle of its own,
+//! In: a scene of points at rest, and what was found of the machine. Out: how the part lies there, where that is free; and the rotation
+//! because of which its datum is taken as free, if the recording has no `datum`. It exists because a part that was clamped anew stands at an angle of its own,
 //! which looks like an error of the machine that made it: in one clamping the two cannot be told apart.
 
 use crate::course::Course;
@@ -10,9 +10,9 @@ use crate::observations::part_readings;
 use crate::recording::{Instrument, Lie, PartDatum, Turned, turned};
 use crate::study::Study;
 
-/// The share that a rotation must explain of what an effect stands for: half way from a squareness, half of which a rotation explains over
-/// a part as wide as it is long, to a rotation alone.
-const MOST: f64 = 0.75;
+/// A rotation must explain at least this share of what an effect stands for. A rotation alone explains all of it; over a square part it
+/// explains half of a squareness. This is half way between.
+const LEAST_SHARE: f64 = 0.75;
 
 /// How the part of a scene lies where that is free.
 pub(crate) fn lie(study: &Study<'_>, number: usize, course: &Course) -> Option<Lie> {
@@ -30,13 +30,13 @@ pub(crate) fn turned_as_read(study: &Study<'_>, number: usize, course: &Course) 
 }
 
 /// The rotations that effects of a model stand for, each by the number of its scene: beside all that was found but one effect, the part
-/// shows a rotation, and little else. So it does where other effects are larger than the rotation, and hide it in what was read.
+/// shows a rotation, and little else. This finds a rotation that larger effects hide in the raw readings.
 pub(crate) fn turned_as_found(study: &Study<'_>, model: &Model) -> Vec<(usize, Turned)> {
     let of_scene = |number: usize| {
         let mut rests = rests(study, model).into_iter();
         let found = rests.find_map(|rest| {
             let course = Course::new(study, number, &rest);
-            turned(&part_readings(study, number, &course, &rest)).filter(|turned| turned.share > MOST)
+            turned(&part_readings(study, number, &course, &rest)).filter(|turned| turned.share > LEAST_SHARE)
         });
         Some((number, found?))
     };
@@ -55,7 +55,7 @@ fn rests(study: &Study<'_>, model: &Model) -> Vec<Model> {
     each.chain(all).collect()
 }
 
-/// Whether a rotation of the part may be told: its recording says nothing of one, and its points stand for themselves.
+/// Whether a rotation of the part is looked for: its recording has no `datum`, and its points are separate stations.
 fn may_be_turned(study: &Study<'_>, number: usize) -> bool {
     let scene = &study.scenes[number];
     let is_unsaid = scene.recording.datum == PartDatum::Unsaid && scene.lie.is_none();

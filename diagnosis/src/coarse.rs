@@ -1,10 +1,10 @@
-//! Coarse readings: positions that a display of a few significant digits shows ten times coarser than the others.
+//! Coarse readings: positions that a display of a few significant digits shows ten or a hundred times coarser than the others.
 //!
 //! In: the readings of a position, and where the axis was. Out: from which magnitude on they are coarse, where that matters, and the
-//! readings without them. It exists because such a display shows 99.9 mm and then 100 mm: among the others the coarse readings would be
-//! a noise of their own, a hundred times as large in squares, that comes and goes with the place.
+//! readings without them. It exists because such a display shows 99.9 mm and then 100 mm: their rounding noise has at
+//! least a hundred times the variance of that of the others, and only at some places.
 //!
-//! It is for positions alone. Of an error that is written with few digits the coarse readings are the large ones, and the effect itself.
+//! It is for positions alone. Where an error is written with few digits, the coarse readings are the largest ones: the effect itself.
 
 use crate::noise::display_step;
 use crate::rounded;
@@ -32,8 +32,8 @@ const FEWEST: usize = 6;
 /// At least this share of the readings must be left: where most are coarse, they are what there is.
 const LEFT: f64 = 0.5;
 
-/// The deviation of the coarse rounding must be more than this share of what the other readings are off the position: a third of it
-/// makes noise of that size a twentieth larger.
+/// The standard deviation of the coarse rounding must exceed this share of that of the other readings about the position: a third makes
+/// their noise a twentieth larger.
 const MATTERS: f64 = 1.0 / 3.0;
 
 /// The coarse readings among some, where there are any and their rounding matters. `position` is where the axis was, and `unit` that of
@@ -69,8 +69,8 @@ fn coarse_from(values: &[f64], from: f64) -> Option<Coarse> {
     let known = values.iter().copied().filter(|value| value.is_finite());
     let mut coarse = Coarse { from, step: 0.0, fine: 0.0, count: 0 };
     let (above, below): (Vec<f64>, Vec<f64>) = known.partition(|value| coarse.holds(*value));
-    let most = crate::number(below.len()) >= LEFT * crate::number(above.len() + below.len());
-    if !most || different(&above) < FEWEST {
+    let enough_left = crate::number(below.len()) >= LEFT * crate::number(above.len() + below.len());
+    if !enough_left || different(&above) < FEWEST {
         return None;
     }
     coarse.step = display_step(&above);

@@ -54,7 +54,7 @@ pub(crate) struct Scene<'a> {
     pub(crate) leans: [bool; 3],
     /// How the part lies where it was measured, where that is free.
     pub(crate) lie: Option<Lie>,
-    /// The rotation for which that is free, where the recording says nothing of it.
+    /// The rotation because of which its datum is taken as free, if the recording has no `datum`.
     pub(crate) turned: Option<Turned>,
     /// The course that was worked out last.
     pub(crate) last_course: LastCourse,

@@ -28,12 +28,12 @@ pub const SCHEMA: &str = "abbe-fleet/1";
 pub struct History {
     /// The name and the version of this form: [`SCHEMA`].
     pub schema: &'static str,
-    /// The moment up to which it is told.
+    /// The end of the history.
     #[serde(serialize_with = "as_text")]
     pub until: Moment,
-    /// What changed, the plainest first.
+    /// Changes, and machines that differ from others of their kind, the least probable by chance first.
     pub alarms: Vec<Alarm>,
-    /// How many questions were asked of all series together: the bound of each alarm allows for them.
+    /// The number of tests of hypotheses on all series together: the bound of each alarm allows for them (Holm).
     pub questions: usize,
     /// The machines, in the order of the fleet file.
     pub machines: Vec<Machine>,
@@ -50,7 +50,7 @@ pub struct Machine {
     pub kind: Option<String>,
     /// Its recordings, in the order of time.
     pub recordings: Vec<Entry>,
-    /// How many recordings until the moment have no result of what they hold now: they are not diagnosed yet, or have changed since.
+    /// How many recordings up to the end have no result for their present contents: they are not diagnosed yet, or have changed since.
     pub pending: usize,
     /// Its numbers over time: what was found in any recording, then the noise.
     pub series: Vec<Followed>,
@@ -80,14 +80,14 @@ pub struct Entry {
     pub verdict: String,
     /// The verdict as a sentence, or why it could not be read.
     pub sentence: String,
-    /// Whether it is where the fleet file looks for it: what was told by a recording that is gone stays in the history.
+    /// Whether it is still where the fleet file looks for it. The results of recordings that are gone stay in the history.
     pub listed: bool,
     /// The page of its diagnosis, where one was written.
     pub page: Option<PathBuf>,
 }
 
 impl Machine {
-    /// How many of its recordings are wrong.
+    /// The number of its recordings that could not be read.
     #[must_use]
     pub fn errors(&self) -> usize {
         self.recordings.iter().filter(|entry| entry.verdict == ERROR).count()

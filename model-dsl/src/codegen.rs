@@ -53,10 +53,9 @@ pub fn calibrated_tokens(
     Ok(quote! { #machine #calibration })
 }
 
-/// What stands before items that hold numbers of a machine, some of which will be near a constant of mathematics: an offset of
-/// 3.14 mm, a table from -pi on. Clippy, which takes that for a mistake, would refuse the crate that the code is included in.
-/// The compiler would too where there are very many: it goes through every number, and takes that for a loop without an end.
-fn measured() -> TokenStream {
+/// Lint allowances for items with measured numbers. Clippy reports an offset of 3.14 mm as an approximate pi. The compiler reports very
+/// long tables as a constant evaluation that may never end.
+fn lint_allowances() -> TokenStream {
     quote! {
         #[allow(
             clippy::allow_attributes,

@@ -1,7 +1,7 @@
 //! Surroundings: temperatures and loads over time.
 //!
-//! In: how a sensor warms up, how a load goes up and down. Out: its true value at any time, and the noise with which it is
-//! read.
+//! In: how a sensor warms up, how a load goes up and down. Out: the true temperature or load at any time. The noise of
+//! its readings is only carried along.
 
 use std::f64::consts::TAU;
 
@@ -80,13 +80,14 @@ impl Temperature {
         let mut aim = self.start;
         let mut since = 0.0;
         for &(begin, next) in self.steps.iter().take_while(|(begin, _)| *begin <= time) {
-            filtered = self.settled(filtered, aim, begin - since);
+            filtered = self.approach(filtered, aim, begin - since);
             (aim, since) = (next, begin);
         }
-        self.settled(filtered, aim, time - since) + swing
+        self.approach(filtered, aim, time - since) + swing
     }
 
-    fn settled(&self, from: f64, aim: f64, time: f64) -> f64 {
+    /// How far a sensor has come from one temperature towards another after a time, s.
+    fn approach(&self, from: f64, aim: f64, time: f64) -> f64 {
         if self.time_constant > 0.0 { aim + (from - aim) * (-time / self.time_constant).exp() } else { aim }
     }
 

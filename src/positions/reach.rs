@@ -1,5 +1,5 @@
-//! Rows beyond what was measured. In: the tables of a calibration, and the positions of rows. Out: how many rows lie outside of an axis's
-//! tables, and how far. It exists because a table holds its last value there, which is mostly not the error of the machine.
+//! Rows beyond what was measured. In: the tables of a calibration, and the positions of rows. Out: how many rows lie outside the range
+//! that the tables of an axis cover together, and how far. It exists because a table holds its last value there, which is mostly not the error of the machine.
 
 use model_dsl::calibration::{CalibratedTerm, Calibration};
 use model_dsl::equations::Equations;
@@ -24,7 +24,7 @@ struct Axis {
 }
 
 impl Reach {
-    /// The axes that have tables. One that repeats ends nowhere.
+    /// The axes that have tables. An axis with a table that repeats is left out, even if another of its tables ends.
     pub(crate) fn new(equations: &Equations, calibration: &Calibration) -> Self {
         let axes = equations.axes.iter().enumerate().filter_map(|(number, axis)| {
             let terms =

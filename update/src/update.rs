@@ -29,20 +29,19 @@ pub struct Update {
     pub datum: Vec<&'static str>,
     /// How many zeros that are.
     pub zeros: usize,
-    /// How the parts lie whose recordings say that their datum is free, as the solution leaves it; a rotation that the points do not show
-    /// is not among them.
+    /// The fitted rotation of each part with a free datum. Rotations that the points do not show are left out.
     pub rotations: Vec<Rotation>,
-    /// What to look at, a sentence each: parts that a rotation explains, and whose recordings do not speak of one.
+    /// Hints, a sentence each: parts whose deviations a rotation explains, and whose recording has no `datum`.
     pub hints: Vec<String>,
     /// How many coefficients could be moved.
     pub unknowns: usize,
-    /// How many singular values of the scaled system count.
+    /// The numerical rank of the scaled system.
     pub rank: usize,
-    /// Up to this they do not.
+    /// Singular values up to this count as zero.
     pub tolerance: f64,
-    /// All of them, the largest first.
+    /// The singular values of the scaled system, in falling order.
     pub singular_values: Vec<f64>,
-    /// The standard deviation of the readings that the rest shows; none where no reading is left over.
+    /// The standard deviation of the noise, estimated from the residuals; `None` without degrees of freedom.
     pub noise: Option<f64>,
     /// The size that `ridge` expects of a relative change: its standard deviation.
     pub expected_change: Option<f64>,
@@ -50,8 +49,8 @@ pub struct Update {
     pub residuals: Vec<Residual>,
     /// What is left at the points of held-out runs, each with a zero of its own.
     pub held_out: Vec<Residual>,
-    /// The root mean square of what each reading shows of a model that has not seen it, before and after. The zeros are
-    /// fitted either way. None where a reading stands alone for a part of the model.
+    /// The root mean square of the leave-one-out residuals before and after the update; the zeros are fitted in both. `None` where a
+    /// single reading determines a part of the model.
     pub leave_one_out: [Option<f64>; 2],
     /// The changes, the largest relative one first.
     pub changes: Vec<Change>,
@@ -63,7 +62,7 @@ pub struct Update {
     pub calibration: Calibration,
 }
 
-/// One recording.
+/// One measured part, from one recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
     /// Its file.
@@ -96,7 +95,7 @@ pub struct Change {
     pub uncertainty: Option<f64>,
     /// The relative change dA of `A (1 + dA)`.
     pub change: f64,
-    /// By how much the change moves the point that it moves most, mm, the zeros taken off.
+    /// The largest displacement of a fitted point by this change, mm, with the zeros removed.
     pub effect: f64,
     /// Whether the points determine it alone: it has no part in any [`Relation`].
     pub determined: bool,
@@ -104,7 +103,7 @@ pub struct Change {
     pub alternatives: Vec<String>,
 }
 
-/// What the points cannot show.
+/// Coefficients that are collinear at the points, or one that no point shows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Relation {
     /// The coefficient.
@@ -138,9 +137,9 @@ pub(crate) fn update(inputs: &Inputs<'_>, options: &Options) -> Result<Update, U
     if fitted.is_empty() {
         return Err(UpdateError::NoPoints);
     }
-    let free = sensitive(inputs, options.datum);
+    let free = within_sensitive(inputs, options.datum);
     let freedom =
-        Freedom { settings: &all.settings, directions: free, sensitive: sensitive(inputs, [true; 3]) };
+        Freedom { settings: &all.settings, directions: free, sensitive: within_sensitive(inputs, [true; 3]) };
     let problem = Problem::of(&fitted, &moving, freedom);
     let system = Decomposition::of(&problem.jacobian, Scaling::Greatest, options.tolerance)
         .ok_or(UpdateError::NoDecomposition)?;
@@ -189,7 +188,7 @@ pub(crate) fn update(inputs: &Inputs<'_>, options: &Options) -> Result<Update, U
     })
 }
 
-/// What is said of parts that a rotation explains and whose recordings do not speak of one: of each recording once.
+/// Hints on parts whose deviations a rotation explains and whose recording has no `datum`, one for each recording.
 fn hints(parts: &[Part], settings: &[Setting]) -> Vec<String> {
     let found = (0..parts.len()).filter_map(|number| {
         let mut own = settings.iter().filter(|setting| setting.recording == number);
@@ -198,12 +197,12 @@ fn hints(parts: &[Part], settings: &[Setting]) -> Vec<String> {
     recording::clamped_anew(&found.collect::<Vec<_>>()).into_iter().collect()
 }
 
-/// The directions in which a zero is free: of those asked for the ones that the machine's equations know.
-fn sensitive(inputs: &Inputs<'_>, asked: [bool; 3]) -> [bool; 3] {
+/// Of the requested directions, those that the machine's equations contain.
+fn within_sensitive(inputs: &Inputs<'_>, asked: [bool; 3]) -> [bool; 3] {
     let mut free = [false; 3];
     for row in &inputs.equations.rows {
-        let part = row.direction.index();
-        if let (Some(slot), Some(asked)) = (free.get_mut(part), asked.get(part)) {
+        let direction = row.direction.index();
+        if let (Some(slot), Some(asked)) = (free.get_mut(direction), asked.get(direction)) {
             *slot = *asked;
         }
     }

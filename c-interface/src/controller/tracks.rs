@@ -4,8 +4,8 @@
 //! motion and its velocity. It exists because controllers command positions, and terms ask for more.
 //!
 //! A screw turns with the command that it is sent, correction included. Where a program lets an axis stand, a correction still
-//! moves it, there and back, through its play. So the direction is that of the corrected command, with one exception: what a
-//! reversal itself adds to the corrections is no motion that could be a reversal again.
+//! moves it, there and back, through its play. So the direction is that of the corrected command, with one exception: a
+//! change of correction that a reversal causes never counts as another reversal.
 
 use abbe_runtime::Direction;
 
@@ -18,14 +18,14 @@ const HYSTERESIS: f64 = 0.001;
 /// The axes' last motions.
 pub(super) struct Tracks {
     axes: Vec<Track>,
-    /// How long corrections may be on their way to what a reversal asks for, s.
+    /// The longest time that a correction needs to reach its new value after a reversal, s.
     transition: f64,
     /// Time since the last reversal of any axis, s.
     since_reversal: f64,
     /// Positions of the last cycle whose numbers were all finite; empty before it.
-    from: Vec<f64>,
-    /// Time since then, s.
-    since: f64,
+    last_position: Vec<f64>,
+    /// Time since `last_position`, s.
+    since_last_position: f64,
     direction: Vec<Direction>,
     velocity: Vec<f64>,
 }
@@ -43,7 +43,7 @@ struct Track {
 /// What an axis did until the last cycle.
 #[derive(Clone, Copy)]
 struct Last {
-    /// The furthest that it was sent in its direction, moved on with what reversals add.
+    /// The furthest corrected command in its direction, shifted by the changes of correction that reversals cause.
     furthest: f64,
     /// Its correction.
     correction: f64,
@@ -54,8 +54,8 @@ impl Track {
         Self { threshold, direction: Direction::Positive, last: None }
     }
 
-    /// Takes the position of a cycle and the correction that it goes with; tells whether the axis has turned. While corrections
-    /// are on their way after a reversal, their changes are no motion.
+    /// Takes the position of this cycle and the correction found in the previous cycle. Returns whether the axis has reversed. While
+    /// corrections still change because of a reversal, their changes are no motion.
     fn follow(&mut self, position: f64, correction: f64, reversing: bool) -> bool {
         let sent = position + correction;
         let last = self.last.unwrap_or(Last { furthest: sent, correction });
@@ -90,8 +90,8 @@ impl Tracks {
             axes,
             transition,
             since_reversal: f64::INFINITY,
-            from: Vec::with_capacity(count),
-            since: 0.0,
+            last_position: Vec::with_capacity(count),
+            since_last_position: 0.0,
             direction: vec![Direction::default(); count],
             velocity: vec![0.0; count],
         }
@@ -107,7 +107,7 @@ impl Tracks {
         &self.velocity
     }
 
-    /// Sets the threshold of an axis.
+    /// Sets the threshold of an axis and forgets its motion: its direction starts again as positive.
     pub(super) fn set_hysteresis(&mut self, axis: usize, threshold: f64) -> Status {
         match self.axes.get_mut(axis) {
             Some(track) if threshold.is_finite() && threshold >= 0.0 => {
@@ -124,8 +124,8 @@ impl Tracks {
             *track = Track::new(track.threshold);
         }
         self.since_reversal = f64::INFINITY;
-        self.from.clear();
-        self.since = 0.0;
+        self.last_position.clear();
+        self.since_last_position = 0.0;
         self.velocity.fill(0.0);
     }
 
@@ -146,8 +146,9 @@ impl Tracks {
                 _ => track.direction,
             };
         }
-        // No time at all is the cycle of the reversal, whose correction is seen in the next.
+        // A negative time step, or one that is no number, counts as 0.
         let time_step = if inputs.time_step > 0.0 { inputs.time_step } else { 0.0 };
+        // 0 in the cycle of the reversal: its correction comes back one cycle later.
         self.since_reversal = if turned { 0.0 } else { self.since_reversal + time_step };
         self.follow_velocity(inputs.position, inputs.time_step);
     }
@@ -155,20 +156,20 @@ impl Tracks {
     /// Takes the velocities from the last finite positions on, however long ago these were.
     fn follow_velocity(&mut self, position: &[f64], time_step: f64) {
         if time_step.is_finite() && time_step > 0.0 {
-            self.since += time_step;
+            self.since_last_position += time_step;
         }
         if !position.iter().all(|position| position.is_finite()) {
             return;
         }
-        if self.since > 0.0 {
-            for ((velocity, to), from) in self.velocity.iter_mut().zip(position).zip(&self.from) {
-                *velocity = (to - from) / self.since;
+        if self.since_last_position > 0.0 {
+            for ((velocity, to), from) in self.velocity.iter_mut().zip(position).zip(&self.last_position) {
+                *velocity = (to - from) / self.since_last_position;
             }
         }
-        if self.since > 0.0 || self.from.is_empty() {
-            self.from.clear();
-            self.from.extend_from_slice(position);
-            self.since = 0.0;
+        if self.since_last_position > 0.0 || self.last_position.is_empty() {
+            self.last_position.clear();
+            self.last_position.extend_from_slice(position);
+            self.since_last_position = 0.0;
         }
     }
 }

@@ -18,8 +18,8 @@ use crate::weights::Weights;
 
 use super::forms::Form;
 
-/// How many waves get a rate and a phase of their own, of those that gain most and of those that gain most at their own noise. The
-/// motions that a lever arm cannot tell apart have one line each.
+/// How many waves are refined for each measure: the three with the largest gain, and the three with the largest gain over the noise at
+/// their own frequency. Three, because error motions with collinear lever arms each give a line.
 const WAVES: usize = 3;
 
 /// How often the rate is moved to the vertex of a parabola through three rates. The steps begin with a quarter of the width of a line
@@ -38,8 +38,8 @@ pub(super) struct Spins {
 pub(super) fn spins(study: &Study<'_>, found: &Found) -> Spins {
     let mut spins = Spins::default();
     for turns in (0..study.loads.len()).filter_map(|load| turns(study, load)) {
-        let model = (&found.fit.model, &found.appraisal.weights);
-        let (peaks, tried) = waves::over_turns(study, model, &found.travels, &turns);
+        let beside = (&found.fit.model, &found.appraisal.weights);
+        let (peaks, tried) = waves::over_turns(study, beside, &found.travels, &turns);
         spins.tried += tried;
         // By chance, the highest of this many waves of noise gains twice the logarithm of their number.
         let chance = 2.0 * tried.max(1.0).ln();
@@ -53,7 +53,8 @@ pub(super) fn spins(study: &Study<'_>, found: &Found) -> Spins {
     spins
 }
 
-/// What something has turned by a channel that may be its speed. A force and a current are none.
+/// How far something has turned, from a channel that may be its speed: `loads` holds all channels that are neither positions nor
+/// temperatures. A force and a current are no speeds.
 fn turns(study: &Study<'_>, load: usize) -> Option<Turns> {
     if matches!(study.loads[load].1.as_str(), "N" | "A") {
         return None;
@@ -69,8 +70,7 @@ fn turns(study: &Study<'_>, load: usize) -> Option<Turns> {
     Some(Turns { load, turned, step })
 }
 
-/// Whether a wave over turns is none in time: somewhere it is ahead of one of the same mean frequency, or behind it, by a quarter of a
-/// turn.
+/// Whether a wave follows the speed: somewhere its phase must differ by a quarter turn from that of a wave of constant frequency.
 fn follows_the_speed(study: &Study<'_>, turns: &Turns, shape: &Shape) -> bool {
     let Some((_, rate, _)) = spin(shape) else { return false };
     let ahead = study.scenes.iter().zip(&turns.turned).map(|(scene, turned)| {
@@ -125,7 +125,7 @@ impl<'p> Polish<'p> {
         Self {
             study,
             model: &found.fit.model,
-            // As white noise: one that wanders, as it seemed to before, would take much of the wave for its own.
+            // White noise: the fitted wandering noise would absorb much of the wave.
             weights: found.appraisal.weights.as_white(),
             place: peak.effect.place,
             load: turns.load,
@@ -139,9 +139,10 @@ impl<'p> Polish<'p> {
         for finer in 0..MOVES {
             self.move_to_vertex(0.25 * self.width * 0.2_f64.powi(finer));
         }
-        let (swept, [sine, cosine]) = self.swept(self.rate);
-        let mut swept = swept;
-        (swept.take(sine) && swept.take(cosine)).then_some(())?;
+        let (mut swept, [sine, cosine]) = self.swept(self.rate);
+        if !(swept.take(sine) && swept.take(cosine)) {
+            return None;
+        }
         let phase = swept.coefficient(cosine).atan2(swept.coefficient(sine)).rem_euclid(TAU);
         let effect = Effect { place: self.place, shape: Shape::spin(self.load, self.rate, phase) };
         Some(Form { effect, coefficients: vec![1.0], beside: None })
@@ -160,7 +161,7 @@ impl<'p> Polish<'p> {
         swept.promise(&wave).0
     }
 
-    /// The products of all that was found and of the wave, what was found swept in; and the columns of sine and cosine.
+    /// The normal equations with all effects that were found swept in, and the columns of sine and cosine.
     fn swept(&self, rate: f64) -> (Swept, [usize; 2]) {
         let wave = [0.0, FRAC_PI_2]
             .map(|phase| Effect { place: self.place, shape: Shape::spin(self.load, rate, phase) });

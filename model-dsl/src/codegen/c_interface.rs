@@ -60,9 +60,9 @@ fn compiled_machine(equations: &Equations) -> TokenStream {
     let counted: Vec<_> = counted.collect();
     let [motions, unseen] = [motions, unseen].map(|motions| motions.iter().map(named).collect::<Vec<_>>());
     let json = CompiledIn::of_equations(equations);
-    let measured = super::measured();
+    let allowances = super::lint_allowances();
     quote! {
-        #measured
+        #allowances
         impl ::abbe_c::CompiledMachine for Machine {
             const NAME: &'static str = #machine;
             const CONSTANTS: &'static [::abbe_c::ConstantOfMachine] = &[#(#constants),*];

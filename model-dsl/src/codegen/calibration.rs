@@ -11,7 +11,7 @@ use quote::{ToTokens, format_ident, quote};
 use super::body::number;
 use super::bundles::{Bundles, EvenNodes};
 use super::sensors::{self, Numbered};
-use super::{docs, factors, measured};
+use super::{docs, factors, lint_allowances};
 use crate::calibration::vocabulary::{RAMP, Role};
 use crate::calibration::{
     CalibratedTerm, Calibration, Curve, CurveNodes, CurveValues, Limits, NotCompensable, Part, SeriesInput,
@@ -156,7 +156,7 @@ fn items(calibration: &Calibration, motions: &[WrittenMotion], bundles: &Bundles
     let constants = with_constants(&calibration.constants);
     let tools = tools(&calibration.tools);
     let (limits, transition) = limits(&calibration.limits);
-    let measured = measured();
+    let allowances = lint_allowances();
     let count = Literal::usize_unsuffixed(motions.iter().map(|motion| motion.terms.len()).sum());
     let lists = motions.iter().map(|WrittenMotion { name, about, terms, .. }| {
         let (about, count) = (docs::attributes(about), Literal::usize_unsuffixed(terms.len()));
@@ -171,7 +171,7 @@ fn items(calibration: &Calibration, motions: &[WrittenMotion], bundles: &Bundles
         #about
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub struct Calibration;
-        #measured
+        #allowances
         impl Calibration {
             /// The machine with the constants of the calibration.
             pub const MACHINE: Machine = #constants;

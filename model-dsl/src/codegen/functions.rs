@@ -7,7 +7,7 @@ use quote::quote;
 
 use super::body::{Body, Reads, body, number};
 use super::held::Held;
-use super::{aiming, docs, measured};
+use super::{aiming, docs, lint_allowances};
 use crate::equations::Equations;
 use crate::program::{OrientationPrograms, Programs};
 
@@ -19,9 +19,9 @@ pub(super) fn all(equations: &Equations, programs: &Programs) -> TokenStream {
     let directions = directions(equations, programs);
     let orientation = programs.orientation.as_ref().map(|programs| orientation(equations, programs));
     let kinematics = kinematics(equations, programs);
-    let (measured, name) = (measured(), &equations.machine);
+    let (allowances, name) = (lint_allowances(), &equations.machine);
     quote! {
-        #measured
+        #allowances
         impl Machine {
             /// The machine's name, by which calibrations refer to it.
             pub const NAME: &'static str = #name;

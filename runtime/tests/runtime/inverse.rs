@@ -132,7 +132,7 @@ fn a_scale_is_inverted_in_full_and_not_to_first_order() {
 }
 
 #[test]
-fn a_positive_error_on_a_carriage_of_the_part_asks_for_more() {
+fn a_positive_error_on_a_carriage_of_the_part_asks_for_less() {
     // EZZ > 0: the part stands too far along its axis, hence the tip too far towards -Z of the part; the command is less.
     let ezz = [Term::Constant { value: 0.02 }];
     let none: &[Term<'_>] = &[];

@@ -2,21 +2,21 @@
 //! changed, and nothing left beside it.
 //!
 //! The content goes into a file of another name in the same folder and takes its name when it is complete. So the name is a
-//! whole file at every instant, and other hard links of a replaced file keep what it held. A file that is replaced leaves its
-//! permissions to the new one, a new one has those that the user's mask gives. What is named by a link is replaced, not the
-//! link. A file that may not be written is not replaced. What is no file, such as a pipe or a device, is written to as it is.
+//! whole file at every instant, and other hard links of a replaced file keep what it held. The new file takes the permissions
+//! of the file that it replaces, or those that the user's mask gives. If the name is a symbolic link, its target is replaced. A file that
+//! may not be written is not replaced. A pipe or a device is written to directly.
 
 use std::fs::{self, File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// So many links may lead on to other links, as on Linux.
+/// The longest chain of symbolic links that is followed, as on Linux.
 const MOST_LINKS: usize = 40;
 
-/// So many files of other attempts may lie in the way.
+/// The largest number of files of other attempts that may be in the way.
 const MOST_ATTEMPTS: u32 = 1000;
 
-/// A file that is complete and has not got its name yet; dropped before, it is gone.
+/// A file that is complete and has not got its name yet. If it is dropped before [`Self::keep`], it is deleted.
 #[derive(Debug)]
 pub struct Staged {
     /// Where it is, and its name; nothing where the content is at its place already.
@@ -24,7 +24,7 @@ pub struct Staged {
 }
 
 impl Staged {
-    /// Writes the content beside the place of `target`, to the disk.
+    /// Writes the content to a temporary file in the folder of `target`, and waits until it is on the disk.
     pub fn write(target: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<Self> {
         let target = behind_links(target)?;
         let there = match fs::metadata(&target) {
@@ -43,7 +43,9 @@ impl Staged {
         let (mut file, part) = create_beside(&target)?;
         let staged = Self { names: Some((part, target)) };
         // Before anything is in it that others may not read.
-        permissions.map_or(Ok(()), |permissions| file.set_permissions(permissions))?;
+        if let Some(permissions) = permissions {
+            file.set_permissions(permissions)?;
+        }
         fill(&mut file)?;
         file.sync_all()?;
         Ok(staged)
@@ -71,7 +73,7 @@ impl Drop for Staged {
 /// The place that a name stands for, whether or not there is a file yet.
 fn behind_links(name: &Path) -> io::Result<PathBuf> {
     let mut place = name.to_owned();
-    for _ in 0..MOST_LINKS {
+    for _ in 0..=MOST_LINKS {
         match fs::read_link(&place) {
             // A link is counted from its own folder; an absolute one replaces it.
             Ok(next) => place = place.parent().unwrap_or_else(|| Path::new("")).join(next),

@@ -163,7 +163,8 @@ pub(crate) fn draw(
         }
         "cyclic" => {
             let period = if rotary {
-                draw.ratio(0.01, 0.6)
+                // What turns repeats in whole parts of a turn.
+                TAU / (TAU / draw.ratio(0.01, 0.6)).round()
             } else {
                 draw.pick(&[1.0, 2.0, 4.0, 5.0, 8.0, 10.0, 16.0, 20.0]) * draw.pick(&[1.0, 1.0, 0.93, 1.07])
             };

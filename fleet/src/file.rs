@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use glob::Pattern as Glob;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::fields::{self, Fields, Wording};
+use model_dsl::kind::another_kind;
 use model_dsl::source::{SourceFile, Span, Spanned};
 use model_dsl::yaml::{self, Node};
 use workshop::failure::Failure;
@@ -74,8 +75,10 @@ fn keys(what: &str) -> Wording<'_> {
 
 fn read_all(root: &Node, folder: &Path, diagnostics: &mut Diagnostics) -> Option<Fleet> {
     let first = root.entries().and_then(<[_]>::first).map_or(root.span, |(key, _)| key.span);
-    if let Some(mistake) = another_kind(root, first) {
-        diagnostics.push(mistake);
+    if let Some(kind) = another_kind(root, "fleet") {
+        let mistake = Diagnostic::error("E1002", first, format!("this is {kind}, not a fleet file"));
+        let help = "begin with `fleet: 1`, and say where the recordings of each machine are";
+        diagnostics.push(mistake.help(help));
         return None;
     }
     let wording = keys("a fleet");
@@ -92,26 +95,18 @@ fn read_all(root: &Node, folder: &Path, diagnostics: &mut Diagnostics) -> Option
     let results = folder.join(results.map_or(RESULTS, |name| name.value));
     let machines = fields.need("machines", wording, diagnostics)?;
     let Some(entries) = machines.entries().filter(|entries| !entries.is_empty()) else {
-        let message =
-            format!("`machines` must be a mapping of names to machines, found {}", machines.kind_name());
+        let message = match machines.entries() {
+            Some(_) => "`machines` names no machine".to_owned(),
+            None => {
+                format!("`machines` must be a mapping of names to machines, found {}", machines.kind_name())
+            }
+        };
         let help = "write one line such as `mill-07: {recordings: \"mill-07/*.yaml\"}` for each machine";
         diagnostics.push(Diagnostic::error(FORM, machines.span, message).help(help));
         return None;
     };
     let machines = entries.iter().filter_map(|(name, node)| machine(name, node, diagnostics)).collect();
     Some(Fleet { folder: folder.to_owned(), results, machines })
-}
-
-fn another_kind(root: &Node, first: Span) -> Option<Diagnostic> {
-    let kinds = [
-        ("abbe", "a machine file"),
-        ("calibration", "a calibration file"),
-        ("recording", "a recording file"),
-    ];
-    let other = || kinds.iter().find(|(key, _)| root.get(key).is_some());
-    let (_, name) = root.get("fleet").is_none().then(other).flatten()?;
-    let mistake = Diagnostic::error("E1002", first, format!("this is {name}, not a fleet file"));
-    Some(mistake.help("begin with `fleet: 1`, and say where the recordings of each machine are"))
 }
 
 fn machine(name: &Spanned<String>, node: &Node, diagnostics: &mut Diagnostics) -> Option<Machine> {

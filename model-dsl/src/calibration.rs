@@ -10,7 +10,7 @@
 //! | code | finding |
 //! | --- | --- |
 //! | E0401 | a required key is missing |
-//! | E0402 | a format version that is not read |
+//! | E0402 | a format version that is not read, or another kind of file |
 //! | E0403 | an unknown key |
 //! | E0404 | a mapping, list or word is needed in place of what stands there |
 //! | E0405, E0406 | an unknown constant; a constant of the machine without a value |
@@ -61,7 +61,7 @@ pub use document::{machine_of, read};
 pub use factor::{Factor, FactorKind, Within};
 pub use names::{AxisName, MachineNames, MotionName, TurningTool};
 pub use sensors::{Sensor, SensorKind, SensorReadings, Sensors};
-pub use small::{LARGEST_ANGLE, LARGEST_DISPLACEMENT};
+pub use small::{LARGEST_ANGLE, LARGEST_DISPLACEMENT, not_small};
 pub use term::{CalibratedTerm, Curve, CurveNodes, CurveValues, NotCompensable, Part, SeriesInput};
 pub use vocabulary::{TERM_NAMES, TermKind};
 pub use write::write;

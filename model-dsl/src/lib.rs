@@ -23,6 +23,7 @@ pub mod equations;
 pub mod exact;
 pub mod expression;
 pub mod fields;
+pub mod kind;
 pub mod machine;
 pub mod program;
 pub mod quantity;

@@ -41,6 +41,7 @@ pub use turned::Turned;
 
 use crate::algebra::{Axis, Name};
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::kind::another_kind;
 use crate::source::{SourceFile, Span};
 use crate::yaml::Node;
 
@@ -138,10 +139,10 @@ pub fn read(source: &SourceFile, diagnostics: &mut Diagnostics) -> Option<Machin
 }
 
 fn read_node(root: &Node, diagnostics: &mut Diagnostics) -> Option<Machine> {
-    if root.get("abbe").is_none() && root.get("calibration").is_some() {
+    if let Some(kind) = another_kind(root, "abbe") {
         let place = fields::place(root);
         diagnostics.push(
-            Diagnostic::error("E0119", place, "this is a calibration file, not a machine file")
+            Diagnostic::error("E0119", place, format!("this is {kind}, not a machine file"))
                 .label("a machine file begins with `abbe: 1`")
                 .help("give the machine file, or the machine that its key `machine` names"),
         );

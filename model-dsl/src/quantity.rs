@@ -4,15 +4,17 @@
 //! count as they are) with its dimension, or an error that knows which part of the text is wrong. Findings E0301 to
 //! E0309 come from here: see [`QuantityError`] and [`read`].
 
+mod column;
 mod dimension;
 mod number;
 mod reading;
 mod unit;
 
+pub use column::unit_in_name;
 pub use dimension::Dimension;
 pub use number::parse_number;
 pub use reading::{read, read_number, read_per_load, read_temperature_step, read_unit};
-pub use unit::{UNIT_NAMES, Unit, parse_unit};
+pub use unit::{UNIT_NAMES, Unit, parse_unit, unit_name, unit_of_word};
 
 use crate::diagnostic::Diagnostic;
 use crate::source::Span;

@@ -7,6 +7,7 @@
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::fields::{self, Fields};
+use model_dsl::kind::another_kind;
 use model_dsl::quantity::{self, Dimension};
 use model_dsl::source::Spanned;
 use model_dsl::yaml::Node;
@@ -85,8 +86,10 @@ pub struct Extra {
 /// Findings: E0601 there is none, E0602 this is another kind of file, E0604 it is not a name, or the file is no mapping.
 /// [`read_header`] does not repeat them.
 pub fn machine_of(root: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned<String>> {
-    if let Some(mistake) = another_kind(root) {
-        diagnostics.push(mistake);
+    if let Some(kind) = another_kind(root, "recording") {
+        let message = format!("this is {kind}, not a recording file");
+        let mistake = Diagnostic::error("E0602", first_key(root), message);
+        diagnostics.push(mistake.help("begin with `recording: 1`, and name the machine and the data"));
         return None;
     }
     if root.entries().is_none() {
@@ -107,21 +110,6 @@ pub fn machine_of(root: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned<
 /// The calibration file that a recording names; what is wrong with it is told by [`read_header`].
 pub fn calibration_of(root: &Node) -> Option<Spanned<String>> {
     word(root.get("calibration")?, "", &mut Diagnostics::new())
-}
-
-fn another_kind(root: &Node) -> Option<Diagnostic> {
-    if root.get("recording").is_some() {
-        return None;
-    }
-    let kinds = [("abbe", "a machine file"), ("calibration", "a calibration file"), ("path", "a path file")];
-    // A recording names its calibration too, by a word; the version of a calibration file is a number.
-    let is = |key: &str| {
-        root.get(key).and_then(Node::text).is_some_and(|text| text.bytes().all(|byte| byte.is_ascii_digit()))
-    };
-    let (_, name) = kinds.iter().find(|(key, _)| is(key))?;
-    let message = format!("this is {name}, not a recording file");
-    let mistake = Diagnostic::error("E0602", first_key(root), message);
-    Some(mistake.help("begin with `recording: 1`, and name the machine and the data"))
 }
 
 /// Reads everything that the recording file says, for a machine whose equations are known.

@@ -31,6 +31,7 @@ mod shapes;
 
 use model_dsl::calibration::MachineNames;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
+use model_dsl::kind::another_kind;
 use model_dsl::machine::Machine;
 use model_dsl::quantity::Dimension;
 use model_dsl::source::{Span, Spanned};
@@ -39,7 +40,7 @@ use model_dsl::yaml::Node;
 use crate::datum::Datum;
 use crate::instrument::Instrument;
 use crate::noise::Noise;
-use crate::path::{Path, Shape};
+use crate::path::{Path, PathError, Shape};
 use crate::plant::Plant;
 use crate::simulate::{Measurement, Scenario};
 use section::{Context, Section, list, named, word};
@@ -53,6 +54,44 @@ pub struct PathFile {
     pub drive_terms: Vec<(Spanned<String>, Spanned<String>)>,
     /// Where the shape stands, for findings about the whole path.
     pub shape: Span,
+    /// Where the instrument stands.
+    pub instrument: Span,
+    /// Where the numbers stand that make a path long, of those that are given.
+    pub lengthening: Vec<(Lengthening, Span)>,
+}
+
+/// What makes a path long, beside its shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lengthening {
+    /// Many runs.
+    Runs,
+    /// A high rate.
+    Rate,
+    /// A low feed.
+    Feed,
+}
+
+impl Lengthening {
+    const ALL: [(&str, Self); 3] = [("runs", Self::Runs), ("rate", Self::Rate), ("feed", Self::Feed)];
+
+    /// The path with a number that is usual in its place.
+    fn usual(self, path: &Path) -> Path {
+        let mut path = path.clone();
+        match self {
+            Self::Runs => path.runs = 1,
+            Self::Rate => path.rate = 1.0,
+            Self::Feed => path.feed = 10.0,
+        }
+        path
+    }
+
+    fn help(self) -> &'static str {
+        match self {
+            Self::Runs => "write fewer runs",
+            Self::Rate => "write a lower rate, such as `100 Hz`",
+            Self::Feed => "write a higher feed, such as `1000 mm/min`",
+        }
+    }
 }
 
 const KEYS: [&str; 19] = [
@@ -93,13 +132,10 @@ pub fn read(
 
 fn read_all(root: &Node, context: &mut Context<'_>) -> Option<PathFile> {
     let start = root.entries().and_then(<[_]>::first).map_or(root.span, |(key, _)| key.span);
-    for (key, kind) in [("abbe", "machine"), ("calibration", "calibration"), ("recording", "recording")] {
-        if root.get("path").is_none() && root.get(key).is_some() {
-            let message = format!("this is a {kind} file, not a path file");
-            context
-                .report(Diagnostic::error("E0702", start, message).help("begin a path file with `path: 1`"));
-            return None;
-        }
+    if let Some(kind) = another_kind(root, "path") {
+        let mistake = Diagnostic::error("E0702", start, format!("this is {kind}, not a path file"));
+        context.report(mistake.help("begin a path file with `path: 1`"));
+        return None;
     }
     let known: Vec<&str> = KEYS.iter().chain(&shapes::SHAPES).copied().chain(["seed"]).collect();
     let section = Section::open(root, start, "a path", &known, context)?;
@@ -126,7 +162,9 @@ fn read_all(root: &Node, context: &mut Context<'_>) -> Option<PathFile> {
         measurement,
         holdout: holdout?.unwrap_or_default(),
     };
-    Some(PathFile { scenario, drive_terms, shape })
+    let given = Lengthening::ALL.into_iter().filter_map(|(key, one)| Some((one, section.get(key)?.span)));
+    let (lengthening, instrument) = (given.collect(), section.key_span("instrument"));
+    Some(PathFile { scenario, drive_terms, shape, instrument, lengthening })
 }
 
 fn version(section: &Section<'_, '_>, context: &mut Context<'_>) {
@@ -366,15 +404,26 @@ impl PathFile {
             }
         }
         let rotary: Vec<bool> = plant.names().axes.iter().map(|axis| axis.rotary).collect();
-        let cannot = self.scenario.path.timeline(&rotary).err().map(|error| error.to_string());
+        diagnostics.extend(self.cannot_be_driven(&rotary));
         let circle = self.scenario.path.circle(rotary.len()).is_some();
-        let needs = self.scenario.measurement.instrument.needs_circle() && !circle;
-        let needs = needs.then(|| "this path has no circle that gives the instrument's centre".to_owned());
-        for message in cannot.into_iter().chain(needs) {
-            diagnostics.push(
-                Diagnostic::error("E0717", self.shape, message)
-                    .help("change the path, or give the instrument its centre and radius"),
-            );
+        if self.scenario.measurement.instrument.needs_circle() && !circle {
+            let message = "this path has no circle that gives the instrument's centre";
+            let mistake = Diagnostic::error("E0717", self.instrument, message);
+            diagnostics.push(mistake.help("give the instrument its centre and radius, or drive a circle"));
         }
+    }
+
+    /// Why the path cannot be driven, at the number that is to blame, else at the shape (E0717).
+    fn cannot_be_driven(&self, rotary: &[bool]) -> Option<Diagnostic> {
+        let path = &self.scenario.path;
+        let error = path.timeline(rotary).err()?;
+        let would_do = |(one, _): &&(Lengthening, Span)| one.usual(path).timeline(rotary).is_ok();
+        let to_blame = self.lengthening.iter().find(would_do).filter(|_| error == PathError::TooLong);
+        let (place, help) = match (to_blame, &error) {
+            (Some((one, place)), _) => (*place, one.help()),
+            (None, PathError::TooLong) => (self.shape, "make the path shorter, or drive it less often"),
+            (None, _) => (self.shape, "give the path points that are apart"),
+        };
+        Some(Diagnostic::error("E0717", place, error.to_string()).help(help))
     }
 }

@@ -16,6 +16,7 @@ use model_dsl::calibration::{self, CalibratedTerm, Calibration};
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::fields::{self, Fields};
+use model_dsl::kind::another_kind;
 use model_dsl::source::{Span, Spanned};
 use model_dsl::yaml::{Node, NodeKind, Scalar};
 
@@ -72,8 +73,10 @@ pub fn machine_of(root: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned<
         diagnostics.push(mistake.help("begin with `setup: 1` and `machine: ...`"));
         return None;
     }
-    if let Some(mistake) = another_kind(root) {
-        diagnostics.push(mistake);
+    if let Some(kind) = another_kind(root, "setup") {
+        let message = format!("this is {kind}, not a set-up file");
+        let mistake = Diagnostic::error("E0902", first_key(root), message);
+        diagnostics.push(mistake.help("begin with `setup: 1`, and name the machine and the measurements"));
         return None;
     }
     let Some(node) = root.get("machine") else {
@@ -83,21 +86,6 @@ pub fn machine_of(root: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned<
         return None;
     };
     word(node, "`machine`", diagnostics).map(|name| name.map(str::to_owned))
-}
-
-fn another_kind(root: &Node) -> Option<Diagnostic> {
-    if root.get("setup").is_some_and(|version| version.text().is_some()) {
-        return None;
-    }
-    let kinds = [
-        ("abbe", "a machine file"),
-        ("recording", "a recording file"),
-        ("path", "a path file"),
-        ("calibration", "a calibration file"),
-    ];
-    let (_, name) = kinds.iter().find(|(key, _)| root.get(key).is_some())?;
-    let mistake = Diagnostic::error("E0902", first_key(root), format!("this is {name}, not a set-up file"));
-    Some(mistake.help("begin with `setup: 1`, and name the machine and the measurements"))
 }
 
 /// Reads everything that the set-up file says, for a machine whose equations are known.
@@ -196,7 +184,7 @@ impl Setup {
         self.volumetric.iter().chain(self.corrections.iter().map(|one| &one.data))
     }
 
-    /// Takes the error motions of a file over into what is known; each must be given nowhere else (E0911). `place` is where the
+    /// Takes the error motions of a file over into what is known; each must be given nowhere else (E0911), and be small (E0430). `place` is where the
     /// set-up names the file.
     pub fn take(
         &mut self,
@@ -220,6 +208,11 @@ impl Setup {
                 diagnostics.push(mistake.help("remove it here or from the file"));
             }
         }
+        let names = equations.names();
+        diagnostics.extend(terms.iter().find_map(|(number, term)| {
+            let term = Spanned::new(term.clone(), place);
+            calibration::not_small(&term, names.motions.get(*number)?, &names)
+        }));
         self.known = self.known.with(terms);
     }
 

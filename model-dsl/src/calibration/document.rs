@@ -9,6 +9,7 @@ use super::small::refuse_large;
 use super::tools::read_tools;
 use super::{CalibratedMotion, Calibration, Limits, Ramp};
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::kind::another_kind;
 use crate::quantity::{self, Dimension};
 use crate::source::{Span, Spanned};
 use crate::suggest::nearest;
@@ -20,10 +21,10 @@ const KEYS: [&str; 8] =
 
 /// Reads the name of the machine that a calibration is for, and nothing else.
 ///
-/// Findings: E0401 there is none, E0404 it is not a name, or the file is no mapping at all. [`read`] does not repeat them.
+/// Findings: E0401 there is none, E0402 this is another kind of file, E0404 it is not a name, or the file is no mapping at all. [`read`] does not repeat them.
 pub fn machine_of(root: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned<String>> {
-    if root.get("calibration").is_none() && root.get("abbe").is_some() {
-        let message = "this is a machine file, not a calibration file";
+    if let Some(kind) = another_kind(root, "calibration") {
+        let message = format!("this is {kind}, not a calibration file");
         let mistake = Diagnostic::error("E0402", first_key(root), message);
         diagnostics
             .push(mistake.help("a calibration file begins with `calibration: 1` and names its machine"));

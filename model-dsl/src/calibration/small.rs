@@ -6,7 +6,7 @@ use super::parameters::Context;
 use super::term::{CalibratedTerm, SeriesInput};
 use super::{MachineNames, MotionName};
 use crate::diagnostic::Diagnostic;
-use crate::source::Spanned;
+use crate::source::{Span, Spanned};
 
 /// The largest angle of an error motion, rad, except that of a rotary axis about itself. First order neglects half of its square: at a
 /// distance of one metre, 50 um of the 10 mm by which such an angle displaces the tool.
@@ -19,35 +19,45 @@ pub const LARGEST_DISPLACEMENT: f64 = 10.0;
 /// further and gets warmer in its life.
 const TRAVEL: f64 = 20.0;
 
-/// Refuses a term whose own numbers say that it is no small error. The angle of a rotary axis itself may be large: an encoder may count
-/// from another zero.
+/// Refuses a term whose own numbers say that it is no small error.
 pub(super) fn refuse_large(term: &Spanned<CalibratedTerm>, context: &mut Context<'_>) {
-    if context.motion.angular && context.motion.own {
-        return;
-    }
-    let size = term.value.told_size();
-    if size > largest(context.motion.angular) {
-        let message = format!("{} is not a small error", told(size, context.motion.angular));
-        refuse(term, context, message);
-    } else if let Some((size, over)) = least_over(&term.value, context.names)
-        && size > largest(context.motion.angular)
-    {
-        let told = told(size, context.motion.angular);
-        refuse(term, context, format!("an error that reaches {told} within any {over} is not small"));
-    }
+    context.diagnostics.extend(not_small(term, context.motion, context.names));
 }
 
-fn refuse(term: &Spanned<CalibratedTerm>, context: &mut Context<'_>, message: String) {
-    let MotionName { name, angular, .. } = context.motion;
+/// What is wrong with a term whose own numbers say that it is no small error (E0430), at its place. The angle of a rotary axis itself may
+/// be large: an encoder may count from another zero.
+pub fn not_small(
+    term: &Spanned<CalibratedTerm>,
+    motion: &MotionName,
+    names: &MachineNames,
+) -> Option<Diagnostic> {
+    if motion.angular && motion.own {
+        return None;
+    }
+    let size = term.value.told_size();
+    if size > largest(motion.angular) {
+        let message = format!("{} is not a small error", told(size, motion.angular));
+        return Some(refusal(term.span, motion, message));
+    }
+    let (size, over) = least_over(&term.value, names)?;
+    if size > largest(motion.angular) {
+        let told = told(size, motion.angular);
+        let message = format!("an error that reaches {told} within any {over} is not small");
+        return Some(refusal(term.span, motion, message));
+    }
+    None
+}
+
+fn refusal(place: Span, motion: &MotionName, message: String) -> Diagnostic {
+    let MotionName { name, angular, .. } = motion;
     let reason = if *angular {
         "the equations are of first order and neglect half the square of an angle"
     } else {
         "no axis of a working machine is displaced this far"
     };
-    let mistake = Diagnostic::error("E0430", term.span, message)
+    Diagnostic::error("E0430", place, message)
         .label(format!("{name} may be {} at most", told(largest(*angular), *angular)))
-        .help(format!("check the unit: {reason}"));
-    context.diagnostics.push(mistake);
+        .help(format!("check the unit: {reason}"))
 }
 
 /// The largest error motion, mm or rad.

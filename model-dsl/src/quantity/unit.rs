@@ -106,6 +106,19 @@ const WORDS: [(&str, &str); 26] = [
     ("newton", "N"),
 ];
 
+/// The unit that a word names, letter case aside.
+pub fn unit_name(word: &str) -> Option<&'static str> {
+    let names = || UNITS.iter().map(|(name, ..)| *name);
+    names().find(|name| *name == word).or_else(|| names().find(|name| name.eq_ignore_ascii_case(word)))
+}
+
+/// The unit that people mean by a word: `inch`, `microns`; or that it names.
+pub fn unit_of_word(word: &str) -> Option<&'static str> {
+    let lower = word.to_lowercase();
+    let meant = WORDS.iter().find(|(known, _)| *known == lower).map(|(_, unit)| *unit);
+    meant.or_else(|| unit_name(word))
+}
+
 /// Reads a unit: a name, or names divided by one another, each with an optional power (`mm/s^2`). What stands above the line
 /// may be a product (`K.s/mm`, `K*s/mm`).
 ///
@@ -210,9 +223,7 @@ fn incomplete(range: Range<usize>) -> UnitError {
 
 fn unknown(name: &str, range: Range<usize>) -> UnitError {
     let error = UnitError::new("E0304", range, format!("unknown unit `{name}`"));
-    let lower = name.to_lowercase();
-    let word = WORDS.iter().find(|(word, _)| *word == lower).map(|(_, unit)| *unit);
-    match word.or_else(|| nearest(name, UNITS.iter().map(|(known, ..)| *known))) {
+    match unit_of_word(name).or_else(|| nearest(name, UNITS.iter().map(|(known, ..)| *known))) {
         Some(unit) => error.help(format!("did you mean `{unit}`?")),
         None => error.help(format!("use one of the units {UNIT_NAMES}")),
     }

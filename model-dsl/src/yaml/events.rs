@@ -27,8 +27,9 @@ pub fn read(source: &SourceFile, diagnostics: &mut Diagnostics) -> Option<Node> 
     let root = tree.finish().filter(|node| node.kind != super::NodeKind::Null);
     if root.is_none() && diagnostics.len() == before {
         let empty = Diagnostic::error("E0002", Span::default(), "this file is empty");
-        diagnostics
-            .push(empty.help("a machine file begins with `abbe: 1`, a calibration with `calibration: 1`"));
+        diagnostics.push(empty.help(
+            "begin with the kind of file and the version of its format, such as `abbe: 1` (a machine), `calibration: 1`, `recording: 1`, `path: 1` or `setup: 1`",
+        ));
     }
     root
 }

@@ -39,6 +39,8 @@ struct OpenMapping {
 /// A key that waits for its value.
 enum Key {
     Usable(Spanned<String>),
+    /// It may be the decimals of a number with a decimal comma: then no value follows.
+    Decimals(Spanned<String>),
     /// Already reported; its value is read and dropped.
     Refused,
 }
@@ -174,14 +176,28 @@ impl OpenMapping {
             }
             Some(Key::Refused) => None,
             Some(Key::Usable(key)) => {
-                let mut node = node;
-                if node.span.start == node.span.end {
-                    node.span = key.span;
-                }
-                self.entries.push((key, node));
+                self.enter(key, node);
                 None
             }
+            Some(Key::Decimals(decimals)) if node.kind == NodeKind::Null => {
+                self.give_back(&decimals);
+                None
+            }
+            Some(Key::Decimals(key)) => match self.once(key) {
+                Ok(key) => {
+                    self.enter(key, node);
+                    None
+                }
+                Err(mistake) => Some(mistake),
+            },
         }
+    }
+
+    fn enter(&mut self, key: Spanned<String>, mut node: Node) {
+        if node.span.start == node.span.end {
+            node.span = key.span;
+        }
+        self.entries.push((key, node));
     }
 
     fn key_of(&mut self, node: Node) -> (Key, Option<Diagnostic>) {
@@ -192,16 +208,45 @@ impl OpenMapping {
                 Diagnostic::error("E0006", span, message).help("write a plain name, as in `name: value`");
             return (Key::Refused, Some(mistake));
         };
-        if let Some(&first) = self.first_places.get(&text) {
-            let message = format!("duplicate key `{text}`");
-            let mistake = Diagnostic::error("E0005", span, message)
-                .label("given again here")
-                .also(first, "first given here")
-                .help("keep one of the two");
-            return (Key::Refused, Some(mistake));
+        let key = Spanned::new(text, span);
+        if self.follows_comma(&key) {
+            return (Key::Decimals(key), None);
         }
-        self.first_places.insert(text.clone(), span);
-        (Key::Usable(Spanned::new(text, span)), None)
+        match self.once(key) {
+            Ok(key) => (Key::Usable(key), None),
+            Err(mistake) => (Key::Refused, Some(mistake)),
+        }
+    }
+
+    /// A key that is not there yet (E0005).
+    fn once(&mut self, key: Spanned<String>) -> Result<Spanned<String>, Diagnostic> {
+        if let Some(&first) = self.first_places.get(&key.value) {
+            let message = format!("duplicate key `{}`", key.value);
+            let mistake = Diagnostic::error("E0005", key.span, message);
+            let mistake = mistake.label("given again here").also(first, "first given here");
+            return Err(mistake.help("keep one of the two"));
+        }
+        self.first_places.insert(key.value.clone(), key.span);
+        Ok(key)
+    }
+
+    /// Whether a key begins with a digit, right behind the comma behind a whole number, as in `{size: 8,5 um}`.
+    fn follows_comma(&self, key: &Spanned<String>) -> bool {
+        let Some((_, before)) = self.entries.last() else { return false };
+        let NodeKind::Scalar(Scalar { text, quoted: false }) = &before.kind else { return false };
+        let whole = text.strip_prefix(['-', '+']).unwrap_or(text);
+        let digits = |text: &str| text.bytes().all(|letter| letter.is_ascii_digit());
+        let touches = before.span.end.saturating_add(1) == key.span.start;
+        touches && !whole.is_empty() && digits(whole) && key.value.get(..1).is_some_and(digits)
+    }
+
+    /// Gives what stands behind a decimal comma back to the value before it: who reads that as a number tells what is wrong with the whole.
+    fn give_back(&mut self, decimals: &Spanned<String>) {
+        if let Some((_, Node { span, kind: NodeKind::Scalar(Scalar { text, .. }) })) = self.entries.last_mut()
+        {
+            *text += &format!(",{}", decimals.value);
+            span.end = decimals.span.end;
+        }
     }
 }
 

@@ -71,10 +71,13 @@ impl Context<'_> {
         let found = node.text().and_then(|text| text.trim().parse::<u32>().ok());
         let found = found.filter(|found| *found >= least);
         if found.is_none() {
-            let message = format!("{what} must be a whole number, at least {least}");
-            self.report(
-                Diagnostic::error("E0708", number.span, message).help(format!("write `{least}` or more")),
-            );
+            let (bound, help) = if number.value > f64::from(u32::MAX) {
+                (format!("at most {}", u32::MAX), format!("write `{}` or less", u32::MAX))
+            } else {
+                (format!("at least {least}"), format!("write `{least}` or more"))
+            };
+            let message = format!("{what} must be a whole number, {bound}");
+            self.report(Diagnostic::error("E0708", number.span, message).help(help));
         }
         found
     }

@@ -24,6 +24,24 @@ fn words(errors: &str) -> Vec<String> {
     all.map(|one| format!("{} {} | {}", one.code, one.message, one.help.as_deref().unwrap_or(""))).collect()
 }
 
+/// A recording names its machine too, and may name a calibration: it is told by the version of its format.
+#[test]
+fn another_kind_of_file_is_named() {
+    for (text, kind) in [
+        ("abbe: 1\nname: m\n", "a machine file"),
+        ("recording: 1\nmachine: m\ncalibration: known.yaml\n", "a recording file"),
+        ("path: 1\nfeed: 1 mm/min\n", "a path file"),
+        ("setup: 1\nmachine: m\n", "a set-up file"),
+    ] {
+        let mut diagnostics = Diagnostics::new();
+        let root = crate::yaml::read(&SourceFile::new("f", text), &mut diagnostics).unwrap();
+        let named = crate::calibration::machine_of(&root, &mut diagnostics);
+        let told: Vec<&str> = diagnostics.iter().map(|one| one.message.as_str()).collect();
+        assert!(named.is_none(), "{text}");
+        assert_eq!(told, [format!("this is {kind}, not a calibration file")]);
+    }
+}
+
 #[test]
 fn top_level_keys_are_checked() {
     let good = "calibration: 1\nmachine: m\nconstants: {Xt: 0 mm}\n";
@@ -81,6 +99,8 @@ fn constants_are_checked() {
     refused_file(&file("{Xt: 0}"), &[("E0306", "0")]);
     refused_file(&file("{Xt: }"), &[("E0308", "Xt")]);
     refused_file(&file("{Xt: '1,5 mm'}"), &[("E0303", "1,5")]);
+    refused_file(&file("{Xt: 1,5 mm}"), &[("E0303", "1,5")]);
+    refused_file(&file("{Xt: -1,5}"), &[("E0303", "-1,5")]);
     refused_file(&file("[Xt]"), &[("E0404", "[Xt]")]);
     refused_file(&file("{Xt: 0 mm, Xt: 1 mm}"), &[("E0005", "Xt")]);
 }
@@ -113,6 +133,10 @@ fn the_value_of_a_motion_is_checked() {
     refused("EXX: {backlash: {lost_motion: 1 um}}", &[("E0404", "{backlash: {lost_motion: 1 um}}")]);
     refused("EXX:", &[("E0404", "EXX")]);
     refused("EXX: [10 um]", &[("E0410", "10 um")]);
+    refused(
+        "EXX: [{backlash: {lost_motion: 8,5 um, wind_up: 3,5 um}}]",
+        &[("E0303", "8,5"), ("E0303", "3,5")],
+    );
     refused("EXX: [{}]", &[("E0410", "{}")]);
     let two = "EXX: [{backlash: {lost_motion: 1 um}, lag: {gain: 1 1/s}}]";
     refused(two, &[("E0410", "lag")]);

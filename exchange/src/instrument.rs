@@ -40,7 +40,7 @@
 //! | W0904 | a squareness with the zero of a rotation in it |
 //! | W0905 | an edge of two targets, whose slope alone counts |
 //!
-//! E0913 and E0914 are those of who finds the machine and the files.
+//! E0430 is that of the calibration's reader: an error that is not small. E0913 and E0914 are those of who finds the machine and the files.
 
 mod bound;
 mod calibrate;
@@ -54,6 +54,7 @@ mod reduce;
 pub mod report;
 mod sense;
 pub mod setup;
+mod size;
 mod squareness;
 mod stations;
 mod uncertainty;

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use abbe_runtime::Share;
 use csv::ByteRecord;
 use model_dsl::equations::Equations;
-use model_dsl::quantity::{Dimension, parse_unit};
+use model_dsl::quantity::{Dimension, parse_unit, unit_in_name};
 use model_dsl::suggest::nearest;
 use workshop::rows::output_columns;
 
@@ -88,6 +88,12 @@ impl Layout {
             .collect();
         let units =
             units.map(|units| unit_row(units, header.len())).transpose().map_err(|mistake| vec![mistake])?;
+        if header.first().is_some_and(|first| first == "#unit") {
+            return Err(vec![
+                "the row of units stands above the names of the columns; write the names first, then `#unit` and the units"
+                    .to_owned(),
+            ]);
+        }
         let (names, units_of_names) = header.iter().map(|cell| named(cell)).unzip();
         let read = vec![false; header.len()];
         let mut reader = Reader { header, names, units_of_names, units, read, mistakes: Vec::new(), wanted };
@@ -105,12 +111,10 @@ impl Layout {
 
 /// The name of a column, and the unit in brackets behind it: `x [mm]`, `x (mm)`.
 fn named(cell: &str) -> (String, Option<String>) {
-    let brackets = [('[', ']'), ('(', ')')];
-    let found = brackets.iter().find_map(|(open, close)| {
-        let (name, unit) = cell.strip_suffix(*close)?.split_once(*open)?;
-        (!name.trim().is_empty()).then(|| (name.trim().to_owned(), Some(unit.trim().to_owned())))
-    });
-    found.unwrap_or_else(|| (cell.to_owned(), None))
+    match unit_in_name(cell) {
+        Some((name, unit)) => (name.to_owned(), Some(unit.to_owned())),
+        None => (cell.to_owned(), None),
+    }
 }
 
 /// `#unit,mm,mm`: the mark in a cell of its own before the units of all columns.

@@ -14,6 +14,7 @@ use super::measured::Measured;
 use super::placed::Placed;
 use super::reduce::{Reduced, Reversal, Tabulated, is_of_two, slope_of_two};
 use super::setup::{Measurement, Setup};
+use super::size;
 use super::squareness::{self, Side, Squareness};
 use super::uncertainty::{count, mean, together};
 use super::view::View;
@@ -108,10 +109,11 @@ pub fn calibrate(
         firsts.map(|(_, source)| source.motion(&all, &view, &mut findings.setup)).collect();
     let motions: Vec<MeasuredMotion> = motions.into_iter().collect::<Option<_>>()?;
     let squarenesses = squarenesses(setup, &all, &view, &mut findings.setup);
+    let mut calibration = filled(equations, &setup.known, &motions, &squarenesses);
+    size::check(&calibration, setup, &squarenesses, equations, &mut findings.setup);
     if findings.setup.has_errors() {
         return None;
     }
-    let mut calibration = filled(equations, &setup.known, &motions, &squarenesses);
     let bound = bound::write(&mut calibration, equations);
     Some(Outcome { machine: equations.machine.clone(), motions, squarenesses, calibration, bound })
 }

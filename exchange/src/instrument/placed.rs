@@ -39,7 +39,14 @@ impl Placed {
         let at = one.data.span;
         let (axis, motion) = (view.axis_dimension(one.axis), view.motion_dimension(one.motion.value));
         let target_unit = the_unit("targets", one.targets.unit, measured.target_unit, axis, at, in_setup);
-        let unit = the_unit("deviations", one.deviations.unit, measured.deviation_unit, motion, at, in_setup);
+        let unit = the_unit(
+            "deviations",
+            one.deviations.unit.map(|unit| unit.value),
+            measured.deviation_unit,
+            motion,
+            at,
+            in_setup,
+        );
         let senses = sense::senses(measured, one.runs, at, (in_setup, in_data));
         let (target_unit, unit, senses) = (target_unit?, unit?, senses?);
         let factor = view.sense(one, in_setup)?;

@@ -2,7 +2,7 @@
 
 use std::io::BufRead;
 
-use model_dsl::quantity::{Dimension, Unit, parse_unit};
+use model_dsl::quantity::{Dimension, Unit, parse_unit, unit_in_name};
 use model_dsl::suggest::nearest;
 
 use super::super::{Channel, ChannelPlace, Header, Names};
@@ -34,7 +34,7 @@ impl Layout {
         let at_header = |message: String| {
             DataError::new(name, message).at(Place::Character { line: lines.number(), column: 1 })
         };
-        if line.starts_with(&[0xff, 0xfe]) || line.starts_with(&[0xfe, 0xff]) || line.contains(&0) {
+        if line.contains(&0) {
             return Err(
                 at_header("the file is not plain text".to_owned()).help("save the table as CSV in UTF-8")
             );
@@ -238,11 +238,8 @@ pub(super) fn places(names: &[String], wanted: &str) -> Vec<usize> {
 
 /// A name that ends in a unit in brackets: without it, the unit as it is written, the unit.
 fn with_unit(name: &str) -> Option<(&str, &str, Unit)> {
-    let (bare, unit) = match name.strip_suffix(']') {
-        Some(rest) => rest.rsplit_once('[')?,
-        None => name.strip_suffix(')')?.rsplit_once('(')?,
-    };
-    parse_unit(unit.trim()).ok().map(|found| (bare.trim(), unit.trim(), found))
+    let (bare, unit) = unit_in_name(name)?;
+    parse_unit(unit).ok().map(|found| (bare, unit, found))
 }
 
 fn listed_names(names: &[String]) -> String {

@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
-use model_dsl::quantity::{Unit, parse_unit};
-use model_dsl::source::{SourceFile, Span};
+use model_dsl::quantity::{Unit, parse_unit, unit_in_name};
+use model_dsl::source::{SourceFile, Span, Spanned};
 use model_dsl::suggest::nearest;
 
 use super::super::measured::{Measured, Reading, Run, Sense};
@@ -30,6 +30,9 @@ struct Layout {
     width: usize,
     target: usize,
     deviation: usize,
+    /// The units behind the names of these two, as in `x [mm]`.
+    target_unit: Option<Spanned<Unit>>,
+    deviation_unit: Option<Spanned<Unit>>,
     run: Option<usize>,
     direction: Option<usize>,
 }
@@ -48,24 +51,20 @@ pub(super) fn read(
     };
     let layout = read_header(header, columns, diagnostics)?;
     let units = rows.next_if(|line| line.text.starts_with("#unit"));
-    let units = match units {
-        Some(line) => read_units(line, &layout, diagnostics)?,
+    let units = units.map(|line| read_units(line, &layout, diagnostics));
+    let below = match units {
+        Some(units) => units?,
         None => (None, None),
     };
+    let target_unit = one_unit(layout.target_unit, below.0, diagnostics);
+    let deviation_unit = one_unit(layout.deviation_unit, below.1, diagnostics);
+    let (target_unit, deviation_unit) = (target_unit?, deviation_unit?);
     let mut gathered = Gathered::default();
     for line in rows.filter(|line| !line.text.starts_with('#')) {
         gathered.take(line, &layout, diagnostics)?;
     }
     let (targets, runs) = gathered.finish(header.span, diagnostics)?;
-    Some(Measured {
-        targets,
-        runs,
-        target_unit: units.0,
-        deviation_unit: units.1,
-        flagged: None,
-        about: Vec::new(),
-        source,
-    })
+    Some(Measured { targets, runs, target_unit, deviation_unit, flagged: None, about: Vec::new(), source })
 }
 
 fn read_header(header: Piece<'_>, columns: &Columns<'_>, diagnostics: &mut Diagnostics) -> Option<Layout> {
@@ -89,14 +88,46 @@ fn read_header(header: Piece<'_>, columns: &Columns<'_>, diagnostics: &mut Diagn
     let deviation = find(columns.deviation, &deviation, "deviations");
     let run = find(None, &["run"], "")?;
     let direction = find(None, &direction, "")?;
-    Some(Layout { separator, width: cells.len(), target: target??, deviation: deviation??, run, direction })
+    let (target, deviation) = (target??, deviation??);
+    let unit = |place: usize| cells.get(place).and_then(|cell| Some(with_unit(*cell)?.1));
+    let (target_unit, deviation_unit) = (unit(target), unit(deviation));
+    let width = cells.len();
+    Some(Layout { separator, width, target, deviation, target_unit, deviation_unit, run, direction })
 }
 
-/// The column of one of some names, letter case aside; nothing at all where two columns have it.
+/// The name of a column and the unit in brackets behind it, as in `x [mm]`; nothing where what stands there is no unit.
+fn with_unit(cell: Piece<'_>) -> Option<(&str, Spanned<Unit>)> {
+    let (name, unit) = unit_in_name(cell.text)?;
+    Some((name, Spanned::new(parse_unit(unit).ok()?, cell.span)))
+}
+
+/// The unit that stands behind a name or below it; both may give the same (E0909).
+fn one_unit(
+    beside: Option<Spanned<Unit>>,
+    below: Option<Spanned<Unit>>,
+    diagnostics: &mut Diagnostics,
+) -> Option<Option<Unit>> {
+    if let (Some(beside), Some(below)) = (beside, below)
+        && beside != below
+    {
+        let message = "the column has two units, one behind its name and another below it";
+        let mistake = Diagnostic::error("E0909", below.span, message).also(beside.span, "the other unit");
+        diagnostics.push(mistake.help("remove one of the two"));
+        return None;
+    }
+    Some(beside.or(below).map(|unit| unit.value))
+}
+
+/// The column of one of some names, letter case aside and also with a unit behind it; nothing at all where two columns have it.
 fn place(cells: &[Piece<'_>], wanted: &[&str], diagnostics: &mut Diagnostics) -> Option<Option<usize>> {
     let mut found = None;
     for name in wanted {
-        let mut alike = cells.iter().enumerate().filter(|(_, cell)| cell.text.eq_ignore_ascii_case(name));
+        let exact = |cell: &Piece<'_>| cell.text.eq_ignore_ascii_case(name);
+        let bare =
+            |cell: &Piece<'_>| with_unit(*cell).is_some_and(|(bare, _)| bare.eq_ignore_ascii_case(name));
+        let any = cells.iter().any(exact);
+        let mut alike =
+            cells.iter().enumerate().filter(|(_, cell)| if any { exact(cell) } else { bare(cell) });
         let first = alike.next();
         if let (Some((_, first)), Some((_, again))) = (first, alike.next()) {
             let message = format!("column `{}` occurs twice", shown(again.text));
@@ -123,9 +154,13 @@ fn no_column(header: Piece<'_>, cells: &[Piece<'_>], wanted: &[&str], what: &str
         Some(near) => {
             mistake.help(format!("if it is `{}`, rename that column, or name it in the set-up", shown(near)))
         }
-        None => mistake.help(format!(
-            "begin with a row of names, or name the column in the set-up: `{what}: {{column: ...}}`"
-        )),
+        None => {
+            let names: Vec<String> = cells.iter().map(|cell| format!("`{}`", shown(cell.text))).collect();
+            mistake.help(format!(
+                "begin with a row of names, or name the column in the set-up, `{what}: {{column: ...}}`; the columns are {}",
+                names.join(", ")
+            ))
+        }
     }
 }
 
@@ -141,7 +176,7 @@ fn read_units(
     line: Piece<'_>,
     layout: &Layout,
     diagnostics: &mut Diagnostics,
-) -> Option<(Option<Unit>, Option<Unit>)> {
+) -> Option<(Option<Spanned<Unit>>, Option<Spanned<Unit>>)> {
     let cells: Vec<Piece<'_>> = line.split(layout.separator).map(cell).collect();
     if cells.len() != layout.width + 1 {
         let message = format!(
@@ -156,7 +191,7 @@ fn read_units(
     let mut unit = |place: usize| match cells.get(place + 1).filter(|cell| !cell.text.is_empty()) {
         None => Some(None),
         Some(cell) => match parse_unit(cell.text) {
-            Ok(unit) => Some(Some(unit)),
+            Ok(unit) => Some(Some(Spanned::new(unit, cell.span))),
             Err(error) => {
                 diagnostics.push(error.diagnostic(cell.span));
                 None

@@ -4,7 +4,7 @@
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::fields::Fields;
 use model_dsl::quantity::{self, Dimension, Unit};
-use model_dsl::source::Span;
+use model_dsl::source::{Span, Spanned};
 use model_dsl::yaml::Node;
 
 use super::words::{choice, keys, unit, word};
@@ -41,7 +41,7 @@ pub struct Deviations {
     /// Whether the sensor counts against the ISO sense: a sign of -1.
     pub against: bool,
     /// Their unit, where the set-up tells it.
-    pub unit: Option<Unit>,
+    pub unit: Option<Spanned<Unit>>,
     /// The position of the axis at which the motion is to be zero, mm or rad; else the instrument's zero stands.
     pub zero_at: Option<(f64, Span)>,
 }
@@ -62,7 +62,7 @@ const ORDERS: [(&str, Order); 3] =
     [("alternating", Order::Alternating), ("ascending", Order::Ascending), ("descending", Order::Descending)];
 
 /// A sign, and whether it is -1.
-const SIGNS: [(&str, bool); 3] = [("+1", false), ("-1", true), ("1", false)];
+const SIGNS: [(&str, bool); 2] = [("1", false), ("-1", true)];
 
 /// Reads `runs`.
 pub(super) fn order(node: &Node, diagnostics: &mut Diagnostics) -> Option<Order> {
@@ -91,7 +91,8 @@ pub(super) fn targets(
     };
     let against = sign(&fields, diagnostics)?;
     let unit = fields.get("unit").map(|node| unit(node, "the unit of the targets", axis, diagnostics));
-    Some((Targets { begin, against, unit: unit.flatten() }, column(&fields, diagnostics)))
+    let unit = unit.flatten().map(|unit| unit.value);
+    Some((Targets { begin, against, unit }, column(&fields, diagnostics)))
 }
 
 fn both_begins(fields: &Fields<'_>) -> Diagnostic {
@@ -119,6 +120,7 @@ pub(super) fn deviations(
 fn sign(fields: &Fields<'_>, diagnostics: &mut Diagnostics) -> Option<bool> {
     match fields.get("sign") {
         None => Some(false),
+        Some(node) if node.text() == Some("+1") => Some(false),
         Some(node) => choice(node, "`sign`", &SIGNS, diagnostics),
     }
 }

@@ -47,11 +47,11 @@ pub(super) fn unit(
     what: &str,
     dimension: Dimension,
     diagnostics: &mut Diagnostics,
-) -> Option<Unit> {
+) -> Option<Spanned<Unit>> {
     let unit = quantity::read_unit(node, what, diagnostics)?;
     let read = as_dimension(unit.value, dimension);
     if read.dimension == dimension {
-        return Some(read);
+        return Some(Spanned::new(read, unit.span));
     }
     let message = format!("{what} must be that of {}", dimension.name());
     let help = format!("write a unit such as `{}`", dimension.usual_unit());

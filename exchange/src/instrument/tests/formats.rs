@@ -172,6 +172,8 @@ fn a_broken_table_is_marked_where_it_is_broken() {
         ("target,deviation\n0,inf\n", "E0925", "inf"),
         ("target,deviation\n,1\n", "E0925", ""),
         ("target,deviation\n0,1\n0,2\n", "E0927", "0,2"),
+        ("target [mm],deviation [um]\n#unit,in,um\n0,1\n", "E0909", "in"),
+        ("target (laser),deviation (um)\n0,1\n", "E0929", "target (laser),deviation (um)"),
         ("run,target,deviation\n0,0,1\n", "E0926", "0"),
         ("run,target,deviation\n1.5,0,1\n", "E0926", "1.5"),
         ("direction,target,deviation\nup,0,1\n", "E0926", "up"),
@@ -194,4 +196,18 @@ fn a_column_that_the_set_up_names_is_taken() {
     let measured = super::file::read(super::file::text("d", text.as_bytes()), &columns, &mut found).unwrap();
     let readings: Vec<f64> = measured.runs[0].readings.iter().map(|one| one.deviation).collect();
     assert_eq!(readings, [5.0, 6.0]);
+}
+
+#[test]
+fn a_unit_may_stand_behind_the_name_of_a_column() {
+    let like = super::Columns { targets_like: vec!["X".to_owned()], ..Default::default() };
+    let bare = "x,deviation\n#unit,mm,um\n0,1\n10,2\n";
+    let both = "x [mm],deviation\n#unit,mm,um\n0,1\n10,2\n";
+    for text in [bare, both, "x [mm],deviation [um]\n0,1\n10,2\n", "X (mm);\"Deviation (um)\"\n0;1\n10;2\n"] {
+        let mut found = model_dsl::diagnostic::Diagnostics::new();
+        let measured = super::file::read(super::file::text("d", text.as_bytes()), &like, &mut found);
+        let measured = measured.unwrap_or_else(|| panic!("{text}: {found:?}"));
+        let units = [measured.target_unit, measured.deviation_unit].map(|unit| unit.unwrap().factor);
+        assert_eq!((measured.targets, units), (vec![0.0, 10.0], [1.0, 1e-3]), "{text}");
+    }
 }

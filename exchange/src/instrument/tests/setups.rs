@@ -159,3 +159,22 @@ fn what_a_machine_does_not_show_alone_is_refused() {
     assert!(one.is_none());
     assert_eq!(found, [("E0918", "EYX".to_owned())]);
 }
+
+/// The same numbers are small in um and are not in mm: the unit is wrong, and where it stands is marked.
+#[test]
+fn a_unit_that_makes_errors_large_is_marked_where_it_stands() {
+    let bare = "target,deviation\n0,1\n10,20\n20,35\n".to_owned();
+    let given = "target,deviation\n#unit,mm,mm\n0,1\n10,20\n20,35\n".to_owned();
+    let set_up = |unit: &str| {
+        format!("  - {{motion: EXX, data: d, targets: {{unit: mm}}, deviations: {{unit: {unit}}}}}")
+    };
+    let faulty = [(set_up("mm"), &bare, "mm"), ("  - {motion: EXX, data: d}".to_owned(), &given, "d")];
+    for (measurement, file, marked) in faulty {
+        let (one, found, findings) = outcome("FX", &measurement, std::slice::from_ref(file));
+        assert!(one.is_none(), "{measurement}");
+        assert_eq!(found, [("E0430", marked.to_owned())], "{measurement}");
+        let told: Vec<&str> = findings.setup.iter().map(|one| one.message.as_str()).collect();
+        assert_eq!(told, ["35 mm is not a small error"]);
+    }
+    assert!(outcome("FX", &set_up("um"), &[bare]).0.is_some());
+}

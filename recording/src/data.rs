@@ -51,12 +51,21 @@ const PARQUET: &[u8] = b"PAR1";
 /// What a workbook begins with, and all other packed folders.
 const ZIP: &[u8] = b"PK\x03\x04";
 
+/// The names of the columns of a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ColumnNames {
+    /// The names.
+    pub names: Vec<String>,
+    /// The row of a sheet in which they stand, counted from 1, where it is not the first that is no comment.
+    pub line: Option<u64>,
+}
+
 /// The names of the columns of a table that says itself which they are: Parquet, or the first sheet of a workbook. Nothing of a text.
 ///
 /// # Errors
 ///
 /// A file that cannot be read, and one of a format that is not read.
-pub fn column_names(path: &Path) -> Result<Option<Vec<String>>, DataError> {
+pub fn column_names(path: &Path) -> Result<Option<ColumnNames>, DataError> {
     let name = path.display().to_string();
     let unreadable = |error: std::io::Error| DataError::new(&name, format!("it cannot be read: {error}"));
     let mut file = File::open(path).map_err(unreadable)?;
@@ -70,7 +79,7 @@ pub fn column_names(path: &Path) -> Result<Option<Vec<String>>, DataError> {
     }
     file.rewind().map_err(unreadable)?;
     let names = contained(&name, || match start.starts_with(PARQUET) {
-        true => parquet::names(&name, &file),
+        true => parquet::names(&name, &file).map(|names| ColumnNames { names, line: None }),
         false => workbook::names(&name, BufReader::with_capacity(BUFFER, &file)),
     });
     names.map(Some)

@@ -60,7 +60,7 @@ mod words;
 use model_dsl::calibration::Calibration;
 
 pub use channel::{Channel, ChannelKind, ChannelPlace};
-pub use data::{DataError, Place, column_names, foreign};
+pub use data::{ColumnNames, DataError, Place, column_names, foreign};
 pub use date::{Moment, date_of};
 pub use direction::own_direction;
 pub use form::{Form, Names, Separator};

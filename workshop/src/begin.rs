@@ -4,7 +4,9 @@
 mod calibration;
 mod path;
 mod recording;
+mod table;
 
 pub use calibration::calibration;
 pub use path::path;
-pub use recording::{Columns, columns, recording, table_alone};
+pub use recording::{recording, table_alone};
+pub use table::{Columns, columns};

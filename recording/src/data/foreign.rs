@@ -19,10 +19,13 @@ const FEATHER: &str =
     "convert it to Parquet, in Python: `pandas.read_feather(\"x.feather\").to_parquet(\"x.parquet\")`";
 const NUMPY: &str = "convert it to a table, in Python: `pandas.DataFrame(numpy.load(\"x.npy\"), columns=[\"t\", \"x\"]).to_parquet(\"x.parquet\")`";
 const SQLITE: &str = "convert it to a table, in Python: `pandas.read_sql(\"select * from name\", sqlite3.connect(\"x.db\")).to_parquet(\"x.parquet\")`";
+const UTF_8: &str = "save the table as CSV in UTF-8";
 const PACKED: &str = "unpack it, or compress it with gzip";
 
 /// The kinds that people have been given.
-const KINDS: [Kind; 14] = [
+const KINDS: [Kind; 16] = [
+    Kind { begins: b"\xff\xfe", what: "text in UTF-16", help: UTF_8 },
+    Kind { begins: b"\xfe\xff", what: "text in UTF-16", help: UTF_8 },
     Kind { begins: b"\x89HDF\r\n\x1a\n", what: "an HDF5 file", help: HDF5 },
     Kind { begins: b"MATLAB 7.3 MAT-file", what: "a MAT file of version 7.3, which is HDF5", help: MAT_73 },
     Kind { begins: b"MATLAB 5.0 MAT-file", what: "a MAT file", help: MAT },

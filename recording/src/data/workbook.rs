@@ -8,24 +8,24 @@ use std::io::{self, Read, Seek};
 use calamine::{Reader, Xlsx, XlsxError};
 use zip::ZipArchive;
 
-use super::super::{Form, Header, Recording};
+use super::super::{Header, Recording};
 use super::columns::{Cells, Columns, Width};
 use super::error::DataError;
 use super::layout::{ONE_UNIT, find_columns, notes_of_extra, same_units};
 use super::worksheet::Rows;
-use super::{MOST_NUMBERS, settle};
+use super::{ColumnNames, MOST_NUMBERS, settle};
 
 /// What a workbook may hold unpacked: a sheet with all rows that there can be, 2^20, and some ten columns.
 const LARGEST: u64 = 1 << 28;
 
 /// The names of the columns of the first sheet.
-pub(super) fn names(name: &str, mut file: impl Read + Seek) -> Result<Vec<String>, DataError> {
+pub(super) fn names(name: &str, mut file: impl Read + Seek) -> Result<ColumnNames, DataError> {
     check_size(name, &mut file)?;
     let mut book = Xlsx::new(&mut file).map_err(|error| broken(name, &error))?;
     let sheets = book.sheet_names();
     let sheet = sheets.first().ok_or_else(|| DataError::new(name, "it has no sheet"))?;
     let cells = book.worksheet_cells_reader(sheet).map_err(|error| broken(name, &error))?;
-    Rows::new(name, cells, false).names(&Form::default())
+    Rows::new(name, cells, false).names_above_numbers()
 }
 
 fn broken(name: &str, error: &XlsxError) -> DataError {

@@ -5,6 +5,7 @@ use std::io::{Read, Seek};
 use calamine::{DataRef, XlsxCellReader};
 
 use super::super::form::{Form, Names};
+use super::ColumnNames;
 use super::cell::{self, BadCell};
 use super::columns::{Cells, Width};
 use super::error::{DataError, Place, shown};
@@ -12,6 +13,9 @@ use super::stamp::Stamp;
 
 /// No sheet has more columns.
 const MOST_COLUMNS: usize = 1 << 14;
+
+/// Names stand among the first rows.
+const MOST_TITLES: usize = 100;
 
 /// The days from the first one of a workbook to 1970. Workbooks that count from 1904 say so elsewhere: times count from the
 /// first row, and the difference is in all of them.
@@ -77,8 +81,31 @@ impl<'n, 'b, R: Read + Seek> Rows<'n, 'b, R> {
             self.again = Some(row);
             return Ok((1..=width).map(|number| number.to_string()).collect());
         }
-        let names = (0..width).map(|column| row.get(column).map(Value::text).unwrap_or_default());
-        Ok(names.collect())
+        Ok(row.names())
+    }
+
+    /// The names of the columns, from the last row above the first one that has mostly numbers: above them stand titles.
+    pub(super) fn names_above_numbers(&mut self) -> Result<ColumnNames, DataError> {
+        let mut above: Vec<Row<'n>> = Vec::new();
+        let mut found = false;
+        while !found
+            && above.len() < MOST_TITLES
+            && let Some(row) = self.next_row()?
+        {
+            found = row.is_of_numbers();
+            if !found {
+                above.push(row);
+            }
+        }
+        let first = above.first().map(|row| row.row);
+        let Some(row) = above.pop().filter(|_| found) else {
+            let error = DataError::new(self.name, "the sheet has no row of column names above its numbers");
+            return Err(error.help(
+                "write the names above the first row of numbers, or write `data: {file: ..., header: 7}` in the recording file if they are in row 7",
+            ));
+        };
+        let line = (first != Some(row.row)).then(|| u64::from(row.row) + 1);
+        Ok(ColumnNames { names: row.names(), line })
     }
 
     /// The row of units, `#unit` and a unit for each column, where the next row is one.
@@ -193,6 +220,23 @@ impl Row<'_> {
     fn is_comment(&self) -> bool {
         let first = self.cells.first().filter(|(_, value)| !matches!(value, Value::Error(_)));
         first.is_some_and(|(_, value)| value.text().starts_with('#'))
+    }
+
+    /// Whether most of its cells are numbers or dates.
+    fn is_of_numbers(&self) -> bool {
+        let number = |value: &Value| match value {
+            Value::Number(_) | Value::Date(_) => true,
+            Value::Text(text) => text.replace(',', ".").parse::<f64>().is_ok(),
+            Value::Error(_) => false,
+        };
+        let numbers = self.cells.iter().filter(|(_, value)| number(value)).count();
+        numbers > 0 && numbers.saturating_mul(2) >= self.cells.len() && self.cells.len() > 1
+    }
+
+    /// Its texts, from the first column to the last in which anything stands.
+    fn names(&self) -> Vec<String> {
+        let width = self.cells.last().map_or(0, |(column, _)| column.saturating_add(1));
+        (0..width).map(|column| self.get(column).map(Value::text).unwrap_or_default()).collect()
     }
 
     fn get(&self, column: u32) -> Option<&Value> {

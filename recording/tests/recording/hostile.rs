@@ -54,6 +54,19 @@ fn a_small_workbook_that_unpacks_to_a_large_one() {
     assert!(error.contains("more than 256 MiB when unpacked"), "{error}");
 }
 
+/// Without numbers nobody can tell in which row the names stand.
+#[test]
+fn a_sheet_without_numbers_tells_what_to_write() {
+    let text = |sheet: String| sheet.replace(" t=\"n\"><v>", " t=\"str\"><v>a").into_bytes();
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("no-numbers.xlsx");
+    std::fs::write(&path, book("xl/worksheets/sheet1.xml", text)).unwrap();
+    let error = abbe_recording::column_names(&path).unwrap_err().to_string();
+    assert!(
+        error.contains("no row of column names above its numbers") && error.contains("header: 7"),
+        "{error}"
+    );
+}
+
 #[test]
 fn cells_that_stand_nowhere() {
     for (from, to) in [

@@ -57,6 +57,9 @@ fn headers() {
         "data.csv:2:1: the first row has numbers",
         &["remove the `#`"],
     );
+    let sixteen: Vec<u8> = "\u{feff}t_s,run\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let error = header(TEXT).read_bytes("data.csv", sixteen).unwrap_err().to_string();
+    assert!(error.contains("it is text in UTF-16") && error.contains("as CSV in UTF-8"), "{error}");
     refused("\u{0}t_s,run\n", "data.csv:1:1: the file is not plain text", &["UTF-8"]);
     refused(
         "t_s;run,x_cmd\n",

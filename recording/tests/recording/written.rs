@@ -243,3 +243,12 @@ fn samples_of_a_hal() {
         assert!((sawtooth[row] - (5.0 * turns - 2.5)).abs() < 1e-6, "row {row}");
     }
 }
+
+/// `xlsxwriter.xlsx` has titles in its first rows; in `openpyxl.xlsx` nothing stands above the names.
+#[test]
+fn names_in_a_sheet_stand_above_its_numbers() {
+    for (file, first, line) in [("xlsxwriter.xlsx", "date", Some(5)), ("openpyxl.xlsx", "when", None)] {
+        let names = abbe_recording::column_names(&path(file)).unwrap().unwrap();
+        assert_eq!((names.names[0].as_str(), names.line), (first, line), "{file}");
+    }
+}

@@ -3,20 +3,21 @@
 
 use std::path::Path;
 
+use model_dsl::quantity::{Dimension, parse_unit, unit_in_name, unit_name, unit_of_word};
+
+use super::table::Columns;
 use crate::failure::Failure;
-use crate::load;
 
 /// What a column is taken for, by the words of its name.
 struct Guess {
     channel: String,
     unit: String,
+    /// Whether the name tells a unit that is none, or not one of such a channel.
+    unknown: bool,
 }
 
-/// Names of columns stand among the first lines, below what a program says of itself.
-const MOST_LINES: usize = 100;
-
 /// Words of names, and what they are about. The first that fits counts.
-const WORDS: [(&[&str], Meaning); 8] = [
+const WORDS: [(&[&str], Meaning); 9] = [
     (&["time", "t", "timestamp", "zeit", "seconds"], Meaning::Time),
     (&["run", "cycle", "lap", "repeat", "pass"], Meaning::Run),
     (&["temp", "temperature", "degc"], Meaning::Temperature),
@@ -38,7 +39,8 @@ const WORDS: [(&[&str], Meaning); 8] = [
         Meaning::Command,
     ),
     (&["act", "actual", "enc", "encoder", "feedback", "fbk", "fb", "ist", "drive"], Meaning::Actual),
-    (&["meas", "measured", "laser", "true", "tip", "probe"], Meaning::Measured),
+    (&["laser", "probe", "reading", "readings", "indicator", "interferometer"], Meaning::Reading),
+    (&["meas", "measured", "true", "tip"], Meaning::Measured),
     (&["load", "torque", "current", "force"], Meaning::Load),
 ];
 
@@ -51,76 +53,16 @@ enum Meaning {
     Command,
     Actual,
     Measured,
+    /// A position where an axis is named, else a deviation.
+    Reading,
     Load,
-}
-
-/// Units that stand in names of columns.
-const UNITS: [&str; 18] = [
-    "mm", "um", "nm", "m", "in", "deg", "mdeg", "arcsec", "rad", "mrad", "urad", "s", "ms", "us", "min",
-    "degC", "K", "N",
-];
-
-/// The columns of a table.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Columns {
-    /// Their names.
-    pub names: Vec<String>,
-    /// The line in which they stand, where it is not the first that is no comment.
-    line: Option<usize>,
-}
-
-/// The columns of the table in a file: of Parquet and workbooks as they say, of a text the last line above the first row of numbers.
-///
-/// # Errors
-///
-/// A file that cannot be read, and one in which no names stand above numbers.
-pub fn columns(data: &Path) -> Result<Columns, Failure> {
-    if let Some(names) = ::recording::column_names(data).map_err(|error| Failure::wrong(error.to_string()))? {
-        return Ok(Columns { names, line: None });
-    }
-    let head = load::head_of_file(data)?.map_or_else(|| load::bytes(data), Ok)?;
-    let text = String::from_utf8_lossy(&head);
-    of_text(&text).ok_or_else(|| {
-        Failure::no(format!(
-            "error: {} has no row of column names, separated by commas, semicolons or tabs, above its numbers\n\
-             help: write the names above the first row of numbers, such as `t,x_cmd,y_cmd`, without a `#`",
-            data.display()
-        ))
-    })
-}
-
-/// The columns of a text; nothing where no names stand above a row of numbers.
-fn of_text(text: &str) -> Option<Columns> {
-    let text = text.trim_start_matches('\u{feff}');
-    let lines = text.lines().enumerate().take(MOST_LINES);
-    let lines: Vec<(usize, &str)> = lines.filter(|(_, line)| !line.trim().is_empty()).collect();
-    let data = lines.iter().position(|(_, line)| is_of_numbers(line))?;
-    let above = lines.get(..data)?.iter().rev().find(|(_, line)| !line.starts_with("#unit"));
-    let (number, header) = *above.filter(|(_, line)| !line.starts_with('#'))?;
-    let separator = separator_of(lines.get(data)?.1)?;
-    let names: Vec<String> =
-        header.split(separator).map(|name| name.trim().trim_matches('"').to_owned()).collect();
-    let first = lines.iter().find(|(_, line)| !line.starts_with('#'))?.0;
-    Some(Columns { names, line: (first != number).then(|| number.saturating_add(1)) })
-}
-
-fn separator_of(line: &str) -> Option<char> {
-    [',', ';', '\t'].into_iter().find(|separator| line.contains(*separator))
-}
-
-/// Whether most cells of a line are numbers. Dates and words may stand among them.
-fn is_of_numbers(line: &str) -> bool {
-    let Some(separator) = separator_of(line).filter(|_| !line.starts_with('#')) else { return false };
-    let cells: Vec<&str> = line.split(separator).map(str::trim).filter(|cell| !cell.is_empty()).collect();
-    let numbers = cells.iter().filter(|cell| cell.parse::<f64>().is_ok()).count();
-    numbers > 0 && numbers.saturating_mul(2) >= cells.len()
 }
 
 /// Why a table makes no recording by itself, with a recording file for its columns; `None` where the file is no table.
 #[must_use]
 pub fn table_alone(data: &Path) -> Option<Failure> {
     let name = data.file_name().unwrap_or(data.as_os_str()).to_string_lossy();
-    let text = recording(&name, &columns(data).ok()?, None);
+    let text = recording(&name, &super::columns(data).ok()?, None);
     let text: String = text.lines().map(|line| format!("    {line}\n")).collect();
     Some(Failure::wrong(format!(
         "error: {} is a table, which does not say what its columns mean\n\
@@ -133,50 +75,83 @@ pub fn table_alone(data: &Path) -> Option<Failure> {
 #[must_use]
 pub fn recording(data: &str, columns: &Columns, machine: Option<&str>) -> String {
     let guesses: Vec<Option<Guess>> = guessed(&columns.names);
-    let data = match columns.line {
-        Some(line) => format!("{{file: {}, header: {line}}}", quoted(data)),
-        None => quoted(data),
-    };
-    let has = |kind: &str| guesses.iter().flatten().any(|guess| guess.channel.starts_with(kind));
-    let instrument = if has("deviation") { "ballbar" } else { "position" };
+    let (instrument, setup) = instrument(&guesses);
     let mut text = format!(
         "# A recording file for Abbe: what the columns of a table mean. Check each line: the channels are guessed from the names.\n\
          recording: 1\n\
          # title: a line for people\n\
          machine: {}\n\
          # calibration: mill.yaml   # what is already known of the machine\n\
-         instrument: {instrument}   # position, ballbar, linear, straightness, angular or probe\n\
-         data: {data}\n\
+         instrument: {instrument}\n\
+         data: {}\n\
          channels:\n",
-        machine.unwrap_or("XYFZ   # a machine file, a shipped machine or a topology word")
+        machine.unwrap_or("XYFZ   # a machine file, a shipped machine or a topology word"),
+        table(data, columns)
     );
+    if !guesses.iter().flatten().any(|guess| guess.channel == "time") {
+        text += NO_TIME;
+    }
     for (column, guess) in columns.names.iter().zip(&guesses) {
         text += &channel(column, guess.as_ref());
     }
-    if instrument == "ballbar" {
-        text +=
-            "setup: {center: [0 mm, 0 mm, 0 mm], radius: 100 mm}   # of the tool tip, tool offset included\n";
-    }
-    text
+    text + setup
 }
 
-/// The line of a column.
-fn channel(column: &str, guess: Option<&Guess>) -> String {
-    match guess {
-        Some(Guess { channel, unit }) if unit.is_empty() => {
-            format!("  {channel}: {{column: {}}}\n", quoted(column))
-        }
-        Some(Guess { channel, unit }) => {
-            format!("  {channel}: {{column: {}, unit: {unit}}}\n", quoted(column))
-        }
-        None => format!(
-            "  # {}: the name suggests no channel; channels are command.x, measured.x, ...\n",
-            quoted(column)
+/// What a recording file needs that no column seems to hold.
+const NO_TIME: &str = "  # time: {column: ..., unit: s}   # needed, but no column seems to be a time; if rows follow at equal steps: time: {every: 1 s}\n";
+
+/// The value of `data`: the file, and what it does not tell itself.
+fn table(data: &str, columns: &Columns) -> String {
+    let header = columns.line.map(|line| format!(", header: {line}"));
+    let separator = columns.spaced.then(|| ", separator: spaces".to_owned());
+    let decimal = columns.decimal_comma.then(|| ", decimal: \",\"".to_owned());
+    let form: String = [header, separator, decimal].into_iter().flatten().collect();
+    if form.is_empty() { quoted(data) } else { format!("{{file: {}{form}}}", quoted(data)) }
+}
+
+/// The instrument that such channels are of, with what is to be checked, and its set-up.
+fn instrument(guesses: &[Option<Guess>]) -> (&'static str, &'static str) {
+    let all = || guesses.iter().flatten();
+    let moved: Vec<&str> = all().filter_map(|guess| guess.channel.strip_prefix("command.")).collect();
+    let Some(deviation) = all().find(|guess| guess.channel == "deviation") else {
+        return ("position   # position, ballbar, linear, straightness, angular or probe", "");
+    };
+    let angle = parse_unit(&deviation.unit).is_ok_and(|unit| unit.dimension == Dimension::ANGLE);
+    match moved.as_slice() {
+        _ if angle => (
+            "angular   # a level, an autocollimator or the angular optics of a laser",
+            "setup: {direction: B}   # the axis of rotation that it reads: A, B or C for X, Y or Z\n",
+        ),
+        [axis] if "abc".contains(axis) => (
+            "probe   # a displacement while a rotary axis turns",
+            "setup: {direction: Z}   # the direction in which it reads\n",
+        ),
+        // Two axes or more move together on a circle.
+        [_, _, ..] => (
+            "ballbar   # position, ballbar, linear, straightness, angular or probe",
+            "setup: {center: [0 mm, 0 mm, 0 mm], radius: 100 mm}   # of the tool tip, tool offset included\n",
+        ),
+        _ => (
+            "linear   # a laser along the axis that moves; straightness for a reading across it",
+            "# setup: {axis: X}   # the axis that moves; with straightness also direction: Y, in which it reads\n",
         ),
     }
 }
 
-/// What each column is taken for; a channel is given once.
+/// The line of a column.
+fn channel(column: &str, guess: Option<&Guess>) -> String {
+    let Some(Guess { channel, unit, unknown }) = guess else {
+        return format!(
+            "  # {}: the name suggests no channel; channels are command.x, measured.x, ...\n",
+            quoted(column)
+        );
+    };
+    let unit = if unit.is_empty() { String::new() } else { format!(", unit: {unit}") };
+    let doubt = if *unknown { "   # the unit in the name is none that fits; check it" } else { "" };
+    format!("  {channel}: {{column: {}{unit}}}{doubt}\n", quoted(column))
+}
+
+/// What each column is taken for; a channel is given once. Beside measured positions no instrument has a deviation.
 fn guessed(columns: &[String]) -> Vec<Option<Guess>> {
     let mut taken: Vec<String> = Vec::new();
     let guess = |column: &String| {
@@ -184,39 +159,58 @@ fn guessed(columns: &[String]) -> Vec<Option<Guess>> {
         taken.push(guess.channel.clone());
         Some(guess)
     };
-    columns.iter().map(guess).collect()
+    let guesses: Vec<Option<Guess>> = columns.iter().map(guess).collect();
+    let positions = taken.iter().any(|channel| channel.starts_with("measured."));
+    let fits = |guess: &Guess| !(positions && guess.channel == "deviation");
+    guesses.into_iter().map(|guess| guess.filter(fits)).collect()
 }
 
 /// What a column is taken for by its name alone: an axis alone is a command.
 fn guess(column: &str) -> Option<Guess> {
     let words = words(column);
-    let unit =
-        words.iter().rev().find_map(|word| UNITS.into_iter().find(|unit| unit.eq_ignore_ascii_case(word)));
     let axis = words.iter().find(|word| word.len() == 1 && "xyzuvwabc".contains(word.as_str()));
-    let meaning = meaning(column, &words);
-    let by_axis = |kind: &str, axis: &String| Guess {
-        channel: format!("{kind}.{axis}"),
-        unit: unit.unwrap_or(if "abc".contains(axis.as_str()) { "deg" } else { "mm" }).to_owned(),
+    let turns = axis.is_some_and(|axis| "abc".contains(axis.as_str()));
+    let of = |channel: String, kinds: &[Dimension], default: &str| {
+        let unit = unit_of(column, kinds);
+        let unknown = unit.is_none() && unit_in_name(column).is_some();
+        Guess { channel, unit: unit.unwrap_or_else(|| default.to_owned()), unknown }
     };
-    let named = |kind: &str, default: &str| Guess {
-        channel: format!("{kind}.{}", words.join("_")),
-        unit: unit.unwrap_or(default).to_owned(),
+    let by_axis = |kind: &str, axis: &String| {
+        let (own, default) = if turns { (Dimension::ANGLE, "deg") } else { (Dimension::LENGTH, "mm") };
+        of(format!("{kind}.{axis}"), &[own], default)
     };
-    match (meaning, axis) {
-        (Some(Meaning::Time), _) => {
-            Some(Guess { channel: "time".to_owned(), unit: unit.unwrap_or("s").to_owned() })
-        }
-        (Some(Meaning::Run), _) => Some(Guess { channel: "run".to_owned(), unit: String::new() }),
-        (Some(Meaning::Temperature), _) => Some(named("temperature", "degC")),
-        (Some(Meaning::Load), _) => Some(named("load", "N")),
-        (Some(Meaning::Deviation), _) => {
-            Some(Guess { channel: "deviation".to_owned(), unit: unit.unwrap_or("um").to_owned() })
-        }
-        (Some(Meaning::Command) | None, Some(axis)) => Some(by_axis("command", axis)),
-        (Some(Meaning::Actual), Some(axis)) => Some(by_axis("actual", axis)),
-        (Some(Meaning::Measured), Some(axis)) => Some(by_axis("measured", axis)),
+    let named = |kind: &str, kinds: &[Dimension], default: &str| {
+        of(format!("{kind}.{}", words.join("_")), kinds, default)
+    };
+    let deviation = || of("deviation".to_owned(), &[Dimension::LENGTH, Dimension::ANGLE], "um");
+    match (meaning(column, &words)?, axis) {
+        (Meaning::Time, _) => Some(of("time".to_owned(), &[Dimension::TIME], "s")),
+        (Meaning::Run, _) => Some(Guess { channel: "run".to_owned(), unit: String::new(), unknown: false }),
+        (Meaning::Temperature, _) => Some(named("temperature", &[Dimension::TEMPERATURE], "degC")),
+        (Meaning::Load, _) => Some(named("load", &LOADS, "N")),
+        (Meaning::Deviation, _) | (Meaning::Reading, None) => Some(deviation()),
+        (Meaning::Command, Some(axis)) => Some(by_axis("command", axis)),
+        (Meaning::Actual, Some(axis)) => Some(by_axis("actual", axis)),
+        (Meaning::Measured | Meaning::Reading, Some(axis)) => Some(by_axis("measured", axis)),
         (_, None) => None,
     }
+}
+
+/// The kinds of unit that a load may have.
+const LOADS: [Dimension; 5] =
+    [Dimension::FORCE, Dimension::VOLTAGE, Dimension::CURRENT, Dimension::PERCENT, Dimension::COUNT];
+
+/// The unit that a name tells, of one of some kinds: in brackets, `X [mm]`, or as a word, `x_mm`.
+fn unit_of(column: &str, kinds: &[Dimension]) -> Option<String> {
+    let fits = |unit: &&str| parse_unit(unit).is_ok_and(|unit| kinds.contains(&unit.dimension));
+    if let Some((_, unit)) = unit_in_name(column) {
+        let known = Some(unit).filter(fits).or_else(|| unit_of_word(unit));
+        return known.filter(fits).map(str::to_owned);
+    }
+    // What is one letter or two is as well part of a name, unless it is written as units are.
+    let told = |word: &str| if word.chars().count() > 3 { unit_of_word(word) } else { unit_name(word) };
+    let words: Vec<&str> = column.split(|letter: char| !letter.is_alphanumeric()).collect();
+    words.into_iter().rev().filter_map(told).find(fits).map(str::to_owned)
 }
 
 /// What a name is about. `T_spindle` and `T19` are temperatures, `t` and `t_s` are times.
@@ -226,7 +220,9 @@ fn meaning(column: &str, words: &[String]) -> Option<Meaning> {
         return Some(Meaning::Temperature);
     }
     let known = |(known, _): &&(&[&str], Meaning)| words.iter().any(|word| known.contains(&word.as_str()));
-    WORDS.iter().find(known).map(|(_, meaning)| *meaning)
+    let axis = words.iter().any(|word| word.len() == 1 && "xyzuvwabc".contains(word.as_str()));
+    let named = WORDS.iter().find(known).map(|(_, meaning)| *meaning);
+    named.or_else(|| axis.then_some(Meaning::Command))
 }
 
 /// The words of a name: `X_cmd [mm]` is x, cmd, mm.
@@ -253,6 +249,7 @@ mod tests {
     use model_dsl::source::SourceFile;
     use model_dsl::yaml;
 
+    use super::super::table::of_text;
     use super::*;
     use crate::load;
 
@@ -281,25 +278,46 @@ mod tests {
     }
 
     #[test]
-    fn names_stand_above_the_first_row_of_numbers() {
-        let names = |text: &str| of_text(text).map(|columns| (columns.names.join("|"), columns.line));
-        assert_eq!(names("t,x\n0,1\n"), Some(("t|x".to_owned(), None)));
-        assert_eq!(names("# a program\n\nt;x\n#unit;s;mm\n0;1\n"), Some(("t|x".to_owned(), None)));
-        assert_eq!(names("Spindle test, machine 3\nt,x\n0,1\n"), Some(("t|x".to_owned(), Some(2))));
-        assert_eq!(names("when\tx\n2026-07-09T10:00:00\t1\n"), Some(("when|x".to_owned(), None)));
-        for none in ["1,2\n3,4\n", "# t,x\n0,1\n", "recording: 1\ntitle: a, b\n", "", "just words, and more"]
-        {
-            assert_eq!(names(none), None, "{none}");
-        }
+    fn a_unit_in_a_name_is_taken_if_it_fits() {
+        let known =
+            channels("t [h];Deviation [mil];A_cmd [arcmin];V cmd;T1 [degF];x act [inch];Y_act_MM;load [A]");
+        let units: Vec<&str> = known.iter().map(|(_, unit)| unit.as_str()).collect();
+        assert_eq!(units, ["h", "mil", "arcmin", "mm", "degF", "in", "mm", "A"]);
+        let reading = channels("Laser reading (um)");
+        assert_eq!(reading, [("deviation".to_owned(), "um".to_owned())]);
+        let text = recording("d.csv", &of_text("t,Deviation [V]\n0,1\n").unwrap(), None);
+        assert!(text.contains("unit: um}   # the unit in the name is none that fits"), "{text}");
     }
 
     #[test]
-    fn a_ballbar_and_positions_are_read_as_they_are() {
-        let equations = load::machine("XYFZ", None, &()).ok().unwrap().compiled.equations;
-        for line in ["time,run,x_cmd,y_cmd,dev_um,'odd'", "t,x,measured x", "Zeit [s]\tX soll\tX ist\ttrue"] {
+    fn what_no_column_holds_is_said() {
+        let text = recording("d.csv", &of_text("x,deviation\n0,1\n").unwrap(), None);
+        assert!(text.contains("# time: {column: ..., unit: s}   # needed"), "{text}");
+        let text = recording("d.csv", &of_text("t;x\n0;0,5\n").unwrap(), None);
+        assert!(
+            text.contains("data: {file: d.csv, decimal: \",\"}\n") && !text.contains("# needed"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn each_recording_is_read_as_it_is() {
+        let equations = load::machine("XYFZC", None, &()).ok().unwrap().compiled.equations;
+        for (line, instrument) in [
+            ("time,run,x_cmd,y_cmd,dev_um,'odd'", "ballbar"),
+            ("t,x,measured x", "position"),
+            ("Zeit [s]\tX soll\tX ist\ttrue", "position"),
+            ("t,x,deviation", "linear"),
+            ("t;x;Laser reading (um)", "linear"),
+            ("t,x,deviation [arcsec]", "angular"),
+            ("t,c,deviation", "probe"),
+            ("t,x,laser x,deviation", "position"),
+        ] {
             let numbers: String =
-                line.chars().map(|letter| if ",\t".contains(letter) { letter } else { '1' }).collect();
-            let text = recording("my data.csv", &of_text(&format!("{line}\n{numbers}\n")).unwrap(), None);
+                line.chars().map(|letter| if ",;\t".contains(letter) { letter } else { '1' }).collect();
+            let text =
+                recording("my data.csv", &of_text(&format!("{line}\n{numbers}\n")).unwrap(), Some("XYFZC"));
+            assert!(text.contains(&format!("\ninstrument: {instrument}")), "{line}: {text}");
             let source = SourceFile::new("recording.yaml", text);
             let mut diagnostics = Diagnostics::new();
             let root = yaml::read(&source, &mut diagnostics).unwrap();

@@ -1,0 +1,172 @@
+//! The head of a table. In: a file. Out: the names of its columns, and how a recording file says where and how they are written.
+
+use std::path::Path;
+
+use crate::failure::Failure;
+use crate::load;
+
+/// Names of columns stand among the first lines, below what a program says of itself.
+const MOST_LINES: usize = 100;
+
+/// The columns of a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Columns {
+    /// Their names.
+    pub names: Vec<String>,
+    /// The line in which they stand, where it is not the first that is no comment.
+    pub(super) line: Option<u64>,
+    /// Whether spaces stand between them.
+    pub(super) spaced: bool,
+    /// Whether a comma is the decimal sign.
+    pub(super) decimal_comma: bool,
+}
+
+/// What stands between the cells of a text.
+#[derive(Clone, Copy, PartialEq)]
+enum Separator {
+    Character(char),
+    Spaces,
+}
+
+/// What is tried, in this order: where others stand between the cells, a comma may be the decimal sign.
+const SEPARATORS: [Separator; 4] =
+    [Separator::Character(';'), Separator::Character('\t'), Separator::Character(','), Separator::Spaces];
+
+/// The columns of the table in a file: of Parquet and workbooks as they say, of a text the last line above the first row of numbers.
+///
+/// # Errors
+///
+/// A file that cannot be read, and one in which no names stand above numbers.
+pub fn columns(data: &Path) -> Result<Columns, Failure> {
+    let head = ::recording::column_names(data).map_err(|error| Failure::wrong(error.to_string()))?;
+    if let Some(head) = head {
+        return Ok(Columns { names: head.names, line: head.line, spaced: false, decimal_comma: false });
+    }
+    let head = load::head_of_file(data)?.map_or_else(|| load::bytes(data), Ok)?;
+    let text = String::from_utf8_lossy(&head);
+    of_text(&text).map_err(|wrong| {
+        let (what, help) = wrong.told();
+        Failure::no(format!("error: {} {what}\nhelp: {help}", data.display()))
+    })
+}
+
+/// Why a text has no columns.
+#[derive(Debug, PartialEq)]
+pub(super) enum Wrong {
+    /// No row of numbers was found, or none with names above it.
+    NoNames,
+    /// In columns that are set off by spaces: how many names and how many numbers.
+    Spaces(usize, usize),
+}
+
+impl Wrong {
+    fn told(&self) -> (String, &'static str) {
+        match self {
+            Self::NoNames => (
+                "has no row of column names, separated by commas, semicolons, tabs or spaces, above its numbers".to_owned(),
+                "write the names above the first row of numbers, such as `t,x_cmd,y_cmd`, without a `#`",
+            ),
+            Self::Spaces(names, numbers) => (
+                format!("has {names} words above {numbers} numbers, separated by spaces, so the names of its columns cannot be told"),
+                "separate the columns with commas, semicolons or tabs, or write names without spaces",
+            ),
+        }
+    }
+}
+
+/// The columns of a text.
+pub(super) fn of_text(text: &str) -> Result<Columns, Wrong> {
+    let text = text.trim_start_matches('\u{feff}');
+    let lines = text.lines().enumerate().take(MOST_LINES);
+    let lines: Vec<(usize, &str)> = lines.filter(|(_, line)| !line.trim().is_empty()).collect();
+    let (data, separator) = lines
+        .iter()
+        .enumerate()
+        .find_map(|(place, (_, line))| Some((place, separator_of(line)?)))
+        .ok_or(Wrong::NoNames)?;
+    let (above, rows) = lines.split_at(data);
+    let header = above.iter().rev().find(|(_, line)| !line.starts_with("#unit"));
+    let (number, header) = header.filter(|(_, line)| !line.starts_with('#')).ok_or(Wrong::NoNames)?;
+    let names: Vec<String> =
+        separator.split(header).into_iter().map(|name| name.trim_matches('"').to_owned()).collect();
+    let width = rows.first().map_or(0, |(_, row)| separator.split(row).len());
+    let spaced = separator == Separator::Spaces;
+    if spaced && names.len() != width {
+        return Err(Wrong::Spaces(names.len(), width));
+    }
+    let first = lines.iter().find(|(_, line)| !line.starts_with('#')).map(|(first, _)| first);
+    let line = (first != Some(number)).then(|| u64::try_from(*number).unwrap_or(u64::MAX).saturating_add(1));
+    let decimal_comma = rows.iter().any(|(_, row)| {
+        separator.split(row).iter().any(|cell| cell.contains(',') && separator.is_number(cell))
+    });
+    Ok(Columns { names, line, spaced, decimal_comma })
+}
+
+/// What separates the cells of a row of numbers; nothing of any other line.
+fn separator_of(line: &str) -> Option<Separator> {
+    SEPARATORS.into_iter().find(|separator| separator.is_of_numbers(line))
+}
+
+impl Separator {
+    /// The cells of a line, without the white space around them.
+    fn split(self, line: &str) -> Vec<&str> {
+        match self {
+            Self::Character(character) => line.split(character).map(str::trim).collect(),
+            Self::Spaces => line.split_whitespace().collect(),
+        }
+    }
+
+    /// Whether a cell is a number, with a point or, where no comma separates cells, with a comma.
+    fn is_number(self, cell: &str) -> bool {
+        let comma = self != Self::Character(',') && cell.matches(',').count() == 1 && !cell.contains('.');
+        cell.parse::<f64>().is_ok() || comma && cell.replace(',', ".").parse::<f64>().is_ok()
+    }
+
+    /// Whether most cells of a line are numbers. Dates and words may stand among them, but not where spaces separate.
+    fn is_of_numbers(self, line: &str) -> bool {
+        let cells = self.split(line);
+        if line.starts_with('#') || cells.len() < 2 {
+            return false;
+        }
+        let filled = cells.iter().filter(|cell| !cell.is_empty()).count();
+        let numbers = cells.iter().filter(|cell| self.is_number(cell)).count();
+        let needed = if self == Self::Spaces { filled } else { filled.div_ceil(2) };
+        numbers > 0 && numbers >= needed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stand_above_the_first_row_of_numbers() {
+        let names = |text: &str| of_text(text).ok().map(|columns| (columns.names.join("|"), columns.line));
+        assert_eq!(names("t,x\n0,1\n"), Some(("t|x".to_owned(), None)));
+        assert_eq!(names("# a program\n\nt;x\n#unit;s;mm\n0;1\n"), Some(("t|x".to_owned(), None)));
+        assert_eq!(names("Spindle test, machine 3\nt,x\n0,1\n"), Some(("t|x".to_owned(), Some(2))));
+        assert_eq!(names("when\tx\n2026-07-09T10:00:00\t1\n"), Some(("when|x".to_owned(), None)));
+        for none in ["1,2\n3,4\n", "# t,x\n0,1\n", "recording: 1\ntitle: a, b\n", "", "just words, and more"]
+        {
+            assert_eq!(of_text(none), Err(Wrong::NoNames), "{none}");
+        }
+    }
+
+    #[test]
+    fn a_comma_is_the_decimal_sign_where_others_separate() {
+        let read = |text: &str| of_text(text).map(|columns| (columns.names.join("|"), columns.decimal_comma));
+        let european = "Time [s];Run;X [mm];Deviation [um]\n0;1;0,0;-3,61\n1;1;5,0;-3,40\n";
+        assert_eq!(read(european), Ok(("Time [s]|Run|X [mm]|Deviation [um]".to_owned(), true)));
+        assert_eq!(read("t\tx\n0\t0\n1\t0,5\n"), Ok(("t|x".to_owned(), true)));
+        assert_eq!(read("t;x\n0;0.5\n"), Ok(("t|x".to_owned(), false)));
+        assert_eq!(read("t,x,note\n0,1,\"a;b\"\n"), Ok(("t|x|note".to_owned(), false)));
+    }
+
+    #[test]
+    fn spaces_separate_where_nothing_else_does() {
+        let read = |text: &str| of_text(text).map(|columns| (columns.names.join("|"), columns.spaced));
+        assert_eq!(read("t  x_cmd\n 0  1.5\n"), Ok(("t|x_cmd".to_owned(), true)));
+        assert_eq!(read("t x cmd\n0 1.5\n"), Err(Wrong::Spaces(3, 2)));
+        assert_eq!(read("on 3 axes\nno 2 numbers\n"), Err(Wrong::NoNames));
+    }
+}

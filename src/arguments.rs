@@ -7,7 +7,7 @@ mod values;
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{ArgGroup, Args, Parser, Subcommand};
 use clap_complete::Shell;
 use workshop::updated::{Datum, datum};
 
@@ -16,9 +16,12 @@ pub(crate) use choices::{
     LinearUnit, Names, ReportFormat, UpdateFormat, UpdateMethod, VerdictName,
 };
 pub(crate) use fleet::{Fleet, FleetAdd, FleetCommand, FleetRun, FleetShow};
-use values::{name, non_negative, place, range};
+use values::{count, name, non_negative, place, range, whole};
 
 use crate::target::Target;
+
+/// More points or tables than any controller has.
+const MOST_POINTS: u64 = 1_000_000;
 
 /// Compiles a machine tool's kinematic chain into its error equations and compensation code.
 #[derive(Parser)]
@@ -171,11 +174,12 @@ pub(crate) struct Limits {
 }
 
 #[derive(Args)]
+#[command(group(ArgGroup::new("known").required(true).args(["machine", "calibration"])))]
 pub(crate) struct Plan {
     /// A path file: where the axes would go, the instrument that would measure them, and its noise.
     pub(crate) path: PathBuf,
     /// A machine file, the name of a shipped machine, or a topology word; its constants are those of the file.
-    #[arg(long, required_unless_present = "calibration", conflicts_with = "calibration")]
+    #[arg(long)]
     pub(crate) machine: Option<String>,
     /// The calibration file of the machine, with its known errors, instead of the machine.
     #[arg(long, value_name = "FILE")]
@@ -192,10 +196,10 @@ pub(crate) struct Asked {
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) only: Vec<String>,
     /// The maximum number of diagnoses for each effect; most limits reach an accuracy of 12 % after a dozen and stop there.
-    #[arg(long, default_value_t = 40, value_parser = clap::value_parser!(u16).range(4..=1000))]
+    #[arg(long, default_value_t = 40, value_parser = whole::<u16>(4, 1000), allow_negative_numbers = true)]
     pub(crate) trials: u16,
     /// The seed of signs, places and phases; the same seed gives the same limits.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = whole::<u64>(0, u64::MAX), allow_negative_numbers = true)]
     pub(crate) seed: u64,
     /// How to write the result.
     #[arg(long, value_enum, default_value_t = LimitsFormat::Text)]
@@ -214,7 +218,7 @@ pub(crate) struct Compensate {
     pub(crate) calibration: PathBuf,
     /// How far an axis must move back before it counts as reversed: mm, or deg for a
     /// rotary axis. Only for axes without a `dir_` column.
-    #[arg(long, default_value_t = 0.001, value_parser = non_negative)]
+    #[arg(long, default_value_t = 0.001, value_parser = non_negative, allow_negative_numbers = true)]
     pub(crate) hysteresis: f64,
     /// Use the tools of LinuxCNC's table (tool.tbl) instead of the calibration's tools.
     #[arg(long, value_name = "FILE")]
@@ -255,7 +259,7 @@ pub(crate) struct Simulate {
     #[arg(long, default_value = ".")]
     pub(crate) output: PathBuf,
     /// The seed of the noise, instead of that of the path file; the same seed gives the same bytes.
-    #[arg(long)]
+    #[arg(long, value_parser = whole::<u64>(0, u64::MAX), allow_negative_numbers = true)]
     pub(crate) seed: Option<u64>,
     /// The calibration that the recording names as known; errors that it lacks are concealed.
     #[arg(long)]
@@ -305,7 +309,7 @@ pub(crate) struct Update {
     #[arg(long, value_enum, default_value_t = UpdateMethod::Svd)]
     pub(crate) method: UpdateMethod,
     /// The share of the matrix's norm up to which singular values count as zero; by default the number of readings times 2.2e-16.
-    #[arg(long, value_parser = non_negative)]
+    #[arg(long, value_parser = non_negative, allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
     /// The directions in which the zero of a part is free: `free` (all), `turned` (all, and the part may be rotated), `none`, or
     /// some, such as `z` or `x,z`.
@@ -367,7 +371,7 @@ pub(crate) struct Export {
     #[arg(long, value_name = "AXIS=PLACE", value_parser = place)]
     pub(crate) at: Vec<(String, f64)>,
     /// The number of evenly spaced points in each table; by default those of the calibration, and more where an error is curved.
-    #[arg(long)]
+    #[arg(long, value_parser = whole::<usize>(2, MOST_POINTS), allow_negative_numbers = true)]
     pub(crate) points: Option<usize>,
     /// The meaning of a number in a table, if no public document of the controller defines it (Sinumerik's CEC, HEIDENHAIN).
     #[arg(long, value_enum)]
@@ -376,19 +380,19 @@ pub(crate) struct Export {
     #[arg(long)]
     pub(crate) leave_out_uncompensable: bool,
     /// LinuxCNC: COMP_FILE_TYPE; by default 1.
-    #[arg(long = "type", value_name = "TYPE", value_parser = clap::value_parser!(u8).range(0..=1))]
+    #[arg(long = "type", value_name = "TYPE", value_parser = whole::<u8>(0, 1), allow_negative_numbers = true)]
     pub(crate) kind: Option<u8>,
     /// LinuxCNC: the machine's unit of length; by default mm.
     #[arg(long, value_enum)]
     pub(crate) unit: Option<LinearUnit>,
     /// Sinumerik: the number of tables that CEC has; by default 8.
-    #[arg(long)]
+    #[arg(long, value_parser = whole::<usize>(1, MOST_POINTS), allow_negative_numbers = true)]
     pub(crate) tables: Option<usize>,
     /// Sinumerik, HEIDENHAIN, PMAC: the controller's name of an axis, or its motor's number, as in X=MX1.
     #[arg(long, value_name = "AXIS=NAME", value_parser = name)]
     pub(crate) name: Vec<(String, String)>,
     /// PMAC: counts of an axis's motor per mm, or per degree of a rotary axis, as in X=10000.
-    #[arg(long, value_name = "AXIS=COUNTS", value_parser = place)]
+    #[arg(long, value_name = "AXIS=COUNTS", value_parser = count)]
     pub(crate) counts: Vec<(String, f64)>,
 }
 

@@ -532,3 +532,40 @@ fn the_report_is_there_as_json() {
     assert_eq!(all["squarenesses"][0]["motion"], "EC0Y");
     assert_eq!(all["squarenesses"][0]["square"], 4e-6);
 }
+
+/// Numbers in um that the set-up takes for mm: the unit is marked, and nothing is printed or written.
+#[test]
+fn a_unit_that_makes_an_error_too_large_is_told_before_anything_is_printed() {
+    let bench = Bench::new("unit", "FX");
+    bench.write("nounit.csv", "target,deviation\n0,0\n100,-12\n200,-25\n300,-37\n");
+    let setup = bench.write(
+        "setup.yaml",
+        "setup: 1\nmachine: FX\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\nmeasurements:\n  - {motion: EXX, data: nounit.csv, \
+         targets: {unit: mm}, deviations: {unit: mm}}\n",
+    );
+    let output = bench.folder.join("out.yaml");
+    for words in [vec!["calibrate", &setup], vec!["calibrate", &setup, "--output", output.to_str().unwrap()]]
+    {
+        let run = abbe(&words, "");
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{}", run.err);
+        assert!(run.err.contains("error[E0430]: 37 mm is not a small error"), "{}", run.err);
+        assert!(run.err.contains("setup.yaml:5:") && !run.err.contains("bug"), "{}", run.err);
+        assert!(!output.exists());
+    }
+}
+
+/// A name that no file has is answered with the nearest one beside it.
+#[test]
+fn a_data_file_that_is_misspelt_is_told_with_the_one_beside() {
+    let bench = Bench::new("misspelt", "FX");
+    let plain = bench.write("plain.csv", "x [mm],deviation [um]\n0,0\n100,-12\n200,-25\n");
+    let setup = bench.write(
+        "setup.yaml",
+        "setup: 1\nmachine: FX\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 0 mm}\nmeasurements: [{motion: EXX, data: plian.csv}]\n",
+    );
+    let run = abbe(&["calibrate", &setup], "");
+    assert!(run.err.contains(&format!("did you mean `{plain}`?")), "{}", run.err);
+    let right = bench.write("setup.yaml", &fs::read_to_string(&setup).unwrap().replace("plian", "plain"));
+    let run = abbe(&["calibrate", &right], "");
+    assert_eq!(run.status, 0, "{}", run.err);
+}

@@ -106,6 +106,80 @@ fn a_topology_word_is_a_machine() {
     assert!(wrong.err.contains("error[E0113]"), "{}", wrong.err);
 }
 
+/// Small letters, a digit and a word that is too long are mistakes of a topology, not names of machines.
+#[test]
+fn a_wrong_topology_word_is_told_as_such() {
+    for (word, code, words) in [
+        ("xyfz", "E0112", "write `XYFZ`"),
+        ("XYFZ2", "E0112", "`2` is not an axis"),
+        ("FXYZABCU", "E0112", "`U` is not an axis"),
+        ("FXYZABCUV", "E0112", "`U` is not an axis"),
+    ] {
+        let run = abbe(&["derive", word], "");
+        assert_eq!(run.status, 2, "{word}");
+        assert!(run.err.contains(&format!("error[{code}]: `{word}` is not a topology")), "{}", run.err);
+        assert!(run.err.contains(words) && !run.err.contains("did you mean"), "{}", run.err);
+    }
+}
+
+/// A number below zero is told as a number, not as an option that is unknown.
+#[test]
+fn numbers_out_of_range_are_told_with_the_range() {
+    for (words, told) in [
+        (&["compensate", "c.yaml", "--hysteresis", "-1"][..], "write a number that is zero or more"),
+        (&["update", "c.yaml", "m.yaml", "--tolerance", "-1"], "write a number that is zero or more"),
+        (&["export", "linuxcnc", "c.yaml", "--points", "-3"], "write a whole number from 2 to 1000000"),
+        (&["export", "linuxcnc", "c.yaml", "--type", "2"], "write a whole number from 0 to 1"),
+        (
+            &["export", "linuxcnc", "c.yaml", "--range", "X=0:1e300"],
+            "`1e300` is farther than any machine reaches",
+        ),
+        (&["limits", "r.yaml", "--seed", "-1"], "write a whole number of at least 0"),
+        (&["limits", "r.yaml", "--trials", "-1"], "write a whole number from 4 to 1000"),
+        (&["limits", "r.yaml", "--trials", "0"], "write a whole number from 4 to 1000"),
+        (&["simulate", "c.yaml", "p.yaml", "--seed", "-1"], "write a whole number of at least 0"),
+        (&["plan", "path.yaml"], "--calibration <FILE>"),
+    ] {
+        let run = abbe(words, "");
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{words:?}");
+        assert!(run.err.contains(told) && !run.err.contains("use '-- "), "{words:?}: {}", run.err);
+    }
+}
+
+#[test]
+fn positions_that_cannot_be_read_are_told_with_what_is_wrong() {
+    let numbers =
+        file("far", "c.yaml", &fs::read_to_string(root().join("calibrations/postech-mill.yaml")).unwrap());
+    for (positions, told) in [
+        ("x,y,z\n1e308,0,0\n", "column `x`: `1e308` is farther than any machine reaches"),
+        ("x y z\n0 0 0\n", "no commas, semicolons or tabs between the names; write `x,y,z`"),
+        ("#unit,in,in,in\nx,y,z\n0,0,0\n", "the row of units stands above the names of the columns"),
+    ] {
+        let run = abbe(&["compensate", &numbers], positions);
+        assert!(run.status != 0 && run.err.contains(told), "{positions}: {}{}", run.out, run.err);
+        assert_eq!(run.err.matches("error:").count(), 1, "{}", run.err);
+    }
+}
+
+#[test]
+fn a_file_of_another_kind_is_named() {
+    let recording = file(
+        "kinds",
+        "r.yaml",
+        "recording: 1\nmachine: FX\ninstrument: position\ndata: d.csv\nchannels: {}\n",
+    );
+    for words in [["compensate", &recording].as_slice(), &["update", &recording, &recording]] {
+        let run = abbe(words, "x\n0\n");
+        assert_eq!((run.status, run.out.as_str()), (2, ""));
+        assert!(
+            run.err.contains("error[E0402]: this is a recording file, not a calibration file"),
+            "{}",
+            run.err
+        );
+        assert_eq!(run.err.matches("error").count(), 1, "{}", run.err);
+    }
+}
+
 #[test]
 fn what_is_no_machine_is_told_with_the_nearest_name() {
     let run = abbe(&["derive", "xyfz-mil"], "");
@@ -760,6 +834,50 @@ fn new_recordings_of_other_formats_have_the_names_that_these_say() {
     }
     let run = abbe(&["new", "recording", &written.join("h5py.h5").display().to_string()], "");
     assert!(run.status == 2 && run.out.is_empty() && run.err.contains("HDF5"), "{}", run.err);
+}
+
+/// A table as a European program writes it, one in UTF-16, and one whose names have spaces in them.
+#[test]
+fn new_recordings_are_of_any_text_or_say_why_not() {
+    let european = file(
+        "european",
+        "d.csv",
+        "Time [s];Run;X [mm];Deviation [um]\n0;1;0,0;-3,61\n1;1;10,0;-3,40\n2;1;20,0;-3,22\n",
+    );
+    let run = abbe(&["new", "recording", &european], "");
+    assert!(run.out.contains(", decimal: \",\"}\n"), "{}{}", run.out, run.err);
+    for line in [
+        "instrument: linear ",
+        "  time: {column: 'Time [s]', unit: s}\n",
+        "  command.x: {column: 'X [mm]', unit: mm}\n",
+        "  deviation: {column: 'Deviation [um]', unit: um}\n",
+    ] {
+        assert!(run.out.contains(line), "{}", run.out);
+    }
+    let words: Vec<u8> = "t,x\n0,1\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let sixteen = file("sixteen", "d.csv", "");
+    fs::write(&sixteen, [&[0xff, 0xfe], words.as_slice()].concat()).unwrap();
+    let spaced = file("spaced", "d.txt", "t x cmd\n0 1.5\n");
+    for (table, told) in
+        [(sixteen, "text in UTF-16"), (spaced, "3 words above 2 numbers, separated by spaces")]
+    {
+        let run = abbe(&["new", "recording", &table], "");
+        assert!(run.status != 0 && run.out.is_empty() && run.err.contains(told), "{}{}", run.out, run.err);
+    }
+}
+
+#[test]
+fn new_set_ups_are_of_files_that_are_there_each_with_its_motion() {
+    let table = file("new-setup", "p.csv", "target,deviation\n0,1\n");
+    let run = abbe(&["new", "setup", &table, &table.replace("p.csv", "pp.csv")], "");
+    assert_eq!((run.status, run.out.as_str()), (2, ""));
+    assert!(
+        run.err.contains("cannot read") && run.err.contains(&format!("did you mean `{table}`?")),
+        "{}",
+        run.err
+    );
+    let both = abbe(&["new", "setup", &table, &table], "").out;
+    assert!(both.contains("motion: EXX") && both.contains("motion: EYY"), "{both}");
 }
 
 #[test]

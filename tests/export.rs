@@ -174,6 +174,8 @@ fn what_cannot_be_exported_is_refused_with_what_to_do() {
         ("pmac", &[], "--counts X=10000"),
         ("heidenhain", &[], "--value error"),
         ("sinumerik", &["--name", "Q=AX1"], "no such axis"),
+        ("sinumerik", &["--name", "X=a b;"], "`a b;` is no name of an axis"),
+        ("linuxcnc", &["--range", "X=0:500", "--range", "X=0:600"], "--range X=...: it is given twice"),
         ("isg", &["--counts", "X=10000"], "--counts has no effect on isg"),
         ("linuxcnc", &["--value", "error"], "it is an option for sinumerik, heidenhain"),
         ("pmac", &["--type", "1"], "it is an option for linuxcnc"),

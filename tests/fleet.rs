@@ -50,7 +50,15 @@ fn what_is_missing_is_said_by_words_and_status() {
     let last = "3 recordings: 1 diagnosed, 1 with errors, 2 followed again; 1 postponed to the next run";
     assert!(run.status == 0 && run.err.contains(last), "{}", run.err);
     let shown = abbe(&["fleet", "show", &fleet, "--until", "2026-02-01"], "");
+    assert!(run.err.contains("stage/2026-01-12.yaml cannot be diagnosed:\n  error: "), "{}", run.err);
+    assert!(run.err.contains("stage/nothing.csv"), "{}", run.err);
+    assert!(
+        shown.out.contains("stage: cannot be diagnosed (") && shown.out.contains("1 machine until"),
+        "{}",
+        shown.out
+    );
     assert!(shown.out.contains("2 recordings, 1 with errors"), "{}", shown.out);
+    assert!(shown.out.contains("cannot be diagnosed: stage/2026-01-12.yaml: error: "), "{}", shown.out);
     assert!(shown.err.contains("stage/2026-01-19.yaml is shown as its last result has it"), "{}", shown.err);
     let json = abbe(&["fleet", "show", &fleet, "--format", "json"], "").out;
     assert_eq!(serde_json::from_str::<Value>(&json).unwrap()["schema"], "abbe-fleet/1");

@@ -94,6 +94,23 @@ fn the_same_seed_gives_the_same_limits_and_the_page_needs_nothing_else() {
 }
 
 #[test]
+fn where_all_that_is_asked_for_is_there_already_nothing_was_tested() {
+    let files = Files::new("already", PATH);
+    let played = files.recorded("{EXX: [{backlash: {lost_motion: 8 um}}]}");
+    let ask = |format: &str| {
+        abbe(&["limits", &played, "--only", "EXX,backlash", "--format", format, "--quiet"], "").out
+    };
+    for told in [ask("text"), ask("html")] {
+        let text = told.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(
+            text.contains("No effect was tested: each one that was asked for is in the recording already."),
+            "{text}"
+        );
+        assert!(text.contains("as it is: left-out physics") && !text.contains("left-out-physics"), "{text}");
+    }
+}
+
+#[test]
 fn a_plan_tells_limits_and_what_to_drive_besides() {
     let files = Files::new("plan", PATH);
     let path = files.name("path.yaml");

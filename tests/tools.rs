@@ -154,6 +154,8 @@ fn a_name_that_no_tool_has_is_refused_before_anything_is_written() {
     for command in [&["compensate"][..], &["export", "linuxcnc"]] {
         let with = [command, &[&with, "--tool", "prob"]].concat();
         told(&with, "error: --tool: the calibration has no tool `prob`\nhelp: is it `probe`?");
+        let other = [command, &[&without, "--tool", "T9"]].concat();
+        told(&other, "help: write `tools: {T9: {Zt: 120 mm}}` in it");
         let without = [command, &[&without, "--tool", "T1"]].concat();
         told(&without, "help: write `tools: {T1: {Zt: 120 mm}}` in it");
     }
@@ -167,7 +169,7 @@ fn a_name_that_no_tool_has_is_refused_before_anything_is_written() {
         .replace("calibration: ../../calibrations/postech-mill.yaml\n", "")
         .replace("data: data.csv", &format!("data: {}", data.display()));
     let bare = file("bare.yaml", &bare);
-    told(&["evaluate", &bare, "--tool", "T1"], "error: --tool: the file names no calibration");
+    told(&["evaluate", &bare, "--tool", "T1"], "only a calibration has tools\nhelp: write `calibration: FILE`");
 }
 
 #[test]

@@ -46,8 +46,8 @@ pub(crate) struct Plan<'f> {
 pub(crate) enum State {
     /// Nothing yet.
     None,
-    /// All its files, with what they must hold; whether the recording is wrong.
-    Whole { wrong: bool },
+    /// All its files, with what they must hold; why the recording cannot be read, where it cannot.
+    Whole { wrong: Option<String> },
     /// Not all of them, or they cannot be read: why.
     Broken(String),
 }
@@ -58,13 +58,13 @@ impl State {
         if !shelf.holds(results, filed, Table::Recordings) {
             return Self::None;
         }
-        let mut wrong = false;
+        let mut wrong = None;
         for table in Table::OF_DIAGNOSIS {
             match sound(&filed.path(results, table), table, filed.key) {
-                Ok(rows) => {
-                    wrong |=
-                        table == Table::Recordings && rows.iter().any(|row| !row.text("error").is_empty())
+                Ok(rows) if table == Table::Recordings => {
+                    wrong = rows.iter().map(|row| row.text("error").to_owned()).find(|why| !why.is_empty());
                 }
+                Ok(_) => {}
                 Err(why) => return Self::Broken(why),
             }
         }
@@ -77,7 +77,7 @@ impl State {
             return Self::None;
         }
         match sound(&filed.path(results, Table::Followed), Table::Followed, recording) {
-            Ok(_) => Self::Whole { wrong: false },
+            Ok(_) => Self::Whole { wrong: None },
             Err(why) => Self::Broken(why),
         }
     }

@@ -8,8 +8,11 @@ mod text;
 pub use html::{Pages, page, pages};
 pub use text::text;
 
+use pages::text::spoken;
+
 use crate::change::FEWEST;
-use crate::history::{Followed, History, Machine};
+use crate::diagnosed::ERROR;
+use crate::history::{Entry, Followed, History, Machine};
 use crate::series::days;
 
 /// A history as JSON.
@@ -65,13 +68,26 @@ fn most(machine: &Machine) -> String {
 /// How many recordings a machine has, how many of them are where the fleet file looks no more, and what is open about them.
 fn count(machine: &Machine) -> String {
     let all = machine.recordings.len();
-    let mut parts = vec![if all == 1 { "1 recording".to_owned() } else { format!("{all} recordings") }];
+    let mut parts = vec![counted(all, "recording")];
     match machine.recordings.iter().filter(|entry| !entry.listed).count() {
         0 => {}
         gone => parts.push(format!("{gone} of them missing")),
     }
     parts.extend(open(machine));
     parts.join(", ")
+}
+
+/// The verdict about a recording in words.
+fn verdict(entry: &Entry) -> String {
+    match entry.verdict.as_str() {
+        ERROR => "cannot be diagnosed".to_owned(),
+        word => spoken(word),
+    }
+}
+
+/// A number of things: `1 machine`, `2 machines`.
+fn counted(number: usize, what: &str) -> String {
+    if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }
 }
 
 /// What is open about the recordings of a machine: how many are wrong, and how many are still to be diagnosed.

@@ -128,19 +128,38 @@ pub fn all(
     for put_off in &put_off {
         listener.hear(&put_off.line().into());
     }
-    let wrong = |state: &&State| matches!(state, State::Whole { wrong: true });
+    let errors = tell_errors(&plan, listener);
     let right = |(job, state): &(&Job, &State)| {
-        **state == State::Whole { wrong: false } && diagnosed.contains(&job.result())
+        **state == State::Whole { wrong: None } && diagnosed.contains(&job.result())
     };
     let diagnosed = plan.known().filter(right).count();
-    Ok(Done {
-        recordings: plan.recordings,
-        diagnosed,
-        errors: plan.states.iter().filter(wrong).count(),
-        followed,
-        waiting,
-        put_off: put_off.len(),
-    })
+    Ok(Done { recordings: plan.recordings, diagnosed, errors, followed, waiting, put_off: put_off.len() })
+}
+
+/// So many recordings that cannot be read are named; the history has all of them.
+const MOST_NAMED: usize = 10;
+
+/// Tells which recordings cannot be read, and why; their number.
+fn tell_errors(plan: &Plan<'_>, listener: &dyn Listener) -> usize {
+    let wrong = plan.known().filter_map(|(job, state)| match state {
+        State::Whole { wrong: Some(why) } => Some((&job.place.label, why)),
+        _ => None,
+    });
+    let wrong: Vec<_> = wrong.collect();
+    for (label, why) in wrong.iter().take(MOST_NAMED) {
+        let indented: String = why.lines().map(|line| format!("\n  {line}")).collect();
+        listener.hear(&format!("warning: {label} cannot be diagnosed:{indented}").into());
+    }
+    match wrong.len().saturating_sub(MOST_NAMED) {
+        0 => {}
+        more => {
+            let text = format!(
+                "warning: {more} more cannot be diagnosed: `abbe fleet show --format json` has all of them"
+            );
+            listener.hear(&text.into());
+        }
+    }
+    wrong.len()
 }
 
 /// What is not followed yet, of one part or of all. Beside what is, a run that was killed may have left what it replaces: that is removed.

@@ -537,6 +537,7 @@ fn a_history_says_what_is_wrong_and_what_is_pending() {
     record(&folder.0.join("a stage"), DAYS[2], 9.0);
     let (text, index, json) = shown();
     assert!(text.contains("3 recordings, 1 with errors, 1 pending"), "{text}");
+    assert!(text.contains(&format!("cannot be diagnosed: a stage/{}.yaml: error: ", DAYS[0])), "{text}");
     assert!(index.contains("1 with errors, 1 pending"), "{index}");
     assert_eq!((&json["schema"], &json["machines"][0]["pending"]), (&"abbe-fleet/1".into(), &1.into()));
     // Measured after the moment that is asked for, it is not waited for.

@@ -40,9 +40,14 @@ pub fn printed(text: &str) -> String {
     shown
 }
 
+/// A verdict as people write it: the word of programs, `left-out-physics`, has a dash before its last part too.
+pub fn spoken(verdict: &str) -> String {
+    verdict.rsplit_once('-').map_or_else(|| verdict.to_owned(), |(first, last)| format!("{first} {last}"))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{escape, printed};
+    use super::{escape, printed, spoken};
 
     #[test]
     fn units_and_intervals_have_the_signs_of_print_and_other_words_stay() {
@@ -50,6 +55,12 @@ mod tests {
             printed("5.1 -> 0.60 um, c_1 2 +- 1 um/m; 9 urad (8 um) <umber> sum"),
             "5.1 -&gt; 0.60 \u{b5}m, c_1 2 \u{b1} 1 \u{b5}m/m; 9 \u{b5}rad (8 \u{b5}m) &lt;umber&gt; sum"
         );
+    }
+
+    #[test]
+    fn verdicts_are_told_as_people_write_them() {
+        let told = ["adequate", "left-out-physics", "not-repeatable"].map(spoken);
+        assert_eq!(told, ["adequate", "left-out physics", "not repeatable"]);
     }
 
     #[test]

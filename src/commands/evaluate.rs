@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &Evaluate) -> Result<(), Failure> {
 /// Tools are a calibration's.
 fn no_calibration() -> Failure {
     Failure::wrong(
-        "error: --tool: the file names no calibration, and only a calibration has tools
+        "error: --tool: the file names no calibration, and only a calibration has tools\n\
          help: write `calibration: FILE` in the recording file"
             .to_owned(),
     )

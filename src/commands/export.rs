@@ -95,12 +95,31 @@ fn check_names(command: &Export, equations: &Equations) -> Result<(), Failure> {
             return Err(no_axis(option, axis, equations));
         }
     }
+    check_once("--name", command.name.iter().map(|(axis, _)| axis))?;
+    check_once("--counts", command.counts.iter().map(|(axis, _)| axis))?;
+    check_once("--range", command.range.iter().map(|(axis, _)| axis))?;
+    check_once("--at", command.at.iter().map(|(axis, _)| axis))?;
     match command.counts.iter().find(|(_, counts)| *counts <= 0.0) {
         Some((axis, _)) => {
             Err(Failure::wrong(format!("error: --counts {axis}=...: write a number above zero")))
         }
         None => Ok(()),
     }
+}
+
+/// Refuses an option that is given twice for one axis.
+fn check_once<'o>(option: &str, axes: impl Iterator<Item = &'o String>) -> Result<(), Failure> {
+    let mut known: Vec<&String> = Vec::new();
+    for axis in axes {
+        if known.contains(&axis) {
+            let text = format!(
+                "error: {option} {axis}=...: it is given twice for this axis\nhelp: keep one of the two"
+            );
+            return Err(Failure::wrong(text));
+        }
+        known.push(axis);
+    }
+    Ok(())
 }
 
 fn no_axis(option: &str, axis: &str, equations: &Equations) -> Failure {

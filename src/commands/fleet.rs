@@ -73,8 +73,9 @@ fn told(done: Done) -> String {
         0 => String::new(),
         some => format!("; {some} postponed to the next run"),
     };
+    let plural = if recordings == 1 { "" } else { "s" };
     format!(
-        "{recordings} recordings: {diagnosed} diagnosed{errors}, {followed} followed again{waiting}{put_off}"
+        "{recordings} recording{plural}: {diagnosed} diagnosed{errors}, {followed} followed again{waiting}{put_off}"
     )
 }
 

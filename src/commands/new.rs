@@ -46,6 +46,11 @@ fn text(file: &NewFile, here: &Path) -> Result<String, Failure> {
             Ok(begin::recording(&relative(here, data)?, &columns, machine.as_deref()))
         }
         NewFile::Setup { files } => {
+            for file in files {
+                if !file.exists() {
+                    load::bytes(file)?;
+                }
+            }
             let names = files.iter().map(|file| relative(here, file)).collect::<Result<Vec<_>, _>>()?;
             Ok(setup_to_fill_in(&files.iter().zip(&names).collect::<Vec<_>>()))
         }

@@ -88,6 +88,15 @@ impl Layout {
             .collect();
         let units =
             units.map(|units| unit_row(units, header.len())).transpose().map_err(|mistake| vec![mistake])?;
+        if let [line] = header.as_slice()
+            && named(line).0.split_whitespace().nth(1).is_some()
+        {
+            return Err(vec![format!(
+                "the header `{}` has no commas, semicolons or tabs between the names; write `{}`",
+                quoted(line),
+                quoted(&line.split_whitespace().collect::<Vec<_>>().join(","))
+            )]);
+        }
         if header.first().is_some_and(|first| first == "#unit") {
             return Err(vec![
                 "the row of units stands above the names of the columns; write the names first, then `#unit` and the units"

@@ -4,6 +4,7 @@
 use abbe_runtime::{Direction, Sample};
 use csv::ByteRecord;
 use model_dsl::calibration::Calibration;
+use workshop::rows::FARTHEST;
 use workshop::{rows, tools};
 
 use super::{Column, Layout};
@@ -49,6 +50,14 @@ impl<'s> State<'s> {
         let tool = self.find_tool(row)?;
         let layout = &self.layout;
         read_all(layout, row, &layout.axes, &mut self.position)?;
+        let far = layout.axes.iter().zip(&self.position).find(|(_, place)| place.abs() > FARTHEST);
+        if let Some((column, _)) = far {
+            let name = quoted(name(layout, column.index));
+            let text = quoted(text(row, column.index));
+            return Err(format!(
+                "column `{name}`: `{text}` is farther than any machine reaches; check the unit"
+            ));
+        }
         read_all(layout, row, &layout.sensors, &mut self.temperature)?;
         let time = layout.time.map(|column| read(layout, row, column)).transpose()?;
         // The layout has all travels or none.

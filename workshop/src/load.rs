@@ -2,12 +2,13 @@
 //! compiled machine, its warnings shown; or every mistake, located.
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use model_dsl::check;
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Names;
+use model_dsl::machine::TopologyWord;
 use model_dsl::source::{SourceFile, Span};
 use model_dsl::suggest::nearest;
 use model_dsl::{Compiled, compile, compile_word};
@@ -71,7 +72,12 @@ pub fn head_of_file(path: &Path) -> Result<Option<Vec<u8>>, Failure> {
 /// Reads a file up to one byte more than the most that are taken.
 fn head(path: &Path) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
-    let file = File::open(path).map_err(|error| cannot(path, &error.to_string()))?;
+    let file = File::open(path).map_err(|error| match near_file(path, &[]) {
+        Some(near) if error.kind() == ErrorKind::NotFound => {
+            cannot(path, &format!("{error}\nhelp: did you mean `{near}`?"))
+        }
+        _ => cannot(path, &error.to_string()),
+    })?;
     let read = file.take(MOST_BYTES + 1).read_to_end(&mut bytes);
     read.map_err(|error| cannot(path, &error.to_string()))?;
     Ok(bytes)
@@ -102,8 +108,7 @@ pub fn machine(name: &str, folder: Option<&Path>, listener: &dyn Listener) -> Re
     if let Some(text) = shipped::machine(name) {
         return from_source(&SourceFile::new(format!("machines/{name}.yaml"), text), listener);
     }
-    // A word of capital letters is a topology, right or wrong.
-    if !name.is_empty() && name.len() <= 8 && name.bytes().all(|letter| letter.is_ascii_uppercase()) {
+    if is_word(name) {
         return from_word(name);
     }
     match there {
@@ -115,14 +120,14 @@ pub fn machine(name: &str, folder: Option<&Path>, listener: &dyn Listener) -> Re
     }
 }
 
-/// The file in the same folder whose name is nearest to one that is not there; of YAML files alone, as machines are.
-fn file_beside(path: &Path) -> Option<String> {
+/// The file in the same folder whose name is nearest to one that is not there, of those with some endings or of all.
+pub(crate) fn near_file(path: &Path, endings: &[&str]) -> Option<String> {
     let wanted = path.file_name()?.to_str()?;
     let folder = path.parent().filter(|folder| *folder != Path::new(""));
     let there = std::fs::read_dir(folder.unwrap_or_else(|| Path::new("."))).ok()?;
     let names = there.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
     let mut names: Vec<String> =
-        names.filter(|name| name.ends_with(".yaml") || name.ends_with(".yml")).collect();
+        names.filter(|name| endings.is_empty() || endings.iter().any(|end| name.ends_with(end))).collect();
     // A folder lists its files in no order.
     names.sort_unstable();
     let near = nearest(wanted, names.iter().map(String::as_str))?;
@@ -143,6 +148,18 @@ fn from_source(source: &SourceFile, listener: &dyn Listener) -> Result<Loaded, F
     }
 }
 
+/// Whether a name is a topology, right or wrong: a short word of capital letters, one of the letters of axes and the bed, whatever digits
+/// stand among them, or one that is only in small letters where it should be in capital ones.
+fn is_word(name: &str) -> bool {
+    const LONGEST_OTHER: usize = 8;
+    let capital = |letter: u8| letter.is_ascii_uppercase();
+    let of_axes = |letter: u8| b"XYZABCUVWF".contains(&letter) || letter.is_ascii_digit();
+    let short = !name.is_empty() && name.len() <= LONGEST_OTHER && name.bytes().all(capital);
+    let upper = name.to_ascii_uppercase();
+    let small = || TopologyWord::parse(&upper, Span::default(), &mut Diagnostics::new()).is_some();
+    short || name.bytes().any(capital) && name.bytes().all(of_axes) || small()
+}
+
 fn from_word(word: &str) -> Result<Loaded, Failure> {
     let source = SourceFile::new("topology", word);
     let mut diagnostics = Diagnostics::new();
@@ -153,7 +170,8 @@ fn from_word(word: &str) -> Result<Loaded, Failure> {
 
 fn unknown(name: &str, path: &Path) -> String {
     let names = shipped::MACHINES.map(|(known, _)| known);
-    let beside = file_beside(path);
+    // Machines are in YAML files.
+    let beside = near_file(path, &[".yaml", ".yml"]);
     let help = match beside.as_deref().or_else(|| nearest(name, names)) {
         Some(known) => format!("did you mean `{known}`?"),
         None => format!(

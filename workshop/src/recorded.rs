@@ -70,7 +70,12 @@ fn read_as(path: &Path, may_lack_time: bool, listener: &dyn Listener) -> Result<
     let data = |header: &Header| {
         let path = in_folder(folder, &header.data.value);
         listener.begin(&format!("reading {}", path.display()));
-        let read = header.read_data(&path);
+        let mut read = header.read_data(&path);
+        if let (Err(error), false) = (&mut read, path.exists())
+            && let Some(near) = load::near_file(&path, &[])
+        {
+            error.help.get_or_insert_with(|| format!("did you mean `{near}`?"));
+        }
         listener.end();
         read
     };

@@ -16,7 +16,7 @@ pub use answering::{Answer, Answering, Room};
 pub use leaning::Lean;
 pub use needs::{Timed, timed};
 pub use samples::Samples;
-pub use state::{Row, State};
+pub use state::{FARTHEST, Row, State};
 
 use leaning::Leaning;
 

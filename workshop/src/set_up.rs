@@ -111,6 +111,12 @@ impl SetUp {
     }
 }
 
+/// A number of terms in words.
+fn counted(terms: usize) -> String {
+    let plural = if terms == 1 { "" } else { "s" };
+    format!("{terms} term{plural} of error motions")
+}
+
 /// Reads the file of a measurement; what is wrong stands at its place there, below the place of its name in the set-up (E0914).
 fn read_data(
     setup: &SourceFile,

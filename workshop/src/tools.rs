@@ -28,7 +28,11 @@ pub fn instead(calibration: &Calibration, name: &str) -> String {
     let tools = || calibration.tools.iter().map(|tool| tool.name.value.as_str());
     match nearest(name, tools()) {
         Some(near) => format!("is it `{near}`?"),
-        None if calibration.tools.is_empty() => "write `tools: {T1: {Zt: 120 mm}}` in it".to_owned(),
+        None if calibration.tools.is_empty() => {
+            let plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+            let name = if !name.is_empty() && name.chars().all(plain) { name } else { "T1" };
+            format!("write `tools: {{{name}: {{Zt: 120 mm}}}}` in it")
+        }
         None => format!("there are {}", tools().take(MOST_TOLD).collect::<Vec<_>>().join(", ")),
     }
 }

@@ -34,13 +34,22 @@ impl Job<'_, '_> {
     /// The controller's names of the axes: what the user says, else what `default` makes of the axis's place and letter.
     ///
     /// # Errors
-    /// Two axes of one name.
+    /// Two axes of one name, and what no controller takes for a name.
     pub(super) fn names(&self, default: impl Fn(usize, &str) -> String) -> Result<Vec<String>, Refused> {
         let axes = &self.geometry.equations.axes;
         let said = |(place, letter)| {
             self.options.name(letter).map_or_else(|| default(place, letter), ToOwned::to_owned)
         };
         let names: Vec<String> = axes.iter().map(|axis| axis.letter.as_str()).enumerate().map(said).collect();
+        let plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+        if let Some(name) = names.iter().find(|name| !name.chars().all(plain)) {
+            let what =
+                format!("`{name}` is no name of an axis: it has other signs than letters, digits and `_`");
+            return Err(Refused::new(
+                what,
+                "give the name that the controller has for the axis, as in --name X=MX1",
+            ));
+        }
         for (number, name) in names.iter().enumerate() {
             if let Some(other) = names.iter().take(number).position(|other| other == name) {
                 let [one, other] = [other, number].map(|axis| axes.get(axis).map_or("", |axis| &axis.letter));

@@ -117,8 +117,8 @@ fn of_alarm(alarm: &Alarm, links: &Links<'_>) -> String {
 fn row(history: &History, machine: &Machine, links: &Links<'_>) -> String {
     let worst = worst(machine);
     let (verdict, change) = match machine.last() {
-        Some(last) => (last.verdict.as_str(), most(machine)),
-        None => ("no result yet", String::new()),
+        Some(last) => (super::verdict(last), most(machine)),
+        None => ("no result yet".to_owned(), String::new()),
     };
     let open = match open(machine).as_slice() {
         [] => String::new(),
@@ -128,7 +128,7 @@ fn row(history: &History, machine: &Machine, links: &Links<'_>) -> String {
         "<tr><td class=\"name\"><a href=\"{}\">{}</a></td><td>{}{open}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
         escape(&(links.machine)(&machine.name)),
         escape(&machine.name),
-        escape(verdict),
+        escape(&verdict),
         age(history, machine).unwrap_or_default(),
         printed(&change),
         worst.and_then(chart::small).unwrap_or_default()

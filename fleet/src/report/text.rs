@@ -1,7 +1,11 @@
 //! The report as text. In: a history. Out: alarms, then a line a machine.
 
-use super::{age, count, most, open};
-use crate::history::{BOUND, History};
+use super::{age, count, counted, most, open, verdict};
+use crate::diagnosed::ERROR;
+use crate::history::{BOUND, Entry, History};
+
+/// So many recordings of a machine that cannot be read are named, the latest first.
+const MOST_NAMED: usize = 3;
 
 /// The report for a terminal that is so many columns wide.
 #[must_use]
@@ -18,9 +22,9 @@ pub fn text(history: &History, columns: usize) -> String {
     };
     text += &paragraph(
         &format!(
-            "{} machines until {}: {alarms}. {} series and comparisons were tested; the chance of any false alarm among all of \
+            "{} until {}: {alarms}. {} series and comparisons were tested; the chance of any false alarm among all of \
              them is at most {} %.",
-            history.machines.len(),
+            counted(history.machines.len(), "machine"),
             history.until.day(),
             history.questions,
             BOUND * 100.0
@@ -44,8 +48,18 @@ pub fn text(history: &History, columns: usize) -> String {
         };
         let age = age(history, machine).unwrap_or_default();
         let (count, most) = (count(machine), most(machine));
-        let line = format!("{}: {} ({age}), {count}; {most}", machine.name, last.verdict);
+        let line = format!("{}: {} ({age}), {count}; {most}", machine.name, verdict(last));
         text += &paragraph(&line, "  ");
+        let wrong: Vec<&Entry> =
+            machine.recordings.iter().rev().filter(|entry| entry.verdict == ERROR).collect();
+        for entry in wrong.iter().take(MOST_NAMED) {
+            let why = entry.sentence.lines().next().unwrap_or_default();
+            text += &paragraph(&format!("  cannot be diagnosed: {}: {why}", entry.recording), "    ");
+        }
+        if wrong.len() > MOST_NAMED {
+            let more = wrong.len().saturating_sub(MOST_NAMED);
+            text += &paragraph(&format!("  and {more} older ones: `--format json` has all of them"), "    ");
+        }
     }
     text
 }

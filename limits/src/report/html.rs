@@ -2,7 +2,7 @@
 //! fetched.
 
 use pages::plot::{Axis, Cartesian, Draw, Line, Look, Plot, RULES, Series, Tone};
-use pages::text::{escape, printed};
+use pages::text::{escape, printed, spoken};
 
 use super::words;
 use crate::answer::{Found, Limit, Limits};
@@ -20,12 +20,12 @@ const STYLE: &str = "\
 pub fn html(limits: &Limits, command: &str) -> String {
     let title = limits.title.clone().unwrap_or_else(|| limits.file.clone());
     let mut body = format!(
-        "<h1>Detection limits: {}</h1>\n<p class=\"source\">{}: {}, {} rows; as it is {}</p>\n",
+        "<h1>Detection limits: {}</h1>\n<p class=\"source\">{}: {}, {} rows; as it is: {}</p>\n",
         escape(&title),
         escape(&limits.file),
         escape(&limits.machine),
         limits.rows,
-        escape(limits.verdict)
+        escape(&spoken(limits.verdict))
     );
     body += &words::already(limits).map(|line| format!("<p>{}</p>\n", printed(&line))).unwrap_or_default();
     body += &table(limits);
@@ -65,7 +65,7 @@ fn table(limits: &Limits) -> String {
     };
     let rows: String = limits.all.iter().filter_map(row).collect();
     if rows.is_empty() {
-        return section("Effects that would be found", "<p>No effect would be found at any size.</p>\n");
+        return section("Effects that would be found", &format!("<p>{}</p>\n", words::none(limits)));
     }
     section(
         "Effects that would be found",

@@ -2,6 +2,8 @@
 
 use diagnosis::report::{WIDTH, paragraph};
 
+use pages::text::spoken;
+
 use super::words;
 use crate::answer::{Limit, Limits};
 
@@ -32,15 +34,15 @@ pub fn text(limits: &Limits) -> String {
 
 fn alone(limits: &Limits) -> String {
     let known =
-        if limits.known.is_empty() { String::new() } else { format!(": {}", limits.known.join(", ")) };
-    format!("as it is {}{known}", limits.verdict)
+        if limits.known.is_empty() { String::new() } else { format!(" ({})", limits.known.join(", ")) };
+    format!("as it is: {}{known}", spoken(limits.verdict))
 }
 
 /// The table of what would be found.
 fn found(limits: &Limits) -> String {
     let rows: Vec<[String; 4]> = limits.all.iter().filter_map(row).collect();
     if rows.is_empty() {
-        return "\nNo effect would be found at any size.\n".to_owned();
+        return format!("\n{}", wrapped(words::none(limits)));
     }
     let head = ["found in 9 of 10 from", "", "uncertainty", "reported"].map(str::to_owned);
     let wide = |column: usize| {

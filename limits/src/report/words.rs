@@ -85,6 +85,15 @@ pub(super) fn pairs(limits: &Limits) -> Vec<String> {
     grouped.iter().map(sentence).collect()
 }
 
+/// Why no effect would be found.
+pub(super) fn none(limits: &Limits) -> &'static str {
+    if limits.all.is_empty() {
+        "No effect was tested: each one that was asked for is in the recording already."
+    } else {
+        "No effect would be found at any size."
+    }
+}
+
 /// What the recording shows already.
 pub(super) fn already(limits: &Limits) -> Option<String> {
     let names = limits.already.iter().map(|one| format!("{} {}", one.motion, one.term));

@@ -91,6 +91,9 @@ fn least_over(term: &CalibratedTerm, names: &MachineNames) -> Option<(f64, Strin
 
 /// A number with three significant digits at least.
 fn short(value: f64) -> String {
+    if value >= 1e6 {
+        return format!("{value:.1e}");
+    }
     let digits = if value < 10.0 { 2 } else { 0 };
     let text = format!("{value:.digits$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
@@ -103,5 +106,6 @@ mod tests {
     #[test]
     fn numbers_are_short() {
         assert_eq!([17.453_29, 785.4, 12.0, 10.0, 9.996].map(short), ["17", "785", "12", "10", "10"]);
+        assert_eq!([999_999.0, 1e6, 1e297].map(short), ["999999", "1.0e6", "1.0e297"]);
     }
 }

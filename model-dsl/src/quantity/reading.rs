@@ -4,6 +4,7 @@
 //! wrong kind (at its unit), E0308 a list, a mapping or nothing in place of a value, E0309 a unit where a bare number is
 //! needed.
 
+use super::unit::meant;
 use super::{Dimension, Quantity, QuantityError, Unit, parse_number, parse_quantity, parse_unit};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::source::Spanned;
@@ -20,7 +21,8 @@ pub fn read(
 ) -> Option<Spanned<f64>> {
     let example = format!("{} such as `10 {}`", expected.name(), expected.usual_unit());
     let text = scalar(node, &format!("{what} must be {example}"), diagnostics)?;
-    let quantity = located(parse_quantity(text), node, diagnostics)?;
+    let quantity = parse_quantity(text).map_err(|error| of_kind(error, text, expected));
+    let quantity = located(quantity, node, diagnostics)?;
     if let Some(mistake) = wrong_kind(&quantity, expected, what, node) {
         diagnostics.push(mistake);
         return None;
@@ -83,6 +85,20 @@ fn scalar<'n>(node: &'n Node, expected: &str, diagnostics: &mut Diagnostics) -> 
         diagnostics.push(Diagnostic::error("E0308", node.span, message).help("write one value here"));
     }
     text
+}
+
+/// An unknown unit with the help for the kind that is expected, where it stands alone behind its number and not in a ratio.
+fn of_kind(error: QuantityError, text: &str, expected: Dimension) -> QuantityError {
+    let unit = text.get(error.range.clone()).unwrap_or_default();
+    let before = text.get(..error.range.start).unwrap_or_default();
+    let alone = text.trim_end().len() == error.range.end && parse_number(before).is_ok();
+    if error.code != "E0304" || !alone {
+        return error;
+    }
+    match meant(unit, expected) {
+        Some(meant) => error.help(format!("did you mean `{meant}`?")),
+        None => error.help(format!("use a unit such as `{}`", expected.usual_unit())),
+    }
 }
 
 fn located<T>(result: Result<T, QuantityError>, node: &Node, diagnostics: &mut Diagnostics) -> Option<T> {

@@ -188,3 +188,19 @@ fn bare_numbers_and_units_are_read_from_nodes() {
     assert_eq!(unit("a: [um]\n")[0].0, "E0308");
     assert_eq!(unit("a: um/\n")[0].0, "E0305");
 }
+
+#[test]
+fn an_unknown_unit_is_answered_with_one_of_the_kind_that_is_needed() {
+    let help = |text: &str, kind: Dimension| {
+        let source = SourceFile::new("a.yaml", text);
+        let mut diagnostics = Diagnostics::new();
+        let node = yaml::read(&source, &mut diagnostics).expect("a tree");
+        assert_eq!(read(node.get("a").expect("a value"), kind, "it", &mut diagnostics), None);
+        diagnostics.iter().filter_map(|one| one.help.clone()).collect::<String>()
+    };
+    assert_eq!(help("a: '25\"'\n", Dimension::LENGTH), "did you mean `in`?");
+    assert_eq!(help("a: '25\"'\n", Dimension::ANGLE), "did you mean `arcsec`?");
+    assert_eq!(help("a: 2 kg\n", Dimension::LENGTH), "use a unit such as `mm`");
+    assert_eq!(help("a: 2 micron\n", Dimension::LENGTH), "did you mean `um`?");
+    assert_eq!(help("a: 2 arcsecs\n", Dimension::ANGLE), "did you mean `arcsec`?");
+}

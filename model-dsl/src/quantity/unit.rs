@@ -77,7 +77,7 @@ pub const UNIT_NAMES: &str = "mm, um, nm, cm, m, in, mil, uin; rad, mrad, urad, 
                               degC, K, mK, degF; N; V, A, %, count; and ratios such as 1/s, um/m/K or mm/min";
 
 /// Words that people write for a unit, and the unit.
-const WORDS: [(&str, &str); 26] = [
+const WORDS: [(&str, &str); 28] = [
     ("c", "degC"),
     ("celsius", "degC"),
     ("f", "degF"),
@@ -86,6 +86,8 @@ const WORDS: [(&str, &str); 26] = [
     ("inch", "in"),
     ("inches", "in"),
     ("\"", "in"),
+    ("\"", "arcsec"),
+    ("'", "arcmin"),
     ("thou", "mil"),
     ("micron", "um"),
     ("microns", "um"),
@@ -117,6 +119,14 @@ pub fn unit_of_word(word: &str) -> Option<&'static str> {
     let lower = word.to_lowercase();
     let meant = WORDS.iter().find(|(known, _)| *known == lower).map(|(_, unit)| *unit);
     meant.or_else(|| unit_name(word))
+}
+
+/// The unit of one kind that people may mean by a word that is none: one that they use for it, or the nearest.
+pub(super) fn meant(word: &str, kind: Dimension) -> Option<&'static str> {
+    let names = || UNITS.iter().filter(|(.., dimension)| *dimension == kind).map(|(name, ..)| *name);
+    let lower = word.to_lowercase();
+    let words = WORDS.iter().filter(|(known, _)| *known == lower).map(|(_, unit)| *unit);
+    words.into_iter().find(|unit| names().any(|name| name == *unit)).or_else(|| nearest(word, names()))
 }
 
 /// Reads a unit: a name, or names divided by one another, each with an optional power (`mm/s^2`). What stands above the line

@@ -97,6 +97,13 @@ fn not_yaml(source: &SourceFile, error: &ScanError) -> Diagnostic {
     if *error.kind() == ErrorKind::RecursionLimitExceeded {
         return too_deep(span);
     }
+    let in_brackets =
+        matches!(error.kind(), ErrorKind::UnexpectedEofFlowSequence | ErrorKind::UnexpectedEofFlowMapping);
+    if in_brackets && rest.starts_with(',') {
+        let diagnostic =
+            Diagnostic::error("E0001", span, "this is not YAML: nothing is given before this comma");
+        return diagnostic.help("remove the comma, or write the missing value");
+    }
     let diagnostic = Diagnostic::error("E0001", span, format!("this is not YAML: {}", error.kind()));
     let otherwise = "check brackets, quotes and indentation here and on the line above";
     diagnostic.help(help(error.kind()).unwrap_or_else(|| otherwise.to_owned()))

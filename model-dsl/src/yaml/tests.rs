@@ -97,6 +97,18 @@ fn what_is_not_yaml_is_located() {
 }
 
 #[test]
+fn a_comma_with_nothing_before_it_is_told_as_such() {
+    for (text, column) in [("a: [0, 4, , 13]\n", 11), ("a: {b: 1, , c: 2}\n", 11)] {
+        let source = SourceFile::new("a", text);
+        let mut diagnostics = Diagnostics::new();
+        read(&source, &mut diagnostics);
+        let finding = diagnostics.iter().next().expect("a finding");
+        assert_eq!(source.line_column(finding.span.start), (1, column), "{text}");
+        assert_eq!(finding.message, "this is not YAML: nothing is given before this comma", "{text}");
+    }
+}
+
+#[test]
 fn an_open_bracket_is_shown_beside_the_place_where_reading_failed() {
     let source = SourceFile::new("a", "a: [1\nb: 2\n");
     let mut diagnostics = Diagnostics::new();

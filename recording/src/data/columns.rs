@@ -163,8 +163,13 @@ impl<'h> Columns<'h> {
             return Err(at_cell(row, cells, channel, bad));
         }
         let taken = self.clock.take(stamp, run);
-        let time =
-            taken.map_err(|bad| at_cell(row, cells, channel, not_later(&bad, &row.text(first), run)))?;
+        let time = taken.map_err(|bad| {
+            let mut bad = not_later(&bad, &row.text(first), run);
+            if self.run.is_some_and(|(run, _)| cells.contains(&run)) {
+                bad.help = "give `time` and `run` columns of their own: they are the same column".to_owned();
+            }
+            at_cell(row, cells, channel, bad)
+        })?;
         if (rows + 1).saturating_mul(self.numbers) > self.most {
             let message = format!("the file has more than {} numbers", self.most);
             return Err(row.error(first, message).help("split the recording, or take fewer samples"));

@@ -50,6 +50,10 @@ fn beside(data: &[&PathBuf]) -> String {
     setup_to_fill_in(&data.iter().copied().zip(&names).collect::<Vec<_>>())
 }
 
+/// Error motions for the measurements of a set-up that is to be filled in, in the order in which instruments mostly measure them: each file
+/// shows another one.
+const MOTIONS: [&str; 9] = ["EXX", "EYY", "EZZ", "EYX", "EZX", "EXY", "EZY", "EXZ", "EYZ"];
+
 /// A set-up of these files, to be filled in; each with the name by which the set-up finds it.
 pub(in crate::commands) fn setup_to_fill_in(data: &[(&PathBuf, &String)]) -> String {
     let mut text = "setup: 1\nmachine: XYFZ\nconstants: {Xt: 0 mm, Yt: 0 mm, Zt: 120 mm}\n".to_owned();
@@ -75,9 +79,9 @@ pub(in crate::commands) fn setup_to_fill_in(data: &[(&PathBuf, &String)]) -> Str
     if !measured.is_empty() {
         text += "measurements:\n";
     }
-    for (_, name) in measured {
+    for ((_, name), motion) in measured.into_iter().zip(MOTIONS.into_iter().cycle()) {
         text += &format!(
-            "  - {{motion: EXX, data: {name}, targets: {{origin: 0 mm, sign: +1}}, deviations: {{sign: +1}}}}\n"
+            "  - {{motion: {motion}, data: {name}, targets: {{origin: 0 mm, sign: +1}}, deviations: {{sign: +1}}}}\n"
         );
     }
     text

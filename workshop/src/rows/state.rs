@@ -6,6 +6,10 @@ use std::iter;
 use abbe_runtime::{Direction, DirectionTracker, Sample, Share, place_motors};
 use model_dsl::calibration::{Calibration, SensorReadings};
 
+/// No machine reaches farther, mm or rad: a thousand kilometres. What is beyond it is no position, and its last digits are coarser than a
+/// nanometre.
+pub const FARTHEST: f64 = 1e9;
+
 /// The numbers of a row: mm, rad, s, degC.
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'r> {

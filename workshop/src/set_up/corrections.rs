@@ -10,6 +10,7 @@ use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
 
+use super::counted;
 use crate::failure::Failure;
 use crate::load;
 use crate::recorded::unusable;
@@ -41,8 +42,7 @@ fn take_squares(
     let Some(leans) = setup.diagonals else { return };
     match skew_terms(equations, &setup.known, leans.value) {
         Ok(terms) => {
-            listener
-                .hear(&format!("{} terms of error motions from the lengths of squares", terms.len()).into());
+            listener.hear(&format!("{} from the lengths of squares", counted(terms.len())).into());
             setup.take(&terms, leans.span, equations, diagnostics);
         }
         Err(refused) => {
@@ -71,6 +71,6 @@ fn take_one(
     }
     listener.hear(&Words::marked(&file, &findings));
     setup.take(&terms, one.data.span, equations, diagnostics);
-    listener.hear(&format!("{} terms of error motions from {}", terms.len(), file.name()).into());
+    listener.hear(&format!("{} from {}", counted(terms.len()), file.name()).into());
     Ok(())
 }

@@ -8,6 +8,7 @@ use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
 
+use super::counted;
 use crate::failure::Failure;
 use crate::load;
 use crate::recorded::unusable;
@@ -36,6 +37,6 @@ pub(super) fn take(
     }
     listener.hear(&Words::marked(&file, &findings));
     setup.take(&terms, name.span, equations, diagnostics);
-    listener.hear(&format!("{} terms of error motions from {}", terms.len(), file.name()).into());
+    listener.hear(&format!("{} from {}", counted(terms.len()), file.name()).into());
     Ok(())
 }

@@ -264,7 +264,7 @@ fn what_printers_and_hobby_mills_have_saved_comes_in_as_a_calibration() {
     let run = abbe(&["calibrate", &at("set-up.yaml"), "--output", &at("printer.yaml")], "");
     assert_eq!(run.status, 0, "{}", run.err);
     assert!(
-        run.err.contains("3 terms of error motions") && run.err.contains("1 terms of error motions"),
+        run.err.contains("3 terms of error motions") && run.err.contains("1 term of error motions"),
         "{}",
         run.err
     );

@@ -169,7 +169,10 @@ fn a_name_that_no_tool_has_is_refused_before_anything_is_written() {
         .replace("calibration: ../../calibrations/postech-mill.yaml\n", "")
         .replace("data: data.csv", &format!("data: {}", data.display()));
     let bare = file("bare.yaml", &bare);
-    told(&["evaluate", &bare, "--tool", "T1"], "only a calibration has tools\nhelp: write `calibration: FILE`");
+    told(
+        &["evaluate", &bare, "--tool", "T1"],
+        "only a calibration has tools\nhelp: write `calibration: FILE`",
+    );
 }
 
 #[test]

@@ -82,6 +82,10 @@ fn told(done: Done) -> String {
 fn take_over(arguments: &FleetAdd) -> Result<(), Failure> {
     let fleet = read(&arguments.fleet)?;
     let added = add(&fleet, &arguments.results, &Person::default())?;
-    warn(&format!("{} results added, {} already known, {} refused", added.taken, added.known, added.refused));
+    let plural = if added.taken == 1 { "" } else { "s" };
+    warn(&format!(
+        "{} result{plural} added, {} already known, {} refused",
+        added.taken, added.known, added.refused
+    ));
     Ok(())
 }

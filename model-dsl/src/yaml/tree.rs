@@ -183,13 +183,13 @@ impl OpenMapping {
                 self.give_back(&decimals);
                 None
             }
-            Some(Key::Decimals(key)) => match self.once(key) {
-                Ok(key) => {
+            Some(Key::Decimals(key)) => {
+                let (key, mistake) = self.once(key);
+                if let Key::Usable(key) = key {
                     self.enter(key, node);
-                    None
                 }
-                Err(mistake) => Some(mistake),
-            },
+                mistake
+            }
         }
     }
 
@@ -212,22 +212,19 @@ impl OpenMapping {
         if self.follows_comma(&key) {
             return (Key::Decimals(key), None);
         }
-        match self.once(key) {
-            Ok(key) => (Key::Usable(key), None),
-            Err(mistake) => (Key::Refused, Some(mistake)),
-        }
+        self.once(key)
     }
 
-    /// A key that is not there yet (E0005).
-    fn once(&mut self, key: Spanned<String>) -> Result<Spanned<String>, Diagnostic> {
+    /// A key that must not be there yet (E0005).
+    fn once(&mut self, key: Spanned<String>) -> (Key, Option<Diagnostic>) {
         if let Some(&first) = self.first_places.get(&key.value) {
             let message = format!("duplicate key `{}`", key.value);
             let mistake = Diagnostic::error("E0005", key.span, message);
             let mistake = mistake.label("given again here").also(first, "first given here");
-            return Err(mistake.help("keep one of the two"));
+            return (Key::Refused, Some(mistake.help("keep one of the two")));
         }
         self.first_places.insert(key.value.clone(), key.span);
-        Ok(key)
+        (Key::Usable(key), None)
     }
 
     /// Whether a key begins with a digit, right behind the comma behind a whole number, as in `{size: 8,5 um}`.

@@ -142,11 +142,11 @@ fn instrument(guesses: &[Option<Guess>]) -> (&'static str, &'static str) {
 fn channel(column: &str, guess: Option<&Guess>) -> String {
     let Some(Guess { channel, unit, unknown }) = guess else {
         return format!(
-            "  # {}: the name suggests no channel; channels are command.x, measured.x, ...\n",
+            "  # {}: the name suggests no channel of this instrument; channels are command.x, measured.x, ...\n",
             quoted(column)
         );
     };
-    let unit = if unit.is_empty() { String::new() } else { format!(", unit: {unit}") };
+    let unit = if unit.is_empty() { String::new() } else { format!(", unit: {}", quoted(unit)) };
     let doubt = if *unknown { "   # the unit in the name is none that fits; check it" } else { "" };
     format!("  {channel}: {{column: {}{unit}}}{doubt}\n", quoted(column))
 }
@@ -207,7 +207,7 @@ fn unit_of(column: &str, kinds: &[Dimension]) -> Option<String> {
         let known = Some(unit).filter(fits).or_else(|| unit_of_word(unit));
         return known.filter(fits).map(str::to_owned);
     }
-    // What is one letter or two is as well part of a name, unless it is written as units are.
+    // A short word counts only if it names a unit; a longer one may be what people call one.
     let told = |word: &str| if word.chars().count() > 3 { unit_of_word(word) } else { unit_name(word) };
     let words: Vec<&str> = column.split(|letter: char| !letter.is_alphanumeric()).collect();
     words.into_iter().rev().filter_map(told).find(fits).map(str::to_owned)
@@ -304,6 +304,7 @@ mod tests {
     fn each_recording_is_read_as_it_is() {
         let equations = load::machine("XYFZC", None, &()).ok().unwrap().compiled.equations;
         for (line, instrument) in [
+            ("t,x,measured x,load [%]", "position"),
             ("time,run,x_cmd,y_cmd,dev_um,'odd'", "ballbar"),
             ("t,x,measured x", "position"),
             ("Zeit [s]\tX soll\tX ist\ttrue", "position"),

@@ -52,12 +52,12 @@ pub(super) fn read(
     let layout = read_header(header, columns, diagnostics)?;
     let units = rows.next_if(|line| line.text.starts_with("#unit"));
     let units = units.map(|line| read_units(line, &layout, diagnostics));
-    let below = match units {
+    let [target, deviation] = match units {
         Some(units) => units?,
-        None => (None, None),
+        None => [None, None],
     };
-    let target_unit = one_unit(layout.target_unit, below.0, diagnostics);
-    let deviation_unit = one_unit(layout.deviation_unit, below.1, diagnostics);
+    let target_unit = one_unit(layout.target_unit, target, diagnostics);
+    let deviation_unit = one_unit(layout.deviation_unit, deviation, diagnostics);
     let (target_unit, deviation_unit) = (target_unit?, deviation_unit?);
     let mut gathered = Gathered::default();
     for line in rows.filter(|line| !line.text.starts_with('#')) {
@@ -176,7 +176,7 @@ fn read_units(
     line: Piece<'_>,
     layout: &Layout,
     diagnostics: &mut Diagnostics,
-) -> Option<(Option<Spanned<Unit>>, Option<Spanned<Unit>>)> {
+) -> Option<[Option<Spanned<Unit>>; 2]> {
     let cells: Vec<Piece<'_>> = line.split(layout.separator).map(cell).collect();
     if cells.len() != layout.width + 1 {
         let message = format!(
@@ -199,7 +199,7 @@ fn read_units(
         },
     };
     let (target, deviation) = (unit(layout.target), unit(layout.deviation));
-    Some((target?, deviation?))
+    Some([target?, deviation?])
 }
 
 /// Rows gathered to runs.

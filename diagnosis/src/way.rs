@@ -135,15 +135,20 @@ impl<'w> Way<'w> {
     /// where it meets that of the step behind along that one.
     fn around_corner(&self, from: usize, share: f64) -> Option<f64> {
         let of_one_leg = from > 0 && from + 2 < self.time.len() && self.legs[from - 1] == self.legs[from + 2];
-        let (step, _) = self.chord(from);
-        let (before, behind) = of_one_leg.then(|| (self.chord(from - 1).1, self.chord(from + 1).1))?;
+        if !of_one_leg {
+            return None;
+        }
+        let [(_, before), (step, _), (_, behind)] = [from - 1, from, from + 1].map(|row| self.chord(row));
         let [first, last] = [self.command[from], self.command[from + 1]];
         let meet = (last - behind * step - first) / ((before - behind) * step);
-        let is_within = (0.0..=1.0).contains(&meet);
-        is_within.then(|| match share < meet {
-            true => first + before * share * step,
-            false => last - behind * (1.0 - share) * step,
-        })
+        if !(0.0..=1.0).contains(&meet) {
+            return None;
+        }
+        if share < meet {
+            Some(first + before * share * step)
+        } else {
+            Some(last - behind * (1.0 - share) * step)
+        }
     }
 }
 

@@ -232,7 +232,7 @@ pub(super) fn too_little(study: &Study<'_>) -> Option<String> {
         "it contains no observation".to_owned()
     } else if fitted < FEWEST {
         format!(
-            "{fitted} samples are too few to separate an effect from noise (at least {FEWEST} are needed)"
+            "only {fitted} of its samples can be fitted, and at least {FEWEST} are needed to separate an effect from noise"
         )
     } else if held_out == 0 {
         "no data are left to hold out, and Abbe reports no finding that is not tested on other data"

@@ -97,8 +97,12 @@ fn not_yaml(source: &SourceFile, error: &ScanError) -> Diagnostic {
     if *error.kind() == ErrorKind::RecursionLimitExceeded {
         return too_deep(span);
     }
-    let in_brackets =
-        matches!(error.kind(), ErrorKind::UnexpectedEofFlowSequence | ErrorKind::UnexpectedEofFlowMapping);
+    let in_brackets = matches!(
+        error.kind(),
+        ErrorKind::UnexpectedEofFlowSequence
+            | ErrorKind::UnexpectedEofFlowMapping
+            | ErrorKind::UnexpectedEofImplicitFlowMapping
+    );
     if in_brackets && rest.starts_with(',') {
         let diagnostic =
             Diagnostic::error("E0001", span, "this is not YAML: nothing is given before this comma");

@@ -2,7 +2,7 @@
 
 use abbe_recording::Place;
 
-use crate::common::{header, packed, recording};
+use crate::common::{header, packed, read, recording};
 
 const TEXT: &str = "recording: 1
 machine: FX
@@ -138,7 +138,9 @@ fn times() {
     );
     row("0,1,2,3\n0,1,2,3\n", "data.csv:3:1: column `t_s`", &["`0` follows `0`", "more decimal places"]);
     let both = TEXT.replace("column: run", "column: t_s");
-    let error = recording(&both, &format!("{HEADER}1,1,2,3\n1,1,2,3\n")).unwrap_err().to_string();
+    // The shared column has a warning of its own.
+    let data = format!("{HEADER}1,1,2,3\n1,1,2,3\n");
+    let error = read(&both).0.unwrap().read_csv("data.csv", data.as_bytes()).unwrap_err().to_string();
     assert!(error.contains("`time` and `run`") && !error.contains("decimal places"), "{error}");
     row("0,1,2,3\n5,1,2,3\n4,1,2,3\n", "data.csv:4:1: column `t_s`", &["`4` follows `5`", "channel `run`"]);
     row("0,1,2,3\n1,2,2,3\n0.5,1,2,3\n", "data.csv:4:1", &["run 1 also has rows further up"]);

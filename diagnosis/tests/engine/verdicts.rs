@@ -290,14 +290,14 @@ fn recordings_that_tell_nothing_say_why() {
     let record = |path: Path| bench.record(&truth, &noisy(path, position("x"), 0.001, 1));
     let short = record(path(line(0, 0.0, 45.0), 20.0, 2.0));
     assert_eq!(short.time.len(), 10);
-    nothing_is_claimed(&diagnosed(&bench, &known, &[&short]), "too few");
+    nothing_is_claimed(&diagnosed(&bench, &known, &[&short]), "can be fitted");
     let still = record(Path { runs: 3, ..path(Shape::Still { time: 30.0 }, 1.0, 5.0) });
     let diagnosis = diagnosed(&bench, &known, &[&still]);
     nothing_is_claimed(&diagnosis, "no axis moves");
     assert_eq!(diagnosis.verdict, Verdict::Adequate);
     let mut held = record(stage_path());
     held.holdout = Some(vec![1, 2, 3, 4]);
-    nothing_is_claimed(&diagnosed(&bench, &known, &[&held]), "too few");
+    nothing_is_claimed(&diagnosed(&bench, &known, &[&held]), "can be fitted");
     let mut fitted = record(stage_path());
     fitted.holdout = Some(Vec::new());
     nothing_is_claimed(&diagnosed(&bench, &known, &[&fitted]), "hold out");

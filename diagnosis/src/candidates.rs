@@ -40,9 +40,9 @@ pub(crate) fn always(study: &Study<'_>) -> Vec<Effect> {
 
 /// How the part of a recording lies, where that is free, beside the zeros of its channels: each that a recording shows.
 fn datum<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = Setting> + 's {
-    scene.lie.iter().flat_map(|lie| {
-        let along = (0..3).filter(|direction| lie.displacements[*direction]);
-        let about = (0..3).filter(|direction| lie.rotations[*direction]);
+    scene.pose.iter().flat_map(|pose| {
+        let along = (0..3).filter(|direction| pose.displacements[*direction]);
+        let about = (0..3).filter(|direction| pose.rotations[*direction]);
         let along = along.filter(|_| scene.is_probed()).map(|direction| Setting::Displacement { direction });
         along.chain(about.map(|direction| Setting::Rotation { direction }))
     })

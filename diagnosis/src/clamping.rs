@@ -7,7 +7,7 @@
 use crate::course::Course;
 use crate::model::{Model, Place};
 use crate::observations::part_readings;
-use crate::recording::{Instrument, Lie, PartDatum, Turned, turned};
+use crate::recording::{Instrument, PartDatum, PartPose, Turned, turned};
 use crate::study::Study;
 
 /// A rotation must explain at least this share of what an effect stands for. A rotation alone explains all of it; over a square part it
@@ -15,10 +15,10 @@ use crate::study::Study;
 const LEAST_SHARE: f64 = 0.75;
 
 /// How the part of a scene lies where that is free.
-pub(crate) fn lie(study: &Study<'_>, number: usize, course: &Course) -> Option<Lie> {
+pub(crate) fn pose(study: &Study<'_>, number: usize, course: &Course) -> Option<PartPose> {
     let scene = &study.scenes[number];
     let is_free = scene.recording.datum == PartDatum::Free || scene.turned.is_some();
-    is_free.then(|| Lie::of(&part_readings(study, number, course, &Model::default()), scene.is_probed()))
+    is_free.then(|| PartPose::of(&part_readings(study, number, course, &Model::default()), scene.is_probed()))
 }
 
 /// The rotation that readings show as they are, where their recording says nothing of one.
@@ -58,6 +58,6 @@ fn rests(study: &Study<'_>, model: &Model) -> Vec<Model> {
 /// Whether a rotation of the part is looked for: its recording has no `datum`, and its points are separate stations.
 fn may_be_turned(study: &Study<'_>, number: usize) -> bool {
     let scene = &study.scenes[number];
-    let is_unsaid = scene.recording.datum == PartDatum::Unsaid && scene.lie.is_none();
+    let is_unsaid = scene.recording.datum == PartDatum::Unsaid && scene.pose.is_none();
     is_unsaid && scene.recording.instrument == Instrument::Position && scene.sparse()
 }

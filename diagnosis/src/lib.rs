@@ -57,6 +57,7 @@ mod parameters;
 pub mod pictures;
 mod places;
 mod position_loop;
+mod random;
 mod ranges;
 mod repeats;
 pub mod report;

@@ -96,10 +96,10 @@ impl<'c> Frame<'c> {
         let tip = |d: usize, row: usize| self.nominal[d][row] + self.error[d][row];
         let moved_in = |d: usize, row: usize| tip(d, row) - self.reference[d][row];
         let moved = |row: usize| [moved_in(0, row), moved_in(1, row), moved_in(2, row)];
-        let lie = study.scenes[scene].lie.as_ref();
+        let pose = study.scenes[scene].pose.as_ref();
         let predicted: Vec<f64> = match channel.kind {
-            Kind::Tip(d) => match lie {
-                Some(lie) => (0..self.len()).map(|row| lie.moved(self.tip(row))[d]).collect(),
+            Kind::Tip(d) => match pose {
+                Some(pose) => (0..self.len()).map(|row| pose.moved(self.tip(row))[d]).collect(),
                 None => (0..self.len()).map(|row| tip(d, row)).collect(),
             },
             Kind::Radius { center, radius } => {
@@ -111,9 +111,9 @@ impl<'c> Frame<'c> {
             Kind::Normal => {
                 let normal = |row| self.normal(study, scene, row);
                 let lies = |row: usize| {
-                    lie.map_or_else(
+                    pose.map_or_else(
                         || moved(row),
-                        |lie| minus(lie.moved(self.tip(row)), at(&self.reference, row)),
+                        |pose| minus(pose.moved(self.tip(row)), at(&self.reference, row)),
                     )
                 };
                 (0..self.len()).map(|row| dot(normal(row), lies(row))).collect()
@@ -194,7 +194,7 @@ impl<'c> Frame<'c> {
         side: Side,
     ) -> Vec<Option<Vec<f64>>> {
         let rows = self.len();
-        if let (Kind::Tip(d), None) = (channel.kind, study.scenes[scene].lie) {
+        if let (Kind::Tip(d), None) = (channel.kind, study.scenes[scene].pose) {
             return self.levers.iter().map(|parts| lever(&parts[d], rows)).collect();
         }
         if let Kind::Drive(axis) = channel.kind {
@@ -217,8 +217,8 @@ impl<'c> Frame<'c> {
         model: &Model,
     ) -> Sight {
         let everywhere = |direction: [f64; 3]| vec![direction; self.len()];
-        let lie = study.scenes[scene].lie.as_ref();
-        let in_part = |direction: [f64; 3]| lie.map_or(direction, |lie| lie.back(direction));
+        let pose = study.scenes[scene].pose.as_ref();
+        let in_part = |direction: [f64; 3]| pose.map_or(direction, |pose| pose.back(direction));
         let directions = match channel.kind {
             Kind::Tip(d) => everywhere(in_part(along(d))),
             Kind::Radius { center, radius } => {

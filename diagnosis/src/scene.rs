@@ -14,7 +14,7 @@ use model_dsl::program::Interpreter;
 use crate::channel::{Channel, Kind, channels};
 use crate::course::LastCourse;
 use crate::legs::GAP;
-use crate::recording::{Instrument, Lie, Recording, Turned};
+use crate::recording::{Instrument, PartPose, Recording, Turned};
 use crate::returns::Returns;
 use crate::states::{Given, Shared, behind_corners, beside_reversals, unseen_turns};
 use crate::targets::Targets;
@@ -53,7 +53,7 @@ pub(crate) struct Scene<'a> {
     /// The directions in which the path leaves the plane of a ballbar's centre; the others a ballbar does not show.
     pub(crate) leans: [bool; 3],
     /// How the part lies where it was measured, where that is free.
-    pub(crate) lie: Option<Lie>,
+    pub(crate) pose: Option<PartPose>,
     /// The rotation because of which its datum is taken as free, if the recording has no `datum`.
     pub(crate) turned: Option<Turned>,
     /// The course that was worked out last.
@@ -94,7 +94,7 @@ impl<'a> Scene<'a> {
             observed: observed(&given),
             corners: corners(recording, &given),
             leans: leans(recording, &given.programmed, &built.interpreter),
-            lie: None,
+            pose: None,
             turned: None,
             built,
             recording,

@@ -93,7 +93,7 @@ impl<'a> Study<'a> {
             let course = Course::new(&study, scene, &Model::default());
             let known = turned.iter().find(|(number, _)| *number == scene).map(|(_, turned)| *turned);
             study.scenes[scene].turned = known.or_else(|| clamping::turned_as_read(&study, scene, &course));
-            study.scenes[scene].lie = clamping::lie(&study, scene, &course);
+            study.scenes[scene].pose = clamping::pose(&study, scene, &course);
             study.scenes[scene].returns = Returns::new(&study, scene, &course.shown);
             study.scenes[scene].last_course = LastCourse::default();
         }

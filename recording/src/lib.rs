@@ -49,8 +49,8 @@ mod date;
 mod direction;
 mod form;
 mod header;
-mod lie;
 mod place;
+mod pose;
 mod position;
 mod runs;
 mod setup;
@@ -65,7 +65,7 @@ pub use date::{Moment, date_of};
 pub use direction::own_direction;
 pub use form::{Form, Names, Separator};
 pub use header::{Extra, Header, calibration_of, machine_of, read_header};
-pub use lie::{Lie, PartDatum, PartReading, Turned, clamped_anew, taken_as_free, turned};
+pub use pose::{PartDatum, PartPose, PartReading, Turned, clamped_anew, taken_as_free, turned};
 
 /// One recording, in mm, rad, s, degC and the units of its loads. All columns have one entry a row.
 #[derive(Clone, Debug, Default)]

@@ -1,6 +1,6 @@
-//! Datums: the zero of each part, which a setting-up puts where it likes, and its rotation, where that is free.
+//! Datums: the zero of each part, which a set-up puts where it likes, and its rotation, where that is free.
 //!
-//! In: directions of readings and the setting-up of each. Out: an orthonormal basis of what displacements of the parts in
+//! In: directions of readings and the set-up of each. Out: an orthonormal basis of what displacements of the parts in
 //! the free directions and their free rotations make of all readings. What lies in it says nothing of the machine and is taken off
 //! everything.
 
@@ -8,13 +8,13 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::matrix::{extend, without};
 use crate::points::Point;
-use crate::setting::{Setting, effects};
+use crate::setup::{Setup, effects};
 
 /// What is free of the parts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Freedom<'s> {
-    /// The settings-up.
-    pub(crate) settings: &'s [Setting],
+    /// The set-ups.
+    pub(crate) setups: &'s [Setup],
     /// The directions in which a part is displaced freely.
     pub(crate) directions: [bool; 3],
     /// The same of a part whose datum is free: all directions that the machine's equations know.
@@ -22,9 +22,9 @@ pub(crate) struct Freedom<'s> {
 }
 
 impl Freedom<'_> {
-    /// The directions in which the part of a setting-up is displaced freely.
-    pub(crate) fn directions(&self, setting: &Setting) -> [bool; 3] {
-        if setting.lie.is_some() { self.sensitive } else { self.directions }
+    /// The directions in which the part of a set-up is displaced freely.
+    pub(crate) fn directions(&self, setup: &Setup) -> [bool; 3] {
+        if setup.pose.is_some() { self.sensitive } else { self.directions }
     }
 }
 
@@ -35,14 +35,14 @@ pub(crate) struct Datum {
 }
 
 impl Datum {
-    /// The free displacements and rotations of every setting-up among the points.
+    /// The free displacements and rotations of every set-up among the points.
     pub(crate) fn of(points: &[&Point], freedom: Freedom<'_>) -> Self {
         let mut basis = Vec::new();
-        for (number, setting) in freedom.settings.iter().enumerate() {
-            let directions = freedom.directions(setting);
+        for (number, setup) in freedom.setups.iter().enumerate() {
+            let directions = freedom.directions(setup);
             let own: Vec<Option<Vec<f64>>> = points
                 .iter()
-                .map(|point| (point.setting == number).then(|| effects(point, setting, directions)))
+                .map(|point| (point.setup == number).then(|| effects(point, setup, directions)))
                 .collect();
             let count = own.iter().flatten().next().map_or(0, Vec::len);
             for effect in 0..count {

@@ -12,7 +12,7 @@
 //! interferometry; what a part cannot show is said beside what it does.
 //!
 //! ```text
-//! calibration -> coefficient: numbers in which the error is linear; recordings -> setting, datum -> points: what each displaces a reading by
+//! calibration -> coefficient: numbers in which the error is linear; recordings -> setup, datum -> points: what each displaces a reading by
 //!      -> solution: the linear system -> singular, ridge or select -> nullspace: what cannot be told apart -> residuals -> Update -> report
 //! ```
 //!
@@ -28,7 +28,7 @@ pub mod report;
 mod residuals;
 mod ridge;
 mod select;
-mod setting;
+mod setup;
 mod singular;
 mod solution;
 mod update;
@@ -39,7 +39,7 @@ use recording::Recording;
 
 pub use error::UpdateError;
 pub use residuals::{Figures, Residual};
-pub use setting::Rotation;
+pub use setup::Rotation;
 pub use update::{Change, Fixed, Part, Relation, Update};
 
 /// What an update starts from.
@@ -49,7 +49,7 @@ pub struct Inputs<'a> {
     pub equations: &'a Equations,
     /// The calibration whose coefficients are to be changed.
     pub calibration: &'a Calibration,
-    /// The measured parts. Every run of a recording is one setting-up with a zero of its own.
+    /// The measured parts. Every run of a recording is one set-up with a zero of its own.
     pub recordings: Vec<&'a Recording>,
 }
 
@@ -85,7 +85,7 @@ pub struct Options {
     /// Singular values up to this share of the norm of the scaled matrix count as zero. Without it the share is that of
     /// the report, rows times 2.2e-16 (equation E20).
     pub tolerance: Option<f64>,
-    /// The directions X, Y, Z in which the zero of each part is free: what a setting-up puts there says nothing of the
+    /// The directions X, Y, Z in which the zero of each part is free: what a set-up puts there says nothing of the
     /// machine. The zero of a part whose recording says that its datum is free is free in all of them, and its rotation too.
     pub datum: [bool; 3],
     /// Whether the parts were made with the calibration's own compensation switched on: then the deviations are what it

@@ -4,7 +4,7 @@
 //! coefficient A, the displacement along the direction that A itself makes there: `(n . L) phi A`. A relative change dA adds
 //! dA times that. What the calibration itself predicts is no sum of these, but the product of finite matrices. Rows are gone
 //! through in their order, also those without a reading: they show from where an axis came. A part whose datum is free is then turned to
-//! where its readings have it ([`crate::setting`]), and directions and lever arms are those of the part that is turned.
+//! where its readings have it ([`crate::setup`]), and directions and lever arms are those of the part that is turned.
 
 use abbe_runtime::{Direction, DirectionTracker, ErrorMotion, Sample, Term, TermState};
 use model_dsl::calibration::{Calibration, SensorReadings};
@@ -15,7 +15,7 @@ use recording::{Instrument, PartReading, Recording};
 
 use crate::coefficient::Coefficient;
 use crate::error::UpdateError;
-use crate::setting::Setting;
+use crate::setup::Setup;
 use crate::update::Part;
 
 /// How far an axis must move back before its direction turns, mm or rad: the rounding of a programmed position.
@@ -24,8 +24,8 @@ const HYSTERESIS: f64 = 1e-9;
 /// One reading.
 #[derive(Clone, Debug)]
 pub(crate) struct Point {
-    /// The setting-up that it was measured in, by number over all recordings.
-    pub(crate) setting: usize,
+    /// The set-up that it was measured in, by number over all recordings.
+    pub(crate) setup: usize,
     /// The direction of the reading, part frame, a unit vector.
     pub(crate) direction: [f64; 3],
     /// The deviation along it, mm.
@@ -44,7 +44,7 @@ pub(crate) struct Point {
 pub(crate) struct Points {
     pub(crate) points: Vec<Point>,
     pub(crate) parts: Vec<Part>,
-    pub(crate) settings: Vec<Setting>,
+    pub(crate) setups: Vec<Setup>,
 }
 
 /// What the points are taken with.
@@ -59,7 +59,7 @@ pub(crate) struct Machine<'m> {
 impl Machine<'_> {
     /// The readings of all recordings.
     pub(crate) fn points(&self, recordings: &[&Recording]) -> Result<Points, UpdateError> {
-        let mut all = Points { points: Vec::new(), parts: Vec::new(), settings: Vec::new() };
+        let mut all = Points { points: Vec::new(), parts: Vec::new(), setups: Vec::new() };
         for (number, recording) in recordings.iter().enumerate() {
             let is_read = matches!(
                 recording.instrument,
@@ -73,10 +73,10 @@ impl Machine<'_> {
             let exact = ExactProduct::new(self.equations, &constants);
             let course = Course::of(self, recording, number)?;
             let rows = course.rows(&interpreter, &exact);
-            let settings: Vec<Setting> =
-                (0..course.runs.len()).map(|place| course.setting(number, place, &rows)).collect();
-            let (points, left_out) = course.points(&rows, &settings, all.settings.len());
-            all.settings.extend(settings);
+            let setups: Vec<Setup> =
+                (0..course.runs.len()).map(|place| course.setup(number, place, &rows)).collect();
+            let (points, left_out) = course.points(&rows, &setups, all.setups.len());
+            all.setups.extend(setups);
             all.parts.push(Part {
                 file: recording.file.clone(),
                 title: recording.title.clone(),
@@ -93,8 +93,8 @@ impl Machine<'_> {
 
 /// A row that holds a reading.
 struct Row {
-    /// Its setting-up, by the place of its run among those of the recording.
-    setting: usize,
+    /// Its set-up, by the place of its run among those of the recording.
+    setup: usize,
     held_out: bool,
     /// The tip as programmed, and how far the calibration has it off, mm.
     nominal: [f64; 3],
@@ -173,7 +173,7 @@ impl<'c> Course<'c> {
                 self.machine.equations.travels.iter().map(|travel| cell(&position, travel.axis)).collect();
             let run = self.recording.run.get(row).copied().unwrap_or(1);
             rows.push(Row {
-                setting: self.runs.iter().position(|known| *known == run).unwrap_or(0),
+                setup: self.runs.iter().position(|known| *known == run).unwrap_or(0),
                 held_out: self.recording.holdout.as_ref().is_some_and(|runs| runs.contains(&run)),
                 nominal,
                 error: self.error(exact, &position, &travel, &values),
@@ -185,33 +185,33 @@ impl<'c> Course<'c> {
         rows
     }
 
-    /// A setting-up by the place of its run: how the part lies in it.
-    fn setting(&self, number: usize, place: usize, rows: &[Row]) -> Setting {
-        let own = rows.iter().filter(|row| row.setting == place);
+    /// A set-up by the place of its run: how the part lies in it.
+    fn setup(&self, number: usize, place: usize, rows: &[Row]) -> Setup {
+        let own = rows.iter().filter(|row| row.setup == place);
         let each = own.flat_map(|row| row.part_readings(self.machine.compensated));
         let run = self.runs.get(place).copied().unwrap_or(1);
-        Setting::of(self.recording, (number, run), &each.collect::<Vec<PartReading>>())
+        Setup::of(self.recording, (number, run), &each.collect::<Vec<PartReading>>())
     }
 
     /// The readings, and how many could not be used because a position is missing in their row. `first` is the number of the first
-    /// setting-up among those of all recordings.
-    fn points(&self, rows: &[Row], settings: &[Setting], first: usize) -> (Vec<Point>, usize) {
+    /// set-up among those of all recordings.
+    fn points(&self, rows: &[Row], setups: &[Setup], first: usize) -> (Vec<Point>, usize) {
         let (mut points, mut left_out) = (Vec::new(), 0);
         for row in rows {
-            let lie = settings.get(row.setting).and_then(|setting| setting.lie.as_ref());
+            let pose = setups.get(row.setup).and_then(|setup| setup.pose.as_ref());
             let place = row.place(self.machine.compensated);
             for (direction, deviation) in &row.readings {
-                let in_part = lie.map_or(*direction, |lie| lie.back(*direction));
+                let in_part = pose.map_or(*direction, |pose| pose.back(*direction));
                 let shares = self.shares(&row.values, &row.levers, in_part);
                 let predicted = dot(*direction, row.error);
-                let moved = lie.map_or(0.0, |lie| dot(*direction, minus(lie.moved(place), place)));
+                let moved = pose.map_or(0.0, |pose| dot(*direction, minus(pose.moved(place), place)));
                 let expected = if self.machine.compensated { 0.0 } else { predicted } + moved;
                 // Like the error motions' own: what a rotation of the machine makes too is exactly the same.
-                let levers = lie.map_or([0.0; 3], |lie| lie.levers(*direction, row.nominal));
+                let levers = pose.map_or([0.0; 3], |pose| pose.levers(*direction, row.nominal));
                 let known = [*deviation, predicted].iter().chain(&shares).all(|number| number.is_finite());
                 if known {
                     points.push(Point {
-                        setting: first + row.setting,
+                        setup: first + row.setup,
                         direction: *direction,
                         deviation: *deviation,
                         held_out: row.held_out,

@@ -9,7 +9,7 @@ use crate::error::UpdateError;
 use crate::nullspace::{Alike, relations};
 use crate::points::{Machine, Point};
 use crate::residuals::{Residual, residuals};
-use crate::setting::{Rotation, Setting, rotations};
+use crate::setup::{Rotation, Setup, rotations};
 use crate::singular::{Decomposition, Scaling};
 use crate::solution::{Problem, Solution};
 use crate::{Inputs, Method, Options, ridge, select};
@@ -25,7 +25,7 @@ pub struct Update {
     pub parts: Vec<Part>,
     /// How many readings were fitted.
     pub points: usize,
-    /// The directions in which the zero of every setting-up was free.
+    /// The directions in which the zero of every set-up was free.
     pub datum: Vec<&'static str>,
     /// How many zeros that are.
     pub zeros: usize,
@@ -139,7 +139,7 @@ pub(crate) fn update(inputs: &Inputs<'_>, options: &Options) -> Result<Update, U
     }
     let free = within_sensitive(inputs, options.datum);
     let freedom =
-        Freedom { settings: &all.settings, directions: free, sensitive: within_sensitive(inputs, [true; 3]) };
+        Freedom { setups: &all.setups, directions: free, sensitive: within_sensitive(inputs, [true; 3]) };
     let problem = Problem::of(&fitted, &moving, freedom);
     let system = Decomposition::of(&problem.jacobian, Scaling::Greatest, options.tolerance)
         .ok_or(UpdateError::NoDecomposition)?;
@@ -167,7 +167,7 @@ pub(crate) fn update(inputs: &Inputs<'_>, options: &Options) -> Result<Update, U
             .collect(),
         zeros: problem.datum.freedoms().saturating_sub(rotations.len()),
         rotations,
-        hints: hints(&all.parts, &all.settings),
+        hints: hints(&all.parts, &all.setups),
         unknowns: moving.len(),
         rank: system.rank,
         tolerance: system.tolerance,
@@ -189,10 +189,10 @@ pub(crate) fn update(inputs: &Inputs<'_>, options: &Options) -> Result<Update, U
 }
 
 /// Hints on parts whose deviations a rotation explains and whose recording has no `datum`, one for each recording.
-fn hints(parts: &[Part], settings: &[Setting]) -> Vec<String> {
+fn hints(parts: &[Part], setups: &[Setup]) -> Vec<String> {
     let found = (0..parts.len()).filter_map(|number| {
-        let mut own = settings.iter().filter(|setting| setting.recording == number);
-        Some((parts.get(number)?.file.as_str(), own.find_map(|setting| setting.turned)?))
+        let mut own = setups.iter().filter(|setup| setup.recording == number);
+        Some((parts.get(number)?.file.as_str(), own.find_map(|setup| setup.turned)?))
     });
     recording::clamped_anew(&found.collect::<Vec<_>>()).into_iter().collect()
 }

@@ -79,8 +79,8 @@ pub(super) fn undecided(study: &Study<'_>) -> Vec<String> {
 
 /// What the points of parts leave open of how these lay where they were measured: a rotation that is free and that they do not show.
 fn unturned(scene: &Scene<'_>) -> Option<String> {
-    let lie = scene.lie.as_ref()?;
-    (lie.rotations == [false; 3]).then(|| {
+    let pose = scene.pose.as_ref()?;
+    (pose.rotations == [false; 3]).then(|| {
         format!(
             "The rotation of the part of {} cannot be decided, because its points lie in line with the measured direction.",
             scene.recording.file
@@ -94,7 +94,8 @@ fn turned_alike(study: &Study<'_>) -> Option<String> {
     if study.scenes.iter().all(|scene| scene.turned.is_some()) {
         return None;
     }
-    let free = |scene: &Scene<'_>, about: usize| scene.lie.as_ref().is_some_and(|lie| lie.rotations[about]);
+    let free =
+        |scene: &Scene<'_>, about: usize| scene.pose.as_ref().is_some_and(|pose| pose.rotations[about]);
     let about = ["X", "Y", "Z"].into_iter().enumerate();
     let about: Vec<&str> = about
         .filter(|(number, _)| study.scenes.iter().all(|scene| free(scene, *number)))

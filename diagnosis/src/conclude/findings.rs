@@ -206,7 +206,7 @@ fn rotation(study: &Study<'_>, model: &Model, recording: usize) -> Option<[f64; 
             more[direction] += fitted.coefficients.first()?;
         }
     }
-    study.scenes[recording].lie.as_ref().map(|lie| lie.rotation_after(more))
+    study.scenes[recording].pose.as_ref().map(|pose| pose.rotation_after(more))
 }
 
 /// A setting of an instrument is told from this many standard deviations on.

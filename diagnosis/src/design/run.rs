@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 
 use super::Regressor;
 use super::lower::{Lower, NARROW};
-use super::random::Random;
+use super::random::RandomWeights;
 use super::shapes::Shapes;
 use crate::channel::{Channel, ChannelAt, Kind};
 use crate::course::{BATCH, Course, STRETCH, pieces};
@@ -136,7 +136,7 @@ impl<'r> ChannelRun<'r> {
         let mut sums = DMatrix::zeros(count + 2, self.width);
         let (mut plain, mut weights) = (vec![0.0; self.width], vec![0.0; count]);
         let mut samples = 0.0;
-        let mut random = Random::new(self.at);
+        let mut random = RandomWeights::new(self.at);
         for stretch in pieces(0..study.scenes[self.at.scene].rows(), STRETCH) {
             let rows = stretch.len();
             let moved = passage.moved(study, course, stretch.clone());

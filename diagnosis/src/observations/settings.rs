@@ -53,8 +53,8 @@ impl Frame<'_> {
                 self.of_part(study, scene, channel.kind, |read, _| read[direction])
             }
             Setting::Rotation { direction } => {
-                let lie = study.scenes[scene].lie.as_ref()?;
-                self.of_part(study, scene, channel.kind, |read, place| lie.levers(read, place)[direction])
+                let pose = study.scenes[scene].pose.as_ref()?;
+                self.of_part(study, scene, channel.kind, |read, place| pose.levers(read, place)[direction])
             }
         }
     }

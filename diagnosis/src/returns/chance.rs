@@ -4,24 +4,19 @@
 //! function of a state predicts of them in other units is what chance predicts.
 
 use crate::noise::Noise;
+use crate::random::Random;
 
 /// A generator of normal numbers.
-pub(super) struct Normals(u64);
+pub(super) struct Normals(Random);
 
 impl Normals {
     pub(super) fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x2545_F491_4F6C_DD1D)
+        Self(Random::new(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x2545_F491_4F6C_DD1D))
     }
 
-    /// A number between 0 and 1, by the generator splitmix64.
+    /// A number between 0 and 1.
     fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^= mixed >> 31;
-        let half = u32::try_from(mixed >> 32).unwrap_or_default();
-        (f64::from(half) + 0.5) / (f64::from(u32::MAX) + 1.0)
+        (f64::from(self.0.next()) + 0.5) / (f64::from(u32::MAX) + 1.0)
     }
 
     /// A normal number, by the transform of Box and Muller.

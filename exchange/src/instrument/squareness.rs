@@ -41,7 +41,7 @@ pub(super) struct Side<'s> {
     pub(super) line: Line,
 }
 
-/// Both straightnesses of one setting-up of a square, the edge of the first axis first.
+/// Both straightnesses of one set-up of a square, the edge of the first axis first.
 struct Pair {
     about: usize,
     /// The turn of each line of motion relative to its edge, rad.

@@ -36,10 +36,10 @@ pub(super) fn names() -> MachineNames {
     }
 }
 
-pub(super) type Findings = Vec<(&'static str, String)>;
+pub(super) type Reported = Vec<(&'static str, String)>;
 
 /// Reads a whole file: the calibration, and the codes with the texts that they point at.
-pub(super) fn read_file(text: &str) -> (Option<Calibration>, Findings) {
+pub(super) fn read_file(text: &str) -> (Option<Calibration>, Reported) {
     let (calibration, diagnostics, source) = read_with_diagnostics(text);
     let findings = diagnostics.iter().map(|one| (one.code, source.slice(one.span).to_owned()));
     (calibration, findings.collect())
@@ -57,13 +57,13 @@ pub(super) fn read_with_diagnostics(text: &str) -> (Option<Calibration>, Diagnos
 }
 
 /// A file with these error motions and all else in order.
-pub(super) fn with_errors(errors: &str) -> String {
+pub(super) fn with_error_motions(errors: &str) -> String {
     format!("calibration: 1\nmachine: test-mill\nconstants: {{Xt: 0 mm}}\nerrors:\n  {errors}\n")
 }
 
 /// The terms of the first motion listed.
 pub(super) fn terms(errors: &str) -> Vec<CalibratedTerm> {
-    let (calibration, findings) = read_file(&with_errors(errors));
+    let (calibration, findings) = read_file(&with_error_motions(errors));
     assert_eq!(findings, [], "{errors}");
     let calibration = calibration.expect("a calibration");
     calibration.motions[0].terms.iter().map(|term| term.value.clone()).collect()

@@ -3,7 +3,7 @@
 use serde_json::{Value, json as object};
 
 use crate::residuals::{Figures, Residual};
-use crate::setting::Rotation;
+use crate::setup::Rotation;
 use crate::update::{Change, Part, Update};
 
 /// The update as one JSON object with the schema `abbe-update/1`. Lengths are in mm.

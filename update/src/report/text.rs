@@ -4,7 +4,7 @@ use diagnosis::report::{WIDTH, paragraph, plain};
 
 use crate::Method;
 use crate::residuals::Residual;
-use crate::setting::Rotation;
+use crate::setup::Rotation;
 use crate::update::{Change, Part, Relation, Update};
 
 /// How many changes are listed; JSON has all of them.

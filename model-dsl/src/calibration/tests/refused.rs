@@ -4,7 +4,7 @@ use super::*;
 
 /// Reads error motions and compares codes and texts with those expected.
 fn refused(errors: &str, expected: &[(&str, &str)]) {
-    let (calibration, found) = read_file(&with_errors(errors));
+    let (calibration, found) = read_file(&with_error_motions(errors));
     let found: Vec<(&str, &str)> = found.iter().map(|(code, text)| (*code, text.as_str())).collect();
     assert_eq!(found, expected, "{errors}");
     let failed = expected.iter().any(|(code, _)| code.starts_with('E'));
@@ -19,7 +19,7 @@ fn refused_file(text: &str, expected: &[(&str, &str)]) {
 
 /// Every finding of these error motions as `code message | help`.
 fn words(errors: &str) -> Vec<String> {
-    let (_, diagnostics, _) = read_with_diagnostics(&with_errors(errors));
+    let (_, diagnostics, _) = read_with_diagnostics(&with_error_motions(errors));
     let all = diagnostics.iter();
     all.map(|one| format!("{} {} | {}", one.code, one.message, one.help.as_deref().unwrap_or(""))).collect()
 }
@@ -354,7 +354,7 @@ errors:
 
 #[test]
 fn a_mistake_looks_like_this() {
-    let text = with_errors("EBX: [{polynomial: {per: mm, unit: um, coefficients: [1, 2]}}]");
+    let text = with_error_motions("EBX: [{polynomial: {per: mm, unit: um, coefficients: [1, 2]}}]");
     let (_, diagnostics, source) = read_with_diagnostics(&text);
     let expected = "\
 error[E0413]: EBX must be an angle, but `um` is a length

@@ -5,8 +5,8 @@ use std::f64::consts::{PI, TAU};
 use super::*;
 
 /// The curve of these error motions, and the codes of what was found.
-fn curve(errors: &str) -> (Curve, Findings) {
-    let (calibration, findings) = read_file(&with_errors(errors));
+fn curve(errors: &str) -> (Curve, Reported) {
+    let (calibration, findings) = read_file(&with_error_motions(errors));
     let term = calibration.unwrap_or_else(|| panic!("{findings:?}")).motions.remove(0).terms.remove(0).value;
     let CalibratedTerm::Table { curve, .. } = term else { panic!("{term:?}") };
     (curve, findings)
@@ -94,7 +94,7 @@ fn ends_of_two_values_are_told_and_a_period_is_no_shorter_than_its_table() {
         let text = format!(
             "EXX: [{{table: {{start: 0 mm, step: 5 mm, period: {period}, unit: mm, values: [0, 1]}}}}]"
         );
-        let (calibration, findings) = read_file(&with_errors(&text));
+        let (calibration, findings) = read_file(&with_error_motions(&text));
         // A wrong unit is told at the unit.
         let place = if code == "E0307" { "deg" } else { period };
         assert_eq!((calibration.is_none(), findings), (true, vec![(code, place.to_owned())]));

@@ -203,7 +203,7 @@ fn every_other_term_is_read() {
 /// The ramp is the correction's: it reaches the runtime, and the term beside it is the same without it.
 #[test]
 fn a_ramp_stands_beside_its_term() {
-    let text = with_errors("EXX: [{constant: {value: 1 um}}, {backlash: {lost_motion: 3 um}}]");
+    let text = with_error_motions("EXX: [{constant: {value: 1 um}}, {backlash: {lost_motion: 3 um}}]");
     let ramped = text.replace("lost_motion: 3 um", "lost_motion: 3 um, ramp: 50 ms");
     let (plain, ..) = read_with_diagnostics(&text);
     let (ramped, ..) = read_with_diagnostics(&ramped);
@@ -233,7 +233,7 @@ fn angles_have_their_own_coefficients() {
 
 #[test]
 fn terms_that_cannot_be_compensated_are_named() {
-    let text = with_errors(
+    let text = with_error_motions(
         "EXX: [{drift: {amplitude: 2 um, time_constant: 10 min}}, {backlash: {lost_motion: 1 um}}]",
     );
     let (calibration, _, source) = read_with_diagnostics(&text);

@@ -1,6 +1,6 @@
 //! How a part lay on the machine that measured it.
 //!
-//! In: what was read of a part, each reading beside the place at which it is expected. Out: a [`Lie`]: the rotation of the part that
+//! In: what was read of a part, each reading beside the place at which it is expected. Out: a [`PartPose`]: the rotation of the part that
 //! brings the one to the other, and about which axes the readings show a rotation at all; or, of a part whose recording says nothing,
 //! whether they show one. It exists because a part that is clamped anew stands at an angle that says nothing of the
 //! machine it was made on.
@@ -34,7 +34,7 @@ pub struct PartReading {
 
 /// How a part lay: it is turned about its middle, right-handed, against what its frame says.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lie {
+pub struct PartPose {
     /// The middle of all places, mm.
     middle: Vector3<f64>,
     /// The rotation.
@@ -82,7 +82,7 @@ impl PartDatum {
     }
 }
 
-impl Lie {
+impl PartPose {
     /// How a part lay of which these are the readings. `constant` says whether a constant of all readings is free besides, as the zero
     /// of a probe is. Readings that are not finite are none.
     #[must_use]
@@ -90,17 +90,17 @@ impl Lie {
         let known = || readings.iter().filter(|reading| reading.is_known());
         let count = known().count().max(1);
         let sum: Vector3<f64> = known().map(|reading| Vector3::from(reading.place)).sum();
-        let mut lie = Self {
+        let mut pose = Self {
             middle: sum / number(count),
             rotation: UnitQuaternion::identity(),
             displacements: [false; 3],
             rotations: [false; 3],
         };
-        let free = lie.seen(readings, constant);
-        lie.displacements = [0, 1, 2].map(|axis| free.contains(&(DISPLACEMENTS + axis)));
-        lie.rotations = [0, 1, 2].map(|axis| free.contains(&(ROTATIONS + axis)));
-        lie.turn_to(readings, &free);
-        lie
+        let free = pose.seen(readings, constant);
+        pose.displacements = [0, 1, 2].map(|axis| free.contains(&(DISPLACEMENTS + axis)));
+        pose.rotations = [0, 1, 2].map(|axis| free.contains(&(ROTATIONS + axis)));
+        pose.turn_to(readings, &free);
+        pose
     }
 
     /// The rotation vector, rad.

@@ -1,24 +1,24 @@
-//! Settings-up: how each part lay where it was measured.
+//! Set-ups: how each part lay where it was measured.
 //!
-//! In: a recording, and the readings of one of its runs. Out: a [`Setting`]: where the recording says that the datum is free, how the part
-//! lies ([`recording::Lie`]); where it does not say so and a rotation explains the readings, that. After the solution: the [`Rotation`] of
+//! In: a recording, and the readings of one of its runs. Out: a [`Setup`]: where the recording says that the datum is free, how the part
+//! lies ([`recording::PartPose`]); where it does not say so and a rotation explains the readings, that. After the solution: the [`Rotation`] of
 //! each part that turned. A part is turned before anything is solved, so that what is solved for is of first order, however it was clamped.
 
 use nalgebra::{DMatrix, DVector};
-use recording::{Instrument, Lie, PartDatum, PartReading, Recording, Turned, turned};
+use recording::{Instrument, PartDatum, PartPose, PartReading, Recording, Turned, turned};
 
 use crate::points::{Point, Points};
 use crate::solution::Solution;
 
-/// One setting-up: one run of one recording.
+/// One set-up: one run of one recording.
 #[derive(Clone, Debug)]
-pub(crate) struct Setting {
+pub(crate) struct Setup {
     /// The recording, by its place among those given.
     pub(crate) recording: usize,
     /// The run.
     pub(crate) run: i64,
     /// How the part lies, where its datum is free.
-    pub(crate) lie: Option<Lie>,
+    pub(crate) pose: Option<PartPose>,
     /// A rotation that nobody has spoken of.
     pub(crate) turned: Option<Turned>,
 }
@@ -38,7 +38,7 @@ pub struct Rotation {
     pub uncertainty: Option<f64>,
 }
 
-impl Setting {
+impl Setup {
     pub(crate) fn of(recording: &Recording, (number, run): (usize, i64), readings: &[PartReading]) -> Self {
         let free = recording.datum == PartDatum::Free;
         // Readings along normals show what the surface is, and it is not known how far along it they lie.
@@ -46,17 +46,17 @@ impl Setting {
         Self {
             recording: number,
             run,
-            lie: free.then(|| Lie::of(readings, false)),
+            pose: free.then(|| PartPose::of(readings, false)),
             turned: if plain { turned(readings) } else { None },
         }
     }
 }
 
-/// What is free in one setting-up: for each effect what it makes of the readings of that setting-up.
-pub(crate) fn effects(point: &Point, setting: &Setting, directions: [bool; 3]) -> Vec<f64> {
+/// What is free in one set-up: for each effect what it makes of the readings of that set-up.
+pub(crate) fn effects(point: &Point, setup: &Setup, directions: [bool; 3]) -> Vec<f64> {
     let displaced = point.direction.iter().zip(directions);
     let displaced = displaced.filter(|(_, free)| *free).map(|(component, _)| *component);
-    let rotations = setting.lie.map_or([false; 3], |lie| lie.rotations);
+    let rotations = setup.pose.map_or([false; 3], |pose| pose.rotations);
     let turned = point.levers.iter().zip(rotations).filter(|(_, seen)| *seen).map(|(lever, _)| *lever);
     displaced.chain(turned).collect()
 }
@@ -69,11 +69,11 @@ pub(crate) fn rotations(
     directions: [bool; 3],
 ) -> Vec<Rotation> {
     let mut found = Vec::new();
-    for (number, setting) in all.settings.iter().enumerate() {
-        let own: Vec<&Point> = fitted.iter().copied().filter(|point| point.setting == number).collect();
-        let (Some(lie), false) = (setting.lie, own.is_empty()) else { continue };
-        let axes: Vec<usize> = (0..3).filter(|axis| lie.rotations.get(*axis) == Some(&true)).collect();
-        let Some(rest) = Rest::of(&own, setting, solution, directions) else { continue };
+    for (number, setup) in all.setups.iter().enumerate() {
+        let own: Vec<&Point> = fitted.iter().copied().filter(|point| point.setup == number).collect();
+        let (Some(pose), false) = (setup.pose, own.is_empty()) else { continue };
+        let axes: Vec<usize> = (0..3).filter(|axis| pose.rotations.get(*axis) == Some(&true)).collect();
+        let Some(rest) = Rest::of(&own, setup, solution, directions) else { continue };
         let first = rest.effects - axes.len();
         let mut more = [0.0; 3];
         for (place, axis) in axes.iter().enumerate() {
@@ -81,11 +81,11 @@ pub(crate) fn rotations(
                 *slot = rest.amount(first + place);
             }
         }
-        let angles = lie.rotation_after(more);
+        let angles = pose.rotation_after(more);
         for (place, axis) in axes.iter().enumerate() {
             found.push(Rotation {
-                file: all.parts.get(setting.recording).map_or(String::new(), |part| part.file.clone()),
-                run: setting.run,
+                file: all.parts.get(setup.recording).map_or(String::new(), |part| part.file.clone()),
+                run: setup.run,
                 about: ["X", "Y", "Z"].get(*axis).copied().unwrap_or("?"),
                 angle: angles.get(*axis).copied().unwrap_or(f64::NAN),
                 uncertainty: rest.uncertainty(first + place, solution),
@@ -95,7 +95,7 @@ pub(crate) fn rotations(
     found
 }
 
-/// What the solution leaves of one setting-up, and what is free in it.
+/// What the solution leaves of one set-up, and what is free in it.
 struct Rest {
     effects: usize,
     /// What least squares make each effect, from the readings.
@@ -106,8 +106,8 @@ struct Rest {
 }
 
 impl Rest {
-    fn of(own: &[&Point], setting: &Setting, solution: &Solution, directions: [bool; 3]) -> Option<Self> {
-        let columns: Vec<Vec<f64>> = own.iter().map(|point| effects(point, setting, directions)).collect();
+    fn of(own: &[&Point], setup: &Setup, solution: &Solution, directions: [bool; 3]) -> Option<Self> {
+        let columns: Vec<Vec<f64>> = own.iter().map(|point| effects(point, setup, directions)).collect();
         let effects = columns.first().map_or(0, Vec::len);
         let at = |row: &[f64], column: usize| row.get(column).copied().unwrap_or(0.0);
         let free = DMatrix::from_fn(own.len(), effects, |row, column| {
@@ -126,7 +126,7 @@ impl Rest {
         (self.inverse.row(effect) * &self.left).sum()
     }
 
-    /// The standard uncertainty of an effect: that of the readings, and that of the coefficients, which are free of what a setting-up can
+    /// The standard uncertainty of an effect: that of the readings, and that of the coefficients, which are free of what a set-up can
     /// make.
     fn uncertainty(&self, effect: usize, solution: &Solution) -> Option<f64> {
         let row = self.inverse.row(effect);

@@ -43,10 +43,11 @@ fn a_rotation_is_found_exactly_also_a_large_one() {
         let angle = f64::to_radians(degrees);
         let flat: Vec<PartReading> =
             read(&points([300.0, 200.0, 0.0]), about_z(angle), [0.2, -0.1, 0.0], &[0, 1]);
-        let lie = Lie::of(&flat, false);
-        assert_eq!((lie.displacements, lie.rotations), ([true, true, false], [false, false, true]));
-        assert!((lie.rotation()[2] - angle).abs() < 1e-12, "{degrees}: {:?}", lie.rotation());
-        let room = Lie::of(&read(&points([300.0, 200.0, 90.0]), about_x(angle), [0.3; 3], &[0, 1, 2]), false);
+        let pose = PartPose::of(&flat, false);
+        assert_eq!((pose.displacements, pose.rotations), ([true, true, false], [false, false, true]));
+        assert!((pose.rotation()[2] - angle).abs() < 1e-12, "{degrees}: {:?}", pose.rotation());
+        let room =
+            PartPose::of(&read(&points([300.0, 200.0, 90.0]), about_x(angle), [0.3; 3], &[0, 1, 2]), false);
         assert_eq!(room.rotations, [true; 3]);
         let expected = [angle, 0.0, 0.0];
         assert!(room.rotation().iter().zip(expected).all(|(one, other)| (one - other).abs() < 1e-12));
@@ -57,16 +58,16 @@ fn a_rotation_is_found_exactly_also_a_large_one() {
 fn the_part_is_moved_to_where_it_was_read() {
     let places = points([300.0, 200.0, 90.0]);
     let readings = read(&places, about_x(0.02), [0.0; 3], &[0, 1, 2]);
-    let lie = Lie::of(&readings, false);
+    let pose = PartPose::of(&readings, false);
     // What is left is one displacement, that of the middle.
     let left: Vec<f64> = readings
         .iter()
         .filter(|reading| reading.direction[1] == 1.0)
-        .map(|reading| reading.deviation - (lie.moved(reading.place)[1] - reading.place[1]))
+        .map(|reading| reading.deviation - (pose.moved(reading.place)[1] - reading.place[1]))
         .collect();
     assert!(left.iter().all(|one| (one - left[0]).abs() < 1e-10));
     // The direction that is read along Y lies in the part as the matrix, turned back, has it.
-    let back = lie.back([0.0, 1.0, 0.0]);
+    let back = pose.back([0.0, 1.0, 0.0]);
     let expected = [0.0, 0.02_f64.cos(), -0.02_f64.sin()];
     assert!(back.iter().zip(expected).all(|(one, other)| (one - other).abs() < 1e-12), "{back:?}");
 }
@@ -74,17 +75,19 @@ fn the_part_is_moved_to_where_it_was_read() {
 #[test]
 fn levers_are_what_a_little_more_rotation_does() {
     let readings = read(&points([300.0, 200.0, 90.0]), about_z(0.3), [0.0; 3], &[0, 1, 2]);
-    let lie = Lie::of(&readings, false);
+    let pose = PartPose::of(&readings, false);
     let (place, direction) = ([250.0, 30.0, 80.0], [0.36, 0.48, -0.8]);
     let small = 1e-6;
     for axis in 0..3 {
         let mut more = [0.0; 3];
         more[axis] = small;
-        let further =
-            Lie { rotation: UnitQuaternion::from_scaled_axis(Vector3::from(more)) * lie.rotation, ..lie };
-        let along = |lie: &Lie| Vector3::from(lie.moved(place)).dot(&Vector3::from(direction));
-        let slope = (along(&further) - along(&lie)) / small;
-        assert!((slope - lie.levers(direction, place)[axis]).abs() < 1e-4, "{axis}");
+        let further = PartPose {
+            rotation: UnitQuaternion::from_scaled_axis(Vector3::from(more)) * pose.rotation,
+            ..pose
+        };
+        let along = |pose: &PartPose| Vector3::from(pose.moved(place)).dot(&Vector3::from(direction));
+        let slope = (along(&further) - along(&pose)) / small;
+        assert!((slope - pose.levers(direction, place)[axis]).abs() < 1e-4, "{axis}");
     }
 }
 
@@ -92,7 +95,7 @@ fn levers_are_what_a_little_more_rotation_does() {
 fn what_the_readings_cannot_show_is_not_free() {
     let unturned = about_z(0.0);
     let seen = |size: [f64; 3], directions: &[usize]| {
-        Lie::of(&read(&points(size), unturned, [0.0; 3], directions), false).rotations
+        PartPose::of(&read(&points(size), unturned, [0.0; 3], directions), false).rotations
     };
     // A flat part, one with holes of unlike depth, and one that is as deep as it is wide.
     assert_eq!(seen([300.0, 200.0, 0.0], &[0, 1]), [false, false, true]);
@@ -102,14 +105,14 @@ fn what_the_readings_cannot_show_is_not_free() {
     assert_eq!(seen([300.0, 200.0, 0.0], &[2]), [true, true, false]);
     assert_eq!(seen([300.0, 0.0, 0.0], &[0]), [false; 3]);
     assert_eq!(seen([300.0, 0.0, 0.0], &[0, 1, 2]), [false, true, true]);
-    assert_eq!(Lie::of(&[], false).rotations, [false; 3]);
+    assert_eq!(PartPose::of(&[], false).rotations, [false; 3]);
 }
 
 #[test]
 fn a_constant_of_all_readings_takes_the_place_of_a_displacement() {
     let heights = read(&points([300.0, 200.0, 0.0]), about_x(0.001), [0.0, 0.0, 0.4], &[2]);
-    assert_eq!(Lie::of(&heights, false).displacements, [false, false, true]);
-    let zeroed = Lie::of(&heights, true);
+    assert_eq!(PartPose::of(&heights, false).displacements, [false, false, true]);
+    let zeroed = PartPose::of(&heights, true);
     assert_eq!((zeroed.displacements, zeroed.rotations), ([false; 3], [true, true, false]));
     assert!((zeroed.rotation()[0] - 0.001).abs() < 1e-12);
 }
@@ -119,7 +122,7 @@ fn missing_readings_are_none() {
     let mut readings = read(&points([300.0, 200.0, 0.0]), about_z(0.001), [0.0; 3], &[0, 1]);
     readings[3].deviation = f64::NAN;
     readings[8].place[1] = f64::NAN;
-    assert!((Lie::of(&readings, false).rotation()[2] - 0.001).abs() < 1e-12);
+    assert!((PartPose::of(&readings, false).rotation()[2] - 0.001).abs() < 1e-12);
 }
 
 #[test]

@@ -764,9 +764,12 @@ mod replay {
             assert!(run.err.contains(words), "{arguments:?}: {}", run.err);
             assert!(!Path::new(&output).exists(), "{arguments:?}");
         }
-        // A recording is never replaced by its own prediction, unless that is asked for.
-        let run = abbe(&["simulate", &full, &recording, "--output", folder.to_str().unwrap()], "");
-        assert_eq!(run.status, 2);
-        assert!(run.err.contains("already exists"), "{}", run.err);
+        // A recording is never replaced by its own prediction.
+        for force in [&[] as &[&str], &["--force"]] {
+            let own = ["simulate", &full, &recording, "--output", folder.to_str().unwrap()];
+            let run = abbe(&[&own, force].concat(), "");
+            assert_eq!(run.status, 2);
+            assert!(run.err.contains("is one of the files that this command reads"), "{}", run.err);
+        }
     }
 }

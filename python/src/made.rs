@@ -1,7 +1,7 @@
 //! `abbe.simulate`, `abbe.calibrate` and `abbe.update`: what makes recordings and calibrations. In: calibrations, paths, set-ups,
 //! recordings. Out: a recording; a report with a calibration.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use ::update::{Method, Options};
 use exchange::instrument::report as instruments;
@@ -57,10 +57,14 @@ pub(crate) fn simulate(
     });
     let known = known.transpose()?;
     let output = output.map(file::path).transpose()?.map(|path| Output::of(&path));
+    let driven = Driven::read(path)?;
     if let Some(output) = &output {
-        output.check(force).map_err(|failure| raised(py, &failure))?;
+        let source = driven.source();
+        let of_path = (source, Path::new(source.name()));
+        let read = simulated::files_read((calibrated, calibration_path), known.as_deref(), of_path);
+        output.check(&read, force).map_err(|failure| raised(py, &failure))?;
     }
-    let predicted = match Driven::read(path)? {
+    let predicted = match driven {
         Driven::Path(source) => working(py, |heard| simulated::driven(&source, calibrated, seed, heard))?,
         Driven::Recording(_) if seed.is_some() => {
             return Err(wrong(
@@ -117,6 +121,13 @@ impl Driven {
             return Ok(Self::Recording(Box::new(recording.recorded().clone())));
         }
         Ok(Self::Path(text.source))
+    }
+
+    fn source(&self) -> &SourceFile {
+        match self {
+            Self::Path(source) => source,
+            Self::Recording(recorded) => &recorded.source,
+        }
     }
 }
 

@@ -249,3 +249,13 @@ def test_options_are_told_as_arguments(tmp_path: pathlib.Path) -> None:
         stage.write(tmp_path / "stage.yaml")
     with pytest.raises(abbe.Error, match="give its travel with ranges Z"):
         abbe.Calibration(MILL).map("XY", at={"Z": 1e6})
+
+
+def test_a_simulation_goes_over_no_file_that_it_reads(tmp_path: pathlib.Path) -> None:
+    own = tmp_path / "stage.yaml"
+    scaled(1).write(own)
+    before = own.read_text()
+    path = {"path": 1, "line": {"axis": "X", "from": "0 mm", "to": "20 mm"}, "feed": "1000 mm/min", "rate": "100 Hz", "instrument": "position"}
+    with pytest.raises(abbe.Error, match="is one of the files that this command reads"):
+        abbe.simulate(abbe.Calibration(own), path, output=own, force=True)
+    assert own.read_text() == before

@@ -1,15 +1,11 @@
 //! `abbe simulate`: the recording that a calibration predicts, along a path or in place of another recording, as two files.
 
-use std::path::PathBuf;
-
-use model_dsl::source::SourceFile;
 use simulation::picture;
-use workshop::calibrated::{self, Calibrated};
+use workshop::calibrated;
 use workshop::failure::Failure;
 use workshop::load;
-use workshop::named::Files;
 use workshop::recorded::{self, Recorded};
-use workshop::simulated::{Output, driven, is_recording, known_calibration, plant, replayed};
+use workshop::simulated::{Output, driven, files_read, is_recording, known_calibration, plant, replayed};
 use workshop::written;
 
 use crate::arguments::Simulate;
@@ -25,7 +21,7 @@ pub(crate) fn run(command: &Simulate) -> Result<(), Failure> {
     let known = known.map(|known| known_calibration(known, &names, &Person::default())).transpose()?;
     let output = Output::of(&command.output);
     let source = load::read(&command.path)?;
-    let read = read_files(command, &calibrated, &source);
+    let read = files_read((&calibrated, &command.calibration), known.as_deref(), (&source, &command.path));
     output.check(&read, command.force)?;
     if let Some(plot) = &command.plot {
         let others = [read, vec![output.recording.clone(), output.data_path()]].concat();
@@ -53,14 +49,6 @@ pub(crate) fn run(command: &Simulate) -> Result<(), Failure> {
     let rows = simulated.time.len();
     warn(&format!("{rows} rows: {} and {}", output.recording.display(), output.data_path().display()));
     Ok(())
-}
-
-/// All files that the command reads: it writes over none of them.
-fn read_files(command: &Simulate, calibrated: &Calibrated, source: &SourceFile) -> Vec<PathBuf> {
-    let machine = command.calibration.with_file_name(&calibrated.calibration.machine.value);
-    let read = [command.calibration.clone(), machine].into_iter().chain(command.known.clone());
-    // A path names no other file; a recording names its data.
-    read.chain(Files::named_in(source, &command.path).all(None)).collect()
 }
 
 /// The recording that is to be replayed.

@@ -15,6 +15,7 @@ use simulation::{Plant, Simulated};
 
 use crate::calibrated::{self, Calibrated};
 use crate::failure::Failure;
+use crate::named::Files;
 use crate::recorded::Recorded;
 use crate::told::{Listener, Words};
 
@@ -41,6 +42,20 @@ pub fn driven(
     let simulated = simulation::simulate(&plant, &scenario);
     listener.end();
     simulated.map_err(|error| wrong(&error))
+}
+
+/// The files that a simulation reads: a calibration by the name of its file, its machine, the calibration that is known, and a path file or
+/// a recording with what it names. None of them may be written over.
+#[must_use]
+pub fn files_read(
+    (calibrated, path): (&Calibrated, &Path),
+    known: Option<&Path>,
+    (driven, driven_path): (&SourceFile, &Path),
+) -> Vec<PathBuf> {
+    let machine = path.with_file_name(&calibrated.calibration.machine.value);
+    let read = [path.to_owned(), machine].into_iter().chain(known.map(Path::to_owned));
+    // A path names no other file; a recording names its data.
+    read.chain(Files::named_in(driven, driven_path).all(None)).collect()
 }
 
 /// What a calibration, by the name of its file, predicts in place of a recording, without noise.

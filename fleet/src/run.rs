@@ -136,7 +136,7 @@ pub fn all(
     Ok(Done { recordings: plan.recordings, diagnosed, errors, followed, waiting, put_off: put_off.len() })
 }
 
-/// So many recordings that cannot be read are named; the history has all of them.
+/// The command names at most this many unreadable recordings, half a screen; the history has all of them.
 const MOST_NAMED: usize = 10;
 
 /// Tells which recordings cannot be read, and why; their number.

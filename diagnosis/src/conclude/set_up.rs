@@ -252,12 +252,19 @@ fn own_axis(study: &Study<'_>, channel: &Channel<'_>) -> Option<usize> {
 }
 
 /// Whether readings that are multiples of a step cannot come from a display of that step: they agree with a command, up to a zero, more
-/// closely than such a display shows it by chance. The command is no multiple of the step.
+/// closely than such a display shows it by chance. The command does not go by multiples of the step: the readings of targets that do all
+/// lie alike in their steps.
 fn are_targets(values: &[f64], command: &[f64], step: f64) -> bool {
     let away: Vec<f64> = values.iter().zip(command).map(|(value, command)| value - command).collect();
-    // What a display shows lies anywhere within its step around it, at each place for itself.
-    let by_chance = (range(&away) / step).powf(crate::number(places(values, step)));
-    by_chance < CHANCE && noise::display_step(command) < FINER * step
+    let first = command.first().copied().unwrap_or_default();
+    let ways: Vec<f64> = command.iter().map(|command| command - first).collect();
+    within(range(&away) / step, places(values, step)) < CHANCE && noise::display_step(&ways) < FINER * step
+}
+
+/// The chance that so many numbers, each anywhere between 0 and 1, lie within a range.
+fn within(range: f64, count: usize) -> f64 {
+    let (range, count) = (range.min(1.0), crate::number(count));
+    count * range.powf(count - 1.0) - (count - 1.0) * range.powf(count)
 }
 
 /// How many different values there are, to the nearest step.
@@ -269,9 +276,9 @@ fn places(values: &[f64], step: f64) -> usize {
     places.len()
 }
 
-/// The chance that is too small to be one.
+/// Once in a thousand recordings a display reads so by chance.
 const CHANCE: f64 = 1e-3;
-/// The digits of a command that is no multiple of a step: one decade more at least.
+/// A command that does not go by multiples of a step has one decimal digit more at least: a tenth of the step, and its rounding.
 const FINER: f64 = 0.11;
 
 /// Why the path cannot be the circle that a ballbar was set up for, where that is so: fitted to it, the bar is longer or shorter

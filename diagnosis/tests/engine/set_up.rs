@@ -9,7 +9,7 @@ use crate::common::*;
 use crate::recording::{Instrument, Line, Recording};
 use crate::testing::*;
 
-/// A run of stations there and back for each of so many runs, with the error at each: 20 ppm and a play of 8 um, and 1 um of noise.
+/// Several runs over stations, forward and backward, and the error at each station: 20 ppm, a backlash of 8 um, and noise of 1 um.
 fn stations(targets: &[f64], runs: i64) -> (Recording, Vec<f64>) {
     let both_ways = || targets.iter().map(|at| (*at, -1.0)).chain(targets.iter().rev().map(|at| (*at, 1.0)));
     let of_runs: Vec<(f64, f64)> = (0..runs).flat_map(|_| both_ways()).collect();
@@ -63,6 +63,18 @@ fn a_display_is_no_exchange() {
         *reading = (*reading * 100.0).round() / 100.0;
     }
     assert_eq!(of_stage(&recording).undecidable, None);
+    // Targets at a regular pitch lie alike in the steps of a display, and one that stands has one reading.
+    let (mut pitched, _) = stations(&[3.137, 28.137, 53.137, 78.137, 103.137, 128.137], 4);
+    pitched.instrument = Instrument::Position;
+    let shown = |at: &f64| (at * 10.0).round() / 10.0;
+    pitched.measured[0] = pitched.axes[0].command.as_ref().map(|command| command.iter().map(shown).collect());
+    assert_eq!(of_stage(&pitched).undecidable, None);
+    let mill = Bench::of("xyfz-mill");
+    let beside =
+        Path { at: vec![vec![], vec![172.0004], vec![]], runs: 3, ..path(line(0, 1.0, 97.3), 7.3, 9.0) };
+    let mut beside = mill.record(&mill.calibration("{}"), &noisy(beside, position("xy"), 0.0005, 4));
+    beside.measured[1].iter_mut().flatten().for_each(|reading| *reading = shown(reading));
+    assert_eq!(diagnosed(&mill, &mill.calibration("{}"), &[&beside]).undecidable, None);
     // Targets that a coarse display shows as they were commanded.
     let (mut recording, _) = stations(&[0.0, 25.0, 50.0, 75.0, 100.0, 125.0], 4);
     recording.instrument = Instrument::Position;

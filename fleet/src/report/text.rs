@@ -4,7 +4,7 @@ use super::{age, count, counted, most, open, verdict};
 use crate::diagnosed::ERROR;
 use crate::history::{BOUND, Entry, History};
 
-/// So many recordings of a machine that cannot be read are named, the latest first.
+/// The report names at most this many unreadable recordings of a machine, the latest first: as many as fit a glance.
 const MOST_NAMED: usize = 3;
 
 /// The report for a terminal that is so many columns wide.

@@ -16,7 +16,7 @@ const MOST_LINKS: usize = 40;
 /// The largest number of files of other attempts that may be in the way.
 const MOST_ATTEMPTS: u32 = 1000;
 
-/// A file that is complete and has not got its name yet. If it is dropped before [`Self::keep`], it is deleted.
+/// A complete file that does not have its final name yet. If it is dropped before [`Self::keep`], it is deleted.
 #[derive(Debug)]
 pub struct Staged {
     /// Where it is, and its name; nothing where the content is at its place already.

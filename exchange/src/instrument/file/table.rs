@@ -95,7 +95,7 @@ fn read_header(header: Piece<'_>, columns: &Columns<'_>, diagnostics: &mut Diagn
     Some(Layout { separator, width, target, deviation, target_unit, deviation_unit, run, direction })
 }
 
-/// The name of a column and the unit in brackets behind it, as in `x [mm]`; nothing where what stands there is no unit.
+/// Splits `x [mm]` into the name of the column and its unit. `None` if the brackets hold no unit.
 fn with_unit(cell: Piece<'_>) -> Option<(&str, Spanned<Unit>)> {
     let (name, unit) = unit_in_name(cell.text)?;
     Some((name, Spanned::new(parse_unit(unit).ok()?, cell.span)))

@@ -308,8 +308,8 @@ const BAR_READS_OF_LENGTH: f64 = 0.01;
 /// How far off, mm and rad, and as a share of the travel, is too far for an error of a machine.
 const FAR_OFF: (f64, f64) = (0.5, 0.01);
 const FAR_OFF_OF_TRAVEL: f64 = 0.05;
-/// The share of the travel from which on an error is doubtful: a belt that is stretched, or a screw in inches taken for a metric one, makes
-/// a scale error of as much.
+/// The share of the travel from which on an error is doubtful. Steel that is 80 K too warm is long by a thousandth, and no machine tool is
+/// worse: twice that.
 const DOUBTFUL_OF_TRAVEL: f64 = 2e-3;
 
 fn range(values: &[f64]) -> f64 {

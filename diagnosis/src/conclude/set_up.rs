@@ -255,13 +255,15 @@ fn own_axis(study: &Study<'_>, channel: &Channel<'_>) -> Option<usize> {
 /// closely than such a display shows it by chance. The command does not go by multiples of the step: the readings of targets that do all
 /// lie alike in their steps.
 fn are_targets(values: &[f64], command: &[f64], step: f64) -> bool {
-    let away: Vec<f64> = values.iter().zip(command).map(|(value, command)| value - command).collect();
-    let first = command.first().copied().unwrap_or_default();
-    let ways: Vec<f64> = command.iter().map(|command| command - first).collect();
-    within(range(&away) / step, places(values, step)) < CHANCE && noise::display_step(&ways) < FINER * step
+    let rows = values.iter().zip(command).filter(|(value, command)| value.is_finite() && command.is_finite());
+    let (readings, commands): (Vec<f64>, Vec<f64>) = rows.unzip();
+    let Some(first) = commands.first() else { return false };
+    let away: Vec<f64> = readings.iter().zip(&commands).map(|(value, command)| value - command).collect();
+    let ways: Vec<f64> = commands.iter().map(|command| command - first).collect();
+    within(range(&away) / step, places(&readings, step)) < CHANCE && noise::display_step(&ways) < FINER * step
 }
 
-/// The chance that so many numbers, each anywhere between 0 and 1, lie within a range.
+/// The probability that `count` independent numbers, uniformly distributed between 0 and 1, span at most `range`.
 fn within(range: f64, count: usize) -> f64 {
     let (range, count) = (range.min(1.0), crate::number(count));
     count * range.powf(count - 1.0) - (count - 1.0) * range.powf(count)
@@ -269,8 +271,7 @@ fn within(range: f64, count: usize) -> f64 {
 
 /// How many different values there are, to the nearest step.
 fn places(values: &[f64], step: f64) -> usize {
-    let mut places: Vec<f64> =
-        values.iter().filter(|value| value.is_finite()).map(|value| (value / step).round()).collect();
+    let mut places: Vec<f64> = values.iter().map(|value| (value / step).round()).collect();
     places.sort_by(f64::total_cmp);
     places.dedup();
     places.len()

@@ -69,6 +69,9 @@ fn a_display_is_no_exchange() {
     let shown = |at: &f64| (at * 10.0).round() / 10.0;
     pitched.measured[0] = pitched.axes[0].command.as_ref().map(|command| command.iter().map(shown).collect());
     assert_eq!(of_stage(&pitched).undecidable, None);
+    // Nor is it one where the first command is missing.
+    pitched.axes[0].command.as_mut().unwrap()[0] = f64::NAN;
+    assert_eq!(of_stage(&pitched).undecidable, None);
     let mill = Bench::of("xyfz-mill");
     let beside =
         Path { at: vec![vec![], vec![172.0004], vec![]], runs: 3, ..path(line(0, 1.0, 97.3), 7.3, 9.0) };

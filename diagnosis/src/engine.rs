@@ -315,8 +315,8 @@ impl Search {
         for round in 0..ROUNDS {
             progress(crate::number(round + 1) / crate::number(ROUNDS + 2));
             let next = self.choose(study);
-            let mut next = self.conditions().refine(study, next).model;
-            next = harmonics::try_harmonics(study, next, &self.conditions());
+            let fit = self.conditions().refine(study, next);
+            let mut next = harmonics::try_harmonics(study, fit, &self.conditions()).model;
             let mut settled = same_effects(&self.model, &next);
             if settled || round + 1 == ROUNDS {
                 next = dynamics::try_loops(study, next, &self.conditions());

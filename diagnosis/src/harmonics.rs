@@ -51,10 +51,18 @@ fn are_of_one_wave(one: &Effect, other: &Effect) -> bool {
 
 /// Whether an effect is part of a wave with harmonics that comes at least twice along its axis.
 pub(crate) fn comes_again(model: &Model, effect: &Effect, travels: &[Travel]) -> bool {
+    let others = model.effects.iter().map(|fitted| &fitted.effect);
+    comes_again_among(others, effect, |axis, far| far <= travels[axis].range())
+}
+
+/// The same beside these effects; `goes` tells whether an axis goes so far.
+pub(crate) fn comes_again_among<'e>(
+    mut others: impl Iterator<Item = &'e Effect>,
+    effect: &Effect,
+    goes: impl Fn(usize, f64) -> bool,
+) -> bool {
     let Shape::Cyclic { axis, period, .. } = effect.shape else { return false };
-    let is_other = |fitted: &&Fitted| fitted.effect != *effect;
-    let mut others = model.effects.iter().filter(is_other);
-    TWICE * period <= travels[axis].range() && others.any(|other| are_of_one_wave(&other.effect, effect))
+    goes(axis, TWICE * period) && others.any(|other| other != effect && are_of_one_wave(other, effect))
 }
 
 /// An effect of a model and, where it is a harmonic from the second on, those of the same wave beside it, by their numbers.
@@ -148,72 +156,109 @@ fn harmonics(study: &Study<'_>, wave: &Effect, travels: &[Travel]) -> Vec<Effect
         .collect()
 }
 
-/// Tries the harmonics of each wave of a model, in the place of waves that cannot be told from them; and harmonics that stand already as
+/// Tries the harmonics of each wave of a fitted model, in the place of waves that cannot be told from them; and harmonics that stand already as
 /// waves by themselves.
-pub(crate) fn try_harmonics(study: &Study<'_>, model: Model, conditions: &Conditions<'_>) -> Model {
-    if !model.chosen().iter().any(|fitted| is_fundamental(&fitted.effect)) {
-        return model;
-    }
-    let now = conditions.refine(study, model);
+pub(crate) fn try_harmonics(study: &Study<'_>, now: Fit, conditions: &Conditions<'_>) -> Fit {
     let waves =
         now.model.chosen().iter().map(|fitted| &fitted.effect).filter(|effect| is_fundamental(effect));
     let mut trials: Vec<Fit> =
-        waves.filter_map(|wave| with_harmonics(study, &now.model, wave, conditions)).collect();
+        waves.filter_map(|wave| cheaper_with_harmonics(study, &now, wave, conditions)).collect();
     let groups = sharing(&now.model.effects).into_iter().filter(|group| group.len() > 1);
     trials.extend(groups.map(|group| conditions.refine(study, set_apart(&now.model, &group))));
-    conditions.cheapest(study, now, trials).model
+    conditions.cheapest(study, now, trials)
+}
+
+/// A fit with harmonics of a wave that costs less than the present one. At first they take the place of all waves that cannot be told from
+/// them. Where that costs more, one of those waves is something else, and each may stay in the place of the harmonics that it hides.
+fn cheaper_with_harmonics(
+    study: &Study<'_>,
+    now: &Fit,
+    wave: &Effect,
+    conditions: &Conditions<'_>,
+) -> Option<Fit> {
+    let cost = conditions.cost(study, now);
+    let is_cheaper = |fit: &Fit| conditions.cost(study, fit) < cost;
+    with_harmonics(study, now, wave, &[], conditions).filter(is_cheaper).or_else(|| {
+        let imitators = imitators(study, &now.model, wave, conditions);
+        if imitators.is_empty() {
+            return None;
+        }
+        with_harmonics(study, now, wave, &imitators, conditions).filter(is_cheaper)
+    })
+}
+
+/// The waves of a model that cannot be told from a harmonic of one of them.
+fn imitators(study: &Study<'_>, model: &Model, wave: &Effect, conditions: &Conditions<'_>) -> Vec<Effect> {
+    let harmonics = harmonics(study, wave, conditions.travels);
+    let resolution = Resolution::new(study, conditions.travels);
+    let effects = model.chosen().iter().map(|fitted| &fitted.effect);
+    let others = effects.filter(|effect| *effect != wave && !is_other_harmonic(effect, wave));
+    others.filter(|effect| imitates_one(&resolution, effect, &harmonics)).cloned().collect()
+}
+
+/// Whether an effect is a harmonic of a wave, from the second on.
+fn is_other_harmonic(effect: &Effect, wave: &Effect) -> bool {
+    !is_fundamental(effect) && are_of_one_wave(effect, wave)
+}
+
+/// Whether an effect is a wave that cannot be told from one of these.
+fn imitates_one(resolution: &Resolution, effect: &Effect, waves: &[Effect]) -> bool {
+    waves.iter().any(|wave| effect.place == wave.place && resolution.blurs(&wave.shape, &effect.shape))
 }
 
 fn is_fundamental(effect: &Effect) -> bool {
     order(effect) == Some(1)
 }
 
-/// A fit with those harmonics of a wave that pay and are no chance; `None` where there are none.
+/// A fit with those harmonics of a wave that pay and are no chance; `None` where there are none. Of the imitators each may stay in the place
+/// of the harmonics that it cannot be told from.
 fn with_harmonics(
     study: &Study<'_>,
-    model: &Model,
+    now: &Fit,
     wave: &Effect,
+    imitators: &[Effect],
     conditions: &Conditions<'_>,
 ) -> Option<Fit> {
     let mut harmonics = harmonics(study, wave, conditions.travels);
-    let fit = with_those_that_pay(study, model, wave, &harmonics, conditions)?;
+    let (fit, fundamental) = with_those_that_pay(study, now, wave, (&harmonics, imitators), conditions)?;
     let effects = &fit.model.effects;
-    let of_this_wave = sharing(effects).into_iter().find(|group| group.contains(&(effects.len() - 1)))?;
-    let fundamental = *of_this_wave.iter().find(|number| is_fundamental(&effects[**number].effect))?;
     let highest = highest(study, &fit.model, fundamental, conditions)?;
     let is_chance = |effect: &Effect| order(effect).is_some_and(|order| f64::from(order) > highest);
-    if !of_this_wave.iter().any(|number| is_chance(&effects[*number].effect)) {
+    let of_this_wave = |effect: &&Effect| are_of_one_wave(effect, &effects[fundamental].effect);
+    if !effects.iter().map(|fitted| &fitted.effect).filter(of_this_wave).any(is_chance) {
         return Some(fit);
     }
     harmonics.retain(|harmonic| !is_chance(harmonic));
-    with_those_that_pay(study, model, wave, &harmonics, conditions)
+    let fit = with_those_that_pay(study, now, wave, (&harmonics, imitators), conditions);
+    fit.map(|(fit, _)| fit)
 }
 
 /// A fit with those of some harmonics of a wave that pay, in the place of those that the model has and of waves that cannot be told from
-/// any of them; `None` where none pays. The harmonics are its last effects.
+/// any of them, and the number of the wave in it; `None` where none pays. An imitator that pays more than the harmonics that it cannot be
+/// told from takes their place. `None` also where the present fit costs less than they do before they are fitted: the slopes of the periods
+/// are in that already.
 fn with_those_that_pay(
     study: &Study<'_>,
-    model: &Model,
+    now: &Fit,
     wave: &Effect,
-    harmonics: &[Effect],
+    (harmonics, imitators): (&[Effect], &[Effect]),
     conditions: &Conditions<'_>,
-) -> Option<Fit> {
+) -> Option<(Fit, usize)> {
     let resolution = Resolution::new(study, conditions.travels);
-    let is_one = |effect: &Effect| !is_fundamental(effect) && are_of_one_wave(effect, wave);
-    let imitates_one = |effect: &Effect| {
-        let blurs = |harmonic: &Effect| {
-            effect.place == harmonic.place && resolution.blurs(&harmonic.shape, &effect.shape)
-        };
-        harmonics.iter().any(blurs)
+    let stays = |effect: &Effect| {
+        effect == wave || !is_other_harmonic(effect, wave) && !imitates_one(&resolution, effect, harmonics)
     };
-    let stays = |effect: &Effect| effect == wave || !is_one(effect) && !imitates_one(effect);
-    let kept = model.keeping(|fitted| stays(&fitted.effect));
-    let paying = paying(study, &kept, harmonics.to_vec(), conditions);
-    if paying.is_empty() {
+    let kept = now.model.keeping(|fitted| stays(&fitted.effect));
+    let mut open = harmonics.to_vec();
+    open.extend(imitators.iter().filter(|imitator| !stays(imitator)).cloned());
+    let (paying, cost) = paying(study, &kept, open, conditions);
+    let has_harmonics = paying.iter().any(|effect| is_other_harmonic(effect, wave));
+    if !has_harmonics || cost > conditions.cost(study, now) {
         return None;
     }
+    let fundamental = kept.effects.iter().position(|fitted| fitted.effect == *wave)?;
     let model = paying.into_iter().fold(kept, |model, effect| model.with(Fitted::unfitted(effect)));
-    Some(conditions.refine(study, model))
+    Some((conditions.refine(study, model), fundamental))
 }
 
 /// The highest harmonic of a wave that is no chance: how well its length is known from its fundamental alone tells where its harmonics
@@ -235,8 +280,14 @@ fn order(effect: &Effect) -> Option<u32> {
     }
 }
 
-/// Those of some effects that pay for themselves beside a model, the one that gains most first.
-fn paying(study: &Study<'_>, model: &Model, open: Vec<Effect>, conditions: &Conditions<'_>) -> Vec<Effect> {
+/// Those of some effects that pay for themselves beside a model, the one that gains most first. Of a harmonic and a wave that cannot be told
+/// from it one alone does. Also what the model with them costs before it is fitted.
+fn paying(
+    study: &Study<'_>,
+    model: &Model,
+    open: Vec<Effect>,
+    conditions: &Conditions<'_>,
+) -> (Vec<Effect>, f64) {
     let first = model.effects.len();
     let mut regressors = Regressor::all(&model.effects);
     regressors.extend(open.iter().cloned().map(Regressor::of));
@@ -249,20 +300,29 @@ fn paying(study: &Study<'_>, model: &Model, open: Vec<Effect>, conditions: &Cond
     for column in beside.flat_map(|number| design.columns(number)) {
         swept.take(column);
     }
+    let price = |effect: &Effect| conditions.price(study, effect, samples);
+    let mut paid: f64 = model.chosen().iter().map(|fitted| price(&fitted.effect)).sum();
+    let resolution = Resolution::new(study, conditions.travels);
     let mut paying = Vec::new();
     let mut left: Vec<usize> = (0..open.len()).collect();
     loop {
         let gain = |number: &usize| {
             let columns: Vec<usize> = design.columns(first + number).collect();
             let share = swept.promise(&columns).0 / swept.remaining();
-            -samples * (1.0 - share).ln() - conditions.price(study, &open[*number], samples)
+            -samples * (1.0 - share).ln() - price(&open[*number])
         };
         let best = left.iter().copied().max_by(|a, b| gain(a).total_cmp(&gain(b)));
-        let Some(best) = best.filter(|best| gain(best) > 0.0) else { return paying };
+        let Some(best) = best.filter(|best| gain(best) > 0.0) else {
+            return (paying, samples * (swept.remaining() / samples).ln() + paid);
+        };
         for column in design.columns(first + best) {
             swept.take(column);
         }
-        left.retain(|number| *number != best);
+        let hides = |other: &Effect| {
+            !are_of_one_wave(other, &open[best]) && resolution.blurs(&other.shape, &open[best].shape)
+        };
+        left.retain(|number| *number != best && !hides(&open[*number]));
+        paid += price(&open[best]);
         paying.push(open[best].clone());
     }
 }

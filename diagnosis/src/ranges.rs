@@ -98,6 +98,11 @@ impl Resolution {
         Self { frequency: 1.0 / observed, along: travels.iter().map(|travel| 1.0 / travel.range()).collect() }
     }
 
+    /// Whether an axis goes so far, mm or rad.
+    pub(crate) fn goes(&self, axis: usize, far: f64) -> bool {
+        self.along.get(axis).is_some_and(|along| far * along <= 1.0)
+    }
+
     /// Whether two shapes are waves that cannot be told apart.
     pub(crate) fn blurs(&self, a: &Shape, b: &Shape) -> bool {
         match (a, b) {

@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 
 use crate::candidates::simplicity;
 use crate::design::Design;
-use crate::harmonics::HIGHEST;
+use crate::harmonics::{HIGHEST, comes_again_among};
 use crate::model::Effect;
 use crate::ranges::{Resolution, holds};
 use crate::study::Study;
@@ -72,6 +72,8 @@ pub(crate) struct Choice<'d> {
     rotations: Vec<bool>,
     /// The plausible sizes of each regressor.
     plausible: Vec<Option<Range>>,
+    /// Whether each regressor is part of a wave that comes again, which is no part of a curve.
+    again: Vec<bool>,
     /// Regressors that may be chosen.
     open: Vec<usize>,
     prices: Vec<f64>,
@@ -109,8 +111,24 @@ impl<'d> Choice<'d> {
         let rotations = design.regressors.iter().map(|regressor| rotates(study, &regressor.effect)).collect();
         let plausible =
             design.regressors.iter().map(|regressor| plausible(study, &regressor.effect)).collect();
+        let effects = || design.regressors.iter().map(|regressor| &regressor.effect);
+        let comes_again =
+            |effect: &Effect| comes_again_among(effects(), effect, |axis, far| resolution.goes(axis, far));
+        let again = effects().map(comes_again).collect();
         let always = (0..fixed).collect();
-        Self { design, always, zeroed, rotations, plausible, open, prices, samples, products, resolution }
+        Self {
+            design,
+            always,
+            zeroed,
+            rotations,
+            plausible,
+            again,
+            open,
+            prices,
+            samples,
+            products,
+            resolution,
+        }
     }
 
     /// The best set found, by numbers of regressors.
@@ -202,8 +220,8 @@ impl<'d> Choice<'d> {
         let against = |chosen: &usize| {
             let known = &self.design.regressors[*chosen].effect;
             let (a, b) = (&known.shape, &effect.shape);
-            rivals(known, effect)
-                || known.place == effect.place && (self.resolution.blurs(a, b) || holds(a, b) || holds(b, a))
+            let in_curve = (holds(a, b) && !self.again[regressor]) || (holds(b, a) && !self.again[*chosen]);
+            rivals(known, effect) || known.place == effect.place && (self.resolution.blurs(a, b) || in_curve)
         };
         if set.chosen.iter().any(against) {
             return false;

@@ -337,7 +337,8 @@ fn in_time(study: &Study<'_>, source: &Source, courses: &[Arc<Course>]) -> Optio
         gain: top.gain,
         local: top.local,
     };
-    Some(LookedAt { peaks: found.into_iter().map(peak).collect(), tried: span / (2.0 * step) })
+    // Pauses part the lines of a spectrum, and make no more of them independent: those are no more than the samples tell.
+    Some(LookedAt { peaks: found.into_iter().map(peak).collect(), tried: observed / (2.0 * step) })
 }
 
 /// What something has turned since the beginning of each recording, of which a channel records the speed.

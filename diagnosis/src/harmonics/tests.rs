@@ -144,7 +144,7 @@ fn a_wave_that_cannot_be_told_from_a_harmonic_becomes_one_and_others_come_with_i
     let recording = bent(&bench, 7);
     let trial = Trial::new(&bench, &recording);
     // A wave of 9.6 mm differs from one of 10 mm by 0.18 cycles over 44 mm.
-    let model = try_harmonics(&trial.study, trial.refined(&[(20.2, 1), (9.6, 1)]).model, &trial.conditions());
+    let model = try_harmonics(&trial.study, trial.refined(&[(20.2, 1), (9.6, 1)]), &trial.conditions()).model;
     let found = waves(&model);
     assert_eq!(found.iter().map(|(_, order)| *order).collect::<Vec<u32>>(), [1, 2, 3, 4]);
     assert!(found.iter().all(|(period, _)| *period == found[0].0), "{found:?}");
@@ -156,7 +156,7 @@ fn a_sine_has_no_harmonics_and_a_wave_that_is_told_from_one_stays() {
     let fundamental = "{cyclic: {period: 20 mm, amplitude: 20 um, phase: 50 deg}}";
     let sine = record(&bench, fundamental, 9);
     let trial = Trial::new(&bench, &sine);
-    let model = try_harmonics(&trial.study, trial.refined(&[(20.0, 1)]).model, &trial.conditions());
+    let model = try_harmonics(&trial.study, trial.refined(&[(20.0, 1)]), &trial.conditions()).model;
     assert_eq!(waves(&model).len(), 1);
     // 9 mm are 0.49 cycles from 10 mm over 44 mm: of 5 um that is far above the noise.
     let beside = record(
@@ -165,7 +165,7 @@ fn a_sine_has_no_harmonics_and_a_wave_that_is_told_from_one_stays() {
         9,
     );
     let trial = Trial::new(&bench, &beside);
-    let model = try_harmonics(&trial.study, trial.refined(&[(20.0, 1), (9.0, 1)]).model, &trial.conditions());
+    let model = try_harmonics(&trial.study, trial.refined(&[(20.0, 1), (9.0, 1)]), &trial.conditions()).model;
     let found = waves(&model);
     assert_eq!(found.iter().map(|(_, order)| *order).collect::<Vec<u32>>(), [1, 1]);
     assert!((found[1].0 - 9.0).abs() < 0.01, "{found:?}");
@@ -187,7 +187,7 @@ fn a_wave_whose_length_is_hardly_known_has_no_harmonics() {
     let tied = trial.refined(&[(20.0, 1), (20.0, 4)]);
     let conditions = trial.conditions();
     assert!(conditions.cost(&trial.study, &tied) < conditions.cost(&trial.study, &fit), "it would cost less");
-    let model = try_harmonics(&trial.study, fit.model, &conditions);
+    let model = try_harmonics(&trial.study, fit, &conditions).model;
     assert_eq!(waves(&model).iter().map(|(_, order)| *order).collect::<Vec<u32>>(), [1, 1]);
 }
 
@@ -200,10 +200,27 @@ fn harmonics_that_cost_more_than_waves_by_themselves_are_set_apart() {
     };
     let recording = record(&bench, &format!("{}, {}", wave(20.0, 20.0), wave(9.6, 5.0)), 17);
     let trial = Trial::new(&bench, &recording);
-    let tied = trial.refined(&[(20.0, 1), (20.0, 2)]).model;
-    let found = waves(&try_harmonics(&trial.study, tied, &trial.conditions()));
+    let tied = trial.refined(&[(20.0, 1), (20.0, 2)]);
+    let found = waves(&try_harmonics(&trial.study, tied, &trial.conditions()).model);
     assert_eq!(found.iter().map(|(_, order)| *order).collect::<Vec<u32>>(), [1, 1]);
     assert!((found[1].0 - 9.6).abs() < 0.01, "{found:?}");
+}
+
+/// A wave of 9 mm cannot be told from a second harmonic of 20 mm by its length alone, and of 5 um it is none. The third and the fourth are
+/// harmonics all the same.
+#[test]
+fn a_wave_of_another_cause_keeps_no_harmonics_from_their_wave() {
+    let bench = Bench::of("FX");
+    let wave = |(period, amplitude): (f64, f64)| {
+        format!("{{cyclic: {{period: {period} mm, amplitude: {amplitude} um, phase: 50 deg}}}}")
+    };
+    let waves_there = [(20.0, 20.0), (9.0, 5.0), (20.0 / 3.0, 1.0), (5.0, 0.5)];
+    let recording = record(&bench, &waves_there.map(wave).join(", "), 19);
+    let trial = Trial::new(&bench, &recording);
+    let fit = trial.refined(&waves_there.map(|(period, _)| (period, 1)));
+    let found = waves(&try_harmonics(&trial.study, fit, &trial.conditions()).model);
+    assert_eq!(found.iter().map(|(_, order)| *order).collect::<Vec<u32>>(), [1, 1, 3, 4], "{found:?}");
+    assert!((found[1].0 - 9.0).abs() < 0.01, "{found:?}");
 }
 
 #[test]

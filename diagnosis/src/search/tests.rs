@@ -227,6 +227,40 @@ fn of_two_that_bend_alike_in_one_place_one_is_enough() {
     }
 }
 
+/// What one turn of a screw does, the next does too. A table that bends as such a wave does stands for neither it nor its harmonics; a wave
+/// without harmonics may be part of a curve.
+#[test]
+fn a_wave_that_comes_again_stands_beside_a_table() {
+    let bench = Bench::of("XFY");
+    let recording =
+        bench.record(&bench.calibration("{}"), &scenario(path(circle(40.0), 20.0, 10.0), position("xy")));
+    let study = Study::new(bench.equations(), None, &[&recording]);
+    let on = |shape: Shape| Effect {
+        place: Place::Motion { motion: bench.motion("EXX"), side: Side::After },
+        shape,
+    };
+    let nodes = (0..11).map(|node| -40.0 + 8.0 * f64::from(node)).collect();
+    let wave = |period, order| Shape::Cyclic { axis: 0, period, order, center: 0.0 };
+    // X goes 80 mm: 40 mm come again, 60 mm do not.
+    let effects = [
+        on(Shape::Table { axis: 0, nodes, directed: false, repeats: false }),
+        on(wave(40.0, 1)),
+        on(wave(40.0, 3)),
+        on(wave(60.0, 1)),
+        on(wave(60.0, 4)),
+        on(wave(25.0, 1)),
+    ];
+    let model = Model::of(effects.into_iter().map(Fitted::unfitted));
+    let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3); 2]]));
+    let (products, samples) = design.fitted();
+    let travels = crate::travel::travels(&study, &crate::engine::courses(&study, &Model::default()));
+    let resolution = Resolution::new(&study, &travels);
+    let choice = Choice::new(&study, &design, products, samples, 0, 1.0, resolution);
+    let table = choice.with(&choice.empty(), 0);
+    let beside: Vec<bool> = (1..6).map(|wave| choice.fits(&table, wave)).collect();
+    assert_eq!(beside, [true, true, false, false, false]);
+}
+
 /// Whether each of some effects of X outgrows what there is to explain, all of them being fitted to a recording of X and Y.
 fn outgrown(calibration: &str, effects: &[(&str, Shape)]) -> Vec<bool> {
     let bench = Bench::of("XFY");

@@ -125,7 +125,6 @@ impl Revision<'_> {
         for column in (0..model.effects.len()).flat_map(|number| design.columns(number)) {
             whole.take(column);
         }
-        let scale = (whole.remaining() / samples.max(1.0)).max(f64::MIN_POSITIVE);
         let mut trials: Vec<Trial> = Vec::new();
         // A curve is made of what stood in for it: those are no better.
         let tabled = |number: &usize| matches!(model.effects[*number].effect.shape, Shape::Table { .. });
@@ -140,15 +139,15 @@ impl Revision<'_> {
                 kept = kept.without(number);
                 spared = prices.remove(number);
             }
-            let lost = (swept.remaining() - whole.remaining()) / scale;
             let mut gains: Vec<(f64, usize)> = (0..open.len())
                 .filter(|number| {
                     !kept.effects.iter().any(|known| against(&known.effect, &open[*number].effect))
                 })
                 .map(|number| {
                     let columns: Vec<usize> = design.columns(model.effects.len() + number).collect();
-                    let gain = swept.promise(&columns).0 / scale - open[number].price;
-                    (gain - lost + spared, number)
+                    let left = swept.remaining() - swept.promise(&columns).0;
+                    let gain = samples * (whole.remaining() / left.max(f64::MIN_POSITIVE)).ln();
+                    (gain - open[number].price + spared, number)
                 })
                 .collect();
             gains.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -25,7 +25,7 @@ use crate::study::Study;
 use crate::terms::Shape;
 use crate::travel::Travel;
 use crate::weights::Weights;
-use spectrum::{Top, tops};
+use spectrum::{Rows, Top, spectrum, spectrum_by_place, tops, tops_by_place};
 
 /// A wave that might be there.
 #[derive(Clone, Debug)]
@@ -159,13 +159,10 @@ impl Source {
         self.weights.iter().flatten().any(|weight| *weight > 0.0)
     }
 
-    /// What a wave of each frequency would gain at these places, scene by scene.
-    fn spectrum(&self, places: &[&[f64]], low: f64, range: f64, shortest: f64) -> Vec<spectrum::Line> {
+    /// The rows of each scene, at these places.
+    fn rows<'s>(&'s self, places: &[&'s [f64]]) -> Vec<Rows<'s>> {
         let columns = self.products.iter().zip(&self.weights).zip(places);
-        let rows: Vec<spectrum::Rows<'_>> = columns
-            .map(|((weighted, weights), places)| spectrum::Rows { places, weighted, weights })
-            .collect();
-        spectrum::spectrum(&rows, low, range, shortest)
+        columns.map(|((weighted, weights), places)| Rows { places, weighted, weights }).collect()
     }
 }
 
@@ -315,13 +312,31 @@ fn along(
     (shortest < range / 2.0).then_some(())?;
     // Of an axis that goes round, a turn is the longest period, and it has been there.
     let longest = if goes_round(study, axis, &travels[axis]) { NEARLY / TAU } else { PERIODS / range };
-    let found = tops(&source.spectrum(&positions, low, range, shortest), longest, OF_A_PLACE);
+    let rows = source.rows(&positions);
+    let of_rows = spectrum(&rows, low, range, shortest);
+    let of_places =
+        tops_by_place(&spectrum_by_place(&rows, low, range, shortest), &of_rows, longest, OF_A_PLACE);
+    let found = joined(tops(&of_rows, longest, OF_A_PLACE), of_places, AROUND / range);
     let peak = |top: Top| {
         let period = turned(study, axis, &travels[axis], 1.0 / top.frequency);
         let shape = Shape::Cyclic { axis, period, order: 1, center: travels[axis].center() };
         Peak { effect: effect(source, shape), gain: top.gain, local: top.local }
     };
     Some(LookedAt { peaks: found.into_iter().map(peak).collect(), tried: range / shortest })
+}
+
+/// Peaks of two spectra of the same residual. Those nearer than `near` are one; it stands out as it does where it does most.
+fn joined(mut tops: Vec<Top>, others: Vec<Top>, near: f64) -> Vec<Top> {
+    for other in others {
+        let is_same = |top: &&mut Top| (top.frequency - other.frequency).abs() < near;
+        let mut same = tops.iter_mut().filter(is_same).peekable();
+        if same.peek().is_some() {
+            same.for_each(|top| top.local = top.local.max(other.local));
+        } else {
+            tops.push(other);
+        }
+    }
+    tops
 }
 
 /// Waves in time.
@@ -331,7 +346,7 @@ fn in_time(study: &Study<'_>, source: &Source, courses: &[Arc<Course>]) -> Optio
     let step = shortest_step(study);
     (source.place.vibration && span > 10.0 * step).then_some(())?;
     let observed = observed(study);
-    let found = tops(&source.spectrum(&times, 0.0, span, 2.0 * step), CYCLES / observed, OF_A_PLACE);
+    let found = tops(&spectrum(&source.rows(&times), 0.0, span, 2.0 * step), CYCLES / observed, OF_A_PLACE);
     let peak = |top: Top| Peak {
         effect: effect(source, Shape::Vibration { frequency: top.frequency }),
         gain: top.gain,
@@ -376,7 +391,8 @@ pub(crate) fn over_turns(
     let (mut peaks, mut tried) = (Vec::new(), 0.0);
     for places in places.chunks(PLACES) {
         for source in sources(study, model, &courses, &residuals, places) {
-            let found = tops(&source.spectrum(&turned, low, range, shortest), CYCLES / range, OF_A_PLACE);
+            let found =
+                tops(&spectrum(&source.rows(&turned), low, range, shortest), CYCLES / range, OF_A_PLACE);
             let peak = |top: Top| {
                 let shape = Shape::spin(turns.load, top.frequency, 0.0);
                 Peak { effect: effect(&source, shape), gain: top.gain, local: top.local }

@@ -49,6 +49,41 @@ pub(super) fn spectrum(rows: &[Rows<'_>], low: f64, range: f64, shortest: f64) -
         .collect()
 }
 
+/// The spectrum where all stretches of the range weigh alike, however many rows lie in each. Most rows lie where an axis slows down and
+/// turns. What a model lacks there would hide a wave that is plain everywhere else.
+pub(super) fn spectrum_by_place(rows: &[Rows<'_>], low: f64, range: f64, shortest: f64) -> Vec<Line> {
+    let stretch = |place: f64| {
+        let number = crate::index((place - low) / range * crate::number(STRETCHES)).unwrap_or_default();
+        number.min(STRETCHES - 1)
+    };
+    let mut totals = [0.0; STRETCHES];
+    for rows in rows {
+        for (place, weight) in rows.places.iter().zip(rows.weights) {
+            totals[stretch(*place)] += weight;
+        }
+    }
+    let shared = |column: &[f64], places: &[f64]| -> Vec<f64> {
+        let total = |place: f64| totals[stretch(place)].max(f64::MIN_POSITIVE);
+        column.iter().zip(places).map(|(value, place)| value / total(*place)).collect()
+    };
+    let columns: Vec<(Vec<f64>, Vec<f64>)> = rows
+        .iter()
+        .map(|rows| (shared(rows.weighted, rows.places), shared(rows.weights, rows.places)))
+        .collect();
+    let alike: Vec<Rows<'_>> = rows
+        .iter()
+        .zip(&columns)
+        .map(|(rows, (weighted, weights))| Rows { places: rows.places, weighted, weights })
+        .collect();
+    spectrum(&alike, low, range, shortest.max(WIDE * range / crate::number(STRETCHES)))
+}
+
+/// The stretches that weigh alike. With so many, the ends at which an axis turns are a few of them; with more, a stretch would hold a row or
+/// two.
+const STRETCHES: usize = 256;
+/// The shortest wave among stretches that weigh alike is this many of them long.
+const WIDE: f64 = 4.0;
+
 /// The normal equations of sine and cosine beside a free mean must be so far from singular: where all rows see the same phase
 /// there is no wave to tell.
 const SINGULAR: f64 = 1e-3;
@@ -115,17 +150,7 @@ pub(super) struct Top {
 
 /// The highest peaks above a frequency: half of them by what they gain, half by what they gain at their own noise.
 pub(super) fn tops(spectrum: &[Line], above: f64, count: usize) -> Vec<Top> {
-    let level = levels(spectrum);
-    let mut all: Vec<Top> = (1..spectrum.len().saturating_sub(1))
-        .filter(|at| spectrum[*at].0 >= above)
-        .filter(|at| spectrum[*at].1 >= spectrum[at - 1].1 && spectrum[*at].1 > spectrum[at + 1].1)
-        .map(|at| {
-            let (frequency, gain) = vertex(&spectrum[at - 1..=at + 1]);
-            // The median of a sum of two squares is that of an exponential number: ln 2 times its mean, which is 2.
-            let local = gain * MEDIAN / level[at].max(f64::MIN_POSITIVE);
-            Top { frequency, gain, local }
-        })
-        .collect();
+    let mut all = peaks(spectrum, above);
     all.sort_by(|a, b| b.local.total_cmp(&a.local));
     let mut chosen: Vec<Top> = all.iter().take(count).copied().collect();
     all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
@@ -135,6 +160,32 @@ pub(super) fn tops(spectrum: &[Line], above: f64, count: usize) -> Vec<Top> {
         }
     }
     chosen
+}
+
+/// The peaks that stand out most at their own noise in a spectrum in which all places weigh alike; `spectrum` is that of the rows as they
+/// weigh, which tells what a wave gains.
+pub(super) fn tops_by_place(by_place: &[Line], spectrum: &[Line], above: f64, count: usize) -> Vec<Top> {
+    let mut all = peaks(by_place, above);
+    all.sort_by(|a, b| b.local.total_cmp(&a.local));
+    all.truncate(count);
+    let nearest = |frequency: f64| spectrum.partition_point(|line| line.0 < frequency);
+    let gain = |frequency: f64| spectrum.get(nearest(frequency)).map_or(0.0, |line| line.1);
+    all.into_iter().map(|top| Top { gain: gain(top.frequency), ..top }).collect()
+}
+
+/// All peaks above a frequency.
+fn peaks(spectrum: &[Line], above: f64) -> Vec<Top> {
+    let level = levels(spectrum);
+    (1..spectrum.len().saturating_sub(1))
+        .filter(|at| spectrum[*at].0 >= above)
+        .filter(|at| spectrum[*at].1 >= spectrum[at - 1].1 && spectrum[*at].1 > spectrum[at + 1].1)
+        .map(|at| {
+            let (frequency, gain) = vertex(&spectrum[at - 1..=at + 1]);
+            // The median of a sum of two squares is that of an exponential number: ln 2 times its mean, which is 2.
+            let local = gain * MEDIAN / level[at].max(f64::MIN_POSITIVE);
+            Top { frequency, gain, local }
+        })
+        .collect()
 }
 
 /// The median of what a wave gains from white noise of unit variance: 2 ln 2.

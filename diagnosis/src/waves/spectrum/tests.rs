@@ -118,3 +118,29 @@ fn peaks_are_tops_above_a_frequency() {
     let top = tops(&leaning, 0.5, 1)[0];
     assert!((1.5..2.0).contains(&top.frequency), "{top:?}");
 }
+
+/// Where an axis turns there are the most rows, and there alone a model is off. A wave that is plain along the rest of the travel stands out
+/// where all stretches weigh alike, and noise does not.
+#[test]
+fn a_wave_is_found_beside_what_a_model_lacks_where_an_axis_turns() {
+    let strokes = (0..4000).map(|row| 100.0 - 100.0 * (TAU * f64::from(row) / 2000.0).cos());
+    let places: Vec<f64> = strokes.collect();
+    // Behind each turn the axis is off by ten times the wave, over a fiftieth of the travel.
+    let turned = |place: f64| if place < 4.0 { 10.0 * (1.0 - place / 4.0) } else { 0.0 };
+    let noise = normals(74, 4000);
+    let seen = |wave: f64| -> Vec<f64> {
+        let one = |(place, noise): (&f64, &f64)| turned(*place) + wave * (TAU * place / 13.0).sin() + noise;
+        places.iter().zip(&noise).map(one).collect()
+    };
+    let weights = vec![1.0; places.len()];
+    let local = |values: &[f64], spectrum: fn(&[Rows<'_>], f64, f64, f64) -> Vec<Line>| {
+        let rows = [Rows { places: &places, weighted: values, weights: &weights }];
+        let lines = spectrum(&rows, 0.0, 200.0, 2.0);
+        tops_by_place(&lines, &lines, 3.0 / 200.0, 1)[0]
+    };
+    let (of_rows, of_places) = (local(&seen(1.0), super::spectrum), local(&seen(1.0), spectrum_by_place));
+    assert!((of_places.frequency * 13.0 - 1.0).abs() < 0.02, "{of_places:?}");
+    // A wave pays some 20, and stands out with twice as much.
+    assert!(of_places.local > 40.0 && of_rows.local < 20.0, "{of_places:?} {of_rows:?}");
+    assert!(local(&seen(0.0), spectrum_by_place).local < 20.0);
+}

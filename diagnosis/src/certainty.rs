@@ -7,8 +7,9 @@
 use nalgebra::DMatrix;
 
 use crate::candidates;
+use crate::conditions::Conditions;
 use crate::design::{Design, Regressor};
-use crate::fit::Fit;
+use crate::fit::{self, Fit};
 use crate::harmonics;
 use crate::model::{Effect, Fitted};
 use crate::parallel;
@@ -46,20 +47,25 @@ impl Certainty {
     }
 }
 
-/// The certainty of every effect of a fit.
-pub(crate) fn certainties(
-    study: &Study<'_>,
-    fit: &Fit,
-    weights: &Weights,
-    travels: &[Travel],
-) -> Vec<Certainty> {
+/// The certainty of every effect of a fit. That of a wave comes from the noise around its own frequency.
+pub(crate) fn certainties(study: &Study<'_>, fit: &Fit, conditions: &Conditions<'_>) -> Vec<Certainty> {
+    let Conditions { weights, travels, .. } = *conditions;
+    let count = fit.model.effects.len();
+    let noises = parallel::counted(count, study.rows() * count, |number| {
+        conditions.own_noise(study, &fit.model, number)
+    });
+    let least: Vec<f64> = noises.iter().map(|noise| noise.sqrt()).collect();
+    let covariances = fit::covariances(study, &fit.model, weights, &least);
     let groups = harmonics::sharing(&fit.model.effects);
-    let intervals = parallel::counted(groups.len(), study.rows() * fit.model.effects.len(), |number| {
-        interval(study, fit, weights, &groups[number])
+    let intervals = parallel::counted(groups.len(), study.rows() * count, |number| {
+        let group = &groups[number];
+        let deviation = covariances[*group.first()?].diagonal().iter().next_back()?.sqrt();
+        let noise = group.iter().map(|number| noises[*number]).fold(0.0, f64::max);
+        interval(study, (fit, weights), group, (deviation, noise))
     });
     let of = |number: usize| groups.iter().zip(&intervals).find(|(group, _)| group.contains(&number));
-    parallel::counted(fit.model.effects.len(), study.rows() * fit.model.effects.len(), |number| {
-        let mut certainty = Certainty::linear(fit.covariances[number].clone());
+    parallel::counted(count, study.rows() * count, |number| {
+        let mut certainty = Certainty::linear(covariances[number].clone());
         if let Some(interval) = of(number).and_then(|(_, interval)| *interval) {
             widen(&mut certainty.covariance, &fit.model.effects[number].effect.shape, interval);
             certainty.nonlinear = Some(interval);
@@ -77,8 +83,14 @@ const REACH: f64 = 6.0;
 /// Where twice the log-likelihood falls by this much, a 95 % interval ends.
 const FALL_95: f64 = WIDTH_95 * WIDTH_95;
 
-/// The interval of the nonlinear parameter that the effects of a group share.
-fn interval(study: &Study<'_>, fit: &Fit, weights: &Weights, group: &[usize]) -> Option<(f64, f64)> {
+/// The interval of the nonlinear parameter that the effects of a group share, from its standard deviation as a linear fit has it and the
+/// noise, squared, in units of that which the weights assume.
+fn interval(
+    study: &Study<'_>,
+    (fit, weights): (&Fit, &Weights),
+    group: &[usize],
+    (deviation, noise): (f64, f64),
+) -> Option<(f64, f64)> {
     let number = *group.first()?;
     let shape = &fit.model.effects[number].effect.shape;
     // The inertia of a loop acts on the states, not on columns of its own.
@@ -86,8 +98,6 @@ fn interval(study: &Study<'_>, fit: &Fit, weights: &Weights, group: &[usize]) ->
         return None;
     }
     let value = shape.nonlinear()?.value;
-    let covariance = &fit.covariances[number];
-    let deviation = covariance[(covariance.nrows() - 1, covariance.nrows() - 1)].sqrt();
     if !(deviation > 0.0 && deviation.is_finite()) {
         return None;
     }
@@ -108,7 +118,7 @@ fn interval(study: &Study<'_>, fit: &Fit, weights: &Weights, group: &[usize]) ->
         if places.is_empty() {
             break;
         }
-        let falls = falls(study, fit, weights, group, &places);
+        let falls = falls(study, fit, weights, group, &places).into_iter().map(|fall| fall / noise);
         known.extend(places.into_iter().zip(falls));
         scale *= REACH;
     }

@@ -107,6 +107,17 @@ impl<'c> Conditions<'c> {
         }
     }
 
+    /// The noise around the frequency of a wave of a model, squared, in units of that which the weights assume, where it is less: 1 for all
+    /// other effects. More is no measure of the noise: it may be other waves beside this one.
+    pub(crate) fn own_noise(&self, study: &Study<'_>, model: &Model, number: usize) -> f64 {
+        let shape = &model.effects[number].effect.shape;
+        if !(shape.is_wave() && self.own_noise_counts(study, shape)) {
+            return 1.0;
+        }
+        let around = waves::around(study, model, number, self.weights, self.travels);
+        around.iter().max_by(|a, b| a.gain.total_cmp(&b.gain)).map_or(1.0, |peak| peak.noise.min(1.0))
+    }
+
     /// Whether a wave is judged by the noise around its own frequency. It is where samples weigh alike because the model lacks
     /// something: there a slow residual would hide it. Elsewhere the weights know the noise of each frequency already. A long wave is
     /// never judged so: its neighbours may be parts of the same curve.

@@ -70,6 +70,18 @@ pub(crate) fn refine(study: &Study<'_>, model: Model, weights: &Weights, travels
     best.fit()
 }
 
+/// The covariance of each effect of a fitted model whose intervals may be as narrow as the likelihood has them times `least`, where they
+/// scatter no more from block to block.
+pub(crate) fn covariances(
+    study: &Study<'_>,
+    model: &Model,
+    weights: &Weights,
+    least: &[f64],
+) -> Vec<DMatrix<f64>> {
+    let groups = harmonics::sharing(&model.effects);
+    Linearised::new(study, model.clone(), weights, &groups).covariances(least)
+}
+
 /// The standard deviation of the nonlinear parameter of one effect of a fitted model, as far as this effect alone shows it: others that
 /// share it keep theirs.
 pub(crate) fn deviation_alone(
@@ -161,18 +173,25 @@ impl<'g> Linearised<'g> {
     }
 
     fn fit(self) -> Fit {
+        let covariances = self.covariances(&vec![1.0; self.model.effects.len()]);
+        Fit { covariances, remaining: self.remaining, samples: self.samples, model: self.model }
+    }
+
+    /// The covariance of each effect. Its intervals are as wide as estimates scatter from block to block, and no narrower than the
+    /// likelihood has them times `least`.
+    fn covariances(&self, least: &[f64]) -> Vec<DMatrix<f64>> {
         let scale = self.swept.remaining() / self.samples.max(1.0);
         let widths = widths(&self.design, &self.swept, scale);
         let covariance = |number: usize| {
             let mut columns: Vec<usize> = self.design.columns(number).collect();
             columns.extend(self.slopes[number].map(|slope| self.design.first[slope]));
+            let width = |column: usize| widths[columns[column]].max(least[number]);
             DMatrix::from_fn(columns.len(), columns.len(), |row, column| {
-                let widened = widths[columns[row]] * widths[columns[column]];
+                let widened = width(row) * width(column);
                 scale * widened * self.swept.covariance(columns[row], columns[column])
             })
         };
-        let covariances = (0..self.model.effects.len()).map(covariance).collect();
-        Fit { covariances, remaining: self.remaining, samples: self.samples, model: self.model }
+        (0..self.model.effects.len()).map(covariance).collect()
     }
 }
 
@@ -192,14 +211,14 @@ fn timed(shape: Shape, coefficients: Vec<f64>) -> (Shape, Vec<f64>) {
 /// over many.
 const FURTHEST_TIME: f64 = 3.0;
 
-/// For each column how many times wider its interval is than the likelihood has it: by how far estimates scatter from block to
-/// block, which asks the data themselves how much of them is independent. The sandwich estimator, with the blocks for meat.
+/// For each column by how far estimates scatter from block to block, in units of the standard deviation that the likelihood has: this asks
+/// the data themselves how much of them is independent. The sandwich estimator, with the blocks for meat. 0 where there are too few blocks.
 pub(crate) fn widths(design: &Design, swept: &Swept, scale: f64) -> Vec<f64> {
     let width = design.width;
     let blocks: Vec<&Products> = design.blocks.iter().filter(|block| !block.held_out).collect();
     let count = crate::number(blocks.len());
     if count < FEWEST_BLOCKS {
-        return vec![1.0; width];
+        return vec![0.0; width];
     }
     let coefficients: Vec<f64> = (0..width).map(|column| swept.coefficient(column)).collect();
     let bread = DMatrix::from_fn(width, width, |row, column| swept.covariance(row, column));
@@ -217,7 +236,7 @@ pub(crate) fn widths(design: &Design, swept: &Swept, scale: f64) -> Vec<f64> {
     let ratio = |column: usize| {
         let own = scale * bread[(column, column)];
         let scattered = variances[column] * count / (count - 1.0);
-        if own > 0.0 { ((scattered / own).sqrt() * student).max(1.0) } else { 1.0 }
+        if own > 0.0 { (scattered / own).sqrt() * student } else { 0.0 }
     };
     (0..width).map(ratio).collect()
 }

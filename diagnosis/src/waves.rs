@@ -33,8 +33,16 @@ pub(crate) struct Peak {
     pub(crate) effect: Effect,
     /// What it would take from the weighted sum of squares, roughly.
     pub(crate) gain: f64,
+    /// The noise around its frequency, squared, in units of that which the weights assume.
+    pub(crate) noise: f64,
     /// What it would take were the noise of all frequencies that around its own.
     pub(crate) local: f64,
+}
+
+impl Peak {
+    fn of(top: Top, effect: Effect) -> Self {
+        Self { effect, gain: top.gain, noise: top.noise, local: top.local }
+    }
 }
 
 /// The residual of one channel, weighted by the inverse of the noise, which samples count, and their mean weight.
@@ -320,7 +328,7 @@ fn along(
     let peak = |top: Top| {
         let period = turned(study, axis, &travels[axis], 1.0 / top.frequency);
         let shape = Shape::Cyclic { axis, period, order: 1, center: travels[axis].center() };
-        Peak { effect: effect(source, shape), gain: top.gain, local: top.local }
+        Peak::of(top, effect(source, shape))
     };
     Some(LookedAt { peaks: found.into_iter().map(peak).collect(), tried: range / shortest })
 }
@@ -347,11 +355,7 @@ fn in_time(study: &Study<'_>, source: &Source, courses: &[Arc<Course>]) -> Optio
     (source.place.vibration && span > 10.0 * step).then_some(())?;
     let observed = observed(study);
     let found = tops(&spectrum(&source.rows(&times), 0.0, span, 2.0 * step), CYCLES / observed, OF_A_PLACE);
-    let peak = |top: Top| Peak {
-        effect: effect(source, Shape::Vibration { frequency: top.frequency }),
-        gain: top.gain,
-        local: top.local,
-    };
+    let peak = |top: Top| Peak::of(top, effect(source, Shape::Vibration { frequency: top.frequency }));
     // Pauses part the lines of a spectrum, and make no more of them independent: those are no more than the samples tell.
     Some(LookedAt { peaks: found.into_iter().map(peak).collect(), tried: observed / (2.0 * step) })
 }
@@ -395,7 +399,7 @@ pub(crate) fn over_turns(
                 tops(&spectrum(&source.rows(&turned), low, range, shortest), CYCLES / range, OF_A_PLACE);
             let peak = |top: Top| {
                 let shape = Shape::spin(turns.load, top.frequency, 0.0);
-                Peak { effect: effect(&source, shape), gain: top.gain, local: top.local }
+                Peak::of(top, effect(&source, shape))
             };
             peaks.extend(found.into_iter().map(peak));
             tried += range / shortest;

@@ -39,7 +39,7 @@ pub(super) fn report(
     }
     let left = units.left(study, &found.fit.model, &found.appraisal.weights.outliers);
     let shares = shares(study, found, units, &left);
-    let certainties = certainty::certainties(study, &found.fit, &found.appraisal.weights, &found.travels);
+    let certainties = certainty::certainties(study, &found.fit, &found.conditions());
     for (number, fitted) in found.fit.model.effects.iter().enumerate() {
         let described = Described::new(study, fitted, &certainties[number]);
         let names = number

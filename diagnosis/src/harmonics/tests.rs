@@ -118,7 +118,7 @@ fn what_harmonics_share_is_known_better_than_what_each_would_have_alone() {
     let recording = bent(&bench, 5);
     let trial = Trial::new(&bench, &recording);
     let half = |fit: &Fit, number: usize, name: &str| {
-        let certainties = certainties(&trial.study, fit, &trial.weights, &trial.travels);
+        let certainties = certainties(&trial.study, fit, &trial.conditions());
         let described = Described::new(&trial.study, &fit.model.effects[number], &certainties[number]);
         let parameters = described.parameters();
         let parameter: &Parameter = parameters.iter().find(|known| known.name == name).unwrap();

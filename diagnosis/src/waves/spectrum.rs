@@ -140,11 +140,13 @@ fn transform_size(wanted: f64) -> usize {
     sizes.into_iter().find(|size| crate::number(*size) >= wanted).unwrap_or(MOST_BINS)
 }
 
-/// A peak: its frequency, what a wave gains there, and what it would gain were the noise of all frequencies that around it.
+/// A peak: its frequency, what a wave gains there, the noise around it, squared, in units of that which the weights assume, and what the wave
+/// would gain were the noise of all frequencies that around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Top {
     pub(super) frequency: f64,
     pub(super) gain: f64,
+    pub(super) noise: f64,
     pub(super) local: f64,
 }
 
@@ -163,14 +165,18 @@ pub(super) fn tops(spectrum: &[Line], above: f64, count: usize) -> Vec<Top> {
 }
 
 /// The peaks that stand out most at their own noise in a spectrum in which all places weigh alike; `spectrum` is that of the rows as they
-/// weigh, which tells what a wave gains.
+/// weigh, which tells what a wave gains and the noise around it.
 pub(super) fn tops_by_place(by_place: &[Line], spectrum: &[Line], above: f64, count: usize) -> Vec<Top> {
     let mut all = peaks(by_place, above);
     all.sort_by(|a, b| b.local.total_cmp(&a.local));
     all.truncate(count);
-    let nearest = |frequency: f64| spectrum.partition_point(|line| line.0 < frequency);
-    let gain = |frequency: f64| spectrum.get(nearest(frequency)).map_or(0.0, |line| line.1);
-    all.into_iter().map(|top| Top { gain: gain(top.frequency), ..top }).collect()
+    let levels = levels(spectrum);
+    let of_rows = |top: Top| {
+        let nearest = spectrum.partition_point(|line| line.0 < top.frequency);
+        let (line, level) = (spectrum.get(nearest)?, levels.get(nearest)?);
+        Some(Top { gain: line.1, noise: level / MEDIAN, ..top })
+    };
+    all.into_iter().filter_map(of_rows).collect()
 }
 
 /// All peaks above a frequency.
@@ -182,8 +188,8 @@ fn peaks(spectrum: &[Line], above: f64) -> Vec<Top> {
         .map(|at| {
             let (frequency, gain) = vertex(&spectrum[at - 1..=at + 1]);
             // The median of a sum of two squares is that of an exponential number: ln 2 times its mean, which is 2.
-            let local = gain * MEDIAN / level[at].max(f64::MIN_POSITIVE);
-            Top { frequency, gain, local }
+            let noise = level[at].max(f64::MIN_POSITIVE) / MEDIAN;
+            Top { frequency, gain, noise, local: gain / noise }
         })
         .collect()
 }

@@ -54,8 +54,7 @@ pub(crate) fn certainties(study: &Study<'_>, fit: &Fit, conditions: &Conditions<
     let noises = parallel::counted(count, study.rows() * count, |number| {
         conditions.own_noise(study, &fit.model, number)
     });
-    let least: Vec<f64> = noises.iter().map(|noise| noise.sqrt()).collect();
-    let covariances = fit::covariances(study, &fit.model, weights, &least);
+    let covariances = covariances(study, fit, weights, &noises);
     let groups = harmonics::sharing(&fit.model.effects);
     let intervals = parallel::counted(groups.len(), study.rows() * count, |number| {
         let group = &groups[number];
@@ -73,6 +72,18 @@ pub(crate) fn certainties(study: &Study<'_>, fit: &Fit, conditions: &Conditions<
         certainty.richer = richer(study, fit, weights, travels, number).map(Box::new);
         certainty
     })
+}
+
+/// The covariance of each effect, beside such noises, squared, in units of that which the weights assume.
+fn covariances(study: &Study<'_>, fit: &Fit, weights: &Weights, noises: &[f64]) -> Vec<DMatrix<f64>> {
+    let mut covariances = fit.covariances.clone();
+    if noises.iter().any(|noise| *noise < 1.0) {
+        let least: Vec<f64> = noises.iter().map(|noise| noise.sqrt()).collect();
+        let narrower = fit::covariances(study, &fit.model, weights, &least);
+        let known = covariances.iter_mut().zip(narrower).zip(noises).filter(|(_, noise)| **noise < 1.0);
+        known.for_each(|((covariance, narrower), _)| *covariance = narrower);
+    }
+    covariances
 }
 
 /// Multiples of the linear standard deviation at which the sum of squares is looked at.

@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use crate::channel::ChannelAt;
 use crate::course::Course;
+use crate::curves::LONG;
 use crate::kinship;
 use crate::model::{Effect, Model, Place};
 use crate::noise::{Noise, Whitening, unwhiten, whiten};
@@ -50,6 +51,8 @@ pub(crate) struct Weighted {
     weighted: Vec<f64>,
     valid: Vec<bool>,
     weight: f64,
+    /// Whether samples weigh alike because the model lacks something.
+    lacks: bool,
 }
 
 /// A place where waves are looked for; places at which the recordings show waves alike are looked at once.
@@ -198,7 +201,7 @@ pub(crate) fn weighted(
             let mut weighted = white.clone();
             unwhiten(&steps, &mut weighted);
             let weight = mean_weight(&white, &weighted, &valid);
-            Weighted { weighted, valid, weight }
+            Weighted { weighted, valid, weight, lacks: weights.noise(at).alike > 1.0 }
         })
         .collect()
 }
@@ -213,12 +216,13 @@ pub(crate) fn peaks(
     places: &[WavePlace],
 ) -> (Vec<Peak>, f64) {
     let (mut peaks, mut tried) = (Vec::new(), 0.0);
+    let lacks = residuals.iter().flatten().any(|channel| channel.lacks);
     // A column for each row and place at a time is too much.
     for places in places.chunks(PLACES) {
         let sources = sources(study, model, courses, residuals, places);
         let spectra = parallel::counted(sources.len(), study.rows() * sources.len(), |number| {
             let source = &sources[number];
-            [along(study, source, courses, travels), in_time(study, source, courses)]
+            [along(study, source, courses, travels, lacks), in_time(study, source, courses)]
         });
         for looked_at in spectra.into_iter().flatten().flatten() {
             tried += looked_at.tried;
@@ -306,12 +310,13 @@ struct LookedAt {
     tried: f64,
 }
 
-/// Waves along the axis of a motion.
+/// Waves along the axis of a motion. Where the model lacks something, also those that stand out where all places weigh alike.
 fn along(
     study: &Study<'_>,
     source: &Source,
     courses: &[Arc<Course>],
     travels: &[Travel],
+    lacks: bool,
 ) -> Option<LookedAt> {
     let axis = study.equations.motions[source.place.motion].axis.filter(|_| source.place.cyclic)?;
     let positions: Vec<&[f64]> = courses.iter().map(|course| &*course.shown.axes[axis].position).collect();
@@ -322,9 +327,13 @@ fn along(
     let longest = if goes_round(study, axis, &travels[axis]) { NEARLY / TAU } else { PERIODS / range };
     let rows = source.rows(&positions);
     let of_rows = spectrum(&rows, low, range, shortest);
-    let of_places =
-        tops_by_place(&spectrum_by_place(&rows, low, range, shortest), &of_rows, longest, OF_A_PLACE);
-    let found = joined(tops(&of_rows, longest, OF_A_PLACE), of_places, AROUND / range);
+    let mut found = tops(&of_rows, longest, OF_A_PLACE);
+    if lacks {
+        let by_place = spectrum_by_place(&rows, low, range, shortest);
+        // A long wave may be part of a curve, and is not judged by the noise around it.
+        let of_places = tops_by_place(&by_place, &of_rows, longest.max(1.0 / (LONG * range)), OF_A_PLACE);
+        found = joined(found, of_places, AROUND / range);
+    }
     let peak = |top: Top| {
         let period = turned(study, axis, &travels[axis], 1.0 / top.frequency);
         let shape = Shape::Cyclic { axis, period, order: 1, center: travels[axis].center() };

@@ -9,6 +9,7 @@ use crate::fit::{self, Fit};
 use crate::model::{Effect, Fitted, Model};
 use crate::search::price;
 use crate::study::Study;
+use crate::sweep::misfit;
 use crate::terms::{Shape, oddity, plausible};
 use crate::travel::Travel;
 use crate::waves::{self, Peak};
@@ -63,7 +64,7 @@ impl<'c> Conditions<'c> {
             .zip(&prices[chosen])
             .map(|(fitted, price)| price + odd(study, fitted))
             .sum();
-        fit.samples * (fit.remaining / fit.samples).ln() + paid + crossing::price(&fit.model, fit.samples)
+        misfit(fit.remaining, fit.samples) + paid + crossing::price(&fit.model, fit.samples)
     }
 
     /// The price of an effect in a fit to this number of samples.

@@ -16,7 +16,7 @@ use crate::noise::{Step, Whitening, whiten};
 use crate::parallel;
 use crate::search::untold_price;
 use crate::study::Study;
-use crate::sweep::Swept;
+use crate::sweep::{Swept, misfit};
 use crate::terms::Shape;
 use crate::weights::Weights;
 
@@ -228,7 +228,7 @@ impl Contest {
     }
 
     fn misfit(&self, remaining: f64) -> f64 {
-        self.samples * (remaining.max(f64::MIN_POSITIVE) / self.samples.max(1.0)).ln()
+        misfit(remaining, self.samples)
     }
 
     /// The products, those of a candidate inserted before the response.

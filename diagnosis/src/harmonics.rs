@@ -11,7 +11,7 @@ use crate::fit::{self, Fit};
 use crate::model::{Effect, Fitted, Model};
 use crate::ranges::{Resolution, goes_round, periods};
 use crate::study::Study;
-use crate::sweep::Swept;
+use crate::sweep::{Swept, misfit};
 use crate::terms::Shape;
 use crate::travel::Travel;
 
@@ -308,12 +308,12 @@ fn paying(
     loop {
         let gain = |number: &usize| {
             let columns: Vec<usize> = design.columns(first + number).collect();
-            let share = swept.promise(&columns).0 / swept.remaining();
-            -samples * (1.0 - share).ln() - price(&open[*number])
+            let left = swept.remaining() - swept.promise(&columns).0;
+            misfit(swept.remaining(), samples) - misfit(left, samples) - price(&open[*number])
         };
         let best = left.iter().copied().max_by(|a, b| gain(a).total_cmp(&gain(b)));
         let Some(best) = best.filter(|best| gain(best) > 0.0) else {
-            return (paying, samples * (swept.remaining() / samples).ln() + paid);
+            return (paying, misfit(swept.remaining(), samples) + paid);
         };
         for column in design.columns(first + best) {
             swept.take(column);

@@ -18,7 +18,7 @@ use crate::model::{Effect, Fitted, Model};
 use crate::ranges::holds;
 use crate::search::rivals;
 use crate::study::Study;
-use crate::sweep::Swept;
+use crate::sweep::{Swept, misfit};
 use crate::terms::Shape;
 use crate::waves::{self, WavePlace};
 
@@ -146,7 +146,7 @@ impl Revision<'_> {
                 .map(|number| {
                     let columns: Vec<usize> = design.columns(model.effects.len() + number).collect();
                     let left = swept.remaining() - swept.promise(&columns).0;
-                    let gain = samples * (whole.remaining() / left.max(f64::MIN_POSITIVE)).ln();
+                    let gain = misfit(whole.remaining(), samples) - misfit(left, samples);
                     (gain - open[number].price + spared, number)
                 })
                 .collect();
@@ -229,3 +229,6 @@ pub(crate) fn stands_apart(study: &Study<'_>, without: &Appraisal, with: &Apprai
 
 /// By how much an effect in the place of another one may fall short before its own parameter is fitted: half of a grid's step.
 const LEEWAY: f64 = 12.0;
+
+#[cfg(test)]
+mod tests;

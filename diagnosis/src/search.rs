@@ -14,7 +14,7 @@ use crate::harmonics::{HIGHEST, comes_again_among};
 use crate::model::Effect;
 use crate::ranges::{Resolution, holds};
 use crate::study::Study;
-use crate::sweep::Swept;
+use crate::sweep::{Swept, misfit};
 use crate::terms::{Range, Setting, Shape, oddity, plausible};
 
 /// How many sets are carried along.
@@ -161,7 +161,7 @@ impl<'d> Choice<'d> {
     }
 
     fn misfit(&self, remaining: f64) -> f64 {
-        self.samples * (remaining.max(f64::MIN_POSITIVE) / self.samples.max(1.0)).ln()
+        misfit(remaining, self.samples)
     }
 
     /// Sets with one more effect, cheapest first.

@@ -16,6 +16,11 @@ pub(crate) struct Swept {
     log_determinant: f64,
 }
 
+/// Minus twice the log-likelihood of a sum of squares that remains of so many samples, but for a constant.
+pub(crate) fn misfit(remaining: f64, samples: f64) -> f64 {
+    samples * (remaining.max(f64::MIN_POSITIVE) / samples.max(1.0)).ln()
+}
+
 /// The share of a column's length that must be left beside the others for it to be taken in.
 const INDEPENDENT: f64 = 1e-9;
 

@@ -18,6 +18,11 @@ fn each_parameter_costs_the_logarithm_of_the_samples() {
     assert_eq!(untold_price(2, 0.0), untold_price(2, 2.0));
 }
 
+/// What an instrument of these axes reads of a machine with these errors on a circle of 40 mm.
+fn on_a_circle(bench: &Bench, errors: &str, axes: &str) -> Recording {
+    bench.record(&bench.calibration(errors), &scenario(path(circle(40.0), 20.0, 10.0), position(axes)))
+}
+
 /// Effects of X, after its zero: one that the zero holds already, one that it holds a third of, and two of their own.
 fn effects(bench: &Bench) -> Vec<Effect> {
     let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
@@ -34,10 +39,9 @@ fn effects(bench: &Bench) -> Vec<Effect> {
 #[test]
 fn a_set_costs_the_same_by_whatever_way_it_is_reached() {
     let bench = Bench::of("XFY");
-    let calibration = bench.calibration(
-        "{EXX: [{backlash: {lost_motion: 8 um}}, {cyclic: {period: 7 mm, amplitude: 3 um, phase: 0.4 rad}}]}",
-    );
-    let recording = bench.record(&calibration, &scenario(path(circle(40.0), 20.0, 10.0), position("x")));
+    let errors =
+        "{EXX: [{backlash: {lost_motion: 8 um}}, {cyclic: {period: 7 mm, amplitude: 3 um, phase: 0.4 rad}}]}";
+    let recording = on_a_circle(&bench, errors, "x");
     let study = Study::new(bench.equations(), None, &[&recording]);
     let model = Model::of(effects(&bench).into_iter().map(Fitted::unfitted));
     let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3)]]));
@@ -112,8 +116,7 @@ fn what_is_one_piece_of_physics_stands_once() {
 #[test]
 fn only_what_turns_a_body_is_held_to_small_turns() {
     let bench = Bench::of("XFY");
-    let recording =
-        bench.record(&bench.calibration("{}"), &scenario(path(circle(40.0), 20.0, 10.0), position("x")));
+    let recording = on_a_circle(&bench, "{}", "x");
     let study = Study::new(bench.equations(), None, &[&recording]);
     let turns = |motion: &str, shape: Shape| {
         let place = Place::Motion { motion: bench.motion(motion), side: Side::After };
@@ -152,9 +155,8 @@ fn an_acceleration_takes_an_axis_ahead_or_leaves_it_behind() {
 
 /// A circle of a stage whose X has this term, and of one that has as much of it below zero.
 fn late_and_ahead(bench: &Bench, term: &str) -> [Recording; 2] {
-    let scenario = scenario(path(circle(40.0), 20.0, 10.0), position("x"));
-    let true_machine = bench.record(&bench.calibration("{}"), &scenario);
-    let late = bench.record(&bench.calibration(&format!("{{EXX: [{{{term}}}]}}")), &scenario);
+    let true_machine = on_a_circle(bench, "{}", "x");
+    let late = on_a_circle(bench, &format!("{{EXX: [{{{term}}}]}}"), "x");
     let mut ahead = late.clone();
     let (Some(read), Some(exact)) = (&mut ahead.measured[0], &true_machine.measured[0]) else { panic!() };
     for (read, exact) in read.iter_mut().zip(exact) {
@@ -184,8 +186,7 @@ fn is_chosen(bench: &Bench, recording: &Recording, shape: Shape, beside_clock: b
 #[test]
 fn of_two_that_bend_alike_in_one_place_one_is_enough() {
     let bench = Bench::of("XFY");
-    let scenario = scenario(path(circle(40.0), 20.0, 10.0), position("xy"));
-    let recording = bench.record(&bench.calibration("{}"), &scenario);
+    let recording = on_a_circle(&bench, "{}", "xy");
     let study = Study::new(bench.equations(), None, &[&recording]);
     let on = |motion: &str, shape: Shape| Effect {
         place: Place::Motion { motion: bench.motion(motion), side: Side::After },
@@ -232,8 +233,7 @@ fn of_two_that_bend_alike_in_one_place_one_is_enough() {
 #[test]
 fn a_wave_that_comes_again_stands_beside_a_table() {
     let bench = Bench::of("XFY");
-    let recording =
-        bench.record(&bench.calibration("{}"), &scenario(path(circle(40.0), 20.0, 10.0), position("xy")));
+    let recording = on_a_circle(&bench, "{}", "xy");
     let study = Study::new(bench.equations(), None, &[&recording]);
     let on = |shape: Shape| Effect {
         place: Place::Motion { motion: bench.motion("EXX"), side: Side::After },
@@ -264,8 +264,7 @@ fn a_wave_that_comes_again_stands_beside_a_table() {
 /// Whether each of some effects of X outgrows what there is to explain, all of them being fitted to a recording of X and Y.
 fn outgrown(calibration: &str, effects: &[(&str, Shape)]) -> Vec<bool> {
     let bench = Bench::of("XFY");
-    let scenario = scenario(path(circle(40.0), 20.0, 10.0), position("xy"));
-    let recording = bench.record(&bench.calibration(calibration), &scenario);
+    let recording = on_a_circle(&bench, calibration, "xy");
     let study = Study::new(bench.equations(), None, &[&recording]);
     let zeros = (0..2).map(|channel| Effect::setting(0, Setting::Offset { channel }));
     let effects = effects.iter().map(|(motion, shape)| Effect {

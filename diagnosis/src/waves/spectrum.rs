@@ -78,10 +78,12 @@ pub(super) fn spectrum_by_place(rows: &[Rows<'_>], low: f64, range: f64, shortes
     spectrum(&alike, low, range, shortest.max(WIDE * range / crate::number(STRETCHES)))
 }
 
-/// The stretches that weigh alike. With so many, the ends at which an axis turns are a few of them; with more, a stretch would hold a row or
-/// two.
+/// The stretches that weigh alike. The ends at which an axis turns must be a few of many. Of waves injected into three recordings of a rotary
+/// arm, those of half the size of what was left stood out 36 to 66 times with 16 or 32 stretches, and 130 to 310 times with 128 to 1024. The
+/// highest line without them stood out 3 to 5 times.
 const STRETCHES: usize = 256;
-/// The shortest wave among stretches that weigh alike is this many of them long.
+/// The shortest wave among stretches that weigh alike is this many of them long, so that the weights hardly change within a quarter of it.
+/// Without this bound, lines of one or two rows stood out up to 60 times in that arm, which has no such wave.
 const WIDE: f64 = 4.0;
 
 /// The normal equations of sine and cosine beside a free mean must be so far from singular: where all rows see the same phase

@@ -1,0 +1,51 @@
+//! What a revision promises, against what comes of it.
+
+use super::*;
+use crate::conditions::Tries;
+use crate::model::Place;
+use crate::side::Side;
+use crate::terms::Setting;
+use crate::testing::{Bench, line, noisy, path, position};
+use crate::travel::travels;
+
+/// What a slope beside a backlash promises, and what it saves when it is fitted. The model has a backlash, and the machine has one and a slope.
+fn promised_and_saved(slope: f64) -> (f64, f64) {
+    let bench = Bench::of("FX");
+    let truth = bench.calibration(&format!(
+        "{{EXX: [{{backlash: {{lost_motion: 6 um}}}}, {{polynomial: {{axis: X, per: mm, unit: um, coefficients: [0, {slope}]}}}}]}}"
+    ));
+    let there_and_back = path(line(0, 0.0, 300.0), 20.0, 20.0);
+    let recording = bench.record(&truth, &noisy(there_and_back, position("x"), 0.000_3, 5));
+    let study = Study::new(bench.equations(), None, &[&recording]);
+    let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
+    let effect = |shape| Effect { place, shape };
+    let zero = Fitted::unfitted(Effect::setting(0, Setting::Offset { channel: 0 }));
+    let backlash = Fitted::unfitted(effect(Shape::Backlash { axis: 0, wind_up: 0.0 }));
+    let model = Model::of([zero, backlash]).with_settings(1);
+    let travels = travels(&study, &courses(&study, &model));
+    let first = Appraisal::new(&study, &model);
+    let tries = Tries { candidates: 40.0, waves: 300.0 };
+    let before = Conditions { weights: &first.weights, travels: &travels, tries };
+    let appraisal = Appraisal::new(&study, &before.refine(&study, model.clone()).model);
+    let conditions = before.under(&appraisal.weights);
+    let fit = conditions.refine(&study, model);
+    let slope = effect(Shape::Polynomial { axis: 0, degree: 1, center: 150.0, scale: 150.0 });
+    let pool = [Kin { effect: slope, equals: Vec::new() }];
+    let revision = Revision { pool: &pool, places: &[], conditions };
+    let prices = conditions.prices(&study, &fit.model, fit.samples);
+    let cost = conditions.cost_at(&study, &fit, &prices);
+    let trials = revision.trials(&study, &fit, &prices, &appraisal);
+    let beside = trials.iter().find(|trial| trial.model.effects.len() > fit.model.effects.len()).unwrap();
+    let fitted = conditions.refine(&study, beside.model.clone());
+    (beside.gain, cost - conditions.cost_at(&study, &fitted, &beside.prices))
+}
+
+/// The cost is logarithmic in what remains. So is a promise: where few stretches are told apart, an effect that takes most of the rest would
+/// otherwise promise less than its price.
+#[test]
+fn what_a_linear_effect_promises_is_what_it_saves() {
+    for slope in [0.02, 0.2, 2.0] {
+        let (promised, saved) = promised_and_saved(slope);
+        assert!((promised - saved).abs() < 1e-3 * saved.abs(), "{slope}: {promised} for {saved}");
+    }
+}

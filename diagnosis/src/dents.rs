@@ -45,13 +45,23 @@ const NORMAL_MEDIAN: f64 = 0.6745;
 /// independent is known to a quarter.
 const FEWEST: usize = 24;
 
-/// Dents that may hide what else there is, each with the model beside which it takes most: the settings alone, and all that was found.
+/// Dents that may hide what else there is, each with the model beside which it takes most: the settings alone, all that was found,
+/// and that without curves and waves along an axis. Many of those together draw a dent, and beside them there is none.
 pub(crate) fn hidden(study: &Study<'_>, model: &Model, conditions: &Conditions<'_>) -> Vec<(Dent, Model)> {
     let largest =
         |known: &Model| largest(study, known, &Appraisal::new(study, known), conditions, Looked::is_sure);
-    let beside = [model.settings_alone(), model.clone()].into_iter();
-    let dents = beside.filter_map(|known| Some((largest(&known)?, known)));
+    let mut beside = vec![model.settings_alone(), model.clone()];
+    let undrawn = model.keeping(|fitted| !draws(&fitted.effect.shape));
+    if beside.iter().all(|known| known.effects.len() != undrawn.effects.len()) {
+        beside.push(undrawn);
+    }
+    let dents = beside.into_iter().filter_map(|known| Some((largest(&known)?, known)));
     dents.filter(|(dent, _)| !model.effects.iter().any(|fitted| dent.is_table(fitted))).collect()
+}
+
+/// Whether it is a curve or a wave along an axis.
+fn draws(shape: &Shape) -> bool {
+    matches!(shape, Shape::Polynomial { .. } | Shape::Cyclic { .. } | Shape::Table { .. })
 }
 
 /// The dent that takes most beside a model that leaves what the appraisal says, where it takes much and stands out among what is left

@@ -59,6 +59,21 @@ fn a_dent_is_seen_beside_a_play_that_hides_it() {
 }
 
 #[test]
+fn a_dent_is_seen_beside_a_lag_where_waves_draw_it() {
+    let dent = "{table: {start: 105 mm, step: 15 mm, unit: um, values: [0, 500, 0]}}";
+    with(&format!("{{EXX: [{dent}, {{lag: {{gain: 40 1/s}}}}]}}"), |study, model, conditions| {
+        let of_x = |shape| Fitted::unfitted(Effect { place: study.own_place(0).unwrap(), shape });
+        let wave = |order| Shape::Cyclic { axis: 0, period: 200.0, order, center: 100.0 };
+        let lag = Shape::Lag { axis: 0, inertia: 0.0 };
+        let drawn = (1..8).map(wave).chain([lag]).fold(model.clone(), |model, shape| model.with(of_x(shape)));
+        let drawn = conditions.refine(study, drawn).model;
+        let (dent, beside) = hidden(study, &drawn, conditions).pop().unwrap();
+        assert_eq!(beside.chosen().len(), 1, "beside the lag alone");
+        assert!((dent.middle - 120.0).abs() < 3.0 && dent.flank < 20.0 && dent.share > 0.9, "{dent:?}");
+    });
+}
+
+#[test]
 fn what_stands_out_on_one_way_alone_is_no_dent() {
     let one_way = "{table: {start: 105 mm, step: 15 mm, unit: um, forward: [0, 40, 0], reverse: [0, 0, 0]}}";
     assert_eq!(seen(&format!("{{EXX: [{one_way}, {PLAY}]}}")), None);

@@ -223,6 +223,7 @@ MISTAKES: dict[str, tuple[Callable[[], object], str]] = {
     "a calibration to diagnose": (lambda: abbe.diagnose(abbe.Calibration(MILL)), "found Calibration"),
     "positions": (lambda: abbe.Calibration(MILL).error(np.zeros((3, 2))), r"`positions` has the shape \(3, 2\), not \(n, 3\)"),
     "NaN": (lambda: abbe.Calibration(MILL).error([[0, np.nan, 0]]), "row 0"),
+    "a position beyond any machine": (lambda: abbe.Calibration(MILL).error([[0, 0, 0], [0, 2e12, 0]]), "row 1, .* of Y is farther"),
     "text for positions": (lambda: abbe.Calibration(MILL).error("abc"), "`positions` holds <U3"),
     "complex numbers": (lambda: abbe.Calibration(MILL).error([[1, 2, 3j]]), "`positions` holds complex128"),
     "dates": (lambda: abbe.Calibration(MILL).error(np.zeros((1, 3), "M8[s]")), "`positions` holds datetime64"),

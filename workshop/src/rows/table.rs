@@ -3,7 +3,7 @@
 
 use abbe_runtime::{Direction, ErrorMotion, Outcome, Refusal};
 
-use super::{Answer, Answering, Row, Samples, State, timed};
+use super::{Answer, Answering, FARTHEST, Row, Samples, State, timed};
 use crate::calibrated::Calibrated;
 use crate::failure::Failure;
 
@@ -53,7 +53,8 @@ pub struct Answers {
 ///
 /// # Errors
 ///
-/// Terms that cannot be compensated; the first row that cannot be, by its number counted from 0.
+/// Terms that cannot be compensated; the first row that cannot be, by its number counted from 0, or whose position is beyond
+/// [`FARTHEST`].
 pub fn answer(calibrated: &Calibrated, table: &Table, wanted: &Wanted) -> Result<Answers, Failure> {
     if !wanted.left_out {
         calibrated.refuse_uncompensable()?;
@@ -120,6 +121,11 @@ fn follow<'m>(
     let mut row = Buffers::default();
     for number in 0..table.position.first().map_or(0, Vec::len) {
         row.fill(table, number);
+        if let Some(axis) = row.position.iter().position(|place| place.abs() > FARTHEST) {
+            let letter = calibrated.equations.axes.get(axis).map_or("", |axis| &axis.letter);
+            let why = format!("the position of {letter} is farther than any machine reaches; check the unit");
+            return Err(refused(number, &why));
+        }
         let taken = state.take(&row.row(table.time.as_ref().and_then(|time| time.get(number)).copied()));
         taken.map_err(|mistake| refused(number, &mistake))?;
         let sample = state.sample();
@@ -261,5 +267,18 @@ errors:
         let mut lost = table(axes, 10);
         lost.position[1][6] = f64::NAN;
         assert!(told(&lost).starts_with("error: row 6, counted from 0: "), "{}", told(&lost));
+    }
+
+    #[test]
+    fn a_position_beyond_any_machine_is_refused_with_its_row_and_axis() {
+        let calibrated = machine();
+        let mut table = table(calibrated.equations.axes.len(), 5);
+        table.position[1][3] = -2e12;
+        let failure = answer(&calibrated, &table, &Wanted::default()).err().unwrap();
+        let told = failure.words().unwrap().text(false);
+        assert!(
+            told.contains("row 3, counted from 0: the position of Y is farther than any machine"),
+            "{told}"
+        );
     }
 }

@@ -24,6 +24,8 @@ use crate::waves::{self, WavePlace};
 
 /// The most effects that are added.
 const ADDED: usize = 6;
+/// How many more effects are fitted beside one that does not stand up alone. Each step takes as long as a revision.
+const MORE: usize = 3;
 /// How many effects are fitted in the place of one, or beside all, of those that promise most.
 const TRIED: usize = 4;
 
@@ -57,37 +59,72 @@ impl Revision<'_> {
             if !appraisal.lacks() {
                 break;
             }
-            let conditions = self.conditions.under(&appraisal.weights);
-            let prices = conditions.prices(study, &fit.model, fit.samples);
-            let cost = conditions.cost_at(study, &fit, &prices);
-            let mut trials = self.trials(study, &fit, &prices, &appraisal);
-            trials.retain(|trial| trial.model.effects.len() <= most);
-            let Some(better) =
-                trials.into_iter().find_map(|trial| self.stands(study, trial, cost, &fit, &appraisal))
-            else {
-                break;
-            };
+            let Some(better) = self.better(study, (&fit, &appraisal), most) else { break };
             (fit, appraisal) = better;
         }
         (fit, appraisal)
     }
 
-    /// A trial, fitted, where it costs less and all of it stands up.
-    fn stands(
+    /// A model that is better by one effect, or by a few together.
+    fn better(
         &self,
         study: &Study<'_>,
-        trial: Trial,
-        cost: f64,
-        fit: &Fit,
-        appraisal: &Appraisal,
+        stands: (&Fit, &Appraisal),
+        most: usize,
     ) -> Option<(Fit, Appraisal)> {
-        let conditions = self.conditions.under(&appraisal.weights);
-        let fitted = conditions.refine(study, trial.model);
-        if conditions.cost_at(study, &fitted, &trial.prices) >= cost {
-            return None;
+        let mut first = None;
+        for cheaper in self.cheaper(study, stands, most) {
+            if let Some(upheld) = self.upheld(study, cheaper.clone(), stands) {
+                return Some(upheld);
+            }
+            first.get_or_insert(cheaper);
         }
-        let (count, more) =
-            (fitted.model.effects.len(), fitted.model.effects.len() > fit.model.effects.len());
+        self.better_by_several(study, first?, most)
+    }
+
+    /// A model with more effects than one that does not stand up yet, in which all do. A wave beside which others are still missing draws
+    /// their periods, and so foretells held-out samples no better than they do without it.
+    fn better_by_several(&self, study: &Study<'_>, first: Fit, most: usize) -> Option<(Fit, Appraisal)> {
+        let mut model = first.model;
+        for _ in 0..MORE {
+            let appraisal = Appraisal::new(study, &model);
+            let fit = self.conditions.under(&appraisal.weights).refine(study, model);
+            let cheaper = self.cheaper(study, (&fit, &appraisal), most).next()?;
+            if let Some(upheld) = self.upheld(study, cheaper.clone(), (&fit, &appraisal)) {
+                return Some(upheld);
+            }
+            model = cheaper.model;
+        }
+        None
+    }
+
+    /// The trials that cost less than what stands once they are fitted, the most promising first.
+    fn cheaper<'a>(
+        &'a self,
+        study: &'a Study<'a>,
+        (fit, appraisal): (&'a Fit, &'a Appraisal),
+        most: usize,
+    ) -> impl Iterator<Item = Fit> + 'a {
+        let conditions = self.conditions.under(&appraisal.weights);
+        let prices = conditions.prices(study, &fit.model, fit.samples);
+        let cost = conditions.cost_at(study, fit, &prices);
+        let mut trials = self.trials(study, fit, &prices, appraisal);
+        trials.retain(|trial| trial.model.effects.len() <= most);
+        trials.into_iter().filter_map(move |trial| {
+            let fitted = conditions.refine(study, trial.model);
+            (conditions.cost_at(study, &fitted, &trial.prices) < cost).then_some(fitted)
+        })
+    }
+
+    /// A fitted trial, where all of it stands up.
+    fn upheld(
+        &self,
+        study: &Study<'_>,
+        fitted: Fit,
+        (fit, appraisal): (&Fit, &Appraisal),
+    ) -> Option<(Fit, Appraisal)> {
+        let count = fitted.model.effects.len();
+        let more = count > fit.model.effects.len();
         let (kept, left) = judge::uphold(study, fitted, &self.conditions);
         let stands = kept.model.effects.len() == count
             && (!more || self.stands_apart_together(study, &kept.model, (appraisal, &left)));

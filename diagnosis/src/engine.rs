@@ -143,18 +143,30 @@ fn begun_anew(
     Start { model, dent }: Start,
     progress: &mut dyn FnMut(f64),
 ) -> (Search, Fit) {
-    let mut other = search.clone();
     let settings = model.settings().len();
-    other.begin(study, model.with_settings(settings + usize::from(dent.is_some())));
-    other.go_round(study, progress);
-    other.cross_plays(study, progress);
-    other.price_all_but(settings);
-    let mut better = other.fit(study);
-    if let Some(dent) = dent {
-        better = dent.drawn(study, better, &other.conditions());
+    let mut start = search.clone();
+    start.begin(study, model.with_settings(settings + usize::from(dent.is_some())));
+    let mut end = start.clone();
+    end.go_round(study, progress);
+    end.cross_plays(study, progress);
+    let ended = |mut search: Search| {
+        search.price_all_but(settings);
+        let fit = search.fit(study);
+        let fit = match &dent {
+            Some(dent) => dent.drawn(study, fit, &search.conditions()),
+            None => fit,
+        };
+        (search, fit)
+    };
+    let mut other = ended(end);
+    if dent.is_some() {
+        let start = ended(start);
+        if start.0.ends_better(study, &start.1, (&other.0, &other.1)) {
+            other = start;
+        }
     }
-    if other.ends_better(study, &better, (&search, &fit)) {
-        return (other, better);
+    if other.0.ends_better(study, &other.1, (&search, &fit)) {
+        return other;
     }
     (search, fit)
 }

@@ -26,6 +26,7 @@ use crate::weights::{Outliers, Weights};
 const ESTIMATES: usize = 20;
 
 /// What a model leaves.
+#[derive(Clone)]
 pub(crate) struct Appraisal {
     /// For each scene and channel.
     pub(crate) residuals: Vec<Vec<Vec<f64>>>,

@@ -18,7 +18,9 @@ use crate::audit;
 use crate::candidates;
 use crate::compose;
 use crate::crossing;
-use crate::diagnosis::{Change, Diagnosis, Mended, NoiseSummary, Residual, SettingFinding, Verdict};
+use crate::diagnosis::{
+    Change, Diagnosis, Evidence, Finding, Mended, NoiseSummary, Residual, SettingFinding, Verdict,
+};
 use crate::engine::{self, Found};
 use crate::fit;
 use crate::harmonics;
@@ -112,11 +114,18 @@ fn concluded(
     let mut feature = explain_locally(&study, &mut found);
     progress(Progress { step: "comparing with other names", done: 0.95 });
     let mut numbers = claims(&study, &mut found, &units, &mut diagnosis);
+    let mut refuted = Vec::new();
     while let Some(weakest) = refuted::weakest(&diagnosis.findings)
         .map(|weakest| numbers[weakest])
         .or_else(|| piece_of_the_rest(&study, &found, &numbers))
     {
+        refuted.push(found.fit.model.effects[weakest].effect.clone());
+        let finding = numbers.iter().position(|number| *number == weakest).map(|at| &diagnosis.findings[at]);
+        let carries = finding.is_some_and(takes_most);
         drop_effect(&study, &mut found, weakest);
+        if carries {
+            found.replace(&study, &refuted);
+        }
         // A table that was refuted is not made again.
         feature = strongest(&study, &found);
         numbers = claims(&study, &mut found, &units, &mut diagnosis);
@@ -228,6 +237,12 @@ fn piece_of_the_rest(study: &Study<'_>, found: &Found, numbers: &[usize]) -> Opt
         let without = Appraisal::beside(study, &rest.model, &found.appraisal);
         !revise::stands_apart(study, &without, &found.appraisal)
     })
+}
+
+/// Whether a finding takes more than all findings leave together. Without it, others would be told apart no longer.
+fn takes_most(finding: &Finding) -> bool {
+    let Evidence { with, without, .. } = finding.evidence;
+    without.powi(2) - with.powi(2) > with.powi(2)
 }
 
 /// Takes one effect back and fits the rest again.

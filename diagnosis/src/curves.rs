@@ -96,8 +96,10 @@ impl Imitation {
         let travel = &travels[self.axis];
         let kept = fit.model.keeping(|fitted| !self.holds(&fit.model, fitted, travels));
         let mut shapes = tables(study, self.axis, travel);
-        let fine = even(travel.low, travel.high, FINE);
-        shapes.extend(nodes::thinned(study, &kept, (self.place, self.axis), &fine, weights));
+        if stations(study, self.axis, travel).is_none() {
+            let fine = even(travel.low, travel.high, FINE);
+            shapes.extend(nodes::thinned(study, &kept, (self.place, self.axis), &fine, weights));
+        }
         for shape in shapes {
             let effect = Effect { place: self.place, shape };
             let trial = kept.with(Fitted::unfitted(effect));

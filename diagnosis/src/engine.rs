@@ -40,11 +40,13 @@ const ROUNDS: usize = 6;
 const WAVES: usize = 4;
 
 /// What the engine found.
+#[derive(Clone)]
 pub(crate) struct Found {
     pub(crate) fit: Fit,
     pub(crate) appraisal: Appraisal,
     pub(crate) pool: Vec<Kin>,
     pub(crate) travels: Vec<Travel>,
+    pub(crate) places: Vec<WavePlace>,
     /// Oscillations that are not steady, and not in the model.
     pub(crate) bands: Vec<Band>,
     pub(crate) tries: Tries,
@@ -62,6 +64,14 @@ impl Found {
     pub(crate) fn conditions(&self) -> Conditions<'_> {
         let weights = &self.appraisal.weights;
         Conditions { weights, travels: &self.travels, tries: self.tries }
+    }
+
+    /// Looks for what stands in the place of an effect that was dropped. What was refuted is not looked for again.
+    pub(crate) fn replace(&mut self, study: &Study<'_>, refuted: &[Effect]) {
+        let revision =
+            Revision { pool: &self.pool, places: &self.places, refuted, conditions: self.conditions() };
+        let (fit, appraisal) = revision.revised(study, self.fit.clone(), self.appraisal.clone());
+        (self.fit, self.appraisal) = (fit, appraisal);
     }
 }
 
@@ -89,7 +99,7 @@ pub(crate) fn find(
     }
     let Search { pool, travels, tries, richer, weights, .. } = search;
     let conditions = Conditions { weights: &weights, travels: &travels, tries };
-    let revision = Revision { pool: &pool, places: &places, conditions };
+    let revision = Revision { pool: &pool, places: &places, refuted: &[], conditions };
     for model in richer {
         if fit.model.chosen().is_empty() && appraisal.lacks() {
             (fit, appraisal) = better(study, (fit, appraisal), model, &revision);
@@ -105,7 +115,7 @@ pub(crate) fn find(
         let steady = conditions.under(&appraisal.weights).refine(study, fit.model);
         (fit, appraisal) = upheld(study, steady, &conditions);
     }
-    Found { fit, appraisal, pool, travels, bands, tries, plain_zeros: false }
+    Found { fit, appraisal, pool, travels, places, bands, tries, plain_zeros: false }
 }
 
 /// What of the end of a search is upheld, tables in the place of what imitates them.

@@ -33,8 +33,7 @@ pub(crate) fn with_table(study: &Study<'_>, found: &Found, feature: &Feature) ->
     if !fit.model.effects.iter().any(|fitted| fitted.effect == effect) {
         return None;
     }
-    let (pool, travels, bands) = (found.pool.clone(), found.travels.clone(), found.bands.clone());
-    Some(Found { fit, appraisal, pool, travels, bands, tries: found.tries, plain_zeros: false })
+    Some(Found { fit, appraisal, plain_zeros: false, ..found.clone() })
 }
 
 /// What is left beside a feature: the appraisal of the model with a table in its place.

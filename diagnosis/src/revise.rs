@@ -33,6 +33,8 @@ const TRIED: usize = 4;
 pub(crate) struct Revision<'r> {
     pub(crate) pool: &'r [Kin],
     pub(crate) places: &'r [WavePlace],
+    /// Effects that are not added: their own numbers spoke against them.
+    pub(crate) refuted: &'r [Effect],
     pub(crate) conditions: Conditions<'r>,
 }
 
@@ -66,12 +68,7 @@ impl Revision<'_> {
     }
 
     /// A model that is better by one effect, or by a few together.
-    fn better(
-        &self,
-        study: &Study<'_>,
-        stands: (&Fit, &Appraisal),
-        most: usize,
-    ) -> Option<(Fit, Appraisal)> {
+    fn better(&self, study: &Study<'_>, stands: (&Fit, &Appraisal), most: usize) -> Option<(Fit, Appraisal)> {
         let mut first = None;
         for cheaper in self.cheaper(study, stands, most) {
             if let Some(upheld) = self.upheld(study, cheaper.clone(), stands) {
@@ -217,7 +214,8 @@ impl Revision<'_> {
         let waves = waves
             .into_iter()
             .map(|peak| Open { price: conditions.price_of_peak(study, &peak, samples), effect: peak.effect });
-        candidates.chain(waves).collect()
+        let refuted = |open: &Open| self.refuted.iter().any(|known| rivals(known, &open.effect));
+        candidates.chain(waves).filter(|open| !refuted(open)).collect()
     }
 }
 

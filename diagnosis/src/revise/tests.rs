@@ -31,7 +31,7 @@ fn promised_and_saved(slope: f64) -> (f64, f64) {
     let fit = conditions.refine(&study, model);
     let slope = effect(Shape::Polynomial { axis: 0, degree: 1, center: 150.0, scale: 150.0 });
     let pool = [Kin { effect: slope, equals: Vec::new() }];
-    let revision = Revision { pool: &pool, places: &[], conditions };
+    let revision = Revision { pool: &pool, places: &[], refuted: &[], conditions };
     let prices = conditions.prices(&study, &fit.model, fit.samples);
     let cost = conditions.cost_at(&study, &fit, &prices);
     let trials = revision.trials(&study, &fit, &prices, &appraisal);

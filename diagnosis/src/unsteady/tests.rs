@@ -268,7 +268,8 @@ fn found(study: &Study<'_>) -> Found {
     let fit = fit::refine(study, model, &Weights::of_all(study, noises), &travels);
     let appraisal = Appraisal::new(study, &fit.model);
     let tries = Tries { candidates: crate::number(pool.len()), waves: 1.0 };
-    Found { fit, appraisal, pool, travels, bands: Vec::new(), tries, plain_zeros: false }
+    let (places, bands) = (Vec::new(), Vec::new());
+    Found { fit, appraisal, pool, travels, places, bands, tries, plain_zeros: false }
 }
 
 /// The standard deviation of what is left over, mm, and the periods of its sines, s.

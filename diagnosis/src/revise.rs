@@ -113,7 +113,7 @@ impl Revision<'_> {
         })
     }
 
-    /// A fitted trial, where all of it stands up.
+    /// A fitted trial, where all of it stands up, or what stands up of it beside its new effect still costs less than what stood.
     fn upheld(
         &self,
         study: &Study<'_>,
@@ -121,11 +121,22 @@ impl Revision<'_> {
         (fit, appraisal): (&Fit, &Appraisal),
     ) -> Option<(Fit, Appraisal)> {
         let count = fitted.model.effects.len();
+        let new = fitted.model.effects.last()?.effect.clone();
         let more = count > fit.model.effects.len();
         let (kept, left) = judge::uphold(study, fitted, &self.conditions);
-        let stands = kept.model.effects.len() == count
+        let has_new = kept.model.effects.last().is_some_and(|last| rivals(&last.effect, &new));
+        let stands = (kept.model.effects.len() == count
+            || has_new && self.costs_less(study, &kept.model, (fit, appraisal)))
             && (!more || self.stands_apart_together(study, &kept.model, (appraisal, &left)));
         stands.then_some((kept, left))
+    }
+
+    /// Whether a model costs less than what stands.
+    fn costs_less(&self, study: &Study<'_>, model: &Model, (fit, appraisal): (&Fit, &Appraisal)) -> bool {
+        let conditions = self.conditions.under(&appraisal.weights);
+        let cost =
+            |fit: &Fit| conditions.cost_at(study, fit, &conditions.prices(study, &fit.model, fit.samples));
+        cost(&conditions.refine(study, model.clone())) < cost(fit)
     }
 
     /// Whether the last effect of a model stands apart, or the harmonics of a wave do together of which it is one. `without` and `with` are

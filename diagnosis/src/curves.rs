@@ -18,6 +18,8 @@ use crate::travel::Travel;
 const NODES: [usize; 3] = [8, 12, 20];
 /// Of how many even nodes those are taken that a curve needs: what has a place of its own there is a fortieth of the travel long.
 pub(crate) const FINE: usize = 40;
+/// A wave of fewer cycles has not been seen to come again twice: it may be a bend of a curve.
+const SEEN_AGAIN: f64 = 3.0;
 /// A wave of more than this share of the travel may be part of a curve.
 pub(crate) const LONG: f64 = 0.12;
 
@@ -42,9 +44,8 @@ pub(crate) fn try_tables(study: &Study<'_>, mut fit: Fit, conditions: &Condition
         !fit.model.effects.iter().any(|fitted| is_dent(fitted, *place, &travels[*axis]))
     });
     for (place, axis) in places {
-        let imitations = [false, true].map(|waving| Imitation { place, axis, waving });
-        for imitation in imitations {
-            fit = imitation.replaced(study, fit, conditions);
+        for parts in [Parts::Bends, Parts::Smooth, Parts::Waves] {
+            fit = Imitation { place, axis, parts }.replaced(study, fit, conditions);
         }
     }
     fit
@@ -60,17 +61,32 @@ fn known_at_stations(study: &Study<'_>, travels: &[Travel]) -> Vec<(Place, usize
 struct Imitation {
     place: Place,
     axis: usize,
-    /// Whether waves of any length may, which together draw every curve.
-    waving: bool,
+    parts: Parts,
+}
+
+/// Which waves may imitate a curve, beside powers and tables.
+#[derive(Clone, Copy, PartialEq)]
+enum Parts {
+    /// Those that do not go through enough cycles to be seen to come again.
+    Bends,
+    /// Those that are long beside the travel.
+    Smooth,
+    /// Waves of any length, which together draw every curve.
+    Waves,
 }
 
 impl Imitation {
     /// Whether it holds an effect of a model. A wave with harmonics that comes again is no curve: what one turn of a screw does, the next
     /// does too, and a table would have to say it anew for each turn.
     fn holds(&self, model: &Model, fitted: &Fitted, travels: &[Travel]) -> bool {
+        let is_part = || match self.parts {
+            Parts::Bends => curve(&fitted.effect, travels, 1.0 / SEEN_AGAIN) == Some(self.axis),
+            Parts::Smooth => smooth(&fitted.effect, travels) == Some(self.axis),
+            Parts::Waves => smooth(&fitted.effect, travels) == Some(self.axis) || waves(fitted, self.axis),
+        };
         fitted.effect.place == self.place
             && !harmonics::comes_again(model, &fitted.effect, travels)
-            && (smooth(&fitted.effect, travels) == Some(self.axis) || self.waving && waves(fitted, self.axis))
+            && is_part()
     }
 
     /// Whether there is enough of it for a table to be tried.
@@ -80,10 +96,9 @@ impl Imitation {
         let winding =
             |fitted: &&Fitted| matches!(fitted.effect.shape, Shape::Polynomial { degree, .. } if degree > 2);
         let unnamed = parts.is_empty() && travels[self.axis].is_known_at_stations_alone();
-        if self.waving {
-            parts.len() >= MANY
-        } else {
-            unnamed || parts.len() > 1 || parts.iter().any(winding)
+        match self.parts {
+            Parts::Waves => parts.len() >= MANY,
+            Parts::Bends | Parts::Smooth => unnamed || parts.len() > 1 || parts.iter().any(winding),
         }
     }
 
@@ -95,11 +110,14 @@ impl Imitation {
         }
         let travel = &travels[self.axis];
         let kept = fit.model.keeping(|fitted| !self.holds(&fit.model, fitted, travels));
-        let mut shapes = tables(study, self.axis, travel);
-        if stations(study, self.axis, travel).is_none() {
-            let fine = even(travel.low, travel.high, FINE);
-            shapes.extend(nodes::thinned(study, &kept, (self.place, self.axis), &fine, weights));
-        }
+        let fine = even(travel.low, travel.high, FINE);
+        let thinned = || nodes::thinned(study, &kept, (self.place, self.axis), &fine, weights);
+        let shapes = match (stations(study, self.axis, travel), self.parts) {
+            (Some(stations), _) => vec![table(self.axis, stations)],
+            (None, Parts::Bends) => thinned().into_iter().collect(),
+            (None, Parts::Smooth) => tables(study, self.axis, travel),
+            (None, Parts::Waves) => tables(study, self.axis, travel).into_iter().chain(thinned()).collect(),
+        };
         for shape in shapes {
             let effect = Effect { place: self.place, shape };
             let trial = kept.with(Fitted::unfitted(effect));
@@ -211,7 +229,12 @@ fn median_along(nodes: &[f64], values: &[f64]) -> Option<f64> {
 
 /// The axis along which an effect is a smooth curve.
 fn smooth(effect: &Effect, travels: &[Travel]) -> Option<usize> {
-    let long = |(axis, period): &(usize, f64)| *period > LONG * travels[*axis].range();
+    curve(effect, travels, LONG)
+}
+
+/// The axis along which an effect is a curve, or a wave longer than this share of the travel.
+fn curve(effect: &Effect, travels: &[Travel], share: f64) -> Option<usize> {
+    let long = |(axis, period): &(usize, f64)| *period > share * travels[*axis].range();
     match effect.shape {
         Shape::Polynomial { axis, .. } | Shape::Table { axis, .. } => Some(axis),
         ref shape => shape.wave_along().filter(long).map(|(axis, _)| axis),
@@ -233,18 +256,16 @@ const MANY: usize = 4;
 /// One stands out that has more than half of what all of them have.
 const STANDS_OUT: f64 = 0.5;
 
-/// Tables of an axis: with nodes at its stations, where it stands at a few; else at equal steps, as long as there is something to fit
-/// at every node. A node of which only held-out samples know could have any value.
+/// Tables of an axis with nodes at equal steps, as long as there is something to fit at every node. A node of which only held-out
+/// samples know could have any value.
 fn tables(study: &Study<'_>, axis: usize, travel: &Travel) -> Vec<Shape> {
-    let nodes = match stations(study, axis, travel) {
-        Some(stations) => vec![stations],
-        None => {
-            let fitted = places(study, axis, |scene| scene.fitted_rows());
-            let even = NODES.map(|count| even(travel.low, travel.high, count));
-            even.into_iter().filter(|nodes| held(nodes, &fitted)).collect()
-        }
-    };
-    nodes.into_iter().map(|nodes| Shape::Table { axis, nodes, directed: false, repeats: false }).collect()
+    let fitted = places(study, axis, |scene| scene.fitted_rows());
+    let even = NODES.into_iter().map(|count| even(travel.low, travel.high, count));
+    even.filter(|nodes| held(nodes, &fitted)).map(|nodes| table(axis, nodes)).collect()
+}
+
+fn table(axis: usize, nodes: Vec<f64>) -> Shape {
+    Shape::Table { axis, nodes, directed: false, repeats: false }
 }
 
 /// Nodes at equal steps from one place to another, both included.

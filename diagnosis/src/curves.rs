@@ -9,6 +9,7 @@ use crate::conditions::Conditions;
 use crate::fit::Fit;
 use crate::harmonics;
 use crate::model::{Effect, Fitted, Model, Place};
+use crate::ranges::goes_round;
 use crate::scene::Scene;
 use crate::study::Study;
 use crate::terms::Shape;
@@ -44,7 +45,9 @@ pub(crate) fn try_tables(study: &Study<'_>, mut fit: Fit, conditions: &Condition
         !fit.model.effects.iter().any(|fitted| is_dent(fitted, *place, &travels[*axis]))
     });
     for (place, axis) in places {
-        for parts in [Parts::Bends, Parts::Smooth, Parts::Waves] {
+        // A wave around an axis that goes round comes again with the next turn, however few cycles it has in one.
+        let bends = (!goes_round(study, axis, &travels[axis])).then_some(Parts::Bends);
+        for parts in bends.into_iter().chain([Parts::Smooth, Parts::Waves]) {
             fit = Imitation { place, axis, parts }.replaced(study, fit, conditions);
         }
     }
@@ -98,7 +101,9 @@ impl Imitation {
         let unnamed = parts.is_empty() && travels[self.axis].is_known_at_stations_alone();
         match self.parts {
             Parts::Waves => parts.len() >= MANY,
-            Parts::Bends | Parts::Smooth => unnamed || parts.len() > 1 || parts.iter().any(winding),
+            Parts::Smooth => unnamed || parts.len() > 1 || parts.iter().any(winding),
+            // Powers alone are compared with even nodes: chosen ones would always say a little more.
+            Parts::Bends => parts.len() > 1,
         }
     }
 

@@ -109,19 +109,19 @@ impl Imitation {
 
     /// The fit with a table in the place of it, where that says the same with less.
     fn replaced(&self, study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> Fit {
-        let Conditions { weights, travels, .. } = *conditions;
+        let travels = conditions.travels;
         if !self.is_tried(&fit.model, travels) {
             return fit;
         }
         let travel = &travels[self.axis];
         let kept = fit.model.keeping(|fitted| !self.holds(&fit.model, fitted, travels));
-        let fine = even(travel.low, travel.high, FINE);
-        let thinned = || nodes::thinned(study, &kept, (self.place, self.axis), &fine, weights);
-        let shapes = match (stations(study, self.axis, travel), self.parts) {
-            (Some(stations), _) => vec![table(self.axis, stations)],
-            (None, Parts::Bends) => thinned().into_iter().collect(),
-            (None, Parts::Smooth) => tables(study, self.axis, travel),
-            (None, Parts::Waves) => tables(study, self.axis, travel).into_iter().chain(thinned()).collect(),
+        let shapes = match self.parts {
+            Parts::Bends => self.needed(study, &kept, conditions).into_iter().collect(),
+            Parts::Smooth => tables(study, self.axis, travel),
+            Parts::Waves => {
+                let needed = self.needed(study, &kept, conditions);
+                tables(study, self.axis, travel).into_iter().chain(needed).collect()
+            }
         };
         for shape in shapes {
             let effect = Effect { place: self.place, shape };
@@ -137,6 +137,16 @@ impl Imitation {
             fit = trial;
         }
         fit
+    }
+
+    /// The table beside a model with those nodes that the curve needs. Between stations nothing tells where that is.
+    fn needed(&self, study: &Study<'_>, kept: &Model, conditions: &Conditions<'_>) -> Option<Shape> {
+        let travel = &conditions.travels[self.axis];
+        if stations(study, self.axis, travel).is_some() {
+            return None;
+        }
+        let fine = even(travel.low, travel.high, FINE);
+        nodes::thinned(study, kept, (self.place, self.axis), &fine, conditions.weights)
     }
 }
 
@@ -261,16 +271,18 @@ const MANY: usize = 4;
 /// One stands out that has more than half of what all of them have.
 const STANDS_OUT: f64 = 0.5;
 
-/// Tables of an axis with nodes at equal steps, as long as there is something to fit at every node. A node of which only held-out
-/// samples know could have any value.
+/// Tables of an axis: with nodes at its stations, where it stands at a few; else at equal steps, as long as there is something to fit
+/// at every node. A node of which only held-out samples know could have any value.
 fn tables(study: &Study<'_>, axis: usize, travel: &Travel) -> Vec<Shape> {
-    let fitted = places(study, axis, |scene| scene.fitted_rows());
-    let even = NODES.into_iter().map(|count| even(travel.low, travel.high, count));
-    even.filter(|nodes| held(nodes, &fitted)).map(|nodes| table(axis, nodes)).collect()
-}
-
-fn table(axis: usize, nodes: Vec<f64>) -> Shape {
-    Shape::Table { axis, nodes, directed: false, repeats: false }
+    let nodes = match stations(study, axis, travel) {
+        Some(stations) => vec![stations],
+        None => {
+            let fitted = places(study, axis, |scene| scene.fitted_rows());
+            let even = NODES.map(|count| even(travel.low, travel.high, count));
+            even.into_iter().filter(|nodes| held(nodes, &fitted)).collect()
+        }
+    };
+    nodes.into_iter().map(|nodes| Shape::Table { axis, nodes, directed: false, repeats: false }).collect()
 }
 
 /// Nodes at equal steps from one place to another, both included.

@@ -9,7 +9,6 @@ use crate::conditions::Conditions;
 use crate::fit::Fit;
 use crate::harmonics;
 use crate::model::{Effect, Fitted, Model, Place};
-use crate::ranges::goes_round;
 use crate::scene::Scene;
 use crate::study::Study;
 use crate::terms::Shape;
@@ -19,8 +18,6 @@ use crate::travel::Travel;
 const NODES: [usize; 3] = [8, 12, 20];
 /// Of how many even nodes those are taken that a curve needs: what has a place of its own there is a fortieth of the travel long.
 pub(crate) const FINE: usize = 40;
-/// A wave of fewer cycles has not been seen to come again twice: it may be a bend of a curve.
-const SEEN_AGAIN: f64 = 3.0;
 /// A wave of more than this share of the travel may be part of a curve.
 pub(crate) const LONG: f64 = 0.12;
 
@@ -45,10 +42,9 @@ pub(crate) fn try_tables(study: &Study<'_>, mut fit: Fit, conditions: &Condition
         !fit.model.effects.iter().any(|fitted| is_dent(fitted, *place, &travels[*axis]))
     });
     for (place, axis) in places {
-        // A wave around an axis that goes round comes again with the next turn, however few cycles it has in one.
-        let bends = (!goes_round(study, axis, &travels[axis])).then_some(Parts::Bends);
-        for parts in bends.into_iter().chain([Parts::Smooth, Parts::Waves]) {
-            fit = Imitation { place, axis, parts }.replaced(study, fit, conditions);
+        let imitations = [false, true].map(|waving| Imitation { place, axis, waving });
+        for imitation in imitations {
+            fit = imitation.replaced(study, fit, conditions);
         }
     }
     fit
@@ -64,32 +60,17 @@ fn known_at_stations(study: &Study<'_>, travels: &[Travel]) -> Vec<(Place, usize
 struct Imitation {
     place: Place,
     axis: usize,
-    parts: Parts,
-}
-
-/// Which waves may imitate a curve, beside powers and tables.
-#[derive(Clone, Copy, PartialEq)]
-enum Parts {
-    /// Those that do not go through enough cycles to be seen to come again.
-    Bends,
-    /// Those that are long beside the travel.
-    Smooth,
-    /// Waves of any length, which together draw every curve.
-    Waves,
+    /// Whether waves of any length may, which together draw every curve.
+    waving: bool,
 }
 
 impl Imitation {
     /// Whether it holds an effect of a model. A wave with harmonics that comes again is no curve: what one turn of a screw does, the next
     /// does too, and a table would have to say it anew for each turn.
     fn holds(&self, model: &Model, fitted: &Fitted, travels: &[Travel]) -> bool {
-        let is_part = || match self.parts {
-            Parts::Bends => curve(&fitted.effect, travels, 1.0 / SEEN_AGAIN) == Some(self.axis),
-            Parts::Smooth => smooth(&fitted.effect, travels) == Some(self.axis),
-            Parts::Waves => smooth(&fitted.effect, travels) == Some(self.axis) || waves(fitted, self.axis),
-        };
         fitted.effect.place == self.place
             && !harmonics::comes_again(model, &fitted.effect, travels)
-            && is_part()
+            && (smooth(&fitted.effect, travels) == Some(self.axis) || self.waving && waves(fitted, self.axis))
     }
 
     /// Whether there is enough of it for a table to be tried.
@@ -99,30 +80,26 @@ impl Imitation {
         let winding =
             |fitted: &&Fitted| matches!(fitted.effect.shape, Shape::Polynomial { degree, .. } if degree > 2);
         let unnamed = parts.is_empty() && travels[self.axis].is_known_at_stations_alone();
-        match self.parts {
-            Parts::Waves => parts.len() >= MANY,
-            Parts::Smooth => unnamed || parts.len() > 1 || parts.iter().any(winding),
-            // Powers alone are compared with even nodes: chosen ones would always say a little more.
-            Parts::Bends => parts.len() > 1,
+        if self.waving {
+            parts.len() >= MANY
+        } else {
+            unnamed || parts.len() > 1 || parts.iter().any(winding)
         }
     }
 
     /// The fit with a table in the place of it, where that says the same with less.
     fn replaced(&self, study: &Study<'_>, mut fit: Fit, conditions: &Conditions<'_>) -> Fit {
-        let travels = conditions.travels;
+        let Conditions { weights, travels, .. } = *conditions;
         if !self.is_tried(&fit.model, travels) {
             return fit;
         }
         let travel = &travels[self.axis];
         let kept = fit.model.keeping(|fitted| !self.holds(&fit.model, fitted, travels));
-        let shapes = match self.parts {
-            Parts::Bends => self.needed(study, &kept, conditions).into_iter().collect(),
-            Parts::Smooth => tables(study, self.axis, travel),
-            Parts::Waves => {
-                let needed = self.needed(study, &kept, conditions);
-                tables(study, self.axis, travel).into_iter().chain(needed).collect()
-            }
-        };
+        let mut shapes = tables(study, self.axis, travel);
+        if self.waving {
+            let fine = even(travel.low, travel.high, FINE);
+            shapes.extend(nodes::thinned(study, &kept, (self.place, self.axis), &fine, weights));
+        }
         for shape in shapes {
             let effect = Effect { place: self.place, shape };
             let trial = kept.with(Fitted::unfitted(effect));
@@ -137,16 +114,6 @@ impl Imitation {
             fit = trial;
         }
         fit
-    }
-
-    /// The table beside a model with those nodes that the curve needs. Between stations nothing tells where that is.
-    fn needed(&self, study: &Study<'_>, kept: &Model, conditions: &Conditions<'_>) -> Option<Shape> {
-        let travel = &conditions.travels[self.axis];
-        if stations(study, self.axis, travel).is_some() {
-            return None;
-        }
-        let fine = even(travel.low, travel.high, FINE);
-        nodes::thinned(study, kept, (self.place, self.axis), &fine, conditions.weights)
     }
 }
 
@@ -244,12 +211,7 @@ fn median_along(nodes: &[f64], values: &[f64]) -> Option<f64> {
 
 /// The axis along which an effect is a smooth curve.
 fn smooth(effect: &Effect, travels: &[Travel]) -> Option<usize> {
-    curve(effect, travels, LONG)
-}
-
-/// The axis along which an effect is a curve, or a wave longer than this share of the travel.
-fn curve(effect: &Effect, travels: &[Travel], share: f64) -> Option<usize> {
-    let long = |(axis, period): &(usize, f64)| *period > share * travels[*axis].range();
+    let long = |(axis, period): &(usize, f64)| *period > LONG * travels[*axis].range();
     match effect.shape {
         Shape::Polynomial { axis, .. } | Shape::Table { axis, .. } => Some(axis),
         ref shape => shape.wave_along().filter(long).map(|(axis, _)| axis),

@@ -8,8 +8,12 @@ use crate::terms::Setting;
 use crate::testing::{Bench, line, noisy, path, position};
 use crate::travel::travels;
 
-/// What a slope beside a backlash promises, and what it saves when it is fitted. The model has a backlash, and the machine has one and a slope.
-fn promised_and_saved(slope: f64) -> (f64, f64) {
+/// A fit with a backlash, of a machine that has a backlash and a slope, um/mm, and what `asked` makes of a revision that knows the slope.
+fn beside_a_backlash<T>(
+    slope: f64,
+    refuted: bool,
+    asked: impl FnOnce(&Study<'_>, &Revision<'_>, (Fit, Appraisal)) -> T,
+) -> T {
     let bench = Bench::of("FX");
     let truth = bench.calibration(&format!(
         "{{EXX: [{{backlash: {{lost_motion: 6 um}}}}, {{polynomial: {{axis: X, per: mm, unit: um, coefficients: [0, {slope}]}}}}]}}"
@@ -27,17 +31,27 @@ fn promised_and_saved(slope: f64) -> (f64, f64) {
     let tries = Tries { candidates: 40.0, waves: 300.0 };
     let before = Conditions { weights: &first.weights, travels: &travels, tries };
     let appraisal = Appraisal::new(&study, &before.refine(&study, model.clone()).model);
-    let conditions = before.under(&appraisal.weights);
+    let weights = appraisal.weights.clone();
+    let conditions = before.under(&weights);
     let fit = conditions.refine(&study, model);
     let slope = effect(Shape::Polynomial { axis: 0, degree: 1, center: 150.0, scale: 150.0 });
-    let pool = [Kin { effect: slope, equals: Vec::new() }];
-    let revision = Revision { pool: &pool, places: &[], refuted: &[], conditions };
-    let prices = conditions.prices(&study, &fit.model, fit.samples);
-    let cost = conditions.cost_at(&study, &fit, &prices);
-    let trials = revision.trials(&study, &fit, &prices, &appraisal);
-    let beside = trials.iter().find(|trial| trial.model.effects.len() > fit.model.effects.len()).unwrap();
-    let fitted = conditions.refine(&study, beside.model.clone());
-    (beside.gain, cost - conditions.cost_at(&study, &fitted, &beside.prices))
+    let pool = [Kin { effect: slope.clone(), equals: Vec::new() }];
+    let refuted = if refuted { vec![slope] } else { Vec::new() };
+    let revision = Revision { pool: &pool, places: &[], refuted: &refuted, conditions };
+    asked(&study, &revision, (fit, appraisal))
+}
+
+/// What a slope beside a backlash promises, and what it saves when it is fitted.
+fn promised_and_saved(slope: f64) -> (f64, f64) {
+    beside_a_backlash(slope, false, |study, revision, (fit, appraisal)| {
+        let conditions = &revision.conditions;
+        let prices = conditions.prices(study, &fit.model, fit.samples);
+        let cost = conditions.cost_at(study, &fit, &prices);
+        let trials = revision.trials(study, &fit, &prices, &appraisal);
+        let beside = trials.iter().find(|trial| trial.model.effects.len() > fit.model.effects.len()).unwrap();
+        let fitted = conditions.refine(study, beside.model.clone());
+        (beside.gain, cost - conditions.cost_at(study, &fitted, &beside.prices))
+    })
 }
 
 /// The cost is logarithmic in what remains. So is a promise: where few stretches are told apart, an effect that takes most of the rest would
@@ -48,4 +62,15 @@ fn what_a_linear_effect_promises_is_what_it_saves() {
         let (promised, saved) = promised_and_saved(slope);
         assert!((promised - saved).abs() < 1e-3 * saved.abs(), "{slope}: {promised} for {saved}");
     }
+}
+
+#[test]
+fn what_was_refuted_is_not_looked_for_again() {
+    let chosen = |refuted| {
+        beside_a_backlash(0.2, refuted, |study, revision, (fit, appraisal)| {
+            revision.revised(study, fit, appraisal).0.model.chosen().len()
+        })
+    };
+    assert_eq!(chosen(false), 2, "the slope is found");
+    assert_eq!(chosen(true), 1, "the slope is refuted");
 }

@@ -66,7 +66,7 @@ impl Found {
         Conditions { weights, travels: &self.travels, tries: self.tries }
     }
 
-    /// Looks for what stands in the place of an effect that was dropped. What was refuted is not looked for again.
+    /// Revises the model after an effect was dropped. None of the `refuted` effects is added again.
     pub(crate) fn replace(&mut self, study: &Study<'_>, refuted: &[Effect]) {
         let revision =
             Revision { pool: &self.pool, places: &self.places, refuted, conditions: self.conditions() };

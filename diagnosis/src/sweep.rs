@@ -16,7 +16,7 @@ pub(crate) struct Swept {
     log_determinant: f64,
 }
 
-/// Minus twice the log-likelihood of a sum of squares that remains of so many samples, but for a constant.
+/// Minus twice the log-likelihood of the residuals, up to a constant: their sum of squares is `remaining`, their number `samples`.
 pub(crate) fn misfit(remaining: f64, samples: f64) -> f64 {
     samples * (remaining.max(f64::MIN_POSITIVE) / samples.max(1.0)).ln()
 }

@@ -68,8 +68,8 @@ impl Found {
 
     /// Revises the model after an effect was dropped. None of the `refuted` effects is added again.
     pub(crate) fn replace(&mut self, study: &Study<'_>, refuted: &[Effect]) {
-        let revision =
-            Revision { pool: &self.pool, places: &self.places, refuted, conditions: self.conditions() };
+        let Self { pool, places, bands, .. } = &*self;
+        let revision = Revision { pool, places, refuted, bands, conditions: self.conditions() };
         let (fit, appraisal) = revision.revised(study, self.fit.clone(), self.appraisal.clone());
         (self.fit, self.appraisal) = (fit, appraisal);
     }
@@ -99,7 +99,7 @@ pub(crate) fn find(
     }
     let Search { pool, travels, tries, richer, weights, .. } = search;
     let conditions = Conditions { weights: &weights, travels: &travels, tries };
-    let revision = Revision { pool: &pool, places: &places, refuted: &[], conditions };
+    let revision = Revision { pool: &pool, places: &places, refuted: &[], bands: &[], conditions };
     for model in richer {
         if fit.model.chosen().is_empty() && appraisal.lacks() {
             (fit, appraisal) = better(study, (fit, appraisal), model, &revision);

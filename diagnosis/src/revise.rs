@@ -20,6 +20,7 @@ use crate::search::rivals;
 use crate::study::Study;
 use crate::sweep::{Swept, misfit};
 use crate::terms::Shape;
+use crate::unsteady::Band;
 use crate::waves::{self, WavePlace};
 
 /// The most effects that are added.
@@ -35,6 +36,8 @@ pub(crate) struct Revision<'r> {
     pub(crate) places: &'r [WavePlace],
     /// Effects that are not added: their own numbers spoke against them.
     pub(crate) refuted: &'r [Effect],
+    /// Oscillations that are not steady. No vibration is added in one of them.
+    pub(crate) bands: &'r [Band],
     pub(crate) conditions: Conditions<'r>,
 }
 
@@ -76,19 +79,25 @@ impl Revision<'_> {
             }
             first.get_or_insert(cheaper);
         }
-        self.better_by_several(study, first?, most)
+        self.better_by_several(study, first?, stands, most)
     }
 
-    /// A model with more effects than one that does not stand up yet, in which all do. A wave beside which others are still missing draws
-    /// their periods, and so foretells held-out samples no better than they do without it.
-    fn better_by_several(&self, study: &Study<'_>, first: Fit, most: usize) -> Option<(Fit, Appraisal)> {
+    /// A model with more effects than one that does not stand up yet, in which all do, and which is better than what stands. A wave beside
+    /// which others are still missing draws their periods, and so foretells held-out samples no better than they do without it.
+    fn better_by_several(
+        &self,
+        study: &Study<'_>,
+        first: Fit,
+        stands: (&Fit, &Appraisal),
+        most: usize,
+    ) -> Option<(Fit, Appraisal)> {
         let mut model = first.model;
         for _ in 0..MORE {
             let appraisal = Appraisal::new(study, &model);
             let fit = self.conditions.under(&appraisal.weights).refine(study, model);
             let cheaper = self.cheaper(study, (&fit, &appraisal), most).next()?;
             if let Some(upheld) = self.upheld(study, cheaper.clone(), (&fit, &appraisal)) {
-                return Some(upheld);
+                return self.is_better(study, &upheld, stands).then_some(upheld);
             }
             model = cheaper.model;
         }
@@ -129,6 +138,18 @@ impl Revision<'_> {
             || has_new && self.costs_less(study, &kept.model, (fit, appraisal)))
             && (!more || self.stands_apart_together(study, &kept.model, (appraisal, &left)));
         stands.then_some((kept, left))
+    }
+
+    /// Whether a model costs less than what stands, and foretells held-out samples better.
+    fn is_better(
+        &self,
+        study: &Study<'_>,
+        (fit, with): &(Fit, Appraisal),
+        stands: (&Fit, &Appraisal),
+    ) -> bool {
+        let without = Appraisal::beside(study, &stands.0.model, with);
+        with.held_out(study, with) < without.held_out(study, with)
+            && self.costs_less(study, &fit.model, stands)
     }
 
     /// Whether a model costs less than what stands.
@@ -225,8 +246,13 @@ impl Revision<'_> {
         let waves = waves
             .into_iter()
             .map(|peak| Open { price: conditions.price_of_peak(study, &peak, samples), effect: peak.effect });
-        let refuted = |open: &Open| self.refuted.iter().any(|known| rivals(known, &open.effect));
-        candidates.chain(waves).filter(|open| !refuted(open)).collect()
+        candidates.chain(waves).filter(|open| !self.is_denied(&open.effect)).collect()
+    }
+
+    /// Whether an effect may not be added.
+    fn is_denied(&self, effect: &Effect) -> bool {
+        self.refuted.iter().any(|known| rivals(known, effect))
+            || self.bands.iter().any(|band| band.has(effect))
     }
 }
 

@@ -25,6 +25,15 @@ pub(crate) struct Band {
     pub(crate) rms: f64,
 }
 
+impl Band {
+    /// Whether an effect is a vibration of its motion in the band, or as near to it as the lines of a band are to one another.
+    pub(crate) fn has(&self, effect: &Effect) -> bool {
+        let (from, to) = (self.from * (1.0 - NEAR), self.to * (1.0 + NEAR));
+        effect.motion() == Some(self.motion)
+            && frequency(effect).is_some_and(|frequency| from < frequency && frequency < to)
+    }
+}
+
 /// How many vibrations of one motion so near to one another are one that is not steady.
 const LINES: usize = 3;
 /// How near, as a share of the frequency.

@@ -37,7 +37,7 @@ fn beside_a_backlash<T>(
     let slope = effect(Shape::Polynomial { axis: 0, degree: 1, center: 150.0, scale: 150.0 });
     let pool = [Kin { effect: slope.clone(), equals: Vec::new() }];
     let refuted = if refuted { vec![slope] } else { Vec::new() };
-    let revision = Revision { pool: &pool, places: &[], refuted: &refuted, conditions };
+    let revision = Revision { pool: &pool, places: &[], refuted: &refuted, bands: &[], conditions };
     asked(&study, &revision, (fit, appraisal))
 }
 

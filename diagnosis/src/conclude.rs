@@ -17,11 +17,12 @@ use crate::appraisal::Appraisal;
 use crate::audit;
 use crate::candidates;
 use crate::compose;
+use crate::course::courses;
 use crate::crossing;
 use crate::diagnosis::{
     Change, Diagnosis, Evidence, Finding, Mended, NoiseSummary, Residual, SettingFinding, Verdict,
 };
-use crate::engine::{self, Found};
+use crate::engine::Found;
 use crate::fit;
 use crate::harmonics;
 use crate::local::{self, Feature};
@@ -297,7 +298,7 @@ fn explain_locally(study: &Study<'_>, found: &mut Found) -> Option<Feature> {
 }
 
 fn strongest(study: &Study<'_>, found: &Found) -> Option<Feature> {
-    let courses = engine::courses(study, &found.fit.model);
+    let courses = courses(study, &found.fit.model);
     local::strongest(study, &found.appraisal, &found.fit.model, &courses, &found.travels)
 }
 

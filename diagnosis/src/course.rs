@@ -35,6 +35,11 @@ pub(crate) struct Course {
     pub(crate) built: Arc<Built>,
 }
 
+/// The courses of all recordings of a study under a model.
+pub(crate) fn courses(study: &Study<'_>, model: &Model) -> Vec<Arc<Course>> {
+    (0..study.scenes.len()).map(|scene| Course::new(study, scene, model)).collect()
+}
+
 /// The error of the tip, and the rotation of the tool relative to the part, X, Y, Z each; the rotation only where a channel
 /// shows it.
 pub(crate) struct KnownError {

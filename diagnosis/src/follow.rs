@@ -17,9 +17,9 @@ use crate::appraisal::Appraisal;
 use crate::candidates;
 use crate::certainty::{Certainty, WIDTH_95};
 use crate::course::Course;
+use crate::course::courses;
 use crate::design::{Design, Regressor};
 use crate::diagnosis::{Estimate, Finding, ParameterValue};
-use crate::engine;
 use crate::fit;
 use crate::model::{Effect, Fitted, Model, Place};
 use crate::parameters::{Described, motion_unit};
@@ -137,7 +137,7 @@ const BY_CHANCE: f64 = 1.5;
 pub fn follow(inputs: &Inputs<'_>, followed: &[Followed]) -> Vec<Result<Vec<Size>, Untold>> {
     let study = Study::new(inputs.equations, inputs.calibration, &inputs.recordings).with_nothing_held_out();
     let settings = Model::of_settings(candidates::always(&study));
-    let courses = engine::courses(&study, &settings);
+    let courses = courses(&study, &settings);
     let travels = travel::travels(&study, &courses);
     let read = read(&study, &courses);
     let begun: Vec<Result<Fitted, Untold>> =

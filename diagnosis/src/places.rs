@@ -5,9 +5,10 @@
 
 use crate::appraisal::Appraisal;
 use crate::candidates;
+use crate::course::courses;
 use crate::curves::{self, BROAD};
 use crate::design::{Design, Regressor};
-use crate::engine::{Found, courses, upheld};
+use crate::engine::{Found, upheld};
 use crate::local::Feature;
 use crate::model::{Effect, Fitted, Place};
 use crate::side::Side;

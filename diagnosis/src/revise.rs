@@ -8,8 +8,9 @@
 use crate::appraisal::Appraisal;
 use crate::channel::ChannelAt;
 use crate::conditions::Conditions;
+use crate::course::courses;
 use crate::design::{Design, Regressor};
-use crate::engine::{self, courses};
+use crate::engine::rounds::{highest, open_candidates};
 use crate::fit::Fit;
 use crate::harmonics;
 use crate::judge;
@@ -237,12 +238,12 @@ impl Revision<'_> {
         let courses = courses(study, model);
         let residuals = waves::all_weighted(study, model, &appraisal.weights, &courses);
         let (peaks, _) = waves::peaks(study, model, &courses, &residuals, conditions.travels, self.places);
-        let candidates = engine::open_candidates(model.chosen(), self.pool);
+        let candidates = open_candidates(model.chosen(), self.pool);
         let candidates = candidates
             .into_iter()
             .chain(harmonics::open(study, model, conditions.travels))
             .map(|effect| Open { price: conditions.price(study, &effect, samples), effect });
-        let waves = engine::highest(study, peaks);
+        let waves = highest(study, peaks);
         let waves = waves
             .into_iter()
             .map(|peak| Open { price: conditions.price_of_peak(study, &peak, samples), effect: peak.effect });

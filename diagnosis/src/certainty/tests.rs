@@ -3,8 +3,8 @@
 use super::*;
 use crate::appraisal::Appraisal;
 use crate::conditions::Tries;
+use crate::course::courses;
 use crate::diagnosis::{Estimate, ParameterValue};
-use crate::engine;
 use crate::fit;
 use crate::model::{Model, Place};
 use crate::noise::Noise;
@@ -47,7 +47,7 @@ fn held(
         let recording = bench.record(&calibration, &noisy(way, position("x"), 1e-3, 300 + seed));
         let study = Study::new(bench.equations(), None, &[&recording]);
         let model = model_of(&bench, shape);
-        let courses = engine::courses(&study, &model);
+        let courses = courses(&study, &model);
         let travels = crate::travel::travels(&study, &courses);
         let weights = Weights::of_all(&study, vec![vec![Noise::white(1e-3)]]);
         let fit = fit::refine(&study, model, &weights, &travels);
@@ -99,7 +99,7 @@ fn a_wave_is_known_by_the_noise_around_it_where_a_model_lacks_something_slow() {
         (way.runs, way.pause) = (2, 1.0);
         let recording = bench.record(&calibration, &noisy(way, position("x"), 1e-3, 300 + seed));
         let study = Study::new(bench.equations(), None, &[&recording]);
-        let courses = engine::courses(&study, &Model::default());
+        let courses = courses(&study, &Model::default());
         let travels = crate::travel::travels(&study, &courses);
         let white = Weights::of_all(&study, vec![vec![Noise::white(1e-3)]]);
         let first = fit::refine(&study, model_of(&bench, &shape), &white, &travels);

@@ -24,7 +24,7 @@ fn prices(period: f64, alike: f64) -> [f64; 2] {
         Fitted { effect: Effect { place, shape }, coefficients: vec![0.0, 0.0] },
     ])
     .with_settings(1);
-    let travels = travels(&study, &crate::engine::courses(&study, &model));
+    let travels = travels(&study, &crate::course::courses(&study, &model));
     let weights = Weights::of_all(&study, vec![vec![Noise { alike, ..Noise::white(0.01) }]]);
     let tries = Tries { candidates: 40.0, waves: 300.0 };
     let conditions = Conditions { weights: &weights, travels: &travels, tries };

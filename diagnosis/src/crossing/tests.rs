@@ -128,7 +128,7 @@ fn nothing_is_tried_where_nothing_holds_an_axis() {
     let study = Study::new(bench.equations(), Some(&known), &[&recording]);
     let tries = Tries { candidates: 50.0, waves: 100.0 };
     let weights = Weights::of_all(&study, vec![vec![Noise::white(1e-4); 2]]);
-    let travels = crate::travel::travels(&study, &crate::engine::courses(&study, &Model::default()));
+    let travels = crate::travel::travels(&study, &crate::course::courses(&study, &Model::default()));
     let conditions = Conditions { weights: &weights, travels: &travels, tries };
     let model = Model::of([at_once(&bench, 1, LOST[1])]);
     assert!(try_plays(&study, &model, &conditions).is_none());
@@ -191,7 +191,7 @@ fn a_play_that_comes_late_is_told_from_one_that_is_crossed() {
         let recording = circled_late(&bench, way);
         let study = Study::new(bench.equations(), None, &[&recording]);
         let weights = Weights::of_all(&study, vec![vec![Noise::white(2e-4); 2]]);
-        let travels = crate::travel::travels(&study, &crate::engine::courses(&study, &Model::default()));
+        let travels = crate::travel::travels(&study, &crate::course::courses(&study, &Model::default()));
         let conditions = Conditions { weights: &weights, travels: &travels, tries };
         let spike = own(&bench, 0, Shape::ReversalSpike { axis: 0, decay: 0.05 }, 0.003);
         let spiked = Model::of([spike, at_once(&bench, 0, 0.005)]);

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::conditions::Tries;
-use crate::engine;
+use crate::course::courses;
 use crate::noise::Noise;
 use crate::recording::Recording;
 use crate::side::Side;
@@ -60,7 +60,7 @@ fn nodes(places: &[f64]) -> Vec<Vec<f64>> {
 
 fn of_recording(bench: &Bench, recording: &Recording) -> Vec<Vec<f64>> {
     let study = Study::new(bench.equations(), None, &[recording]);
-    let travels = crate::travel::travels(&study, &engine::courses(&study, &Model::default()));
+    let travels = crate::travel::travels(&study, &courses(&study, &Model::default()));
     let nodes = |shape: Shape| match shape {
         Shape::Table { axis: 0, nodes, directed: false, repeats: false } => nodes,
         other => panic!("{other:?}"),
@@ -176,7 +176,7 @@ fn tried(bench: &Bench, recording: &Recording, degrees: &[usize]) -> (Model, [f6
         let shape = Shape::Polynomial { axis: 0, degree: *degree, center: 160.0, scale: 160.0 };
         model.effects.push(Fitted { effect: Effect { place, shape }, coefficients: vec![0.0; degree + 1] });
     }
-    let travels = crate::travel::travels(&study, &engine::courses(&study, &model));
+    let travels = crate::travel::travels(&study, &courses(&study, &model));
     let weights = Weights::of_all(&study, vec![vec![Noise::white(NOISE)]]);
     let tries = Tries { candidates: 40.0, waves: 40.0 };
     let conditions = Conditions { weights: &weights, travels: &travels, tries };

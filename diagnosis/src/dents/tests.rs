@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::conditions::Tries;
-use crate::engine::courses;
+use crate::course::courses;
 use crate::noise::Noise;
 use crate::terms::Setting;
 use crate::testing::{Bench, line, noisy, path, position};

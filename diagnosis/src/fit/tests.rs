@@ -1,7 +1,7 @@
 //! Fits that begin far from the least squares, where a whole step overshoots.
 
 use super::*;
-use crate::engine;
+use crate::course::courses;
 use crate::model::Place;
 use crate::noise::Noise;
 use crate::side::Side;
@@ -23,7 +23,7 @@ fn from(frequencies: impl Iterator<Item = f64>) -> Vec<(f64, f64, Fit)> {
     let scenario = noisy(path(line(0, 0.0, 200.0), 50.0, 40.0), position("x"), NOISE, 7);
     let recording = bench.record(&bench.calibration(VIBRATES), &scenario);
     let study = Study::new(bench.equations(), None, &[&recording]);
-    let travels = travels(&study, &engine::courses(&study, &Model::default()));
+    let travels = travels(&study, &courses(&study, &Model::default()));
     let weights = Weights::of_all(&study, vec![vec![Noise::white(NOISE)]]);
     let place = Place::Motion { motion: bench.motion("EXX"), side: Side::After };
     let fit = |frequency: f64| {

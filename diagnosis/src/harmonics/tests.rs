@@ -3,8 +3,8 @@
 use super::*;
 use crate::certainty::certainties;
 use crate::conditions::Tries;
+use crate::course::courses;
 use crate::diagnosis::{Parameter, ParameterValue};
-use crate::engine;
 use crate::judge;
 use crate::model::Place;
 use crate::noise::Noise;
@@ -58,7 +58,7 @@ struct Trial<'t> {
 impl<'t> Trial<'t> {
     fn new(bench: &'t Bench, recording: &'t Recording) -> Self {
         let study = Study::new(bench.equations(), None, &[recording]);
-        let travels = travel::travels(&study, &engine::courses(&study, &Model::default()));
+        let travels = travel::travels(&study, &courses(&study, &Model::default()));
         let weights = Weights::of_all(&study, vec![vec![Noise::white(NOISE)]]);
         Self { study, weights, travels, motion: bench.motion("EXX") }
     }
@@ -248,7 +248,7 @@ fn parts_of_a_turn_are_no_harmonics_that_are_looked_for() {
     let way = path(line(0, 0.0, std::f64::consts::TAU), 0.5, 20.0);
     let recording = bench.record(&truth, &noisy(way, position("c"), 1e-6, 1));
     let study = Study::new(bench.equations(), None, &[&recording]);
-    let travels = travel::travels(&study, &engine::courses(&study, &Model::default()));
+    let travels = travel::travels(&study, &courses(&study, &Model::default()));
     let place = Place::Motion { motion: bench.motion("ECC"), side: Side::After };
     let wave = |order: u32| {
         let shape = Shape::Cyclic { axis: 0, period: 2.0, order, center: 0.0 };

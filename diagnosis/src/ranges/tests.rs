@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::*;
-use crate::engine;
+use crate::course::courses;
 use crate::model::Model;
 use crate::recording::Recording;
 use crate::testing::{Bench, programmed};
@@ -40,7 +40,7 @@ fn short() -> Recording {
 fn with<T>(recordings: &[&Recording], each: impl FnOnce(&Study<'_>, &[Travel]) -> T) -> T {
     let bench = Bench::of("FX");
     let study = Study::new(bench.equations(), None, recordings);
-    let courses = engine::courses(&study, &Model::default());
+    let courses = courses(&study, &Model::default());
     let travels = travels(&study, &courses);
     each(&study, &travels)
 }
@@ -178,7 +178,7 @@ fn a_spike_of_another_axis_becomes_play_of_that_axis() {
     let across: Vec<f64> = along.iter().map(|place| 0.5 * place).collect();
     let recording = programmed(&recording.time, &[along, across]);
     let study = Study::new(bench.equations(), None, &[&recording]);
-    let travels = travels(&study, &engine::courses(&study, &Model::default()));
+    let travels = travels(&study, &courses(&study, &Model::default()));
     let found = limit(&study, &travels, &Shape::ReversalSpike { axis: 1, decay: 1e3 });
     assert_eq!(found, Some(Shape::Backlash { axis: 1, wind_up: 0.0 }));
     // Its rows are half as far apart.

@@ -74,3 +74,24 @@ fn what_was_refuted_is_not_looked_for_again() {
     assert_eq!(chosen(false), 2, "the slope is found");
     assert_eq!(chosen(true), 1, "the slope is refuted");
 }
+
+/// What a model with a slope is worth beside one without.
+#[test]
+fn a_model_is_better_only_where_it_costs_less_than_the_one_that_stands() {
+    let with_slope_is_better = |slope| {
+        beside_a_backlash(slope, false, |study, revision, (fit, appraisal)| {
+            let slope = Fitted::unfitted(revision.pool[0].effect.clone());
+            let with = revision.conditions.refine(study, fit.model.with(slope));
+            let left = Appraisal::new(study, &with.model);
+            let [without, with] = [(fit, appraisal), (with, left)];
+            let better = revision.is_better(study, &with, (&without.0, &without.1));
+            assert!(
+                !(better && revision.is_better(study, &without, (&with.0, &with.1))),
+                "only one of both is"
+            );
+            better
+        })
+    };
+    assert!(with_slope_is_better(0.2));
+    assert!(!with_slope_is_better(0.0), "the slope of noise");
+}

@@ -208,7 +208,7 @@ fn of_two_that_bend_alike_in_one_place_one_is_enough() {
     let model = Model::of(effects.into_iter().map(Fitted::unfitted));
     let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3); 2]]));
     let (products, samples) = design.fitted();
-    let travels = crate::travel::travels(&study, &crate::engine::courses(&study, &Model::default()));
+    let travels = crate::travel::travels(&study, &crate::course::courses(&study, &Model::default()));
     let resolution = Resolution::new(&study, &travels);
     let choice = Choice::new(&study, &design, products, samples, 0, 1.0, resolution);
     for (a, b, both) in [
@@ -253,7 +253,7 @@ fn a_wave_that_comes_again_stands_beside_a_table() {
     let model = Model::of(effects.into_iter().map(Fitted::unfitted));
     let design = judge::design(&study, &model, &Weights::of_all(&study, vec![vec![Noise::white(1e-3); 2]]));
     let (products, samples) = design.fitted();
-    let travels = crate::travel::travels(&study, &crate::engine::courses(&study, &Model::default()));
+    let travels = crate::travel::travels(&study, &crate::course::courses(&study, &Model::default()));
     let resolution = Resolution::new(&study, &travels);
     let choice = Choice::new(&study, &design, products, samples, 0, 1.0, resolution);
     let table = choice.with(&choice.empty(), 0);

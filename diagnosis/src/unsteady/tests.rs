@@ -7,7 +7,7 @@ use simulation::noise::{Correlated, Noise as Drawn, Source, Walk};
 use super::*;
 use crate::candidates;
 use crate::conditions::Tries;
-use crate::engine;
+use crate::course::courses;
 use crate::fit;
 use crate::kinship;
 use crate::noise::Noise;
@@ -67,6 +67,8 @@ fn lines_that_crowd_become_a_band_with_their_strength_together() {
     assert_eq!(model.effects, others);
     let [band] = bands.as_slice() else { panic!("{bands:?}") };
     assert_eq!((band.motion, band.from, band.to), (2, 30.0, 30.5));
+    assert!(crowd.iter().all(|line| band.has(&line.effect)));
+    assert!(others.iter().all(|other| !band.has(&other.effect)));
     // Over 10 s all three lines have whole periods.
     let value = |row: u32| -> f64 {
         let time = 1e-3 * f64::from(row);
@@ -261,7 +263,7 @@ fn stage(errors: &str, leftover: impl Fn(f64) -> f64) -> (Bench, Recording) {
 /// What is found where nothing but the zero of the instrument is fitted.
 fn found(study: &Study<'_>) -> Found {
     let model = Model::of([zero(0)]).with_settings(1);
-    let courses = engine::courses(study, &model);
+    let courses = courses(study, &model);
     let travels = travel::travels(study, &courses);
     let noises = vec![vec![Noise::white(1e-3); study.scenes[0].channels.len()]];
     let pool = kinship::groups(study, &courses, &noises, candidates::candidates(study, &travels));

@@ -26,8 +26,6 @@ use crate::waves::{self, WavePlace};
 
 /// The most effects that are added.
 const ADDED: usize = 6;
-/// How many more effects are fitted beside one that does not stand up alone. Each step takes as long as a revision.
-const MORE: usize = 3;
 /// How many effects are fitted in the place of one, or beside all, of those that promise most.
 const TRIED: usize = 4;
 
@@ -71,7 +69,7 @@ impl Revision<'_> {
         (fit, appraisal)
     }
 
-    /// A model that is better by one effect, or by a few together.
+    /// A model that is better by one effect, or by two together.
     fn better(&self, study: &Study<'_>, stands: (&Fit, &Appraisal), most: usize) -> Option<(Fit, Appraisal)> {
         let mut first = None;
         for cheaper in self.cheaper(study, stands, most) {
@@ -80,29 +78,24 @@ impl Revision<'_> {
             }
             first.get_or_insert(cheaper);
         }
-        self.better_by_several(study, first?, stands, most)
+        self.better_by_two(study, first?, stands, most)
     }
 
-    /// A model with more effects than one that does not stand up yet, in which all do, and which is better than what stands. A wave beside
-    /// which others are still missing draws their periods, and so foretells held-out samples no better than they do without it.
-    fn better_by_several(
+    /// A model with one effect more than one that does not stand up yet, in which all do, and which is better than what stands. A wave
+    /// beside which another is still missing draws the periods of others, and so foretells held-out samples no better than they do without
+    /// it.
+    fn better_by_two(
         &self,
         study: &Study<'_>,
         first: Fit,
         stands: (&Fit, &Appraisal),
         most: usize,
     ) -> Option<(Fit, Appraisal)> {
-        let mut model = first.model;
-        for _ in 0..MORE {
-            let appraisal = Appraisal::new(study, &model);
-            let fit = self.conditions.under(&appraisal.weights).refine(study, model);
-            let cheaper = self.cheaper(study, (&fit, &appraisal), most).next()?;
-            if let Some(upheld) = self.upheld(study, cheaper.clone(), (&fit, &appraisal)) {
-                return self.is_better(study, &upheld, stands).then_some(upheld);
-            }
-            model = cheaper.model;
-        }
-        None
+        let appraisal = Appraisal::new(study, &first.model);
+        let fit = self.conditions.under(&appraisal.weights).refine(study, first.model);
+        let second = self.cheaper(study, (&fit, &appraisal), most).next()?;
+        let upheld = self.upheld(study, second, (&fit, &appraisal))?;
+        self.is_better(study, &upheld, stands).then_some(upheld)
     }
 
     /// The trials that cost less than what stands once they are fitted, the most promising first.

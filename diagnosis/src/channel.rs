@@ -29,9 +29,9 @@ pub(crate) struct Channel<'a> {
     pub(crate) values: Cow<'a, [f64]>,
     /// Readings that are left out because the display shows them coarser than the others.
     pub(crate) coarse: Option<Coarse>,
-    /// The standard deviation of the rounding of its values, and of the commands that it is held against.
+    /// Standard deviation, mm or rad, of the rounding of its values and of the commands from which it is predicted.
     pub(crate) rounding: f64,
-    /// The states of which functions predict what the calibration leaves of it.
+    /// The states of which some function predicts what the calibration leaves of it.
     pub(crate) returning: Vec<Return>,
 }
 
@@ -67,8 +67,8 @@ impl Kind {
         !matches!(self, Self::Drive(_))
     }
 
-    /// Whether two channels, of different recordings, read the same: one axis, or one direction of the part's frame, or in any
-    /// direction what one instrument is made for.
+    /// Whether channels of two recordings read the same quantity. Axes, and directions of the part's frame, must be the same. Readings
+    /// of a ballbar, along a line, along normals and of a rotation match in any direction.
     pub(crate) fn reads_as(self, other: Self) -> bool {
         match (self, other) {
             (Self::Tip(one), Self::Tip(two))
@@ -92,33 +92,17 @@ impl Kind {
     }
 }
 
-/// What was observed. `rounded` are the steps of the commands: their rounding is noise of what is predicted.
+/// The channels of a recording. `command_steps` has the step to which each axis's command was rounded, mm or rad.
 pub(crate) fn channels<'a>(
     recording: &'a Recording,
     equations: &Equations,
-    rounded: &[f64],
+    command_steps: &[f64],
 ) -> Vec<Channel<'a>> {
     let mut channels = Vec::new();
-    let angle = match recording.angle_unit {
-        AngleUnit::Degree => 1f64.to_radians(),
-        AngleUnit::Radian => 1.0,
-    };
-    // `position` is where the axis was whose position is read; nothing where an error is.
     let mut add = |name: String, kind: Kind, values: &'a [f64], position: Option<&[f64]>| {
-        let predicted = rounded.iter().enumerate().filter(|(axis, _)| match kind {
-            Kind::Drive(own) | Kind::Stage(own) => *axis == own,
-            // How far an axis moves the tip depends on the machine; a slide does it one to one.
-            _ => equations.axes.get(*axis).is_some_and(|axis| !axis.rotary) && !kind.angular(equations),
-        });
-        let predicted = predicted.map(|(_, step)| rounded::deviation(*step));
-        let unit = if kind.angular(equations) { angle } else { 1.0 };
-        let coarse = position.and_then(|position| coarse::coarse(values, position, unit));
-        let values = match &coarse {
-            Some(coarse) => Cow::Owned(coarse::without(values, coarse)),
-            None => Cow::Borrowed(values),
-        };
-        let rounding = predicted.fold(noise::rounding(&values), f64::hypot);
-        channels.push(Channel { name, kind, values, coarse, rounding, returning: Vec::new() });
+        let unit = if kind.angular(equations) { radians_per_unit(recording) } else { 1.0 };
+        let rounding = command_rounding(kind, equations, command_steps);
+        channels.push(channel((name, kind), (values, position), unit, rounding));
     };
     for (direction, values) in recording.measured.iter().enumerate() {
         if let Some(values) = values {
@@ -139,7 +123,7 @@ pub(crate) fn channels<'a>(
     }
     for (axis, known) in recording.axes.iter().enumerate() {
         let letter = equations.axes.get(axis).map(|axis| axis.letter.to_lowercase()).unwrap_or_default();
-        // What an axis was measured by cannot be its position as well.
+        // A measured position is a reading only if another channel gives the axis's position.
         if let Some(values) = &known.measured
             && (known.command.is_some() || known.actual.is_some())
         {
@@ -150,4 +134,40 @@ pub(crate) fn channels<'a>(
         }
     }
     channels
+}
+
+/// One channel. `position` is the known position of the axis whose position it reads; `None` for a channel of errors. `unit` is the unit
+/// of the display, mm or rad, and `command_rounding` what rounded commands add to its prediction.
+fn channel<'a>(
+    (name, kind): (String, Kind),
+    (values, position): (&'a [f64], Option<&[f64]>),
+    unit: f64,
+    command_rounding: f64,
+) -> Channel<'a> {
+    let coarse = position.and_then(|position| coarse::coarse(values, position, unit));
+    let values = match &coarse {
+        Some(coarse) => Cow::Owned(coarse::without(values, coarse)),
+        None => Cow::Borrowed(values),
+    };
+    let rounding = noise::rounding(&values).hypot(command_rounding);
+    Channel { name, kind, values, coarse, rounding, returning: Vec::new() }
+}
+
+/// The standard deviation that rounded commands add to the prediction of a channel, mm or rad.
+fn command_rounding(kind: Kind, equations: &Equations, command_steps: &[f64]) -> f64 {
+    let enters = |axis: usize| match kind {
+        Kind::Drive(own) | Kind::Stage(own) => axis == own,
+        // A slide moves the tip by as much as it moves. How far a rotary axis moves it depends on the machine.
+        _ => !kind.angular(equations) && equations.axes.get(axis).is_some_and(|axis| !axis.rotary),
+    };
+    let steps = command_steps.iter().enumerate().filter(|(axis, _)| enters(*axis));
+    steps.map(|(_, step)| rounded::deviation(*step)).fold(0.0, f64::hypot)
+}
+
+/// How many rad the unit is in which the recording gives angles.
+fn radians_per_unit(recording: &Recording) -> f64 {
+    match recording.angle_unit {
+        AngleUnit::Degree => 1f64.to_radians(),
+        AngleUnit::Radian => 1.0,
+    }
 }

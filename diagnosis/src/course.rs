@@ -18,9 +18,9 @@ use crate::states::{Driven, Rows, States};
 use crate::study::Study;
 use crate::terms::{Memory, Setting, Shape};
 
-/// How many rows are worked on at a time.
+/// How many rows are worked on at a time: 2 KiB of each column, so that those of a dozen terms stay in a first-level cache.
 pub(crate) const STRETCH: usize = 256;
-/// How many rows are shared out among processors at a time.
+/// How many rows are shared out among processors at a time: 16 stretches, so that each of 16 processors has one.
 pub(crate) const BATCH: usize = 16 * STRETCH;
 
 /// The states of one recording under a model: those that the instrument shows, and those of the drives.
@@ -53,7 +53,7 @@ pub(crate) struct KnownError {
 #[derive(Default)]
 pub(crate) struct LastCourse(Mutex<Option<(Ways, Arc<Course>)>>);
 
-/// What of a model changes the course of a recording: how every axis is driven, and the offset of the instrument's clock.
+/// What a model contributes to the course of a recording: how each axis is driven, and the offset of the instrument's clock, s.
 #[derive(Clone, PartialEq)]
 struct Ways {
     driven: Vec<Driven>,
@@ -77,7 +77,7 @@ impl Ways {
             crossing: model.crossing(axis),
         };
         let driven = loops.into_iter().enumerate().map(driven).collect();
-        Self { driven, clock: clock(scene, model) }
+        Self { driven, clock: model.setting(scene, Setting::Clock) }
     }
 }
 
@@ -87,26 +87,26 @@ impl Course {
         let ways = Ways::new(study, scene, model);
         let last = &study.scenes[scene].last_course.0;
         // What a thread left that panicked is as good as any other course.
-        let mut known = last.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, course)) = known.as_ref().filter(|(known, _)| *known == ways) {
+        let mut kept = last.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, course)) = kept.as_ref().filter(|(before, _)| *before == ways) {
             return Arc::clone(course);
         }
-        // It goes before the next one comes.
-        *known = None;
-        drop(known);
+        // The old course is freed first, so that two are never in memory.
+        *kept = None;
+        drop(kept);
         let course = Arc::new(Self::of(study, scene, &ways));
-        let mut known = last.lock().unwrap_or_else(PoisonError::into_inner);
-        *known = Some((ways, Arc::clone(&course)));
+        let mut kept = last.lock().unwrap_or_else(PoisonError::into_inner);
+        *kept = Some((ways, Arc::clone(&course)));
         course
     }
 
     fn of(study: &Study<'_>, scene: usize, ways: &Ways) -> Self {
-        let known = &study.scenes[scene];
-        let states = |clock: f64| States::new(known.recording, &known.given, &ways.driven, clock);
+        let recorded = &study.scenes[scene];
+        let states = |clock: f64| States::new(recorded.recording, &recorded.given, &ways.driven, clock);
         let shown = states(ways.clock);
-        let drives = (ways.clock != 0.0 && known.has_drives()).then(|| states(0.0));
+        let drives = (ways.clock != 0.0 && recorded.has_drives()).then(|| states(0.0));
         let known = KnownError::new(study, scene, &shown);
-        let built = Arc::clone(&study.scenes[scene].built);
+        let built = Arc::clone(&recorded.built);
         Self { shown, drives, known, built }
     }
 
@@ -120,8 +120,8 @@ impl Course {
 }
 
 impl KnownError {
-    /// Adds up the calibration's terms in every error motion, and goes through the machine with them: one product of finite
-    /// matrices a row. Its loops are in the states already.
+    /// Adds up the calibration's terms of each error motion, and computes what they do to the tool: one product of matrices with
+    /// finite rotations per row. The calibration's position loops are not added here: the states contain them.
     fn new(study: &Study<'_>, scene: usize, states: &States) -> Self {
         let channels = &study.scenes[scene].channels;
         let turning = channels.iter().any(|channel| matches!(channel.kind, Kind::Turn(_) | Kind::Stage(_)));
@@ -158,8 +158,8 @@ impl KnownError {
 
 /// What known error motions do to the tool in a stretch of rows.
 ///
-/// A motion that is not known in a row, as what a sensor says that was not recorded, counts as nothing in the product, and leaves
-/// those directions unknown that see it to first order: not the others, which would see no more than products of two errors.
+/// A motion can be unknown in a row: its sensor has no reading there. It counts as zero in the product of matrices. Directions in
+/// which it acts to first order become NaN. The other directions stay known: it enters them only in products of two errors.
 fn displaced(
     study: &Study<'_>,
     built: &Built,
@@ -176,11 +176,8 @@ fn displaced(
     if !motions.iter().any(unknown) {
         return product(motions);
     }
-    let each = |of: fn(f64) -> f64| -> Vec<Option<Vec<f64>>> {
-        let column = |motion: &[f64]| motion.iter().map(|value| of(*value)).collect();
-        motions.iter().map(|motion| motion.map(column)).collect()
-    };
-    let (known, gaps) = (each(|value| if value.is_nan() { 0.0 } else { value }), each(|value| 0.0 * value));
+    let known = mapped(motions, |value| if value.is_nan() { 0.0 } else { value });
+    let gaps = mapped(motions, |value| 0.0 * value);
     let all = 0..view.len();
     let mut error = product(&part(&known, &all));
     let (interpreter, gaps) = (&built.interpreter, part(&gaps, &all));
@@ -189,6 +186,12 @@ fn displaced(
     error.turn =
         error.turn.map(|turn| plus(turn, &seen(&interpreter.turn_values(&positions, &travels)), &all));
     error
+}
+
+/// Every motion with a function of each of its values.
+fn mapped(motions: &[Option<&[f64]>], of: fn(f64) -> f64) -> Vec<Option<Vec<f64>>> {
+    let column = |motion: &[f64]| motion.iter().map(|value| of(*value)).collect();
+    motions.iter().map(|motion| motion.map(column)).collect()
 }
 
 /// Cuts rows into pieces of a size, the last of which may be shorter.
@@ -201,7 +204,7 @@ pub(crate) fn part<'m>(motions: &'m [Option<Vec<f64>>], rows: &Range<usize>) -> 
     motions.iter().map(|motion| motion.as_ref().map(|motion| &motion[rows.clone()])).collect()
 }
 
-/// Whether a term that is known acts inside a position loop. A lag is in the states.
+/// Whether a known term enters inside a position loop, which answers it. A lag is none: the states contain it.
 fn answered(known: &&Fitted) -> bool {
     known.effect.side().is_some_and(|side| side.answered_by().is_some())
 }
@@ -212,7 +215,7 @@ fn append(sums: &mut [Vec<f64>; 3], parts: [Vec<f64>; 3]) {
     }
 }
 
-/// The positions of all axes in a stretch of rows, and the free travels, which are positions by default.
+/// The position of every axis in a stretch of rows, and each travel of the equations, which is the position of its axis.
 pub(crate) fn inputs<'s>(study: &Study<'_>, view: &Rows<'s>) -> (Vec<&'s [f64]>, Vec<&'s [f64]>) {
     let positions: Vec<&[f64]> =
         (0..study.equations.axes.len()).map(|axis| view.axis(axis).position).collect();
@@ -236,16 +239,8 @@ fn loops(study: &Study<'_>, model: &Model) -> Vec<PositionLoop> {
 /// The zero of the drive's own feedback of an axis in a recording.
 fn feedback_zero(study: &Study<'_>, scene: usize, model: &Model, axis: usize) -> f64 {
     let mut channels = study.scenes[scene].channels.iter();
-    let Some(channel) = channels.position(|channel| channel.kind == Kind::Drive(axis)) else { return 0.0 };
-    let zero = Some(Setting::Offset { channel });
-    let zeros = model.effects.iter().filter(|fitted| fitted.effect.setting_of(scene) == zero);
-    zeros.filter_map(|fitted| fitted.coefficients.first()).sum()
-}
-
-fn clock(scene: usize, model: &Model) -> f64 {
-    let clocks =
-        model.effects.iter().filter(|fitted| fitted.effect.setting_of(scene) == Some(Setting::Clock));
-    clocks.filter_map(|fitted| fitted.coefficients.first()).sum()
+    let channel = channels.position(|channel| channel.kind == Kind::Drive(axis));
+    channel.map_or(0.0, |channel| model.setting(scene, Setting::Offset { channel }))
 }
 
 /// Terms whose memory runs through the rows of one recording, each term once: the error motions in which there are any, with
@@ -299,7 +294,7 @@ fn sum(terms: &mut [(&Fitted, Memory)], rows: &Rows<'_>, drive: bool) -> Option<
     sum
 }
 
-/// The sum of arms times motions, in three directions.
+/// The error in three directions: the sum, over all error motions, of lever arm times motion.
 pub(crate) fn weighted_sum(
     levers: &[[Column<'_>; 3]],
     motions: &[Option<&[f64]>],

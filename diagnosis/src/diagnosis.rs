@@ -55,6 +55,13 @@ pub struct Diagnosis {
     pub traces: Vec<Trace>,
 }
 
+impl Diagnosis {
+    /// The file of a recording, by its number.
+    pub(crate) fn file_of(&self, recording: usize) -> Option<&str> {
+        self.recordings.get(recording).map(|summary| summary.file.as_str())
+    }
+}
+
 /// One recording in a few figures.
 #[derive(Clone, Debug, Default)]
 pub struct Summary {
@@ -401,8 +408,6 @@ pub struct Interval {
 pub enum IntervalOf {
     /// The position of the axis of this letter.
     Axis(String),
-    /// Time since the recording began.
-    Time,
     /// Frequency.
     Frequency,
 }

@@ -169,6 +169,14 @@ impl Model {
     }
 }
 
+impl Model {
+    /// The fitted value of a setting of the instrument of one recording, in its own unit; 0 where it is not fitted.
+    pub(crate) fn setting(&self, recording: usize, setting: Setting) -> f64 {
+        let wanted = |fitted: &&Fitted| fitted.effect.setting_of(recording) == Some(setting);
+        self.effects.iter().filter(wanted).flat_map(|fitted| &fitted.coefficients).sum()
+    }
+}
+
 impl Effect {
     /// A setting of the instrument of a recording.
     pub(crate) fn setting(recording: usize, setting: Setting) -> Self {

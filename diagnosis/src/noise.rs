@@ -7,6 +7,7 @@
 mod likelihood;
 mod simplex;
 
+use crate::rounded;
 use likelihood::deviances;
 use simplex::{TOGETHER, minimise};
 
@@ -360,7 +361,7 @@ const MULTIPLE: f64 = 1e-3;
 
 /// The standard deviation of the rounding of recorded values: that of a display, over the root of twelve.
 pub(crate) fn rounding(values: &[f64]) -> f64 {
-    display_step(values) / 12f64.sqrt()
+    rounded::deviation(display_step(values))
 }
 
 /// How many values are looked at for their rounding.

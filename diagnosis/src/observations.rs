@@ -340,13 +340,5 @@ pub(crate) fn each_frame<T: Send>(
     }
 }
 
-/// The columns of one effect in a stretch of rows of one channel are its gain times its term; this is the effect's part.
-pub(crate) fn acts(effect: &Effect, scene: usize) -> bool {
-    match effect.place {
-        Place::Motion { .. } => true,
-        Place::Instrument { recording } => recording == scene,
-    }
-}
-
 #[cfg(test)]
 mod tests;

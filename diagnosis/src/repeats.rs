@@ -186,14 +186,7 @@ fn keep_loops(model: &Model, mut free: Vec<Fitted>) -> Model {
 }
 
 fn measure(study: &Study<'_>, scene: usize, free: &Model, after: &Appraisal, runs: Vec<i64>) -> Scatter {
-    let value = |zero: Zero, run: i64| -> f64 {
-        let wanted = Some(zero.of(run));
-        free.effects
-            .iter()
-            .filter(|fitted| fitted.effect.setting_of(scene) == wanted)
-            .flat_map(|fitted| &fitted.coefficients)
-            .sum()
-    };
+    let value = |zero: Zero, run: i64| free.setting(scene, zero.of(run));
     let mut zeros = Vec::new();
     let (mut between, mut within, mut channel) = (0.0_f64, 0.0_f64, 0);
     for zero in zeros_of(&study.scenes[scene]) {

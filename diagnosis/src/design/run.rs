@@ -13,12 +13,11 @@ use crate::channel::{Channel, ChannelAt, Kind};
 use crate::course::{BATCH, Course, STRETCH, pieces};
 use crate::model::{Model, Place};
 use crate::noise::{Noise, Step, Whitening, whiten};
-use crate::observations::{Frame, Passage, acts};
+use crate::observations::{Frame, Passage};
 use crate::parallel;
 use crate::side::Side;
 use crate::states::Rows;
 use crate::study::Study;
-use crate::terms::{Setting, Shape};
 use crate::weights::Outliers;
 
 /// How many rows of `width` columns are worked on at a time: as many as stay in a cache, in whole stretches.
@@ -26,7 +25,7 @@ pub(super) fn batch(width: usize) -> usize {
     (CACHED / (width + 1) / STRETCH * STRETCH).clamp(STRETCH, BATCH)
 }
 
-/// Numbers that stay in a cache.
+/// Numbers that stay in a cache: 256 KiB, as the second level of a small processor has.
 const CACHED: usize = 1 << 15;
 
 /// One channel on its way through a recording.
@@ -43,15 +42,17 @@ pub(crate) struct ChannelRun<'r> {
     filters: Vec<f64>,
     /// Whether the channel has seen anything of each regressor; columns of others are zero.
     seen: Vec<bool>,
-    /// The products of the present block, and its samples.
+    /// The products of the present block.
     products: Lower,
+    /// How many independent samples its valid rows are worth.
     samples: f64,
 }
 
 /// What a channel sees in one stretch of rows.
 struct Sight {
+    /// How the channel sees each error motion that enters behind the feedback: its lever arm in each row; `None` where it does not.
     after: Vec<Option<Vec<f64>>>,
-    /// On the drives' side; `None` where it is as above.
+    /// The same for motions that enter on the drive's side; `None` where the channel sees both sides alike.
     drive: Option<Vec<Option<Vec<f64>>>>,
     /// The settings of the instrument among the regressors, by their numbers.
     settings: Vec<(usize, Vec<f64>)>,
@@ -108,7 +109,7 @@ impl<'r> ChannelRun<'r> {
         let rows = first.first_row()..last.first_row() + last.len();
         let view = course.states(self.channel().kind).rows(rows.clone());
         let sights = self.sights(frames);
-        self.look(&sights);
+        self.mark_seen(&sights);
         let places = self.places();
         let mut columns = self.columns(&sights, &view, &places);
         let mut valid = known(&columns);
@@ -131,10 +132,10 @@ impl<'r> ChannelRun<'r> {
     /// mean, then the sum of squares. Columns weigh by the noise of the channel.
     pub(crate) fn random_sums(&mut self, course: &Course, count: usize) -> DMatrix<f64> {
         let study = self.study;
-        let weight = 1.0 / self.noise.white;
+        let scale = 1.0 / self.noise.white;
         let mut passage = Passage::new(study, self.at.scene, self.model);
         let mut sums = DMatrix::zeros(count + 2, self.width);
-        let (mut plain, mut weights) = (vec![0.0; self.width], vec![0.0; count]);
+        let (mut column_sums, mut drawn_sums) = (vec![0.0; self.width], vec![0.0; count]);
         let mut samples = 0.0;
         let mut random = RandomWeights::new(self.at);
         for stretch in pieces(0..study.scenes[self.at.scene].rows(), STRETCH) {
@@ -142,23 +143,16 @@ impl<'r> ChannelRun<'r> {
             let moved = passage.moved(study, course, stretch.clone());
             let frame = Frame::new(study, course, &moved, stretch.clone());
             let mut columns = self.raw_columns(&[frame], &course.states(self.channel().kind).rows(stretch));
-            columns *= weight;
+            columns *= scale;
             let mut drawn = DMatrix::from_fn(rows, count, |_, _| random.next());
-            for (row, known) in known(&columns).into_iter().enumerate() {
-                if known {
-                    samples += 1.0;
-                } else {
-                    columns.row_mut(row).fill(0.0);
-                    drawn.row_mut(row).fill(0.0);
-                }
-            }
+            samples += crate::number(drop_unknown(&mut columns, &mut drawn));
             let columns = columns.columns(0, self.width);
             let products = drawn.transpose() * columns;
-            for (number, sum) in weights.iter_mut().enumerate() {
+            for (number, sum) in drawn_sums.iter_mut().enumerate() {
                 *sum += drawn.column(number).sum();
             }
             for column in 0..self.width {
-                plain[column] += columns.column(column).sum();
+                column_sums[column] += columns.column(column).sum();
                 sums[(count + 1, column)] += columns.column(column).norm_squared();
                 for number in 0..count {
                     sums[(number, column)] += products[(number, column)];
@@ -166,11 +160,11 @@ impl<'r> ChannelRun<'r> {
             }
         }
         for column in 0..self.width {
-            for (number, weight) in weights.iter().enumerate() {
-                sums[(number, column)] -= weight * plain[column] / f64::max(samples, 1.0);
+            let mean = column_sums[column] / f64::max(samples, 1.0);
+            for (number, drawn_sum) in drawn_sums.iter().enumerate() {
+                sums[(number, column)] -= drawn_sum * mean;
             }
-            sums[(count, column)] =
-                sums[(count + 1, column)] - plain[column] * plain[column] / f64::max(samples, 1.0);
+            sums[(count, column)] = sums[(count + 1, column)] - column_sums[column] * mean;
         }
         sums
     }
@@ -188,7 +182,7 @@ impl<'r> ChannelRun<'r> {
     }
 
     /// Marks the regressors of which there is something to see. One that was seen goes on: its filter remembers it.
-    fn look(&mut self, sights: &[Sight]) {
+    fn mark_seen(&mut self, sights: &[Sight]) {
         for (number, regressor) in self.regressors.iter().enumerate() {
             self.seen[number] = self.seen[number]
                 || sights.iter().any(|sight| match regressor.effect.place {
@@ -196,7 +190,8 @@ impl<'r> ChannelRun<'r> {
                     Place::Instrument { .. } => sight.setting(number).is_some(),
                 });
         }
-        // Few columns among many must not be summed up as few columns alone are.
+        // The products of a few columns are summed in another order, which may change the last digit. So columns of zeros are added until
+        // there are more: the result must not depend on how many regressors were seen.
         let mut missing = (NARROW + 1).saturating_sub(self.places().len());
         for (seen, regressor) in self.seen.iter_mut().zip(self.regressors) {
             if !*seen && missing > 0 {
@@ -245,7 +240,7 @@ impl<'r> ChannelRun<'r> {
         let (study, channel) = (self.study, self.channel());
         let drive = matches!(channel.kind, Kind::Drive(_));
         let settings = self.regressors.iter().enumerate().filter_map(|(number, regressor)| {
-            let setting = self.setting(regressor)?;
+            let setting = regressor.effect.setting_of(self.at.scene)?;
             Some((number, frame.setting(study, self.at.scene, self.at.channel, setting, self.model)?))
         });
         Sight {
@@ -253,18 +248,6 @@ impl<'r> ChannelRun<'r> {
             drive: drive.then(|| frame.gains(study, self.at.scene, channel, self.model, Side::Drive)),
             settings: settings.collect(),
             residual: frame.left(study, self.at.scene, (self.at.channel, channel), self.model),
-        }
-    }
-
-    /// The setting of this recording's instrument that a regressor is.
-    fn setting(&self, regressor: &Regressor) -> Option<Setting> {
-        match (regressor.effect.place, &regressor.effect.shape) {
-            (Place::Instrument { .. }, Shape::Instrument(setting))
-                if acts(&regressor.effect, self.at.scene) =>
-            {
-                Some(*setting)
-            }
-            _ => None,
         }
     }
 
@@ -289,9 +272,23 @@ impl<'r> ChannelRun<'r> {
     }
 }
 
+/// Sets rows that are not known in all columns to zero, in both matrices. Returns how many rows are left.
+fn drop_unknown(columns: &mut DMatrix<f64>, drawn: &mut DMatrix<f64>) -> usize {
+    let mut left = 0;
+    for (row, is_known) in known(columns).into_iter().enumerate() {
+        if is_known {
+            left += 1;
+        } else {
+            columns.row_mut(row).fill(0.0);
+            drawn.row_mut(row).fill(0.0);
+        }
+    }
+    left
+}
+
 /// For each row whether all columns are known there.
 fn known(columns: &DMatrix<f64>) -> Vec<bool> {
-    // Zero times a number is zero, and nothing else is.
+    // 0 times a finite number is 0; 0 times NaN is NaN. So a sum is 0 where all columns are known.
     let mut sums = vec![0.0; columns.nrows()];
     for column in columns.column_iter() {
         sums.iter_mut().zip(column.iter()).for_each(|(sum, value)| *sum += 0.0 * value);
@@ -307,14 +304,14 @@ fn whiten_all(steps: &[Step], filters: &mut [f64], columns: &mut [f64]) {
     let mut together: Vec<(&mut [f64], &mut [f64])> = together.collect();
     parallel::each(&mut together, work, |(columns, filters)| {
         whiten(steps, filters, columns);
-        still(columns);
-        still(filters);
+        zero_faded(columns);
+        zero_faded(filters);
     });
 }
 
-/// Makes zeros of what has faded away: a filter's memory of a column that is zero from some row on halves for ever, and a
-/// processor takes a hundred times as long for a product that is too small for an ordinary number.
-fn still(values: &mut [f64]) {
+/// Sets to zero what has faded below [`FADED`]. The memory of a filter decays for ever over a column that is zero from some row on. It
+/// becomes subnormal, and a processor takes a hundred times as long for a product of subnormal numbers.
+fn zero_faded(values: &mut [f64]) {
     for value in values {
         *value = if value.abs() < FADED { 0.0 } else { *value };
     }
@@ -323,5 +320,6 @@ fn still(values: &mut [f64]) {
 /// A number whose square adds nothing to any sum of squares.
 const FADED: f64 = 1e-100;
 
-/// Columns that are whitened at once: a filter waits for its own last row, and others can go on meanwhile.
+/// Columns that are whitened at once. Each row of a filter waits for a multiplication and an addition of the row before, some 8 cycles;
+/// meanwhile the other columns go on.
 const TOGETHER: usize = 8;

@@ -1,5 +1,5 @@
-//! The object `abbe-diagnosis/1`. In: a diagnosis. Out: JSON with the keys of the contract, and some beside them. A number
-//! that is not finite is `null`.
+//! The object `abbe-diagnosis/1`, for programs that read a diagnosis. In: a diagnosis. Out: JSON; `docs/reference/diagnosis.md` describes
+//! its keys. A number that is not finite is `null`.
 
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -31,13 +31,13 @@ struct ReportJson<'d> {
     before: ResidualJson,
     after: ResidualJson,
     returns: Vec<ReturnsJson<'d>>,
-    /// What to change in the files; everything after it is said with the files mended.
+    /// What to change in the files. `after`, `findings` and all that follows are computed with the files changed.
     model: Vec<ChangeJson<'d>>,
     findings: Vec<FindingJson<'d>>,
     instrument: Vec<SettingJson<'d>>,
     unexplained: Option<UnexplainedJson<'d>>,
     repeatability: Option<RepeatabilityJson<'d>>,
-    /// Where nothing was found: from which size on effects would have been.
+    /// The effects that an adequate recording excludes, and the size above which each would have been found.
     denied: Vec<DeniedJson<'d>>,
     undecided: &'d [String],
     recordings: Vec<RecordingJson<'d>>,
@@ -327,12 +327,11 @@ fn returning<'d>(one: &'d Returning, diagnosis: &'d Diagnosis) -> ReturnsJson<'d
         state: &one.state,
         share: one.share,
         left: AmountJson { value: one.left, unit: one.unit },
-        recording: diagnosis.recordings.get(one.recording).map(|recording| recording.file.as_str()),
+        recording: diagnosis.file_of(one.recording),
     }
 }
 
 fn change_of_file(change: &Change) -> ChangeJson<'_> {
-    let &Evidence { with, without, unit, .. } = &change.evidence;
     ChangeJson {
         file: &change.name,
         line: change.line,
@@ -343,14 +342,13 @@ fn change_of_file(change: &Change) -> ChangeJson<'_> {
         fault: &change.fault,
         remedy: &change.remedy,
         share: change.share,
-        evidence_rms: EvidenceJson { with, without, unit },
+        evidence_rms: evidence_rms(&change.evidence),
         indistinguishable_from: &change.alternatives,
     }
 }
 
 fn finding(finding: &Finding) -> FindingJson<'_> {
     let location = &finding.location;
-    let &Evidence { with, without, unit, .. } = &finding.evidence;
     FindingJson {
         motion: &finding.motion,
         meaning: &finding.motion_meaning,
@@ -366,7 +364,7 @@ fn finding(finding: &Finding) -> FindingJson<'_> {
             interval: location.interval.as_ref().map(interval),
         },
         evidence: evidence(&finding.evidence),
-        evidence_rms: EvidenceJson { with, without, unit },
+        evidence_rms: evidence_rms(&finding.evidence),
         explanation: &finding.explanation,
         form: finding.form.as_ref().map(form),
         compensable: finding.compensable,
@@ -389,7 +387,12 @@ fn repeats(one: &Repeats) -> RepeatsJson {
     RepeatsJson { element: element.word(), period: AmountJson { value: period, unit }, harmonic }
 }
 
-/// What the finding does to the held-out data, as a sentence without its end.
+fn evidence_rms(evidence: &Evidence) -> EvidenceJson {
+    let &Evidence { with, without, unit, .. } = evidence;
+    EvidenceJson { with, without, unit }
+}
+
+/// How the held-out rms changes if the finding is removed: a sentence without its full stop.
 fn evidence(evidence: &Evidence) -> String {
     match change(evidence.with, evidence.without, evidence.unit) {
         Some((with, without)) => {
@@ -403,7 +406,6 @@ fn evidence(evidence: &Evidence) -> String {
 fn interval(interval: &Interval) -> IntervalJson<'_> {
     let axis = match &interval.of {
         IntervalOf::Axis(letter) => letter,
-        IntervalOf::Time => "time",
         IntervalOf::Frequency => "frequency",
     };
     IntervalJson { axis, from: interval.from, to: interval.to, unit: interval.unit }
@@ -419,7 +421,7 @@ fn setting<'d>(setting: &'d SettingFinding, diagnosis: &'d Diagnosis) -> Setting
     SettingJson {
         term: setting.term,
         parameters: Parameters(&setting.parameters),
-        recording: diagnosis.recordings.get(setting.recording).map(|recording| recording.file.as_str()),
+        recording: diagnosis.file_of(setting.recording),
         indistinguishable_from: alternatives(&setting.alternatives),
     }
 }

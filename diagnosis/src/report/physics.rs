@@ -34,7 +34,6 @@ pub(super) fn state(state: &str) -> String {
 pub(super) fn interval(interval: &Interval) -> String {
     let what = match &interval.of {
         IntervalOf::Axis(letter) => letter.to_lowercase(),
-        IntervalOf::Time => "time".to_owned(),
         IntervalOf::Frequency => "frequency".to_owned(),
     };
     format!("{what} from {}", stretch(interval.from, interval.to, interval.unit))

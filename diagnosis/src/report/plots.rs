@@ -67,7 +67,7 @@ fn recording(
     picture: &Picture,
     captions: &mut Captions,
 ) -> String {
-    let name = diagnosis.recordings.get(picture.recording).map_or("", |summary| summary.file.as_str());
+    let name = diagnosis.file_of(picture.recording).unwrap_or_default();
     let heading = match pictures.recordings.len() {
         1 => "What the recording shows".to_owned(),
         _ => format!("What {name} shows"),
@@ -86,9 +86,9 @@ fn recording(
         );
         let mut figures = position::figures(diagnosis, channel, captions);
         if aside(diagnosis, pictures, channel) {
-            figures.push(over::time(diagnosis, channel, captions));
+            figures.push(over::time(channel, captions));
         } else {
-            figures.extend(over::figures(diagnosis, channel, captions));
+            figures.extend(over::figures(channel, captions));
             figures.extend(spectrum::figures(diagnosis, channel, captions));
         }
         body += &grid(&figures);

@@ -1,31 +1,26 @@
-//! Over time, runs, speed, temperature and load. In: the samples of a channel. Out: what is left before and after against each.
+//! Over time, runs, velocity, temperature and load. In: the samples of a channel. Out: what is left before and after against each.
 
-use pages::plot::{Axis, Band, Cartesian, Draw, Series};
+use pages::plot::{Axis, Cartesian, Draw, Series};
 
 use super::{Captions, Figure, marked, outlying, residual, sides};
-use crate::diagnosis::{Diagnosis, IntervalOf};
 use crate::pictures::{AxisTrack, ChannelPicture, RunMean, Track};
 
 const TIME: &str =
     "Over time: a slow change is heat, a settling fixture or a wandering sensor; a jump is an event.";
 const RUNS: &str = "The mean of each run: runs in the same state should agree.";
-const SPEED: &str = "Against speed: a slope is a following error or a clock offset.";
+const VELOCITY: &str = "Against velocity: a slope is a following error or a clock offset.";
 const TEMPERATURE: &str = "Against temperature: an error that follows a sensor can be compensated with it.";
 const LOAD: &str = "Against load: a slope is compliance.";
 
-pub(super) fn figures(
-    diagnosis: &Diagnosis,
-    channel: &ChannelPicture,
-    captions: &mut Captions,
-) -> Vec<Figure> {
-    let mut figures = vec![time(diagnosis, channel, captions)];
+pub(super) fn figures(channel: &ChannelPicture, captions: &mut Captions) -> Vec<Figure> {
+    let mut figures = vec![time(channel, captions)];
     if channel.runs.len() > 1 {
         figures.push(Figure::new(over_runs(channel), captions.once(RUNS)));
     }
     for axis in channel.shown.axes.iter().filter(|axis| varied(axis)).take(AXES) {
         let unit = if axis.unit == "mm" { "mm/s" } else { "rad/s" };
-        let name = format!("speed of {}", axis.letter);
-        figures.push(Figure::new(over(channel, &name, unit, &axis.velocity), captions.once(SPEED)));
+        let name = format!("velocity of {}", axis.letter);
+        figures.push(Figure::new(over(channel, &name, unit, &axis.velocity), captions.once(VELOCITY)));
     }
     let tracks =
         [(&channel.shown.temperatures, "temperature", TEMPERATURE), (&channel.shown.loads, "load", LOAD)];
@@ -38,22 +33,27 @@ pub(super) fn figures(
 }
 
 /// Over time alone.
-pub(super) fn time(diagnosis: &Diagnosis, channel: &ChannelPicture, captions: &mut Captions) -> Figure {
-    Figure::new(over_time(diagnosis, channel), captions.once(TIME))
+pub(super) fn time(channel: &ChannelPicture, captions: &mut Captions) -> Figure {
+    Figure::new(over_time(channel), captions.once(TIME))
 }
 
-/// The most axes whose speed is drawn.
+/// The most axes whose velocity is drawn.
 const AXES: usize = 3;
 
-/// Whether there are more speeds than standing still and one feed to and fro.
+/// Velocities are put into classes of a tenth of the fastest.
+const CLASSES: f64 = 10.0;
+/// Standing still and one feed to and fro are three classes. Each feed may fall on the edge of two, which makes six.
+const STEADY: usize = 6;
+
+/// Whether an axis moves at more velocities than standing still and one feed forwards and backwards.
 fn varied(axis: &AxisTrack) -> bool {
     let fastest =
         axis.velocity.iter().filter(|speed| speed.is_finite()).fold(0.0_f64, |most, v| most.max(v.abs()));
-    let class = |speed: &f64| crate::index((10.0 * (speed / fastest + 1.0)).round());
+    let class = |speed: &f64| crate::index((CLASSES * (speed / fastest + 1.0)).round());
     let mut classes: Vec<usize> = axis.velocity.iter().filter_map(class).collect();
     classes.sort_unstable();
     classes.dedup();
-    classes.len() > 6
+    classes.len() > STEADY
 }
 
 /// How far before and after reach together.
@@ -73,6 +73,7 @@ fn what(channel: &ChannelPicture) -> &'static str {
     if channel.unchanged { "Residual" } else { "Before and after" }
 }
 
+/// The residual before and after against a state, without outliers: a series of the fitted samples and one of the held-out samples each.
 fn both(channel: &ChannelPicture, values: &[f64]) -> Vec<Series> {
     let shown = &channel.shown;
     let rows = || (0..shown.time.len()).filter(|row| !shown.outlier[*row]);
@@ -85,19 +86,13 @@ fn both(channel: &ChannelPicture, values: &[f64]) -> Vec<Series> {
         .collect()
 }
 
-fn over_time(diagnosis: &Diagnosis, channel: &ChannelPicture) -> Cartesian {
+fn over_time(channel: &ChannelPicture) -> Cartesian {
     let shown = &channel.shown;
     let plot = Cartesian::new(
         &format!("{}, over time", what(channel)),
         Axis::new("time", "s"),
         residual(channel, reach(channel)),
     );
-    let here = diagnosis.unexplained.iter().filter(|unexplained| unexplained.direction == channel.name);
-    let intervals = here.filter_map(|unexplained| unexplained.interval.as_ref());
-    let bands = intervals
-        .filter(|interval| interval.of == IntervalOf::Time)
-        .map(|interval| Band::of_x(interval.from, interval.to, "unexplained"));
-    let plot = bands.fold(plot, Cartesian::band);
     let plot = both(channel, &shown.time).into_iter().fold(plot, Cartesian::series);
     // Outliers that would press all others together are told as a number only.
     let near = |row: usize| shown.before[row].abs() < reach(channel);

@@ -14,7 +14,7 @@ use model_dsl::program::Column;
 
 use crate::channel::{Channel, Kind};
 use crate::course::{BATCH, Course, inputs, part, pieces, plus, weighted_sum};
-use crate::model::{Effect, Model, Place};
+use crate::model::Model;
 use crate::parallel;
 use crate::side::Side;
 use crate::study::Study;

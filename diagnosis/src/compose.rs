@@ -159,7 +159,7 @@ fn take(study: &Study<'_>, found: &mut Found, trial: &Trial, price: &FormPrice) 
 
 /// Fits a model in which something happened, and takes it over on the same terms.
 fn take_happened(study: &Study<'_>, found: &mut Found, event: Event, price: &FormPrice) -> bool {
-    let is_step = |fitted: &Fitted| matches!(fitted.effect.shape, Shape::Step { .. });
+    let is_step = |fitted: &Fitted| fitted.effect.shape.is_event();
     take_model(study, found, event.model, (&is_step, true), price)
 }
 
@@ -276,17 +276,20 @@ fn more_likely(
             conditions.prices(study, &fit.model, fit.samples)[fit.model.chosen_numbers()].iter().sum();
         names + fit.model.effects.iter().map(|fitted| price.beyond_a_name(&fitted.effect)).sum::<f64>()
     };
-    let cost = |fit: &Fit, appraisal: &Appraisal| deviance(study, appraisal) + paid(fit, appraisal);
+    // An event may have happened in a held-out part.
+    let everywhere = fit.model.effects.iter().any(|fitted| fitted.effect.shape.is_event());
+    let cost =
+        |fit: &Fit, appraisal: &Appraisal| deviance(study, appraisal, everywhere) + paid(fit, appraisal);
     cost(&found.fit, &found.appraisal) - cost(fit, appraisal)
 }
 
-/// Minus twice the log-likelihood of what is left, beside the noise that suits each channel best.
-fn deviance(study: &Study<'_>, appraisal: &Appraisal) -> f64 {
+/// Minus twice the log-likelihood of what is left, of all rows or of those that are fitted, beside the noise that suits each channel best.
+fn deviance(study: &Study<'_>, appraisal: &Appraisal, everywhere: bool) -> f64 {
     let of_channel = |ChannelAt { scene, channel }| {
         let (known, residual) = (&study.scenes[scene], &appraisal.residuals[scene][channel]);
         let outliers = appraisal.weights.outliers.of(ChannelAt { scene, channel });
         let fitted = known.fitted_rows();
-        let counts = |row: usize| fitted[row] && residual[row].is_finite() && !outliers[row];
+        let counts = |row: usize| (everywhere || fitted[row]) && residual[row].is_finite() && !outliers[row];
         let valid: Vec<bool> = (0..residual.len()).map(counts).collect();
         noise::estimate(&known.recording.time, residual, &valid, known.channels[channel].rounding).1
     };

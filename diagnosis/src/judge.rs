@@ -251,7 +251,9 @@ pub(crate) fn design(study: &Study<'_>, model: &Model, weights: &Weights) -> Des
     design
 }
 
-/// Whether the noise alone, estimated anew without the effect, is nearly as likely.
+/// Whether the noise alone, estimated anew without the effect, is nearly as likely. An event may have happened in a held-out part, from one
+/// row to the next. Across the gap that such a part is among the fitted rows, a walk comes as far. So all rows count for an event, as
+/// they do where its moment is looked for.
 fn noise_explains(
     study: &Study<'_>,
     design: &Design,
@@ -262,10 +264,15 @@ fn noise_explains(
     price: f64,
 ) -> bool {
     let without = without(design, swept, &fit.model, &[number]);
+    let shape = &fit.model.effects[number].effect.shape;
+    if shape.is_event() {
+        let whole = Appraisal::of_all_rows(study, &fit.model, None);
+        let bare = Appraisal::of_all_rows(study, &without, Some(&whole));
+        return bare.deviance - whole.deviance < price;
+    }
     let bare = Appraisal::beside(study, &without, appraisal);
     // A walk draws any curve along a single pass. It knows nothing of reversals, speeds and temperatures.
-    let curve =
-        matches!(fit.model.effects[number].effect.shape, Shape::Polynomial { .. } | Shape::Table { .. });
+    let curve = matches!(shape, Shape::Polynomial { .. } | Shape::Table { .. });
     let rise = if curve {
         // Both are less than the fit of greatest likelihood would give: the one keeps the coefficients, the other the noise.
         let floors = appraisal.weights.beside(bare.floors);

@@ -259,6 +259,11 @@ impl Shape {
         }
     }
 
+    /// Whether it happens once, at a moment.
+    pub(crate) fn is_event(&self) -> bool {
+        matches!(self, Self::Step { .. })
+    }
+
     /// Whether it is a wave along an axis or in time.
     pub(crate) fn is_wave(&self) -> bool {
         matches!(self, Self::Cyclic { .. } | Self::Vibration { .. })

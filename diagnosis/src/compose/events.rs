@@ -202,8 +202,7 @@ fn chosen(study: &Study<'_>, found: &Found, time: f64, places: &[Place]) -> Even
     let (settings, waves) = (found.fit.model.settings().len(), found.tries.waves);
     let choice = Choice::new(study, &design, products.clone(), samples, settings, waves, resolution).best();
     let model = found.fit.model.with_effects(fit::linear(&design, &products, settings, &choice));
-    let steps =
-        model.effects.iter().filter(|fitted| matches!(fitted.effect.shape, Shape::Step { .. })).count();
+    let steps = model.effects.iter().filter(|fitted| fitted.effect.shape.is_event()).count();
     Event { model, steps }
 }
 

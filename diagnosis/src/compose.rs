@@ -181,7 +181,11 @@ fn take_model(
     price: &FormPrice,
 ) -> bool {
     let conditions = found.conditions();
-    let fit = conditions.refine(study, model);
+    // Under a noise that wanders, as it seemed to before, the size of an event would be that of one step of the noise.
+    let white = found.appraisal.weights.as_white();
+    let happened = model.effects.iter().any(|fitted| fitted.effect.shape.is_event());
+    let first = if happened { conditions.under(&white) } else { conditions };
+    let fit = first.refine(study, model);
     let (fit, appraisal) = engine::upheld(study, fit, &conditions);
     let simpler = fit.model.effects.len() + SIMPLER <= found.fit.model.effects.len()
         && stands_for_what_went(study, &found.fit.model, &fit.model, &appraisal.weights);

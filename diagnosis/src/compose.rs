@@ -94,7 +94,19 @@ fn take_event(study: &Study<'_>, found: &mut Found, (price, lacks): (&FormPrice,
         return false;
     }
     let happened = events::events(study, found);
-    happened.into_iter().any(|event| take_happened(study, found, event, price))
+    let taken = happened.into_iter().any(|event| take_happened(study, found, event, price));
+    if taken {
+        search_beside_events(study, found, price);
+    }
+    taken
+}
+
+/// Looks for everything anew beside the events of a model: what it was found beside held them, as noise or in other names.
+fn search_beside_events(study: &Study<'_>, found: &mut Found, price: &FormPrice) {
+    let other = engine::beside_events(study, found);
+    if is_better(study, found, (&other.fit, &other.appraisal), price) {
+        *found = other;
+    }
 }
 
 /// Whether there is anything for a form to explain: more than noise is left, or one form may be behind several names.

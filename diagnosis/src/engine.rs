@@ -85,6 +85,32 @@ pub(crate) fn find(
     if dent.is_some_and(|dent| !dent.is_in(&fit.model, &search.travels)) {
         (search, fit, appraisal) = judged(study, plain, progress);
     }
+    told(study, (search, fit, appraisal), places)
+}
+
+/// What a search finds beside the events of a model. They stay in the model while the search goes on; at its end they are priced like all
+/// others.
+pub(crate) fn beside_events(study: &Study<'_>, found: &Found) -> Found {
+    let model = &found.fit.model;
+    let settings = model.settings().len();
+    let events = model.chosen().iter().filter(|fitted| fitted.effect.shape.is_event());
+    let start = Model::of(model.settings().iter().chain(events).cloned());
+    let held = start.effects.len();
+    let mut search = Search::beside(study, found, start.with_settings(held));
+    let progress: &mut dyn FnMut(f64) = &mut |_| ();
+    search.go_round(study, progress);
+    search.cross_plays(study, progress);
+    search.price_all_but(settings);
+    let fit = search.fit(study);
+    told(study, judged(study, (search, fit), progress), found.places.clone())
+}
+
+/// What is told of the end of a search: revised, without what only imitates something that has no name.
+fn told(
+    study: &Study<'_>,
+    (search, mut fit, mut appraisal): (Search, Fit, Appraisal),
+    places: Vec<WavePlace>,
+) -> Found {
     let Search { pool, travels, tries, richer, weights, .. } = search;
     let conditions = Conditions { weights: &weights, travels: &travels, tries };
     let revision = Revision { pool: &pool, places: &places, refuted: &[], bands: &[], conditions };

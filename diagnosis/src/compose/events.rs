@@ -20,9 +20,6 @@ use crate::terms::Shape;
 
 use super::forms;
 
-/// How many moments get a choice of their own: the best one, and the best one elsewhere.
-const MOMENTS: usize = 2;
-
 /// How often a moment is looked for anew around the best one, each time in a tenth of the distance before: a thousandth of the recording,
 /// and less, as far as rows tell.
 const DATINGS: i32 = 3;
@@ -42,32 +39,39 @@ pub(super) fn count(study: &Study<'_>) -> usize {
     forms::places(study).len() * forms::moments(study).len()
 }
 
-/// Models with steps at the moments that explain most, the best one first; none without a step.
+/// Models with steps at the moments that explain most: beside all that was found, beside the settings alone, and there at the best moment
+/// elsewhere. What was found may imitate an event; and where nothing does, its play may draw the moment to a reversal. None without a step.
 pub(super) fn events(study: &Study<'_>, found: &Found) -> Vec<Event> {
     let places = forms::places(study);
     let grid = forms::moments(study);
     if grid.is_empty() || places.is_empty() {
         return Vec::new();
     }
-    let mut best: Vec<f64> = Vec::new();
-    for (time, _) in ranked(study, found, &places, &grid) {
-        let near = |known: &f64| (known - time).abs() < 2.5 * forms::distance(study);
-        if best.len() < MOMENTS && !best.iter().any(near) {
-            best.push(time);
+    let model = &found.fit.model;
+    let (all, settings) = (model.effects.len(), model.settings().len());
+    let mut best: Vec<(f64, usize)> = Vec::new();
+    let is_near = |known: f64, time: f64| (known - time).abs() < 2.5 * forms::distance(study);
+    for (beside, moments) in [(all, 1), (settings, 2)] {
+        let mut open = moments;
+        for (time, _) in ranked(study, found, beside, &places, &grid) {
+            if open > 0 && !best.iter().any(|(known, _)| is_near(*known, time)) {
+                best.push((time, beside));
+                open -= 1;
+            }
         }
     }
     best.into_iter()
-        .map(|time| chosen(study, found, dated(study, found, &places, time), &places))
+        .map(|(time, beside)| chosen(study, found, dated(study, found, beside, &places, time), &places))
         .filter(|event| event.steps > 0)
         .collect()
 }
 
-/// The time around a moment at which steps explain most.
-fn dated(study: &Study<'_>, found: &Found, places: &[Place], mut time: f64) -> f64 {
+/// The time around a moment at which steps explain most, beside as many of the first effects of the model.
+fn dated(study: &Study<'_>, found: &Found, beside: usize, places: &[Place], mut time: f64) -> f64 {
     for finer in 1..=DATINGS {
         let step = forms::distance(study) * 0.1_f64.powi(finer);
         let times: Vec<f64> = (-BESIDE..=BESIDE).map(|number| time + f64::from(number) * step).collect();
-        let ranked = ranked(study, found, places, &times);
+        let ranked = ranked(study, found, beside, places, &times);
         let Some((_, most)) = ranked.first().copied() else { break };
         // Between two rows all times are one: the middle of them is told.
         let alike: Vec<f64> = ranked
@@ -80,19 +84,25 @@ fn dated(study: &Study<'_>, found: &Found, places: &[Place], mut time: f64) -> f
     time
 }
 
-/// Times with the sum of squares that steps in all places explain together there, beside the settings alone; the most first.
+/// Times with the sum of squares that steps in all places explain together there, beside as many of the first effects of the model; the
+/// most first.
 ///
 /// A step is how its motion is seen, from its time on. So its products are sums over the rows from that time on, and one pass over the
 /// rows gives those of all times.
-fn ranked(study: &Study<'_>, found: &Found, places: &[Place], times: &[f64]) -> Vec<(f64, f64)> {
+fn ranked(
+    study: &Study<'_>,
+    found: &Found,
+    beside: usize,
+    places: &[Place],
+    times: &[f64],
+) -> Vec<(f64, f64)> {
     let model = &found.fit.model;
     let always_there =
         |place: &Place| Regressor::of(Effect { place: *place, shape: Shape::Step { time: f64::MIN } });
     let known = model.effects.iter().map(|fitted| Regressor::of(fitted.effect.clone()));
     let regressors: Vec<Regressor> = known.chain(places.iter().map(always_there)).collect();
     let columns_of = |effects: &[Regressor]| effects.iter().map(Regressor::columns).sum::<usize>();
-    let (whole, always) =
-        (columns_of(&regressors[..model.effects.len()]), columns_of(&regressors[..model.settings().len()]));
+    let (whole, always) = (columns_of(&regressors[..model.effects.len()]), columns_of(&regressors[..beside]));
     let mut times = times.to_vec();
     times.sort_by(f64::total_cmp);
     let mut sums = Sums::new(always, places.len(), times.len());
@@ -105,8 +115,8 @@ fn ranked(study: &Study<'_>, found: &Found, places: &[Place], times: &[f64]) -> 
             let weight = 1.0 / found.appraisal.weights.noise(at).size();
             let mut row_of = vec![0.0; always + places.len() + 1];
             for (place, row) in rows.iter().enumerate() {
-                let settings = (0..always).chain(whole..whole + places.len());
-                let values = settings.map(|column| matrix[(place, column)]).chain([response[place]]);
+                let columns = (0..always).chain(whole..whole + places.len());
+                let values = columns.map(|column| matrix[(place, column)]).chain([response[place]]);
                 row_of.iter_mut().zip(values).for_each(|(sum, value)| *sum = weight * value);
                 let since = times.partition_point(|time| *time <= known.given.time[*row]);
                 sums.add(&row_of, since);

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use super::same_effects;
+use super::{Found, same_effects};
 use crate::appraisal::Appraisal;
 use crate::candidates;
 use crate::conditions::{Conditions, Tries};
@@ -68,6 +68,22 @@ impl Search {
             places,
             tries,
         }
+    }
+
+    /// A search that begins with a model, and looks for what another search looked for.
+    pub(super) fn beside(study: &Study<'_>, found: &Found, model: Model) -> Self {
+        let mut search = Self {
+            model: Model::default(),
+            richer: Vec::new(),
+            weights: found.appraisal.weights.clone(),
+            courses: Vec::new(),
+            travels: found.travels.clone(),
+            pool: found.pool.clone(),
+            places: found.places.clone(),
+            tries: found.tries,
+        };
+        search.begin(study, model);
+        search
     }
 
     /// Begins anew with a model. Its plays act at once, as at the beginning of every search.

@@ -11,9 +11,9 @@ use crate::channel::ChannelAt;
 use crate::design::{Design, Regressor};
 use crate::engine::Found;
 use crate::fit;
-use crate::model::{Effect, Model, Place};
+use crate::model::{Effect, Fitted, Model, Place};
 use crate::ranges::Resolution;
-use crate::search::Choice;
+use crate::search::{Choice, rivals};
 use crate::study::Study;
 use crate::sweep::Swept;
 use crate::terms::Shape;
@@ -39,35 +39,42 @@ pub(super) fn count(study: &Study<'_>) -> usize {
     forms::places(study).len() * forms::moments(study).len()
 }
 
-/// Models with steps at the moments that explain most: beside all that was found, beside the settings alone, and there at the best moment
-/// elsewhere. What was found may imitate an event; and where nothing does, its play may draw the moment to a reversal. None without a step.
+/// Models with steps at the moments that explain most; none without a step. Moments are looked for beside all that was found, which is
+/// right where that does not imitate the event; and beside the settings and plays alone, where the best one and the best one elsewhere
+/// count. What a play leaves at a reversal looks like a step there.
 pub(super) fn events(study: &Study<'_>, found: &Found) -> Vec<Event> {
     let places = forms::places(study);
     let grid = forms::moments(study);
     if grid.is_empty() || places.is_empty() {
         return Vec::new();
     }
-    let model = &found.fit.model;
-    let (all, settings) = (model.effects.len(), model.settings().len());
-    let mut best: Vec<(f64, usize)> = Vec::new();
-    let is_near = |known: f64, time: f64| (known - time).abs() < 2.5 * forms::distance(study);
-    for (beside, moments) in [(all, 1), (settings, 2)] {
-        let mut open = moments;
-        for (time, _) in ranked(study, found, beside, &places, &grid) {
-            if open > 0 && !best.iter().any(|(known, _)| is_near(*known, time)) {
-                best.push((time, beside));
-                open -= 1;
+    let settings_and_plays: Vec<Effect> =
+        effects(found.fit.model.settings()).into_iter().chain(plays(found)).collect();
+    let mut best: Vec<f64> = Vec::new();
+    for (beside, moments) in [(effects(&found.fit.model.effects), 1), (settings_and_plays, 2)] {
+        let most = best.len() + moments;
+        for (time, _) in ranked(study, found, &beside, &places, &grid) {
+            let is_near = |known: &f64| (known - time).abs() < 2.5 * forms::distance(study);
+            if best.len() < most && !best.iter().any(is_near) {
+                best.push(dated(study, found, &beside, &places, time));
             }
         }
     }
-    best.into_iter()
-        .map(|(time, beside)| chosen(study, found, dated(study, found, beside, &places, time), &places))
-        .filter(|event| event.steps > 0)
-        .collect()
+    best.into_iter().map(|time| chosen(study, found, time, &places)).filter(|event| event.steps > 0).collect()
 }
 
-/// The time around a moment at which steps explain most, beside as many of the first effects of the model.
-fn dated(study: &Study<'_>, found: &Found, beside: usize, places: &[Place], mut time: f64) -> f64 {
+fn effects(fitted: &[Fitted]) -> Vec<Effect> {
+    fitted.iter().map(|fitted| fitted.effect.clone()).collect()
+}
+
+/// The candidates that are plays which act at once.
+fn plays(found: &Found) -> impl Iterator<Item = Effect> + '_ {
+    let effects = found.pool.iter().map(|kin| &kin.effect);
+    effects.filter(|effect| matches!(effect.shape, Shape::Backlash { wind_up: 0.0, .. })).cloned()
+}
+
+/// The time around a moment at which steps explain most beside some effects.
+fn dated(study: &Study<'_>, found: &Found, beside: &[Effect], places: &[Place], mut time: f64) -> f64 {
     for finer in 1..=DATINGS {
         let step = forms::distance(study) * 0.1_f64.powi(finer);
         let times: Vec<f64> = (-BESIDE..=BESIDE).map(|number| time + f64::from(number) * step).collect();
@@ -84,25 +91,26 @@ fn dated(study: &Study<'_>, found: &Found, beside: usize, places: &[Place], mut 
     time
 }
 
-/// Times with the sum of squares that steps in all places explain together there, beside as many of the first effects of the model; the
-/// most first.
+/// Times with the sum of squares that steps in all places explain together there beside some effects, the most first.
 ///
 /// A step is how its motion is seen, from its time on. So its products are sums over the rows from that time on, and one pass over the
 /// rows gives those of all times.
 fn ranked(
     study: &Study<'_>,
     found: &Found,
-    beside: usize,
+    beside: &[Effect],
     places: &[Place],
     times: &[f64],
 ) -> Vec<(f64, f64)> {
     let model = &found.fit.model;
-    let always_there =
-        |place: &Place| Regressor::of(Effect { place: *place, shape: Shape::Step { time: f64::MIN } });
-    let known = model.effects.iter().map(|fitted| Regressor::of(fitted.effect.clone()));
-    let regressors: Vec<Regressor> = known.chain(places.iter().map(always_there)).collect();
-    let columns_of = |effects: &[Regressor]| effects.iter().map(Regressor::columns).sum::<usize>();
-    let (whole, always) = (columns_of(&regressors[..model.effects.len()]), columns_of(&regressors[..beside]));
+    let always_there = |place: &Place| Effect { place: *place, shape: Shape::Step { time: f64::MIN } };
+    let known = model.effects.iter().map(|fitted| fitted.effect.clone());
+    let effects = known.chain(beside.iter().cloned()).chain(places.iter().map(always_there));
+    let regressors: Vec<Regressor> = effects.map(Regressor::of).collect();
+    let columns_of = |regressors: &[Regressor]| regressors.iter().map(Regressor::columns).sum::<usize>();
+    let (known, rest) = regressors.split_at(model.effects.len());
+    let first = columns_of(known);
+    let always = columns_of(&rest[..beside.len()]);
     let mut times = times.to_vec();
     times.sort_by(f64::total_cmp);
     let mut sums = Sums::new(always, places.len(), times.len());
@@ -115,7 +123,7 @@ fn ranked(
             let weight = 1.0 / found.appraisal.weights.noise(at).size();
             let mut row_of = vec![0.0; always + places.len() + 1];
             for (place, row) in rows.iter().enumerate() {
-                let columns = (0..always).chain(whole..whole + places.len());
+                let columns = first..first + always + places.len();
                 let values = columns.map(|column| matrix[(place, column)]).chain([response[place]]);
                 row_of.iter_mut().zip(values).for_each(|(sum, value)| *sum = weight * value);
                 let since = times.partition_point(|time| *time <= known.given.time[*row]);
@@ -129,13 +137,13 @@ fn ranked(
     ranked
 }
 
-/// Products of the settings, of steps and of the response, for many times of the steps.
+/// Products of what always acts, of steps and of the response, for many times of the steps.
 struct Sums {
     always: usize,
     places: usize,
     /// Of the rows between each time and the next one: the products of the steps with everything. Those before the first time hold none.
     between: Vec<DMatrix<f64>>,
-    /// The products of the settings and of the response, over all rows.
+    /// The products of what always acts and of the response, over all rows.
     whole: DMatrix<f64>,
 }
 
@@ -158,7 +166,7 @@ impl Sums {
         }
     }
 
-    /// For each time the sum of squares that steps explain together, beside the settings.
+    /// For each time the sum of squares that steps explain together, beside what always acts.
     fn explained(&self) -> Vec<f64> {
         let steps = self.always..self.always + self.places;
         let mut since = DMatrix::zeros(self.whole.nrows(), self.places);
@@ -197,10 +205,13 @@ fn restored(found: &Found, matrix: &DMatrix<f64>, at: ChannelAt, rows: &[usize])
     response
 }
 
-/// The best set of what was found and of steps at a moment, by linear least squares.
+/// The best set of what was found, of plays and of steps at a moment, by linear least squares. A play of the size of the step may only be
+/// seen beside it.
 fn chosen(study: &Study<'_>, found: &Found, time: f64, places: &[Place]) -> Event {
-    let mut effects: Vec<Effect> =
-        found.fit.model.effects.iter().map(|fitted| fitted.effect.clone()).collect();
+    let mut effects = effects(&found.fit.model.effects);
+    effects.extend(
+        plays(found).filter(|play| !found.fit.model.effects.iter().any(|known| rivals(&known.effect, play))),
+    );
     effects.extend(places.iter().map(|place| Effect { place: *place, shape: Shape::Step { time } }));
     let regressors = effects.into_iter().map(Regressor::of).collect();
     // As white noise: a noise that wanders, as it seemed to before, would take the event for one of its steps.

@@ -43,10 +43,16 @@ fn may_be_nothing(term: TermKind, parameter: &Parameter) -> bool {
 /// Parameters that say how large a term is.
 const SIZES: [&str; 7] = ["lost_motion", "height", "amplitude", "coefficient", "gain", "value", "offset"];
 
+/// Whether an interval holds zero, or what is as good as zero beside the size. The interval of a size that is fitted by its logarithm never
+/// holds zero itself.
 fn holds_zero(estimate: &Estimate) -> bool {
     let (one, other) = estimate.ci95;
-    one.min(other) <= 0.0 && one.max(other) >= 0.0
+    let size = estimate.value.abs();
+    one.min(other) <= NOTHING * size && one.max(other) >= -NOTHING * size
 }
+
+/// The share of a size that is as good as nothing: an effect that may be a thousandth of what is claimed cannot be compensated.
+const NOTHING: f64 = 1e-3;
 
 /// Half of the interval of a phase, rad: it must be known within a quarter of a turn.
 fn half_width(estimate: &Estimate) -> f64 {

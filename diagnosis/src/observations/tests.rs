@@ -5,7 +5,7 @@ use simulation::{Instrument as Reads, Normal};
 
 use super::*;
 use crate::course::STRETCH;
-use crate::model::Fitted;
+use crate::model::{Effect, Fitted, Place};
 use crate::terms::Setting;
 use crate::terms::Shape;
 use crate::testing::{Bench, ballbar, circle, distance, line, path, peak, position, scenario, warming};

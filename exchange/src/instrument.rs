@@ -30,10 +30,10 @@
 //! | E0918 | two set-ups of a reversal that do not belong together |
 //! | E0921, E0922 | no file of an instrument; a dynamic measurement |
 //! | E0923 | a section or an entry is missing |
-//! | E0924 | counts that do not agree |
+//! | E0924 | counts that do not agree, or a row of units out of place |
 //! | E0925, E0926 | not a finite number; a number out of its range |
 //! | E0927, E0928 | a reading twice; two targets at one place |
-//! | E0929 | a column is missing, or stands twice |
+//! | E0929 | a column is missing, stands twice, or is one of two that may be meant |
 //! | W0901 | a run that was broken off |
 //! | W0902 | a file that ends before its end |
 //! | W0903 | runs of zeros that are left out |

@@ -89,6 +89,7 @@ impl<'py> Table<'py> {
             place: None,
             message,
             help: help.map(str::to_owned),
+            recording: None,
         };
         let wrong =
             |what: &str, help: &str| Err(refused(format!("column `{}` {what}", column.name), Some(help)));

@@ -58,6 +58,15 @@ pub struct ColumnNames {
     pub names: Vec<String>,
     /// The row of a sheet in which they stand, counted from 1, where it is not the first that is no comment.
     pub line: Option<u64>,
+    /// The unit of each column, empty where it has none, where the table has a row of units.
+    pub units: Vec<String>,
+    /// Whether each column holds dates.
+    pub dates: Vec<bool>,
+}
+
+/// Whether a text is a date with a time of day, as the channel `time` has it where its unit is `date`.
+pub fn is_date(text: &str) -> bool {
+    stamp::Stamp::date(text).is_ok()
 }
 
 /// The names of the columns of a table that says itself which they are: Parquet, or the first sheet of a workbook. Nothing of a text.
@@ -79,7 +88,7 @@ pub fn column_names(path: &Path) -> Result<Option<ColumnNames>, DataError> {
     }
     file.rewind().map_err(unreadable)?;
     let names = contained(&name, || match start.starts_with(PARQUET) {
-        true => parquet::names(&name, &file).map(|names| ColumnNames { names, line: None }),
+        true => parquet::names(&name, &file),
         false => workbook::names(&name, BufReader::with_capacity(BUFFER, &file)),
     });
     names.map(Some)
@@ -154,12 +163,13 @@ impl Header {
     fn read_lines(&self, name: &str, text: impl BufRead, most: usize) -> Result<Recording, DataError> {
         if self.form.sheet.is_some() {
             let error = DataError::new(name, "it is not a workbook, but the recording file names a sheet");
+            let error = error.in_recording(self.form.unsuited("sheet"));
             return Err(error.help("remove `sheet` from the recording file"));
         }
         let mut lines = Lines::new(name, text, self.form.decimal_comma);
         let layout = Layout::read(self, &mut lines)?;
         let mut columns = Columns::new(self, &layout.columns, layout.width, name, most);
-        while let Some(line) = lines.next_row(layout.separator)? {
+        while let Some(line) = lines.next_row(layout.separator, layout.names.len())? {
             columns.take(&line)?;
         }
         settle::settle(self, columns.finish()?, name, layout.notes)

@@ -20,6 +20,8 @@ pub struct Form {
     pub decimal_comma: bool,
     /// The sheet of a workbook; the first one where it is not given.
     pub sheet: Option<String>,
+    /// Where the recording file has the keys that say so.
+    pub given: Vec<Spanned<&'static str>>,
 }
 
 /// What stands between the cells of a text.
@@ -68,9 +70,15 @@ impl Form {
         let given = [("separator", self.separator.is_some()), ("decimal", self.decimal_comma)];
         given.into_iter().find(|(_, given)| *given).map(|(key, _)| key)
     }
+
+    /// The code of a key that does not suit the table, and where the recording file has it.
+    pub(super) fn unsuited(&self, key: &str) -> Option<(&'static str, Span)> {
+        let found = self.given.iter().find(|given| given.value == key);
+        found.map(|given| (UNKNOWN_VALUE, given.span))
+    }
 }
 
-/// The code for a value that is none of those that there are.
+/// The code for a value that is none of those that there are, or does not suit the table.
 const UNKNOWN_VALUE: &str = "E0630";
 
 /// The path of the table, and how it is written.
@@ -93,6 +101,10 @@ pub(super) fn read_data(
         names: fields.get("header").and_then(|node| read_names(node, diagnostics)).unwrap_or_default(),
         decimal_comma: fields.get("decimal").is_some_and(|node| is_comma(node, diagnostics)),
         sheet: sheet.map(|sheet| sheet.value),
+        given: known
+            .into_iter()
+            .filter_map(|key| fields.entry(key).map(|(written, _)| Spanned::new(key, written.span)))
+            .collect(),
     };
     check_commas(&fields, &form, diagnostics);
     file.map(|file| (file, form))

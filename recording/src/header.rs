@@ -61,8 +61,8 @@ pub struct Header {
     pub form: Form,
     /// The columns and their meanings, in the file's order.
     pub channels: Vec<Channel>,
-    /// The runs that are held out, in ascending order.
-    pub holdout: Option<Vec<i64>>,
+    /// The runs that are held out, in ascending order, each where the file first names it.
+    pub holdout: Option<Vec<Spanned<i64>>>,
     /// Columns that are kept for people and not used.
     pub extra: Vec<Extra>,
     /// The letters of the machine's axes, in its order.
@@ -238,12 +238,15 @@ fn read_instrument(node: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned
     found.map(|kind| Spanned::new(kind, written.span))
 }
 
+/// The code for runs that cannot be held out.
+pub(super) const HELD_OUT: &str = "E0620";
+
 fn read_holdout(
     node: &Node,
     recording: &Fields<'_>,
     channels: &Channels,
     diagnostics: &mut Diagnostics,
-) -> Option<Vec<i64>> {
+) -> Option<Vec<Spanned<i64>>> {
     let wording = keys("`holdout`");
     let name = recording.key_span("holdout");
     let fields = Fields::open(node, name, wording, &["runs"], diagnostics)?;
@@ -257,24 +260,24 @@ fn read_holdout(
         diagnostics.push(mistake.help(help));
     }
     if items.is_empty() {
-        let mistake = Diagnostic::error("E0620", runs.span, "`runs` names no run");
+        let mistake = Diagnostic::error(HELD_OUT, runs.span, "`runs` names no run");
         diagnostics.push(mistake.help("write `runs: [3]`, or leave `holdout` out"));
         return None;
     }
-    let mut numbers: Vec<i64> = items.iter().filter_map(|item| read_run(item, diagnostics)).collect();
-    numbers.sort_unstable();
-    numbers.dedup();
-    Some(numbers)
+    let mut runs: Vec<Spanned<i64>> = items.iter().filter_map(|item| read_run(item, diagnostics)).collect();
+    runs.sort_by_key(|run| run.value);
+    runs.dedup_by_key(|run| run.value);
+    Some(runs)
 }
 
-fn read_run(node: &Node, diagnostics: &mut Diagnostics) -> Option<i64> {
+fn read_run(node: &Node, diagnostics: &mut Diagnostics) -> Option<Spanned<i64>> {
     let number = node.text().and_then(|text| text.trim().parse().ok());
     if number.is_none() {
         let found = node.text().map_or_else(|| node.kind_name().to_owned(), |text| format!("`{text}`"));
         let message = format!("a run must be a whole number, found {found}");
-        diagnostics.push(Diagnostic::error("E0620", node.span, message).help("write `runs: [3]`"));
+        diagnostics.push(Diagnostic::error(HELD_OUT, node.span, message).help("write `runs: [3]`"));
     }
-    number
+    number.map(|number| Spanned::new(number, node.span))
 }
 
 fn read_extra(node: &Node, diagnostics: &mut Diagnostics) -> Vec<Extra> {

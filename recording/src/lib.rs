@@ -27,22 +27,23 @@
 //! | E0608 | a direction in which the machine is not sensitive |
 //! | E0609, E0610, E0611 | a unit of the wrong kind; no unit; a unit where none belongs |
 //! | E0612 | a channel that the instrument does not take |
-//! | E0613 | no channel that measures anything, or no `deviation` |
+//! | E0613 | no channel that measures anything, no `deviation`, or no programmed position |
 //! | E0614 | a probe without normals, or without all of them |
 //! | E0615, E0616 | a key of the set-up is missing; one that the instrument does not take |
 //! | E0617 | not a direction |
 //! | E0618 | a set-up that contradicts itself |
-//! | E0619, E0620 | held-out runs without a channel `run`; a run that is no whole number, or no run at all |
+//! | E0619, E0620 | held-out runs without a channel `run`; a run that is no whole number or not in the data, or no run at all |
 //! | E0621 | a radius that is not greater than zero |
 //! | E0628 | a constant that the machine lacks |
 //! | E0629 | places of channels that do not go together |
-//! | E0630 | a way to write tables that is not known |
+//! | E0630 | a way to write tables that is not known, or not that of the table |
 //! | E0631 | a date that is none |
 //! | W0601 | a column that stands for two things |
 //!
 //! Units have the codes of [`model_dsl::quantity`] besides. E0622 to E0625 are those of who finds the machine, the
 //! calibration and several recordings. What is wrong in the data is a [`DataError`].
 
+pub mod cells;
 mod channel;
 mod data;
 mod date;
@@ -60,7 +61,7 @@ mod words;
 use model_dsl::calibration::Calibration;
 
 pub use channel::{Channel, ChannelKind, ChannelPlace};
-pub use data::{ColumnNames, DataError, Place, column_names, foreign};
+pub use data::{ColumnNames, DataError, Place, column_names, foreign, is_date};
 pub use date::{Moment, date_of};
 pub use direction::own_direction;
 pub use form::{Form, Names, Separator};

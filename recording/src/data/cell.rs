@@ -1,5 +1,6 @@
 //! One cell: a number, nothing, or why it is neither.
 
+use super::super::cells::thousands;
 use super::error::shown;
 use super::stamp::{Stamp, whole_of};
 
@@ -95,6 +96,9 @@ fn not_finite(cell: &[u8]) -> BadCell {
 }
 
 fn not_a_number(cell: &[u8], text: &str) -> BadCell {
+    if let Some(help) = thousands(text) {
+        return BadCell { message: format!("`{}` has a comma", shown(cell)), help };
+    }
     let with_point = text.replacen(',', ".", 1);
     if text.contains(',') && with_point.parse::<f64>().is_ok() {
         return BadCell {

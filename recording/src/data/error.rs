@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use model_dsl::source::Span;
+
 /// Why a table of data cannot be used.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct DataError {
@@ -13,6 +15,8 @@ pub struct DataError {
     pub message: String,
     /// What to write instead.
     pub help: Option<String>,
+    /// Where the recording file is wrong, where it is not the table: the code of the finding and its place there.
+    pub recording: Option<Box<(&'static str, Span)>>,
 }
 
 /// A place in a table of data, counted from 1.
@@ -38,7 +42,7 @@ pub enum Place {
 
 impl DataError {
     pub(super) fn new(file: &str, message: impl Into<String>) -> Self {
-        Self { file: file.to_owned(), place: None, message: message.into(), help: None }
+        Self { file: file.to_owned(), place: None, message: message.into(), help: None, recording: None }
     }
 
     pub(super) fn unreadable(file: &str, line: Option<u64>, error: &std::io::Error) -> Self {
@@ -51,6 +55,13 @@ impl DataError {
     #[must_use]
     pub(super) fn at(mut self, place: Place) -> Self {
         self.place = Some(place);
+        self
+    }
+
+    /// The same as a mistake in the recording file, where a place there is known.
+    #[must_use]
+    pub(super) fn in_recording(mut self, place: Option<(&'static str, Span)>) -> Self {
+        self.recording = place.map(Box::new);
         self
     }
 

@@ -5,10 +5,11 @@ use std::io::BufRead;
 use model_dsl::quantity::{Dimension, Unit, parse_unit, unit_in_name};
 use model_dsl::suggest::nearest;
 
+use super::super::cells::{BELOW_THE_NAMES, SPACES, numbers_of_units, told_separator};
 use super::super::{Channel, ChannelPlace, Header, Names};
 use super::columns::{Cells, Width};
 use super::error::{DataError, Place, shown};
-use super::lines::{Lines, SPACES};
+use super::lines::{Lines, Row};
 use super::separator::{names, separator_of};
 
 /// Where everything stands in a row.
@@ -30,7 +31,7 @@ impl Layout {
     /// columns there are, and comes again.
     pub(super) fn read(header: &Header, lines: &mut Lines<'_, impl BufRead>) -> Result<Self, DataError> {
         let name = lines.name();
-        let (line, commented) = first_line(header, lines)?;
+        let First { line, commented, separator: told } = first_line(header, lines)?;
         let at_header = |message: String| {
             DataError::new(name, message).at(Place::Character { line: lines.number(), column: 1 })
         };
@@ -41,7 +42,8 @@ impl Layout {
         }
         let wanted: Vec<&str> =
             header.channels.iter().flat_map(Channel::columns).map(|column| column.value.as_str()).collect();
-        let separator = separator_of(&line, &wanted, &header.form).map_err(|possible| {
+        let separator = told.map_or_else(|| separator_of(&line, &wanted, &header.form), Ok);
+        let separator = separator.map_err(|possible| {
             let message = format!(
                 "the names are separated by {}, so the separator is ambiguous",
                 possible.join(" and ")
@@ -53,8 +55,13 @@ impl Layout {
             Names::Nowhere => (1..=names(&line, separator).len()).map(|number| number.to_string()).collect(),
             Names::FirstRow | Names::Line(_) => names(&line, separator),
         };
-        let columns = find_columns(header, &names).map_err(|(message, help)| {
-            let mut error = at_header(message).help(help);
+        let columns = find_columns(header, &names).map_err(|misfit| {
+            let at = misfit.column.map(|column| lines.place(&line, separator, column));
+            let mut error = at_header(misfit.message).help(misfit.help);
+            error.place = at.or(error.place);
+            if let Some(commas) = commas_of_numbers(header, &line, &wanted) {
+                return DataError { place: error.place, ..commas.of_file(name) };
+            }
             if header.form.names != Names::Nowhere && is_numbers(&names) {
                 error = no_header(error, commented.as_deref(), &wanted);
             }
@@ -69,34 +76,39 @@ impl Layout {
         };
         let notes = notes_of_extra(header, name, &names);
         let layout = Self { separator, width, notes, names, columns };
-        if header.form.names == Names::Nowhere {
-            lines.put_back();
-        } else {
-            layout.check_units(header, lines)?;
-        }
+        layout.read_units(header, lines)?;
         Ok(layout)
     }
 
-    /// Reads a row `#unit,mm,mm`, whose units must be those of the recording.
-    fn check_units(&self, header: &Header, lines: &mut Lines<'_, impl BufRead>) -> Result<(), DataError> {
-        match lines.next_line()? {
-            Some(line) if line.starts_with(b"#unit") => {}
-            Some(_) => {
-                lines.put_back();
-                return Ok(());
-            }
-            None => return Ok(()),
+    /// Reads the row of units: below the names; where there are none, above the numbers, of which the first row comes again.
+    fn read_units(&self, header: &Header, lines: &mut Lines<'_, impl BufRead>) -> Result<(), DataError> {
+        let nameless = header.form.names == Names::Nowhere;
+        if nameless {
+            lines.put_back();
         }
-        lines.put_back();
-        let Some(row) = lines.next_cells(self.separator)? else { return Ok(()) };
+        let columns = self.names.len();
+        if let Some(above) = lines.units_above(self.separator, columns) {
+            if nameless {
+                return self.check_units(header, &above);
+            }
+            let message = "the row of units stands above the names of the columns".to_owned();
+            return Err(above.error(0, message).help(BELOW_THE_NAMES));
+        }
+        if nameless {
+            return Ok(());
+        }
+        match lines.next_units(self.separator, columns)? {
+            Some(row) => self.check_units(header, &row),
+            None => Ok(()),
+        }
+    }
+
+    /// Compares a row `#unit,mm,mm` with the units of the recording, which must be the same.
+    fn check_units(&self, header: &Header, row: &Row<'_>) -> Result<(), DataError> {
         if row.width() != self.names.len() + 1 {
-            let message = format!(
-                "the row of units has {} units for {} columns",
-                row.width().saturating_sub(1),
-                self.names.len()
-            );
+            let counted = numbers_of_units(row.width().saturating_sub(1), self.names.len());
             let help = "write `#unit` and then one unit for each column, empty if it has none";
-            return Err(row.error(0, message).help(help));
+            return Err(row.error(0, format!("the row of units has {counted}")).help(help));
         }
         let text = |cell: usize| String::from_utf8_lossy(row.cell(cell)).into_owned();
         same_units(header, (&self.names, &self.columns), text)
@@ -104,11 +116,17 @@ impl Layout {
     }
 }
 
+/// The first row of a table.
+struct First {
+    line: Vec<u8>,
+    /// The last comment above it.
+    commented: Option<Vec<u8>>,
+    /// The separator that a line above it tells.
+    separator: Option<u8>,
+}
+
 /// The line of the header row, or the first row where there is none; and the last comment above it.
-fn first_line(
-    header: &Header,
-    lines: &mut Lines<'_, impl BufRead>,
-) -> Result<(Vec<u8>, Option<Vec<u8>>), DataError> {
+fn first_line(header: &Header, lines: &mut Lines<'_, impl BufRead>) -> Result<First, DataError> {
     let name = lines.name();
     let nothing = || DataError::new(name, "the file is empty").help("begin with a row of column names");
     if let Names::Line(number) = header.form.names {
@@ -121,14 +139,23 @@ fn first_line(
             return Err(error.help("count all lines, including empty ones"));
         }
         lines.put_back();
-        return Ok((lines.next_line()?.unwrap_or_default().to_vec(), None));
+        let line = lines.next_line()?.unwrap_or_default().to_vec();
+        return Ok(First { line, commented: None, separator: None });
     }
-    let mut commented = None;
+    let (mut commented, mut separator) = (None, None);
     loop {
         let Some(line) = lines.next_line()? else { return Err(nothing()) };
+        let line = line.to_vec();
+        if lines.number() == 1 && header.form.separator.is_none() && told_separator(&line).is_some() {
+            separator = told_separator(&line);
+            continue;
+        }
         match line.strip_prefix(b"#") {
-            Some(comment) => commented = Some(comment.to_vec()),
-            None => return Ok((line.to_vec(), commented)),
+            Some(comment) => {
+                commented = Some(comment.to_vec());
+                lines.keep_units();
+            }
+            None => return Ok(First { line, commented, separator }),
         }
     }
 }
@@ -177,6 +204,18 @@ fn two_units(channel: &Channel, column: Option<&String>, found: &str) -> String 
     )
 }
 
+/// Names that commas separate, in a table whose decimal sign is said to be a comma.
+fn commas_of_numbers(header: &Header, line: &[u8], wanted: &[&str]) -> Option<Misfit> {
+    let names = names(line, b',');
+    let all = wanted.iter().all(|wanted| !places(&names, wanted).is_empty());
+    (header.form.decimal_comma && names.len() > 1 && all).then(|| Misfit {
+        column: None,
+        message: "commas stand between the names, but with `decimal: \",\"` a comma does not separate cells".to_owned(),
+        help: "remove `decimal` from the recording file if the numbers have points; else separate the cells with semicolons or tabs"
+            .to_owned(),
+    })
+}
+
 /// What people should know of columns that are kept for them.
 pub(super) fn notes_of_extra(header: &Header, name: &str, names: &[String]) -> Vec<String> {
     let lacking = header.extra.iter().filter(|extra| places(names, &extra.column.value).is_empty());
@@ -187,8 +226,23 @@ pub(super) fn notes_of_extra(header: &Header, name: &str, names: &[String]) -> V
     notes.collect()
 }
 
+/// Why the columns are not those of the recording file.
+pub(super) struct Misfit {
+    /// The number of the column that is wrong, where one is.
+    pub(super) column: Option<usize>,
+    pub(super) message: String,
+    pub(super) help: String,
+}
+
+impl Misfit {
+    /// The error in a file that does not say where its names stand.
+    pub(super) fn of_file(self, name: &str) -> DataError {
+        DataError::new(name, self.message).help(self.help)
+    }
+}
+
 /// The columns of each channel; or what is wrong and what to write.
-pub(super) fn find_columns(header: &Header, names: &[String]) -> Result<Vec<Vec<usize>>, (String, String)> {
+pub(super) fn find_columns(header: &Header, names: &[String]) -> Result<Vec<Vec<usize>>, Misfit> {
     let wanted = header.channels.iter().flat_map(|channel| {
         channel.columns().into_iter().map(move |column| (channel, column.value.as_str()))
     });
@@ -202,19 +256,23 @@ pub(super) fn find_columns(header: &Header, names: &[String]) -> Result<Vec<Vec<
         let near = nearest(first, names.iter().map(String::as_str));
         let near = near.map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
         let message = format!("there {verb} no column{plural} {}", listed.join(", "));
-        return Err((message, format!("{near}the columns are {}", listed_names(names))));
+        let help = format!("{near}the columns are {}", listed_names(names));
+        return Err(Misfit { column: None, message, help });
     }
     for (channel, column) in wanted {
         let found = places(names, column);
-        if found.len() > 1 {
+        if let Some(again) = found.get(1) {
             let message = format!("column `{column}` occurs twice");
-            return Err((message, "give each column its own name".to_owned()));
+            let help = "give each column its own name".to_owned();
+            return Err(Misfit { column: Some(*again), message, help });
         }
-        let name = found.first().and_then(|place| names.get(*place));
+        let found_place = found.first().copied();
+        let name = found_place.and_then(|place| names.get(place));
         if let Some((_, unit, found)) = name.and_then(|name| with_unit(name))
             && !agrees(channel, found)
         {
-            return Err((two_units(channel, name, unit), ONE_UNIT.to_owned()));
+            let message = two_units(channel, name, unit);
+            return Err(Misfit { column: found_place, message, help: ONE_UNIT.to_owned() });
         }
     }
     let columns = header.channels.iter().map(|channel| {

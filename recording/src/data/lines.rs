@@ -6,6 +6,7 @@
 
 use std::io::{BufRead, Read};
 
+use super::super::cells::{self, counted, split, split_units, unquoted};
 use super::cell::{self, BadCell};
 use super::columns::{Cells, Width};
 use super::error::{DataError, Place, shown};
@@ -23,6 +24,8 @@ pub(super) struct Lines<'n, R> {
     cells: Vec<(usize, usize)>,
     /// A line that was looked at and is to come again.
     again: bool,
+    /// The last line above the first row that may be a row of units, and its number.
+    above: Option<(Vec<u8>, u64)>,
     decimal_comma: bool,
 }
 
@@ -37,7 +40,16 @@ pub(super) struct Row<'l> {
 
 impl<'n, R: BufRead> Lines<'n, R> {
     pub(super) fn new(name: &'n str, reader: R, decimal_comma: bool) -> Self {
-        Self { name, reader, buffer: Vec::new(), number: 0, cells: Vec::new(), again: false, decimal_comma }
+        Self {
+            name,
+            reader,
+            buffer: Vec::new(),
+            number: 0,
+            cells: Vec::new(),
+            again: false,
+            above: None,
+            decimal_comma,
+        }
     }
 
     /// Passes over lines up to one that is to come next; false where the text ends before it.
@@ -46,6 +58,7 @@ impl<'n, R: BufRead> Lines<'n, R> {
             if !self.read_line()? {
                 return Ok(false);
             }
+            self.keep_units();
         }
         Ok(true)
     }
@@ -73,37 +86,82 @@ impl<'n, R: BufRead> Lines<'n, R> {
         self.number
     }
 
+    /// Where a cell stands in the line that was read last, which is given.
+    pub(super) fn place(&self, line: &[u8], separator: u8, cell: usize) -> Place {
+        let mut cells = Vec::new();
+        split(line, separator, &mut cells);
+        let (name, number, decimal_comma) = (self.name, self.number, self.decimal_comma);
+        Row { name, line, cells: &cells, number, decimal_comma }.place(cell)
+    }
+
     /// Lets the last line come again.
     pub(super) fn put_back(&mut self) {
         self.again = true;
     }
 
-    /// The next line that is neither empty nor a comment, in cells.
-    pub(super) fn next_row(&mut self, separator: u8) -> Result<Option<Row<'_>>, DataError> {
+    /// Keeps the last line where it may be a row of units, above the first row.
+    pub(super) fn keep_units(&mut self) {
+        if cells::may_be_units(&self.buffer) {
+            self.above = Some((self.buffer.clone(), self.number));
+        }
+    }
+
+    /// The row of units above the first row of a table with so many columns.
+    pub(super) fn units_above(&mut self, separator: u8, columns: usize) -> Option<Row<'_>> {
+        let (line, number) = self.above.as_ref()?;
+        let found = split_units(line, separator, columns, &mut self.cells);
+        let (name, cells, decimal_comma) = (self.name, &self.cells, self.decimal_comma);
+        found.then_some(Row { name, line, cells, number: *number, decimal_comma })
+    }
+
+    /// The next line that is neither empty nor a comment, in cells. A row of units is a mistake there: what stands above it was read
+    /// without it.
+    pub(super) fn next_row(&mut self, separator: u8, columns: usize) -> Result<Option<Row<'_>>, DataError> {
         loop {
             match self.next_line()? {
                 None => return Ok(None),
-                Some(line) if line.first() == Some(&b'#') => {}
-                Some(_) => break,
+                Some(line) if line.first() != Some(&b'#') => break,
+                Some(line) if cells::is_row_of_units(line, separator, columns) => {
+                    return Err(self.late_units());
+                }
+                Some(_) => {}
             }
         }
-        self.put_back();
-        self.next_cells(separator)
+        split(&self.buffer, separator, &mut self.cells);
+        Ok(Some(self.row()))
     }
 
-    /// The next line in cells, whatever it begins with.
-    pub(super) fn next_cells(&mut self, separator: u8) -> Result<Option<Row<'_>>, DataError> {
-        if self.next_line()?.is_none() {
-            return Ok(None);
+    /// The row of units, where the next line that is not empty is one, comments aside.
+    pub(super) fn next_units(&mut self, separator: u8, columns: usize) -> Result<Option<Row<'_>>, DataError> {
+        loop {
+            match self.next_line()? {
+                None => return Ok(None),
+                Some(line) if cells::is_row_of_units(line, separator, columns) => break,
+                Some(line) if line.first() == Some(&b'#') => {}
+                Some(_) => {
+                    self.put_back();
+                    return Ok(None);
+                }
+            }
         }
-        split(&self.buffer, separator, &mut self.cells);
-        Ok(Some(Row {
+        Ok(split_units(&self.buffer, separator, columns, &mut self.cells).then(|| self.row()))
+    }
+
+    /// The line that was read last, in the cells that were found in it.
+    fn row(&self) -> Row<'_> {
+        Row {
             name: self.name,
             line: &self.buffer,
             cells: &self.cells,
             number: self.number,
             decimal_comma: self.decimal_comma,
-        }))
+        }
+    }
+
+    fn late_units(&self) -> DataError {
+        let error = DataError::new(self.name, "a row of units stands below rows of numbers");
+        let help = "write it directly below the names of the columns, once, or remove it";
+        error.at(Place::Character { line: self.number, column: 1 }).help(help)
     }
 
     /// Reads one line into the buffer; false at the end of the text.
@@ -131,45 +189,6 @@ impl<'n, R: BufRead> Lines<'n, R> {
         }
         Ok(true)
     }
-}
-
-/// Finds the cells of a line; a space as the separator stands for any number of spaces and tabs.
-pub(super) fn split(line: &[u8], separator: u8, cells: &mut Vec<(usize, usize)>) {
-    cells.clear();
-    if separator == SPACES {
-        return split_at_spaces(line, cells);
-    }
-    let mut start = 0;
-    let mut quoted = false;
-    for (at, &byte) in line.iter().enumerate() {
-        if byte == b'"' {
-            quoted = !quoted;
-        } else if byte == separator && !quoted {
-            cells.push((start, at));
-            start = at + 1;
-        }
-    }
-    cells.push((start, line.len()));
-}
-
-/// The separator that stands for any number of spaces and tabs.
-pub(super) const SPACES: u8 = b' ';
-
-fn split_at_spaces(line: &[u8], cells: &mut Vec<(usize, usize)>) {
-    let mut start = None;
-    let mut quoted = false;
-    for (at, byte) in line.iter().enumerate() {
-        quoted ^= *byte == b'"';
-        match start {
-            Some(begun) if byte.is_ascii_whitespace() && !quoted => {
-                cells.push((begun, at));
-                start = None;
-            }
-            None if !byte.is_ascii_whitespace() => start = Some(at),
-            _ => {}
-        }
-    }
-    cells.extend(start.map(|begun| (begun, line.len())));
 }
 
 impl<'l> Row<'l> {
@@ -205,15 +224,21 @@ impl Cells for Row<'_> {
             Width::Exactly(width) | Width::AtLeast(width) if found == width => return None,
             Width::AtLeast(width) if found > width => return None,
             Width::AtLeast(width) => {
-                let message =
-                    format!("the row has {found} cells, but {width} are needed: `{}`", shown(self.line));
+                let message = format!(
+                    "the row has {}, but {width} are needed: `{}`",
+                    counted(found, "cell"),
+                    shown(self.line)
+                );
                 let help = "give each row all columns that the recording file names";
                 return Some(self.error(found, message).help(help));
             }
             Width::Exactly(width) => width,
         };
-        let message =
-            format!("the row has {found} cells, but the header has {width}: `{}`", shown(self.line));
+        let message = format!(
+            "the row has {}, but the header has {width}: `{}`",
+            counted(found, "cell"),
+            shown(self.line)
+        );
         let commas = found > width && self.line.contains(&b',') && !self.decimal_comma;
         let error = self.error(found.min(width), message);
         Some(error.help(match commas {
@@ -250,11 +275,4 @@ impl Cells for Row<'_> {
     fn error(&self, index: usize, message: String) -> DataError {
         DataError::new(self.name, message).at(self.place(index))
     }
-}
-
-/// A cell without white space and quotes around it.
-pub(super) fn unquoted(cell: &[u8]) -> &[u8] {
-    let cell = cell.trim_ascii();
-    let inner = cell.strip_prefix(b"\"").and_then(|rest| rest.strip_suffix(b"\""));
-    inner.map_or(cell, <[u8]>::trim_ascii)
 }

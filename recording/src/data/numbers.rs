@@ -2,6 +2,7 @@
 //!
 //! In: the numbers of the columns that are wanted. Out: their rows, as those of a text would be taken.
 
+use super::super::cells::counted;
 use super::super::{ChannelPlace, Header, Recording};
 use super::cell::{self, BadCell};
 use super::columns::{Cells, Columns, Width};
@@ -23,8 +24,7 @@ impl Header {
         names: &[String],
         mut column: impl FnMut(usize) -> Result<Vec<f64>, DataError>,
     ) -> Result<Recording, DataError> {
-        let wanted =
-            find_columns(self, names).map_err(|(message, help)| DataError::new(name, message).help(help))?;
+        let wanted = find_columns(self, names).map_err(|misfit| misfit.of_file(name))?;
         let notes = notes_of_extra(self, name, names);
         if let Some(dates) =
             self.channels.iter().find(|channel| matches!(channel.place, ChannelPlace::Dates(_)))
@@ -40,8 +40,10 @@ impl Header {
             let length = *rows.get_or_insert(numbers.len());
             if numbers.len() != length {
                 let column = names.get(index).map_or("", String::as_str);
-                let message =
-                    format!("column `{column}` has {} rows, but others have {length}", numbers.len());
+                let message = format!(
+                    "column `{column}` has {}, but others have {length}",
+                    counted(numbers.len(), "row")
+                );
                 return Err(
                     DataError::new(name, message).help("give one number in every row of every column")
                 );

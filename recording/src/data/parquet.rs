@@ -18,16 +18,18 @@ use super::layout::{find_columns, notes_of_extra};
 use super::numbers::{Group, Values};
 use super::pages::pages_of;
 use super::stamp::Stamp;
-use super::{MOST_NUMBERS, settle};
+use super::{ColumnNames, MOST_NUMBERS, settle};
 
 /// How many values are asked for at once.
 const BATCH: usize = 1 << 16;
 
 /// The names of the columns of a file in Parquet.
-pub(super) fn names<R: ChunkReader>(name: &str, file: &R) -> Result<Vec<String>, DataError> {
+pub(super) fn names<R: ChunkReader>(name: &str, file: &R) -> Result<ColumnNames, DataError> {
     let metadata =
         ParquetMetaDataReader::new().parse_and_finish(file).map_err(|error| broken(name, &error))?;
-    Ok(names_of(metadata.file_metadata().schema_descr()))
+    let schema = metadata.file_metadata().schema_descr();
+    let dates = schema.columns().iter().map(|column| date_of(column).is_ok()).collect();
+    Ok(ColumnNames { names: names_of(schema), line: None, units: Vec::new(), dates })
 }
 
 fn names_of(schema: &SchemaDescriptor) -> Vec<String> {
@@ -57,8 +59,7 @@ impl Header {
         let file = Arc::new(file);
         let schema = metadata.file_metadata().schema_descr();
         let names = names_of(schema);
-        let columns =
-            find_columns(self, &names).map_err(|(message, help)| DataError::new(name, message).help(help))?;
+        let columns = find_columns(self, &names).map_err(|misfit| misfit.of_file(name))?;
         let mut wanted = Vec::new();
         for (channel, places) in self.channels.iter().zip(&columns) {
             for &index in places {
@@ -92,6 +93,7 @@ impl Header {
         let sheet = self.form.sheet.is_some().then_some("sheet");
         let Some(key) = self.form.of_text().or(header).or(sheet) else { return Ok(()) };
         let error = DataError::new(name, format!("it is a Parquet file, for which `{key}` has no meaning"));
+        let error = error.in_recording(self.form.unsuited(key));
         Err(error.help(format!("remove `{key}` from the recording file")))
     }
 }

@@ -1,8 +1,8 @@
 //! What stands between the cells: what the recording file says; else a comma, a semicolon or a tab, told by the first row.
 
+use super::super::cells::{SPACES, split, unquoted};
 use super::super::form::{Form, Separator};
 use super::layout::places;
-use super::lines::{SPACES, split, unquoted};
 
 /// The separators that are tried.
 const SEPARATORS: [(u8, &str); 3] = [(b',', "commas"), (b';', "semicolons"), (b'\t', "tabs")];

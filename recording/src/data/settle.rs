@@ -6,6 +6,7 @@ use model_dsl::quantity::Dimension;
 
 use super::super::channel::{Channel, ChannelKind};
 use super::super::direction::unit;
+use super::super::header::HELD_OUT;
 use super::super::{AngleUnit, AxisChannels, Header, Named, Recording};
 use super::columns::Table;
 use super::error::DataError;
@@ -30,7 +31,7 @@ pub(super) fn settle(
         datum: header.datum,
         axes: vec![AxisChannels::default(); header.axes.len()],
         constants: header.constants.clone(),
-        holdout: header.holdout.clone(),
+        holdout: header.holdout.as_ref().map(|held| held.iter().map(|run| run.value).collect()),
         angle_unit: angle_unit(&header.channels),
         notes,
         ..Recording::default()
@@ -143,12 +144,14 @@ fn check_holdout(header: &Header, table: &Table<'_>, name: &str) -> Result<(), D
     let Some(held) = &header.holdout else { return Ok(()) };
     let runs: BTreeSet<i64> = table.run.iter().copied().collect();
     let listed = || runs.iter().take(24).map(i64::to_string).collect::<Vec<_>>().join(", ");
-    if let Some(absent) = held.iter().find(|run| !runs.contains(run)) {
-        let message = format!("run {absent} is to be held out, but does not exist");
-        return Err(DataError::new(name, message).help(format!("the runs are {}", listed())));
+    if let Some(absent) = held.iter().find(|run| !runs.contains(&run.value)) {
+        let message = format!("run {} is to be held out, but does not exist", absent.value);
+        let error = DataError::new(name, message).in_recording(Some((HELD_OUT, absent.span)));
+        return Err(error.help(format!("the runs are {}", listed())));
     }
-    if runs.iter().all(|run| held.contains(run)) {
-        let error = DataError::new(name, "all runs are held out, so none is left to fit");
+    if runs.iter().all(|run| held.iter().any(|held| held.value == *run)) {
+        let place = held.first().map(|first| (HELD_OUT, first.span));
+        let error = DataError::new(name, "all runs are held out, so none is left to fit").in_recording(place);
         return Err(error.help(format!("hold out only some of the runs {}", listed())));
     }
     Ok(())

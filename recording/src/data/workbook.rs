@@ -41,6 +41,7 @@ impl Header {
     ) -> Result<Recording, DataError> {
         if self.form.separator.is_some() {
             let error = DataError::new(name, "it is a workbook, for which `separator` has no meaning");
+            let error = error.in_recording(self.form.unsuited("separator"));
             return Err(error.help("remove `separator` from the recording file"));
         }
         check_size(name, &mut file)?;
@@ -50,8 +51,10 @@ impl Header {
         let cells = book.worksheet_cells_reader(&sheet).map_err(broken)?;
         let mut rows = Rows::new(name, cells, self.form.decimal_comma);
         let names = rows.names(&self.form)?;
-        let columns = find_columns(self, &names).map_err(|(message, help)| {
-            DataError::new(name, format!("sheet `{sheet}`: {message}")).help(help)
+        let columns = find_columns(self, &names).map_err(|misfit| {
+            let place = misfit.column.and_then(|column| rows.place(column));
+            let message = format!("sheet `{sheet}`: {}", misfit.message);
+            DataError { message, place, ..misfit.of_file(name) }
         })?;
         if let Some(units) = rows.units()? {
             same_units(self, (&names, &columns), |cell| units.text(cell))
@@ -73,6 +76,7 @@ impl Header {
                 Some(wanted) => DataError::new(name, format!("there is no sheet `{wanted}`")),
                 None => DataError::new(name, "it has no sheet"),
             };
+            let error = error.in_recording(wanted.and_then(|_| self.form.unsuited("sheet")));
             error.help(format!("its sheets are {}", sheets.join(", ")))
         })
     }

@@ -4,6 +4,7 @@ use std::io::{Read, Seek};
 
 use calamine::{DataRef, XlsxCellReader};
 
+use super::super::cells::{BELOW_THE_NAMES, may_be_units};
 use super::super::form::{Form, Names};
 use super::ColumnNames;
 use super::cell::{self, BadCell};
@@ -30,6 +31,8 @@ pub(super) struct Rows<'n, 'b, R: Read + Seek> {
     next: Option<(u32, u32, Value)>,
     /// A row that was looked at and is to come again.
     again: Option<Row<'n>>,
+    /// The row in which the names of the columns stand, counted from 0.
+    names_row: Option<u32>,
     /// Whether all cells were read: behind them there is nothing to ask for.
     ended: bool,
 }
@@ -54,7 +57,7 @@ enum Value {
 
 impl<'n, 'b, R: Read + Seek> Rows<'n, 'b, R> {
     pub(super) fn new(name: &'n str, cells: XlsxCellReader<'b, R>, decimal_comma: bool) -> Self {
-        Self { name, cells, decimal_comma, next: None, again: None, ended: false }
+        Self { name, cells, decimal_comma, next: None, again: None, names_row: None, ended: false }
     }
 
     /// The names of the columns, from the row in which they stand; or their numbers.
@@ -81,31 +84,44 @@ impl<'n, 'b, R: Read + Seek> Rows<'n, 'b, R> {
             self.again = Some(row);
             return Ok((1..=width).map(|number| number.to_string()).collect());
         }
+        self.names_row = Some(row.row);
         Ok(row.names())
     }
 
-    /// The names of the columns, from the last row above the first one that has mostly numbers: above them stand titles.
+    /// Where the name of a column stands.
+    pub(super) fn place(&self, column: usize) -> Option<Place> {
+        let column = u64::try_from(column).ok()?.saturating_add(1);
+        self.names_row.map(|row| Place::Cell { row: u64::from(row) + 1, column })
+    }
+
+    /// The names of the columns, from the last row above the first one that has mostly numbers: above them stand titles, below them the
+    /// row of units.
     pub(super) fn names_above_numbers(&mut self) -> Result<ColumnNames, DataError> {
         let mut above: Vec<Row<'n>> = Vec::new();
-        let mut found = false;
-        while !found
+        let (mut units, mut numbers) = (None, None);
+        while numbers.is_none()
             && above.len() < MOST_TITLES
-            && let Some(row) = self.next_row()?
+            && let Some(row) = self.read_row()?
         {
-            found = row.is_of_numbers();
-            if !found {
-                above.push(row);
+            match &row {
+                row if row.is_of_units() => units = Some(row.names().split_off(row.first_column() + 1)),
+                row if row.is_comment() => {}
+                row if row.is_of_numbers() => numbers = Some(row.dates()),
+                _ => {
+                    units = None;
+                    above.push(row);
+                }
             }
         }
         let first = above.first().map(|row| row.row);
-        let Some(row) = above.pop().filter(|_| found) else {
+        let Some((row, dates)) = above.pop().zip(numbers) else {
             let error = DataError::new(self.name, "the sheet has no row of column names above its numbers");
             return Err(error.help(
                 "write the names above the first row of numbers, or write `data: {file: ..., header: 7}` in the recording file if they are in row 7",
             ));
         };
         let line = (first != Some(row.row)).then(|| u64::from(row.row) + 1);
-        Ok(ColumnNames { names: row.names(), line })
+        Ok(ColumnNames { names: row.names(), line, units: units.unwrap_or_default(), dates })
     }
 
     /// The row of units, `#unit` and a unit for each column, where the next row is one.
@@ -113,22 +129,29 @@ impl<'n, 'b, R: Read + Seek> Rows<'n, 'b, R> {
         if self.again.is_some() {
             return Ok(None);
         }
-        let Some(row) = self.read_row()? else { return Ok(None) };
-        if row.get(0).is_some_and(|first| first.text() == "#unit") {
-            return Ok(Some(row));
-        }
-        if !row.is_comment() {
-            self.again = Some(row);
+        while let Some(row) = self.read_row()? {
+            if row.is_of_units() {
+                return Ok(Some(row));
+            }
+            if !row.is_comment() {
+                self.again = Some(row);
+                break;
+            }
         }
         Ok(None)
     }
 
-    /// The next row in which anything stands and that is no comment.
+    /// The next row in which anything stands and that is no comment. A row of units is a mistake there: what stands above it was read
+    /// without it.
     pub(super) fn next_row(&mut self) -> Result<Option<Row<'n>>, DataError> {
         if let Some(row) = self.again.take() {
             return Ok(Some(row));
         }
         while let Some(row) = self.read_row()? {
+            if row.is_of_units() {
+                let message = "the row of units does not stand below the names of the columns".to_owned();
+                return Err(row.error(row.first_column(), message).help(BELOW_THE_NAMES));
+            }
             if !row.is_comment() {
                 return Ok(Some(row));
             }
@@ -222,6 +245,18 @@ impl Row<'_> {
         first.is_some_and(|(_, value)| value.text().starts_with('#'))
     }
 
+    /// Whether its first cell marks it as the row of units.
+    fn is_of_units(&self) -> bool {
+        // In a sheet each cell stands for itself, as if a comma stood behind it.
+        let mark = |value: &Value| may_be_units(format!("{},", value.text()).as_bytes());
+        self.is_comment() && self.cells.first().is_some_and(|(_, value)| mark(value))
+    }
+
+    /// The number of the first column in which anything stands.
+    fn first_column(&self) -> usize {
+        self.cells.first().and_then(|(column, _)| usize::try_from(*column).ok()).unwrap_or_default()
+    }
+
     /// Whether most of its cells are numbers or dates.
     fn is_of_numbers(&self) -> bool {
         let number = |value: &Value| match value {
@@ -231,6 +266,17 @@ impl Row<'_> {
         };
         let numbers = self.cells.iter().filter(|(_, value)| number(value)).count();
         numbers > 0 && numbers.saturating_mul(2) >= self.cells.len() && self.cells.len() > 1
+    }
+
+    /// Which of its cells are dates, or texts that are.
+    fn dates(&self) -> Vec<bool> {
+        let width = self.cells.last().map_or(0, |(column, _)| column.saturating_add(1));
+        let is_date = |value: &Value| match value {
+            Value::Date(_) => true,
+            Value::Text(text) => Stamp::date(text).is_ok(),
+            Value::Number(_) | Value::Error(_) => false,
+        };
+        (0..width).map(|column| self.get(column).is_some_and(is_date)).collect()
     }
 
     /// Its texts, from the first column to the last in which anything stands.

@@ -1,12 +1,15 @@
 //! What the tests share: machines, and the steps of reading in one call.
 
-use std::io::Write;
+use std::io::{Cursor, Read, Write};
+use std::path::PathBuf;
 
 use abbe_recording::{DataError, Header, Recording, calibration_of, machine_of, read_header};
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::equations::Equations;
 use model_dsl::source::SourceFile;
 use model_dsl::{compile, compile_word, yaml};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 /// A lathe without Y, its Z slide on the part's branch.
 const LATHE: &str = "abbe: 1
@@ -69,4 +72,24 @@ pub(crate) fn packed(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
     encoder.write_all(bytes).unwrap();
     encoder.finish().unwrap()
+}
+
+/// A workbook of the folder `written` with one of its files written anew.
+pub(crate) fn book_of(file: &str, part: &str, new: impl Fn(String) -> Vec<u8>) -> Vec<u8> {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/recording/written").join(file);
+    let mut old = ZipArchive::new(Cursor::new(std::fs::read(path).unwrap())).unwrap();
+    let mut book = ZipWriter::new(Cursor::new(Vec::new()));
+    let options = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
+    for number in 0..old.len() {
+        let mut file = old.by_index(number).unwrap();
+        let name = file.name().unwrap().to_string();
+        let mut text = Vec::new();
+        file.read_to_end(&mut text).unwrap();
+        if name == part {
+            text = new(String::from_utf8(text).unwrap());
+        }
+        book.start_file(name, options).unwrap();
+        book.write_all(&text).unwrap();
+    }
+    book.finish().unwrap().into_inner()
 }

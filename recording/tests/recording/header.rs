@@ -50,7 +50,8 @@ fn every_channel_has_its_meaning() {
     assert_eq!(header.calibration.unwrap().value, "mill-7.yaml");
     assert_eq!(header.data.value, "circle.csv");
     assert_eq!(header.instrument, Instrument::Position);
-    assert_eq!(header.holdout, Some(vec![1, 3]));
+    let held = header.holdout.as_ref().map(|runs| runs.iter().map(|run| run.value).collect());
+    assert_eq!(held, Some(vec![1, 3]));
     assert_eq!(header.axes, ["X", "Y", "Z", "C"]);
     let extra: Vec<_> = header.extra.iter().map(|extra| extra.column.value.as_str()).collect();
     assert_eq!(extra, ["c", "r"]);

@@ -1,12 +1,8 @@
 //! Files of other programs that were made to do harm: they end in an answer or a mistake, soon, and without filling memory.
 
-use std::io::{Cursor, Write};
 use std::path::PathBuf;
 
-use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, ZipArchive, ZipWriter};
-
-use crate::common::header;
+use crate::common::{book_of, header};
 
 const TEXT: &str = "recording: 1
 machine: FX
@@ -26,21 +22,7 @@ fn sheet() -> String {
 
 /// The workbook of openpyxl with one of its files written anew.
 fn book(part: &str, new: impl Fn(String) -> Vec<u8>) -> Vec<u8> {
-    let mut old = ZipArchive::new(Cursor::new(bytes("openpyxl.xlsx"))).unwrap();
-    let mut book = ZipWriter::new(Cursor::new(Vec::new()));
-    let options = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
-    for number in 0..old.len() {
-        let mut file = old.by_index(number).unwrap();
-        let name = file.name().unwrap().to_string();
-        let mut text = Vec::new();
-        std::io::Read::read_to_end(&mut file, &mut text).unwrap();
-        if name == part {
-            text = new(String::from_utf8(text).unwrap());
-        }
-        book.start_file(name, options).unwrap();
-        book.write_all(&text).unwrap();
-    }
-    book.finish().unwrap().into_inner()
+    book_of("openpyxl.xlsx", part, new)
 }
 
 /// The sheet that is read.

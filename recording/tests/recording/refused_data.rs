@@ -1,6 +1,7 @@
 //! Tables of data that are not read: where, why, and what to write instead.
 
 use abbe_recording::Place;
+use model_dsl::source::Span;
 
 use crate::common::{header, packed, read, recording};
 
@@ -48,7 +49,7 @@ fn headers() {
     );
     refused(
         "# made by hand\nt_s,run,x_cmd,x_meas,x_cmd\n",
-        "data.csv:2:1: column `x_cmd` occurs twice",
+        "data.csv:2:22: column `x_cmd` occurs twice",
         &["its own name"],
     );
     refused("0,1,2,3\n", "data.csv:1:1: the first row has numbers", &["`t_s,run,x_cmd,x_meas`"]);
@@ -75,11 +76,84 @@ fn units_that_disagree() {
         "data.csv:2:13: column `x_meas` is in `um` here and in `mm`",
         &["same unit in both"],
     );
+    row("#unit,s\n0,1,2,3\n", "data.csv:2:1: the row of units has 1 unit for 4 columns", &[]);
+    row("0\n", "data.csv:2:2: the row has 1 cell, but the header has 4", &[]);
     row(
         "#unit,s,,mm\n0,1,2,3\n",
         "data.csv:2:1: the row of units has 3 units for 4 columns",
         &["one unit for each"],
     );
+}
+
+/// Without the row of units the numbers would be taken for those of the recording file: wrong by 25.4.
+#[test]
+fn units_are_read_however_they_are_marked() {
+    let inches = "data.csv:";
+    let told = "column `x_meas` is in `in` here and in `mm`";
+    for (rows, place) in [
+        ("#unit,s,,mm,in\n", "2:13"),
+        ("# unit,s,,mm,in\n", "2:14"),
+        ("#Unit,s,,mm,in\n", "2:13"),
+        ("#UNITS,s,,mm,in\n", "2:14"),
+        ("# units: s,,mm,in\n", "2:16"),
+        ("\"#unit\",s,,mm,in\n", "2:15"),
+        ("# laser of 12 May\n\n#unit,s,,mm,in\n", "4:13"),
+    ] {
+        row(&format!("{rows}0,1,2,3\n"), &format!("{inches}{place}: {told}"), &["same unit in both"]);
+    }
+    let nameless = TEXT.replace("data: data.csv", "data: {file: data.csv, header: none}");
+    let nameless = ["t_s", "run}", "x_cmd", "x_meas"]
+        .iter()
+        .zip(["1", "2}", "3", "4"])
+        .fold(nameless, |text, (name, number)| {
+            text.replacen(&format!("column: {name}"), &format!("column: {number}"), 1)
+        });
+    let error = recording(&nameless, "#unit,s,,mm,in\n0,1,2,3\n").unwrap_err().to_string();
+    assert!(error.contains(":1:13: column `4` is in `in` here and in `mm`"), "{error}");
+}
+
+#[test]
+fn units_stand_below_the_names_and_nowhere_else() {
+    let above = "data.csv:1:1: the row of units stands above the names of the columns";
+    for mark in ["#unit", "# Units", "#  unit"] {
+        refused(
+            &format!("{mark},s,,mm,mm\n{HEADER}0,1,2,3\n"),
+            above,
+            &["write the names first, then `#unit`"],
+        );
+    }
+    let below_titles = TEXT.replace("data: data.csv", "data: {file: data.csv, header: 3}");
+    let error = recording(&below_titles, &format!("a title\n#unit,s,,mm,mm\n{HEADER}0,1,2,3\n")).unwrap_err();
+    assert_eq!(error.place, Some(Place::Character { line: 2, column: 1 }), "{error}");
+    row(
+        "0,1,2,3\n# unit,s,,mm,in\n1,1,2,3\n",
+        "data.csv:3:1: a row of units stands below rows of numbers",
+        &["directly below the names"],
+    );
+    // Comments about units are comments.
+    let comments = "# Units: mm\n# unit test, second try\n";
+    let text = format!("{comments}{HEADER}# units are mm\n0,1,2,3\n# Units\n1,1,2,3\n");
+    assert!(recording(TEXT, &text.replace(", second try", "")).is_ok());
+}
+
+#[test]
+fn a_unit_behind_a_name_is_marked_where_it_stands() {
+    refused(
+        "t_s,run,x_cmd [in],x_meas\n0,1,2,3\n",
+        "data.csv:1:9: column `x_cmd [in]` is in `in` here and in `mm`",
+        &["same unit in both"],
+    );
+}
+
+#[test]
+fn excels_line_tells_the_separator() {
+    let rows = "t_s;run;x_cmd;x_meas\n0;1;2;3\n1;1;2;4\n";
+    for line in ["sep=;\n", "\u{feff}sep=;\r\n", "\"sep=;\"\n"] {
+        let read = recording(TEXT, &format!("{line}{rows}")).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(read.measured[0].as_deref(), Some(&[3.0, 4.0][..]), "{line}");
+    }
+    let error = recording(TEXT, &format!("sep=;\n{}", rows.replace("2;4", "2;z"))).unwrap_err();
+    assert_eq!(error.place, Some(Place::Character { line: 4, column: 7 }), "{error}");
 }
 
 #[test]
@@ -161,8 +235,25 @@ fn runs() {
     let error = recording(&held, &format!("{HEADER}0,1,2,3\n1,2,2,3\n")).unwrap_err();
     assert_eq!(error.place, None);
     assert!(error.message.contains("run 3") && error.help.unwrap().contains("1, 2"));
+    let marked = |error: Option<Box<(&'static str, Span)>>| {
+        error.map(|place| (place.0, &held[place.1.start..place.1.end]))
+    };
+    assert_eq!(marked(error.recording), Some(("E0620", "3")));
     let error = recording(&held, &format!("{HEADER}0,3,2,3\n")).unwrap_err();
     assert!(error.message.contains("all runs are held out"));
+    assert_eq!(marked(error.recording), Some(("E0620", "3")));
+}
+
+#[test]
+fn what_the_recording_file_says_wrongly_of_a_table_is_marked_there() {
+    let text = TEXT.replace("data: data.csv", "data: {file: data.csv, sheet: Data}");
+    let error = recording(&text, &format!("{HEADER}0,1,2,3\n")).unwrap_err();
+    let (code, span) = *error.recording.unwrap();
+    assert_eq!((code, &text[span.start..span.end]), ("E0630", "sheet"));
+    let text = TEXT.replace("data: data.csv", "data: {file: data.csv, decimal: \",\"}");
+    let error = recording(&text, &format!("{HEADER}0,1,2,3\n")).unwrap_err().to_string();
+    assert!(error.contains("data.csv:1:1: commas stand between the names"), "{error}");
+    assert!(error.contains("remove `decimal`") && error.contains("semicolons or tabs"), "{error}");
 }
 
 #[test]

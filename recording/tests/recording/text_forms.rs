@@ -160,7 +160,7 @@ fn units_in_the_names() {
     refused(
         &text("d", SECONDS, X),
         "t,x [um]\n0,1\n",
-        &["data.csv:1:1: column `x [um]` is in `um` here and in `mm`"],
+        &["data.csv:1:3: column `x [um]` is in `um` here and in `mm`"],
     );
     let counts = text("d", SECONDS, "{column: x, unit: 0.5 um}");
     assert_eq!(recording(&counts, "t,x [counts]\n0,4\n").unwrap().measured[0].as_deref().unwrap(), [0.002]);

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use abbe_recording::{DataError, Place, Recording};
 
-use crate::common::header;
+use crate::common::{book_of, header};
 
 /// The recording file for a table; `data` is its value of `data`, `channels` are those besides the run.
 fn text(data: &str, channels: &str) -> String {
@@ -219,6 +219,41 @@ fn a_sheet_with_units_is_held_to_them() {
     assert!(error.message.contains("`um` here and in `mm`"), "{}", error.message);
 }
 
+/// A comment may stand above the row of units, and its mark may be written otherwise; at another place it is told.
+#[test]
+fn units_of_a_sheet_are_read_however_they_are_marked() {
+    let channels = "time: {column: ran, unit: date}, measured.x: {column: x, unit: mm}";
+    let text = text("clock.xlsx", channels).replace("run: {column: n}, ", "");
+    let error = |new: &dyn Fn(String) -> String| {
+        let bytes =
+            book_of("openpyxl-clock.xlsx", "xl/worksheets/sheet1.xml", |sheet| new(sheet).into_bytes());
+        header(&text).read_bytes("clock.xlsx", bytes).unwrap_err()
+    };
+    for mark in ["# unit", "#Units", "# UNITS:"] {
+        let error = error(&|sheet| sheet.replace("#unit", mark));
+        assert_eq!(error.place, Some(Place::Cell { row: 2, column: 5 }), "{mark}: {error}");
+        assert!(error.message.contains("`um` here and in `mm`"), "{mark}: {error}");
+    }
+    let row = |sheet: &str, number: u32| {
+        let begin = sheet.find(&format!("<row r=\"{number}\"")).unwrap();
+        let end = begin + sheet[begin..].find("</row>").unwrap() + "</row>".len();
+        (sheet[..begin].to_owned(), sheet[begin..end].to_owned(), sheet[end..].to_owned())
+    };
+    // The row of units below the first row of numbers.
+    let late = error(&|sheet| {
+        let (before, units, rest) = row(&sheet, 2);
+        let (numbers, first, rest) = row(&rest, 3);
+        let moved = units.replace("r=\"2\"", "r=\"3\"").replace("A2", "A3").replace("E2", "E3");
+        let first = first.replace("r=\"3\"", "r=\"2\"");
+        let first = ["A", "B", "C", "D"]
+            .iter()
+            .fold(first, |row, letter| row.replace(&format!("{letter}3\""), &format!("{letter}2\"")));
+        before + &numbers + &first + &moved + &rest
+    });
+    assert_eq!(late.place, Some(Place::Cell { row: 3, column: 1 }), "{late}");
+    assert!(late.message.contains("does not stand below the names"), "{late}");
+}
+
 #[test]
 fn a_date_without_its_time_of_day_is_none() {
     let error = clock("{column: [day, clock], unit: date}", "um").unwrap_err();
@@ -251,4 +286,6 @@ fn names_in_a_sheet_stand_above_its_numbers() {
         let names = abbe_recording::column_names(&path(file)).unwrap().unwrap();
         assert_eq!((names.names[0].as_str(), names.line), (first, line), "{file}");
     }
+    let names = abbe_recording::column_names(&path("openpyxl-clock.xlsx")).unwrap().unwrap();
+    assert_eq!((names.units[3].as_str(), names.dates), ("um", vec![true, true, true, false]));
 }

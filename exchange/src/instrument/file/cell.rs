@@ -1,8 +1,9 @@
 //! Pieces of a text with their places. In: a line. Out: words or cells, and the numbers in them.
 
 use model_dsl::diagnostic::{Diagnostic, Diagnostics};
-use model_dsl::quantity::parse_number;
+use model_dsl::quantity::{QuantityError, parse_number, parse_quantity};
 use model_dsl::source::Span;
+use recording::cells;
 
 /// A piece of a text.
 #[derive(Clone, Copy, Debug)]
@@ -48,19 +49,63 @@ impl<'t> Piece<'t> {
         Some((Self::new(before, self.span.start), Self::new(after, after_start)))
     }
 
+    /// Its cells, between separators that do not stand in quotes, each without the white space and the quotes around it.
+    pub(super) fn cells(self, separator: u8) -> Vec<Self> {
+        let mut ranges = Vec::new();
+        cells::split(self.text.as_bytes(), separator, &mut ranges);
+        ranges.into_iter().filter_map(|range| self.part(range)).map(Self::unquoted).collect()
+    }
+
+    /// The cells of a row of units for so many columns, the mark before them too; nothing of any other line.
+    pub(super) fn units(self, separator: u8, columns: usize) -> Option<Vec<Self>> {
+        let mut ranges = Vec::new();
+        let found = cells::split_units(self.text.as_bytes(), separator, columns, &mut ranges);
+        found.then(|| ranges.into_iter().filter_map(|range| self.part(range)).map(Self::unquoted).collect())
+    }
+
+    /// The bytes from one place to another.
+    fn part(self, (start, end): (usize, usize)) -> Option<Self> {
+        Some(Self::new(self.text.get(start..end)?, self.span.start.saturating_add(start)))
+    }
+
+    /// The piece without white space and quotes around it.
+    fn unquoted(self) -> Self {
+        let cell = self.trimmed();
+        let inner = cell.text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+        inner.map_or(cell, |inner| Self::new(inner, cell.span.start.saturating_add(1)).trimmed())
+    }
+
     /// Its finite number; or E0925 at its place, `what` naming it.
     pub(super) fn number(self, what: &str, diagnostics: &mut Diagnostics) -> Option<f64> {
+        self.number_or(what, "write a number such as `-0.5` or `1e-3`, with a point", diagnostics)
+    }
+
+    /// The same, with what to write in place of a text that is nothing like a number.
+    pub(super) fn number_or(self, what: &str, instead: &str, diagnostics: &mut Diagnostics) -> Option<f64> {
         match parse_number(self.text) {
             Ok(number) => Some(number),
             Err(error) => {
                 let message = format!("{what} must be a finite number, found `{}`", shown(self.text));
-                let help = error
-                    .help
-                    .unwrap_or_else(|| "write a number such as `-0.5` or `1e-3`, with a point".to_owned());
+                let help = self.help(error).unwrap_or_else(|| instead.to_owned());
                 diagnostics.push(Diagnostic::error("E0925", self.span, message).help(help));
                 None
             }
         }
+    }
+
+    /// What to write in place of a number with a comma, another minus sign or a unit.
+    fn help(self, error: QuantityError) -> Option<String> {
+        if parse_quantity(self.text).is_ok() {
+            return Some(
+                "write the number alone, and its unit behind the name of the column, as in `deviation [um]`"
+                    .to_owned(),
+            );
+        }
+        if let Some(help) = cells::thousands(self.text.trim()) {
+            return Some(help);
+        }
+        let written = error.code == "E0303" || self.text.trim().starts_with(['\u{2212}', '\u{2013}']);
+        error.help.filter(|_| written)
     }
 
     /// Its whole number from 1; or E0926 at its place, `what` naming it.

@@ -7,6 +7,7 @@ use model_dsl::diagnostic::{Diagnostic, Diagnostics};
 use model_dsl::quantity::{Unit, parse_unit, unit_in_name};
 use model_dsl::source::{SourceFile, Span, Spanned};
 use model_dsl::suggest::nearest;
+use recording::cells::{self, BELOW_THE_NAMES, numbers_of_units};
 
 use super::super::measured::{Measured, Reading, Run, Sense};
 use super::cell::{Piece, lines, shown};
@@ -26,7 +27,7 @@ pub struct Columns<'s> {
 
 /// Where the columns stand.
 struct Layout {
-    separator: char,
+    separator: u8,
     width: usize,
     target: usize,
     deviation: usize,
@@ -44,14 +45,27 @@ pub(super) fn read(
     diagnostics: &mut Diagnostics,
 ) -> Option<Measured> {
     let mut rows = lines(source.text()).filter(|line| !line.text.trim().is_empty()).peekable();
-    while rows.next_if(|line| line.text.starts_with('#')).is_some() {}
+    let told = rows.next_if(|line| cells::told_separator(line.text.as_bytes()).is_some());
+    let told = told.and_then(|line| cells::told_separator(line.text.as_bytes()));
+    let mut above = Vec::new();
+    while let Some(comment) = rows.next_if(|line| is_comment(*line)) {
+        above.push(comment);
+    }
     let Some(header) = rows.next() else {
         diagnostics.push(no_readings(Span::default()));
         return None;
     };
-    let layout = read_header(header, columns, diagnostics)?;
-    let units = rows.next_if(|line| line.text.starts_with("#unit"));
-    let units = units.map(|line| read_units(line, &layout, diagnostics));
+    let layout = read_header(header, told, columns, diagnostics)?;
+    if let Some(line) = above.into_iter().find(|line| layout.units(*line).is_some()) {
+        diagnostics.push(units_above(line));
+        return None;
+    }
+    let mut units = None;
+    while let Some(comment) =
+        rows.next_if(|line| units.is_none() && (is_comment(*line) || layout.units(*line).is_some()))
+    {
+        units = layout.units(comment).map(|cells| read_units(comment, &cells, &layout, diagnostics));
+    }
     let [target, deviation] = match units {
         Some(units) => units?,
         None => [None, None],
@@ -60,16 +74,51 @@ pub(super) fn read(
     let deviation_unit = one_unit(layout.deviation_unit, deviation, diagnostics);
     let (target_unit, deviation_unit) = (target_unit?, deviation_unit?);
     let mut gathered = Gathered::default();
-    for line in rows.filter(|line| !line.text.starts_with('#')) {
-        gathered.take(line, &layout, diagnostics)?;
+    for line in rows {
+        if layout.units(line).is_some() {
+            diagnostics.push(late_units(line));
+            return None;
+        }
+        if !is_comment(line) {
+            gathered.take(line, &layout, diagnostics)?;
+        }
     }
     let (targets, runs) = gathered.finish(header.span, diagnostics)?;
     Some(Measured { targets, runs, target_unit, deviation_unit, flagged: None, about: Vec::new(), source })
 }
 
-fn read_header(header: Piece<'_>, columns: &Columns<'_>, diagnostics: &mut Diagnostics) -> Option<Layout> {
-    let separator = [';', '\t'].into_iter().find(|one| header.text.contains(*one)).unwrap_or(',');
-    let cells: Vec<Piece<'_>> = header.split(separator).map(cell).collect();
+fn is_comment(line: Piece<'_>) -> bool {
+    line.text.starts_with('#')
+}
+
+impl Layout {
+    /// The cells of a row of units, the mark before them too; nothing of any other line.
+    fn units<'t>(&self, line: Piece<'t>) -> Option<Vec<Piece<'t>>> {
+        line.units(self.separator, self.width)
+    }
+}
+
+fn units_above(line: Piece<'_>) -> Diagnostic {
+    let message = "the row of units stands above the names of the columns";
+    Diagnostic::error("E0924", line.trimmed().span, message).help(BELOW_THE_NAMES)
+}
+
+fn late_units(line: Piece<'_>) -> Diagnostic {
+    let message = "a row of units stands below rows of numbers";
+    let help = "write it directly below the names of the columns, once, or remove it";
+    Diagnostic::error("E0924", line.trimmed().span, message).help(help)
+}
+
+/// Reads the names of the columns; `told` is the separator that a line above them tells.
+fn read_header(
+    header: Piece<'_>,
+    told: Option<u8>,
+    columns: &Columns<'_>,
+    diagnostics: &mut Diagnostics,
+) -> Option<Layout> {
+    let separates = |one: &u8| header.cells(*one).len() > 1;
+    let separator = told.unwrap_or_else(|| [b';', b'\t'].into_iter().find(separates).unwrap_or(b','));
+    let cells = header.cells(separator);
     let axis: Vec<&str> = columns.targets_like.iter().map(String::as_str).collect();
     let motion: Vec<&str> = columns.deviations_like.iter().map(String::as_str).collect();
     let target = [&["target", "position"], axis.as_slice()].concat();
@@ -78,11 +127,15 @@ fn read_header(header: Piece<'_>, columns: &Columns<'_>, diagnostics: &mut Diagn
     let direction: Vec<&str> = ["direction"].into_iter().chain(lower.as_deref()).collect();
     let mut find = |given: Option<&str>, usual: &[&str], what: &str| {
         let wanted = given.map_or_else(|| usual.to_vec(), |name| vec![name]);
-        let found = place(&cells, &wanted, diagnostics)?;
-        if found.is_none() && !what.is_empty() {
+        let found = places(&cells, &wanted, diagnostics)?;
+        if found.is_empty() && !what.is_empty() {
             diagnostics.push(no_column(header, &cells, &wanted, what));
         }
-        Some(found)
+        if let ([first, second, ..], false) = (found.as_slice(), what.is_empty()) {
+            diagnostics.push(two_columns((cells.get(*first)?, cells.get(*second)?), what));
+            return None;
+        }
+        Some(found.first().copied())
     };
     let target = find(columns.target, &target, "targets");
     let deviation = find(columns.deviation, &deviation, "deviations");
@@ -118,9 +171,10 @@ fn one_unit(
     Some(beside.or(below).map(|unit| unit.value))
 }
 
-/// The column of one of some names, letter case aside and also with a unit behind it; nothing at all where two columns have it.
-fn place(cells: &[Piece<'_>], wanted: &[&str], diagnostics: &mut Diagnostics) -> Option<Option<usize>> {
-    let mut found = None;
+/// The columns of some names, letter case aside and also with a unit behind them, each once; nothing at all where two columns have one
+/// name.
+fn places(cells: &[Piece<'_>], wanted: &[&str], diagnostics: &mut Diagnostics) -> Option<Vec<usize>> {
+    let mut found: Vec<usize> = Vec::new();
     for name in wanted {
         let exact = |cell: &Piece<'_>| cell.text.eq_ignore_ascii_case(name);
         let bare =
@@ -136,9 +190,18 @@ fn place(cells: &[Piece<'_>], wanted: &[&str], diagnostics: &mut Diagnostics) ->
             diagnostics.push(mistake.help("give each column its own name"));
             return None;
         }
-        found = found.or(first.map(|(place, _)| place));
+        found.extend(first.map(|(place, _)| place).filter(|place| !found.contains(place)));
     }
     Some(found)
+}
+
+/// Two columns under usual names: nobody knows which of them is meant.
+fn two_columns((first, second): (&Piece<'_>, &Piece<'_>), what: &str) -> Diagnostic {
+    let (one, other) = (shown(first.text), shown(second.text));
+    let message = format!("the {what} may be in column `{one}` or in column `{other}`");
+    let mistake = Diagnostic::error("E0929", second.span, message).also(first.span, "the other one");
+    let bare = with_unit(*first).map_or_else(|| one.clone(), |(bare, _)| shown(bare));
+    mistake.help(format!("name the right one in the set-up, for example `{what}: {{column: {bare}}}`"))
 }
 
 fn no_readings(span: Span) -> Diagnostic {
@@ -164,26 +227,16 @@ fn no_column(header: Piece<'_>, cells: &[Piece<'_>], wanted: &[&str], what: &str
     }
 }
 
-/// A cell without white space and quotes around it.
-fn cell(piece: Piece<'_>) -> Piece<'_> {
-    let cell = piece.trimmed();
-    let inner = cell.text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
-    inner.map_or(cell, |inner| Piece::new(inner, cell.span.start + 1).trimmed())
-}
-
 /// The units of targets and deviations, in a row `#unit,` with one cell more than the header.
 fn read_units(
     line: Piece<'_>,
+    cells: &[Piece<'_>],
     layout: &Layout,
     diagnostics: &mut Diagnostics,
 ) -> Option<[Option<Spanned<Unit>>; 2]> {
-    let cells: Vec<Piece<'_>> = line.split(layout.separator).map(cell).collect();
     if cells.len() != layout.width + 1 {
-        let message = format!(
-            "the row of units has {} units for {} columns",
-            cells.len().saturating_sub(1),
-            layout.width
-        );
+        let counted = numbers_of_units(cells.len().saturating_sub(1), layout.width);
+        let message = format!("the row of units has {counted}");
         let help = "write `#unit` and then one unit for each column, empty if it has none";
         diagnostics.push(Diagnostic::error("E0924", line.trimmed().span, message).help(help));
         return None;
@@ -215,9 +268,10 @@ struct Gathered {
 
 impl Gathered {
     fn take(&mut self, line: Piece<'_>, layout: &Layout, diagnostics: &mut Diagnostics) -> Option<()> {
-        let cells: Vec<Piece<'_>> = line.split(layout.separator).map(cell).collect();
+        let cells = line.cells(layout.separator);
         if cells.len() != layout.width {
-            let message = format!("the row has {} cells, but the header has {}", cells.len(), layout.width);
+            let counted = cells::counted(cells.len(), "cell");
+            let message = format!("the row has {counted}, but the header has {}", layout.width);
             let help = "write one cell for each column, empty if nothing was measured; a decimal comma splits a number into two cells";
             diagnostics.push(Diagnostic::error("E0924", line.trimmed().span, message).help(help));
             return None;
@@ -240,7 +294,8 @@ impl Gathered {
         if missing {
             return Some(());
         }
-        let deviation = deviation.number("the deviation", diagnostics)?;
+        let empty = "write a number such as `-0.5` or `1e-3`; leave the cell empty if nothing was measured";
+        let deviation = deviation.number_or("the deviation", empty, diagnostics)?;
         self.add(number, told, Reading { target: index, deviation }, line.trimmed().span, diagnostics)
     }
 

@@ -179,6 +179,9 @@ fn a_broken_table_is_marked_where_it_is_broken() {
         ("direction,target,deviation\nup,0,1\n", "E0926", "up"),
         ("target,deviation\n", "E0923", "target,deviation"),
         ("# nothing but a comment\n#unit,mm\n", "E0923", ""),
+        ("# Units,mm,um\ntarget,deviation\n0,1\n", "E0924", "# Units,mm,um"),
+        ("target,deviation\n0,1\n# unit,in,mil\n10,2\n", "E0924", "# unit,in,mil"),
+        ("target,deviation,EXX\n0,#DIV/0!,1\n", "E0925", "#DIV/0!"),
     ];
     for (text, code, marked) in cases {
         let (measured, found) = read(text);
@@ -186,6 +189,94 @@ fn a_broken_table_is_marked_where_it_is_broken() {
         let source = super::file::text("data", text.as_bytes());
         assert_eq!(told(&source, &found), [(code, marked.to_owned())], "{text}");
     }
+}
+
+/// A row of units that is taken for a comment makes every number wrong by 25.4.
+#[test]
+fn units_are_read_however_they_are_marked() {
+    for units in [
+        "#unit,in,mil\n",
+        "# unit,in,mil\n",
+        "#Unit,in,mil\n",
+        "#  UNITS: in,mil\n",
+        "\"#unit\",in,mil\n",
+        "# by the lab\n\n#Units,in,mil\n",
+    ] {
+        let (measured, found) = read(format!("target,deviation\n{units}0,1\n# units are not mm\n10,2\n"));
+        let measured = measured.unwrap_or_else(|| panic!("{units}: {found:?}"));
+        let units_read = [measured.target_unit, measured.deviation_unit].map(|unit| unit.unwrap().factor);
+        assert_eq!(units_read, [25.4, 25.4e-3], "{units}");
+    }
+}
+
+#[test]
+fn quotes_hold_cells_together_and_excels_line_tells_the_separator() {
+    for text in [
+        "\"target\",\"deviation\",\"note\"\n\"0\",\"1\",\"a,b\"\n\"10\",\"2\",\"c\"\n",
+        "\"target\",deviation,\"a;b\"\n0,1,\"x;y\"\n10,2,\n",
+        "sep=;\ntarget;deviation\n0;1\n10;2\n",
+        "\u{feff}sep=;\r\n# by the lab\r\ntarget;deviation\r\n0;1\r\n10;2\r\n",
+    ] {
+        let (measured, found) = read(text);
+        let measured = measured.unwrap_or_else(|| panic!("{text}: {found:?}"));
+        let readings: Vec<f64> = measured.runs[0].readings.iter().map(|one| one.deviation).collect();
+        assert_eq!((measured.targets, readings), (vec![0.0, 10.0], vec![1.0, 2.0]), "{text}");
+    }
+}
+
+#[test]
+fn a_cell_that_is_no_number_is_told_what_to_write() {
+    let empty = "leave the cell empty if nothing was measured";
+    let alone = "write the number alone, and its unit behind the name of the column";
+    for (cell, help) in [
+        ("#DIV/0!", empty),
+        ("-", empty),
+        ("n/a", empty),
+        ("10 um", alone),
+        ("\"1,5\"", "write a point: `1.5`"),
+        ("\"1,000\"", "write `1000` if the comma separates thousands"),
+    ] {
+        let (measured, found) = read(format!("target,deviation\n0,1\n10,{cell}\n"));
+        assert!(measured.is_none(), "{cell}");
+        let [one] = &found.iter().collect::<Vec<_>>()[..] else { panic!("{cell}: {found:?}") };
+        assert_eq!(one.code, "E0925", "{cell}");
+        assert!(one.help.as_ref().is_some_and(|told| told.contains(help)), "{cell}: {one:?}");
+    }
+}
+
+#[test]
+fn of_two_columns_that_may_be_meant_the_set_up_must_name_one() {
+    let like = super::Columns {
+        targets_like: vec!["X".to_owned()],
+        deviations_like: vec!["EXX".to_owned()],
+        ..Default::default()
+    };
+    let read = |text: &str, columns: &super::Columns<'_>| {
+        let mut found = model_dsl::diagnostic::Diagnostics::new();
+        let source = super::file::text("d", text.as_bytes());
+        let measured = super::file::read(source.clone(), columns, &mut found);
+        (measured, told(&source, &found), found)
+    };
+    let deviations = "x [mm],deviation [um],EXX [um]\n0,1,20\n10,2,30\n";
+    let targets = "x [mm],position [mm],deviation [um]\n0,1,2\n3,4,5\n";
+    for (text, marked, both, key) in [
+        (
+            deviations,
+            "EXX [um]",
+            "`deviation [um]` or in column `EXX [um]`",
+            "`deviations: {column: deviation}`",
+        ),
+        (targets, "x [mm]", "`position [mm]` or in column `x [mm]`", "`targets: {column: position}`"),
+    ] {
+        let (measured, told, found) = read(text, &like);
+        assert!(measured.is_none(), "{text}");
+        assert_eq!(told, [("E0929", marked.to_owned())]);
+        let one = found.iter().next().unwrap();
+        assert!(one.message.contains(both) && one.help.as_ref().unwrap().contains(key), "{one:?}");
+    }
+    let named = super::Columns { deviation: Some("EXX"), ..like };
+    let measured = read(deviations, &named).0.unwrap();
+    assert_eq!(measured.runs[0].readings[1].deviation, 30.0);
 }
 
 #[test]

@@ -216,6 +216,9 @@ pub(crate) struct Asked {
 pub(crate) struct Compensate {
     /// The calibration file of the machine.
     pub(crate) calibration: PathBuf,
+    /// Positions, which come from standard input and from no file.
+    #[arg(hide = true)]
+    pub(crate) positions: Option<PathBuf>,
     /// How far an axis must move back before it counts as reversed: mm, or deg for a
     /// rotary axis. Only for axes without a `dir_` column.
     #[arg(long, default_value_t = 0.001, value_parser = non_negative, allow_negative_numbers = true)]

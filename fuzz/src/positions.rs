@@ -63,9 +63,12 @@ fn compensate(bytes: &[u8], calibration: &Calibration, equations: &Equations) {
     let mut rows = rows.byte_records().map_while(Result::ok).peekable();
     let Some(header) = rows.next() else { return };
     let units = rows.next_if(|row| row.get(0).is_some_and(|cell| cell.trim_ascii() == b"#unit"));
+    let text = |cell: &[u8]| String::from_utf8_lossy(cell).trim().to_owned();
+    let units: Option<Vec<String>> = units.map(|row| row.iter().skip(1).map(text).collect());
     let sensors = calibration.sensors.inputs().map(|(_, sensor)| sensor.name.value.as_str()).collect();
-    let wanted = Wanted { equations, sensors, time: Some("a term".to_owned()), tools: true };
-    let layout = match Layout::read(&header, units.as_ref(), &wanted) {
+    let wanted = Wanted { equations, sensors, time: Some("a term".to_owned()), timed: true, tools: true };
+    assert!(!wanted.reads_number(b"#"));
+    let layout = match Layout::read(&header, units.as_deref(), &wanted) {
         Ok(layout) => layout,
         Err(mistakes) => return assert!(mistakes.iter().all(|mistake| !mistake.is_empty())),
     };

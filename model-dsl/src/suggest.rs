@@ -26,6 +26,12 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     best.map(|(_, name)| name).or(abbreviated)
 }
 
+/// Whether a word is a slip of another one: the same in other letter case or, from four letters on, but for one edit.
+pub fn is_slip(word: &str, of: &str) -> bool {
+    let (word, of) = (letters(word), letters(of));
+    word == of || of.chars().count() >= 4 && strsim::osa_distance(&word, &of) == 1
+}
+
 /// Small letters, and no more of them than a name has.
 fn letters(word: &str) -> String {
     word.chars().flat_map(char::to_lowercase).take(64).collect()
@@ -67,6 +73,16 @@ mod tests {
     fn the_first_of_equals_counts() {
         assert_eq!(nearest("EXW", ["EXX", "EXY"]), Some("EXX"));
         assert_eq!(nearest("MM", ["mm", "nm"]), Some("mm"));
+    }
+
+    #[test]
+    fn a_slip_is_one_edit_away() {
+        for (word, of) in [("Dir_y", "dir_y"), ("dr_y", "dir_y"), ("Tools", "tool"), ("T", "t")] {
+            assert!(is_slip(word, of), "{word}");
+        }
+        for (word, of) in [("n", "t"), ("tl", "tool"), ("Tool_1", "tool"), ("direction", "dir_y")] {
+            assert!(!is_slip(word, of), "{word}");
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@
 mod answering;
 mod input;
 mod lines;
+mod reader;
 mod separator;
 
 use std::cell::RefCell;
@@ -30,7 +31,9 @@ use crate::output::{Person, warn};
 use crate::positions::{Layout, State, Summary, Wanted, quoted};
 use crate::progress::Progress;
 use answering::Answering;
-use input::{Chunks, Input};
+use input::Chunks;
+use lines::Place;
+use reader::{Comments, Reader};
 use separator::Separator;
 
 /// The most bytes that are read or written at once: several times what a pipe holds, so that a file takes few calls of the system.
@@ -44,6 +47,9 @@ const TOLD: u64 = 4096;
 
 /// Runs the command.
 pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
+    if let Some(positions) = &command.positions {
+        return Err(from_a_file(&command.calibration, positions));
+    }
     let mut calibrated = calibrated::read(&command.calibration, &Person::default())?;
     if let Some(path) = &command.tools {
         calibrated.calibration.tools = tool_table(&calibrated, path, command.tools_unit.into())?;
@@ -65,6 +71,16 @@ pub(crate) fn run(command: &Compensate) -> Result<(), Failure> {
     let machine = rows::Answering::new(&calibrated, &motions);
     let drawn = rayon::in_place_scope(|scope| stream(scope, &calibrated, (&machine, &motions), command))?;
     command.map.as_ref().zip(drawn).map_or(Ok(()), |(target, drawing)| written::whole(target, &drawing))
+}
+
+/// Positions are read from no file.
+fn from_a_file(calibration: &Path, positions: &Path) -> Failure {
+    Failure::wrong(format!(
+        "error: {} is not read: positions come from standard input\nhelp: write `abbe compensate {} < {}`",
+        positions.display(),
+        calibration.display(),
+        positions.display()
+    ))
 }
 
 /// Takes the rows from standard input to standard output; gives the map that was asked for.
@@ -94,10 +110,12 @@ fn tool_table(calibrated: &Calibrated, path: &Path, unit: Unit) -> Result<Vec<To
 
 /// The rows on their way from standard input to standard output.
 struct Rows<'s, 'c> {
-    reader: csv::Reader<Input<'s, 'c>>,
+    reader: Reader<'s, 'c>,
     answering: Rc<RefCell<Answering<'s, 'c>>>,
     state: State<'c>,
-    first: Option<ByteRecord>,
+    comments: Comments,
+    /// The first row and its line, where it was read with the header.
+    first: Option<(ByteRecord, u64)>,
     row: u64,
 }
 
@@ -116,21 +134,12 @@ impl<'s, 'c> Rows<'s, 'c> {
         answering.summary = command.summary.then(Summary::default);
         answering.map = command.map.as_ref().map(|_| Map::new(equations, &calibrated.calibration));
         let answering = Rc::new(RefCell::new(answering));
-        let input = Input::new(chunks, Rc::clone(&answering));
-        let mut builder = csv::ReaderBuilder::new();
-        builder.has_headers(false).flexible(true).delimiter(separator.byte()).buffer_capacity(CAPACITY);
-        let mut reader = builder.from_reader(input);
-        let mut header = ByteRecord::new();
-        if !read(&mut reader, &answering, &mut header)? {
-            return Err(Failure::no(
-                "error: standard input is empty; it must begin with a header such as `x,y,z`".to_owned(),
-            ));
-        }
-        let mut second = ByteRecord::new();
-        let more = read(&mut reader, &answering, &mut second)?;
-        let units = more && second.get(0).is_some_and(|cell| cell.trim_ascii() == b"#unit");
+        let mut reader = Reader::new(chunks, &answering, separator);
+        let header = reader.header()?;
         let wanted = wanted(calibrated);
-        let layout = Layout::read(&header, units.then_some(&second), &wanted).map_err(|mistakes| {
+        let comments = Comments::new(&header, &wanted);
+        let (units, first) = reader.units(header.len(), &comments)?;
+        let layout = Layout::read(&header, units.as_deref(), &wanted).map_err(|mistakes| {
             let told = mistakes.iter().take(MOST_TOLD);
             Failure::wrong(
                 told.map(|mistake| format!("error: standard input: {mistake}\n")).collect::<String>(),
@@ -148,41 +157,45 @@ impl<'s, 'c> Rows<'s, 'c> {
             .map(|axis| if axis.rotary { command.hysteresis.to_radians() } else { command.hysteresis })
             .collect();
         let calibration = &calibrated.calibration;
-        Ok(Self {
-            reader,
-            answering,
-            state: State::new(layout, needed.is_some(), calibration, &hysteresis),
-            first: (more && !units).then_some(second),
-            row: 0,
-        })
+        let state = State::new(layout, needed.is_some(), calibration, &hysteresis);
+        Ok(Self { reader, answering, state, comments, first, row: 0 })
     }
 
     /// Reads all rows; they are answered when many have come, and before more of them are waited for.
     fn stream(&mut self, progress: &Progress) -> Result<(), Failure> {
         let mut row = ByteRecord::new();
-        while self.next(&mut row)? {
+        while let Some(line) = self.next(&mut row)? {
+            let place = Place { row: self.row, line };
             if self.row.is_multiple_of(TOLD) && progress.is_watched() {
                 progress.step(&format!("compensating: {} rows", self.row));
             }
             let taken = self.state.take(&row);
             let mut answering = self.answering.borrow_mut();
             match taken {
-                Ok(()) => answering.take(&mut row, self.row, (&self.state.sample(), self.state.tool()))?,
-                Err(mistake) => answering.refuse(&row, self.row, &mistake)?,
+                Ok(()) => answering.take(&mut row, place, (&self.state.sample(), self.state.tool()))?,
+                Err(mistake) => answering.refuse(&row, place, &mistake)?,
             }
         }
         self.answering.borrow_mut().answer()
     }
 
-    fn next(&mut self, row: &mut ByteRecord) -> Result<bool, Failure> {
+    /// Reads the next row that is no comment, and tells its line.
+    fn next(&mut self, row: &mut ByteRecord) -> Result<Option<u64>, Failure> {
         self.row += 1;
-        match self.first.take() {
-            Some(first) => {
-                *row = first;
-                Ok(true)
-            }
-            None => read(&mut self.reader, &self.answering, row),
+        if let Some((first, line)) = self.first.take() {
+            *row = first;
+            return Ok(Some(line));
         }
+        while let Some(line) = self.reader.next(row)? {
+            if self.reader.units_of(row, self.comments.width).is_some() {
+                self.answering.borrow_mut().answer()?;
+                return Err(late_units(line));
+            }
+            if !self.comments.is_one(row) {
+                return Ok(Some(line));
+            }
+        }
+        Ok(None)
     }
 
     /// Flushes what stands complete, also before a failure is told; gives the map that was asked for.
@@ -218,20 +231,12 @@ fn tell_unread(names: &[String]) {
     }
 }
 
-/// Reads the next row; `false` at the end.
-fn read<'s, 'c>(
-    reader: &mut csv::Reader<Input<'s, 'c>>,
-    answering: &RefCell<Answering<'s, 'c>>,
-    row: &mut ByteRecord,
-) -> Result<bool, Failure> {
-    answering.borrow_mut().begun = reader.position().byte();
-    reader.read_byte_record(row).map_err(|error| {
-        match (answering.borrow_mut().failure.take(), error.into_kind()) {
-            (Some(failure), _) => failure,
-            (None, csv::ErrorKind::Io(error)) => Failure::io("cannot read standard input", &error),
-            (None, other) => Failure::no(format!("error: cannot read standard input: {other:?}")),
-        }
-    })
+/// A row of units that stands where no unit is read any more.
+fn late_units(line: u64) -> Failure {
+    Failure::no(format!(
+        "error: standard input, line {line}: a row of units stands below rows of numbers\n\
+         help: write it directly below the names of the columns, once, or remove it"
+    ))
 }
 
 /// What the machine and its calibration need from a row.
@@ -239,6 +244,7 @@ fn wanted(calibrated: &Calibrated) -> Wanted<'_> {
     let sensors =
         calibrated.calibration.sensors.inputs().map(|(_, sensor)| sensor.name.value.as_str()).collect();
     Wanted {
+        timed: timed(&calibrated.calibration).is_some(),
         equations: &calibrated.equations,
         sensors,
         time: timed(&calibrated.calibration).and_then(|needed| match needed {

@@ -7,7 +7,8 @@ use abbe_runtime::Share;
 use csv::ByteRecord;
 use model_dsl::equations::Equations;
 use model_dsl::quantity::{Dimension, parse_unit, unit_in_name};
-use model_dsl::suggest::nearest;
+use model_dsl::suggest::{is_slip, nearest};
+use recording::cells::numbers_of_units;
 use workshop::rows::output_columns;
 
 use super::state::quoted;
@@ -20,6 +21,8 @@ pub(crate) struct Wanted<'a> {
     pub(crate) sensors: Vec<&'a str>,
     /// Why a time is needed, where one is.
     pub(crate) time: Option<String>,
+    /// Whether anything reads a time that is there.
+    pub(crate) timed: bool,
     /// Whether a column may name the tool of each row.
     pub(crate) tools: bool,
 }
@@ -79,13 +82,10 @@ impl Layout {
     /// Reads the header and the units; every mistake is told.
     pub(crate) fn read(
         header: &ByteRecord,
-        units: Option<&ByteRecord>,
+        units: Option<&[String]>,
         wanted: &Wanted<'_>,
     ) -> Result<Self, Vec<String>> {
-        let header: Vec<String> = header
-            .iter()
-            .map(|cell| String::from_utf8_lossy(cell).trim().trim_start_matches('\u{feff}').to_owned())
-            .collect();
+        let header: Vec<String> = header.iter().map(written).collect();
         let units =
             units.map(|units| unit_row(units, header.len())).transpose().map_err(|mistake| vec![mistake])?;
         if let [line] = header.as_slice()
@@ -96,12 +96,6 @@ impl Layout {
                 quoted(line),
                 quoted(&line.split_whitespace().collect::<Vec<_>>().join(","))
             )]);
-        }
-        if header.first().is_some_and(|first| first == "#unit") {
-            return Err(vec![
-                "the row of units stands above the names of the columns; write the names first, then `#unit` and the units"
-                    .to_owned(),
-            ]);
         }
         let (names, units_of_names) = header.iter().map(|cell| named(cell)).unzip();
         let read = vec![false; header.len()];
@@ -114,7 +108,26 @@ impl Layout {
         }
         reader.repeated();
         let layout = reader.layout();
+        reader.slips();
         if reader.mistakes.is_empty() { Ok(layout) } else { Err(reader.mistakes) }
+    }
+}
+
+/// A cell of the header as it is written.
+fn written(cell: &[u8]) -> String {
+    String::from_utf8_lossy(cell).trim().trim_start_matches('\u{feff}').to_owned()
+}
+
+impl Wanted<'_> {
+    /// Whether a number of this column is read from every row, so that nothing but a comment can begin with `#` there.
+    pub(crate) fn reads_number(&self, column: &[u8]) -> bool {
+        let (name, _) = named(&written(column));
+        let axes = &self.equations.axes;
+        let of_axis =
+            axes.iter().any(|axis| *axis.variable == *name || format!("dir_{}", axis.variable) == name);
+        let of_travel = self.equations.travels.iter().any(|travel| *travel.name == *name);
+        let sensor = name.strip_prefix("T_").is_some_and(|sensor| self.sensors.contains(&sensor));
+        of_axis || of_travel || sensor || name == "t"
     }
 }
 
@@ -126,16 +139,14 @@ fn named(cell: &str) -> (String, Option<String>) {
     }
 }
 
-/// `#unit,mm,mm`: the mark in a cell of its own before the units of all columns.
-fn unit_row(row: &ByteRecord, columns: usize) -> Result<Vec<String>, String> {
-    let units: Vec<String> =
-        row.iter().skip(1).map(|cell| String::from_utf8_lossy(cell).trim().to_owned()).collect();
+/// The units of all columns, which stand behind the mark `#unit`.
+fn unit_row(units: &[String], columns: usize) -> Result<Vec<String>, String> {
     if units.len() == columns {
-        return Ok(units);
+        return Ok(units.to_vec());
     }
     Err(format!(
-        "the row of units has {} units for {columns} columns; write `#unit` and then one unit for each column, empty if it has none",
-        units.len()
+        "the row of units has {}; write `#unit` and then one unit for each column, empty if it has none",
+        numbers_of_units(units.len(), columns)
     ))
 }
 
@@ -151,6 +162,26 @@ impl Reader<'_> {
         for name in self.names.iter().filter(|name| !name.is_empty()) {
             if !known.insert(name) {
                 self.mistakes.push(format!("column `{}` occurs twice", quoted(name)));
+            }
+        }
+    }
+
+    /// A column that nothing reads, and that is nearly one that would be read: its sign, its tool or its time would be lost.
+    fn slips(&mut self) {
+        let axes = self.wanted.equations.axes.iter();
+        let directions = axes.map(|axis| format!("dir_{}", axis.variable));
+        let travels = self.wanted.equations.travels.iter().map(|travel| travel.name.to_string());
+        let time = self.wanted.timed.then(|| "t".to_owned());
+        let tool = self.wanted.tools.then(|| "tool".to_owned());
+        let known: Vec<String> = directions.chain(travels).chain(time).chain(tool).collect();
+        let absent: Vec<&String> = known.iter().filter(|name| !self.names.contains(name)).collect();
+        let unread = self.names.iter().zip(&self.read).filter(|(_, read)| !**read).map(|(name, _)| name);
+        for name in unread {
+            let slip = absent.iter().find(|known| is_slip(name, known) && !is_other_direction(name, known));
+            if let Some(known) = slip {
+                let name = quoted(name);
+                self.mistakes
+                    .push(format!("nothing reads column `{name}`; did you mean `{known}`? Else rename it"));
             }
         }
     }
@@ -260,4 +291,11 @@ impl Reader<'_> {
         }
         self.optional(name, default).unwrap_or(Column { index: 0, factor: 1.0, offset: 0.0 })
     }
+}
+
+/// Whether a column is the direction of another axis, of this machine or of another one.
+fn is_other_direction(name: &str, known: &str) -> bool {
+    let lower = name.to_lowercase();
+    let letter = lower.strip_prefix("dir_").filter(|axis| axis.chars().count() == 1);
+    letter.is_some() && lower != known
 }

@@ -4,6 +4,7 @@
 use abbe_runtime::{Direction, Sample};
 use csv::ByteRecord;
 use model_dsl::calibration::Calibration;
+use recording::cells::counted;
 use workshop::rows::FARTHEST;
 use workshop::{rows, tools};
 
@@ -44,8 +45,8 @@ impl<'s> State<'s> {
         if row.len() != self.layout.width {
             let hint =
                 if row.len() > self.layout.width { "; a decimal comma could be the cause" } else { "" };
-            let plural = if self.layout.width == 1 { "" } else { "s" };
-            return Err(format!("{} cells for {} column{plural}{hint}", row.len(), self.layout.width));
+            let (cells, columns) = (counted(row.len(), "cell"), counted(self.layout.width, "column"));
+            return Err(format!("{cells} for {columns}{hint}"));
         }
         let tool = self.find_tool(row)?;
         let layout = &self.layout;

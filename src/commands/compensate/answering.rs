@@ -13,7 +13,7 @@ use workshop::failure::Failure;
 use workshop::rows::{self, Room, Samples};
 
 use super::CAPACITY;
-use super::lines::{self, Lines};
+use super::lines::{self, Lines, Place};
 use super::separator::Separator;
 use crate::map::Map;
 use crate::positions::{Column, Doubts, Layout, Reach, Summary};
@@ -24,8 +24,8 @@ const MOST_PENDING: usize = 1 << 13;
 
 /// Rows that wait for their answers.
 struct Batch<'c> {
-    /// The rows as they were read, each with its number; and spare ones behind them.
-    records: Vec<(ByteRecord, u64)>,
+    /// The rows as they were read, each with its place; and spare ones behind them.
+    records: Vec<(ByteRecord, Place)>,
     /// The state of the machine in each of them.
     samples: Samples<'c>,
 }
@@ -142,17 +142,17 @@ impl<'s, 'c> Answering<'s, 'c> {
     pub(super) fn take(
         &mut self,
         row: &mut ByteRecord,
-        number: u64,
+        place: Place,
         (sample, tool): (&Sample<'_>, Option<usize>),
     ) -> Result<(), Failure> {
         let Batch { records, samples } = &mut self.pending;
-        let place = samples.len();
-        if place == records.len() {
-            records.push((ByteRecord::new(), 0));
+        let number = samples.len();
+        if number == records.len() {
+            records.push((ByteRecord::new(), Place::default()));
         }
-        if let Some(slot) = records.get_mut(place) {
+        if let Some(slot) = records.get_mut(number) {
             std::mem::swap(&mut slot.0, row);
-            slot.1 = number;
+            slot.1 = place;
         }
         samples.push(sample, tool);
         let full = samples.len() >= MOST_PENDING;
@@ -162,13 +162,13 @@ impl<'s, 'c> Answering<'s, 'c> {
     }
 
     /// Refuses a row that is no state of a machine.
-    pub(super) fn refuse(&mut self, row: &ByteRecord, number: u64, mistake: &str) -> Result<(), Failure> {
+    pub(super) fn refuse(&mut self, row: &ByteRecord, place: Place, mistake: &str) -> Result<(), Failure> {
         self.answer()?;
         if self.skip_bad {
             self.skipped += 1;
             return Ok(());
         }
-        Err(lines::bad(row, number, mistake))
+        Err(lines::bad(row, place, self.separator, mistake))
     }
 
     /// Answers all rows that were read, as far as the first bad one where none may be left out.

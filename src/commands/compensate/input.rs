@@ -8,6 +8,7 @@ use std::rc::Rc;
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
 use std::thread;
 
+use csv::ByteRecord;
 use workshop::failure::Failure;
 
 use super::CAPACITY;
@@ -100,12 +101,20 @@ pub(super) struct Input<'s, 'c> {
     answering: Rc<RefCell<Answering<'s, 'c>>>,
     /// How many bytes were given away.
     given: u64,
+    /// The last of them.
+    last: u8,
 }
 
 impl<'s, 'c> Input<'s, 'c> {
     /// Standard input, with those who answer what it brings.
     pub(super) fn new(chunks: Chunks, answering: Rc<RefCell<Answering<'s, 'c>>>) -> Self {
-        Self { chunks, answering, given: 0 }
+        Self { chunks, answering, given: 0, last: 0 }
+    }
+
+    /// Whether the row that ended behind so many bytes ended all that was given, without the end of its line, or with one that belongs to
+    /// its last cell: a quote stands open.
+    pub(super) fn broke_off(&self, row: &ByteRecord, bytes: u64) -> bool {
+        bytes == self.given && (self.last != b'\n' || row.as_slice().ends_with(b"\n"))
     }
 
     /// Has the next bytes at hand, but at the end; all that was read is answered where one has to wait for them.
@@ -134,6 +143,7 @@ impl Read for Input<'_, '_> {
         self.provide()?;
         let read = self.chunks.rest().read(buffer)?;
         self.chunks.taken = self.chunks.taken.saturating_add(read);
+        self.last = buffer.get(..read).and_then(<[u8]>::last).copied().unwrap_or(self.last);
         self.given = self.given.saturating_add(u64::try_from(read).unwrap_or_default());
         Ok(read)
     }

@@ -12,10 +12,20 @@ use super::separator::Separator;
 use crate::decimal::Decimal;
 use crate::positions::{Column, Doubts, Summary, quoted};
 
+/// Where a row stands.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Place {
+    /// Its number under the header, from 1.
+    pub(super) row: u64,
+    /// The line of the input in which it begins, from 1.
+    pub(super) line: u64,
+}
+
 /// The lines of rows that follow each other.
 pub(super) struct Lines<'l> {
     equations: &'l Equations,
     axes: Arc<[Column]>,
+    separator: Separator,
     skip_bad: bool,
     number: Decimal,
     pub(super) writer: csv::Writer<Vec<u8>>,
@@ -40,6 +50,7 @@ impl<'l> Lines<'l> {
         Self {
             equations,
             axes,
+            separator,
             skip_bad,
             number: Decimal::default(),
             writer: writer(separator),
@@ -52,7 +63,7 @@ impl<'l> Lines<'l> {
     }
 
     /// Takes a row by its place, as it was read with its number, and what it is answered; `false` where it is the last.
-    pub(super) fn take(&mut self, row: usize, record: &(ByteRecord, u64), answer: &Answer<'_>) -> bool {
+    pub(super) fn take(&mut self, row: usize, record: &(ByteRecord, Place), answer: &Answer<'_>) -> bool {
         match &answer.outcome {
             Ok(outcome) => {
                 self.summary.take(outcome, answer.lean.as_ref());
@@ -62,7 +73,9 @@ impl<'l> Lines<'l> {
                 self.failure = written.err().map(|error| failed(&error));
             }
             Err(_) if self.skip_bad => self.skipped += 1,
-            Err(refusal) => self.failure = Some(bad(&record.0, record.1, &refusal.to_string())),
+            Err(refusal) => {
+                self.failure = Some(bad(&record.0, record.1, self.separator, &refusal.to_string()))
+            }
         }
         self.failure.is_none()
     }
@@ -101,10 +114,11 @@ pub(super) fn failed(error: &csv::Error) -> Failure {
 }
 
 /// Why a row is bad.
-pub(super) fn bad(row: &ByteRecord, number: u64, mistake: &str) -> Failure {
+pub(super) fn bad(row: &ByteRecord, place: Place, separator: Separator, mistake: &str) -> Failure {
     let cells: Vec<_> = row.iter().take(12).map(|cell| quoted(&String::from_utf8_lossy(cell))).collect();
-    let cells = cells.join(",");
+    let cells = cells.join(char::from(separator.byte()).to_string().as_str());
+    let Place { row, line } = place;
     Failure::no(format!(
-        "error: standard input, row {number} under the header (`{cells}`): {mistake}\nhelp: use --skip-bad to leave out such rows and count them"
+        "error: standard input, line {line}, row {row} under the header (`{cells}`): {mistake}\nhelp: use --skip-bad to leave out such rows and count them"
     ))
 }

@@ -1,6 +1,7 @@
 //! What stands between the cells. In: the first bytes of a table. Out: a comma, a semicolon or a tab, told by the header; or why this is no
 //! table of text.
 
+use recording::cells::told_separator;
 use workshop::failure::Failure;
 
 /// What stands between two cells, in what is read and in what is written.
@@ -33,7 +34,14 @@ impl Separator {
         if first.starts_with(&[0xff, 0xfe]) || first.starts_with(&[0xfe, 0xff]) {
             return Err(refused("UTF-16", "save it as UTF-8"));
         }
-        let header = first.split(|byte| *byte == b'\n').next().unwrap_or_default();
+        let mut lines = first.split(|byte| *byte == b'\n');
+        let told = lines.clone().next().and_then(told_separator);
+        if let Some(told) = told {
+            let all = [Self::Comma, Self::Semicolon, Self::Tab];
+            return Ok(all.into_iter().find(|separator| separator.byte() == told).unwrap_or(Self::Comma));
+        }
+        let is_header = |line: &&[u8]| !line.trim_ascii().is_empty() && !line.starts_with(b"#");
+        let header = lines.find(is_header).unwrap_or_default();
         let has = |separator: Self| header.contains(&separator.byte());
         let found = [Self::Comma, Self::Semicolon, Self::Tab].into_iter().find(|separator| has(*separator));
         Ok(found.unwrap_or(Self::Comma))
@@ -56,6 +64,8 @@ mod tests {
             ("x\ty\n1,5\t2\n", Separator::Tab),
             ("x\n1,5\n", Separator::Comma),
             ("", Separator::Comma),
+            ("# by hand, in May\n\nx;y\n1,5;2\n", Separator::Semicolon),
+            ("sep=;\r\nx;y\r\n", Separator::Semicolon),
         ] {
             assert_eq!(Separator::of(first.as_bytes()).ok(), Some(expected), "{first:?}");
         }

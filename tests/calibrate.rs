@@ -468,9 +468,12 @@ fn files_without_a_set_up_get_one_to_fill_in() {
         .filter_map(|line| line.strip_prefix("    "))
         .map(|line| format!("{line}\n"))
         .collect();
-    // What is shown is read as it stands, but for the motion that it names twice.
+    // What is shown is read as it stands, once the motion is filled in; until then it is told where.
     let once = text.rsplit_once("  - ").unwrap().0;
     let setup = bench.write("filled.yaml", once);
+    let run = abbe(&["calibrate", &setup], "");
+    assert!(run.status == 2 && run.err.contains("E0905") && run.err.contains("^^^"), "{}", run.err);
+    let setup = bench.write("filled.yaml", &once.replace("E??", "EXX"));
     let run = abbe(&["calibrate", &setup], "");
     assert_eq!((run.status, run.err.as_str()), (0, ""));
 }
@@ -568,4 +571,12 @@ fn a_data_file_that_is_misspelt_is_told_with_the_one_beside() {
     let right = bench.write("setup.yaml", &fs::read_to_string(&setup).unwrap().replace("plian", "plain"));
     let run = abbe(&["calibrate", &right], "");
     assert_eq!(run.status, 0, "{}", run.err);
+}
+
+/// What is no file is told as such, not taken for an instrument's.
+#[test]
+fn a_table_that_is_not_there_is_told_so() {
+    let run = abbe(&["calibrate", "no-such.csv"], "");
+    assert_eq!((run.status, run.out.as_str()), (2, ""));
+    assert!(run.err.contains("cannot read no-such.csv") && !run.err.contains("set-up"), "{}", run.err);
 }

@@ -54,6 +54,7 @@ pub use job::File;
 pub use lost::{Lost, Size, Target};
 pub use nodes::{Nodes, Spacing};
 pub use options::{Format, Kind, Options, Sense, Unit};
+pub use parameters::motion_of;
 pub use refused::Refused;
 pub use report::text;
 pub use saved::{SavedForm, SavedWanted, saved_form, saved_terms, skew_terms};

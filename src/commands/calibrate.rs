@@ -1,7 +1,7 @@
 //! `abbe calibrate`: instruments' files into a calibration. In: a set-up file and the files that it names. Out: what they show,
 //! with uncertainties, as text or JSON, and the calibration.
 
-pub(super) mod files;
+mod files;
 
 use exchange::instrument::report;
 use workshop::failure::Failure;

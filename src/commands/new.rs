@@ -12,7 +12,6 @@ use workshop::load::{self, Loaded};
 use workshop::named::{machine_name, relative};
 use workshop::written::folder;
 
-use super::calibrate::files::setup_to_fill_in;
 use crate::arguments::{New, NewFile};
 use crate::output::Person;
 use crate::target::Target;
@@ -46,13 +45,11 @@ fn text(file: &NewFile, here: &Path) -> Result<String, Failure> {
             Ok(begin::recording(&relative(here, data)?, &columns, machine.as_deref()))
         }
         NewFile::Setup { files } => {
-            for file in files {
-                if !file.exists() {
-                    load::bytes(file)?;
-                }
-            }
-            let names = files.iter().map(|file| relative(here, file)).collect::<Result<Vec<_>, _>>()?;
-            Ok(setup_to_fill_in(&files.iter().zip(&names).collect::<Vec<_>>()))
+            let named = |file: &PathBuf| Ok((file.clone(), relative(here, file)?));
+            let files = files.iter().map(named).collect::<Result<Vec<_>, Failure>>()?;
+            let files: Vec<(&Path, String)> =
+                files.iter().map(|(path, name)| (path.as_path(), name.clone())).collect();
+            begin::setup(&files)
         }
     }
 }

@@ -4,9 +4,11 @@
 mod calibration;
 mod path;
 mod recording;
+mod setup;
 mod table;
 
 pub use calibration::calibration;
 pub use path::path;
 pub use recording::{recording, table_alone};
+pub use setup::setup;
 pub use table::{Columns, columns};

@@ -109,7 +109,7 @@ fn name_of(motion: &Motion) -> String {
 }
 
 /// The error motion of a name: EC0Y for `C0Y`; nothing for what is none.
-pub(super) fn motion_of(name: &str) -> Option<String> {
+pub fn motion_of(name: &str) -> Option<String> {
     let letters = |bytes: &[u8]| bytes.iter().all(|letter| b"XYZABC".contains(letter));
     match name.as_bytes() {
         [b'E', rest @ ..] if rest.len() == 2 && letters(rest) => Some(name.to_owned()),

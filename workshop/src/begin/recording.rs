@@ -74,7 +74,7 @@ pub fn table_alone(data: &Path) -> Option<Failure> {
 /// A commented recording file for a table with these columns; `machine` names the machine, where it is known.
 #[must_use]
 pub fn recording(data: &str, columns: &Columns, machine: Option<&str>) -> String {
-    let guesses: Vec<Option<Guess>> = guessed(&columns.names);
+    let guesses: Vec<Option<Guess>> = guessed(columns);
     let (instrument, setup) = instrument(&guesses);
     let mut text = format!(
         "# A recording file for Abbe: what the columns of a table mean. Check each line: the channels are guessed from the names.\n\
@@ -147,32 +147,43 @@ fn channel(column: &str, guess: Option<&Guess>) -> String {
         );
     };
     let unit = if unit.is_empty() { String::new() } else { format!(", unit: {}", quoted(unit)) };
-    let doubt = if *unknown { "   # the unit in the name is none that fits; check it" } else { "" };
+    let doubt = if *unknown { "   # the unit in the table is none that fits; check it" } else { "" };
     format!("  {channel}: {{column: {}{unit}}}{doubt}\n", quoted(column))
 }
 
 /// What each column is taken for; a channel is given once. Beside measured positions no instrument has a deviation.
-fn guessed(columns: &[String]) -> Vec<Option<Guess>> {
+fn guessed(columns: &Columns) -> Vec<Option<Guess>> {
     let mut taken: Vec<String> = Vec::new();
-    let guess = |column: &String| {
-        let guess = guess(column).filter(|guess| !taken.contains(&guess.channel))?;
+    let guess = |(number, column): (usize, &String)| {
+        let unit = columns.units.get(number).filter(|unit| !unit.is_empty());
+        let date = columns.dates.get(number).is_some_and(|date| *date);
+        let guess = if date { Some(dates()) } else { guess(column, unit.map(String::as_str)) };
+        let guess = guess.filter(|guess| !taken.contains(&guess.channel))?;
         taken.push(guess.channel.clone());
         Some(guess)
     };
-    let guesses: Vec<Option<Guess>> = columns.iter().map(guess).collect();
+    let guesses: Vec<Option<Guess>> = columns.names.iter().enumerate().map(guess).collect();
     let positions = taken.iter().any(|channel| channel.starts_with("measured."));
     let fits = |guess: &Guess| !(positions && guess.channel == "deviation");
     guesses.into_iter().map(|guess| guess.filter(fits)).collect()
 }
 
-/// What a column is taken for by its name alone: an axis alone is a command.
-fn guess(column: &str) -> Option<Guess> {
+/// What a column of dates is.
+fn dates() -> Guess {
+    Guess { channel: "time".to_owned(), unit: "date".to_owned(), unknown: false }
+}
+
+/// What a column is taken for by its name and its unit in the row of units: an axis alone is a command.
+fn guess(column: &str, below: Option<&str>) -> Option<Guess> {
     let words = words(column);
     let axis = words.iter().find(|word| word.len() == 1 && "xyzuvwabc".contains(word.as_str()));
     let turns = axis.is_some_and(|axis| "abc".contains(axis.as_str()));
     let of = |channel: String, kinds: &[Dimension], default: &str| {
-        let unit = unit_of(column, kinds);
-        let unknown = unit.is_none() && unit_in_name(column).is_some();
+        let unit = match below {
+            Some(below) => Some(below).filter(|unit| is_of(unit, kinds)).map(str::to_owned),
+            None => unit_of(column, kinds),
+        };
+        let unknown = unit.is_none() && (below.is_some() || unit_in_name(column).is_some());
         Guess { channel, unit: unit.unwrap_or_else(|| default.to_owned()), unknown }
     };
     let by_axis = |kind: &str, axis: &String| {
@@ -200,12 +211,20 @@ fn guess(column: &str) -> Option<Guess> {
 const LOADS: [Dimension; 5] =
     [Dimension::FORCE, Dimension::VOLTAGE, Dimension::CURRENT, Dimension::PERCENT, Dimension::COUNT];
 
-/// The unit that a name tells, of one of some kinds: in brackets, `X [mm]`, or as a word, `x_mm`.
+/// Whether a text is a unit of one of some kinds.
+fn is_of(unit: &str, kinds: &[Dimension]) -> bool {
+    parse_unit(unit).is_ok_and(|unit| kinds.contains(&unit.dimension))
+}
+
+/// The unit that a name tells, of one of some kinds: in brackets, `X [mm]`, as a word, `x_mm`, or as a sign at its end, `load %`.
 fn unit_of(column: &str, kinds: &[Dimension]) -> Option<String> {
-    let fits = |unit: &&str| parse_unit(unit).is_ok_and(|unit| kinds.contains(&unit.dimension));
+    let fits = |unit: &&str| is_of(unit, kinds);
     if let Some((_, unit)) = unit_in_name(column) {
         let known = Some(unit).filter(fits).or_else(|| unit_of_word(unit));
         return known.filter(fits).map(str::to_owned);
+    }
+    if column.trim_end().ends_with('%') {
+        return Some("%").filter(fits).map(str::to_owned);
     }
     // A short word counts only if it names a unit; a longer one may be what people call one.
     let told = |word: &str| if word.chars().count() > 3 { unit_of_word(word) } else { unit_name(word) };
@@ -232,9 +251,11 @@ fn words(column: &str) -> Vec<String> {
 }
 
 /// A name as YAML takes it: in quotes where it is more than a plain word.
-fn quoted(name: &str) -> String {
+pub(super) fn quoted(name: &str) -> String {
     let plain = |letter: char| letter.is_alphanumeric() || "_-./".contains(letter);
-    let begins = name.starts_with(|letter: char| letter.is_alphabetic() || letter == '_' || letter == '/');
+    let path = name.strip_prefix("../").or_else(|| name.strip_prefix("./")).is_some();
+    let begins =
+        path || name.starts_with(|letter: char| letter.is_alphabetic() || letter == '_' || letter == '/');
     let keyword =
         ["true", "false", "null", "yes", "no", "on", "off", "y", "n"].contains(&name.to_lowercase().as_str());
     if begins && !keyword && name.chars().all(plain) {
@@ -255,7 +276,8 @@ mod tests {
 
     fn channels(first_line: &str) -> Vec<(String, String)> {
         let names: Vec<String> = first_line.split(';').map(str::to_owned).collect();
-        let guesses = guessed(&names);
+        let columns = Columns { names, ..of_text("t,x\n0,1\n").unwrap() };
+        let guesses = guessed(&columns);
         guesses.into_iter().flatten().map(|guess| (guess.channel, guess.unit)).collect()
     }
 
@@ -286,7 +308,23 @@ mod tests {
         let reading = channels("Laser reading (um)");
         assert_eq!(reading, [("deviation".to_owned(), "um".to_owned())]);
         let text = recording("d.csv", &of_text("t,Deviation [V]\n0,1\n").unwrap(), None);
-        assert!(text.contains("unit: um}   # the unit in the name is none that fits"), "{text}");
+        assert!(text.contains("unit: um}   # the unit in the table is none that fits"), "{text}");
+        let load = channels("Spindle load %;load_2");
+        let units: Vec<&str> = load.iter().map(|(_, unit)| unit.as_str()).collect();
+        assert_eq!(units, ["%", "N"]);
+    }
+
+    #[test]
+    fn the_row_of_units_and_the_form_of_the_times_count() {
+        let of = |text: &str| recording("d.csv", &of_text(text).unwrap(), None);
+        for mark in ["#unit", "# Units", "# laser\n#UNIT"] {
+            let text = of(&format!("t,run,x,dev\n{mark},s,,mm,in\n0,1,0,0.1\n"));
+            assert!(text.contains("  deviation: {column: dev, unit: in}\n"), "{text}");
+        }
+        let wrong = of("t,x,dev\n#unit,s,mm,degC\n0,0,0.1\n");
+        assert!(wrong.contains("unit: um}   # the unit in the table is none that fits"), "{wrong}");
+        let dates = of("timestamp,Xact,execution\n2026-03-01T08:00:00.000Z,99.9,ACTIVE\n");
+        assert!(dates.contains("  time: {column: timestamp, unit: date}\n"), "{dates}");
     }
 
     #[test]

@@ -566,6 +566,71 @@ fn data_that_cannot_be_read_end_with_status_one_and_a_wrong_file_with_two() {
     assert_eq!(abbe(&["diagnose", &good, "--holdout", &cases[4].0], "").status, 2);
 }
 
+/// Without the programmed positions nothing can be told; the place is where the file lists its channels.
+#[test]
+fn a_recording_without_the_positions_that_it_needs_is_refused_at_its_channels() {
+    let folder = folder("no-command");
+    let rows: String = (0..60).map(|row| format!("{row},{}\n", f64::from(row % 7) * 0.1)).collect();
+    write(&folder, "data.csv", &format!("t,d\n{rows}"));
+    let recording = |machine: &str, instrument: &str, channel: &str, setup: &str| {
+        format!(
+            "recording: 1\nmachine: {machine}\ninstrument: {instrument}\ndata: data.csv\nchannels:\n  time: {{column: t, unit: s}}\n  {channel}\n{setup}"
+        )
+    };
+    let deviation = "deviation: {column: d, unit: um}";
+    let targets = "so the targets are unknown";
+    let nothing = "so the readings can be compared with nothing";
+    for (name, text, why, help) in [
+        (
+            "linear.yaml",
+            recording("XYFZ", "linear", deviation, "setup: {axis: X}\n"),
+            targets,
+            "command.x: {column: ..., unit: mm}",
+        ),
+        (
+            "ballbar.yaml",
+            recording("XYFZ", "ballbar", deviation, "setup: {center: [0 mm, 0 mm, 0 mm], radius: 100 mm}\n"),
+            "so the circle is unknown",
+            "command.x: {column: ..., unit: mm}",
+        ),
+        (
+            "actual.yaml",
+            recording("XYFZ", "position", "actual.y: {column: d, unit: mm}", ""),
+            nothing,
+            "command.y: {column: ..., unit: mm}",
+        ),
+        (
+            "angle.yaml",
+            recording("FC", "position", "measured.c: {column: d, unit: arcsec}", ""),
+            nothing,
+            "command.c: {column: ..., unit: deg}",
+        ),
+    ] {
+        let path = write(&folder, name, &text);
+        let run = abbe(&["diagnose", &path, "--quiet"], "");
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{name}: {}", run.err);
+        assert!(run.err.contains("E0613") && run.err.contains(&format!("{name}:5:1")), "{name}: {}", run.err);
+        assert!(run.err.contains(why) && run.err.contains(help), "{name}: {}", run.err);
+    }
+}
+
+/// What the recording file says wrongly of its data is marked there.
+#[test]
+fn a_held_out_run_that_is_not_there_is_marked_in_the_recording_file() {
+    let folder = folder("held-out");
+    write(&folder, "data.csv", "t,run,x\n0,1,0\n1,1,1\n2,2,2\n");
+    let text = "recording: 1\nmachine: FX\ninstrument: position\ndata: data.csv\nchannels:\n  time: {column: t, unit: s}\n  run: {column: run}\n  measured.x: {column: x, unit: mm}\nholdout: {runs: [7]}\n";
+    let path = write(&folder, "r.yaml", text);
+    let run = abbe(&["diagnose", &path], "");
+    assert_eq!((run.status, run.out.as_str()), (2, ""), "{}", run.err);
+    assert!(run.err.contains("E0620") && run.err.contains("r.yaml:9:18"), "{}", run.err);
+    assert!(
+        run.err.contains("run 7 is to be held out") && run.err.contains("the runs are 1, 2"),
+        "{}",
+        run.err
+    );
+}
+
 #[test]
 fn recordings_of_two_machines_are_refused() {
     let folder = stage::recorded("two-machines");

@@ -26,6 +26,7 @@ use crate::progress::Progress;
 pub(crate) fn run(arguments: &Limits) -> Result<(), Failure> {
     let asked = &arguments.asked;
     let recorded = recorded::read(&arguments.recording, &Person::new(asked.quiet))?;
+    recorded.needs_positions()?;
     asked.target.check(&Files::of(&recorded, &arguments.recording).all(None))?;
     check_names(&asked.only, &recorded.equations.names())?;
     let progress = Progress::new(asked.quiet, "diagnosing the recording as it is");

@@ -23,7 +23,7 @@ pub enum Keep {
 ///
 /// # Errors
 ///
-/// [`Failure::No`] where no recording holds a sample that could be used.
+/// Recordings of which one lacks the positions that its readings need, or none holds a sample that could be used.
 pub fn diagnose(
     fitted: &[Recorded],
     held_out: Option<&Recorded>,
@@ -31,6 +31,7 @@ pub fn diagnose(
     show: &mut dyn FnMut(Progress),
 ) -> Result<Diagnosis, Failure> {
     let Some(first) = fitted.first() else { return Ok(Diagnosis::default()) };
+    fitted.iter().chain(held_out).try_for_each(Recorded::needs_positions)?;
     let derive = first.topology.as_ref().map(|topology| |word: &str| topology.derive(word));
     let inputs = Inputs {
         equations: &first.equations,
@@ -51,7 +52,7 @@ pub fn diagnose(
         Keep::Traces => diagnosis::diagnose_with_traces(&inputs, &mut show),
     };
     if diagnosis.recordings.iter().all(|recording| recording.samples == 0) {
-        return Err(Failure::no("error: the recordings have no usable sample"));
+        return Err(first.unusable());
     }
     Ok(diagnosis)
 }

@@ -36,6 +36,7 @@ pub fn load<M: CompiledMachine>(path: &Path) -> Result<Loaded, String> {
         names: names::<M>(),
         equations: M::EQUATIONS.to_owned(),
         command: "abbe expand --c-abi",
+        named: None,
     };
     let calibration = machine.read_calibration(&source, path.parent(), &mut diagnostics);
     let warnings = render(&source, &diagnostics, false);

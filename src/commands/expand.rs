@@ -8,6 +8,8 @@ use model_dsl::diagnostic::Diagnostics;
 use model_dsl::equations::Equations;
 use workshop::failure::Failure;
 use workshop::load;
+use workshop::named::machine_name;
+use workshop::written::folder;
 
 use crate::arguments::Expand;
 use crate::output::{self, Person};
@@ -19,7 +21,7 @@ pub(crate) fn run(command: &Expand) -> Result<(), Failure> {
     let loaded = load::machine(&command.machine, None, &Person::default())?;
     let equations = &loaded.compiled.equations;
     let tokens = match &command.calibration {
-        Some(path) => codegen::calibrated_tokens(equations, &calibration(equations, path)?)
+        Some(path) => codegen::calibrated_tokens(equations, &calibration(equations, command, path)?)
             .map_err(|error| Failure::wrong(format!("error: {}: {error}", path.display())))?,
         None if command.c_abi => codegen::c_tokens(equations),
         None => codegen::tokens(equations),
@@ -40,10 +42,11 @@ fn beyond(command: &Expand, unfit: Unfit) -> Failure {
 }
 
 /// Reads a calibration of the machine; nothing in it may be beyond a controller.
-fn calibration(equations: &Equations, path: &Path) -> Result<Calibration, Failure> {
+fn calibration(equations: &Equations, command: &Expand, path: &Path) -> Result<Calibration, Failure> {
     let source = load::read(path)?;
     let mut diagnostics = Diagnostics::new();
-    let machine = CompiledIn::new(equations, "abbe expand");
+    let named = machine_name(&command.machine, Path::new(""), &folder(path))?;
+    let machine = CompiledIn { named: Some(named), ..CompiledIn::new(equations, "abbe expand") };
     match machine.read_calibration(&source, path.parent(), &mut diagnostics) {
         Some(calibration) => {
             output::show(&source, &diagnostics);

@@ -21,12 +21,14 @@ pub struct CompiledIn {
     pub equations: String,
     /// How another machine file is compiled, for messages: `abbe expand --c-abi`.
     pub command: &'static str,
+    /// How the calibration would name the machine, for messages, where that is known.
+    pub named: Option<String>,
 }
 
 impl CompiledIn {
     /// What a machine with these equations says of itself.
     pub fn new(equations: &Equations, command: &'static str) -> Self {
-        Self { names: equations.names(), equations: Self::of_equations(equations), command }
+        Self { names: equations.names(), equations: Self::of_equations(equations), command, named: None }
     }
 
     /// The equations as text by which two machines are known to be the same.
@@ -78,8 +80,12 @@ impl CompiledIn {
         if name.value == *compiled {
             return Ok(());
         }
-        let help =
-            format!("the compiled machine is `machine: {compiled}`, and no such file is beside this one");
+        let help = match &self.named {
+            Some(named) => format!("write `machine: {named}` if this is a calibration of that machine"),
+            None => {
+                format!("the compiled machine is `machine: {compiled}`, and no such file is beside this one")
+            }
+        };
         Err(unusable("this is another machine", help))
     }
 }

@@ -48,7 +48,9 @@ fn datum(update: &Update) -> String {
     let zero = match update.datum.as_slice() {
         [] => "No zero is free: the places of the parts are taken as known.".to_owned(),
         free => {
-            format!("The zero of every set-up is free in {} ({} zeros).", free.join(" and "), update.zeros)
+            let zeros =
+                if update.zeros == 1 { "1 zero".to_owned() } else { format!("{} zeros", update.zeros) };
+            format!("The zero of every set-up is free in {} ({zeros}).", free.join(" and "))
         }
     };
     let compensated = match update.options.compensated {

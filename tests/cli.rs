@@ -161,6 +161,114 @@ fn positions_that_cannot_be_read_are_told_with_what_is_wrong() {
     }
 }
 
+/// A row of units that is not seen makes every position wrong by 25.4.
+#[test]
+fn units_of_positions_are_read_however_they_are_marked() {
+    let calibration = file("marked", "backlash.yaml", BACKLASH);
+    let plain = abbe(&["compensate", &calibration], "x,y,z\n#unit,in,in,in\n1,2,3\n");
+    assert_eq!(plain.status, 0, "{}", plain.err);
+    for units in [
+        "#units,in,in,in",
+        "# unit,in,in,in",
+        "#Unit,in,in,in",
+        "# Units: in,in,in",
+        "# by hand\n#unit,in,in,in",
+    ] {
+        let run = abbe(&["compensate", "--skip-bad", &calibration], &format!("x,y,z\n{units}\n1,2,3\n"));
+        assert_eq!((run.status, run.out, run.err.as_str()), (0, plain.out.clone(), ""), "{units}");
+    }
+    for (rows, told) in [
+        ("# unit,in,in,in\nx,y,z\n1,2,3\n", "line 1: the row of units stands above the names of the columns"),
+        ("x,y,z\n1,2,3\n\n#units,in,in,in\n1,2,3\n", "line 4: a row of units stands below rows of numbers"),
+        ("x,y,z\n#unit,in\n1,2,3\n", "the row of units has 1 unit for 3 columns"),
+    ] {
+        let run = abbe(&["compensate", "--skip-bad", &calibration], rows);
+        assert!(run.status != 0 && run.err.contains(told), "{rows}: {}", run.err);
+    }
+}
+
+#[test]
+fn comments_stand_among_positions_and_hide_no_row() {
+    let calibration = file("commented", "backlash.yaml", BACKLASH);
+    let plain = abbe(&["compensate", &calibration], "x,y,z\n1,2,3\n2,2,3\n");
+    let comments = "# by hand, in May\n\nx,y,z\n# first\n1,2,3\n# a, b\n#\n2,2,3\n";
+    let run = abbe(&["compensate", &calibration], comments);
+    assert_eq!((run.status, run.out, run.err.as_str()), (0, plain.out.clone(), ""));
+    let told = abbe(&["compensate", &calibration], "sep=;\r\nx;y;z\r\n1;2;3\r\n2;2;3\r\n");
+    assert_eq!((told.status, told.out), (0, plain.out.replace(',', ";")), "{}", told.err);
+    // Names of rows may begin with `#`.
+    let named = abbe(&["compensate", &calibration], "point,x,y,z\n#1,1,2,3\n#2,2,2,3\n");
+    assert_eq!(named.out.lines().count(), 3, "{}{}", named.out, named.err);
+    // An open quote in a comment would hide the rows behind it.
+    let open = abbe(&["compensate", &calibration], "x,y,z\n# a,\"b\n1,2,3\n2,2,3\n");
+    assert!(open.status == 1 && open.err.contains("line 2, row 1 under the header"), "{}", open.err);
+}
+
+#[test]
+fn a_column_that_is_nearly_read_is_refused() {
+    let calibration = file("nearly", "backlash.yaml", BACKLASH);
+    for (name, meant) in [("Dir_y", "dir_y"), ("DIR_X", "dir_x"), ("dr_y", "dir_y"), ("dir-y", "dir_y")] {
+        let run = abbe(&["compensate", &calibration], &format!("x,y,z,{name}\n1,2,3,-1\n"));
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{name}");
+        let told = format!("nothing reads column `{name}`; did you mean `{meant}`?");
+        assert!(run.err.contains(&told), "{}", run.err);
+    }
+    // Those of other machines, and those that stand beside what is read, are no slips.
+    for names in ["dir_a", "n", "T", "direction", "dir_y,Dir_y", "Tool"] {
+        let row = ["1"; 2].into_iter().take(names.split(',').count()).collect::<Vec<_>>().join(",");
+        let run = abbe(&["compensate", &calibration], &format!("x,y,z,{names}\n1,2,3,{row}\n"));
+        assert!(run.status == 0 && run.err.contains("but nothing reads it"), "{names}: {}", run.err);
+    }
+    let tools = format!("{BACKLASH}tools: {{probe: {{Zt: 80 mm}}}}\n");
+    let tools = file("nearly", "tools.yaml", &tools);
+    let run = abbe(&["compensate", &tools], "x,y,z,Tool\n1,2,3,probe\n");
+    assert!(run.status == 2 && run.err.contains("did you mean `tool`?"), "{}", run.err);
+}
+
+#[test]
+fn a_bad_row_is_quoted_as_it_stands_with_its_line() {
+    let calibration = file("quoted", "backlash.yaml", BACKLASH);
+    for (rows, told) in [
+        ("x;y;z\n1,5;2;3\n", "line 2, row 1 under the header (`1,5;2;3`)"),
+        ("x,y,z\n\n1,2,3\n\n\n4,5,bad\n", "line 6, row 2 under the header (`4,5,bad`)"),
+        ("x,y,z\n\n1,2,3\n\n\n4,5,bad", "line 6, row 2 under the header (`4,5,bad`)"),
+        ("x,y,z\r\n\r\n1,2,3\r\n# text\r\n\r\n4,5,bad\r\n", "line 6, row 2 under the header (`4,5,bad`)"),
+        ("note,x,y,z\n\"a\nb\",1,2,3\n\"c\nd\",4,5,bad\n", "line 4, row 2 under the header"),
+        ("x,y,z\n1\n", "1 cell for 3 columns"),
+    ] {
+        let run = abbe(&["compensate", &calibration], rows);
+        assert!(run.status == 1 && run.err.contains(told), "{rows:?}: {}", run.err);
+    }
+}
+
+#[test]
+fn positions_in_a_file_are_told_to_come_from_standard_input() {
+    let run = abbe(&["compensate", "calibrations/postech-mill.yaml", "points.csv"], "");
+    assert_eq!((run.status, run.out.as_str()), (2, ""));
+    assert!(
+        run.err.contains("positions come from standard input")
+            && run.err.contains("`abbe compensate calibrations/postech-mill.yaml < points.csv`"),
+        "{}",
+        run.err
+    );
+    assert!(!abbe(&["compensate", "--help"], "").out.contains("[POSITIONS]"));
+}
+
+#[test]
+fn a_calibration_of_another_machine_is_told_how_to_name_this_one() {
+    let machine = file("expand", "mill.yaml", &abbe(&["new", "XYFZ"], "").out);
+    let calibration = file("expand", "k.yaml", BACKLASH.replace("XYFZ", "FX").as_str());
+    let run = abbe(&["expand", &machine, "--calibration", &calibration], "");
+    assert_eq!((run.status, run.out.as_str()), (2, ""));
+    assert!(run.err.contains("E0426") && run.err.contains("k.yaml:2:10"), "{}", run.err);
+    assert!(
+        run.err.contains("write `machine: mill.yaml` if this is a calibration of that machine"),
+        "{}",
+        run.err
+    );
+    assert!(!run.err.contains("no such file"), "{}", run.err);
+}
+
 #[test]
 fn a_file_of_another_kind_is_named() {
     let recording = file(
@@ -726,7 +834,7 @@ fn new_files_are_taken_by_the_commands_that_read_them() {
         assert_eq!(run.status, 0, "{arguments:?}: {}", run.err);
     }
     let setup = fs::read_to_string(folder.join("setup.yaml")).unwrap();
-    assert!(setup.contains("measurements:\n  - {motion: EXX, data: data.csv,"), "{setup}");
+    assert!(setup.contains("measurements:\n  - {motion: E??, data: data.csv,"), "{setup}");
     // A file in another folder is named from there.
     fs::create_dir_all(folder.join("made/here")).unwrap();
     for arguments in [
@@ -876,8 +984,57 @@ fn new_set_ups_are_of_files_that_are_there_each_with_its_motion() {
         "{}",
         run.err
     );
-    let both = abbe(&["new", "setup", &table, &table], "").out;
-    assert!(both.contains("motion: EXX") && both.contains("motion: EYY"), "{both}");
+    // What a file does not say is left to be filled in; the order of the files says nothing.
+    let unknown = abbe(&["new", "setup", &table, &table], "").out;
+    assert_eq!(unknown.matches("{motion: E??, data: ").count(), 2, "{unknown}");
+    assert!(unknown.contains("# put in the error motion that the file shows"), "{unknown}");
+    assert!(
+        unknown.starts_with("# A set-up file for Abbe") && unknown.contains("# a machine file"),
+        "{unknown}"
+    );
+    let named = file("new-setup", "x-eyx.csv", "target,deviation\n0,1\n");
+    let several = file("new-setup", "multi.csv", "x,EXX [um],EBX [arcsec]\n#unit,mm,um,arcsec\n0,1,2\n");
+    let told = abbe(&["new", "setup", &named, &several], "");
+    let motions: Vec<&str> = told
+        .out
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("- {motion: ")?.split(',').next())
+        .collect();
+    assert_eq!(motions, ["EYX", "EXX", "EBX"], "{}{}", told.out, told.err);
+}
+
+#[test]
+fn new_set_ups_are_of_no_folder_and_of_nothing_that_is_no_table() {
+    let empty = file("no-setup", "empty.csv", "\n");
+    let words = file("no-setup", "words.csv", "nothing but words\n");
+    let folder = PathBuf::from(&empty).parent().unwrap().to_str().unwrap().to_owned();
+    let book = root().join("recording/tests/recording/written/openpyxl.xlsx").display().to_string();
+    for (path, told, help) in [
+        (folder, "is a folder", "give the files in it"),
+        (empty, "is empty", "give the file that the instrument wrote"),
+        (words, "has no row of column names", "write the names above"),
+        (book, "is a workbook", "save the table as CSV"),
+    ] {
+        let run = abbe(&["new", "setup", &path], "");
+        assert!(run.status != 0 && run.out.is_empty(), "{path}: {}", run.out);
+        assert!(run.err.contains(&format!("{path} {told}")) && run.err.contains(help), "{}", run.err);
+    }
+}
+
+#[test]
+fn new_recordings_say_what_the_table_says_of_units_and_times() {
+    let inches = file("said", "d.csv", "t,run,x,dev\n#unit,s,,mm,in\n0,1,0,0.1\n");
+    let run = abbe(&["new", "recording", &inches], "");
+    assert!(run.out.contains("  deviation: {column: dev, unit: in}\n"), "{}{}", run.out, run.err);
+    let quoted = file("said", "q.csv", "t,\"x, cmd\",m\n0,1,2\n");
+    let run = abbe(&["new", "recording", &quoted], "");
+    assert!(run.out.contains("  command.x: {column: 'x, cmd', unit: mm}\n"), "{}{}", run.out, run.err);
+    let book = root().join("recording/tests/recording/written/openpyxl-clock.xlsx").display().to_string();
+    let run = abbe(&["new", "recording", &book], "");
+    assert!(run.out.contains("unit: date}\n") && run.out.contains("unit: um}\n"), "{}{}", run.out, run.err);
+    let empty = file("said", "empty.csv", "");
+    let run = abbe(&["new", "recording", &empty], "");
+    assert!(run.status != 0 && run.err.contains("empty.csv is empty"), "{}", run.err);
 }
 
 #[test]

@@ -109,7 +109,7 @@ fn spaces_without_a_header() {
     let read = recording(&sampled, "100 0.5 1.0 \n101 0.5  -2.0\t\n  103 0.5 4\n").unwrap();
     assert_eq!(read.time, [0.0, 0.25e-3, 0.75e-3]);
     assert_eq!(read.measured[0].as_deref().unwrap(), [25.4, -50.8, 101.6]);
-    refused(&sampled, "100 0.5 1.0\noverrun\n", &["data.csv:2:8", "the row has 1 cells, but 3 are needed"]);
+    refused(&sampled, "100 0.5 1.0\noverrun\n", &["data.csv:2:8", "the row has 1 cell, but 3 are needed"]);
     refused(
         &sampled,
         "100 0.5\n",

@@ -4,7 +4,7 @@
 //! interval, and what is said of it.
 
 use abbe_diagnosis::diagnosis::{Diagnosis, Estimate, Finding, Verdict};
-use model_dsl::calibration::Factor;
+use model_dsl::calibration::{CalibratedTerm, Factor};
 use simulation::path::Shape;
 use simulation::{Load, Path, Swing};
 
@@ -162,6 +162,49 @@ fn a_crash_is_dated_and_told_from_a_drift() {
         let words = &finding.form.as_ref().unwrap().words;
         // To the row: five a second.
         assert!(words.contains("70.") || words.contains("69.9"), "{words}");
+    }
+}
+
+/// A slide that goes to and fro six times in one run of 154 s, with concealed errors.
+fn to_and_fro(more: &str) -> Diagnosis {
+    let bench = Bench::of("FX");
+    let truth = bench.calibration(more);
+    let path = runs(path(line(0, 0.0, 300.0), 25.0, 20.0), 6);
+    let mut recording = bench.record(&truth, &noisy(path, position("x"), SIGMA, 7));
+    recording.run.fill(1);
+    recording.holdout = None;
+    diagnosed(&bench, &bench.calibration("{}"), &[&recording])
+}
+
+/// Every fourth of twelve blocks of one run is held out, the third first. Across such a gap a sensor that walks comes as far as an event.
+#[test]
+fn an_event_in_a_held_out_part_is_found() {
+    for time in [29.3, 36.7, 81.1, 88.9, 133.2, 139.6] {
+        let diagnosis = to_and_fro(&format!("{{EXX: [{{step: {{time: {time} s, size: 4 um}}}}]}}"));
+        assert_eq!(diagnosis.findings.len(), 1, "{time}: {:?}", found(&diagnosis));
+        let event = called(&diagnosis, "EXX step");
+        holds(&numbers(event, "size")[0], 0.004);
+        let dated = match event.calibrated {
+            CalibratedTerm::Step { time, .. } => time,
+            ref other => panic!("{other:?}"),
+        };
+        assert!((dated - time).abs() < 0.06, "{dated} for {time}, to the row: twenty a second");
+    }
+}
+
+/// A backlash of the size of an event hides it, and is hidden by it.
+#[test]
+fn an_event_and_what_it_hides_are_found_together() {
+    for time in [36.7, 60.2, 81.1] {
+        let more = format!(
+            "{{EXX: [{{step: {{time: {time} s, size: 5 um}}}}, {{backlash: {{lost_motion: 4 um}}}}, \
+             {{polynomial: {{axis: X, per: mm, unit: um, coefficients: [0, 0.01]}}}}]}}"
+        );
+        let diagnosis = to_and_fro(&more);
+        assert_eq!(diagnosis.findings.len(), 3, "{time}: {:?}", found(&diagnosis));
+        holds(&numbers(called(&diagnosis, "EXX step"), "size")[0], 0.005);
+        holds(&numbers(called(&diagnosis, "EXX backlash"), "lost_motion")[0], 0.004);
+        called(&diagnosis, "EXX polynomial");
     }
 }
 

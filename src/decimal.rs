@@ -7,7 +7,7 @@ use std::fmt::Write;
 /// Decimal places: of a millimetre a picometre, so that rounding never shows.
 const PLACES: usize = 9;
 
-/// One of each place in units of the last one, from that on.
+/// The value of each decimal place in units of the last one, beginning with the last.
 const POWERS: [u32; PLACES] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
 
 /// One, in units of the last place.
@@ -47,7 +47,7 @@ impl Decimal {
                 *place = byte;
             }
         };
-        // As many as are known, and none of them waits for the one before.
+        // The number of places is fixed, so that no division waits for the one before it.
         let places = (units % ONE) as u32;
         for power in POWERS {
             put(DIGITS[(places / power % 10) as usize]);
@@ -79,10 +79,10 @@ fn units(number: f64) -> Option<u64> {
     let bits = number.to_bits();
     let (exponent, fraction) = (bits >> 52, bits & ((1 << 52) - 1));
     let (mantissa, exponent) = if exponent == 0 { (fraction, 1) } else { (fraction | 1 << 52, exponent) };
-    // From 2^53 on, infinite, NaN, or with a sign: the library's.
+    // The library writes numbers from 2^53 on, infinity, NaN and numbers with a sign.
     let cut = u32::try_from(1075_u64.checked_sub(exponent)?).ok()?;
     let exact = u128::from(mantissa) * u128::from(ONE);
-    // 2^53 10^9 is below 2^83: nothing is left of it.
+    // 2^53 10^9 is below 2^83: such a number is below half a unit, and rounds to zero.
     if cut > 84 {
         return Some(0);
     }

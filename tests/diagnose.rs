@@ -352,7 +352,7 @@ fn a_page_holds_every_finding_its_plots_the_change_and_its_command() {
         "After, by position of Y",
         "Before and after, over time",
         "Mean of each run",
-        "Before and after, by speed of X",
+        "Before and after, by velocity of X",
         "Amplitudes by period along Y",
         "Amplitudes by frequency",
     ] {

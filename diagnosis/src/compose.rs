@@ -101,7 +101,8 @@ fn take_event(study: &Study<'_>, found: &mut Found, (price, lacks): (&FormPrice,
     taken
 }
 
-/// Looks for everything anew beside the events of a model: what it was found beside held them, as noise or in other names.
+/// Looks for everything anew beside the events of a model. The search before knew nothing of them: it took them for noise, or for other
+/// effects.
 fn search_beside_events(study: &Study<'_>, found: &mut Found, price: &FormPrice) {
     let other = engine::beside_events(study, found);
     if is_better(study, found, (&other.fit, &other.appraisal), price) {

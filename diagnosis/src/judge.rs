@@ -251,9 +251,8 @@ pub(crate) fn design(study: &Study<'_>, model: &Model, weights: &Weights) -> Des
     design
 }
 
-/// Whether the noise alone, estimated anew without the effect, is nearly as likely. An event may have happened in a held-out part, from one
-/// row to the next. Across the gap that such a part is among the fitted rows, a walk comes as far. So all rows count for an event, as
-/// they do where its moment is looked for.
+/// Whether the noise alone, estimated anew without the effect, is nearly as likely. For an event all rows count: it may have happened in a
+/// held-out part, from one row to the next. Among the fitted rows such a part is a gap, and a walk comes as far in that time.
 fn noise_explains(
     study: &Study<'_>,
     design: &Design,

@@ -1,4 +1,4 @@
-//! LaTeX. In: a sheet. Out: a document with the equations, the lists of motions and of constants.
+//! LaTeX. In: a sheet. Out: a document with the equations, the lists of motions and of constants, to be printed or quoted in a paper.
 
 use model_dsl::sheet::{
     Angle, Base, Function, Letter, Number, Sheet, Signs, Statement, Writer, pieces, text::Plain, wrap,
@@ -71,7 +71,7 @@ pub(super) fn page(sheet: &Sheet) -> String {
     text
 }
 
-/// The equations alone: a block `align*` for each direction.
+/// The equations alone: a block `align*` of the named brackets where there are any, then one for each direction.
 pub(super) fn equations(sheet: &Sheet) -> String {
     let brackets = (!sheet.brackets.is_empty()).then(|| sheet.brackets.iter().map(equation).collect());
     let rows = sheet.rows.iter().chain(&sheet.orientation);
@@ -116,8 +116,8 @@ fn quantities(sheet: &Sheet) -> String {
     format!("\\begin{{longtable}}{{@{{}}lp{{0.8\\textwidth}}@{{}}}}\n{rows}\\end{{longtable}}\n")
 }
 
-/// Text outside of formulas.
-fn escape(text: &str) -> String {
+/// Text outside of formulas: marks of LaTeX as it prints them.
+pub(super) fn escape(text: &str) -> String {
     let mut escaped = String::new();
     for character in text.chars() {
         match character {

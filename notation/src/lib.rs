@@ -61,7 +61,8 @@ pub fn print(equations: &Equations, format: Format, names: Names) -> String {
     }
 }
 
-/// The equations alone in LaTeX, without the document around them: a block `align*` of amsmath for each direction.
+/// The equations alone in LaTeX, without the document around them: blocks `align*` of amsmath, one
+/// of the named brackets where there are any, then one for each direction.
 pub fn latex_equations(equations: &Equations, names: Names) -> String {
     latex::equations(&Sheet::new(equations, names))
 }

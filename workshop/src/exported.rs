@@ -86,7 +86,7 @@ pub fn write(export: &Export, folder: &Path, force: bool) -> Result<Vec<PathBuf>
         .map(|(target, file)| written::staged(target, |out| out.write_all(file.text.as_bytes())));
     let staged = staged.collect::<Result<Vec<_>, Failure>>()?;
     for (staged, target) in staged.into_iter().zip(&targets) {
-        staged.keep().map_err(|error| written::cannot_write(target, &error))?;
+        written::keep(staged, target)?;
     }
     Ok(targets)
 }

@@ -69,9 +69,9 @@ pub fn write(
     let calibration = written::staged_calibration(target, &text, equations(recorded, diagnosis))?;
     // The machine file first: no calibration may name one that is not there.
     if let Some((path, staged)) = beside {
-        staged.keep().map_err(|error| written::cannot_write(&path, &error))?;
+        written::keep(staged, &path)?;
     }
-    calibration.keep().map_err(|error| written::cannot_write(target, &error))?;
+    written::keep(calibration, target)?;
     tell(target, diagnosis, listener);
     Ok(())
 }

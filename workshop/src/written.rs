@@ -35,7 +35,7 @@ pub fn comment(text: &str) -> String {
 
 /// Writes a calibration; nothing is written that the compiler would not take.
 pub fn calibration(target: &Path, text: &str, equations: &Equations) -> Result<(), Failure> {
-    staged_calibration(target, text, equations)?.keep().map_err(|error| cannot_write(target, &error))
+    keep(staged_calibration(target, text, equations)?, target)
 }
 
 /// Writes a calibration beside its place, so that it can get its name together with other files.
@@ -52,13 +52,20 @@ pub fn staged_calibration(target: &Path, text: &str, equations: &Equations) -> R
     }
 }
 
-/// Refuses a place for a picture that cannot be written to, is one of the files that the command reads or writes besides, or is
-/// there already, unless `force` replaces it: before any work is done. `option` is the option that named it.
+/// Checks, before any work is done, that a picture may be written to `target`. `option` is the option that named it.
+///
+/// # Errors
+///
+/// `target` is a folder or one of `others`, the files that the command reads or writes besides; or it exists and `force` is not set.
 pub fn check_picture(target: &Path, option: &str, others: &[PathBuf], force: bool) -> Result<(), Failure> {
     check_new(target, (option, "picture.svg"), others, force)
 }
 
 /// The same for a file of any kind; the option comes with an example of a name.
+///
+/// # Errors
+///
+/// As for a picture.
 pub fn check_new(
     target: &Path,
     (option, example): (&str, &str),
@@ -107,8 +114,16 @@ pub fn check_folder(target: &Path, option: &str) -> Result<(), Failure> {
 
 /// Writes a file that gets its name only when it is complete and on the disk; what stood there before is replaced.
 pub fn whole(target: &Path, text: &str) -> Result<(), Failure> {
-    let cannot = |error: io::Error| cannot_write(target, &error);
-    staged(target, |file| file.write_all(text.as_bytes()))?.keep().map_err(cannot)
+    keep(staged(target, |file| file.write_all(text.as_bytes()))?, target)
+}
+
+/// Gives a staged file its name.
+///
+/// # Errors
+///
+/// Why it cannot have it.
+pub fn keep(staged: Staged, target: &Path) -> Result<(), Failure> {
+    staged.keep().map_err(|error| cannot_write(target, &error))
 }
 
 /// Writes a file beside its place, so that it can get its name together with others.

@@ -39,9 +39,9 @@ pub(super) fn count(study: &Study<'_>) -> usize {
     forms::places(study).len() * forms::moments(study).len()
 }
 
-/// Models with steps at the moments that explain most; none without a step. Moments are looked for beside all that was found, which is
-/// right where that does not imitate the event; and beside the settings and plays alone, where the best one and the best one elsewhere
-/// count. What a play leaves at a reversal looks like a step there.
+/// Models with steps at the moments that explain most; none without a step. The best moment beside all that was found comes first: it is
+/// right where nothing of that imitates the event. Then come the two best moments beside the settings and the plays alone. The plays are
+/// among them because what a play leaves at a reversal looks like a step there.
 pub(super) fn events(study: &Study<'_>, found: &Found) -> Vec<Event> {
     let places = forms::places(study);
     let grid = forms::moments(study);

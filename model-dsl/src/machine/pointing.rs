@@ -1,8 +1,8 @@
 //! The direction of a tool by name. In: `direction` of the `tool`, three names, and the constants of the machine. Out: three constants more,
 //! pure numbers, which each tool of a calibration gives; or what is wrong with the names.
 //!
-//! It exists since the tools of a turret point in several ways, and a machine is compiled once: what is another one with each tool is a
-//! constant, as the length of the tool is.
+//! It exists because the tools of a turret point in several ways, and a machine is compiled once. So the direction of the tool is made of
+//! constants, as its length is, and each tool of a calibration gives their values.
 
 use super::constants::Constant;
 use super::draft::Chain;
@@ -35,7 +35,7 @@ pub(super) fn read(node: &Node, diagnostics: &mut Diagnostics) -> Option<Parts> 
     found
 }
 
-/// Adds the parts behind the constants that are offsets. Without a tool of the calibration they are those of `tool_axis`.
+/// Appends the components of the direction to the constants. By default they are those of `tool_axis`: a calibration may have no tools.
 pub(super) fn settle(
     mut constants: Vec<Constant>,
     chain: &Chain<'_>,
@@ -45,29 +45,29 @@ pub(super) fn settle(
     let parts = chain.links.iter().find_map(|drafted| drafted.direction.as_ref());
     let Some(parts) = parts else { return constants };
     if !is_derived {
-        diagnostics.push(nobody_asks(parts));
+        diagnostics.push(not_derived(parts));
     }
     let mut found: Vec<Constant> = Vec::new();
     for (part, axis) in parts.iter().zip(Axis::ALL) {
         let earlier = found.iter().find(|known| known.name == part.value).map(|known| known.span);
         if let Some(other) = used_in_an_offset(&part.value, chain).or(earlier) {
-            diagnostics.push(two_things(part, other));
+            diagnostics.push(used_twice(part, other));
             continue;
         }
         let declared = constants.iter().position(|known| known.name == part.value);
         let declared = declared.map(|place| constants.remove(place));
         if let Some(length) = declared.as_ref().filter(|known| known.default.is_some()) {
-            diagnostics.push(no_length(length, part));
+            diagnostics.push(given_a_length(length, part));
         }
-        let sign = if axis == tool_axis.axis { tool_axis.sign } else { 0 };
+        let component = match axis == tool_axis.axis {
+            true if tool_axis.sign < 0 => -1.0,
+            true => 1.0,
+            false => 0.0,
+        };
         found.push(Constant {
             name: part.value.clone(),
             meaning: declared.and_then(|known| known.meaning),
-            default: Some(match sign {
-                0 => 0.0,
-                1.. => 1.0,
-                _ => -1.0,
-            }),
+            default: Some(component),
             direction: Some(axis),
             span: part.span,
         });
@@ -85,20 +85,20 @@ fn used_in_an_offset(name: &Name, chain: &Chain<'_>) -> Option<Span> {
     mentioning.next().map(|(_, span)| *span)
 }
 
-fn nobody_asks([first, ..]: &Parts) -> Diagnostic {
+fn not_derived([first, ..]: &Parts) -> Diagnostic {
     Diagnostic::error("E0152", first.span, "the machine does not derive the direction of the tool")
         .label("no equation would contain it")
         .help("add `orientation: true` to the machine file, or remove the direction")
 }
 
-fn two_things(part: &Spanned<Name>, other: Span) -> Diagnostic {
+fn used_twice(part: &Spanned<Name>, other: Span) -> Diagnostic {
     Diagnostic::error("E0152", part.span, format!("`{}` has two meanings", part.value))
         .label("a component of the tool's direction here")
         .also(other, "and something else here")
         .help("give each component a name of its own: `direction: [It, Jt, Kt]`")
 }
 
-fn no_length(length: &Constant, part: &Spanned<Name>) -> Diagnostic {
+fn given_a_length(length: &Constant, part: &Spanned<Name>) -> Diagnostic {
     Diagnostic::error("E0152", length.span, format!("`{}` is not a length", part.value))
         .label("a length here")
         .also(part.span, "a component of the tool's direction here")

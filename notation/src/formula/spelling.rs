@@ -3,6 +3,7 @@
 use pages::text::escape;
 
 use super::Math;
+use crate::latex::escape as escape_latex;
 
 /// How a notation spells the parts of a formula.
 pub(super) trait Spelling {
@@ -119,21 +120,6 @@ impl Spelling for Plain {
 
 pub(super) struct Latex;
 
-/// Marks of LaTeX as it prints them.
-fn latex(text: &str) -> String {
-    let mut written = String::new();
-    for character in text.chars() {
-        match character {
-            '\\' => written.push_str("\\textbackslash{}"),
-            '^' => written.push_str("\\textasciicircum{}"),
-            '~' => written.push_str("\\textasciitilde{}"),
-            '&' | '%' | '$' | '#' | '_' | '{' | '}' => written.extend(['\\', character]),
-            plain => written.push(plain),
-        }
-    }
-    written
-}
-
 impl Spelling for Latex {
     fn quantity(&self, number: &str, unit: &str) -> String {
         let number = match number.split_once('e') {
@@ -144,7 +130,11 @@ impl Spelling for Latex {
     }
     fn symbol(&self, letter: &str, of: &str) -> String {
         let letter = if letter == "2 pi" { "2\\pi" } else { letter };
-        if of.is_empty() { letter.to_owned() } else { format!("{letter}_{{\\mathrm{{{}}}}}", latex(of)) }
+        if of.is_empty() {
+            letter.to_owned()
+        } else {
+            format!("{letter}_{{\\mathrm{{{}}}}}", escape_latex(of))
+        }
     }
     fn times(&self) -> &'static str {
         "\\,"
@@ -180,7 +170,8 @@ impl Spelling for Latex {
 }
 
 fn latex_unit(unit: &str) -> String {
-    unit.split_once('^').map_or_else(|| latex(unit), |(base, power)| format!("{}^{{{power}}}", latex(base)))
+    unit.split_once('^')
+        .map_or_else(|| escape_latex(unit), |(base, power)| format!("{}^{{{power}}}", escape_latex(base)))
 }
 
 pub(super) struct MathMl;

@@ -1,4 +1,5 @@
-//! The two files of a simulated recording. In: what was simulated, and where it goes. Out: both files, whole or not at all.
+//! The two files of a simulated recording. In: what was simulated, and where it goes. Out: both files, each whole or absent. The data file
+//! gets its name first.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -69,9 +70,9 @@ impl Output {
     pub fn write(&self, simulated: &Simulated, head: &Head) -> Result<(), Failure> {
         let (data_path, recording) = (self.data_path(), write::recording(simulated, head));
         let data = written::staged(&data_path, |file| write::table(simulated, &head.axes, file))?;
-        let head = written::staged(&self.recording, |file| file.write_all(recording.as_bytes()))?;
-        data.keep().map_err(|error| written::cannot_write(&data_path, &error))?;
-        head.keep().map_err(|error| written::cannot_write(&self.recording, &error))
+        let file = written::staged(&self.recording, |file| file.write_all(recording.as_bytes()))?;
+        written::keep(data, &data_path)?;
+        written::keep(file, &self.recording)
     }
 
     /// The folder, made where it is missing.
@@ -80,17 +81,14 @@ impl Output {
     ///
     /// Why it cannot be made.
     pub fn folder(&self) -> Result<PathBuf, Failure> {
-        let folder = match self.recording.parent() {
-            Some(parent) if parent != Path::new("") => parent.to_owned(),
-            _ => PathBuf::from("."),
-        };
+        let folder = written::folder(&self.recording);
         std::fs::create_dir_all(&folder)
             .map_err(|error| Failure::io(&format!("cannot create {}", folder.display()), &error))?;
         Ok(folder)
     }
 
-    /// What the recording file names, counted from the folder that it goes to: the machine of a calibration, by the name of its file, and
-    /// the calibration that is known.
+    /// The head of the recording file, with names relative to `folder`, to which that file goes: the machine that the calibration at `path`
+    /// names, and the calibration `known`, if there is one.
     ///
     /// # Errors
     ///

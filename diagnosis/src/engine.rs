@@ -73,8 +73,7 @@ pub(crate) fn find(
 ) -> Found {
     let mut search = Search::new(study, settings, outliers);
     let places = search.places.clone();
-    search.go_round(study, progress);
-    search.cross_plays(study, progress);
+    search.search(study, progress);
     let mut fit = search.fit(study);
     if let Some(loops) = dynamics::loops_alone(study, &fit.model, &search.conditions()) {
         (search, fit) = begun_anew(study, (search, fit), Start { model: loops, dent: None }, progress);
@@ -98,8 +97,7 @@ pub(crate) fn beside_events(study: &Study<'_>, found: &Found) -> Found {
     let held = start.effects.len();
     let mut search = Search::beside(study, found, start.with_settings(held));
     let progress: &mut dyn FnMut(f64) = &mut |_| ();
-    search.go_round(study, progress);
-    search.cross_plays(study, progress);
+    search.search(study, progress);
     search.price_all_but(settings);
     let fit = search.fit(study);
     told(study, judged(study, (search, fit), progress), found.places.clone())
@@ -145,8 +143,7 @@ fn judged(
         // Beside a curve, what stood in for its bends may look different. What it leaves at its corners is no new wave.
         search.model = curved.model;
         search.places.clear();
-        search.go_round(study, progress);
-        search.cross_plays(study, progress);
+        search.search(study, progress);
         fit = search.fit(study);
     }
     let (fit, appraisal) = upheld(study, fit, &search.conditions());
@@ -171,8 +168,7 @@ fn begun_anew(
     let mut start = search.clone();
     start.begin(study, model.with_settings(settings + usize::from(dent.is_some())));
     let mut end = start.clone();
-    end.go_round(study, progress);
-    end.cross_plays(study, progress);
+    end.search(study, progress);
     let ended = |mut search: Search| {
         search.price_all_but(settings);
         let fit = search.fit(study);

@@ -301,9 +301,13 @@ fn first_held_out(recording: &Recording, blocks: &[Block], turn: usize) -> usize
     if whole <= 0.0 || share(usual) >= LITTLE * fair {
         return usual;
     }
-    // Of those that leave as much as they hold out to be fitted.
+    // What happens before the first fitted row or behind the last is foretold by nothing.
+    let is_inside = |first: usize| {
+        held_out(blocks.len(), first, turn).all(|number| number > 0 && number + 1 < blocks.len())
+    };
+    // At least as much is left to be fitted as is held out.
     let off = |first: usize| match share(first) {
-        share if share > 0.5 => f64::INFINITY,
+        share if share > 0.5 || !is_inside(first) => f64::INFINITY,
         share => (share / fair).ln().abs(),
     };
     (0..HELD_OUT_EVERY).fold(usual, |best, first| if off(first) < off(best) { first } else { best })

@@ -65,12 +65,13 @@ pub fn may_be_units(line: &[u8]) -> bool {
     Mark::of(line).is_some()
 }
 
-/// Whether a line is the row of units of a table with so many columns.
+/// Whether a line is the row of units of a table with this number of columns.
 pub fn is_row_of_units(line: &[u8], separator: u8, columns: usize) -> bool {
     may_be_units(line) && split_units(line, separator, columns, &mut Vec::new())
 }
 
-/// Finds the cells of the row of units of a table with so many columns: the mark `#unit`, and behind it the units. False of any other line.
+/// Finds the cells of a row of units: the mark `#unit`, then the units. Returns whether the line is the row of units of a table with this
+/// number of columns.
 ///
 /// Where no separator stands behind the mark, the line is a row of units only if it has one for each column: else it is a comment.
 pub fn split_units(line: &[u8], separator: u8, columns: usize, cells: &mut Vec<(usize, usize)>) -> bool {
@@ -171,7 +172,7 @@ fn are_units(rest: &[u8]) -> bool {
     cells.peek().is_some() && cells.all(is_unit)
 }
 
-/// The separator that the first line of a table tells, as Excel has it: `sep=;`. Nothing of any other line.
+/// The separator that Excel writes into the first line of a table, `sep=;`. `None` if the line is another one.
 pub fn told_separator(line: &[u8]) -> Option<u8> {
     let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line);
     // A tab behind the sign is not white space here.

@@ -78,7 +78,7 @@ impl Form {
     }
 }
 
-/// The code for a value that is none of those that there are, or does not suit the table.
+/// The code for a value that is unknown, or does not suit the table.
 const UNKNOWN_VALUE: &str = "E0630";
 
 /// The path of the table, and how it is written.

@@ -1,6 +1,8 @@
 //! Recordings with their machines. In: recording files. Out: the data in columns, the machine, its equations and the
 //! calibration that the recording names; or every mistake, located.
 
+mod lacking;
+
 use std::path::{Path, PathBuf};
 
 use model_dsl::calibration::Calibration;
@@ -10,7 +12,7 @@ use model_dsl::machine::Machine;
 use model_dsl::source::{SourceFile, Span, Spanned};
 use model_dsl::yaml::{Node, NodeKind, Scalar};
 use model_dsl::{Compiled, yaml};
-use recording::{self, DataError, Header, Instrument, Recording};
+use recording::{self, DataError, Header, Recording};
 
 use crate::begin;
 use crate::calibrated::{self, Calibrated};
@@ -270,9 +272,6 @@ pub fn unusable(
     Failure::Wrong(Words::marked(source, &diagnostics).then(reason))
 }
 
-/// The code of a recording that lacks what it measures, or what that is compared with.
-const NOTHING_MEASURED: &str = "E0613";
-
 /// Whether calibrations differ in nothing that acts, or in constants alone.
 fn are_alike(known: &Calibration, other: &Calibration) -> bool {
     let (constants, source) = (known.constants.clone(), known.source.clone());
@@ -286,57 +285,6 @@ fn differing(known: &[f64], own: &[f64]) -> Vec<(usize, f64)> {
 }
 
 impl Recorded {
-    /// Refuses a recording from which nothing can be told, because no channel says where its axes were (E0613): a ballbar's circle and a
-    /// laser's targets are known from nothing else. What stands still while temperatures or loads change needs no positions.
-    ///
-    /// # Errors
-    ///
-    /// Where the file lists its channels, what is missing there.
-    pub fn needs_positions(&self) -> Result<(), Failure> {
-        let recording = &self.recording;
-        let of_circle = matches!(recording.instrument, Instrument::Ballbar { .. });
-        let at_targets = !matches!(recording.instrument, Instrument::Position | Instrument::Probe);
-        let otherwise = !recording.temperatures.is_empty() || !recording.loads.is_empty();
-        let known = recording.axes.iter().any(|axis| axis.command.is_some() || axis.actual.is_some());
-        if known || !of_circle && (otherwise || !at_targets) {
-            return Ok(());
-        }
-        let what = if of_circle { "the circle is unknown" } else { "the targets are unknown" };
-        Err(self.no_command(&format!("there is no channel `command.<axis>`, so {what}")))
-    }
-
-    /// Why no row of the recording can be used (E0613).
-    #[must_use]
-    pub fn unusable(&self) -> Failure {
-        if self.recording.axes.iter().any(|axis| axis.command.is_some()) {
-            let message = "no row has both a programmed position and a reading";
-            let mistake = Diagnostic::error(NOTHING_MEASURED, self.named.channels, message);
-            let help =
-                "check that the columns of `command.<axis>` and of the reading are filled in the same rows";
-            return one(&self.source, mistake.help(help));
-        }
-        self.no_command("there is no channel `command.<axis>`, so the readings can be compared with nothing")
-    }
-
-    fn no_command(&self, message: &str) -> Failure {
-        let mistake = Diagnostic::error(NOTHING_MEASURED, self.named.channels, message);
-        one(&self.source, mistake.help(format!("add {}, the programmed position", self.command())))
-    }
-
-    /// The command of the first axis that the recording knows anything of, as the file would list it.
-    fn command(&self) -> String {
-        let axes = || self.equations.axes.iter().filter(|axis| !axis.is_motor());
-        let heard = |letter: &str| {
-            let number = self.equations.axes.iter().position(|axis| axis.letter == letter);
-            let channels = number.and_then(|number| self.recording.axes.get(number));
-            channels.is_some_and(|axis| axis.actual.is_some() || axis.measured.is_some())
-        };
-        let axis = axes().find(|axis| heard(&axis.letter)).or_else(|| axes().next());
-        let unit = if axis.is_some_and(|axis| axis.rotary) { "deg" } else { "mm" };
-        let name = axis.map_or("x", |axis| &*axis.variable);
-        format!("`command.{name}: {{column: ..., unit: {unit}}}`")
-    }
-
     /// A recording whose rows are those of this one (E0625).
     fn refuse_copy(&self, copy: &Self) -> Failure {
         let [name, own] = [copy, self].map(|recorded| recorded.source.name());

@@ -51,7 +51,8 @@ fn holds_zero(estimate: &Estimate) -> bool {
     one.min(other) <= NOTHING * size && one.max(other) >= -NOTHING * size
 }
 
-/// The share of a size that is as good as nothing: an effect that may be a thousandth of what is claimed cannot be compensated.
+/// The share of a size that is as good as nothing. Where a 95 % interval reaches down to a thousandth, the logarithm of the size has a
+/// standard deviation above 3.5: not even its power of ten is known. The five drifts and growths in which this was seen reached below 1e-80.
 const NOTHING: f64 = 1e-3;
 
 /// Half of the interval of a phase, rad: it must be known within a quarter of a turn.

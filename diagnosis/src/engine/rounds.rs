@@ -124,8 +124,14 @@ impl Search {
         Conditions { weights: &self.weights, travels: &self.travels, tries: self.tries }
     }
 
+    /// Goes to its end: chooses until nothing changes, and lets axes cross their plays.
+    pub(super) fn search(&mut self, study: &Study<'_>, progress: &mut dyn FnMut(f64)) {
+        self.go_round(study, progress);
+        self.cross_plays(study, progress);
+    }
+
     /// Chooses anew, with a better idea of the noise each time, until nothing changes.
-    pub(super) fn go_round(&mut self, study: &Study<'_>, progress: &mut dyn FnMut(f64)) {
+    fn go_round(&mut self, study: &Study<'_>, progress: &mut dyn FnMut(f64)) {
         for round in 0..ROUNDS {
             progress(crate::number(round + 1) / crate::number(ROUNDS + 2));
             let next = self.choose(study);
@@ -154,7 +160,7 @@ impl Search {
     }
 
     /// Lets axes cross their plays where that says as much as what seems to hold them after reversals, and goes on from there.
-    pub(super) fn cross_plays(&mut self, study: &Study<'_>, progress: &mut dyn FnMut(f64)) {
+    fn cross_plays(&mut self, study: &Study<'_>, progress: &mut dyn FnMut(f64)) {
         let Some(crossed) = crossing::try_plays(study, &self.model, &self.conditions()) else { return };
         self.model = crossed;
         for _ in 0..ROUNDS {

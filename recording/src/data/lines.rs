@@ -106,7 +106,7 @@ impl<'n, R: BufRead> Lines<'n, R> {
         }
     }
 
-    /// The row of units above the first row of a table with so many columns.
+    /// The row of units above the first row of a table with this number of columns.
     pub(super) fn units_above(&mut self, separator: u8, columns: usize) -> Option<Row<'_>> {
         let (line, number) = self.above.as_ref()?;
         let found = split_units(line, separator, columns, &mut self.cells);

@@ -30,7 +30,7 @@ pub(super) fn setup_among(files: &[PathBuf]) -> Result<&Path, Failure> {
 fn is_of_an_instrument(path: &Path) -> Result<bool, Failure> {
     const NAMES: [&str; 11] = ["csv", "rtl", "rta", "rtx", "rts", "txt", "cfg", "comp", "g", "gcode", "log"];
     if !path.exists() {
-        // It says that there is none, and which lies beside.
+        // The error names a file in the folder whose name is similar.
         load::bytes(path)?;
     }
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();

@@ -111,8 +111,8 @@ impl<'s, 'c> Input<'s, 'c> {
         Self { chunks, answering, given: 0, last: 0 }
     }
 
-    /// Whether the row that ended behind so many bytes ended all that was given, without the end of its line, or with one that belongs to
-    /// its last cell: a quote stands open.
+    /// Whether the input breaks off in a row that ends after this number of bytes: it is the last one, and either its line has no end or a
+    /// quote in its last cell is still open.
     pub(super) fn broke_off(&self, row: &ByteRecord, bytes: u64) -> bool {
         bytes == self.given && (self.last != b'\n' || row.as_slice().ends_with(b"\n"))
     }

@@ -90,7 +90,7 @@ impl<'s, 'c> Reader<'s, 'c> {
         Ok((None, None))
     }
 
-    /// The units of a row that is the row of units of a table with so many columns.
+    /// The units, if the row is the row of units of a table with this number of columns.
     pub(super) fn units_of(&self, row: &ByteRecord, columns: usize) -> Option<Vec<String>> {
         if !is_marked(row) {
             return None;

@@ -160,7 +160,7 @@ fn of_parts(above: &[(usize, &str)], rows: &[(usize, &str)], separator: Separato
     Ok(Columns { names, line, spaced, decimal_comma, units: units.unwrap_or_default(), dates })
 }
 
-/// What separates the cells of a row of numbers; nothing of any other line.
+/// What separates the cells of a row of numbers. `None` if the line is another one.
 fn separator_of(line: &str, tried: &[Separator]) -> Option<Separator> {
     tried.iter().copied().find(|separator| separator.is_of_numbers(line))
 }
@@ -181,7 +181,7 @@ impl Separator {
         ranges.into_iter().filter_map(|(start, end)| unquoted(line.get(start..end)?)).collect()
     }
 
-    /// The units in the row of units of a table with so many columns; nothing of any other line.
+    /// The units, if the line is the row of units of a table with this number of columns.
     fn units(self, line: &str, columns: usize) -> Option<Vec<String>> {
         let mut ranges = Vec::new();
         if !cells::split_units(line.as_bytes(), self.byte(), columns, &mut ranges) {

@@ -56,7 +56,7 @@ impl<'t> Piece<'t> {
         ranges.into_iter().filter_map(|range| self.part(range)).map(Self::unquoted).collect()
     }
 
-    /// The cells of a row of units for so many columns, the mark before them too; nothing of any other line.
+    /// The mark and the units of a row of units for this number of columns. `None` if the line is another one.
     pub(super) fn units(self, separator: u8, columns: usize) -> Option<Vec<Self>> {
         let mut ranges = Vec::new();
         let found = cells::split_units(self.text.as_bytes(), separator, columns, &mut ranges);

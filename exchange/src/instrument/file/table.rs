@@ -92,7 +92,7 @@ fn is_comment(line: Piece<'_>) -> bool {
 }
 
 impl Layout {
-    /// The cells of a row of units, the mark before them too; nothing of any other line.
+    /// The mark and the units of a row of units. `None` if the line is another one.
     fn units<'t>(&self, line: Piece<'t>) -> Option<Vec<Piece<'t>>> {
         line.units(self.separator, self.width)
     }

@@ -97,6 +97,7 @@ fn take_event(study: &Study<'_>, found: &mut Found, (price, lacks): (&FormPrice,
     let taken = happened.into_iter().any(|event| take_happened(study, found, event, price));
     if taken {
         search_beside_events(study, found, price);
+        date_again(study, found);
     }
     taken
 }
@@ -107,6 +108,21 @@ fn search_beside_events(study: &Study<'_>, found: &mut Found, price: &FormPrice)
     let other = engine::beside_events(study, found);
     if is_better(study, found, (&other.fit, &other.appraisal), price) {
         *found = other;
+    }
+}
+
+/// Looks for the moments of the events of a model anew, beside all else that is in it now. What stood in for an event when it was first
+/// dated, such as a drift, may have drawn it away.
+fn date_again(study: &Study<'_>, found: &mut Found) {
+    let model = events::dated_again(study, found);
+    let white = found.appraisal.weights.as_white();
+    let conditions = found.conditions();
+    let fit = conditions.under(&white).refine(study, model);
+    let (fit, appraisal) = engine::upheld(study, fit, &conditions);
+    let whole = fit.model.effects.len() == found.fit.model.effects.len();
+    if whole && deviance(study, &appraisal, true) < deviance(study, &found.appraisal, true) {
+        found.fit = fit;
+        found.appraisal = appraisal;
     }
 }
 

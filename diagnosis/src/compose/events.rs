@@ -63,6 +63,32 @@ pub(super) fn events(study: &Study<'_>, found: &Found) -> Vec<Event> {
     best.into_iter().map(|time| chosen(study, found, time, &places)).filter(|event| event.steps > 0).collect()
 }
 
+/// The model with each of its events at the moment that explains most beside all else.
+pub(super) fn dated_again(study: &Study<'_>, found: &Found) -> Model {
+    let mut model = found.fit.model.clone();
+    let mut moments: Vec<f64> = model.chosen().iter().filter_map(|fitted| moment(&fitted.effect)).collect();
+    moments.dedup();
+    for first in moments {
+        let is_of_it = |effect: &Effect| moment(effect) == Some(first);
+        let (steps, beside): (Vec<Effect>, Vec<Effect>) =
+            effects(&found.fit.model.effects).into_iter().partition(is_of_it);
+        let places: Vec<Place> = steps.iter().map(|step| step.place).collect();
+        let time = dated(study, found, &beside, &places, first);
+        for fitted in model.chosen_mut().iter_mut().filter(|fitted| is_of_it(&fitted.effect)) {
+            fitted.effect.shape = Shape::Step { time };
+        }
+    }
+    model
+}
+
+/// When a step happened.
+fn moment(effect: &Effect) -> Option<f64> {
+    match effect.shape {
+        Shape::Step { time } => Some(time),
+        _ => None,
+    }
+}
+
 fn effects(fitted: &[Fitted]) -> Vec<Effect> {
     fitted.iter().map(|fitted| fitted.effect.clone()).collect()
 }

@@ -38,7 +38,7 @@ use crate::unsteady;
 use crate::weights::Outliers;
 use crate::zeros;
 use crate::{Inputs, Keep, Progress};
-use decidable::crossed;
+use decidable::{bent, crossed};
 use findings::report;
 use searched::{Opening, Searched};
 use summary::summaries;
@@ -132,6 +132,7 @@ fn concluded(
         numbers = claims(&study, &mut found, &units, &mut diagnosis);
     }
     diagnosis.undecided.extend(crossed(&study, &found.fit.model));
+    diagnosis.undecided.extend(bent(&study, &found.fit.model));
     diagnosis.undecided.extend(diagnosis.model.iter().map(decidable::since_when));
     let moving =
         if feature.is_none() { unsteady::moving(&study, &found.appraisal, units.outside) } else { None };
@@ -269,16 +270,16 @@ struct Bare {
 }
 
 /// The settings of the instruments alone, fitted, where known plays are crossed as far as they go on the axes on which a model crosses
-/// plays: beside that, what changes is what was found, and not how a play acts that was known.
+/// plays, and commands bend where it bends them: beside that, what changes is what was found, and not how an axis moves.
 fn bare_beside(study: &Study<'_>, bare: &Bare, found: &Model) -> Bare {
-    let mut known = bare.model.clone().crossed_as(found);
+    let mut known = bare.model.clone().moving_as(found);
     crossing::follow(study, &mut known);
     bare_model(study, &known)
 }
 
-/// The settings of the instruments alone, fitted, with plays that are crossed as in another model.
-fn bare_model(study: &Study<'_>, crossed: &Model) -> Bare {
-    let model = Model::of_settings(candidates::always(study)).crossed_as(crossed);
+/// The settings of the instruments alone, fitted, with axes that move as in another model.
+fn bare_model(study: &Study<'_>, moving: &Model) -> Bare {
+    let model = Model::of_settings(candidates::always(study)).moving_as(moving);
     let weights = Appraisal::new(study, &model).weights;
     let mut model = fit::refine(study, model, &weights.as_white(), &[]).model;
     zeros::free_held_out(study, &mut model);

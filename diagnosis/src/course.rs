@@ -75,6 +75,7 @@ impl Ways {
             position_loop,
             zero: zero(axis, position_loop),
             crossing: model.crossing(axis),
+            bends: model.bends(),
         };
         let driven = loops.into_iter().enumerate().map(driven).collect();
         Self { driven, clock: model.setting(scene, Setting::Clock) }
@@ -224,7 +225,7 @@ pub(crate) fn inputs<'s>(study: &Study<'_>, view: &Rows<'s>) -> (Vec<&'s [f64]>,
 }
 
 /// The position loop of each axis: lags and inertias of the calibration and of the model add.
-fn loops(study: &Study<'_>, model: &Model) -> Vec<PositionLoop> {
+pub(crate) fn loops(study: &Study<'_>, model: &Model) -> Vec<PositionLoop> {
     let mut loops = vec![PositionLoop::default(); study.equations.axes.len()];
     for fitted in study.known.iter().chain(&model.effects) {
         if let (Shape::Lag { axis, inertia }, [lag]) = (&fitted.effect.shape, fitted.coefficients.as_slice())

@@ -92,8 +92,7 @@ pub(crate) fn find(
 pub(crate) fn beside_events(study: &Study<'_>, found: &Found) -> Found {
     let model = &found.fit.model;
     let settings = model.settings().len();
-    let events = model.chosen().iter().filter(|fitted| fitted.effect.shape.is_event());
-    let start = Model::of(model.settings().iter().chain(events).cloned());
+    let start = model.keeping(|fitted| fitted.effect.shape.is_event());
     let held = start.effects.len();
     let mut search = Search::beside(study, found, start.with_settings(held));
     let progress: &mut dyn FnMut(f64) = &mut |_| ();
@@ -235,7 +234,7 @@ fn better(
     revision: &Revision<'_>,
 ) -> (Fit, Appraisal) {
     let conditions = &revision.conditions;
-    let model = model.crossed_as(&stands.0.model);
+    let model = model.moving_as(&stands.0.model);
     let weights = Appraisal::new(study, &model).weights;
     let other = conditions.under(&weights).refine(study, model);
     let kept = upheld(study, other, conditions);

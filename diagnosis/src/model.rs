@@ -1,4 +1,4 @@
-//! Models: which effects act, where, and how strongly, and how the plays of axes act after a reversal.
+//! Models: which effects act, where, and how strongly; how the plays of axes act after a reversal, and how commands go between rows.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -38,7 +38,7 @@ impl Fitted {
     }
 }
 
-/// All that is held to act beside the calibration: effects, and the plays that axes cross.
+/// All that is held to act beside the calibration: effects, the plays that axes cross, and commands that bend between rows.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct Model {
     /// The settings of instruments that are fitted whatever else is, then the effects that were chosen.
@@ -48,6 +48,8 @@ pub(crate) struct Model {
     /// How the plays of an axis act after a reversal; those of all other axes act at once. Whatever of the axis jumps, a reversal of
     /// its yaw too, goes with it.
     crossings: BTreeMap<usize, Crossing>,
+    /// Whether commands bend between rows: a controller has more cycles than the recording has rows. Otherwise they go straight.
+    bends: bool,
 }
 
 impl Model {
@@ -68,9 +70,9 @@ impl Model {
         Self { settings: settings.min(self.effects.len()), ..self }
     }
 
-    /// Other effects, of which as many are settings, with plays that are crossed as in this model.
+    /// Other effects, of which as many are settings, and axes that move as in this model.
     pub(crate) fn with_effects(&self, effects: impl IntoIterator<Item = Fitted>) -> Self {
-        Self::of(effects).with_settings(self.settings).crossed_as(self).without_bare_harmonics()
+        Self::of(effects).with_settings(self.settings).moving_as(self).without_bare_harmonics()
     }
 
     /// The same with one effect more.
@@ -134,9 +136,19 @@ impl Model {
         self.settings..self.effects.len()
     }
 
-    /// The same with plays that are crossed as in another model.
-    pub(crate) fn crossed_as(self, other: &Self) -> Self {
-        Self { crossings: other.crossings.clone(), ..self }
+    /// The same with plays that are crossed, and commands that go between rows, as in another model.
+    pub(crate) fn moving_as(self, other: &Self) -> Self {
+        Self { crossings: other.crossings.clone(), bends: other.bends, ..self }
+    }
+
+    /// The same with commands that bend between rows.
+    pub(crate) fn bending(self) -> Self {
+        Self { bends: true, ..self }
+    }
+
+    /// Whether commands bend between rows.
+    pub(crate) fn bends(&self) -> bool {
+        self.bends
     }
 
     /// The same with plays that act at once.

@@ -1,7 +1,7 @@
 //! Position loops: how an axis follows what it is told.
 //!
-//! In: a command that is straight between rows. Out: position and velocity at the rows, by the exact solution of the loop's
-//! equation, so that neither rows nor loop have to be slow. What pushes inside a loop, such as friction on the drive, is
+//! In: a command that is straight between rows, or a parabola there. Out: position and velocity at the rows, by the exact solution of the
+//! loop's equation, so that neither rows nor loop have to be slow. What pushes inside a loop, such as friction on the drive, is
 //! answered as a command of that size would be: q'' = w^2 (q_cmd + e - q) - (w^2/K) q'.
 
 /// The loop of an axis: `q' = K (q_cmd - q)`, or of second order with the natural frequency w.
@@ -19,6 +19,16 @@ pub(crate) struct PositionLoop {
 pub(crate) struct Stand {
     pub(crate) position: f64,
     pub(crate) velocity: f64,
+}
+
+/// A command between two instants: a parabola, which is straight without acceleration.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Piece {
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    /// How long it takes, s.
+    pub(crate) time: f64,
+    pub(crate) acceleration: f64,
 }
 
 /// What a loop remembers from row to row.
@@ -48,31 +58,41 @@ impl PositionLoop {
         self.time_constant < 0.0
     }
 
-    /// Where the axis stands in the next row. In a row without a command nothing is known, and the loop goes on from the
-    /// row before.
-    pub(crate) fn follow(self, follower: &mut Follower, time: f64, command: f64) -> Stand {
+    /// Where the axis stands in the next row, to which its command has gone with this acceleration. In a row without a command nothing is
+    /// known, and the loop goes on from the row before.
+    pub(crate) fn follow(self, follower: &mut Follower, time: f64, command: f64, acceleration: f64) -> Stand {
         if !command.is_finite() {
             return Stand { position: f64::NAN, velocity: f64::NAN };
         }
         let stand = match follower.before {
             None => follower.start.unwrap_or(Stand { position: command, velocity: 0.0 }),
-            Some((before, from, stand)) => self.step(stand, from, command, time - before),
+            Some((before, from, stand)) => {
+                self.step(stand, Piece { from, to: command, time: time - before, acceleration })
+            }
         };
         follower.before = Some((time, command, stand));
         stand
     }
 
-    /// Where it stands after a time in which its command goes straight `from` one value `to` another.
-    pub(crate) fn step(self, stand: Stand, from: f64, to: f64, time: f64) -> Stand {
+    /// Where it stands at the end of a piece of its command.
+    pub(crate) fn step(self, stand: Stand, Piece { from, to, time, acceleration }: Piece) -> Stand {
         if !self.acts() || time <= 0.0 {
             return if self.acts() { stand } else { Stand { position: to, velocity: 0.0 } };
         }
-        let slope = (to - from) / time;
-        let behind = slope * self.time_constant;
+        let (slope, bend) = ((to - from) / time, 0.5 * acceleration * time);
+        let first = self.steady(from, slope - bend, acceleration);
+        let last = self.steady(to, slope + bend, acceleration);
         // The distance from the steady motion fades by itself.
-        let (distance, speed) = (stand.position - from + behind, stand.velocity - slope);
+        let (distance, speed) = (stand.position - first.position, stand.velocity - first.velocity);
         let (distance, speed) = self.fade(distance, speed, time);
-        Stand { position: to - behind + distance, velocity: slope + speed }
+        Stand { position: last.position + distance, velocity: last.velocity + speed }
+    }
+
+    /// The solution that does not fade where the command is a parabola: `q = c - time_constant c' + (time_constant^2 - inertia) c''`.
+    fn steady(self, command: f64, velocity: f64, acceleration: f64) -> Stand {
+        let behind = self.time_constant * velocity;
+        let bent = (self.time_constant * self.time_constant - self.inertia) * acceleration;
+        Stand { position: command - behind + bent, velocity: velocity - self.time_constant * acceleration }
     }
 
     /// The solution of `inertia y'' + time_constant y' + y = 0` after a time.

@@ -83,6 +83,8 @@ pub(crate) struct Driven {
     /// What the drive's own feedback shows beyond where the axis is: its zero.
     pub(crate) zero: f64,
     pub(crate) crossing: Crossing,
+    /// Whether its command bends between rows.
+    pub(crate) bends: bool,
 }
 
 /// The states of all rows of one recording.
@@ -328,10 +330,9 @@ fn axis_states(
 ) -> AxisStates {
     let way = Way::new(&given.time, programmed, &given.legs);
     let mut states = if driven.position_loop.acts() {
-        let starts: Vec<Option<Stand>> = way
-            .stretches()
-            .map(|rows| beginning(&given.time, axis, programmed, &way, driven, rows))
-            .collect();
+        let way = if driven.bends { way.bending() } else { way };
+        let starts: Vec<Option<Stand>> =
+            way.stretches().map(|rows| beginning(&given.time, axis, &way, driven, rows)).collect();
         behind_loop(given, &way, driven, &starts, clock, resolution)
     } else if driven.position_loop.leads() {
         ahead(given, programmed, driven.position_loop, clock, resolution)

@@ -348,7 +348,7 @@ impl Shape {
                 if rows.begins(row) {
                     memory.follower = Follower::default();
                 }
-                *value = position_loop.follow(&mut memory.follower, *time, *value).position;
+                *value = position_loop.follow(&mut memory.follower, *time, *value, 0.0).position;
             }
         }
     }

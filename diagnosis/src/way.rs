@@ -2,13 +2,15 @@
 //!
 //! In: times and programmed positions of the rows of a recording, its legs, and the time constant of the position loop. Out:
 //! positions at the rows, or a clock's offset before them. Without a loop the way is a smooth curve through the rows, straight at
-//! corners; behind a loop it is the loop's own solution for a command that is straight between rows. No way leads from one leg
-//! to the next: before the first row of a leg and behind its last the axis rests.
+//! corners; behind a loop it is the loop's own solution for a command that is straight between rows, or bends there. No way leads
+//! from one leg to the next: before the first row of a leg and behind its last the axis rests.
+
+mod bends;
 
 use std::ops::Range;
 
 use crate::legs::stretches;
-use crate::position_loop::{Follower, PositionLoop, Stand};
+use crate::position_loop::{Follower, Piece, PositionLoop, Stand};
 
 /// The way of one axis.
 pub(crate) struct Way<'w> {
@@ -16,6 +18,8 @@ pub(crate) struct Way<'w> {
     command: &'w [f64],
     legs: &'w [usize],
     fastest: f64,
+    /// The acceleration of the command in the step that begins at each row; empty where it goes straight.
+    accelerations: Vec<f64>,
 }
 
 /// The way as a smooth curve through the rows, for an axis without a loop.
@@ -33,11 +37,27 @@ pub(crate) const CORNER: f64 = 0.3;
 impl<'w> Way<'w> {
     /// The way of a programmed axis.
     pub(crate) fn new(time: &'w [f64], command: &'w [f64], legs: &'w [usize]) -> Self {
-        let mut way = Self { time, command, legs, fastest: 0.0 };
+        let mut way = Self { time, command, legs, fastest: 0.0, accelerations: Vec::new() };
         let driven = (1..time.len()).filter(|row| legs[*row] == legs[*row - 1]);
         let speeds = driven.map(|row| way.chord(row - 1).1.abs());
         way.fastest = speeds.filter(|speed| speed.is_finite()).fold(0.0, f64::max);
         way
+    }
+
+    /// The same way where the command bends between rows, for a loop that follows it.
+    pub(crate) fn bending(mut self) -> Self {
+        self.accelerations = bends::accelerations(self.time, self.command, self.legs);
+        self
+    }
+
+    fn acceleration(&self, from: usize) -> f64 {
+        self.accelerations.get(from).copied().unwrap_or(0.0)
+    }
+
+    /// Where the axis stands in a row behind a loop that has followed the rows before.
+    pub(crate) fn follow(&self, position_loop: PositionLoop, follower: &mut Follower, row: usize) -> Stand {
+        let acceleration = row.checked_sub(1).map_or(0.0, |from| self.acceleration(from));
+        position_loop.follow(follower, self.time[row], self.command[row], acceleration)
     }
 
     /// The curve through the rows; `slopes` are the derivatives of the way there.
@@ -82,8 +102,7 @@ impl<'w> Way<'w> {
         let mut followed: Vec<Stand> = Vec::with_capacity(self.time.len());
         for (rows, start) in self.stretches().zip(starts) {
             let mut follower = Follower::from(*start);
-            let told = self.time[rows.clone()].iter().zip(&self.command[rows]);
-            followed.extend(told.map(|(time, command)| position_loop.follow(&mut follower, *time, *command)));
+            followed.extend(rows.map(|row| self.follow(position_loop, &mut follower, row)));
         }
         if clock == 0.0 {
             return followed;
@@ -93,7 +112,11 @@ impl<'w> Way<'w> {
                 return followed[from];
             }
             let (step, _) = self.chord(from);
-            position_loop.step(followed[from], self.command[from], self.straight(from, share), share * step)
+            let acceleration = self.acceleration(from);
+            let beside = 0.5 * acceleration * step * step * share * (share - 1.0);
+            let to = self.straight(from, share) + beside;
+            let piece = Piece { from: self.command[from], to, time: share * step, acceleration };
+            position_loop.step(followed[from], piece)
         })
     }
 

@@ -13,7 +13,7 @@ use crate::model::Model;
 use crate::parameters::{angle_unit, axis_unit};
 use crate::recording::{Turned, taken_as_free};
 use crate::repeats::{self, Scatter};
-use crate::report::figure::size;
+use crate::report::figure::{significant, size};
 use crate::scene::Scene;
 use crate::states::Crossing;
 use crate::study::Study;
@@ -172,6 +172,20 @@ pub(super) fn crossed(study: &Study<'_>, model: &Model) -> Vec<String> {
         )
     })
     .collect()
+}
+
+/// What commands that bend between rows leave open: the parabola between two rows lies a twelfth of the acceleration times their distance
+/// squared away from its chord.
+pub(super) fn bent(study: &Study<'_>, model: &Model) -> Option<String> {
+    let step = study.scenes.iter().map(|scene| scene.given.step).fold(0.0, f64::max);
+    model.bends().then(|| {
+        format!(
+            "These recordings cannot show an acceleration with a gain of {} 1/s^2 or more, because their commands bend between rows, \
+             which are {} ms apart. More rows a second would show it.",
+            significant(12.0 / (step * step), 3),
+            significant(1e3 * step, 3)
+        )
+    })
 }
 
 /// What a fault of a file leaves open.

@@ -141,7 +141,7 @@ fn nothing_is_tried_where_nothing_holds_an_axis() {
     assert!(distance(&ways(&chosen), &[LOST[0], 0.0]) < 1e-12);
     assert_eq!(chosen.effects.len(), 1);
     assert_eq!(crossing_only(&chosen), [0]);
-    assert!(crossing_only(&spiked.crossed_as(&chosen)).is_empty());
+    assert!(crossing_only(&spiked.moving_as(&chosen)).is_empty());
 }
 
 #[test]

@@ -58,7 +58,7 @@ fn ways_are_crossed_beside_other_effects_too_until_they_are_given_up() {
     let at_once = model.clone().uncrossed();
     assert!(model.crosses() && !at_once.crosses());
     assert_eq!((at_once.settings(), at_once.chosen()), (model.settings(), model.chosen()));
-    assert_eq!(at_once.clone().crossed_as(&model), model);
+    assert_eq!(at_once.clone().moving_as(&model), model);
     // A way of nothing, or of less, is none.
     for way in [0.0, -0.001] {
         let mut given_up = model.clone();

@@ -31,7 +31,7 @@ fn integrated(one: PositionLoop, time: &[f64], commands: &[f64], start: Stand) -
 
 fn followed(one: PositionLoop, time: &[f64], commands: &[f64], start: Option<Stand>) -> Vec<Stand> {
     let mut follower = Follower::from(start);
-    time.iter().zip(commands).map(|(time, command)| one.follow(&mut follower, *time, *command)).collect()
+    time.iter().zip(commands).map(|(time, command)| one.follow(&mut follower, *time, *command, 0.0)).collect()
 }
 
 #[test]
@@ -57,6 +57,22 @@ fn every_loop_solves_its_own_equation() {
                 );
             }
         }
+    }
+}
+
+#[test]
+fn a_parabola_is_followed_as_many_short_chords_of_it_are() {
+    let command = |t: f64| 2.0 + 3.0 * t - 40.0 * t * t;
+    let start = Stand { position: 1.9, velocity: -4.0 };
+    let time: Vec<f64> = (0..=4000).map(|row| 0.05 * f64::from(row) / 4000.0).collect();
+    let commands: Vec<f64> = time.iter().map(|t| command(*t)).collect();
+    for inertia in [0.0, 4e-4, 1e-4, 2.5e-5] {
+        let one = PositionLoop { time_constant: 0.02, inertia };
+        let expected = *followed(one, &time, &commands, Some(start)).last().unwrap();
+        let piece = Piece { from: command(0.0), to: command(0.05), time: 0.05, acceleration: -80.0 };
+        let found = one.step(start, piece);
+        assert!((found.position - expected.position).abs() < 1e-8, "{inertia}: {found:?} {expected:?}");
+        assert!((found.velocity - expected.velocity).abs() < 1e-2, "{inertia}: {found:?} {expected:?}");
     }
 }
 

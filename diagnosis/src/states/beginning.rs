@@ -13,6 +13,8 @@ use crate::way::Way;
 
 /// The rows of a leg: their times, what was programmed and what the feedback read.
 struct Leg<'l> {
+    way: &'l Way<'l>,
+    first: usize,
     time: &'l [f64],
     programmed: &'l [f64],
     actual: &'l [f64],
@@ -23,13 +25,13 @@ struct Leg<'l> {
 pub(super) fn beginning(
     time: &[f64],
     axis: &AxisChannels,
-    programmed: &[f64],
     way: &Way<'_>,
     driven: Driven,
     rows: Range<usize>,
 ) -> Option<Stand> {
     let actual = axis.actual.as_ref()?.get(rows.clone())?;
-    let leg = Leg { time: &time[rows.clone()], programmed: &programmed[rows], actual, driven };
+    let programmed = &way.command()[rows.clone()];
+    let leg = Leg { way, first: rows.start, time: &time[rows], programmed, actual, driven };
     let stand = leg.first_reading()?;
     let lag = driven.position_loop.time_constant * way.fastest();
     let is_away = (stand.position - leg.programmed[0]).abs() > AWAY * lag;
@@ -65,7 +67,7 @@ impl Leg<'_> {
     fn missed(&self, start: Option<Stand>) -> f64 {
         let mut follower = Follower::from(start);
         let left = (0..self.rows_within(SETTLED)).map(|row| {
-            let stand = self.driven.position_loop.follow(&mut follower, self.time[row], self.programmed[row]);
+            let stand = self.way.follow(self.driven.position_loop, &mut follower, self.first + row);
             self.actual[row] - self.driven.zero - stand.position
         });
         left.skip(1).filter(|left| left.is_finite()).map(|left| left * left).sum()

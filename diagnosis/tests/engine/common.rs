@@ -94,3 +94,27 @@ pub(crate) fn off(estimate: &Estimate, truth: f64) -> f64 {
 
 /// 3.3 standard deviations: what is this far off is wrong, whatever the noise.
 pub(crate) const FAR: f64 = 1.7;
+
+/// All columns of a recording but its runs.
+pub(crate) fn columns(recording: &mut Recording) -> Vec<&mut Vec<f64>> {
+    let axes = recording.axes.iter_mut();
+    let axes = axes.flat_map(|axis| [&mut axis.command, &mut axis.actual, &mut axis.measured]).flatten();
+    let named = recording.temperatures.iter_mut().chain(&mut recording.loads);
+    let read = recording.measured.iter_mut().chain([&mut recording.deviation]).flatten();
+    [&mut recording.time]
+        .into_iter()
+        .chain(axes)
+        .chain(read)
+        .chain(named.map(|one| &mut one.values))
+        .collect()
+}
+
+/// A recording of these rows, in this order; their times are not changed.
+pub(crate) fn of_rows(recording: &Recording, rows: &[usize]) -> Recording {
+    let mut changed = recording.clone();
+    for column in columns(&mut changed) {
+        *column = rows.iter().map(|row| column[*row]).collect();
+    }
+    changed.run = rows.iter().map(|row| recording.run[*row]).collect();
+    changed
+}

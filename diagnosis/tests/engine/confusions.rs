@@ -1,6 +1,6 @@
 //! What one recording cannot tell apart is told together; what two can, is not.
 
-use abbe_diagnosis::diagnosis::Verdict;
+use abbe_diagnosis::diagnosis::{Diagnosis, Verdict};
 use model_dsl::calibration::Calibration;
 use simulation::{Instrument, Path};
 
@@ -347,4 +347,49 @@ fn a_spike_beside_a_play_that_acts_at_once_is_still_a_spike() {
     assert!(!crosses(&diagnosis, "X"), "{:?}", diagnosis.undecided);
     let height = &numbers(&diagnosis.findings[0], "height")[0];
     assert!(off(height, 0.006) < FAR, "{height:?}");
+}
+
+/// A slide that goes to and fro behind its loop, 1000 cycles a second, recorded in each so many of them.
+fn recorded_each(cycles: usize, more: &str) -> Diagnosis {
+    recorded_each_of(cycles, &format!("{{EXX: [{{lag: {{gain: 40 1/s}}}}{more}]}}"), "{}")
+}
+
+/// The same for a slide of which something is known.
+fn recorded_each_of(cycles: usize, truth: &str, known: &str) -> Diagnosis {
+    let bench = Bench::of("FX");
+    let stroke =
+        Path { acceleration: Some(500.0), runs: 4, pause: 0.5, ..path(line(0, 0.0, 120.0), 100.0, 1000.0) };
+    let whole = bench.record(&bench.calibration(truth), &noisy(stroke, position("x"), 0.0005, 3));
+    // From the first row of each run on, in which the slide rests.
+    let rows: Vec<usize> = whole.runs().into_iter().flat_map(|(rows, _)| rows.step_by(cycles)).collect();
+    diagnosed(&bench, &bench.calibration(known), &[&of_rows(&whole, &rows)])
+}
+
+/// The step of such rows, squared, over 12, is 1/30000 s^2 at 50 Hz: what an axis is off by per acceleration, if its command is taken as
+/// straight between rows.
+#[test]
+fn a_command_that_bends_between_rows_is_no_acceleration() {
+    for cycles in [20, 10, 4] {
+        let diagnosis = recorded_each(cycles, "");
+        assert_eq!(found(&diagnosis), ["EXX lag"], "{cycles}");
+        let gain = &numbers(&diagnosis.findings[0], "gain")[0];
+        assert!((gain.value - 40.0).abs() < 0.02, "{cycles}: {gain:?}");
+        assert_eq!(diagnosis.verdict, Verdict::LeftOutPhysics, "{cycles}");
+        let open = diagnosis.undecided.iter().any(|sentence| sentence.contains("commands bend between rows"));
+        assert!(open, "{cycles}: {:?}", diagnosis.undecided);
+    }
+}
+
+#[test]
+fn a_loop_that_is_known_leaves_nothing_where_commands_bend() {
+    let known = "{EXX: [{lag: {gain: 40 1/s}}]}";
+    let diagnosis = recorded_each_of(20, known, known);
+    assert_eq!(diagnosis.findings.len(), 0, "{:?}", found(&diagnosis));
+    assert_eq!(diagnosis.verdict, Verdict::Adequate);
+}
+
+#[test]
+fn an_acceleration_stays_one_beside_a_command_that_bends_little() {
+    let diagnosis = recorded_each(10, ", {acceleration: {gain: 20000 1/s^2}}");
+    assert_eq!(found(&diagnosis), ["EXX lag", "EXX acceleration"]);
 }

@@ -189,30 +189,6 @@ fn fitted(value: &ParameterValue) -> &[Estimate] {
     }
 }
 
-/// All columns of a recording but its runs.
-fn columns(recording: &mut Recording) -> Vec<&mut Vec<f64>> {
-    let axes = recording.axes.iter_mut();
-    let axes = axes.flat_map(|axis| [&mut axis.command, &mut axis.actual, &mut axis.measured]).flatten();
-    let named = recording.temperatures.iter_mut().chain(&mut recording.loads);
-    let read = recording.measured.iter_mut().chain([&mut recording.deviation]).flatten();
-    [&mut recording.time]
-        .into_iter()
-        .chain(axes)
-        .chain(read)
-        .chain(named.map(|one| &mut one.values))
-        .collect()
-}
-
-/// A recording of these rows, in this order; their times are not changed.
-fn of_rows(recording: &Recording, rows: &[usize]) -> Recording {
-    let mut changed = recording.clone();
-    for column in columns(&mut changed) {
-        *column = rows.iter().map(|row| column[*row]).collect();
-    }
-    changed.run = rows.iter().map(|row| recording.run[*row]).collect();
-    changed
-}
-
 #[test]
 fn every_second_row_shows_the_same() {
     let half = |_, case: &Case| {

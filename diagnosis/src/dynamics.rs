@@ -108,7 +108,8 @@ fn is_between_rows(study: &Study<'_>, off: f64) -> bool {
     study.scenes.iter().any(|scene| (12.0 * off / scene.given.step.powi(2) - 1.0).abs() < LIKE_ROWS)
 }
 
-/// The share by which it may differ. In simulated recordings it was up to 4 % off beside what the first rounds chose.
+/// The share by which it may differ. In simulated recordings it was up to 4 % off beside what the first rounds chose. Without a limit, a
+/// dead time before a loop was lost: it makes an acceleration of another size.
 const LIKE_ROWS: f64 = 0.2;
 
 /// Other models of how an axis is driven: with each of these loops, with and without what imitates its ringing, with friction

@@ -16,7 +16,6 @@ struct Leg<'l> {
     way: &'l Way<'l>,
     first: usize,
     time: &'l [f64],
-    programmed: &'l [f64],
     actual: &'l [f64],
     driven: Driven,
 }
@@ -30,11 +29,10 @@ pub(super) fn beginning(
     rows: Range<usize>,
 ) -> Option<Stand> {
     let actual = axis.actual.as_ref()?.get(rows.clone())?;
-    let programmed = &way.command()[rows.clone()];
-    let leg = Leg { way, first: rows.start, time: &time[rows], programmed, actual, driven };
+    let leg = Leg { way, first: rows.start, time: &time[rows], actual, driven };
     let stand = leg.first_reading()?;
     let lag = driven.position_loop.time_constant * way.fastest();
-    let is_away = (stand.position - leg.programmed[0]).abs() > AWAY * lag;
+    let is_away = (stand.position - way.command()[leg.first]).abs() > AWAY * lag;
     (is_away && leg.shows_way_from(stand)).then_some(stand)
 }
 

@@ -4,7 +4,7 @@
 //! follows there. It is that between the velocities at both ends, each taken where the path is smooth: a planner changes its acceleration
 //! from one value to another, and rows on the other side of such a change say nothing of the velocity.
 
-/// How many rows give the velocity at one of them: a cubic goes through them.
+/// How many rows give the velocity at one of them: the fewest whose differences show that the acceleration changes among them.
 const ROWS: usize = 4;
 
 /// The acceleration in the step that begins at each row; 0 where too few rows of a leg tell.

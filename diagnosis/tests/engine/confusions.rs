@@ -349,7 +349,8 @@ fn a_spike_beside_a_play_that_acts_at_once_is_still_a_spike() {
     assert!(off(height, 0.006) < FAR, "{height:?}");
 }
 
-/// A slide that goes to and fro behind its loop, 1000 cycles a second, recorded in each so many of them.
+/// The diagnosis of a slide that goes to and fro behind its position loop. The controller has 1000 cycles a second, and one row is recorded
+/// every `cycles` of them.
 fn recorded_each(cycles: usize, more: &str) -> Diagnosis {
     recorded_each_of(cycles, &format!("{{EXX: [{{lag: {{gain: 40 1/s}}}}{more}]}}"), "{}")
 }

@@ -9,6 +9,7 @@ use crate::conditions::Conditions;
 use crate::design::{Design, Regressor};
 use crate::fit::{self, Fit};
 use crate::model::{Effect, Fitted, Model};
+use crate::parallel;
 use crate::ranges::{Resolution, goes_round, periods};
 use crate::study::Study;
 use crate::sweep::{Swept, misfit};
@@ -161,8 +162,11 @@ fn harmonics(study: &Study<'_>, wave: &Effect, travels: &[Travel]) -> Vec<Effect
 pub(crate) fn try_harmonics(study: &Study<'_>, now: Fit, conditions: &Conditions<'_>) -> Fit {
     let waves =
         now.model.chosen().iter().map(|fitted| &fitted.effect).filter(|effect| is_fundamental(effect));
-    let mut trials: Vec<Fit> =
-        waves.filter_map(|wave| cheaper_with_harmonics(study, &now, wave, conditions)).collect();
+    let waves: Vec<&Effect> = waves.collect();
+    let cheaper = parallel::counted(waves.len(), study.rows() * waves.len(), |number| {
+        cheaper_with_harmonics(study, &now, waves[number], conditions)
+    });
+    let mut trials: Vec<Fit> = cheaper.into_iter().flatten().collect();
     let groups = sharing(&now.model.effects).into_iter().filter(|group| group.len() > 1);
     trials.extend(groups.map(|group| conditions.refine(study, set_apart(&now.model, &group))));
     conditions.cheapest(study, now, trials)

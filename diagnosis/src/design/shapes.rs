@@ -33,17 +33,17 @@ enum Use {
         place: usize,
     },
     Slope {
-        parts: Vec<Difference>,
+        parts: Vec<Part>,
         place: usize,
     },
 }
 
-/// How a term with its coefficients changes with its nonlinear parameter: the difference between two values of it.
-struct Difference {
-    low: usize,
-    high: usize,
-    step: f64,
-    coefficients: Vec<f64>,
+/// How a term with its coefficients changes with its nonlinear parameter.
+enum Part {
+    /// A wave changes by its phase, which its own two columns tell.
+    Wave { number: usize, sine: f64, cosine: f64 },
+    /// Any other term: the difference between two values of the parameter.
+    Difference { low: usize, high: usize, step: f64, coefficients: Vec<f64> },
 }
 
 /// The relative step by which slopes are taken.
@@ -61,9 +61,9 @@ impl Shapes {
             let usage = match &regressor.slope {
                 Some(_) if let Shape::Lag { axis, .. } = *shape => Use::Inertia { axis, place },
                 Some(terms) => {
-                    let parts = terms.iter().filter_map(|(shape, coefficients)| {
-                        shapes.difference(shape, side, coefficients.clone())
-                    });
+                    let parts = terms
+                        .iter()
+                        .filter_map(|(shape, coefficients)| shapes.part(shape, side, coefficients));
                     Use::Slope { parts: parts.collect(), place }
                 }
                 None => Use::Shape(shapes.number(shape.clone(), side)),
@@ -76,12 +76,19 @@ impl Shapes {
         shapes
     }
 
-    fn difference(&mut self, shape: &Shape, side: Side, coefficients: Vec<f64>) -> Option<Difference> {
+    fn part(&mut self, shape: &Shape, side: Side, coefficients: &[f64]) -> Option<Part> {
+        if let (true, [sine, cosine]) = (shape.core().is_wave(), coefficients) {
+            return Some(Part::Wave {
+                number: self.number(shape.clone(), side),
+                sine: *sine,
+                cosine: *cosine,
+            });
+        }
         let value = shape.nonlinear()?.value;
         let step = value * SLOPE_STEP;
         let low = self.number(shape.with_nonlinear(value - step), side);
         let high = self.number(shape.with_nonlinear(value + step), side);
-        Some(Difference { low, high, step: 2.0 * step, coefficients })
+        Some(Part::Difference { low, high, step: 2.0 * step, coefficients: coefficients.to_vec() })
     }
 
     fn number(&mut self, shape: Shape, side: Side) -> usize {
@@ -104,17 +111,7 @@ impl Shapes {
             match usage {
                 Use::Shape(_) => {}
                 Use::Inertia { axis, place } => self.slopes[*place][0] = view.axis(*axis).inertia_slope(),
-                Use::Slope { parts, place } => {
-                    let sum = |number: usize, coefficients: &[f64], row: usize| -> f64 {
-                        let columns = self.different[number].columns.iter().zip(coefficients);
-                        columns.map(|(column, coefficient)| column[row] * coefficient).sum()
-                    };
-                    let change = |Difference { low, high, step, coefficients }: &Difference, row: usize| {
-                        (sum(*high, coefficients, row) - sum(*low, coefficients, row)) / step
-                    };
-                    self.slopes[*place][0] =
-                        (0..view.len()).map(|row| parts.iter().map(|part| change(part, row)).sum()).collect();
-                }
+                Use::Slope { parts, place } => self.slopes[*place][0] = slope(&self.different, parts, view),
             }
         }
     }
@@ -126,6 +123,32 @@ impl Shapes {
             Use::Inertia { place, .. } | Use::Slope { place, .. } => &self.slopes[*place],
         }
     }
+}
+
+/// How the sum of some terms changes with the nonlinear parameter that they share, in each row.
+fn slope(different: &[Different], parts: &[Part], view: &Rows<'_>) -> Vec<f64> {
+    let mut slope = vec![0.0; view.len()];
+    for part in parts {
+        match part {
+            Part::Wave { number, sine, cosine } => {
+                let wave = &different[*number];
+                let [sines, cosines] = wave.columns.as_slice() else { continue };
+                let phases = wave.shape.phase_slope(view);
+                for (row, (slope, phase)) in slope.iter_mut().zip(phases).enumerate() {
+                    *slope += phase * (sine * cosines[row] - cosine * sines[row]);
+                }
+            }
+            Part::Difference { low, high, step, coefficients } => {
+                let columns = different[*low].columns.iter().zip(&different[*high].columns);
+                for ((low, high), coefficient) in columns.zip(coefficients) {
+                    for (row, slope) in slope.iter_mut().enumerate() {
+                        *slope += (high[row] - low[row]) / step * coefficient;
+                    }
+                }
+            }
+        }
+    }
+    slope
 }
 
 /// Whether a term is the same on both sides.

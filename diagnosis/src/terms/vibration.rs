@@ -1,5 +1,7 @@
 //! `vibration`: amplifier noise, mains, imbalance. In: time. Out: sine and cosine of 2 pi f t.
 
+use std::f64::consts::TAU;
+
 use super::wave;
 use crate::states::Rows;
 
@@ -9,4 +11,9 @@ pub(super) const MEANING: &str = "An oscillation in time that does not depend on
 
 pub(super) fn fill(rows: &Rows<'_>, frequency: f64, out: &mut [Vec<f64>]) {
     wave(rows.time.iter().map(|time| time * frequency), out);
+}
+
+/// How its phase, rad, changes with its frequency, Hz.
+pub(super) fn phase_slope(rows: &Rows<'_>) -> Vec<f64> {
+    rows.time.iter().map(|time| TAU * time).collect()
 }

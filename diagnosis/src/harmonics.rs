@@ -160,9 +160,8 @@ fn harmonics(study: &Study<'_>, wave: &Effect, travels: &[Travel]) -> Vec<Effect
 /// Tries the harmonics of each wave of a fitted model, in the place of waves that cannot be told from them; and harmonics that stand already as
 /// waves by themselves.
 pub(crate) fn try_harmonics(study: &Study<'_>, now: Fit, conditions: &Conditions<'_>) -> Fit {
-    let waves =
-        now.model.chosen().iter().map(|fitted| &fitted.effect).filter(|effect| is_fundamental(effect));
-    let waves: Vec<&Effect> = waves.collect();
+    let effects = now.model.chosen().iter().map(|fitted| &fitted.effect);
+    let waves: Vec<&Effect> = effects.filter(|effect| is_fundamental(effect)).collect();
     let cheaper = parallel::counted(waves.len(), study.rows() * waves.len(), |number| {
         cheaper_with_harmonics(study, &now, waves[number], conditions)
     });

@@ -447,7 +447,7 @@ fn wave(turns: impl Iterator<Item = f64>, out: &mut [Vec<f64>]) {
     }
 }
 
-/// How many phases are worked out together: half of the time of a search among waves would go to sines and cosines one by one.
+/// How many phases are worked out together: as many as an `f64x4` has. One by one, sines and cosines would be half of a search among waves.
 const LANES: usize = 4;
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The design against brute force, and its columns against finite differences of what a model leaves.
 
+use model_dsl::calibration::Factor;
 use simulation::path::Shape as PathShape;
 use simulation::{Instrument as Reads, Normal};
 
@@ -255,7 +256,13 @@ fn slopes_are_how_the_residual_falls_with_the_nonlinear_parameter() {
             vec![1e-4],
         ),
     ];
-    let alone = cases.map(|(effect, coefficients)| vec![Fitted { effect, coefficients }]);
+    let gained = Shape::Times {
+        core: Box::new(Shape::Cyclic { axis: 1, period: 17.0, order: 1, center: 3.0 }),
+        factors: vec![Factor::Direction { axis: 0 }],
+    };
+    let gained = (machine(&study, "EYY", Side::After, gained), vec![1e-4, -2e-4]);
+    let alone =
+        cases.into_iter().chain([gained]).map(|(effect, coefficients)| vec![Fitted { effect, coefficients }]);
     let wave = |order: u32, coefficients: [f64; 2]| {
         let shape = Shape::Cyclic { axis: 0, period: 13.0, order, center: 0.0 };
         Fitted { effect: machine(&study, "EXX", Side::After, shape), coefficients: coefficients.to_vec() }

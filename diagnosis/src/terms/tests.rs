@@ -432,3 +432,23 @@ fn a_delay_looks_back_and_a_step_stays() {
     let step = value(&CalibratedTerm::Step { time: time[50], size: 0.3 }, &states);
     assert_eq!((step[49], step[50], step[239]), (0.0, 0.3, 0.3));
 }
+
+/// However many rows there are, and however far from the first turn: each phase by the standard library, to what the product with 2 pi loses.
+#[test]
+fn waves_are_sines_and_cosines_of_their_turns() {
+    for count in 0..10_u32 {
+        let turns: Vec<f64> =
+            (0..count).map(|row| 0.37 * f64::from(row) - 1.1 + 1e3 * f64::from(count)).collect();
+        let mut columns = vec![vec![7.0; 3], Vec::new()];
+        wave(turns.iter().copied(), &mut columns);
+        let (sines, cosines) = (&columns[0], &columns[1]);
+        assert_eq!([sines.len(), cosines.len()], [turns.len(); 2]);
+        for (row, turn) in turns.iter().enumerate() {
+            let (sine, cosine) = (TAU * turn).sin_cos();
+            assert!((sines[row] - sine).abs() < 1e-15 && (cosines[row] - cosine).abs() < 1e-15, "{turn}");
+        }
+    }
+    let mut unknown = vec![Vec::new(), Vec::new()];
+    wave([f64::NAN, 0.25].into_iter(), &mut unknown);
+    assert!(unknown[0][0].is_nan() && unknown[1][0].is_nan() && unknown[0][1] == 1.0, "{unknown:?}");
+}
